@@ -1,0 +1,43 @@
+# Sourced by ./demo and ./check: installs the Debian packages that are missing and builds a preset.
+# shellcheck shell=bash
+
+hermes_build_packages=(
+    build-essential cmake ninja-build pkg-config python3
+    qtbase5-dev libeigen3-dev libpcap-dev nlohmann-json3-dev libcli11-dev libvalijson-dev
+)
+hermes_test_packages=(libbenchmark-dev clang-format tshark)
+
+# install_missing PACKAGE...: installs those that dpkg does not know as installed; says which; silent when none is missing.
+install_missing() {
+    local missing=() package
+    for package in "$@"; do
+        [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+    done
+    [ ${#missing[@]} -eq 0 ] && return 0
+    local sudo=()
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || {
+            echo "These Debian packages are missing and this user is not root, nor is there sudo: ${missing[*]}" >&2
+            return 1
+        }
+        sudo=(sudo)
+    fi
+    echo "Installing missing Debian packages: ${missing[*]}"
+    "${sudo[@]}" apt-get update -qq &&
+        "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# build_preset PRESET: configures (when needed) and builds.
+build_preset() {
+    local preset=$1
+    if [ ! -f "build/$preset/build.ninja" ]; then
+        mkdir -p "build/$preset"
+        echo "Configuring ($preset) ..."
+        cmake --preset "$preset" >"build/$preset/configure.log" 2>&1 || {
+            cat "build/$preset/configure.log" >&2
+            return 1
+        }
+    fi
+    echo "Building ($preset) ..."
+    cmake --build --preset "$preset"
+}

@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Fails when an include crosses a wall: who may include whom stands in docs/architecture.md.
+
+Checks itself first: made-up includes that cross each wall must be caught."""
+import os
+import re
+import sys
+
+# What a folder may include of ours, by the first (for daemons: first two) parts of the path.
+ALLOWED = {
+    "vectorlib": {"vectorlib"},
+    "protocol": {"protocol"},
+    "common": {"common", "protocol"},
+    "daemons/motorcontrol": {"common", "protocol"},
+    "daemons/velodynelogger": {"common", "protocol"},
+    "daemons/seriallogger": {"common", "protocol"},
+    "daemons/softwaretrigger": {"common", "protocol"},
+    "daemons/supervisor": {"common", "protocol"},
+    "daemons/scanmatcher": {"common", "protocol", "vectorlib"},
+    "daemons/simulator": {"common", "protocol", "vectorlib"},
+    "gui": {"common", "protocol", "vectorlib"},
+}
+# Qt that a folder may include; None means any.
+QT_ALLOWED = {"vectorlib": set(), "protocol": {"QByteArray", "QString", "QStringList", "QVector", "QVariant", "QtGlobal",
+                                               "QtEndian", "QJsonObject", "QJsonArray", "QJsonValue", "QJsonDocument",
+                                               "QJsonParseError", "QCborMap", "QCborArray", "QCborValue",
+                                               "QCborStreamReader", "QCborStreamWriter", "QHash", "QMap", "QSet"}}
+OURS = ("vectorlib", "protocol", "common", "daemons", "gui")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def zone_of(path):
+    parts = path.split("/")
+    return "/".join(parts[:2]) if parts[0] == "daemons" and len(parts) > 2 else parts[0]
+
+
+def complaint(path, include, root):
+    """Why the file may not include this, or None."""
+    zone = zone_of(path)
+    allowed = ALLOWED.get(zone)
+    if allowed is None:
+        return f"folder {zone} has no entry in {os.path.basename(__file__)}"
+    if include.startswith("."):
+        return "includes are written from the project's root, never relative with dots"
+    name = include.split("/")[-1]
+    if re.match(r"Q[A-Z]|Qt", name) and zone in QT_ALLOWED and name not in QT_ALLOWED[zone]:
+        return f"{zone} may include only these of Qt: {', '.join(sorted(QT_ALLOWED[zone])) or 'nothing'}"
+    first = include.split("/")[0]
+    if first not in OURS:
+        beside = os.path.join(root, os.path.dirname(path), include)
+        return "files of ours are included by their path from the root" if os.path.exists(beside) else None
+    target = zone_of(include)
+    if target == zone or first in allowed:
+        return None
+    return f"{zone} may include only {', '.join(sorted(allowed))} (and itself)"
+
+
+def self_test():
+    crossing = [("vectorlib/include/vectorlib/io/Csv.h", "QString"), ("vectorlib/include/vectorlib/io/Csv.h", "QtCore/QFile"),
+                ("vectorlib/include/vectorlib/io/Csv.h", "common/Result.h"), ("protocol/jsonrpc/A.cpp", "QTcpSocket"),
+                ("protocol/jsonrpc/A.cpp", "common/Result.h"), ("common/daemon/A.cpp", "vectorlib/geometry/Vector2D.h"),
+                ("daemons/scanmatcher/A.cpp", "daemons/simulator/B.h"), ("gui/hermesctl/A.cpp", "daemons/simulator/B.h"),
+                ("daemons/velodynelogger/A.cpp", "vectorlib/geometry/Vector2D.h"), ("common/A.cpp", "daemons/simulator/B.h")]
+    fine = [("daemons/scanmatcher/A.cpp", "vectorlib/geometry/Vector2D.h"), ("daemons/scanmatcher/A.cpp", "daemons/scanmatcher/B.h"),
+            ("protocol/jsonrpc/A.cpp", "QJsonObject"), ("common/A.cpp", "protocol/jsonrpc/JsonRpc.h"), ("gui/A.cpp", "vector")]
+    wrong = [f"not caught: {p} including {i}" for p, i in crossing if not complaint(p, i, "/nonexistent")]
+    return wrong + [f"wrongly refused: {p} including {i}" for p, i in fine if complaint(p, i, "/nonexistent")]
+
+
+def main():
+    root = os.environ.get("HERMES_SOURCE") or os.path.join(os.path.dirname(__file__), "..", "..")
+    errors = self_test()
+    count = 0
+    for top in OURS:
+        for folder, _, files in os.walk(os.path.join(root, top)):
+            for name in sorted(files):
+                if not name.endswith((".h", ".hpp", ".cpp")):
+                    continue
+                path = os.path.relpath(os.path.join(folder, name), root)
+                with open(os.path.join(root, path), encoding="utf-8") as source:
+                    for number, line in enumerate(source, 1):
+                        match = INCLUDE.match(line)
+                        if match:
+                            count += 1
+                            why = complaint(path, match.group(2), root)
+                            if why:
+                                errors.append(f"{path}:{number}: {line.strip()}: {why}")
+    print("\n".join(errors) or f"{count} includes, no wall crossed")
+    return 1 if errors or count == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
