@@ -1,0 +1,82 @@
+#pragma once
+
+#include "vectorlib/geometry/Transformation2D.h"
+
+namespace vectorlib {
+
+/// The sums of a set of points from which its total least squares line follows, kept as count, mean and second
+/// moments about the mean. That carries the same information as the five plain sums of thesis (6.23) and, unlike
+/// them, loses nothing when the points lie far from the origin (erratum 3). Metres.
+///
+/// Adding two sums gives exactly the sums of the union of their points; a transformed sum is exactly the sum of the
+/// transformed points. That is what makes merging edges of a map exact.
+struct TlsSums {
+    double n = 0;
+    Vector2D<double> mean;
+    double xx = 0; ///< sum of (x - mean.x)^2
+    double xy = 0; ///< sum of (x - mean.x)(y - mean.y)
+    double yy = 0; ///< sum of (y - mean.y)^2
+
+    /// From the five plain sums (6.23), taken relative to `origin`.
+    static TlsSums fromPlain(double n, double sx, double sy, double sxx, double sxy, double syy,
+                             Vector2D<double> origin = {}) {
+        TlsSums s;
+        if (n <= 0)
+            return s;
+        s.n = n;
+        const double mx = sx / n, my = sy / n;
+        s.mean = origin + Vector2D<double>(mx, my);
+        s.xx = std::max(0.0, sxx - sx * mx);
+        s.xy = sxy - sx * my;
+        s.yy = std::max(0.0, syy - sy * my);
+        return s;
+    }
+    /// Of the points first .. last, shifted by the first one while summing (erratum 3).
+    template <typename Iterator>
+    static TlsSums of(Iterator first, Iterator last) {
+        if (first == last)
+            return {};
+        const Vector2D<double> origin(*first);
+        double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
+        for (; first != last; ++first) {
+            const Vector2D<double> p = Vector2D<double>(*first) - origin;
+            n += 1;
+            sx += p.x;
+            sy += p.y;
+            sxx += p.x * p.x;
+            sxy += p.x * p.y;
+            syy += p.y * p.y;
+        }
+        return fromPlain(n, sx, sy, sxx, sxy, syy, origin);
+    }
+
+    /// The sums of the union of both point sets.
+    TlsSums &operator+=(const TlsSums &o) {
+        if (o.n == 0)
+            return *this;
+        const double total = n + o.n;
+        const Vector2D<double> d = o.mean - mean;
+        const double k = n * o.n / total;
+        mean += d * (o.n / total);
+        xx += o.xx + k * d.x * d.x;
+        xy += o.xy + k * d.x * d.y;
+        yy += o.yy + k * d.y * d.y;
+        n = total;
+        return *this;
+    }
+    friend TlsSums operator+(TlsSums a, const TlsSums &b) { return a += b; }
+
+    /// The sums of the transformed points.
+    friend TlsSums operator*(const Transformation2D &t, const TlsSums &s) {
+        const double c = t.cos(), i = t.sin();
+        TlsSums r;
+        r.n = s.n;
+        r.mean = t * s.mean;
+        r.xx = c * c * s.xx - 2 * c * i * s.xy + i * i * s.yy;
+        r.xy = c * i * (s.xx - s.yy) + (c * c - i * i) * s.xy;
+        r.yy = i * i * s.xx + 2 * c * i * s.xy + c * c * s.yy;
+        return r;
+    }
+};
+
+} // namespace vectorlib
