@@ -33,8 +33,8 @@ public:
     }
     template <typename Scalar>
     Vector2D<Scalar> operator*(Vector2D<Scalar> p) const {
-        return Vector2D<Scalar>(
-            Vector2D<double>(m_cos * p.x - m_sin * p.y + m_translation.x, m_sin * p.x + m_cos * p.y + m_translation.y));
+        return Vector2D<Scalar>(Vector2D<double>(m_cos * p.x - m_sin * p.y + m_translation.x,
+                                                 m_sin * p.x + m_cos * p.y + m_translation.y));
     }
     template <typename Scalar>
     LineSegment2D<Scalar> operator*(const LineSegment2D<Scalar> &s) const {

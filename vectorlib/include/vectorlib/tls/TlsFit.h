@@ -39,8 +39,9 @@ inline TlsLine fitLine(const TlsSums &s) {
     return fit;
 }
 
-/// Whether the standard deviation of the points from their line is at most sigma. Neither root nor division: the
-/// smaller eigenvalue of the moments exceeds n sigma^2 exactly when the moments less n sigma^2 are positive definite.
+/// Whether the standard deviation of the points from their line is at most sigma. Neither root nor division:
+/// the smaller eigenvalue of the moments exceeds n sigma^2 exactly when the moments less n sigma^2 are
+/// positive definite.
 inline bool fitsWithin(const TlsSums &s, double sigma) {
     const double limit = s.n * sigma * sigma;
     const double xx = s.xx - limit, yy = s.yy - limit;

@@ -4,12 +4,12 @@
 
 namespace vectorlib {
 
-/// The sums of a set of points from which its total least squares line follows, kept as count, mean and second
-/// moments about the mean. That carries the same information as the five plain sums of thesis (6.23) and, unlike
-/// them, loses nothing when the points lie far from the origin (erratum 3). Metres.
+/// The sums of a set of points from which its total least squares line follows, kept as count, mean and
+/// second moments about the mean. That carries the same information as the five plain sums of thesis (6.23)
+/// and, unlike them, loses nothing when the points lie far from the origin (erratum 3). Metres.
 ///
-/// Adding two sums gives exactly the sums of the union of their points; a transformed sum is exactly the sum of the
-/// transformed points. That is what makes merging edges of a map exact.
+/// Adding two sums gives exactly the sums of the union of their points; a transformed sum is exactly the sum
+/// of the transformed points. That is what makes merging edges of a map exact.
 struct TlsSums {
     double n = 0;
     Vector2D<double> mean;

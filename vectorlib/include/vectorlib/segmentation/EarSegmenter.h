@@ -1,0 +1,138 @@
+#pragma once
+
+#include "vectorlib/geometry/Angle.h"
+#include "vectorlib/geometry/PointSpan.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace vectorlib {
+
+/// Settings of EarSegmenter; the defaults are those of thesis 5.3.
+struct EarSettings {
+    int neighbours = 10;         ///< K: how many earlier points are examined
+    double minThreshold = 0.05;  ///< lower bound of the distance threshold, the sensor's accuracy; metres
+    double maxThreshold = 0.20;  ///< upper bound of the distance threshold; metres
+    int minPoints = 15;          ///< smaller clusters are outliers
+    bool closed = true;          ///< the last point is a neighbour of the first (a full turn)
+    double fieldOfView = 2 * pi; ///< F of erratum 14; radians
+    std::size_t nominalPoints =
+        0; ///< N of erratum 14, rays of the scanner; 0 takes the number of points given
+};
+
+/// What a segmentation found; indices are those of the points given.
+struct Segmentation {
+    std::vector<int> labels; ///< the cluster of each point, -1 for an outlier
+    std::vector<int> order;  ///< the points of all clusters, cluster after cluster, each in scanning order
+    std::vector<std::size_t> starts; ///< cluster c holds order[starts[c]] .. order[starts[c + 1] - 1]
+
+    std::size_t size() const { return starts.empty() ? 0 : starts.size() - 1; }
+    std::size_t size(std::size_t cluster) const { return starts[cluster + 1] - starts[cluster]; }
+};
+
+/// Splits an ordered scan into continuous clusters: Euclidean distance, adaptive threshold, retroactive
+/// merging. Thesis 5.2. Points are in the scanner's frame, in order of acquisition. Non-finite points are
+/// outliers and take no part. Keeps its buffers between calls: no allocation once they have grown.
+template <typename Scalar = float>
+class EarSegmenter {
+public:
+    EarSettings settings;
+
+    const Segmentation &operator()(PointSpan<Scalar> points) {
+        const std::size_t count = points.size();
+        m_parent.resize(count);
+        m_threshold.resize(count);
+        m_valid.clear();
+        const double perMetre = thresholdPerMetre(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            m_parent[i] = static_cast<int>(i);
+            if (points[i].isFinite()) {
+                const double t =
+                    std::clamp(perMetre * points[i].norm(), settings.minThreshold, settings.maxThreshold);
+                m_threshold[i] = static_cast<Scalar>(t * t);
+                m_valid.push_back(static_cast<int>(i));
+            }
+        }
+        const std::size_t reach = static_cast<std::size_t>(std::max(1, settings.neighbours));
+        for (std::size_t v = 1; v < m_valid.size(); ++v)
+            for (std::size_t back = 1; back <= std::min(reach, v); ++back)
+                joinIfNear(points, m_valid[v], m_valid[v - back]);
+        if (settings.closed)
+            close(points, reach);
+        collect(count);
+        return m_result;
+    }
+
+private:
+    // Thesis (5.1) with erratum 14: K * F / N for each metre of range.
+    double thresholdPerMetre(std::size_t count) const {
+        const std::size_t rays = settings.nominalPoints ? settings.nominalPoints : count;
+        return rays ? settings.neighbours * settings.fieldOfView / static_cast<double>(rays) : 0;
+    }
+    int root(int i) {
+        while (m_parent[i] != i)
+            i = m_parent[i] = m_parent[m_parent[i]];
+        return i;
+    }
+    // The earlier root stays, so that clusters are numbered by their first point.
+    void joinIfNear(PointSpan<Scalar> points, int i, int j) {
+        if (!((points[i] - points[j]).squaredNorm() <= m_threshold[i]))
+            return;
+        const int a = root(i), b = root(j);
+        m_parent[std::max(a, b)] = std::min(a, b);
+    }
+    // The first K points are examined again, with the last ones as their predecessors.
+    void close(PointSpan<Scalar> points, std::size_t reach) {
+        const std::size_t valid = m_valid.size();
+        for (std::size_t v = 0; v < std::min(reach, valid); ++v)
+            for (std::size_t back = v + 1; back <= reach && back < valid; ++back)
+                joinIfNear(points, m_valid[v], m_valid[valid + v - back]);
+    }
+    void collect(std::size_t count) {
+        Segmentation &r = m_result;
+        r.labels.assign(count, -1);
+        r.starts.assign(1, 0);
+        m_size.assign(count, 0);
+        for (int i : m_valid)
+            ++m_size[root(i)];
+        int clusters = 0;
+        for (int i : m_valid)
+            if (m_parent[i] == i && m_size[i] >= std::max(1, settings.minPoints)) {
+                r.labels[i] = clusters++;
+                r.starts.push_back(r.starts.back() + static_cast<std::size_t>(m_size[i]));
+            }
+        r.order.resize(r.starts.back());
+        m_next.assign(r.starts.begin(), r.starts.end());
+        for (int i : m_valid) {
+            const int label = r.labels[root(i)];
+            r.labels[i] = label;
+            if (label >= 0)
+                r.order[m_next[static_cast<std::size_t>(label)]++] = i;
+        }
+        if (settings.closed)
+            for (std::size_t c = 0; c < r.size(); ++c)
+                startAfterWidestGap(r.order.begin() + static_cast<std::ptrdiff_t>(r.starts[c]),
+                                    r.order.begin() + static_cast<std::ptrdiff_t>(r.starts[c + 1]), count);
+    }
+    // A cluster that runs over the end of the scan begins after the widest gap in its indices.
+    static void startAfterWidestGap(std::vector<int>::iterator first, std::vector<int>::iterator last,
+                                    std::size_t count) {
+        auto start = first;
+        int widest = *first + static_cast<int>(count) - *(last - 1);
+        for (auto i = first + 1; i != last; ++i)
+            if (*i - *(i - 1) > widest) {
+                widest = *i - *(i - 1);
+                start = i;
+            }
+        std::rotate(first, start, last);
+    }
+
+    std::vector<int> m_parent;
+    std::vector<Scalar> m_threshold; // squared, of each point
+    std::vector<int> m_valid;        // indices of the finite points
+    std::vector<int> m_size;
+    std::vector<std::size_t> m_next;
+    Segmentation m_result;
+};
+
+} // namespace vectorlib

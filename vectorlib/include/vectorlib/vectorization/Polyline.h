@@ -1,0 +1,90 @@
+#pragma once
+
+#include "vectorlib/vectorization/PrefixSums.h"
+#include "vectorlib/vectorization/VectorizedLine.h"
+
+#include <vector>
+
+namespace vectorlib {
+
+/// Joins the consecutive lines of one cluster into a polyline: thesis 6.3.3, figure 6.6. Corners are the
+/// intersections of neighbouring lines. Where an intersection lies farther than delta from the middle between
+/// the two points at which one line changes to the next, the points of both lines are divided among three
+/// lines; where that does not help either, both lines keep their own ends and the polyline is interrupted
+/// there.
+class PolylineJoiner {
+public:
+    template <typename Scalar>
+    void operator()(PointSpan<Scalar> points, const PrefixSums &sums, const VectorizerSettings &settings,
+                    std::vector<VectorizedLine> &lines) {
+        m_joined.clear();
+        for (const VectorizedLine &next : lines) {
+            if (!m_joined.empty() && !join(points, m_joined.back(), next, settings.delta)) {
+                if (bridge(points, sums, next, settings))
+                    continue;
+            }
+            m_joined.push_back(next);
+        }
+        cutAtCorners(points, settings.delta);
+        lines.swap(m_joined);
+    }
+
+private:
+    template <typename Scalar>
+    static Vector2D<double> breakPoint(PointSpan<Scalar> points, const VectorizedLine &l,
+                                       const VectorizedLine &m) {
+        return (Vector2D<double>(points[l.last]) + Vector2D<double>(points[m.first])) * 0.5;
+    }
+    template <typename Scalar>
+    static bool corner(PointSpan<Scalar> points, const VectorizedLine &l, const VectorizedLine &m,
+                       double delta, Vector2D<double> &point) {
+        return l.line.isValid() && m.line.isValid() && intersect(l.line, m.line, point) &&
+               (point - breakPoint(points, l, m)).squaredNorm() <= delta * delta;
+    }
+    template <typename Scalar>
+    static bool join(PointSpan<Scalar> points, const VectorizedLine &l, const VectorizedLine &m,
+                     double delta) {
+        Vector2D<double> point;
+        return corner(points, l, m, delta, point);
+    }
+    // Replaces the last joined line and `next` by three lines when these fit and meet; the correction of
+    // figure 6.6b.
+    template <typename Scalar>
+    bool bridge(PointSpan<Scalar> points, const PrefixSums &sums, const VectorizedLine &next,
+                const VectorizerSettings &settings) {
+        const VectorizedLine previous = m_joined.back();
+        const std::size_t first = previous.first, count = next.last - first + 1;
+        if (count < 6)
+            return false;
+        const std::size_t cut1 = first + count / 3, cut2 = first + 2 * count / 3;
+        const double variance = settings.sigma * settings.sigma;
+        if (!sums.fitWithin(first, cut1, variance) || !sums.fitWithin(cut1, cut2, variance) ||
+            !sums.fitWithin(cut2, next.last + 1, variance))
+            return false;
+        const VectorizedLine a = makeLine(points, first, cut1 - 1, sums.sums(first, cut1));
+        const VectorizedLine b = makeLine(points, cut1, cut2 - 1, sums.sums(cut1, cut2));
+        const VectorizedLine c = makeLine(points, cut2, next.last, sums.sums(cut2, next.last + 1));
+        const bool stillMeetsBefore = m_joined.size() < 2 ||
+                                      join(points, m_joined[m_joined.size() - 2], a, settings.delta) ||
+                                      !join(points, m_joined[m_joined.size() - 2], previous, settings.delta);
+        if (!stillMeetsBefore || !join(points, a, b, settings.delta) || !join(points, b, c, settings.delta))
+            return false;
+        m_joined.back() = a;
+        m_joined.push_back(b);
+        m_joined.push_back(c);
+        return true;
+    }
+    template <typename Scalar>
+    void cutAtCorners(PointSpan<Scalar> points, double delta) {
+        Vector2D<double> point;
+        for (std::size_t i = 0; i + 1 < m_joined.size(); ++i)
+            if (corner(points, m_joined[i], m_joined[i + 1], delta, point)) {
+                m_joined[i].segment = {m_joined[i].segment.begin(), point};
+                m_joined[i + 1].segment = {point, m_joined[i + 1].segment.end()};
+            }
+    }
+
+    std::vector<VectorizedLine> m_joined;
+};
+
+} // namespace vectorlib

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "vectorlib/vectorization/VectorizedLine.h"
+
+#include <vector>
+
+namespace vectorlib {
+
+/// One total least squares line through the whole cluster, whatever its shape. Thesis 4.2.2, 6.2.2.
+/// Fewer than two points give no line. The points must be finite.
+template <typename Scalar = float>
+class TlsVectorizer {
+public:
+    VectorizerSettings settings;
+
+    const std::vector<VectorizedLine> &operator()(PointSpan<Scalar> points) {
+        m_lines.clear();
+        if (points.size() >= 2)
+            m_lines.push_back(
+                makeLine(points, 0, points.size() - 1, TlsSums::of(points.begin(), points.end())));
+        return m_lines;
+    }
+
+private:
+    std::vector<VectorizedLine> m_lines;
+};
+
+} // namespace vectorlib

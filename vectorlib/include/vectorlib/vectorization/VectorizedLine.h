@@ -1,0 +1,47 @@
+#pragma once
+
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/tls/TlsFit.h"
+
+namespace vectorlib {
+
+/// One line that a vectorizer found, with the points it stands for.
+struct VectorizedLine {
+    std::size_t first = 0; ///< index of its first point
+    std::size_t last = 0;  ///< index of its last point, inclusive
+    TlsSums sums;          ///< of these points
+    Line2D line;           ///< total least squares; invalid when the points have no direction
+    double sigma = 0;      ///< standard deviation of the points from the line; metres
+    LineSegment2D<double> segment;
+};
+
+/// Fits the line of points first .. last (sums given) and cuts it at their projections.
+template <typename Scalar>
+VectorizedLine makeLine(PointSpan<Scalar> points, std::size_t first, std::size_t last, const TlsSums &sums) {
+    VectorizedLine v;
+    v.first = first;
+    v.last = last;
+    v.sums = sums;
+    const TlsLine fit = fitLine(sums);
+    v.line = fit.line;
+    v.sigma = std::sqrt(fit.variance);
+    Vector2D<double> begin(points[first]), end(points[last]);
+    if (fit.line.isValid()) {
+        begin = fit.line.project(begin);
+        end = fit.line.project(end);
+    }
+    v.segment = LineSegment2D<double>(begin, end);
+    return v;
+}
+
+/// Settings that all vectorizers share.
+struct VectorizerSettings {
+    double sigma = 0.02; ///< largest standard deviation of points from their line; metres
+    double delta =
+        0.10; ///< largest distance of a polyline's corner from the break point, see Polyline.h; metres
+    bool polyline =
+        true; ///< join consecutive lines at their intersections (thesis 6.3.3); else cut at end points
+};
+
+} // namespace vectorlib

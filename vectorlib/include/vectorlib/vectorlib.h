@@ -1,0 +1,8 @@
+#pragma once
+
+// Everything that scan processing needs, in one include.
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/segmentation/EarSegmenter.h"
+#include "vectorlib/tls/TlsFit.h"
+#include "vectorlib/vectorization/FtlsVectorizer.h"
+#include "vectorlib/vectorization/TlsVectorizer.h"
