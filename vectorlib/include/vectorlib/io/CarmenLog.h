@@ -1,0 +1,261 @@
+#pragma once
+
+#include "vectorlib/io/CarmenScan.h"
+#include "vectorlib/io/TextInput.h"
+
+#include <algorithm>
+
+namespace vectorlib {
+
+/// Which of a log's poses tell the motion that the wheels measured.
+enum class CarmenOdometryKind {
+    Raw,       ///< ordinary logs: the second triple of a scan is the odometry at the scan
+    Corrected, ///< scan poses are a corrected reference; the wheels speak in the ODOM lines between two scans
+               ///< only
+};
+
+struct CarmenOptions {
+    bool skipDamaged = false; ///< count damaged lines instead of giving an error
+};
+
+/// A robot's log in CARMEN's text format.
+struct CarmenLog {
+    std::vector<CarmenScan> scans;
+    std::vector<CarmenOdometry> odometry;
+    std::size_t damaged = 0;               ///< lines left out, with CarmenOptions::skipDamaged only
+    std::optional<InputError> firstDamage; ///< the first of them
+
+    /// Motion of the robot from one scan to a later one as its odometry tells it, composed over the scans
+    /// between. Nothing when a part of the way has no odometry.
+    std::optional<Transformation2D> odometryMotion(std::size_t from, std::size_t to,
+                                                   CarmenOdometryKind kind) const {
+        if (kind == CarmenOdometryKind::Raw)
+            return Transformation2D(scans[from].robotPose).inverse() * Transformation2D(scans[to].robotPose);
+        Transformation2D motion;
+        for (std::size_t i = from + 1; i <= to; ++i) {
+            if (!scans[i].wheelMotion)
+                return std::nullopt;
+            motion = motion * *scans[i].wheelMotion;
+        }
+        return motion;
+    }
+    /// Motion between two scans by the laser poses: in a corrected log the reference to compare with.
+    Transformation2D referenceMotion(std::size_t from, std::size_t to) const {
+        return Transformation2D(scans[from].laserPose).inverse() * Transformation2D(scans[to].laserPose);
+    }
+
+    /// Range from which FLASER readings mean no return: just below the largest of the log when that is one a
+    /// scanner writes for it (30 m and more, a little apart by device: 81.91 and 81.83, 51.1
+    /// and 51.05, 32.767); else none.
+    double guessMaxRange() const {
+        float largest = 0;
+        for (const CarmenScan &scan : scans)
+            for (const float range : scan.ranges)
+                largest = std::max(largest, range);
+        return largest >= 30 ? std::min(80.0, 0.998 * largest) : std::numeric_limits<double>::infinity();
+    }
+};
+
+namespace detail {
+
+/// Reads a CARMEN log line by line; see readCarmenLog.
+class CarmenReader {
+public:
+    CarmenReader(std::istream &in, std::string name, CarmenOptions options)
+        : m_lines(in, std::move(name))
+        , m_options(options) {}
+
+    Expected<CarmenLog> read() {
+        while (const auto line = m_lines.next()) {
+            if (const auto error = readLine(trimmed(*line))) {
+                if (!m_options.skipDamaged)
+                    return *error;
+                if (m_log.damaged++ == 0)
+                    m_log.firstDamage = error;
+            }
+        }
+        if (m_lines.error())
+            return *m_lines.error();
+        if (m_log.scans.empty())
+            return m_lines.errorHere("the end of the log and no scan",
+                                     "at least one line FLASER or ROBOTLASER1");
+        const double maxRange = m_log.guessMaxRange();
+        for (CarmenScan &scan : m_log.scans)
+            if (std::isinf(scan.maxRange))
+                scan.maxRange = maxRange;
+        return std::move(m_log);
+    }
+
+private:
+    using Problem = std::optional<InputError>;
+    static constexpr std::size_t maxRays = 100000;
+
+    Problem readLine(std::string_view line) {
+        if (line.empty() || line.front() == '#')
+            return {};
+        splitBlanks(line, m_fields);
+        const std::string_view keyword = m_fields.front();
+        if (keyword == "ODOM")
+            return readOdometry();
+        if (keyword == "FLASER" || keyword == "ROBOTLASER1") {
+            Problem problem = keyword == "FLASER" ? readFrontLaser() : readRobotLaser();
+            if (problem)
+                interrupted();
+            return problem;
+        }
+        const bool isKeyword = std::all_of(keyword.begin(), keyword.end(), [](char c) {
+            return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+        });
+        if (!isKeyword || (!m_lines.terminated() && m_fields.size() == 1))
+            return m_lines.errorHere(quoted(keyword), "a CARMEN message such as FLASER, ROBOTLASER1 or ODOM");
+        return {}; // PARAM, NEFF, SYNC, RLASER, TRUEPOS and others tell nothing of the front laser
+    }
+
+    Problem readOdometry() {
+        CarmenOdometry odometry;
+        odometry.line = m_lines.number();
+        if (m_fields.size() < 10)
+            return tooShort("ODOM", 10);
+        if (const auto problem = readPose(1, odometry.pose))
+            return problem;
+        if (const auto problem = readField(7, "the time stamp", odometry.stamp))
+            return problem;
+        follow(odometry.pose);
+        m_log.odometry.push_back(odometry);
+        return {};
+    }
+
+    Problem readFrontLaser() {
+        CarmenScan scan;
+        std::size_t at = 1;
+        if (const auto problem = readRanges("FLASER", at, 9, scan))
+            return problem;
+        if (m_fields.size() != at + 9)
+            return m_lines.errorHere(std::to_string(m_fields.size()) + " fields",
+                                     std::to_string(at + 9) + " fields of FLASER with " +
+                                         std::to_string(scan.ranges.size()) + " ranges");
+        // 180 or 181 rays stand 1 degree apart, 360 or 361 half a degree: an even count lacks the last ray.
+        const std::size_t n = scan.ranges.size();
+        scan.startAngle = -pi / 2;
+        scan.angleStep = pi / static_cast<double>(n % 2 == 0 ? n : n - 1);
+        return finish(scan, at, at + 6);
+    }
+
+    Problem readRobotLaser() {
+        if (m_fields.size() < 9)
+            return tooShort("ROBOTLASER1", 9);
+        CarmenScan scan;
+        double fieldOfView = 0;
+        for (const auto &[index, what, value] : {std::tuple(2, "the start angle", &scan.startAngle),
+                                                 std::tuple(3, "the field of view", &fieldOfView),
+                                                 std::tuple(4, "the angular resolution", &scan.angleStep),
+                                                 std::tuple(5, "the maximum range", &scan.maxRange)})
+            if (const auto problem = readField(index, what, *value))
+                return problem;
+        if (!(scan.angleStep > 0) || !(scan.maxRange > 0))
+            return m_lines.errorHere(quoted(m_fields[scan.angleStep > 0 ? 5 : 4]),
+                                     "a resolution and a maximum range above 0");
+        std::size_t at = 8;
+        if (const auto problem = readRanges("ROBOTLASER1", at, 15, scan))
+            return problem;
+        const auto remissions = parseCount(m_fields[at], maxRays);
+        if (!remissions)
+            return m_lines.errorHere(quoted(m_fields[at]), "the number of remissions");
+        at += 1 + *remissions;
+        if (m_fields.size() < at + 14)
+            return tooShort("ROBOTLASER1", at + 14);
+        return finish(scan, at, at + 11);
+    }
+
+    /// The count at field `at` and so many ranges; moves `at` behind them. `rest` fields must follow.
+    Problem readRanges(const char *keyword, std::size_t &at, std::size_t rest, CarmenScan &scan) {
+        const auto count = m_fields.size() > at ? parseCount(m_fields[at], maxRays) : std::nullopt;
+        if (!count || *count < 2)
+            return m_lines.errorHere(m_fields.size() > at ? quoted(m_fields[at]) : "the end of the line",
+                                     "the number of ranges, 2 to " + std::to_string(maxRays));
+        if (m_fields.size() < at + 1 + *count + rest)
+            return tooShort(keyword, at + 1 + *count + rest);
+        scan.ranges.reserve(*count);
+        for (std::size_t i = 0; i < *count; ++i) {
+            const auto range = parseNumber(m_fields[at + 1 + i]);
+            if (!range || *range < 0)
+                return m_lines.errorHere(quoted(m_fields[at + 1 + i]), "range " + std::to_string(i + 1) +
+                                                                           " of " + std::to_string(*count) +
+                                                                           ", a finite number of metres");
+            scan.ranges.push_back(static_cast<float>(*range));
+        }
+        at += 1 + *count;
+        return {};
+    }
+
+    Problem finish(CarmenScan &scan, std::size_t poses, std::size_t stamp) {
+        scan.line = m_lines.number();
+        for (const auto &[at, pose] :
+             {std::pair(poses, &scan.laserPose), std::pair(poses + 3, &scan.robotPose)})
+            if (const auto problem = readPose(at, *pose))
+                return problem;
+        if (const auto problem = readField(stamp, "the time stamp", scan.stamp))
+            return problem;
+        if (m_last && !m_log.scans.empty())
+            scan.wheelMotion = m_moved * Transformation2D(*m_base).inverse() * Transformation2D(*m_last);
+        m_moved = {};
+        m_base = scan.laserPose;
+        m_last.reset();
+        m_log.scans.push_back(std::move(scan));
+        return {};
+    }
+
+    /// A pose of the wheels between two scans.
+    void follow(const Pose2D &pose) {
+        if (!m_base)
+            m_base = pose; // the first after a damaged scan: where the odometry restarted is not known but
+                           // from here
+        m_last = pose;
+    }
+    /// A scan that cannot be read: the odometry restarts at its unknown pose.
+    void interrupted() {
+        if (m_last)
+            m_moved = m_moved * Transformation2D(*m_base).inverse() * Transformation2D(*m_last);
+        m_base.reset();
+        m_last.reset();
+    }
+
+    Problem readPose(std::size_t at, Pose2D &pose) {
+        for (const auto &[offset, what, value] :
+             {std::tuple(0u, "x of a pose", &pose.x), std::tuple(1u, "y of a pose", &pose.y),
+              std::tuple(2u, "theta of a pose", &pose.theta)})
+            if (const auto problem = readField(at + offset, what, *value))
+                return problem;
+        return {};
+    }
+    Problem readField(std::size_t at, const char *what, double &value) {
+        const auto number = parseNumber(m_fields[at]);
+        if (!number)
+            return m_lines.errorHere(quoted(m_fields[at]), std::string(what) + ", a finite number");
+        value = *number;
+        return {};
+    }
+    InputError tooShort(const char *keyword, std::size_t fields) const {
+        return m_lines.errorHere("a line cut short after " + std::to_string(m_fields.size()) + " fields",
+                                 std::to_string(fields) + " fields of " + keyword);
+    }
+
+    LineReader m_lines;
+    CarmenOptions m_options;
+    CarmenLog m_log;
+    std::vector<std::string_view> m_fields;
+    std::optional<Pose2D> m_base; ///< where the wheels' motion since the last scan began
+    std::optional<Pose2D> m_last; ///< the last ODOM since the last scan
+    Transformation2D m_moved;     ///< by the wheels before m_base, over damaged scans
+};
+
+} // namespace detail
+
+/// The scans and the odometry of a CARMEN log. A line cut short, a field that is no finite number or binary
+/// data is an error that names `name` and the line (or is counted, with skipDamaged); so is a log without a
+/// scan.
+inline Expected<CarmenLog> readCarmenLog(std::istream &in, std::string name, CarmenOptions options = {}) {
+    return detail::CarmenReader(in, std::move(name), options).read();
+}
+
+} // namespace vectorlib

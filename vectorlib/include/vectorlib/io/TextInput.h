@@ -1,0 +1,160 @@
+#pragma once
+
+#include "vectorlib/io/Expected.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <istream>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace vectorlib {
+
+/// Lines of a text input, read in blocks; memory stays bounded whatever the input holds. CR LF counts as one
+/// line end.
+class LineReader {
+public:
+    static constexpr std::size_t maxLineLength = 1 << 20;
+
+    LineReader(std::istream &in, std::string name)
+        : m_in(in)
+        , m_name(std::move(name)) {}
+
+    /// The next line without its end; nothing at the end of the input or on an error, see error().
+    std::optional<std::string_view> next() {
+        m_line.clear();
+        m_terminated = false;
+        if (m_error || (m_at == m_filled && !fill()))
+            return std::nullopt;
+        ++m_number;
+        while (!m_terminated && (m_at < m_filled || fill()))
+            takeRestOfLine();
+        if (m_error)
+            return std::nullopt;
+        if (!m_line.empty() && m_line.back() == '\r')
+            m_line.pop_back();
+        if (m_line.find('\0') != std::string::npos)
+            return fail("a NUL byte", "a line of text");
+        return m_line;
+    }
+
+    /// Set when the input is no text, has an endless line or could not be read to its end.
+    const std::optional<InputError> &error() const { return m_error; }
+    /// Number of the line that next() gave last, from 1.
+    std::size_t number() const { return m_number; }
+    /// False when the last line ended with the input instead of a line feed: it may be cut short.
+    bool terminated() const { return m_terminated; }
+    const std::string &name() const { return m_name; }
+    InputError errorHere(std::string found, std::string expected) const {
+        return {m_name, m_number, std::move(found), std::move(expected)};
+    }
+
+private:
+    bool fill() {
+        m_in.read(m_block.data(), static_cast<std::streamsize>(m_block.size()));
+        m_at = 0;
+        m_filled = static_cast<std::size_t>(m_in.gcount());
+        if (m_in.bad()) {
+            fail("input that ends or breaks off too early", "input that can be read to its end");
+            return false;
+        }
+        return m_filled > 0;
+    }
+    void takeRestOfLine() {
+        const std::string_view rest(m_block.data() + m_at, m_filled - m_at);
+        const std::size_t length = std::min(rest.find('\n'), rest.size());
+        m_line.append(rest.substr(0, length));
+        m_terminated = length < rest.size();
+        m_at += length + (m_terminated ? 1 : 0);
+        if (m_line.size() > maxLineLength)
+            fail("a line of over " + std::to_string(maxLineLength) + " characters", "lines of text");
+        if (m_error)
+            m_terminated = true;
+    }
+    std::nullopt_t fail(std::string found, std::string expected) {
+        m_error = errorHere(std::move(found), std::move(expected));
+        return std::nullopt;
+    }
+
+    std::istream &m_in;
+    std::string m_name;
+    std::string m_line;
+    std::array<char, 1 << 16> m_block;
+    std::size_t m_at = 0;
+    std::size_t m_filled = 0;
+    std::size_t m_number = 0;
+    bool m_terminated = false;
+    std::optional<InputError> m_error;
+};
+
+inline bool isBlank(char c) {
+    return c == ' ' || c == '\t';
+}
+
+inline std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && isBlank(text.front()))
+        text.remove_prefix(1);
+    while (!text.empty() && isBlank(text.back()))
+        text.remove_suffix(1);
+    return text;
+}
+
+/// A finite number that fills the whole field, in the notation of C whatever the locale; else nothing.
+inline std::optional<double> parseNumber(std::string_view text) {
+    text = trimmed(text);
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+        text.remove_prefix(1);
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return std::nullopt;
+    return value;
+}
+
+/// A non-negative whole number up to `limit`; else nothing.
+inline std::optional<std::size_t> parseCount(std::string_view text, std::size_t limit) {
+    text = trimmed(text);
+    std::size_t value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || end != text.data() + text.size() || value > limit)
+        return std::nullopt;
+    return value;
+}
+
+/// The fields of a line that blanks separate, into `fields` (reused).
+inline void splitBlanks(std::string_view line, std::vector<std::string_view> &fields) {
+    fields.clear();
+    for (std::size_t at = 0; at < line.size();) {
+        if (isBlank(line[at])) {
+            ++at;
+            continue;
+        }
+        const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+        fields.push_back(line.substr(at, end - at));
+        at = end;
+    }
+}
+
+/// The fields of a line that commas separate, blanks around them removed, into `fields` (reused).
+inline void splitCommas(std::string_view line, std::vector<std::string_view> &fields) {
+    fields.clear();
+    for (std::size_t at = 0;;) {
+        const std::size_t end = std::min(line.find(',', at), line.size());
+        fields.push_back(trimmed(line.substr(at, end - at)));
+        if (end == line.size())
+            return;
+        at = end + 1;
+    }
+}
+
+/// Text of an input for a message: in quotes, at most 40 characters, nothing unprintable.
+inline std::string quoted(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text.substr(0, 40))
+        out += c >= ' ' && c <= '~' ? c : '?';
+    return out + (text.size() > 40 ? "...\"" : "\"");
+}
+
+} // namespace vectorlib
