@@ -2,6 +2,8 @@
 
 // Everything that scan processing needs, in one include.
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/tls/TlsFit.h"
 #include "vectorlib/vectorization/FtlsVectorizer.h"

@@ -1,0 +1,142 @@
+#pragma once
+
+#include "vectorlib/mapping/Edge2D.h"
+#include "vectorlib/mapping/SegmentGrid.h"
+
+#include <utility>
+#include <vector>
+
+namespace vectorlib {
+
+struct MapEdge {
+    int id = 0;
+    EdgeRaw2D edge;       ///< map frame
+    int observations = 1; ///< how many scans it was seen in
+};
+
+struct VectorMapSettings {
+    double maxSigma = 0.05; ///< edges are merged only while the points stay within this of one line; metres
+    double joinDistance =
+        0.06;                ///< collinear edges join when their lines are no farther apart than this; metres
+    double joinAngle = 0.06; ///< and no more turned than this; radians
+    double joinGap = 0.10;   ///< and their ends no farther apart than this along the line; metres
+};
+
+/// A map of line segments that grows by merging: a matched edge of a scan is added to its map edge by its
+/// transformed sums, so that the line is the exact total least squares line of all points ever seen on it.
+/// Map frame: metres.
+class VectorMap {
+public:
+    VectorMapSettings settings;
+
+    /// The edges; those of observations == 0 were merged into others and are to be skipped.
+    const std::vector<MapEdge> &slots() const { return m_edges; }
+    std::size_t size() const { return m_alive; }
+    bool isEmpty() const { return m_alive == 0; }
+    void clear() {
+        m_edges.clear();
+        m_grid.clear();
+        m_alive = 0;
+        m_changed.clear();
+    }
+
+    template <typename Take>
+    void forEach(Take take) const {
+        for (const MapEdge &e : m_edges)
+            if (e.observations > 0)
+                take(e);
+    }
+    /// Numbers of the edges near a box; sorted by number, so that results do not depend on hashing.
+    const std::vector<int> &near(Vector2D<double> low, Vector2D<double> high) {
+        m_found.clear();
+        m_grid.query(low, high, [this](int number) {
+            if (m_edges[static_cast<std::size_t>(number)].observations > 0)
+                m_found.push_back(number);
+        });
+        std::sort(m_found.begin(), m_found.end());
+        return m_found;
+    }
+
+    /// Adds an edge seen for the first time (or read from a file); returns its number.
+    int add(const EdgeRaw2D &edge, int observations = 1) {
+        const int number = static_cast<int>(m_edges.size());
+        m_edges.push_back({number, edge, observations});
+        m_edges.back().edge.rich = nullptr;
+        m_grid.insert(number, edge.segment);
+        ++m_alive;
+        m_changed.push_back(number);
+        return number;
+    }
+    /// Merges an edge (map frame) into the map's edge of that number; false, and nothing changed, when the
+    /// points would no longer lie within maxSigma of one line.
+    bool merge(int number, const EdgeRaw2D &edge) {
+        MapEdge &target = m_edges[static_cast<std::size_t>(number)];
+        const EdgeRaw2D joint = merged(target.edge, edge);
+        if (joint.sigma > settings.maxSigma)
+            return false;
+        target.edge = joint;
+        ++target.observations;
+        m_grid.insert(number, joint.segment);
+        m_changed.push_back(number);
+        return true;
+    }
+    /// Joins the edge with others that lie on the same line and touch it; returns how many it took in.
+    int consolidate(int number) {
+        int joined = 0;
+        for (bool again = true; again;) {
+            const LineSegment2D<double> s = m_edges[static_cast<std::size_t>(number)].edge.segment;
+            const double g = settings.joinGap;
+            const Vector2D<double> low(std::min(s.begin().x, s.end().x) - g,
+                                       std::min(s.begin().y, s.end().y) - g);
+            const Vector2D<double> high(std::max(s.begin().x, s.end().x) + g,
+                                        std::max(s.begin().y, s.end().y) + g);
+            again = false;
+            for (int other : near(low, high))
+                if (other != number && join(number, other)) {
+                    again = true; // the edge grew: look around again
+                    ++joined;
+                    break;
+                }
+        }
+        return joined;
+    }
+    /// Numbers of edges that were added, merged or removed since the last call, for those who send changes.
+    std::vector<int> takeChanges() {
+        std::sort(m_changed.begin(), m_changed.end());
+        m_changed.erase(std::unique(m_changed.begin(), m_changed.end()), m_changed.end());
+        return std::exchange(m_changed, {});
+    }
+
+private:
+    bool join(int number, int other) {
+        MapEdge &a = m_edges[static_cast<std::size_t>(number)], &b = m_edges[static_cast<std::size_t>(other)];
+        const LineSegment2D<double> &s = a.edge.segment, &o = b.edge.segment;
+        if (s.direction().dot(o.direction()) < std::cos(settings.joinAngle))
+            return false;
+        const double t0 = s.along(o.begin()), t1 = s.along(o.end());
+        if (std::max(t0, t1) < -settings.joinGap || std::min(t0, t1) > s.length() + settings.joinGap)
+            return false;
+        if (std::abs(s.across(o.begin())) > settings.joinDistance ||
+            std::abs(s.across(o.end())) > settings.joinDistance)
+            return false;
+        const EdgeRaw2D joint = merged(a.edge, b.edge);
+        if (joint.sigma > settings.maxSigma)
+            return false;
+        a.edge = joint;
+        a.observations = std::max(a.observations, b.observations);
+        b.observations = 0;
+        --m_alive;
+        m_grid.insert(number, joint.segment);
+        m_changed.push_back(number);
+        m_changed.push_back(other);
+        return true;
+    }
+
+    std::vector<MapEdge> m_edges; // by number; an id is never used again
+    SegmentGrid m_grid;
+    std::size_t m_alive = 0;
+    std::vector<int> m_found;
+    std::vector<int> m_changed;
+};
+
+} // namespace vectorlib

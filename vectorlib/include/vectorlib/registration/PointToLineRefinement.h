@@ -1,0 +1,52 @@
+#pragma once
+
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/tls/TlsSums.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace vectorlib {
+
+/// One Gauss-Newton step that brings the points of dynamic edges onto the lines of static ones: the sum of
+/// squared distances of all points, computed from their sums alone, so that a pair costs the same whatever
+/// its points.
+///
+/// With a unit normal n of the static line and a point x, the residual is r = n.(x + t + alpha x') - n.s,
+/// where x' is x turned by +90 degrees and s any point of the static line. For a small alpha this is linear
+/// in (t, alpha); the normal equations need only the count, mean and second moments of the points.
+class PointToLineRefinement {
+public:
+    /// A prior that the step is zero; standard deviations in metres and radians, relative to noise of 1
+    /// metre.
+    void start(double weightXY, double weightAlpha) {
+        m_h = Eigen::Vector3d(weightXY, weightXY, weightAlpha).asDiagonal();
+        m_g.setZero();
+    }
+    /// Points with `sums` belong onto `fixed`. Working frame: near the sensor.
+    void add(const LineSegment2D<double> &fixed, const TlsSums &sums, double weight) {
+        const Vector2D<double> n = fixed.normal(), w(n.y, -n.x); // n . x' = w . x
+        const double u = w.dot(sums.mean), r = n.dot(sums.mean - fixed.begin());
+        const double uu = w.x * w.x * sums.xx + 2 * w.x * w.y * sums.xy + w.y * w.y * sums.yy;
+        const double ur = w.x * n.x * sums.xx + (w.x * n.y + w.y * n.x) * sums.xy + w.y * n.y * sums.yy;
+        const Eigen::Vector3d j(n.x, n.y, u);
+        m_h.noalias() += (weight * sums.n) * j * j.transpose();
+        m_h(2, 2) += weight * uu;
+        m_g += (weight * sums.n * r) * j;
+        m_g(2) += weight * ur;
+    }
+    /// The step (to be multiplied from the left); identity when the equations are singular.
+    Transformation2D step() const {
+        const Eigen::LDLT<Eigen::Matrix3d> ldlt(m_h);
+        const Eigen::Vector3d x = ldlt.solve(-m_g);
+        return ldlt.info() == Eigen::Success && x.allFinite() ? Transformation2D(x(0), x(1), x(2))
+                                                              : Transformation2D();
+    }
+    const Eigen::Matrix3d &information() const { return m_h; }
+
+private:
+    Eigen::Matrix3d m_h = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d m_g = Eigen::Vector3d::Zero();
+};
+
+} // namespace vectorlib
