@@ -1,0 +1,26 @@
+#pragma once
+
+#include "vectorlib/io/MapSegment.h"
+#include "vectorlib/io/Number.h"
+
+#include <vector>
+
+namespace vectorlib {
+
+/// A map as GeoJSON: one LineString a segment. Coordinates are metres in the map's own frame, not degrees.
+inline void writeGeoJson(std::ostream &out, const std::vector<MapSegment> &map) {
+    out << "{\"type\": \"FeatureCollection\", \"units\": \"metres in the frame of the map\", \"features\": [";
+    const char *separator = "\n";
+    for (const MapSegment &m : map) {
+        const auto a = m.segment.begin(), b = m.segment.end();
+        out << separator << R"({"type": "Feature", "id": )" << m.id
+            << R"(, "geometry": {"type": "LineString", "coordinates": [[)" << Number(a.x) << ", "
+            << Number(a.y) << "], [" << Number(b.x) << ", " << Number(b.y) << R"(]]}, "properties": {"n": )"
+            << Number(m.sums.n) << R"(, "sigma": )" << Number(m.sigma) << R"(, "observations": )"
+            << m.observations << "}}";
+        separator = ",\n";
+    }
+    out << "\n]}\n";
+}
+
+} // namespace vectorlib

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "vectorlib/io/Csv.h"
+#include "vectorlib/io/MapSegment.h"
+#include "vectorlib/io/Number.h"
+
+namespace vectorlib {
+
+/// A map as CSV: `id,x1,y1,x2,y2,n,sigma,observations`, then the mean of the points and their second moments
+/// about it (TlsSums). Numbers keep every bit: reading gives the map that was written.
+inline void writeMapCsv(std::ostream &out, const std::vector<MapSegment> &map) {
+    out << "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n";
+    for (const MapSegment &m : map) {
+        out << m.id;
+        for (const double value : {m.segment.begin().x, m.segment.begin().y, m.segment.end().x,
+                                   m.segment.end().y, m.sums.n, m.sigma})
+            out << ',' << Number(value);
+        out << ',' << m.observations;
+        for (const double value : {m.sums.mean.x, m.sums.mean.y, m.sums.xx, m.sums.xy, m.sums.yy})
+            out << ',' << Number(value);
+        out << '\n';
+    }
+}
+
+/// Reads what writeMapCsv wrote. A missing column, a number that is none, or an id or count that is not whole
+/// is an error.
+inline Expected<std::vector<MapSegment>> readMapCsv(std::istream &in, std::string name) {
+    CsvReader csv(
+        in, std::move(name),
+        {{"id", "x1", "y1", "x2", "y2", "n", "sigma", "observations", "mean_x", "mean_y", "xx", "xy", "yy"},
+         {}});
+    std::vector<MapSegment> map;
+    const auto isWhole = [](double v) { return v >= 0 && v < 9007199254740992.0 && v == std::floor(v); };
+    while (const auto *row = csv.next()) {
+        const std::vector<double> &r = *row;
+        if (!isWhole(r[0]) || !isWhole(r[7]))
+            return csv.errorHere("an id or a number of observations that is not a whole number",
+                                 "whole numbers from 0");
+        for (const std::size_t column : {5, 6, 10, 12})
+            if (r[column] < 0)
+                return csv.errorHere("a negative n, sigma, xx or yy", "numbers from 0");
+        MapSegment m;
+        m.id = static_cast<std::int64_t>(r[0]);
+        m.segment = {{r[1], r[2]}, {r[3], r[4]}};
+        m.sums.n = r[5];
+        m.sigma = r[6];
+        m.observations = static_cast<std::int64_t>(r[7]);
+        m.sums.mean = {r[8], r[9]};
+        m.sums.xx = r[10];
+        m.sums.xy = r[11];
+        m.sums.yy = r[12];
+        map.push_back(m);
+    }
+    if (csv.error())
+        return *csv.error();
+    return map;
+}
+
+} // namespace vectorlib

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "vectorlib/io/Expected.h"
+#include "vectorlib/io/MapSegment.h"
+#include "vectorlib/io/Number.h"
+#include "vectorlib/io/Tum.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+namespace vectorlib {
+
+/// A map as the cells that ROS map_server loads: a PGM picture and a YAML file beside it. Cells under a
+/// segment are occupied, cells where the robot drove are free, all others are unknown: nothing is guessed.
+class OccupancyPicture {
+public:
+    static constexpr std::size_t maxCells = 100'000'000;
+
+    /// Draws the map; nothing when it would have over maxCells cells. resolution: metres a cell; driven:
+    /// metres to either side of the trajectory that count as free.
+    static std::optional<OccupancyPicture> draw(const std::vector<MapSegment> &map,
+                                                const std::vector<StampedPose> &trajectory,
+                                                double resolution = 0.05, double driven = 0.25) {
+        OccupancyPicture p;
+        p.m_resolution = resolution;
+        if (!p.frame(map, trajectory))
+            return std::nullopt;
+        for (std::size_t i = 0; i + 1 < trajectory.size(); ++i)
+            p.line({trajectory[i].pose.x, trajectory[i].pose.y},
+                   {trajectory[i + 1].pose.x, trajectory[i + 1].pose.y}, driven, freeCell);
+        for (const MapSegment &m : map)
+            p.line(m.segment.begin(), m.segment.end(), 0, occupiedCell);
+        return p;
+    }
+
+    void writePgm(std::ostream &out) const {
+        out << "P5\n" << m_width << ' ' << m_height << "\n255\n";
+        out.write(reinterpret_cast<const char *>(m_cells.data()),
+                  static_cast<std::streamsize>(m_cells.size()));
+    }
+    /// picture: name of the PGM file as the YAML file shall refer to it.
+    void writeYaml(std::ostream &out, const std::string &picture) const {
+        out << "image: " << picture << "\nresolution: " << Number(m_resolution) << "\norigin: ["
+            << Number(m_origin.x) << ", " << Number(m_origin.y)
+            << ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    }
+
+private:
+    static constexpr unsigned char occupiedCell = 0, unknownCell = 205, freeCell = 254;
+    static constexpr double margin = 1; // metres around everything drawn
+
+    bool frame(const std::vector<MapSegment> &map, const std::vector<StampedPose> &trajectory) {
+        Vector2D<double> low, high;
+        bool any = false;
+        const auto include = [&](Vector2D<double> p) {
+            low = any ? Vector2D<double>(std::min(low.x, p.x), std::min(low.y, p.y)) : p;
+            high = any ? Vector2D<double>(std::max(high.x, p.x), std::max(high.y, p.y)) : p;
+            any = true;
+        };
+        for (const MapSegment &m : map) {
+            include(m.segment.begin());
+            include(m.segment.end());
+        }
+        for (const StampedPose &s : trajectory)
+            include({s.pose.x, s.pose.y});
+        m_origin = low - Vector2D<double>(margin, margin);
+        const double width = std::ceil((high.x - low.x + 2 * margin) / m_resolution);
+        const double height = std::ceil((high.y - low.y + 2 * margin) / m_resolution);
+        if (!(width * height <= static_cast<double>(maxCells)))
+            return false;
+        m_width = static_cast<std::size_t>(width);
+        m_height = static_cast<std::size_t>(height);
+        m_cells.assign(m_width * m_height, unknownCell);
+        return true;
+    }
+    void line(Vector2D<double> a, Vector2D<double> b, double radius, unsigned char value) {
+        const double length = (b - a).norm();
+        const auto steps = static_cast<std::size_t>(std::ceil(length / m_resolution * 2)) + 1;
+        for (std::size_t i = 0; i <= steps; ++i)
+            disc(a + (b - a) * (static_cast<double>(i) / static_cast<double>(steps)), radius, value);
+    }
+    void disc(Vector2D<double> centre, double radius, unsigned char value) {
+        const int reach = static_cast<int>(std::floor(radius / m_resolution));
+        const int column = static_cast<int>((centre.x - m_origin.x) / m_resolution);
+        const int row = static_cast<int>((centre.y - m_origin.y) / m_resolution);
+        for (int dy = -reach; dy <= reach; ++dy)
+            for (int dx = -reach; dx <= reach; ++dx)
+                if (dx * dx + dy * dy <= reach * reach)
+                    set(column + dx, row + dy, value);
+    }
+    // The picture's first row is the map's highest.
+    void set(int column, int row, unsigned char value) {
+        if (column < 0 || row < 0 || column >= static_cast<int>(m_width) || row >= static_cast<int>(m_height))
+            return;
+        m_cells[(m_height - 1 - static_cast<std::size_t>(row)) * m_width + static_cast<std::size_t>(column)] =
+            value;
+    }
+
+    double m_resolution = 0.05;
+    Vector2D<double> m_origin; ///< lower left corner
+    std::size_t m_width = 0;
+    std::size_t m_height = 0;
+    std::vector<unsigned char> m_cells;
+};
+
+} // namespace vectorlib
