@@ -1,0 +1,90 @@
+#include "protocol/velodyne/DataPacket.h"
+
+#include <cmath>
+
+namespace hermes::velodyne {
+
+namespace {
+
+bool isDecoded(ReturnMode mode, Model model) {
+    const bool blank = mode == ReturnMode::Blank && model == Model::Blank;
+    const bool known = mode == ReturnMode::Strongest || mode == ReturnMode::Last || mode == ReturnMode::Dual;
+    return blank || (known && model == Model::Hdl32e);
+}
+
+} // namespace
+
+const char *describe(PacketFault fault) {
+    switch (fault) {
+    case PacketFault::None:
+        return "no fault";
+    case PacketFault::Size:
+        return "not a data packet: 1206 bytes expected";
+    case PacketFault::Flag:
+        return "a block does not begin with the flag FF EE";
+    case PacketFault::Value:
+        return "an azimuth of 360 degrees or more, or a stamp beyond the hour";
+    case PacketFault::Model:
+        return "a sensor or return mode that is not decoded: HDL-32E (21 hex) in mode 37, 38 or 39 hex "
+               "expected";
+    }
+    return "unknown fault";
+}
+
+PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size) {
+    if (size != packetSize)
+        return PacketFault::Size;
+    const DataPacket packet(bytes);
+    for (int block = 0; block < blocksPerPacket; ++block) {
+        if (packet.word(block * blockSize) != blockFlag)
+            return PacketFault::Flag;
+        if (packet.azimuth(block) >= azimuthSteps)
+            return PacketFault::Value;
+    }
+    if (packet.stamp_us() >= stampPeriod_us)
+        return PacketFault::Value;
+    return isDecoded(packet.returnMode(), packet.model()) ? PacketFault::None : PacketFault::Model;
+}
+
+DataPacketWriter::DataPacketWriter() {
+    m_bytes.fill(0);
+    for (int block = 0; block < blocksPerPacket; ++block)
+        setWord(block * blockSize, blockFlag);
+    setTail(0);
+}
+
+void DataPacketWriter::setAzimuth(int block, std::uint16_t azimuth) {
+    setWord(block * blockSize + 2, azimuth);
+}
+
+void DataPacketWriter::setReturn(int block, int laser, std::uint16_t distance, std::uint8_t intensity) {
+    const std::size_t offset = block * blockSize + 4 + 3 * laser;
+    setWord(offset, distance);
+    m_bytes[offset + 2] = intensity;
+}
+
+void DataPacketWriter::setTail(std::uint32_t stamp_us, ReturnMode mode, Model model) {
+    setWord(1200, std::uint16_t(stamp_us));
+    setWord(1202, std::uint16_t(stamp_us >> 16));
+    m_bytes[1204] = std::uint8_t(mode);
+    m_bytes[1205] = std::uint8_t(model);
+}
+
+void DataPacketWriter::clear() {
+    for (int block = 0; block < blocksPerPacket; ++block) {
+        for (int laser = 0; laser < lasers; ++laser)
+            setReturn(block, laser, 0, 0);
+    }
+}
+
+void DataPacketWriter::setWord(std::size_t offset, std::uint16_t value) {
+    m_bytes[offset] = std::uint8_t(value);
+    m_bytes[offset + 1] = std::uint8_t(value >> 8);
+}
+
+std::uint16_t toDistanceCounts(double range) {
+    const double counts = std::round(range / distanceUnit);
+    return counts >= 1 && counts <= 65535 ? std::uint16_t(counts) : 0;
+}
+
+} // namespace hermes::velodyne

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "protocol/velodyne/Hdl32e.h"
+
+namespace hermes::velodyne {
+
+/// What is wrong with the bytes of a data packet.
+enum class PacketFault {
+    None,
+    Size,  ///< not 1206 bytes
+    Flag,  ///< a block does not begin with FF EE
+    Value, ///< an azimuth of 360 degrees or more, or a stamp beyond the hour
+    Model, ///< a sensor or return mode that is not decoded here, such as a VLP-16
+};
+
+/// A short phrase for people: what the fault is and what was expected.
+const char *describe(PacketFault fault);
+
+/// The fields of a data packet, read from bytes that somebody else keeps. Block and laser count from 0.
+class DataPacket {
+public:
+    /// Checks length, flags, azimuths, stamp, mode and model. Only bytes without fault may be read by a
+    /// DataPacket.
+    static PacketFault check(const std::uint8_t *bytes, std::size_t size);
+
+    explicit DataPacket(const std::uint8_t *bytes)
+        : m_bytes(bytes) {}
+
+    /// Hundredths of a degree, clockwise seen from above, 0 to 35999: where the head was as the block began.
+    std::uint16_t azimuth(int block) const { return word(block * blockSize + 2); }
+    /// Counts of 2 mm; 0 means no return.
+    std::uint16_t distance(int block, int laser) const { return word(returnOffset(block, laser)); }
+    std::uint8_t intensity(int block, int laser) const { return m_bytes[returnOffset(block, laser) + 2]; }
+    /// Microseconds since the top of the hour, when the first laser of the packet fired.
+    std::uint32_t stamp_us() const { return word(1200) | std::uint32_t(word(1202)) << 16; }
+    ReturnMode returnMode() const { return ReturnMode(m_bytes[1204]); }
+    Model model() const { return Model(m_bytes[1205]); }
+    /// Blocks that hold the same firing: 2 in dual return mode, else 1.
+    int returns() const { return returnMode() == ReturnMode::Dual ? 2 : 1; }
+    int firings() const { return blocksPerPacket / returns(); }
+
+private:
+    static std::size_t returnOffset(int block, int laser) { return block * blockSize + 4 + 3 * laser; }
+    std::uint16_t word(std::size_t offset) const {
+        return std::uint16_t(m_bytes[offset] | m_bytes[offset + 1] << 8);
+    }
+
+    const std::uint8_t *m_bytes;
+};
+
+/// A data packet under construction, all returns empty at first.
+class DataPacketWriter {
+public:
+    DataPacketWriter();
+
+    /// azimuth: hundredths of a degree, below 36000.
+    void setAzimuth(int block, std::uint16_t azimuth);
+    /// distance: counts of 2 mm, 0 for no return.
+    void setReturn(int block, int laser, std::uint16_t distance, std::uint8_t intensity);
+    /// stamp_us: microseconds since the top of the hour.
+    void setTail(std::uint32_t stamp_us, ReturnMode mode = ReturnMode::Strongest,
+                 Model model = Model::Hdl32e);
+    /// Empties all returns.
+    void clear();
+
+    const std::array<std::uint8_t, packetSize> &bytes() const { return m_bytes; }
+
+private:
+    void setWord(std::size_t offset, std::uint16_t value);
+
+    std::array<std::uint8_t, packetSize> m_bytes;
+};
+
+/// Counts of 2 mm nearest to a range in metres; 0 (no return) when it rounds to nothing or lies beyond 131.07
+/// m.
+std::uint16_t toDistanceCounts(double range);
+
+} // namespace hermes::velodyne
