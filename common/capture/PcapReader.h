@@ -1,0 +1,49 @@
+#pragma once
+
+#include "common/capture/Datagram.h"
+
+#include <memory>
+#include <string>
+
+struct pcap;
+
+namespace hermes {
+
+/// Reads the UDP datagrams of a capture file, pcap or pcapng. After an error the datagrams before it have all
+/// been delivered and the message names the file, the record and the byte where it begins.
+class PcapReader {
+public:
+    enum class Next { Datagram, End, Error };
+    /// Records that gave no datagram, by reason; and those that did.
+    struct Counts {
+        std::uint64_t records = 0;
+        std::uint64_t datagrams = 0;
+        std::uint64_t notUdp = 0;
+        std::uint64_t fragments = 0;
+        std::uint64_t cut = 0; ///< shorter than its own lengths say
+    };
+
+    PcapReader();
+    ~PcapReader();
+    PcapReader(const PcapReader &) = delete;
+    PcapReader &operator=(const PcapReader &) = delete;
+
+    /// False on failure; error() says why.
+    bool open(const std::string &path);
+    /// The payload stays valid until the next call.
+    Next next(Datagram &datagram);
+    void close();
+
+    const std::string &path() const { return m_path; }
+    const std::string &error() const { return m_error; }
+    const Counts &counts() const { return m_counts; }
+
+private:
+    std::string m_path;
+    std::string m_error;
+    Counts m_counts;
+    int m_linkType = 0;
+    std::unique_ptr<pcap, void (*)(pcap *)> m_pcap;
+};
+
+} // namespace hermes

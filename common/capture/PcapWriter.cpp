@@ -1,0 +1,128 @@
+#include "common/capture/PcapWriter.h"
+
+#include "common/capture/Frame.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace hermes {
+
+namespace {
+
+constexpr std::uint32_t magicNanoseconds = 0xA1B23C4D;
+constexpr std::uint32_t version = 4u << 16 | 2; // 2.4, as two 16-bit words
+constexpr std::uint32_t snapLength = 262144;    // the most that readers accept
+constexpr std::size_t bufferSize = 256 * 1024;  // about a tenth of a second of an HDL-32E
+constexpr std::int64_t second_ns = 1000000000;
+
+} // namespace
+
+PcapWriter::~PcapWriter() {
+    close();
+}
+
+bool PcapWriter::open(const std::string &path, bool overwrite) {
+    close();
+    m_path = path;
+    m_error.clear();
+    m_writtenPackets = m_writtenBytes = m_bufferedPackets = 0;
+    m_buffer.clear();
+    m_buffer.reserve(bufferSize + frameHeaderSize + 16 + maximumPayload);
+    m_file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
+    if (m_file < 0) {
+        m_error =
+            path + ": cannot be created: " + (errno == EEXIST ? "it exists already" : std::strerror(errno));
+        return false;
+    }
+    for (const std::uint32_t field :
+         {magicNanoseconds, version, 0u, 0u, snapLength, std::uint32_t(LinkType::Ethernet)})
+        appendLittleEndian(field);
+    if (flush())
+        return true;
+    ::unlink(path.c_str());
+    return false;
+}
+
+bool PcapWriter::write(const Datagram &datagram) {
+    if (!isOpen()) {
+        if (m_error.empty())
+            m_error = "no capture file is open";
+        return false;
+    }
+    if (datagram.size > maximumPayload) {
+        m_error =
+            m_path + ": a datagram of " + std::to_string(datagram.size) + " bytes is larger than UDP allows";
+        return false;
+    }
+    const std::uint32_t length = std::uint32_t(frameHeaderSize + datagram.size);
+    appendLittleEndian(std::uint32_t(datagram.stamp_ns / second_ns));
+    appendLittleEndian(std::uint32_t(datagram.stamp_ns % second_ns));
+    appendLittleEndian(length); // captured
+    appendLittleEndian(length); // on the wire
+    const auto header = makeFrameHeader(datagram);
+    append(header.data(), header.size());
+    append(datagram.payload, datagram.size);
+    ++m_bufferedPackets;
+    return m_buffer.size() < bufferSize || flush();
+}
+
+bool PcapWriter::flush() {
+    if (!isOpen())
+        return m_error.empty();
+    std::size_t done = 0;
+    while (done < m_buffer.size()) {
+        const ssize_t count = ::write(m_file, m_buffer.data() + done, m_buffer.size() - done);
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count <= 0)
+            return fail(count < 0 ? std::strerror(errno) : "nothing was written");
+        done += std::size_t(count);
+    }
+    m_writtenBytes += m_buffer.size();
+    m_writtenPackets += m_bufferedPackets;
+    m_buffer.clear();
+    m_bufferedPackets = 0;
+    return true;
+}
+
+bool PcapWriter::close() {
+    if (!isOpen())
+        return m_error.empty();
+    if (!flush())
+        return false;
+    const int result = ::close(m_file);
+    m_file = -1;
+    if (result != 0)
+        m_error = m_path + ": cannot be closed: " + std::strerror(errno);
+    return result == 0;
+}
+
+bool PcapWriter::fail(const std::string &what) {
+    m_error = m_path + ": cannot be written after byte " + std::to_string(m_writtenBytes) + ": " + what;
+    if (m_bufferedPackets > 0)
+        m_error += "; " + std::to_string(m_bufferedPackets) + " packets are lost";
+    // Part of the buffer may have been written: cut it off, so that the file ends with a whole record.
+    if (::ftruncate(m_file, off_t(m_writtenBytes)) != 0)
+        m_error += "; the file may end in a broken record";
+    ::close(m_file);
+    m_file = -1;
+    m_buffer.clear();
+    m_bufferedPackets = 0;
+    return false;
+}
+
+void PcapWriter::append(const void *bytes, std::size_t size) {
+    const auto *begin = static_cast<const std::uint8_t *>(bytes);
+    m_buffer.insert(m_buffer.end(), begin, begin + size);
+}
+
+void PcapWriter::appendLittleEndian(std::uint32_t value) {
+    const std::uint8_t bytes[4] = {std::uint8_t(value), std::uint8_t(value >> 8), std::uint8_t(value >> 16),
+                                   std::uint8_t(value >> 24)};
+    append(bytes, sizeof bytes);
+}
+
+} // namespace hermes

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "common/capture/Datagram.h"
+
+#include <string>
+#include <vector>
+
+namespace hermes {
+
+/// Writes datagrams to a classic pcap file with nanosecond stamps, each in an Ethernet frame with made-up
+/// link addresses. Not for several threads at once. After a write error the file is cut back to whole
+/// records.
+class PcapWriter {
+public:
+    PcapWriter() = default;
+    ~PcapWriter();
+    PcapWriter(const PcapWriter &) = delete;
+    PcapWriter &operator=(const PcapWriter &) = delete;
+
+    /// Fails on an existing file unless overwrite; leaves nothing behind when it fails.
+    bool open(const std::string &path, bool overwrite = false);
+    /// Collects the datagram and writes when enough are collected. False when the file is not open, the
+    /// datagram is larger than UDP allows, or writing failed; error() says which, and the file is closed
+    /// after a write error.
+    bool write(const Datagram &datagram);
+    /// Writes what is collected.
+    bool flush();
+    /// Flushes and closes. False when something could not be written.
+    bool close();
+
+    bool isOpen() const { return m_file >= 0; }
+    const std::string &path() const { return m_path; }
+    const std::string &error() const { return m_error; }
+    std::uint64_t packets() const { return m_writtenPackets + m_bufferedPackets; }
+    std::uint64_t bytes() const { return m_writtenBytes + m_buffer.size(); }
+
+private:
+    bool fail(const std::string &what);
+    void append(const void *bytes, std::size_t size);
+    void appendLittleEndian(std::uint32_t value);
+
+    int m_file = -1;
+    std::string m_path;
+    std::string m_error;
+    std::vector<std::uint8_t> m_buffer;
+    std::uint64_t m_writtenPackets = 0;
+    std::uint64_t m_writtenBytes = 0;
+    std::uint64_t m_bufferedPackets = 0;
+};
+
+} // namespace hermes

@@ -1,0 +1,353 @@
+#include "common/capture/Frame.h"
+#include "common/capture/PcapReader.h"
+#include "common/capture/PcapWriter.h"
+#include "protocol/velodyne/TurnAssembler.h"
+#include "tests/support/RealData.h"
+
+#include <QFile>
+#include <QProcess>
+#include <QStandardPaths>
+#include <QTemporaryDir>
+#include <QtEndian>
+#include <QtTest>
+
+#include <random>
+
+using namespace hermes;
+
+namespace {
+
+constexpr std::uint32_t sensorAddress = 0xC0A801C8; // 192.168.1.200
+
+Datagram datagram(const QByteArray &payload, std::int64_t stamp_ns = 1700000000123456789) {
+    Datagram d;
+    d.stamp_ns = stamp_ns;
+    d.source = sensorAddress;
+    d.destination = 0xFFFFFFFF;
+    d.sourcePort = d.destinationPort = 2368;
+    d.payload = reinterpret_cast<const std::uint8_t *>(payload.constData());
+    d.size = std::size_t(payload.size());
+    return d;
+}
+
+QByteArray frameOf(const Datagram &d) {
+    const auto header = makeFrameHeader(d);
+    return QByteArray(reinterpret_cast<const char *>(header.data()), int(header.size())) +
+           QByteArray(reinterpret_cast<const char *>(d.payload), int(d.size));
+}
+
+FrameFault parse(const QByteArray &frame, Datagram &d, LinkType link = LinkType::Ethernet) {
+    // A copy of its exact size, so that a sanitizer sees a read beyond it.
+    const std::vector<std::uint8_t> bytes(frame.begin(), frame.end());
+    const FrameFault fault = parseFrame(link, bytes.data(), bytes.size(), d);
+    d.payload = nullptr;
+    return fault;
+}
+
+/// A capture of count datagrams of 100 bytes, the first byte counting; its path.
+std::string makeCapture(const QTemporaryDir &folder, int count) {
+    const std::string path = folder.filePath(QStringLiteral("c.pcap")).toStdString();
+    PcapWriter writer;
+    if (!writer.open(path, true))
+        qFatal("%s", writer.error().c_str());
+    for (int i = 0; i < count; ++i)
+        writer.write(datagram(QByteArray(100, char(i)), 1700000000123456789 + i));
+    if (!writer.close())
+        qFatal("%s", writer.error().c_str());
+    return path;
+}
+
+} // namespace
+
+class TestCapture : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void checksumIsThatOfARealSensor();
+    void readsWhatItWrote();
+    void lengthOfUdpCounts();
+    void tagsAreSteppedOver();
+    void linkTypes_data();
+    void linkTypes();
+    void otherFramesAreTold_data();
+    void otherFramesAreTold();
+    void randomFramesDoNoHarm();
+    void refusesToOverwrite();
+    void fullDiskIsReported();
+    void cutFilesNameRecordAndByte_data();
+    void cutFilesNameRecordAndByte();
+    void filesThatAreNoCapture_data();
+    void filesThatAreNoCapture();
+    void unknownLinkTypeIsRefused();
+    void tsharkReadsIt();
+    void realRecording();
+    void realPositionPacketHasAWrongLength();
+};
+
+void TestCapture::checksumIsThatOfARealSensor() {
+    // The real frame has identification 0, no fragments, time to live 255 and checksum B4 AA; ours lives 64:
+    // BF00 more.
+    const QByteArray frame = frameOf(datagram(QByteArray(1206, 'x')));
+    const auto *bytes = reinterpret_cast<const uchar *>(frame.constData());
+    QCOMPARE(qFromBigEndian<quint16>(bytes + 16), quint16(1234));
+    quint32 sum = 0;
+    for (int i = 14; i < 34; i += 2)
+        sum += qFromBigEndian<quint16>(bytes + i);
+    QCOMPARE((sum & 0xFFFF) + (sum >> 16), 0xFFFFu);
+    QCOMPARE(quint32(qFromBigEndian<quint16>(bytes + 24)), (0xB4AAu + 0xBF00u) % 0xFFFFu);
+}
+
+void TestCapture::readsWhatItWrote() {
+    QTemporaryDir folder;
+    PcapReader reader;
+    QVERIFY2(reader.open(makeCapture(folder, 200)), reader.error().c_str());
+    Datagram d;
+    for (int i = 0; i < 200; ++i) {
+        QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
+        QCOMPARE(qint64(d.stamp_ns), qint64(1700000000123456789 + i));
+        QCOMPARE(d.source, sensorAddress);
+        QCOMPARE(d.destinationPort, quint16(2368));
+        QCOMPARE(QByteArray(reinterpret_cast<const char *>(d.payload), int(d.size)),
+                 QByteArray(100, char(i)));
+    }
+    QCOMPARE(reader.next(d), PcapReader::Next::End);
+    QCOMPARE(reader.next(d), PcapReader::Next::End);
+    QCOMPARE(reader.counts().datagrams, std::uint64_t(200));
+}
+
+void TestCapture::lengthOfUdpCounts() {
+    QByteArray frame = frameOf(datagram(QByteArray(512, 'p')));
+    frame[16] = char(0x04); // the total length of a data packet, as real position packets have it
+    frame[17] = char(0xD2);
+    Datagram d;
+    QCOMPARE(parse(frame, d), FrameFault::None);
+    QCOMPARE(d.size, std::size_t(512));
+    QCOMPARE(parse(frame + QByteArray(6, '\0'), d), FrameFault::None); // padding of the link layer
+    QCOMPARE(d.size, std::size_t(512));
+}
+
+void TestCapture::tagsAreSteppedOver() {
+    QByteArray frame = frameOf(datagram("payload"));
+    Datagram d;
+    frame.insert(12, QByteArray::fromHex("8100000a"));
+    QCOMPARE(parse(frame, d), FrameFault::None);
+    frame.insert(12, QByteArray::fromHex("88a8000b"));
+    QCOMPARE(parse(frame, d), FrameFault::None);
+    QCOMPARE(d.size, std::size_t(7));
+}
+
+void TestCapture::linkTypes_data() {
+    QTest::addColumn<int>("link");
+    QTest::addColumn<QByteArray>("header");
+    QTest::newRow("raw") << int(LinkType::Raw) << QByteArray();
+    QTest::newRow("IPv4") << int(LinkType::Ipv4) << QByteArray();
+    QTest::newRow("loopback") << int(LinkType::Null) << QByteArray::fromHex("02000000");
+    QTest::newRow("cooked") << int(LinkType::LinuxCooked)
+                            << QByteArray(14, '\0') + QByteArray::fromHex("0800");
+    QTest::newRow("cooked 2") << int(LinkType::LinuxCooked2)
+                              << QByteArray::fromHex("0800") + QByteArray(18, '\0');
+}
+
+void TestCapture::linkTypes() {
+    QFETCH(int, link);
+    QFETCH(QByteArray, header);
+    Datagram d;
+    QCOMPARE(parse(header + frameOf(datagram("payload")).mid(14), d, LinkType(link)), FrameFault::None);
+    QCOMPARE(d.size, std::size_t(7));
+    QVERIFY(isKnownLinkType(link));
+}
+
+void TestCapture::otherFramesAreTold_data() {
+    QTest::addColumn<QByteArray>("frame");
+    QTest::addColumn<int>("fault");
+    const QByteArray good = frameOf(datagram("payload"));
+    const auto with = [&](int offset, int value) {
+        return QByteArray(good).replace(offset, 1, QByteArray(1, char(value)));
+    };
+    QTest::newRow("empty") << QByteArray() << int(FrameFault::Short);
+    QTest::newRow("link header only") << good.left(14) << int(FrameFault::Short);
+    QTest::newRow("cut in IPv4") << good.left(30) << int(FrameFault::Short);
+    QTest::newRow("cut in UDP") << good.left(40) << int(FrameFault::Short);
+    QTest::newRow("cut in payload") << good.left(45) << int(FrameFault::Short);
+    QTest::newRow("UDP length 7") << with(39, 7) << int(FrameFault::Short);
+    QTest::newRow("header length 16") << with(14, 0x44) << int(FrameFault::Short);
+    QTest::newRow("header length 60") << with(14, 0x4F) << int(FrameFault::Short);
+    QTest::newRow("ARP") << with(13, 6) << int(FrameFault::NotUdp);
+    QTest::newRow("version 6") << with(14, 0x65) << int(FrameFault::NotUdp);
+    QTest::newRow("TCP") << with(23, 6) << int(FrameFault::NotUdp);
+    QTest::newRow("first fragment") << with(20, 0x20) << int(FrameFault::Fragment);
+    QTest::newRow("later fragment") << with(21, 0x10) << int(FrameFault::Fragment);
+}
+
+void TestCapture::otherFramesAreTold() {
+    QFETCH(QByteArray, frame);
+    QFETCH(int, fault);
+    Datagram d;
+    QCOMPARE(int(parse(frame, d)), fault);
+}
+
+void TestCapture::randomFramesDoNoHarm() {
+    const unsigned seed = std::random_device()();
+    qInfo("seed %u", seed);
+    std::mt19937 random(seed);
+    const QByteArray good = frameOf(datagram(QByteArray(60, 'x')));
+    for (int round = 0; round < 20000; ++round) {
+        QByteArray frame = good.left(int(random() % unsigned(good.size() + 1)));
+        for (int i = 0; i < 3 && !frame.isEmpty(); ++i)
+            frame[int(random() % unsigned(frame.size()))] = char(random());
+        Datagram d;
+        for (const LinkType link :
+             {LinkType::Null, LinkType::Ethernet, LinkType::Raw, LinkType::LinuxCooked2})
+            parse(frame, d, link);
+    }
+}
+
+void TestCapture::refusesToOverwrite() {
+    QTemporaryDir folder;
+    const std::string path = makeCapture(folder, 3);
+    PcapWriter writer;
+    QVERIFY(!writer.open(path));
+    QVERIFY2(writer.error().find("exists already") != std::string::npos, writer.error().c_str());
+    QVERIFY(!writer.write(datagram("x")));
+    QCOMPARE(QFile(QString::fromStdString(path)).size(), qint64(24 + 3 * (16 + 142)));
+    QVERIFY(!writer.open("/nonexistent/c.pcap"));
+    QVERIFY2(writer.error().find("/nonexistent/c.pcap: cannot be created: No such file") == 0,
+             writer.error().c_str());
+}
+
+void TestCapture::fullDiskIsReported() {
+    if (!QFile::exists(QStringLiteral("/dev/full")))
+        QSKIP("there is no /dev/full");
+    // A link, so that cleaning up removes the link and not the device.
+    QTemporaryDir folder;
+    const QString path = folder.filePath(QStringLiteral("full.pcap"));
+    QVERIFY(QFile::link(QStringLiteral("/dev/full"), path));
+    PcapWriter writer;
+    QVERIFY(!writer.open(path.toStdString(), true));
+    QVERIFY2(writer.error().find("No space left on device") != std::string::npos, writer.error().c_str());
+    QVERIFY(writer.error().find(path.toStdString()) == 0);
+    QVERIFY(!QFileInfo(path).isSymLink());
+}
+
+void TestCapture::cutFilesNameRecordAndByte_data() {
+    QTest::addColumn<int>("keep"); ///< bytes of the third record, which has 16 + 142
+    QTest::newRow("in the record's header") << 7;
+    QTest::newRow("behind the header") << 16;
+    QTest::newRow("in the frame") << 100;
+    QTest::newRow("one byte short") << 157;
+}
+
+void TestCapture::cutFilesNameRecordAndByte() {
+    QFETCH(int, keep);
+    QTemporaryDir folder;
+    const std::string path = makeCapture(folder, 5);
+    const int third = 24 + 2 * 158;
+    QVERIFY(QFile::resize(QString::fromStdString(path), third + keep));
+    PcapReader reader;
+    QVERIFY(reader.open(path));
+    Datagram d;
+    QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
+    QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
+    QCOMPARE(reader.next(d), PcapReader::Next::Error);
+    const std::string begin =
+        path + ": record 3 at byte " + std::to_string(third) + " cannot be read, the 2 before it";
+    QVERIFY2(reader.error().find(begin) == 0, reader.error().c_str());
+    QCOMPARE(reader.next(d), PcapReader::Next::Error);
+}
+
+void TestCapture::filesThatAreNoCapture_data() {
+    QTest::addColumn<QByteArray>("content");
+    QTest::newRow("empty") << QByteArray();
+    QTest::newRow("cut in the file header") << QByteArray::fromHex("4d3cb2a10200");
+    QTest::newRow("text") << QByteArray("1.0,2.0\n1.1,2.1\n1.2,2.2\n");
+}
+
+void TestCapture::filesThatAreNoCapture() {
+    QFETCH(QByteArray, content);
+    QTemporaryDir folder;
+    QFile file(folder.filePath(QStringLiteral("c.pcap")));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write(content);
+    file.close();
+    PcapReader reader;
+    QVERIFY(!reader.open(file.fileName().toStdString()));
+    QVERIFY2(reader.error().find(file.fileName().toStdString() + ": not a capture") == 0,
+             reader.error().c_str());
+    QVERIFY(!reader.open("/nonexistent/c.pcap"));
+    QCOMPARE(QByteArray::fromStdString(reader.error()),
+             QByteArray("/nonexistent/c.pcap: cannot be opened: No such file or directory"));
+    Datagram d;
+    QCOMPARE(reader.next(d), PcapReader::Next::Error);
+}
+
+void TestCapture::unknownLinkTypeIsRefused() {
+    QTemporaryDir folder;
+    const std::string path = makeCapture(folder, 1);
+    QFile file(QString::fromStdString(path));
+    QVERIFY(file.open(QIODevice::ReadWrite));
+    file.seek(20);
+    file.write("\x69", 1); // 105: IEEE 802.11
+    file.close();
+    PcapReader reader;
+    QVERIFY(!reader.open(path));
+    QVERIFY2(reader.error().find("link type 105 (IEEE802_11) is not supported") != std::string::npos,
+             reader.error().c_str());
+}
+
+void TestCapture::tsharkReadsIt() {
+    if (QStandardPaths::findExecutable(QStringLiteral("tshark")).isEmpty())
+        QSKIP("tshark is not installed");
+    QTemporaryDir folder;
+    const QString path = QString::fromStdString(makeCapture(folder, 10));
+    QProcess tshark;
+    tshark.start(QStringLiteral("tshark"),
+                 {QStringLiteral("-r"), path, QStringLiteral("-o"), QStringLiteral("ip.check_checksum:TRUE"),
+                  QStringLiteral("-T"), QStringLiteral("fields"), QStringLiteral("-e"),
+                  QStringLiteral("frame.time_epoch"), QStringLiteral("-e"), QStringLiteral("ip.src"),
+                  QStringLiteral("-e"), QStringLiteral("ip.checksum.status"), QStringLiteral("-e"),
+                  QStringLiteral("udp.length"), QStringLiteral("-e"), QStringLiteral("_ws.malformed")});
+    QVERIFY(tshark.waitForFinished(60000));
+    QCOMPARE(tshark.exitCode(), 0);
+    const QList<QByteArray> lines = tshark.readAllStandardOutput().trimmed().split('\n');
+    QCOMPARE(lines.size(), 10);
+    QCOMPARE(lines[9], QByteArray("1700000000.123456798\t192.168.1.200\t1\t108"));
+}
+
+void TestCapture::realRecording() {
+    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
+    if (path.isEmpty())
+        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    PcapReader reader;
+    QVERIFY2(reader.open(path.toStdString()), reader.error().c_str());
+    std::vector<bool> partial;
+    std::size_t points = 0;
+    velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
+        partial.push_back(turn.partial);
+        points += turn.points.size();
+    });
+    Datagram d;
+    PcapReader::Next next;
+    while ((next = reader.next(d)) == PcapReader::Next::Datagram)
+        QCOMPARE(assembler.feed(d.payload, d.size, d.stamp_ns), velodyne::PacketFault::None);
+    QCOMPARE(next, PcapReader::Next::End);
+    assembler.finish();
+    QCOMPARE(partial, (std::vector<bool>{true, false, partial.size() == 4 ? false : true, true}));
+    QVERIFY(points > 1000 && points < 6000);
+    QCOMPARE(assembler.counts().packets, std::uint64_t(500));
+    QCOMPARE(assembler.counts().lost + assembler.counts().outOfOrder, std::uint64_t(0));
+}
+
+void TestCapture::realPositionPacketHasAWrongLength() {
+    const QString path = realData(QStringLiteral("velodyne-position-packet.pcap"));
+    if (path.isEmpty())
+        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    PcapReader reader;
+    QVERIFY2(reader.open(path.toStdString()), reader.error().c_str());
+    Datagram d;
+    QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
+    QCOMPARE(d.size, velodyne::positionPacketSize);
+    QCOMPARE(d.destinationPort, velodyne::positionPort);
+}
+
+QTEST_APPLESS_MAIN(TestCapture)
+#include "test_capture.moc"
