@@ -1,0 +1,222 @@
+#include "common/world/WorldFile.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace hermes {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// What is wrong, and in which line; 0 where no line can be told.
+struct Fault {
+    int line;
+    std::string what;
+};
+
+/// Counts lines as the parser consumes text, so that values can be told the line in which they end.
+class LineCounter {
+public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char *;
+    using reference = const char &;
+
+    LineCounter(const char *position, int *line)
+        : m_position(position)
+        , m_line(line) {}
+    reference operator*() const { return *m_position; }
+    LineCounter &operator++() {
+        *m_line += *m_position == '\n';
+        ++m_position;
+        return *this;
+    }
+    bool operator==(const LineCounter &o) const { return m_position == o.m_position; }
+    bool operator!=(const LineCounter &o) const { return m_position != o.m_position; }
+
+private:
+    const char *m_position;
+    int *m_line;
+};
+
+/// The document and the lines in which the rows of its lists end.
+struct Document {
+    Json root;
+    std::map<std::string, std::vector<int>> lines;
+
+    int lineOf(const std::string &list, std::size_t row) const {
+        const auto found = lines.find(list);
+        return found != lines.end() && row < found->second.size() ? found->second[row] : 0;
+    }
+};
+
+Document parse(const std::string &text) {
+    Document document;
+    int line = 1;
+    std::string key;
+    const auto note = [&](int depth, Json::parse_event_t event, Json &parsed) {
+        if (event == Json::parse_event_t::key && depth == 1) {
+            key = parsed.get<std::string>();
+            if (!document.lines.emplace(key, std::vector<int>()).second)
+                throw Fault{line, "\"" + key + "\" appears twice"};
+        }
+        // Every element of a list of the root, be it the row that is expected or not.
+        const bool ends = event == Json::parse_event_t::array_end ||
+                          event == Json::parse_event_t::object_end || event == Json::parse_event_t::value;
+        if (ends && depth == 2)
+            document.lines[key].push_back(line);
+        return true;
+    };
+    try {
+        document.root =
+            Json::parse(LineCounter(text.data(), &line), LineCounter(text.data() + text.size(), &line), note);
+    } catch (const Json::exception &e) {
+        const std::string what = e.what(); // begins with an identifier in brackets
+        const auto bracket = what.find("] ");
+        throw Fault{line, "not JSON: " + (bracket == std::string::npos ? what : what.substr(bracket + 2))};
+    }
+    return document;
+}
+
+/// The rows of a list of number lists, each with width numbers.
+std::vector<std::vector<double>> rows(const Document &document, const std::string &list, std::size_t width,
+                                      const std::string &expected) {
+    const Json &value = document.root[list];
+    if (!value.is_array())
+        throw Fault{0, "\"" + list + "\": a list of " + expected + " expected, found " + value.type_name()};
+    std::vector<std::vector<double>> result;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const auto refuse = [&](const std::string &found) {
+            throw Fault{document.lineOf(list, i),
+                        list + "[" + std::to_string(i) + "]: " + expected + " expected, found " + found};
+        };
+        if (!value[i].is_array())
+            refuse(value[i].type_name());
+        if (value[i].size() != width)
+            refuse(std::to_string(value[i].size()) + " values");
+        result.emplace_back();
+        for (const Json &number : value[i]) {
+            if (!number.is_number())
+                refuse(number.is_null() ? "null (there is no NaN or infinity in a world)" : number.dump());
+            result.back().push_back(number.get<double>());
+        }
+    }
+    return result;
+}
+
+World toWorld(const Document &document) {
+    if (!document.root.is_object())
+        throw Fault{0, std::string("an object with \"edges\" expected, found ") + document.root.type_name()};
+    World world;
+    for (const auto &[key, value] : document.root.items()) {
+        if (key == "name" && value.is_string())
+            world.name = value;
+        else if (key == "name")
+            throw Fault{0, "\"name\": a string expected, found " + std::string(value.type_name())};
+        else if (key != "edges" && key != "poses")
+            throw Fault{0, "unknown key \"" + key + "\", expected are name, edges and poses"};
+    }
+    if (!document.root.contains("edges") || document.root["edges"].empty())
+        throw Fault{0, "no edges: \"edges\": [[x1, y1, x2, y2], ...] expected, metres"};
+    for (const auto &row : rows(document, "edges", 4, "[x1, y1, x2, y2] in metres")) {
+        world.edges.push_back({row[0], row[1], row[2], row[3]});
+        const std::size_t i = world.edges.size() - 1;
+        if (const std::string fault = faultOf(world.edges.back()); !fault.empty())
+            throw Fault{document.lineOf("edges", i), "edges[" + std::to_string(i) + "]: " + fault};
+    }
+    if (!document.root.contains("poses"))
+        return world;
+    for (const auto &row : rows(document, "poses", 3, "[x, y, theta] in metres and radians"))
+        world.poses.push_back({row[0], row[1], row[2]});
+    return world;
+}
+
+/// The shortest text that reads back to the same number.
+std::string toText(double value) {
+    return Json(value).dump();
+}
+
+std::string toText(const World &world) {
+    std::ostringstream text;
+    text << "{\n  \"name\": " << Json(world.name).dump() << ",\n  \"edges\": [\n";
+    for (std::size_t i = 0; i < world.edges.size(); ++i) {
+        const World::Edge &e = world.edges[i];
+        text << "    [" << toText(e.x1) << ", " << toText(e.y1) << ", " << toText(e.x2) << ", "
+             << toText(e.y2) << (i + 1 < world.edges.size() ? "],\n" : "]\n");
+    }
+    text << "  ],\n  \"poses\": [\n";
+    for (std::size_t i = 0; i < world.poses.size(); ++i) {
+        const World::Pose &p = world.poses[i];
+        text << "    [" << toText(p.x) << ", " << toText(p.y) << ", " << toText(p.theta)
+             << (i + 1 < world.poses.size() ? "],\n" : "]\n");
+    }
+    text << "  ]\n}\n";
+    return text.str();
+}
+
+std::string faultOf(const World &world) {
+    if (world.edges.empty())
+        return "a world needs edges";
+    for (const World::Edge &edge : world.edges) {
+        if (const std::string fault = faultOf(edge); !fault.empty())
+            return fault;
+    }
+    for (const World::Pose &pose : world.poses) {
+        if (const std::string fault = faultOf(pose); !fault.empty())
+            return fault;
+    }
+    return {};
+}
+
+} // namespace
+
+std::optional<World> parseWorld(const std::string &text, const std::string &path, std::string &error) {
+    try {
+        return toWorld(parse(text));
+    } catch (const Fault &fault) {
+        error = path + ":" + (fault.line > 0 ? std::to_string(fault.line) + ":" : "") + " " + fault.what;
+        return std::nullopt;
+    }
+}
+
+std::optional<World> readWorld(const std::string &path, std::string &error) {
+    std::ifstream file(path, std::ios::binary);
+    std::stringstream text;
+    if (file)
+        text << file.rdbuf();
+    if (!file || file.bad()) {
+        error = path + ": cannot be read: " + std::strerror(errno);
+        return std::nullopt;
+    }
+    return parseWorld(text.str(), path, error);
+}
+
+bool writeWorld(const World &world, const std::string &path, std::string &error, bool overwrite) {
+    if (const std::string fault = faultOf(world); !fault.empty()) {
+        error = path + ": not written: " + fault;
+        return false;
+    }
+    std::FILE *file = std::fopen(path.c_str(), overwrite ? "wb" : "wbx");
+    if (!file) {
+        error =
+            path + ": cannot be created: " + (errno == EEXIST ? "it exists already" : std::strerror(errno));
+        return false;
+    }
+    const std::string text = toText(world);
+    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    if (std::fclose(file) == 0 && written)
+        return true;
+    error = path + ": cannot be written: " + std::strerror(errno);
+    std::remove(path.c_str());
+    return false;
+}
+
+} // namespace hermes

@@ -1,0 +1,141 @@
+#include "common/world/WorldFile.h"
+
+#include <QFile>
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <cmath>
+#include <limits>
+
+using namespace hermes;
+
+namespace {
+
+const char *square = "{\"edges\": [[0,0,1,0],\n[1,0,1,1],\n[1,1,0,0]], \"poses\": [\n[0.5,0.5,0]]}";
+
+double distance(const World::Edge &e, double x, double y) {
+    const double dx = e.x2 - e.x1, dy = e.y2 - e.y1;
+    const double t = ((x - e.x1) * dx + (y - e.y1) * dy) / (dx * dx + dy * dy);
+    const double along = std::min(1.0, std::max(0.0, t));
+    return std::hypot(x - e.x1 - along * dx, y - e.y1 - along * dy);
+}
+
+} // namespace
+
+class TestWorld : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void readsWhatItWrote();
+    void refusesBadFiles_data();
+    void refusesBadFiles();
+    void keepsExistingFiles();
+    void saysWhichFileIsMissing();
+    void pillarsCanBeDriven();
+};
+
+void TestWorld::readsWhatItWrote() {
+    QTemporaryDir folder;
+    const std::string path = folder.filePath(QStringLiteral("w.json")).toStdString();
+    World world;
+    world.name = "a \"room\"";
+    world.edges = {{0, 0, 1.0 / 3, 0}, {1e-3, 2, -7.25, 1e6}};
+    world.poses = {{0.1, 0.2, 3.14159265358979}};
+    std::string error;
+    QVERIFY2(writeWorld(world, path, error), error.c_str());
+    const auto read = readWorld(path, error);
+    QVERIFY2(read.has_value(), error.c_str());
+    QVERIFY(*read == world);
+    world.edges.push_back({1, 1, 1, 1});
+    QVERIFY(!writeWorld(world, path + "2", error));
+    QVERIFY(!QFile::exists(folder.filePath(QStringLiteral("w.json2"))));
+}
+
+void TestWorld::refusesBadFiles_data() {
+    QTest::addColumn<QByteArray>("text");
+    QTest::addColumn<QByteArray>("message"); ///< what it begins with
+    const QByteArray good = square;
+    const auto with = [&](const char *from, const char *to) { return QByteArray(good).replace(from, to); };
+    QTest::newRow("empty") << QByteArray() << QByteArray("w:1: not JSON: ");
+    QTest::newRow("a list") << QByteArray("[]")
+                            << QByteArray("w: an object with \"edges\" expected, found array");
+    QTest::newRow("no edges") << QByteArray("{\"name\": \"x\"}") << QByteArray("w: no edges: ");
+    QTest::newRow("empty edges") << QByteArray("{\"edges\": []}") << QByteArray("w: no edges: ");
+    QTest::newRow("edges no list") << QByteArray("{\"edges\": 3}") << QByteArray("w: \"edges\": a list of ");
+    QTest::newRow("cut") << good.left(20) << QByteArray("w:1: not JSON: ");
+    QTest::newRow("NaN") << with("1,0,1,1", "NaN,0,1,1") << QByteArray("w:2: not JSON: ");
+    QTest::newRow("null") << with("1,0,1,1", "null,0,1,1")
+                          << QByteArray("w:2: edges[1]: [x1, y1, x2, y2] in metres expected, found null");
+    QTest::newRow("beyond a double") << with("1,0,1,1", "1e999,0,1,1")
+                                     << QByteArray("w:2: not JSON: number overflow");
+    QTest::newRow("three numbers")
+        << with("[1,1,0,0]", "[1,1,0]")
+        << QByteArray("w:3: edges[2]: [x1, y1, x2, y2] in metres expected, found 3 values");
+    QTest::newRow("text") << with("1,0,1,1", "\"1\",0,1,1")
+                          << QByteArray("w:2: edges[1]: [x1, y1, x2, y2] in metres expected, found \"1\"");
+    QTest::newRow("no length") << with("[1,1,0,0]", "[1,1,1,1]")
+                               << QByteArray("w:3: edges[2]: an edge must not begin where it ends");
+    QTest::newRow("pose")
+        << with("[0.5,0.5,0]", "[0.5,0.5]")
+        << QByteArray("w:4: poses[0]: [x, y, theta] in metres and radians expected, found 2 values");
+    QTest::newRow("edge no list") << with("[1,0,1,1]", "{\"x\": 1}") << QByteArray("w:2: edges[1]: ");
+    QTest::newRow("unknown key") << with("poses", "pose")
+                                 << QByteArray("w: unknown key \"pose\", expected are ");
+    QTest::newRow("twice") << QByteArray("{\"edges\": [[0,0,1,0]],\n\"edges\": []}")
+                           << QByteArray("w:2: \"edges\" appears twice");
+    QTest::newRow("more behind") << good + "x" << QByteArray("w:4: not JSON: ");
+}
+
+void TestWorld::refusesBadFiles() {
+    QFETCH(QByteArray, text);
+    QFETCH(QByteArray, message);
+    std::string error;
+    QVERIFY(parseWorld(square, "w", error).has_value());
+    QVERIFY(!parseWorld(text.toStdString(), "w", error).has_value());
+    QVERIFY2(QByteArray::fromStdString(error).startsWith(message), error.c_str());
+}
+
+void TestWorld::keepsExistingFiles() {
+    QTemporaryDir folder;
+    const std::string path = folder.filePath(QStringLiteral("w.json")).toStdString();
+    std::string error;
+    const World world = *parseWorld(square, "w", error);
+    QVERIFY(writeWorld(world, path, error));
+    QVERIFY(!writeWorld(world, path, error));
+    QVERIFY2(error.find("exists already") != std::string::npos, error.c_str());
+    QVERIFY(writeWorld(world, path, error, true));
+}
+
+void TestWorld::saysWhichFileIsMissing() {
+    std::string error;
+    QVERIFY(!readWorld("/nonexistent/w.json", error).has_value());
+    QCOMPARE(QByteArray::fromStdString(error),
+             QByteArray("/nonexistent/w.json: cannot be read: No such file or directory"));
+    QVERIFY(!readWorld("/", error).has_value());
+}
+
+void TestWorld::pillarsCanBeDriven() {
+    std::string error;
+    const std::string source = qEnvironmentVariable("HERMES_SOURCE").toStdString();
+    const auto world = readWorld(source + "/deploy/worlds/pillars.json", error);
+    QVERIFY2(world.has_value(), error.c_str());
+    QCOMPARE(world->edges.size(), std::size_t(4 + 8 * 4));
+    QCOMPARE(world->poses.size(), std::size_t(39));
+    for (std::size_t i = 0; i < world->poses.size(); ++i) {
+        const World::Pose &pose = world->poses[i];
+        for (const World::Edge &edge : world->edges)
+            QVERIFY(distance(edge, pose.x, pose.y) > 0.35);
+        if (i == 0)
+            continue;
+        const World::Pose &last = world->poses[i - 1];
+        const double step = std::hypot(pose.x - last.x, pose.y - last.y);
+        QVERIFY(step > 0.6 && step < 0.7);
+        QVERIFY(std::abs(std::remainder(pose.theta - last.theta, 2 * M_PI)) < 0.5);
+        const double course = std::atan2(pose.y - last.y, pose.x - last.x);
+        QVERIFY(std::abs(std::remainder(pose.theta - course, 2 * M_PI)) <
+                0.3); // the heading follows the path
+    }
+}
+
+QTEST_APPLESS_MAIN(TestWorld)
+#include "test_world.moc"
