@@ -1,0 +1,29 @@
+#pragma once
+
+#include "vectorlib/geometry/Transformation2D.h"
+
+#include <vector>
+
+namespace vectorlib {
+
+struct CorrespondencePair {
+    int fixed = 0;  ///< index into the static set
+    int moving = 0; ///< index into the dynamic set
+};
+
+/// A match of a dynamic set (scan) with a static one (map).
+struct Match {
+    Transformation2D pose; ///< moves the dynamic set onto the static one
+    std::vector<CorrespondencePair> pairs;
+    double reliability = 0;   ///< in [0, 1], of the pairs' directions; paper (28)
+    double ambiguity = 0;     ///< at the pose, weighted by length; m^2. Thesis (7.44), erratum 10
+    double matchedLength = 0; ///< of the dynamic edges in pairs; metres
+    double visibleLength = 0; ///< of all dynamic edges; metres
+    double rms = 0;           ///< root mean square distance of the paired edges from their lines; metres
+    bool accepted = false;
+    /// Of (x, y, alpha) at the pose in the static frame, from the pairs alone: its inverse is their
+    /// covariance.
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+};
+
+} // namespace vectorlib

@@ -1,0 +1,80 @@
+#pragma once
+
+#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/Transformation2D.h"
+
+#include <vector>
+
+namespace vectorlib {
+
+/// Velocity in the sensor's own frame; m/s and rad/s.
+struct Twist2D {
+    double vx = 0;
+    double vy = 0;
+    double omega = 0;
+
+    /// The motion over `seconds` at this velocity, along an arc.
+    Transformation2D motion(double seconds) const {
+        const double a = omega * seconds;
+        // sin(a)/a and (1 - cos(a))/a, also for small a
+        const double s = std::abs(a) < 1e-6 ? 1 - a * a / 6 : std::sin(a) / a;
+        const double c = std::abs(a) < 1e-6 ? a / 2 : (1 - std::cos(a)) / a;
+        return {(s * vx - c * vy) * seconds, (c * vx + s * vy) * seconds, a};
+    }
+    /// The velocity that makes this motion in `seconds`.
+    static Twist2D between(const Transformation2D &motion, double seconds) {
+        const double a = motion.alpha(), half = a / 2;
+        const double k = std::abs(half) < 1e-6 ? 1 : half / std::tan(half);
+        return {(k * motion.x() + half * motion.y()) / seconds,
+                (k * motion.y() - half * motion.x()) / seconds, a / seconds};
+    }
+};
+
+/// Where a sensor is expected next when it goes on as between its last two poses.
+class MotionModel {
+public:
+    double maxGap =
+        1.0; ///< after a longer pause, or a stamp that steps back, the velocity is forgotten; seconds
+
+    void update(const Pose2D &pose, double stamp) {
+        const double seconds = stamp - m_stamp;
+        const bool follows = m_known && seconds > 0 && seconds <= maxGap;
+        m_twist = follows
+                      ? Twist2D::between(Transformation2D(m_pose).inverse() * Transformation2D(pose), seconds)
+                      : Twist2D();
+        m_pose = pose;
+        m_stamp = stamp;
+        m_known = true;
+    }
+    /// Puts the sensor somewhere else, standing still.
+    void reset(const Pose2D &pose) {
+        m_pose = pose;
+        m_twist = Twist2D();
+        m_known = false;
+    }
+    Pose2D predict(double stamp) const {
+        const double seconds = stamp - m_stamp;
+        if (!m_known || !(seconds > 0) || seconds > maxGap)
+            return m_pose;
+        return (Transformation2D(m_pose) * m_twist.motion(seconds)).pose();
+    }
+    const Pose2D &pose() const { return m_pose; }
+    /// Over the last step; zero when unknown.
+    const Twist2D &twist() const { return m_twist; }
+
+private:
+    Pose2D m_pose;
+    Twist2D m_twist;
+    double m_stamp = 0;
+    bool m_known = false;
+};
+
+/// Moves points measured while the sensor moved to where they had been seen from its place at time 0.
+/// `seconds` holds the time of each point; both of the same size.
+inline void compensateMotion(std::vector<Vector2D<float>> &points, const std::vector<float> &seconds,
+                             const Twist2D &twist) {
+    for (std::size_t i = 0; i < points.size() && i < seconds.size(); ++i)
+        points[i] = twist.motion(seconds[i]) * points[i];
+}
+
+} // namespace vectorlib
