@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vectorlib/io/Expected.h"
+
+#include <stdexcept>
+
+namespace hermes {
+
+/// Why a command could not do its work; the message is for people. The program exits with status 1.
+struct Failure : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The value, or a Failure with the reader's message.
+template <typename T>
+T valueOrFail(vectorlib::Expected<T> result) {
+    if (!result)
+        throw Failure(result.error().message());
+    return std::move(*result);
+}
+
+} // namespace hermes

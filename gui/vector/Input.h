@@ -1,0 +1,54 @@
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hermes {
+
+/// A file to read, plain or gzip-compressed, or standard input for `-`. A file that breaks off in the middle
+/// of its compressed data makes the stream bad instead of ending it.
+class Input {
+public:
+    /// Throws Failure when there is no such file or it is a folder.
+    explicit Input(const std::string &path);
+    ~Input();
+
+    std::istream &stream() { return m_stream; }
+    /// How messages call it.
+    const std::string &name() const { return m_name; }
+    /// Everything that is left, as one text; throws Failure over `limit` bytes.
+    std::string readAll(std::size_t limit = std::size_t(256) << 20);
+
+private:
+    class Buffer;
+    std::string m_name;
+    std::unique_ptr<Buffer> m_buffer;
+    std::istream m_stream;
+};
+
+/// Whether the path ends with the extension (with dot, lower case), a further .gz left aside; case does not
+/// matter.
+bool hasExtension(const std::string &path, const std::string &extension);
+
+/// Whether the file begins like a pcap or pcapng capture, plain or compressed. False for standard input.
+bool isCapture(const std::string &path);
+
+/// A copy of a compressed file that is decompressed for readers that need a plain file; removed with the
+/// object. A plain file and standard input are passed through.
+class PlainFile {
+public:
+    explicit PlainFile(const std::string &path);
+    ~PlainFile();
+    PlainFile(const PlainFile &) = delete;
+    PlainFile &operator=(const PlainFile &) = delete;
+
+    const std::string &path() const { return m_path; }
+
+private:
+    std::string m_path;
+    bool m_temporary = false;
+};
+
+} // namespace hermes

@@ -1,0 +1,106 @@
+#include "gui/vector/Options.h"
+
+#include "vectorlib/io/TextInput.h"
+
+#include <sstream>
+
+namespace hermes {
+
+namespace {
+
+// The part of a validator that says what is wrong with a number, or nothing.
+CLI::Validator numberThat(std::string expected, std::function<bool(double)> holds) {
+    return CLI::Validator(
+        [expected, holds](const std::string &text) {
+            const auto number = vectorlib::parseNumber(text);
+            return number && holds(*number) ? std::string()
+                                            : "found " + vectorlib::quoted(text) + ", expected " + expected;
+        },
+        "", "number");
+}
+
+std::string plain(double value) {
+    std::ostringstream out;
+    out << value;
+    return out.str();
+}
+
+} // namespace
+
+CLI::Validator between(double low, double high) {
+    return numberThat("a number from " + plain(low) + " to " + plain(high),
+                      [low, high](double v) { return v >= low && v <= high; });
+}
+
+CLI::Validator aboveZero() {
+    return numberThat("a number above 0", [](double v) { return v > 0; });
+}
+
+CLI::Validator poseText() {
+    return CLI::Validator(
+        [](const std::string &text) {
+            std::vector<std::string_view> fields;
+            vectorlib::splitCommas(text, fields);
+            bool good = fields.size() == 3;
+            for (const std::string_view field : fields)
+                good = good && vectorlib::parseNumber(field);
+            return good ? std::string()
+                        : "found " + vectorlib::quoted(text) +
+                              ", expected three numbers x,y,theta (metres, radians)";
+        },
+        "", "pose");
+}
+
+vectorlib::Pose2D parsePose(const std::string &text) {
+    std::vector<std::string_view> fields;
+    vectorlib::splitCommas(text, fields);
+    return {vectorlib::parseNumber(fields.at(0)).value(), vectorlib::parseNumber(fields.at(1)).value(),
+            vectorlib::parseNumber(fields.at(2)).value()};
+}
+
+void OutputOptions::addTo(CLI::App &command, bool withSvg) {
+    command.add_option("--out", out, "Write the result to this file instead of standard output")
+        ->type_name("FILE");
+    if (withSvg)
+        command.add_option("--svg", svg, "Also draw a picture")->type_name("FILE");
+    command.add_flag("--force", force, "Overwrite files that exist");
+}
+
+void SegmentOptions::addTo(CLI::App &command) {
+    command.add_option("--k", settings.neighbours, "How many earlier points each point is compared with")
+        ->check(between(1, 100000))
+        ->type_name("N")
+        ->capture_default_str();
+    command
+        .add_option("--min-threshold", settings.minThreshold, "Lower bound of the distance threshold, metres")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->capture_default_str();
+    command
+        .add_option("--max-threshold", settings.maxThreshold, "Upper bound of the distance threshold, metres")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->capture_default_str();
+    command.add_option("--min-points", settings.minPoints, "Smaller clusters are outliers")
+        ->check(between(1, 1e9))
+        ->type_name("N")
+        ->capture_default_str();
+    command.add_flag("--open", open, "The last point is no neighbour of the first: less than a full turn");
+}
+
+vectorlib::EarSettings SegmentOptions::checked() const {
+    if (settings.minThreshold > settings.maxThreshold)
+        throw CLI::ValidationError("--min-threshold",
+                                   "found a value above --max-threshold, expected at most that");
+    vectorlib::EarSettings result = settings;
+    result.closed = !open;
+    return result;
+}
+
+std::string example(const std::string &text) {
+    return "Example:\n  " + text +
+           "\n\nIN may be gzip-compressed; - is standard input. Exit status: 0 success, 2 wrong "
+           "usage, 1 any other failure.";
+}
+
+} // namespace hermes

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "gui/vector/Output.h"
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/segmentation/EarSegmenter.h"
+
+#include <CLI/CLI.hpp>
+
+namespace hermes {
+
+/// Where a command's results go.
+struct OutputOptions {
+    std::string out; ///< empty is standard output
+    std::string svg; ///< empty is no picture
+    bool force = false;
+
+    /// Adds --out, --svg (if wanted) and --force.
+    void addTo(CLI::App &command, bool withSvg);
+};
+
+/// A finite number from low to high, both included.
+CLI::Validator between(double low, double high);
+/// A finite number above 0.
+CLI::Validator aboveZero();
+/// Three finite numbers `x,y,theta`.
+CLI::Validator poseText();
+/// The pose in a text that poseText() has let through; metres, radians.
+vectorlib::Pose2D parsePose(const std::string &text);
+
+/// The options of segmentation: --k --min-threshold --max-threshold --min-points --open.
+struct SegmentOptions {
+    vectorlib::EarSettings settings;
+    bool open = false;
+
+    void addTo(CLI::App &command);
+    /// The settings; throws CLI::ValidationError when the thresholds contradict each other.
+    vectorlib::EarSettings checked() const;
+};
+
+/// The footer of a command's help: an example of its use.
+std::string example(const std::string &text);
+
+// One function a subcommand; each in a file of its own.
+void addSegmentCommand(CLI::App &app);
+void addVectorizeCommand(CLI::App &app);
+void addRegisterCommand(CLI::App &app);
+void addObserveCommand(CLI::App &app);
+void addMapCommand(CLI::App &app);
+void addRingCommand(CLI::App &app);
+
+} // namespace hermes

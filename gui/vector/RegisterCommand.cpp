@@ -1,0 +1,139 @@
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+#include "gui/vector/Options.h"
+#include "vectorlib/io/CsvPairs.h"
+#include "vectorlib/io/Svg.h"
+#include "vectorlib/registration/LineSegmentRegistration.h"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace hermes {
+
+namespace {
+
+using Point = vectorlib::Vector2D<double>;
+using Segment = vectorlib::LineSegment2D<double>;
+using vectorlib::SegmentPair;
+
+/// The frame in which one of the two sets is registered: its own, or, where the segments lie so far from its
+/// origin that an error of rotation would turn into one of translation (erratum 13), one with the origin amid
+/// them.
+Point originNear(const std::vector<SegmentPair> &pairs, Segment SegmentPair::*set) {
+    Point middle;
+    for (const SegmentPair &p : pairs)
+        middle += (p.*set).middle() / static_cast<double>(pairs.size());
+    double extent = 0;
+    for (const SegmentPair &p : pairs)
+        extent = std::max({extent, ((p.*set).begin() - middle).norm(), ((p.*set).end() - middle).norm()});
+    return middle.norm() > 10 * extent ? middle : Point();
+}
+
+struct RegisterCommand {
+    std::string in;
+    std::string rotation = "mitsuta";
+    std::string weights = "none";
+    vectorlib::Stiffness stiffness;
+    OutputOptions output;
+
+    void run() const {
+        OutputSet files(output.force);
+        std::ostream &out = files.open(output.out);
+        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        Input input(in);
+        const vectorlib::PairTable table = valueOrFail(vectorlib::readCsvPairs(input.stream(), input.name()));
+        if (weights == "column" && !table.hasWeights)
+            throw Failure(input.name() + ":1: found no column weight, which --weights column expects");
+
+        vectorlib::LineSegmentRegistration registration;
+        registration.rotation =
+            rotation == "wahba" ? vectorlib::Rotation::Wahba : vectorlib::Rotation::Mitsuta;
+        registration.stiffness = stiffness;
+        const Point fixedOrigin = originNear(table.pairs, &SegmentPair::fixed);
+        const Point movingOrigin = originNear(table.pairs, &SegmentPair::moving);
+        for (const SegmentPair &p : table.pairs)
+            registration.add(shifted(p.fixed, fixedOrigin), shifted(p.moving, movingOrigin), weightOf(p));
+        const vectorlib::Transformation2D t =
+            vectorlib::Transformation2D(fixedOrigin.x, fixedOrigin.y, 0) * registration.transformation() *
+            vectorlib::Transformation2D(-movingOrigin.x, -movingOrigin.y, 0);
+        if (!registration.isSolvable())
+            std::cerr
+                << "hermes-vector: all lines are parallel: the shift along them is not known and left at 0\n";
+        write(out, registration, t);
+        if (svg)
+            draw(*svg, table.pairs, t);
+        files.commit();
+    }
+
+    static Segment shifted(const Segment &s, Point origin) {
+        return {s.begin() - origin, s.end() - origin, s.direction()};
+    }
+    double weightOf(const SegmentPair &p) const {
+        return weights == "length"   ? std::min(p.fixed.length(), p.moving.length())
+               : weights == "column" ? p.weight
+                                     : 1;
+    }
+    static void write(std::ostream &out, const vectorlib::LineSegmentRegistration &registration,
+                      const vectorlib::Transformation2D &t) {
+        const vectorlib::Ambiguity ambiguity = registration.ambiguity();
+        nlohmann::ordered_json json;
+        json["x"] = t.x();
+        json["y"] = t.y();
+        json["alpha"] = t.alpha();
+        json["reliability"] = registration.reliability();
+        json["ambiguity"] = ambiguity.total();
+        json["ambiguity_xy"] = ambiguity.xy;
+        json["ambiguity_alpha"] = ambiguity.alpha;
+        json["pairs"] = registration.pairs();
+        out << json.dump(2) << '\n';
+    }
+    static void draw(std::ostream &svg, const std::vector<SegmentPair> &pairs,
+                     const vectorlib::Transformation2D &t) {
+        std::vector<Segment> fixed, before, after;
+        for (const SegmentPair &p : pairs) {
+            fixed.push_back(p.fixed);
+            before.push_back(p.moving);
+            after.push_back(t * p.moving);
+        }
+        vectorlib::SvgPicture picture("Registration of " + std::to_string(pairs.size()) +
+                                      " pairs of segments");
+        picture.segments({vectorlib::colour::map, 4, "static set"}, fixed);
+        picture.segments({vectorlib::colour::before, 1.5, "dynamic set as given", true}, before);
+        picture.segments({vectorlib::colour::estimate, 1.5, "dynamic set moved onto the static one"}, after);
+        picture.write(svg);
+    }
+};
+
+} // namespace
+
+void addRegisterCommand(CLI::App &app) {
+    auto command = std::make_shared<RegisterCommand>();
+    CLI::App *sub = app.add_subcommand(
+        "register", "Find the motion that brings segments onto their known partners (JSON)");
+    sub->add_option("IN", command->in,
+                    "Pairs: CSV sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2[,weight]; static, then dynamic")
+        ->required();
+    sub->add_option("--rotation", command->rotation, "How the rotation is averaged: mitsuta or wahba")
+        ->check(CLI::IsMember({"mitsuta", "wahba"}))
+        ->type_name("HOW")
+        ->capture_default_str();
+    sub->add_option("--weights", command->weights, "none, length (of the shorter segment) or column (weight)")
+        ->check(CLI::IsMember({"none", "length", "column"}))
+        ->type_name("HOW")
+        ->capture_default_str();
+    sub->add_option("--k-alpha", command->stiffness.alpha,
+                    "Weight of the rotation in the ambiguity, m^2/rad^2")
+        ->check(between(0, 1e12))
+        ->type_name("K")
+        ->capture_default_str();
+    sub->add_option("--k-xy", command->stiffness.xy, "Weight of the translation in the ambiguity")
+        ->check(between(0, 1e12))
+        ->type_name("K")
+        ->capture_default_str();
+    command->output.addTo(*sub, true);
+    sub->footer(example("hermes-vector register pairs.csv --weights length"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes

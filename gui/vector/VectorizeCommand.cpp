@@ -1,0 +1,147 @@
+#include "gui/vector/Options.h"
+#include "gui/vector/Points.h"
+#include "vectorlib/io/Svg.h"
+#include "vectorlib/vectorization/FtlsVectorizer.h"
+#include "vectorlib/vectorization/TlsVectorizer.h"
+
+#include <iostream>
+#include <numeric>
+
+namespace hermes {
+
+namespace {
+
+using Point = vectorlib::Vector2D<double>;
+using vectorlib::Number;
+
+/// A line and the points of the file that it stands for.
+struct Row {
+    int cluster;
+    int first;
+    int last;
+    vectorlib::Line2D line;
+    double sigma;
+    vectorlib::LineSegment2D<double> segment;
+};
+
+struct VectorizeCommand {
+    std::string in;
+    std::string algorithm = "ftls";
+    vectorlib::VectorizerSettings settings;
+    bool noSegment = false;
+    bool polyline = false;
+    OutputOptions output;
+    SegmentOptions segment;
+
+    void run() const {
+        vectorlib::EarSegmenter<double> segmenter;
+        segmenter.settings = segment.checked();
+        OutputSet files(output.force);
+        std::ostream &out = files.open(output.out);
+        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const std::vector<Point> points = loadPoints(in);
+        const vectorlib::Segmentation clusters = noSegment ? oneCluster(points.size()) : segmenter(points);
+        const std::vector<Row> rows = algorithm == "tls"
+                                          ? vectorize<vectorlib::TlsVectorizer<double>>(points, clusters)
+                                          : vectorize<vectorlib::FtlsVectorizer<double>>(points, clusters);
+        out << "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2\n";
+        for (const Row &r : rows) {
+            out << r.cluster << ',' << r.first << ',' << r.last;
+            for (const double v : {r.line.a, r.line.b, r.line.c, r.sigma, r.segment.begin().x,
+                                   r.segment.begin().y, r.segment.end().x, r.segment.end().y})
+                out << ',' << Number(v);
+            out << '\n';
+        }
+        if (svg)
+            draw(*svg, points, rows);
+        files.commit();
+    }
+
+    static vectorlib::Segmentation oneCluster(std::size_t count) {
+        vectorlib::Segmentation s;
+        s.labels.assign(count, 0);
+        s.order.resize(count);
+        std::iota(s.order.begin(), s.order.end(), 0);
+        s.starts = {0, count};
+        return s;
+    }
+
+    template <typename Vectorizer>
+    std::vector<Row> vectorize(const std::vector<Point> &points,
+                               const vectorlib::Segmentation &clusters) const {
+        Vectorizer vectorizer;
+        vectorizer.settings = settings;
+        vectorizer.settings.polyline = polyline;
+        std::vector<Row> rows;
+        std::vector<Point> part;
+        std::size_t without = 0;
+        for (std::size_t c = 0; c < clusters.size(); ++c) {
+            const int *order = clusters.order.data() + clusters.starts[c];
+            part.clear();
+            for (std::size_t i = 0; i < clusters.size(c); ++i)
+                part.push_back(points[static_cast<std::size_t>(order[i])]);
+            for (const vectorlib::VectorizedLine &l : vectorizer(part)) {
+                if (!l.line.isValid()) {
+                    ++without;
+                    continue;
+                }
+                rows.push_back(
+                    {static_cast<int>(c), order[l.first], order[l.last], l.line, l.sigma, l.segment});
+            }
+        }
+        if (without > 0)
+            std::cerr << "hermes-vector: left out " << without
+                      << " interval(s) of points that have no direction\n";
+        return rows;
+    }
+
+    void draw(std::ostream &svg, const std::vector<Point> &points, const std::vector<Row> &rows) const {
+        vectorlib::SvgPicture picture(std::to_string(rows.size()) + " lines by " + algorithm + " from " +
+                                      std::to_string(points.size()) + " points");
+        picture.points({vectorlib::colour::points, 3, "points"}, points);
+        std::vector<vectorlib::LineSegment2D<double>> segments;
+        std::vector<Point> ends;
+        for (const Row &r : rows) {
+            segments.push_back(r.segment);
+            ends.push_back(r.segment.begin());
+            ends.push_back(r.segment.end());
+        }
+        picture.segments({vectorlib::colour::estimate, 2, "lines"}, segments);
+        picture.points({vectorlib::colour::reference, 5, "their ends"}, ends);
+        picture.pose({vectorlib::colour::map, 2, "sensor"}, {}, 0);
+        picture.write(svg);
+    }
+};
+
+} // namespace
+
+void addVectorizeCommand(CLI::App &app) {
+    auto command = std::make_shared<VectorizeCommand>();
+    CLI::App *sub = app.add_subcommand("vectorize", "Replace points by line segments (CSV "
+                                                    "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)");
+    sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
+    sub->add_option("--algorithm", command->algorithm,
+                    "tls: one line a cluster; ftls: as many as sigma asks for")
+        ->check(CLI::IsMember({"ftls", "tls"}))
+        ->type_name("A")
+        ->capture_default_str();
+    sub->add_option("--sigma", command->settings.sigma,
+                    "Largest standard deviation of points from their line, metres")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->capture_default_str();
+    sub->add_option("--delta", command->settings.delta,
+                    "With --polyline: farthest a corner may lie from where two lines change, metres")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->capture_default_str();
+    sub->add_flag("--no-segment", command->noSegment, "The whole file is one open cluster");
+    sub->add_flag("--polyline", command->polyline,
+                  "Join the consecutive lines of a cluster where they cross");
+    command->segment.addTo(*sub);
+    command->output.addTo(*sub, true);
+    sub->footer(example("hermes-vector vectorize scan.csv --algorithm ftls --sigma 0.02 --polyline"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes

@@ -1,0 +1,39 @@
+#include "gui/vector/Failure.h"
+#include "gui/vector/Options.h"
+
+#include <iostream>
+
+namespace {
+
+constexpr int failed = 1;
+constexpr int wrongUsage = 2;
+
+} // namespace
+
+/// hermes-vector: the vector library at the command line. See docs/hermes-vector.md.
+int main(int argc, char **argv) {
+    CLI::App app("Scans to line segments, and line segments to maps.");
+    app.name("hermes-vector");
+    app.set_version_flag("--version", "hermes-vector " HERMES_VERSION);
+    app.require_subcommand(1);
+    app.footer("hermes-vector COMMAND --help says more and shows an example.");
+    hermes::addSegmentCommand(app);
+    hermes::addVectorizeCommand(app);
+    hermes::addRegisterCommand(app);
+    hermes::removeTemporariesOnSignal();
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError &e) {
+        if (e.get_exit_code() == int(CLI::ExitCodes::Success))
+            return app.exit(e); // prints the help or the version
+        std::cerr << "hermes-vector: " << e.what() << "\nSee hermes-vector --help.\n";
+        return wrongUsage;
+    } catch (const hermes::Failure &e) {
+        std::cerr << "hermes-vector: " << e.what() << '\n';
+        return failed;
+    } catch (const std::exception &e) {
+        std::cerr << "hermes-vector: unexpected failure: " << e.what() << '\n';
+        return failed;
+    }
+    return 0;
+}
