@@ -104,14 +104,14 @@ private:
         double gate = std::max(settings.permitted.dx, settings.permitted.dy),
                angle = settings.permitted.dalpha;
         for (int i = 0; i < settings.iterations; ++i) {
-            gate = std::max(settings.finalDistance, gate * settings.gateFactor);
-            angle = std::max(settings.finalAngle, angle * settings.gateFactor);
             choosePairs(correction, gate, angle);
             const Transformation2D step = refine(correction);
             correction = step * correction;
             const bool narrow = gate <= settings.finalDistance && angle <= settings.finalAngle;
             if (narrow && step.translation().norm() < 1e-5 && std::abs(step.sin()) < 1e-6)
                 break;
+            gate = std::max(settings.finalDistance, gate * settings.gateFactor);
+            angle = std::max(settings.finalAngle, angle * settings.gateFactor);
         }
         choosePairs(correction, settings.finalDistance, settings.finalAngle);
         return correction;

@@ -59,7 +59,7 @@ public:
                 joinIfNear(points, m_valid[v], m_valid[v - back]);
         if (settings.closed)
             close(points, reach);
-        collect(count);
+        collect(points);
         return m_result;
     }
 
@@ -88,7 +88,8 @@ private:
             for (std::size_t back = v + 1; back <= reach && back < valid; ++back)
                 joinIfNear(points, m_valid[v], m_valid[valid + v - back]);
     }
-    void collect(std::size_t count) {
+    void collect(PointSpan<Scalar> points) {
+        const std::size_t count = points.size();
         Segmentation &r = m_result;
         r.labels.assign(count, -1);
         r.starts.assign(1, 0);
@@ -111,17 +112,21 @@ private:
         }
         if (settings.closed)
             for (std::size_t c = 0; c < r.size(); ++c)
-                startAfterWidestGap(r.order.begin() + static_cast<std::ptrdiff_t>(r.starts[c]),
-                                    r.order.begin() + static_cast<std::ptrdiff_t>(r.starts[c + 1]), count);
+                startAfterWidestGap(points, c);
     }
-    // A cluster that runs over the end of the scan begins after the widest gap in its indices.
-    static void startAfterWidestGap(std::vector<int>::iterator first, std::vector<int>::iterator last,
-                                    std::size_t count) {
+    // A cluster that runs over the end of the scan begins after the widest gap between its points.
+    void startAfterWidestGap(PointSpan<Scalar> points, std::size_t cluster) {
+        const auto first = m_result.order.begin() + static_cast<std::ptrdiff_t>(m_result.starts[cluster]);
+        const auto last = m_result.order.begin() + static_cast<std::ptrdiff_t>(m_result.starts[cluster + 1]);
+        const std::size_t reach = std::min(m_valid.size(), static_cast<std::size_t>(settings.neighbours));
+        if (*first > m_valid[reach - 1] || *(last - 1) < m_valid[m_valid.size() - reach])
+            return;
+        const auto gap = [&](int i, int j) { return (points[i] - points[j]).squaredNorm(); };
         auto start = first;
-        int widest = *first + static_cast<int>(count) - *(last - 1);
+        Scalar widest = gap(*first, *(last - 1));
         for (auto i = first + 1; i != last; ++i)
-            if (*i - *(i - 1) > widest) {
-                widest = *i - *(i - 1);
+            if (const Scalar g = gap(*i, *(i - 1)); g > widest) {
+                widest = g;
                 start = i;
             }
         std::rotate(first, start, last);

@@ -1,0 +1,175 @@
+#include <vectorlib/mapping/Observation2D.h>
+
+#include <QtTest>
+
+#include <limits>
+#include <random>
+
+using namespace vectorlib;
+using Points = std::vector<Vector2D<float>>;
+
+namespace {
+
+Points arc(double from, double to, int count, double radius) {
+    Points points;
+    for (int i = 0; i < count; ++i) {
+        const double a = from + (to - from) * i / count;
+        points.emplace_back(float(radius * std::cos(a)), float(radius * std::sin(a)));
+    }
+    return points;
+}
+
+} // namespace
+
+class TestEarSegmenter : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void splitsAtJumps();
+    void outliersDoNotBreakACluster();
+    void smallClustersAreOutliers();
+    void closesAFullTurn();
+    void clusterOverTheEndBeginsAfterItsGap();
+    void mergesRetroactively();
+    void thresholdFollowsTheFieldOfView();
+    void thresholdBounds();
+    void invalidPointsTakeNoPart();
+    void emptyAndTiny();
+    void edgesAndOutliersPartitionAnObservation();
+};
+
+void TestEarSegmenter::splitsAtJumps() {
+    Points points = arc(0, pi, 500, 2);
+    const Points far = arc(pi, 2 * pi, 500, 4);
+    points.insert(points.end(), far.begin(), far.end());
+    EarSegmenter<float> segment;
+    const Segmentation &s = segment(points);
+    QCOMPARE(s.size(), std::size_t(2));
+    QCOMPARE(s.size(0), std::size_t(500));
+    QCOMPARE(s.labels.front(), 0);
+    QCOMPARE(s.labels.back(), 1);
+}
+
+void TestEarSegmenter::outliersDoNotBreakACluster() {
+    Points points = arc(0, 2 * pi, 1000, 2);
+    for (std::size_t i = 50; i < 1000; i += 50)
+        points[i] = points[i] * 3.0f;
+    EarSegmenter<float> segment;
+    const Segmentation &s = segment(points);
+    QCOMPARE(s.size(), std::size_t(1));
+    QCOMPARE(std::count(s.labels.begin(), s.labels.end(), -1), std::ptrdiff_t(19));
+}
+
+void TestEarSegmenter::smallClustersAreOutliers() {
+    EarSegmenter<float> segment;
+    segment.settings.nominalPoints = 1000;
+    QCOMPARE(segment(arc(0, 0.1, 14, 2)).size(), std::size_t(0));
+    QCOMPARE(segment(arc(0, 0.1, 15, 2)).size(), std::size_t(1));
+}
+
+void TestEarSegmenter::closesAFullTurn() {
+    EarSegmenter<float> segment;
+    Points points = arc(-1, 1, 300, 2); // in two halves, begun in the middle
+    std::rotate(points.begin(), points.begin() + 150, points.end());
+    segment.settings.nominalPoints = 900;
+    QCOMPARE(segment(points).size(), std::size_t(1));
+    segment.settings.closed = false;
+    QCOMPARE(segment(points).size(), std::size_t(2));
+}
+
+void TestEarSegmenter::clusterOverTheEndBeginsAfterItsGap() {
+    EarSegmenter<float> segment;
+    segment.settings.nominalPoints = 900;
+    Points points = arc(-1, 1, 300, 2);
+    std::rotate(points.begin(), points.begin() + 100, points.end());
+    const Segmentation &s = segment(points);
+    QCOMPARE(s.size(), std::size_t(1));
+    QCOMPARE(s.order.front(), 200); // where the arc begins
+    QCOMPARE(s.order.back(), 199);
+}
+
+void TestEarSegmenter::mergesRetroactively() {
+    // Points that jump between two walls, until one point lies near both: thesis figure 5.1, third case.
+    Points points;
+    for (int i = 0; i < 20; ++i) {
+        points.emplace_back(2.0f, 0.01f * float(i));
+        points.emplace_back(2.3f, 0.01f * float(i));
+    }
+    EarSegmenter<float> segment;
+    segment.settings.closed = false;
+    segment.settings.minThreshold = segment.settings.maxThreshold = 0.2;
+    QCOMPARE(segment(points).size(), std::size_t(2));
+    points.emplace_back(2.15f, 0.2f);
+    QCOMPARE(segment(points).size(), std::size_t(1));
+}
+
+// Erratum 14: half the field of view halves the threshold for the same number of rays; (5.1) as printed would
+// not.
+void TestEarSegmenter::thresholdFollowsTheFieldOfView() {
+    EarSegmenter<float> segment;
+    segment.settings.closed = false;
+    segment.settings.minPoints = 1;
+    segment.settings.minThreshold = 0.01;
+    segment.settings.maxThreshold = 10;
+    segment.settings.nominalPoints = 360;
+    const Points gap{{2.0f, 0.0f}, {2.0f, 0.3f}}; // K 2 pi / N r = 0.35, with F = pi 0.17
+    QCOMPARE(segment(gap).size(), std::size_t(1));
+    segment.settings.fieldOfView = pi;
+    QCOMPARE(segment(gap).size(), std::size_t(2));
+}
+
+void TestEarSegmenter::thresholdBounds() {
+    EarSegmenter<float> segment;
+    segment.settings.closed = false;
+    segment.settings.minPoints = 1;
+    segment.settings.nominalPoints = 1000;
+    QCOMPARE(segment(Points{{0.1f, 0.0f}, {0.1f, 0.045f}}).size(), std::size_t(1));  // scaled: 0.006 m
+    QCOMPARE(segment(Points{{50.0f, 0.0f}, {50.0f, 0.25f}}).size(), std::size_t(2)); // scaled: 3.1 m
+}
+
+void TestEarSegmenter::invalidPointsTakeNoPart() {
+    Points points = arc(0, 2 * pi, 1000, 2);
+    const float nan = std::numeric_limits<float>::quiet_NaN(),
+                infinity = std::numeric_limits<float>::infinity();
+    points[100] = {nan, 1};
+    points[101] = {infinity, infinity};
+    points[500] = {1, nan};
+    EarSegmenter<float> segment;
+    const Segmentation &s = segment(points);
+    QCOMPARE(s.size(), std::size_t(1));
+    QCOMPARE(s.size(0), std::size_t(997));
+    QCOMPARE(s.labels[101], -1);
+}
+
+void TestEarSegmenter::emptyAndTiny() {
+    EarSegmenter<float> segment;
+    QCOMPARE(segment(Points()).size(), std::size_t(0));
+    QCOMPARE(segment(Points{{1, 1}}).size(), std::size_t(0));
+    segment.settings.minPoints = 1;
+    QCOMPARE(segment(Points{{1, 1}}).size(), std::size_t(1));
+}
+
+void TestEarSegmenter::edgesAndOutliersPartitionAnObservation() {
+    Observation2D observation;
+    std::mt19937 random(3);
+    std::normal_distribution<float> noise(0, 0.01f);
+    for (int i = 0; i < 800; ++i) { // a square room with a stray point every 40
+        const double a = 2 * pi * i / 800, r = 2 / std::max(std::abs(std::cos(a)), std::abs(std::sin(a)));
+        const float range = float(i % 40 == 0 ? 0.5 * r : r) + noise(random);
+        observation.cloud.emplace_back(range * float(std::cos(a)), range * float(std::sin(a)));
+    }
+    EdgeExtractor extract;
+    extract(observation);
+    std::size_t points = observation.outliers.size();
+    for (const EdgeRich2D &edge : observation.edges) {
+        points += edge.points.size();
+        QVERIFY(edge.observation == &observation);
+        QCOMPARE(double(edge.points.size()), edge.sums.n);
+        QVERIFY(edge.segment.across({0, 0}) > 0);
+        QVERIFY(EdgeRaw2D(edge).rich == &edge);
+    }
+    QCOMPARE(points, observation.cloud.size());
+    QVERIFY(observation.edges.size() >= 4 && observation.outliers.size() >= 20);
+}
+
+QTEST_APPLESS_MAIN(TestEarSegmenter)
+#include "TestEarSegmenter.moc"

@@ -1,0 +1,206 @@
+#include <vectorlib/vectorization/FtlsVectorizer.h>
+#include <vectorlib/vectorization/TlsVectorizer.h>
+
+#include <QtTest>
+
+#include <cstdlib>
+#include <new>
+#include <random>
+
+// Every allocation of the program is counted.
+static std::size_t allocations = 0;
+void *operator new(std::size_t size) {
+    ++allocations;
+    if (void *memory = std::malloc(size))
+        return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void *memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void *memory, std::size_t) noexcept {
+    std::free(memory);
+}
+
+using namespace vectorlib;
+using Points = std::vector<Vector2D<float>>;
+
+namespace {
+
+// A polyline through the corners with `each` points a side and noise across.
+Points polyline(const std::vector<Vector2D<double>> &corners, int each, double sigma, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> noise(0, sigma);
+    Points points;
+    for (std::size_t c = 0; c + 1 < corners.size(); ++c) {
+        const LineSegment2D<double> side(corners[c], corners[c + 1]);
+        for (int i = 0; i < each; ++i)
+            points.emplace_back(side.begin() + side.direction() * (side.length() * i / each) +
+                                side.normal() * noise(random));
+    }
+    return points;
+}
+
+const std::vector<Vector2D<double>> staircase{{2, -2}, {2, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 2}, {-2, 2}};
+
+} // namespace
+
+class TestVectorizer : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void tlsIsOneLine();
+    void findsTheSidesOfAStaircase();
+    void intervalsPartitionTheCluster();
+    void everyLineKeepsSigma();
+    void noiseFreeCornersAreExact();
+    void badIntersectionIsCorrected();
+    void degenerateInput_data();
+    void degenerateInput();
+    void lastSinglePoint();
+    void farFromTheOrigin();
+    void noAllocationOnceGrown();
+};
+
+void TestVectorizer::tlsIsOneLine() {
+    TlsVectorizer<float> vectorize;
+    const Points points = polyline({{1, 0}, {1, 3}}, 200, 0.01, 1);
+    const auto &lines = vectorize(points);
+    QCOMPARE(lines.size(), std::size_t(1));
+    QCOMPARE(lines[0].first, std::size_t(0));
+    QCOMPARE(lines[0].last, std::size_t(199));
+    QVERIFY(std::abs(lines[0].line.c - 1) < 0.005);
+    QVERIFY(std::abs(lines[0].sigma - 0.01) < 0.002);
+}
+
+void TestVectorizer::findsTheSidesOfAStaircase() {
+    FtlsVectorizer<float> vectorize;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        const auto &lines = vectorize(polyline(staircase, 100, 0.01, seed));
+        QVERIFY2(lines.size() == 6, qPrintable(QString("seed %1: %2 lines").arg(seed).arg(lines.size())));
+        for (std::size_t i = 0; i + 1 < lines.size(); ++i)
+            QVERIFY((lines[i].segment.end() - staircase[i + 1]).norm() < 0.05);
+    }
+}
+
+void TestVectorizer::intervalsPartitionTheCluster() {
+    FtlsVectorizer<float> vectorize;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> u(-1, 1);
+    for (int n = 2; n < 300; n += 7) {
+        Points points;
+        Vector2D<float> p;
+        for (int i = 0; i < n; ++i)
+            points.push_back(p += Vector2D<float>(u(random), u(random)) * 0.1f);
+        std::size_t next = 0;
+        for (const VectorizedLine &line : vectorize(points)) {
+            QCOMPARE(line.first, next);
+            QVERIFY(line.last > line.first);
+            next = line.last + 1;
+        }
+        QCOMPARE(next, points.size());
+    }
+}
+
+void TestVectorizer::everyLineKeepsSigma() {
+    FtlsVectorizer<float> vectorize;
+    vectorize.settings.sigma = 0.015;
+    for (unsigned seed = 1; seed <= 20; ++seed)
+        for (const VectorizedLine &line : vectorize(polyline(staircase, 80, 0.01, seed)))
+            QVERIFY(line.sigma <= 0.015 * (1 + 1e-9));
+}
+
+void TestVectorizer::noiseFreeCornersAreExact() {
+    FtlsVectorizer<float> vectorize;
+    vectorize.settings.sigma = 1e-4;
+    const auto &lines = vectorize(polyline({{3, -1}, {3, 2}, {-1, 2}}, 50, 0, 1));
+    QCOMPARE(lines.size(), std::size_t(2));
+    QVERIFY((lines[0].segment.end() - Vector2D<double>(3, 2)).norm() < 1e-3);
+    QVERIFY(lines[0].segment.end() == lines[1].segment.begin());
+}
+
+// Thesis figure 6.6: two nearly parallel lines whose intersection lies far from where one changes to the
+// other.
+void TestVectorizer::badIntersectionIsCorrected() {
+    Points points;
+    for (int i = 0; i < 120; ++i) {
+        const double x = 0.02 * i, bend = 1 / (1 + std::exp(-(x - 1.2) * 6));
+        points.emplace_back(float(x), float(2 - 0.12 * bend));
+    }
+    FtlsVectorizer<float> vectorize;
+    vectorize.settings.sigma = 0.03;
+    vectorize.settings.delta = 0.1;
+    double worst = 0;
+    for (const VectorizedLine &line : vectorize(points))
+        for (Vector2D<double> corner : {line.segment.begin(), line.segment.end()}) {
+            double nearest = 1e9;
+            for (const Vector2D<float> &p : points)
+                nearest = std::min(nearest, (corner - Vector2D<double>(p)).norm());
+            worst = std::max(worst, nearest);
+        }
+    QVERIFY2(worst < 0.12, qPrintable(QString::number(worst)));
+}
+
+void TestVectorizer::degenerateInput_data() {
+    QTest::addColumn<QVector<QPointF>>("points");
+    QTest::addColumn<int>("lines");
+    QTest::newRow("empty") << QVector<QPointF>{} << 0;
+    QTest::newRow("one point") << QVector<QPointF>{{1, 2}} << 0;
+    QTest::newRow("two equal points") << QVector<QPointF>{{1, 2}, {1, 2}} << 1;
+    QTest::newRow("all equal") << QVector<QPointF>(50, {1, 2}) << 1;
+    QTest::newRow("two points") << QVector<QPointF>{{1, 2}, {1, 3}} << 1;
+}
+
+void TestVectorizer::degenerateInput() {
+    QFETCH(QVector<QPointF>, points);
+    QFETCH(int, lines);
+    Points p;
+    for (const QPointF &q : points)
+        p.emplace_back(float(q.x()), float(q.y()));
+    FtlsVectorizer<float> ftls;
+    TlsVectorizer<float> tls;
+    QCOMPARE(int(ftls(p).size()), lines);
+    QCOMPARE(int(tls(p).size()), lines);
+    for (const VectorizedLine &line : ftls(p))
+        QVERIFY(std::isfinite(line.sigma) && line.segment.isFinite());
+}
+
+void TestVectorizer::lastSinglePoint() {
+    FtlsVectorizer<float> vectorize;
+    vectorize.settings.sigma = 0.001;
+    Points points = polyline({{2, 0}, {2, 1}}, 50, 0, 1);
+    points.emplace_back(1.5f, 1.0f); // alone beside the line
+    const auto &lines = vectorize(points);
+    QCOMPARE(lines.size(), std::size_t(2));
+    QCOMPARE(lines[1].first, std::size_t(49));
+    QCOMPARE(lines[1].last, std::size_t(50));
+}
+
+void TestVectorizer::farFromTheOrigin() { // erratum 3
+    std::vector<Vector2D<double>> near, far;
+    for (const Vector2D<float> &p : polyline(staircase, 100, 0.01, 3)) {
+        near.emplace_back(p);
+        far.push_back(Vector2D<double>(p) + Vector2D<double>(10000, 10000));
+    }
+    FtlsVectorizer<double> vectorize;
+    std::vector<double> sigmas;
+    for (const VectorizedLine &line : vectorize(near))
+        sigmas.push_back(line.sigma);
+    const auto &lines = vectorize(far);
+    QCOMPARE(lines.size(), sigmas.size());
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        QVERIFY(std::abs(lines[i].sigma * lines[i].sigma / (sigmas[i] * sigmas[i]) - 1) < 1e-6);
+}
+
+void TestVectorizer::noAllocationOnceGrown() {
+    FtlsVectorizer<float> vectorize;
+    const Points points = polyline(staircase, 100, 0.01, 1);
+    vectorize(points);
+    vectorize(points);
+    const std::size_t before = allocations;
+    vectorize(points);
+    const std::size_t after = allocations;
+    QCOMPARE(after, before);
+}
+
+QTEST_APPLESS_MAIN(TestVectorizer)
+#include "TestVectorizer.moc"
