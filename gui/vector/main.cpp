@@ -20,6 +20,8 @@ int main(int argc, char **argv) {
     hermes::addSegmentCommand(app);
     hermes::addVectorizeCommand(app);
     hermes::addRegisterCommand(app);
+    hermes::addMapCommand(app);
+    hermes::addRingCommand(app);
     hermes::removeTemporariesOnSignal();
     try {
         app.parse(argc, argv);

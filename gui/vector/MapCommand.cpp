@@ -1,0 +1,137 @@
+#include "gui/vector/MapFiles.h"
+#include "gui/vector/MapRun.h"
+#include "gui/vector/Options.h"
+#include "gui/vector/Progress.h"
+#include "vectorlib/io/MapCsv.h"
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+namespace hermes {
+
+namespace {
+
+struct MapCommand {
+    MapSourceOptions source;
+    std::string odometry = "use";
+    std::string outMap;
+    std::string outTrajectory;
+    std::string summary;
+    std::string svg;
+    bool force = false;
+    SegmentOptions segment;
+    double sigma = vectorlib::VectorizerSettings().sigma;
+
+    void run() {
+        const auto begin = std::chrono::steady_clock::now();
+        MapRun run;
+        run.useOdometry = odometry == "use";
+        run.builder.extract.segment.settings = segment.checked();
+        run.builder.extract.vectorize.settings.sigma = sigma;
+        source.open = segment.open;
+
+        OutputSet files(force);
+        std::optional<MapFile> mapFile;
+        if (!outMap.empty())
+            mapFile.emplace(files, outMap);
+        std::ostream *trajectoryFile = outTrajectory.empty() ? nullptr : &files.open(outTrajectory);
+        std::ostream *svgFile = svg.empty() ? nullptr : &files.open(svg);
+        std::ostream &summaryFile = files.open(summary);
+
+        const MapSourceReport report = readScans(run);
+        const MapDrawing drawing = {title(run), run.segments(), run.trajectory(), run.reference()};
+        if (mapFile)
+            mapFile->write(drawing);
+        if (trajectoryFile)
+            vectorlib::writeTum(*trajectoryFile, run.trajectory());
+        if (svgFile)
+            drawMap(*svgFile, drawing);
+
+        nlohmann::ordered_json json = run.summary();
+        json["segments"] = drawing.segments.size();
+        json["map_bytes"] = sizeAsCsv(drawing.segments);
+        if (report.damagedLines > 0) {
+            json["damaged_lines"] = report.damagedLines;
+            std::cerr << "hermes-vector: left out " << report.damagedLines
+                      << " damaged line(s), the first: " << report.firstDamage << '\n';
+        }
+        json["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        summaryFile << json.dump(2) << '\n';
+        files.commit();
+    }
+
+    MapSourceReport readScans(MapRun &run) const {
+        Progress progress("scan");
+        return readMapScans(source, [&](const MapScan &scan, std::size_t number, std::size_t total) {
+            run.take(scan);
+            progress.update(number + 1, total);
+        });
+    }
+    std::string title(const MapRun &run) const {
+        return std::filesystem::path(source.path).filename().string() + ": map of " +
+               std::to_string(run.trajectory().size()) + " scans";
+    }
+    static std::size_t sizeAsCsv(const std::vector<vectorlib::MapSegment> &segments) {
+        std::ostringstream text;
+        vectorlib::writeMapCsv(text, segments);
+        return text.str().size();
+    }
+};
+
+} // namespace
+
+void addMapCommand(CLI::App &app) {
+    auto command = std::make_shared<MapCommand>();
+    CLI::App *sub = app.add_subcommand(
+        "map", "Build the vector map of a CARMEN log, a capture or a folder of scans (summary as "
+               "JSON)");
+    sub->add_option("LOG", command->source.path,
+                    "CARMEN log, pcap of an HDL-32E, or a folder of points files taken in name order")
+        ->required();
+    sub->add_option("--out-map", command->outMap,
+                    "The map; its kind follows from the extension: csv, svg, geojson, dxf, pgm")
+        ->check(CLI::Validator(
+            [](const std::string &path) {
+                return MapFile::isKnown(path) ? std::string()
+                                              : "found " + path +
+                                                    ", expected a name that ends with .csv, .svg, .geojson, "
+                                                    ".dxf or .pgm";
+            },
+            ""))
+        ->type_name("FILE");
+    sub->add_option("--out-trajectory", command->outTrajectory,
+                    "The sensor's poses, TUM format: stamp x y z qx qy qz qw")
+        ->type_name("FILE");
+    sub->add_option("--summary,--out", command->summary, "The summary; standard output when not given")
+        ->type_name("FILE");
+    sub->add_option("--svg", command->svg, "Also draw a picture of map and trajectory")->type_name("FILE");
+    sub->add_option("--odometry", command->odometry,
+                    "use: expect the motion that the log's odometry tells; ignore: expect "
+                    "the motion to go on as before")
+        ->check(CLI::IsMember({"use", "ignore"}))
+        ->type_name("HOW")
+        ->capture_default_str();
+    sub->add_flag(
+        "--corrected", command->source.corrected,
+        "The log's scan poses are a corrected reference: odometry is taken from its ODOM lines only, and the "
+        "summary tells the error against the reference");
+    sub->add_option("--every", command->source.every, "Take every N-th scan only")
+        ->check(between(1, 1e9))
+        ->type_name("N")
+        ->capture_default_str();
+    sub->add_flag("--skip-damaged", command->source.skipDamaged,
+                  "Count damaged lines of a log and go on instead of stopping at the first");
+    sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->capture_default_str();
+    command->segment.addTo(*sub);
+    sub->add_flag("--force", command->force, "Overwrite files that exist");
+    sub->footer(
+        example("hermes-vector map intel.log.gz --corrected --out-map intel.svg --out-trajectory intel.tum"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes

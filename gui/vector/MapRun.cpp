@@ -1,0 +1,112 @@
+#include "gui/vector/MapRun.h"
+
+#include <algorithm>
+
+namespace hermes {
+
+using vectorlib::Pose2D;
+using vectorlib::ScanReport;
+using vectorlib::Transformation2D;
+
+void MapRun::take(const MapScan &scan) {
+    const Pose2D expected = expectedPose(scan);
+    vectorlib::EarSettings &segment = builder.extract.segment.settings;
+    segment.closed = scan.closed;
+    segment.fieldOfView = scan.fieldOfView;
+    segment.nominalPoints = scan.rays;
+    Pose2D pose = expected;
+    ScanReport::Outcome outcome = ScanReport::Outcome::Skipped;
+    if (!scan.partial) {
+        m_points = scan.points;
+        compensateMotion(m_points, scan.seconds, m_motion.twist());
+        const ScanReport &report = builder.process(m_points, expected);
+        pose = report.pose;
+        outcome = report.outcome;
+        m_segmentMs += report.segmentMs;
+        m_vectorizeMs += report.vectorizeMs;
+        m_matchMs += report.matchMs;
+        m_mapMs += report.mapMs;
+    }
+    ++(outcome == ScanReport::Outcome::Matched ? m_matched
+       : outcome == ScanReport::Outcome::Lost  ? m_lost
+                                               : m_skipped);
+    m_motion.update(pose, scan.stamp);
+    m_trajectory.push_back({scan.stamp, pose});
+    if (scan.reference)
+        m_reference.push_back({scan.stamp, *scan.reference});
+}
+
+// A reference gives the map its frame, by the first pose, and nothing else.
+Pose2D MapRun::expectedPose(const MapScan &scan) const {
+    if (m_trajectory.empty())
+        return scan.reference ? *scan.reference : Pose2D();
+    if (useOdometry && scan.motion)
+        return (Transformation2D(m_trajectory.back().pose) * *scan.motion).pose();
+    return m_motion.predict(scan.stamp);
+}
+
+std::vector<vectorlib::MapSegment> MapRun::segments() const {
+    std::vector<vectorlib::MapSegment> result;
+    builder.map.forEach([&](const vectorlib::MapEdge &e) {
+        vectorlib::MapSegment s;
+        s.id = e.id;
+        s.segment = e.edge.segment;
+        s.sums = e.edge.sums;
+        s.sigma = e.edge.sigma;
+        s.observations = e.observations;
+        result.push_back(s);
+    });
+    return result;
+}
+
+nlohmann::ordered_json MapRun::summary() const {
+    const double scans = std::max<double>(1, double(m_trajectory.size()));
+    nlohmann::ordered_json json;
+    json["scans"] = m_trajectory.size();
+    json["skipped"] = m_skipped;
+    json["matched"] = m_matched;
+    json["lost"] = m_lost;
+    json["closures"] = 0;
+    json["ms_per_scan"] = {{"segment", m_segmentMs / scans},
+                           {"vectorize", m_vectorizeMs / scans},
+                           {"match", m_matchMs / scans},
+                           {"map", m_mapMs / scans}};
+    if (m_reference.size() > 1)
+        json["reference"] = errors();
+    return json;
+}
+
+// Consecutive motions are compared, as errors of the past do not count twice then; the drift is what they add
+// up to.
+nlohmann::ordered_json MapRun::errors() const {
+    constexpr double nearMetres = 0.10, nearDegrees = 2;
+    constexpr double degrees = 180 / vectorlib::pi;
+    std::vector<double> metres, turned;
+    std::size_t near = 0;
+    const auto difference = [&](std::size_t from, std::size_t to) {
+        const auto motion = [&](const std::vector<vectorlib::StampedPose> &poses) {
+            return Transformation2D(poses[from].pose).inverse() * Transformation2D(poses[to].pose);
+        };
+        return motion(m_reference).inverse() * motion(m_trajectory);
+    };
+    for (std::size_t i = 1; i < m_reference.size(); ++i) {
+        const Transformation2D d = difference(i - 1, i);
+        metres.push_back(d.translation().norm());
+        turned.push_back(std::abs(d.alpha()) * degrees);
+        near += metres.back() <= nearMetres && turned.back() <= nearDegrees;
+    }
+    const auto median = [](std::vector<double> &values) {
+        const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    const Transformation2D drift = difference(0, m_reference.size() - 1);
+    return {{"motions", metres.size()},
+            {"within_10cm_2deg", double(near) / double(metres.size())},
+            {"median_error_m", median(metres)},
+            {"median_error_deg", median(turned)},
+            {"final_drift_m", drift.translation().norm()},
+            {"final_drift_deg", std::abs(drift.alpha()) * degrees}};
+}
+
+} // namespace hermes

@@ -1,0 +1,122 @@
+#include "common/capture/PcapReader.h"
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+#include "gui/vector/Options.h"
+#include "gui/vector/Progress.h"
+#include "protocol/velodyne/TurnAssembler.h"
+#include "vectorlib/io/Number.h"
+
+#include <iostream>
+
+namespace hermes {
+
+namespace {
+
+using vectorlib::Number;
+
+// Seconds with all nine decimals: as a double they would lose the last two.
+void writeSeconds(std::ostream &out, std::int64_t ns) {
+    const bool negative = ns < 0;
+    const std::string digits = std::to_string(negative ? -ns : ns);
+    const std::string padded = digits.size() < 10 ? std::string(10 - digits.size(), '0') + digits : digits;
+    out << (negative ? "-" : "") << padded.substr(0, padded.size() - 9) << '.'
+        << padded.substr(padded.size() - 9);
+}
+
+struct RingCommand {
+    std::string in;
+    int laser = velodyne::horizonLaser;
+    std::int64_t turn = -1; ///< -1: every turn
+    bool all = false;
+    OutputOptions output;
+
+    void run() const {
+        const PlainFile file(in);
+        OutputSet files(output.force);
+        std::ostream &out = files.open(output.out);
+        PcapReader reader;
+        if (!reader.open(file.path()))
+            throw Failure(reader.error());
+        velodyne::TurnAssembler::Options options;
+        options.laser = all ? velodyne::PacketDecoder::allLasers : laser;
+        std::uint64_t turns = 0;
+        velodyne::TurnAssembler assembler(options, [&](const velodyne::Turn &t) {
+            ++turns;
+            if (turn < 0 || std::uint64_t(turn) == t.number)
+                write(out, t);
+        });
+        out << (all ? "turn,stamp,laser,azimuth,range,intensity,x,y,z\n"
+                    : "turn,stamp,azimuth,range,intensity,x,y\n");
+        read(reader, assembler);
+        assembler.finish();
+        report(assembler.counts(), turns);
+        files.commit();
+    }
+
+    static void read(PcapReader &reader, velodyne::TurnAssembler &assembler) {
+        Progress progress("packet");
+        Datagram datagram;
+        PcapReader::Next next;
+        while ((next = reader.next(datagram)) == PcapReader::Next::Datagram) {
+            if (datagram.destinationPort == velodyne::dataPort)
+                assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
+            progress.update(reader.counts().records, 0);
+        }
+        if (next == PcapReader::Next::Error)
+            throw Failure(reader.error());
+    }
+
+    void report(const velodyne::PacketCounts &counts, std::uint64_t turns) const {
+        if (counts.packets == 0 || turns == 0)
+            throw Failure(
+                in + ": found " +
+                (counts.otherModel > 0 ? "only packets of another sensor or return mode" : "no data packet") +
+                ", expected data packets of an HDL-32E (UDP, 1206 bytes, port 2368)");
+        if (turn >= 0 && std::uint64_t(turn) >= turns)
+            throw Failure(in + ": found " + std::to_string(turns) + " turns, expected a turn " +
+                          std::to_string(turn) + " (they count from 0)");
+        const std::uint64_t refused =
+            counts.wrongSize + counts.wrongFlag + counts.wrongValue + counts.otherModel;
+        if (refused + counts.outOfOrder + counts.lost > 0)
+            std::cerr << "hermes-vector: " << counts.packets << " packets, of them " << refused
+                      << " refused, " << counts.outOfOrder << " out of order; about " << counts.lost
+                      << " lost\n";
+    }
+
+    void write(std::ostream &out, const velodyne::Turn &t) const {
+        for (const velodyne::Point &p : t.points) {
+            out << t.number << ',';
+            writeSeconds(out, p.stamp_ns);
+            if (all)
+                out << ',' << int(p.laser);
+            out << ',' << Number(p.azimuth) << ',' << Number(p.range) << ',' << int(p.intensity) << ','
+                << Number(p.x) << ',' << Number(p.y);
+            if (all)
+                out << ',' << Number(p.z);
+            out << '\n';
+        }
+    }
+};
+
+} // namespace
+
+void addRingCommand(CLI::App &app) {
+    auto command = std::make_shared<RingCommand>();
+    CLI::App *sub =
+        app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an HDL-32E (CSV "
+                                   "turn,stamp,azimuth,range,intensity,x,y)");
+    sub->add_option("PCAP", command->in, "Capture, pcap or pcapng")->required();
+    CLI::Option *laser = sub->add_option("--laser", command->laser, "Which laser; 15 looks along the horizon")
+                             ->check(between(0, velodyne::lasers - 1))
+                             ->type_name("ID")
+                             ->capture_default_str();
+    sub->add_option("--turn", command->turn, "This turn only, from 0; the first and the last may be partial")
+        ->check(between(0, 1e15))
+        ->type_name("N");
+    sub->add_flag("--all", command->all, "Every laser; adds the columns laser and z")->excludes(laser);
+    command->output.addTo(*sub, false);
+    sub->footer(example("hermes-vector ring drive.pcap --turn 3 --out ring.csv"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes
