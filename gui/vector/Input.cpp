@@ -127,7 +127,8 @@ bool isCapture(const std::string &path) {
 }
 
 PlainFile::PlainFile(const std::string &path)
-    : m_path(path) {
+    : m_original(path)
+    , m_path(path) {
     if (path == "-")
         return;
     Input input(path);
@@ -150,6 +151,11 @@ PlainFile::PlainFile(const std::string &path)
         throw Failure(path + (out ? ": found compressed data that breaks off, expected a whole file"
                                   : ": cannot be decompressed to " + name));
     }
+}
+
+std::string PlainFile::inWordsOfOriginal(std::string message) const {
+    const std::size_t at = m_temporary ? message.find(m_path) : std::string::npos;
+    return at == std::string::npos ? message : message.replace(at, m_path.size(), m_original);
 }
 
 PlainFile::~PlainFile() {

@@ -45,8 +45,11 @@ public:
     PlainFile &operator=(const PlainFile &) = delete;
 
     const std::string &path() const { return m_path; }
+    /// A reader's message about the copy, with the name of the file it was made from.
+    std::string inWordsOfOriginal(std::string message) const;
 
 private:
+    std::string m_original;
     std::string m_path;
     bool m_temporary = false;
 };

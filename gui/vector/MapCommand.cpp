@@ -22,7 +22,14 @@ struct MapCommand {
     std::string svg;
     bool force = false;
     SegmentOptions segment;
-    double sigma = vectorlib::VectorizerSettings().sigma;
+    double sigma = 0.03;
+
+    // Tracking wants every edge it can get also from scanners of one ray a degree: smaller clusters, over
+    // wider gaps, than the published ones for dense scans.
+    MapCommand() {
+        segment.settings.minPoints = 5;
+        segment.settings.maxThreshold = 0.40;
+    }
 
     void run() {
         const auto begin = std::chrono::steady_clock::now();

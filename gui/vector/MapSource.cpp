@@ -64,7 +64,7 @@ MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &
     const PlainFile file(options.path);
     PcapReader reader;
     if (!reader.open(file.path()))
-        throw Failure(reader.error());
+        throw Failure(file.inWordsOfOriginal(reader.error()));
     MapScan scan;
     std::size_t turns = 0;
     velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
@@ -79,7 +79,7 @@ MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &
         if (datagram.destinationPort == velodyne::dataPort)
             assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
     if (next == PcapReader::Next::Error)
-        throw Failure(reader.error());
+        throw Failure(file.inWordsOfOriginal(reader.error()));
     assembler.finish();
     if (turns == 0)
         throw Failure(

@@ -36,7 +36,7 @@ struct RingCommand {
         std::ostream &out = files.open(output.out);
         PcapReader reader;
         if (!reader.open(file.path()))
-            throw Failure(reader.error());
+            throw Failure(file.inWordsOfOriginal(reader.error()));
         velodyne::TurnAssembler::Options options;
         options.laser = all ? velodyne::PacketDecoder::allLasers : laser;
         std::uint64_t turns = 0;
@@ -47,13 +47,14 @@ struct RingCommand {
         });
         out << (all ? "turn,stamp,laser,azimuth,range,intensity,x,y,z\n"
                     : "turn,stamp,azimuth,range,intensity,x,y\n");
-        read(reader, assembler);
+        if (!readAll(reader, assembler))
+            throw Failure(file.inWordsOfOriginal(reader.error()));
         assembler.finish();
         report(assembler.counts(), turns);
         files.commit();
     }
 
-    static void read(PcapReader &reader, velodyne::TurnAssembler &assembler) {
+    static bool readAll(PcapReader &reader, velodyne::TurnAssembler &assembler) {
         Progress progress("packet");
         Datagram datagram;
         PcapReader::Next next;
@@ -62,8 +63,7 @@ struct RingCommand {
                 assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
             progress.update(reader.counts().records, 0);
         }
-        if (next == PcapReader::Next::Error)
-            throw Failure(reader.error());
+        return next == PcapReader::Next::End;
     }
 
     void report(const velodyne::PacketCounts &counts, std::uint64_t turns) const {
