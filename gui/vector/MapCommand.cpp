@@ -48,7 +48,7 @@ struct MapCommand {
         std::ostream &summaryFile = files.open(summary);
 
         const MapSourceReport report = readScans(run);
-        const MapDrawing drawing = {title(run), run.segments(), run.trajectory(), run.reference()};
+        const vectorlib::MapDrawing drawing = {title(run), run.segments(), run.trajectory(), run.reference()};
         if (mapFile)
             mapFile->write(drawing);
         if (trajectoryFile)

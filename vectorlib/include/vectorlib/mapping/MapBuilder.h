@@ -22,6 +22,7 @@ struct ScanReport {
 };
 
 struct MapBuilderSettings {
+    bool grow = true;         ///< false: only find the pose, leave the map as it is
     std::size_t minEdges = 2; ///< scans with fewer edges are skipped
     double mergeDistance =
         0.10; ///< a matched edge is merged when no farther from its map edge; metres, root mean square
@@ -87,7 +88,7 @@ private:
         if (m_edges->size() < settings.minEdges)
             m_report.outcome = ScanReport::Outcome::Skipped;
         else if (map.isEmpty())
-            m_report.outcome = ScanReport::Outcome::Matched;
+            m_report.outcome = settings.grow ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
         else {
             collectVisible(expected);
             m_match = find(m_static, *m_edges, expected);
@@ -112,7 +113,7 @@ private:
         }
     }
     void updateMap() {
-        if (m_report.outcome == ScanReport::Outcome::Skipped ||
+        if (!settings.grow || m_report.outcome == ScanReport::Outcome::Skipped ||
             (m_report.outcome == ScanReport::Outcome::Lost && m_lost < settings.lostBeforeRestart))
             return;
         m_partner.assign(m_edges->size(), -1);

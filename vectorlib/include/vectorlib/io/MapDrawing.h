@@ -1,0 +1,42 @@
+#pragma once
+
+#include "vectorlib/io/MapSegment.h"
+#include "vectorlib/io/Svg.h"
+#include "vectorlib/io/Tum.h"
+
+namespace vectorlib {
+
+/// A map and what belongs into a picture of it; metres, map frame.
+struct MapDrawing {
+    std::string title;
+    std::vector<MapSegment> segments;
+    std::vector<StampedPose> trajectory; ///< may be empty
+    std::vector<StampedPose> reference;  ///< the true or a better trajectory; may be empty
+};
+
+/// Draws the map as SVG.
+inline void drawMap(std::ostream &out, const MapDrawing &map) {
+    const auto pathOf = [](const std::vector<StampedPose> &poses) {
+        std::vector<Vector2D<double>> path;
+        for (const StampedPose &p : poses)
+            path.emplace_back(p.pose.x, p.pose.y);
+        return path;
+    };
+    SvgPicture picture(map.title);
+    if (!map.reference.empty())
+        picture.path({colour::reference, 1.5, "reference trajectory", true}, pathOf(map.reference));
+    if (!map.trajectory.empty())
+        picture.path({colour::estimate, 1.2, "trajectory"}, pathOf(map.trajectory));
+    std::vector<LineSegment2D<double>> segments;
+    for (const MapSegment &m : map.segments)
+        segments.push_back(m.segment);
+    picture.segments({colour::map, 1.8, "map: " + std::to_string(segments.size()) + " segments"}, segments);
+    if (!map.trajectory.empty()) {
+        const Pose2D &first = map.trajectory.front().pose, &last = map.trajectory.back().pose;
+        picture.pose({"#009e73", 2, "start"}, {first.x, first.y}, first.theta);
+        picture.pose({"#d55e00", 2, "end"}, {last.x, last.y}, last.theta);
+    }
+    picture.write(out);
+}
+
+} // namespace vectorlib
