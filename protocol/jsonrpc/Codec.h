@@ -1,0 +1,73 @@
+#pragma once
+
+#include "protocol/jsonrpc/RpcError.h"
+
+#include <QByteArray>
+#include <QJsonValue>
+#include <QStringList>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace hermes {
+
+/// What a codec found in the bytes: a message, or the error that stands in place of a damaged one.
+struct CodecItem {
+    QJsonValue message{QJsonValue::Undefined};
+    std::optional<RpcError> error;
+};
+
+/// What encode() gave: the frame, or why the message cannot be sent (then bytes is empty).
+struct EncodedFrame {
+    QByteArray bytes;
+    std::optional<RpcError> error;
+};
+
+/// What has passed through a codec since it was made.
+struct CodecCounters {
+    quint64 messagesIn = 0;
+    quint64 messagesOut = 0;
+    quint64 malformed = 0; ///< frames whose content could not be read
+    quint64 oversized = 0; ///< frames larger than the limit, skipped
+    quint64 refused = 0;   ///< messages that could not be encoded
+};
+
+/// Turns bytes into messages and messages into bytes. A message is any JSON value (an object, or an array for
+/// a batch), whatever the framing on the wire. Pure: the carrier feeds it and sends what it gives.
+class Codec {
+public:
+    virtual ~Codec() = default;
+
+    /// Takes bytes as they arrive, split anywhere, and gives the items completed by them in order.
+    virtual std::vector<CodecItem> feed(const QByteArray &bytes) = 0;
+
+    /// The message as one frame. A number that is NaN or infinite is an error that names its path.
+    EncodedFrame encode(const QJsonValue &message);
+
+    /// Forgets a frame begun (after the carrier was opened anew). Counters stay.
+    virtual void reset() = 0;
+
+    /// Largest frame accepted by feed(), in bytes without its delimiter.
+    void setFrameLimit(int bytes) { limit = bytes; }
+    int frameLimit() const { return limit; }
+    const CodecCounters &counters() const { return counts; }
+
+protected:
+    explicit Codec(int frameLimitBytes)
+        : limit(frameLimitBytes) {}
+
+    virtual QByteArray frame(const QJsonValue &message) = 0;
+
+    CodecCounters counts;
+
+private:
+    int limit;
+};
+
+/// A new codec by its name in a URL (`?protocol=json`); null when there is none of that name.
+std::unique_ptr<Codec> makeCodec(const QString &name);
+
+/// The names that makeCodec knows.
+QStringList codecNames();
+
+} // namespace hermes

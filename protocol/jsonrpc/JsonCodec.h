@@ -1,0 +1,30 @@
+#pragma once
+
+#include "protocol/jsonrpc/Codec.h"
+
+namespace hermes {
+
+/// The framing `json`: one JSON value a line, UTF-8, ended by LF (CR LF accepted); empty lines are ignored.
+/// A line over the limit gives one error at once and is skipped up to its LF without being buffered.
+class JsonCodec : public Codec {
+public:
+    static constexpr int defaultFrameLimit = 1 << 20;
+
+    JsonCodec()
+        : Codec(defaultFrameLimit) {}
+
+    std::vector<CodecItem> feed(const QByteArray &bytes) override;
+    void reset() override;
+
+protected:
+    QByteArray frame(const QJsonValue &message) override;
+
+private:
+    void append(const char *bytes, int size, std::vector<CodecItem> &items);
+    void finishLine(std::vector<CodecItem> &items);
+
+    QByteArray line; // the line begun, without its LF
+    bool skipping = false;
+};
+
+} // namespace hermes
