@@ -1,0 +1,65 @@
+#pragma once
+
+#include <QJsonArray>
+#include <QJsonObject>
+#include <QMutex>
+#include <QObject>
+#include <QString>
+#include <deque>
+
+namespace hermes {
+
+enum class LogLevel { Debug, Info, Warning, Failure };
+
+QString toString(LogLevel level);
+
+/// One line of the log.
+struct LogRecord {
+    double stamp = 0; ///< seconds since the Unix epoch
+    LogLevel level = LogLevel::Info;
+    QString source; ///< what spoke: a subsystem, or a Qt category
+    QString text;
+
+    QJsonObject toJson() const;
+};
+
+/// The log of this process: keeps the last records in memory, writes them to stderr with their stamp, tells
+/// listeners. Any thread may write. Qt's own messages (qWarning ...) arrive here after captureQtMessages().
+class Log : public QObject {
+    Q_OBJECT
+public:
+    static Log &instance();
+
+    void write(LogLevel level, const QString &source, const QString &text);
+
+    /// The last count records, oldest first.
+    QJsonArray tail(int count) const;
+
+    void setMinimumLevel(LogLevel level);
+    void setCapacity(int records);
+    void setStderr(bool enabled);
+    void captureQtMessages();
+
+Q_SIGNALS:
+    /// Emitted in the thread that wrote.
+    void written(const hermes::LogRecord &record);
+
+private:
+    Log();
+
+    mutable QMutex mutex;
+    std::deque<LogRecord> records;
+    int capacity = 1000;
+    LogLevel minimum = LogLevel::Info;
+    bool toStderr = true;
+};
+
+/// Shorthands: `logWarning("sensor", "no packet for 2 s")`.
+void logDebug(const QString &source, const QString &text);
+void logInfo(const QString &source, const QString &text);
+void logWarning(const QString &source, const QString &text);
+void logError(const QString &source, const QString &text);
+
+} // namespace hermes
+
+Q_DECLARE_METATYPE(hermes::LogRecord)

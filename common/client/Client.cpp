@@ -1,0 +1,227 @@
+#include "common/client/Client.h"
+
+#include <QEventLoop>
+#include <QPointer>
+#include <QTimer>
+
+namespace hermes {
+
+Client::Client(QObject *parent)
+    : QObject(parent) {}
+
+Client::~Client() {
+    if (channel)
+        channel->disconnect(this);
+}
+
+Result<void> Client::connectTo(const QString &address) {
+    const auto made = Channel::make(address, this);
+    if (!made)
+        return made.error();
+    connectTo(*made);
+    return {};
+}
+
+void Client::connectTo(Channel *newChannel) {
+    close();
+    channel = newChannel;
+    channel->setParent(this);
+    channel->interface().setReconnecting(true);
+    connect(channel, &Channel::opened, this, &Client::onOpened);
+    connect(channel, &Channel::closed, this, &Client::onClosed);
+    connect(channel, &Channel::message, this, &Client::onMessage);
+    channel->open();
+}
+
+void Client::close() {
+    if (!channel)
+        return;
+    Channel *const old = channel;
+    const bool open = old->isOpen();
+    old->disconnect(this);
+    old->interface().setReconnecting(false);
+    old->close(QStringLiteral("closed by this client"));
+    old->deleteLater();
+    channel = nullptr;
+    if (open || !waiting.isEmpty())
+        onClosed(QStringLiteral("closed by this client"));
+}
+
+QString Client::address() const {
+    return channel ? channel->interface().name() : QString();
+}
+
+void Client::call(const QString &method, const QJsonValue &params, const Callback &callback,
+                  std::chrono::milliseconds timeout) {
+    const qint64 id = ++lastId;
+    waiting.insert(id, callback);
+    const auto sent = isConnected()
+                          ? channel->send(makeRequest(id, method, params))
+                          : Result<void>(Error(ErrorCode::Disconnected,
+                                               QStringLiteral("%1: not connected: %2").arg(method, failure)));
+    if (!sent) {
+        QMetaObject::invokeMethod(
+            this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
+        return;
+    }
+    QTimer::singleShot(timeout, this, [this, id, method, timeout] {
+        finish(
+            id,
+            Error(
+                ErrorCode::TimedOut,
+                QStringLiteral("%1: no reply within %2 s").arg(method).arg(double(timeout.count()) / 1000)));
+    });
+}
+
+bool Client::notify(const QString &method, const QJsonValue &params) {
+    return isConnected() && channel->send(makeNotification(method, params)).ok();
+}
+
+Result<QJsonValue> Client::callAndWait(const QString &method, const QJsonValue &params,
+                                       std::chrono::milliseconds timeout) {
+    QEventLoop loop;
+    Result<QJsonValue> answer{QJsonValue()};
+    call(
+        method, params,
+        [&](const Result<QJsonValue> &result) {
+            answer = result;
+            loop.quit();
+        },
+        timeout);
+    loop.exec();
+    return answer;
+}
+
+Result<void> Client::waitConnected(std::chrono::milliseconds timeout) {
+    if (isConnected())
+        return {};
+    QEventLoop loop;
+    QTimer limit;
+    connect(this, &Client::connected, &loop, &QEventLoop::quit);
+    connect(&limit, &QTimer::timeout, &loop, &QEventLoop::quit);
+    limit.start(timeout);
+    loop.exec();
+    if (isConnected())
+        return {};
+    return Error(ErrorCode::Disconnected,
+                 failure.isEmpty() ? QStringLiteral("%1: no answer").arg(address()) : failure);
+}
+
+int Client::subscribe(const QString &topic, const QJsonObject &options, const TopicCallback &callback) {
+    const int handle = ++lastHandle;
+    subscriptions[handle] = {topic, options, callback, 0};
+    if (isConnected())
+        sendSubscription(handle);
+    return handle;
+}
+
+void Client::unsubscribe(int handle) {
+    const auto found = subscriptions.find(handle);
+    if (found == subscriptions.end())
+        return;
+    if (found->second.id != 0 && isConnected()) {
+        call(QStringLiteral("topics.unsubscribe"),
+             QJsonObject{{QStringLiteral("subscription"), found->second.id}},
+             [](const Result<QJsonValue> &) {});
+    }
+    subscriptions.erase(found);
+}
+
+void Client::sendSubscription(int handle) {
+    const Subscription &subscription = subscriptions.at(handle);
+    QJsonObject params = subscription.options;
+    params.insert(QStringLiteral("topic"), subscription.topic);
+    ++subscribing;
+    call(QStringLiteral("topics.subscribe"), params, [this, handle](const Result<QJsonValue> &result) {
+        --subscribing;
+        const qint64 id = result ? qint64((*result)[QStringLiteral("subscription")].toDouble()) : 0;
+        const auto messages = early.take(id);
+        if (subscribing == 0)
+            early.clear();
+        const auto found = subscriptions.find(handle);
+        if (found == subscriptions.end()) {
+            if (result) // ended here before the daemon answered
+                notify(QStringLiteral("topics.unsubscribe"),
+                       QJsonObject{{QStringLiteral("subscription"), id}});
+            return;
+        }
+        if (!result) {
+            if (!result.error().is(ErrorCode::Disconnected)) // else it is made again after the reconnect
+                Q_EMIT subscriptionFailed(handle, result.error());
+            return;
+        }
+        found->second.id = id;
+        for (const QJsonObject &message : messages)
+            deliver(handle, message);
+    });
+}
+
+void Client::onOpened() {
+    failure.clear();
+    const QPointer<Client> alive(this);
+    for (const auto &subscription : subscriptions)
+        sendSubscription(subscription.first);
+    Q_EMIT connected();
+}
+
+void Client::onClosed(const QString &reason) {
+    failure = reason;
+    for (auto &subscription : subscriptions)
+        subscription.second.id = 0;
+    const auto calls = std::exchange(waiting, {});
+    for (const Callback &callback : calls)
+        callback(Error(ErrorCode::Disconnected, reason));
+    Q_EMIT disconnected(reason);
+}
+
+void Client::onMessage(const QJsonValue &message) {
+    for (const RpcMessage &one : readFrame(message).messages) {
+        if (const auto *response = std::get_if<RpcResponse>(&one))
+            onResponse(*response);
+        else if (const auto *request = std::get_if<RpcRequest>(&one))
+            onNotification(*request);
+    }
+}
+
+void Client::onResponse(const RpcResponse &response) {
+    if (response.failed)
+        finish(qint64(response.id.toDouble()), response.error);
+    else
+        finish(qint64(response.id.toDouble()), response.result);
+}
+
+void Client::finish(qint64 id, const Result<QJsonValue> &result) {
+    if (const Callback callback = waiting.take(id))
+        callback(result);
+}
+
+void Client::onNotification(const RpcRequest &notification) {
+    if (notification.method != QStringLiteral("topic"))
+        return;
+    const QJsonObject params = notification.params.toObject();
+    const qint64 id = qint64(params.value(QStringLiteral("subscription")).toDouble());
+    for (const auto &subscription : subscriptions) {
+        if (subscription.second.id == id)
+            return deliver(subscription.first, params);
+    }
+    if (subscribing > 0)
+        early[id].append(params); // a snapshot overtakes the reply
+}
+
+void Client::deliver(int handle, const QJsonObject &params) {
+    TopicUpdate update;
+    update.handle = handle;
+    update.topic = params.value(QStringLiteral("topic")).toString();
+    update.seq = quint64(params.value(QStringLiteral("seq")).toDouble());
+    update.dropped = quint64(params.value(QStringLiteral("dropped")).toDouble());
+    update.stamp = params.value(QStringLiteral("stamp")).toDouble();
+    update.data = params.value(QStringLiteral("data"));
+    const auto found = subscriptions.find(handle);
+    if (found != subscriptions.end() && found->second.callback) {
+        const TopicCallback callback = found->second.callback;
+        callback(update);
+    }
+    Q_EMIT topic(update);
+}
+
+} // namespace hermes

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "common/Result.h"
+#include "common/channel/Channel.h"
+#include "protocol/jsonrpc/JsonRpc.h"
+
+#include <QHash>
+#include <QObject>
+#include <chrono>
+#include <functional>
+#include <map>
+
+namespace hermes {
+
+/// A message of a topic as a client receives it.
+struct TopicUpdate {
+    int handle = 0; ///< what Client::subscribe gave
+    QString topic;
+    quint64 seq = 0;     ///< counts the publications; a gap was thinned out or dropped
+    quint64 dropped = 0; ///< lost so far because this client read too slowly
+    double stamp = 0;    ///< seconds since the epoch when the data were true
+    QJsonValue data;
+};
+
+/// A connection to a daemon: calls, subscriptions, and a new connection when the old one ends. Subscriptions
+/// are made again after each reconnect; calls that wait when the connection ends fail with Disconnected.
+class Client : public QObject {
+    Q_OBJECT
+public:
+    using Callback = std::function<void(const Result<QJsonValue> &)>;
+    using TopicCallback = std::function<void(const TopicUpdate &)>;
+    static constexpr std::chrono::milliseconds defaultTimeout{5000};
+
+    explicit Client(QObject *parent = nullptr);
+    ~Client() override;
+
+    /// Begins to connect, to "HOST:PORT" or a URL, and keeps trying until close(). Error: a bad address only.
+    Result<void> connectTo(const QString &address);
+    /// Over a channel of one's own, closed as yet; takes it over.
+    void connectTo(Channel *newChannel);
+    void close();
+    bool isConnected() const { return channel && channel->isOpen(); }
+    QString address() const;
+    /// Why the last attempt or connection ended.
+    const QString &lastError() const { return failure; }
+
+    /// Calls a method; the callback gets the result or an error, once, and at the latest after the timeout.
+    /// Not connected: fails at once (from the event loop).
+    void call(const QString &method, const QJsonValue &params, const Callback &callback,
+              std::chrono::milliseconds timeout = defaultTimeout);
+    /// Sends without expecting an answer; false when it could not be sent.
+    bool notify(const QString &method, const QJsonValue &params);
+
+    /// Waits in a nested event loop: for command line programs and tests, not for daemons.
+    Result<QJsonValue> callAndWait(const QString &method, const QJsonValue &params = QJsonObject(),
+                                   std::chrono::milliseconds timeout = defaultTimeout);
+    Result<void> waitConnected(std::chrono::milliseconds timeout = defaultTimeout);
+
+    /// Subscribes now, or as soon as connected, and again after each reconnect. Options are those of
+    /// topics.subscribe: {"max_rate_hz": 10, "queue": 1}. Gives a handle for unsubscribe().
+    int subscribe(const QString &topic, const QJsonObject &options, const TopicCallback &callback);
+    void unsubscribe(int handle);
+
+Q_SIGNALS:
+    void connected();
+    /// Also after each attempt that failed.
+    void disconnected(const QString &reason);
+    void topic(const hermes::TopicUpdate &update);
+    /// The daemon refused a subscription.
+    void subscriptionFailed(int handle, const hermes::RpcError &error);
+
+private:
+    struct Subscription {
+        QString topic;
+        QJsonObject options;
+        TopicCallback callback;
+        qint64 id = 0; // the daemon's, 0 while not subscribed
+    };
+
+    void onOpened();
+    void onClosed(const QString &reason);
+    void onMessage(const QJsonValue &message);
+    void onResponse(const RpcResponse &response);
+    void onNotification(const RpcRequest &notification);
+    void deliver(int handle, const QJsonObject &params);
+    void sendSubscription(int handle);
+    void finish(qint64 id, const Result<QJsonValue> &result);
+
+    Channel *channel = nullptr;
+    QString failure;
+    qint64 lastId = 0;
+    QHash<qint64, Callback> waiting;
+    int lastHandle = 0;
+    std::map<int, Subscription> subscriptions;
+    QHash<qint64, QVector<QJsonObject>> early; // topic messages that came before the reply with their id
+    int subscribing = 0;                       // requests for subscriptions that wait for their reply
+};
+
+} // namespace hermes

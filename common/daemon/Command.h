@@ -1,0 +1,74 @@
+#pragma once
+
+#include "common/Result.h"
+#include "common/daemon/Reply.h"
+#include "common/schema/Field.h"
+#include "common/schema/SchemaValidator.h"
+
+#include <QJsonObject>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace hermes {
+
+/// One call of a command, its parameters already checked against the declaration and completed with defaults.
+struct Call {
+    QJsonObject params;
+    quint64 client = 0; ///< who calls; the same for one connection as long as it lasts
+    QString clientName; ///< for messages
+
+    bool has(const char *name) const { return params.contains(QLatin1String(name)); }
+    QJsonValue value(const char *name) const { return params.value(QLatin1String(name)); }
+    double number(const char *name) const { return value(name).toDouble(); }
+    int integer(const char *name) const { return int(value(name).toDouble()); }
+    bool flag(const char *name) const { return value(name).toBool(); }
+    QString text(const char *name) const { return value(name).toString(); }
+};
+
+/// A command, declared once: description, validation, help and dispatch follow from it.
+/// `Command("motor.drive", "Drives with this twist").param(...).returns(...).handler(...)`.
+class Command {
+public:
+    using Handler = std::function<Result<QJsonValue>(const Call &)>;
+    using AsyncHandler = std::function<void(const Call &, const Reply &)>;
+
+    Command(const QString &name, const QString &summary);
+
+    Command &param(const Field &field);
+    /// The JSON Schema of the result, e.g. {{"type", "number"}}.
+    Command &returns(const QJsonObject &schema);
+    Command &returnsNull();
+    Command &example(const QJsonObject &params, const QJsonValue &result);
+    /// Any further keyword of the description, e.g. "x-needs-lease".
+    Command &with(const QString &keyword, const QJsonValue &value);
+    /// Answers at once.
+    Command &handler(const Handler &function);
+    /// Answers at once or later, through the Reply.
+    Command &asyncHandler(const AsyncHandler &function);
+
+    const QString &name() const { return commandName; }
+
+    /// The method object of an OpenRPC document.
+    QJsonObject description() const;
+
+    /// Checks params (an object, an array by position, or undefined), completes them and runs the handler.
+    /// An exception in the handler becomes an internal error of this call.
+    void execute(const QJsonValue &params, Call call, const Reply &reply) const;
+
+private:
+    Result<QJsonObject> accept(const QJsonValue &params) const;
+    QJsonObject paramsSchema() const;
+
+    QString commandName;
+    QString summary;
+    std::vector<Field> fields;
+    QJsonObject resultSchema;
+    QJsonObject exampleParams;
+    QJsonValue exampleResult{QJsonValue::Undefined};
+    QJsonObject extra;
+    AsyncHandler run;
+    mutable std::shared_ptr<const SchemaValidator> validator; // made at the first call
+};
+
+} // namespace hermes

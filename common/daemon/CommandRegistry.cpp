@@ -1,0 +1,29 @@
+#include "common/daemon/CommandRegistry.h"
+
+#include <QRegularExpression>
+#include <QStringList>
+
+namespace hermes {
+
+void CommandRegistry::execute(const RpcRequest &request, const Call &call, const Reply &reply) const {
+    const auto found = commands.constFind(request.method);
+    if (found != commands.constEnd())
+        return found->execute(request.params, call, reply);
+    const QString group = request.method.section(QLatin1Char('.'), 0, 0) + QLatin1Char('.');
+    const QStringList near =
+        QStringList(commands.keys())
+            .filter(QRegularExpression(QLatin1Char('^') + QRegularExpression::escape(group)));
+    const QString hint = near.isEmpty() ? QStringLiteral("rpc.discover lists what there is")
+                                        : QStringLiteral("there is ") + near.join(QStringLiteral(", "));
+    reply.error(Error(ErrorCode::MethodNotFound,
+                      QStringLiteral("method \"%1\" not found; %2").arg(request.method.left(80), hint)));
+}
+
+QJsonArray CommandRegistry::description() const {
+    QJsonArray methods;
+    for (const Command &command : commands)
+        methods.append(command.description());
+    return methods;
+}
+
+} // namespace hermes

@@ -1,0 +1,193 @@
+#include "common/daemon/CommonCommands.h"
+
+#include "common/Log.h"
+#include "common/Time.h"
+#include "common/daemon/Daemon.h"
+#include "common/settings/DottedPath.h"
+
+namespace hermes {
+namespace {
+
+QJsonObject type(const char *name) {
+    return {{QStringLiteral("type"), QLatin1String(name)}};
+}
+
+QJsonArray toArray(const QStringList &texts) {
+    return QJsonArray::fromStringList(texts);
+}
+
+void addDaemonCommands(Daemon &daemon, CommandRegistry &commands) {
+    commands.add(
+        Command(QStringLiteral("rpc.discover"), QStringLiteral("This description, an OpenRPC document"))
+            .returns(type("object"))
+            .handler([&daemon](const Call &) { return QJsonValue(daemon.description()); }));
+    commands.add(Command(QStringLiteral("daemon.info"), QStringLiteral("Who this daemon is"))
+                     .returns(type("object"))
+                     .handler([&daemon](const Call &) { return QJsonValue(daemon.info()); }));
+    commands.add(Command(QStringLiteral("daemon.status"), QStringLiteral("Its state and its health items"))
+                     .returns(type("object"))
+                     .handler([&daemon](const Call &) { return QJsonValue(daemon.status()); }));
+    commands.add(Command(QStringLiteral("daemon.shutdown"), QStringLiteral("Ends the daemon in order"))
+                     .returnsNull()
+                     .handler([&daemon](const Call &call) {
+                         logInfo(QStringLiteral("daemon"),
+                                 QStringLiteral("shutdown asked for by ") + call.clientName);
+                         QMetaObject::invokeMethod(
+                             &daemon, [&daemon] { daemon.shutDown(); }, Qt::QueuedConnection);
+                         return QJsonValue();
+                     }));
+}
+
+QJsonValue changeReply(Daemon &daemon, const QStringList &paths) {
+    return QJsonObject{{QStringLiteral("changed"), toArray(paths)},
+                       {QStringLiteral("restart"), toArray(daemon.settings().needRestart(paths))}};
+}
+
+Result<QJsonValue> getSettings(Daemon &daemon, const Call &call) {
+    const Settings &settings = daemon.settings();
+    const QJsonValue known = valueAt(settings.values(), call.text("path"));
+    if (known.isUndefined()) {
+        const SchemaViolation unknown{call.text("path"), QJsonValue::Undefined,
+                                      QStringLiteral("the path of a setting")};
+        return Error(ErrorCode::InvalidSetting, QStringLiteral("no setting \"%1\"").arg(call.text("path")),
+                     QJsonObject{{QStringLiteral("errors"), QJsonArray{unknown.toJson()}}});
+    }
+    if (!call.flag("changes"))
+        return known;
+    const QJsonValue changed = valueAt(settings.changes(), call.text("path"));
+    return changed.isUndefined() ? QJsonValue() : changed;
+}
+
+void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
+    const QJsonObject changeSchema = type("object");
+    commands.add(Command(QStringLiteral("settings.schema"), QStringLiteral("The JSON Schema of the settings"))
+                     .returns(type("object"))
+                     .handler([&daemon](const Call &) { return QJsonValue(daemon.settings().schema()); }));
+    commands.add(
+        Command(QStringLiteral("settings.get"), QStringLiteral("All settings, or the value at a path"))
+            .param(Field::text(QStringLiteral("path"), QStringLiteral("Dotted path")).byDefault(QString()))
+            .param(Field::boolean(QStringLiteral("changes"),
+                                  QStringLiteral("Only what differs from the defaults"))
+                       .byDefault(false))
+            .returns({})
+            .example({{QStringLiteral("path"), QStringLiteral("limits.clients")}}, 16)
+            .handler([&daemon](const Call &call) { return getSettings(daemon, call); }));
+    commands.add(
+        Command(QStringLiteral("settings.set"),
+                QStringLiteral("Changes settings: all of the partial object, or nothing"))
+            .param(Field::object(QStringLiteral("values"), QStringLiteral("Partial object of settings")))
+            .returns(changeSchema)
+            .example(
+                {{QStringLiteral("values"),
+                  QJsonObject{{QStringLiteral("limits"), QJsonObject{{QStringLiteral("clients"), 20}}}}}},
+                QJsonObject{{QStringLiteral("changed"), QJsonArray{QStringLiteral("limits.clients")}},
+                            {QStringLiteral("restart"), QJsonArray()}})
+            .handler([&daemon](const Call &call) -> Result<QJsonValue> {
+                const auto changed = daemon.settings().set(call.value("values").toObject());
+                if (!changed)
+                    return changed.error();
+                return changeReply(daemon, *changed);
+            }));
+    commands.add(
+        Command(QStringLiteral("settings.reset"), QStringLiteral("Puts settings back to their defaults"))
+            .param(Field::array(QStringLiteral("paths"), QStringLiteral("Dotted paths; none: all settings"),
+                                type("string"))
+                       .byDefault(QJsonArray()))
+            .returns(changeSchema)
+            .handler([&daemon](const Call &call) -> Result<QJsonValue> {
+                QStringList paths;
+                for (const QJsonValue &path : call.value("paths").toArray())
+                    paths.append(path.toString());
+                const auto changed = daemon.settings().reset(paths);
+                if (!changed)
+                    return changed.error();
+                return changeReply(daemon, *changed);
+            }));
+    commands.add(Command(QStringLiteral("settings.save"),
+                         QStringLiteral("Writes what differs from the defaults to the file of --config"))
+                     .returns(type("object"))
+                     .handler([&daemon](const Call &) -> Result<QJsonValue> {
+                         const auto file = daemon.settings().save();
+                         if (!file)
+                             return file.error();
+                         return QJsonValue(QJsonObject{{QStringLiteral("path"), *file}});
+                     }));
+}
+
+void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topics) {
+    commands.add(
+        Command(QStringLiteral("topics.list"), QStringLiteral("The topics and the schemas of their data"))
+            .returns(type("array"))
+            .handler([&topics](const Call &) { return QJsonValue(topics.description()); }));
+    commands.add(
+        Command(
+            QStringLiteral("topics.subscribe"),
+            QStringLiteral("Sends a topic to this client as notifications `topic` {subscription, topic, seq, "
+                           "dropped, stamp, data}"))
+            .param(Field::text(QStringLiteral("topic"), QStringLiteral("Name of the topic")))
+            .param(Field::number(QStringLiteral("max_rate_hz"),
+                                 QStringLiteral("Thin to this rate; 0: every message"))
+                       .unit(QStringLiteral("Hz"))
+                       .range(0, 10000)
+                       .byDefault(0))
+            .param(Field::integer(QStringLiteral("queue"),
+                                  QStringLiteral("Messages that wait for a slow reader; 1: only the newest"))
+                       .range(1, 10000)
+                       .byDefault(1))
+            .returns(type("object"))
+            .example({{QStringLiteral("topic"), QStringLiteral("log")}},
+                     QJsonObject{{QStringLiteral("subscription"), 1}})
+            .handler([&daemon, &topics](const Call &call) -> Result<QJsonValue> {
+                Session *session = daemon.server().session(call.client);
+                if (!session)
+                    return Error(ErrorCode::NotReady, QStringLiteral("the client is gone"));
+                const auto id =
+                    topics.subscribe(call.text("topic"), {call.number("max_rate_hz"), call.integer("queue")},
+                                     &session->topics());
+                if (!id)
+                    return id.error();
+                return QJsonValue(QJsonObject{{QStringLiteral("subscription"), qint64(*id)}});
+            }));
+    commands.add(
+        Command(QStringLiteral("topics.unsubscribe"), QStringLiteral("Ends a subscription of this client"))
+            .param(
+                Field::integer(QStringLiteral("subscription"), QStringLiteral("What topics.subscribe gave"))
+                    .minimum(1))
+            .returnsNull()
+            .handler([&daemon, &topics](const Call &call) -> Result<QJsonValue> {
+                Session *session = daemon.server().session(call.client);
+                if (!session || !topics.unsubscribe(quint64(call.number("subscription")), &session->topics()))
+                    return Error(
+                        ErrorCode::NoSuchTopic,
+                        QStringLiteral("no subscription %1 of this client").arg(call.number("subscription")));
+                return QJsonValue();
+            }));
+}
+
+} // namespace
+
+void addCommonCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topics) {
+    addDaemonCommands(daemon, commands);
+    addSettingsCommands(daemon, commands);
+    addTopicCommands(daemon, commands, topics);
+    commands.add(
+        Command(QStringLiteral("log.tail"), QStringLiteral("The last records of the log, oldest first"))
+            .param(Field::integer(QStringLiteral("count"), QStringLiteral("How many"))
+                       .range(1, 100000)
+                       .byDefault(100))
+            .returns(type("array"))
+            .handler(
+                [](const Call &call) { return QJsonValue(Log::instance().tail(call.integer("count"))); }));
+    topics.declare(
+        Topic(QStringLiteral("log"), QStringLiteral("Each record of the log: {stamp, level, source, text}"))
+            .schema(type("object")));
+    topics.declare(
+        Topic(QStringLiteral("status"), QStringLiteral("What daemon.status gives, at each change of level"))
+            .schema(type("object"))
+            .snapshot([&daemon] { return QJsonValue(daemon.status()); }));
+    topics.declare(Topic(QStringLiteral("settings"), QStringLiteral("All settings, after each change"))
+                       .schema(type("object"))
+                       .snapshot([&daemon] { return QJsonValue(daemon.settings().values()); }));
+}
+
+} // namespace hermes

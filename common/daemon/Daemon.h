@@ -1,0 +1,130 @@
+#pragma once
+
+#include "common/daemon/Command.h"
+#include "common/daemon/CommandLine.h"
+#include "common/daemon/CommandRegistry.h"
+#include "common/daemon/Health.h"
+#include "common/daemon/Server.h"
+#include "common/daemon/Topic.h"
+#include "common/daemon/TopicHub.h"
+#include "common/settings/Settings.h"
+
+#include <QCoreApplication>
+#include <QObject>
+#include <QTimer>
+
+namespace hermes {
+
+/// Who a daemon is.
+struct DaemonIdentity {
+    QString name;        ///< as in the program hermes-NAME, e.g. "velodynelogger"
+    QString title;       ///< for people, e.g. "Velodyne logger"
+    QString description; ///< one or two sentences
+    quint16 port = 0;    ///< default port on 127.0.0.1; 0: that of defaultPort(name), else any free one
+};
+
+enum class DaemonState { Starting, Ready, Running, Degraded, Fault, Stopping };
+
+QString toString(DaemonState state);
+
+/// The skeleton of every daemon: command line, settings, command channels, common commands, topics, health,
+/// log, signals, service manager, orderly shutdown. A daemon derives from it, declares its commands, topics
+/// and settings in the constructor, and does its work between start() and stop(). docs/add-a-daemon.md has an
+/// example. Use everything here from the main thread; other threads post to it with
+/// QMetaObject::invokeMethod.
+class Daemon : public QObject {
+    Q_OBJECT
+public:
+    explicit Daemon(const DaemonIdentity &identity);
+    ~Daemon() override;
+
+    /// Command line, start, event loop, stop. arguments begin with the program's name. Gives the exit status:
+    /// 0, 2 for a usage error, 1 for any other failure.
+    int run(const QStringList &arguments);
+
+    /// The parts of run(), for tests in one process. prepare() reads the command line: an exit status when
+    /// there is nothing to run. launch() listens and starts. shutDown() ends in order, then the event loop
+    /// with status.
+    std::optional<int> prepare(const QStringList &arguments);
+    Result<void> launch();
+    void shutDown(int status = 0);
+
+    const DaemonIdentity &identity() const { return self; }
+    Settings &settings() { return configuration; }
+    Health &health() { return healthItems; }
+    Server &server() { return channels; }
+
+    /// Degraded when ready or running and a health item is at error or stale.
+    DaemonState state() const;
+    /// The OpenRPC document that rpc.discover gives.
+    QJsonObject description() const;
+    /// Changes when anything in the description changes.
+    QString descriptionHash() const;
+    QJsonObject info() const;
+    QJsonObject status();
+
+    bool hasSubscribers(const QString &topic) const { return topics.hasSubscribers(topic); }
+
+Q_SIGNALS:
+    /// A client has gone; Call::client told who it was.
+    void clientGone(quint64 client);
+
+protected:
+    // For the constructor of a daemon.
+    void addSetting(const Field &field) { configuration.declare(field); }
+    void addCommand(const Command &command) { commands.add(command); }
+    void addTopic(const Topic &topic) { topics.declare(topic); }
+    /// The watchdog of the service manager is fed by feedWatchdog() alone, not by the event loop.
+    void feedWatchdogMyself() { watchdogByHand = true; }
+
+    // For its work.
+    /// To all subscribers; stamp is when the data were true (seconds since the epoch). Free without
+    /// subscribers.
+    void publish(const QString &topic, const QJsonValue &data);
+    void publish(const QString &topic, const QJsonValue &data, double stamp);
+    /// Ready: can work. Running: works. Fault: cannot, with a health item that says why.
+    void setState(DaemonState state);
+    void feedWatchdog();
+
+    // What a daemon may override.
+    /// Begins the work; settings are valid, channels are open. An error ends the program with status 1.
+    virtual Result<void> start() { return {}; }
+    /// Ends the work: files closed, motors stopped. Called once, also after a start() that failed.
+    virtual void stop() {}
+    /// Settings were changed while running; paths are dotted.
+    virtual void settingsChanged(const QStringList &paths) { Q_UNUSED(paths) }
+
+private:
+    void declareCommonSettings();
+    void applyCommonSettings();
+    void updateChannelHealth();
+    void publishStatus();
+    Result<void> configure(const CommandLine &line);
+    QString helpText() const;
+
+    DaemonIdentity self;
+    Settings configuration;
+    CommandRegistry commands;
+    TopicHub topics;
+    Health healthItems;
+    Server channels;
+    DaemonState ownState = DaemonState::Starting;
+    QStringList restartPaths; // changed settings that wait for a restart
+    double started = 0;       // stamp
+    double startedMono = 0;
+    bool launched = false;
+    bool watchdogByHand = false;
+    QTimer watchdog;
+    QString lastStatus;
+    QTimer statusTimer;
+};
+
+/// The whole main() of a daemon.
+template <typename T>
+int runDaemon(int argc, char **argv) {
+    QCoreApplication application(argc, argv);
+    T daemon;
+    return daemon.run(application.arguments());
+}
+
+} // namespace hermes

@@ -1,0 +1,86 @@
+#include "common/Log.h"
+#include "common/daemon/Daemon.h"
+
+namespace hermes {
+namespace {
+
+const QStringList levels{QStringLiteral("debug"), QStringLiteral("info"), QStringLiteral("warning"),
+                         QStringLiteral("error")};
+
+} // namespace
+
+// The settings that every daemon has.
+void Daemon::declareCommonSettings() {
+    const QString channelGroup = QStringLiteral("Channels");
+    const QString limitGroup = QStringLiteral("Limits");
+    const QString logGroup = QStringLiteral("Log");
+    const QString address = QStringLiteral("tcp://127.0.0.1:%1?protocol=json").arg(self.port);
+    addSetting(Field::array(QStringLiteral("listen"), QStringLiteral("URLs at which commands are accepted"),
+                            {{QStringLiteral("type"), QStringLiteral("string")}})
+                   .group(channelGroup)
+                   .byDefault(QJsonArray{address})
+                   .appliesOnRestart());
+    addSetting(Field::boolean(
+                   QStringLiteral("insecure"),
+                   QStringLiteral("Accept commands in plain text from the network, not only from this host"))
+                   .group(channelGroup)
+                   .byDefault(false)
+                   .appliesOnRestart());
+    addSetting(Field::integer(QStringLiteral("limits.frame_bytes"),
+                              QStringLiteral("Largest request of a new client"))
+                   .unit(QStringLiteral("B"))
+                   .range(1024, 64 << 20)
+                   .group(limitGroup)
+                   .byDefault(1 << 20));
+    addSetting(Field::integer(QStringLiteral("limits.topic_bytes"),
+                              QStringLiteral("Unsent topic data of a new client, then the oldest is dropped"))
+                   .unit(QStringLiteral("B"))
+                   .range(1024, 256 << 20)
+                   .group(limitGroup)
+                   .byDefault(256 << 10));
+    addSetting(Field::integer(QStringLiteral("limits.reply_bytes"),
+                              QStringLiteral("Unsent replies of a new client, then it is closed"))
+                   .unit(QStringLiteral("B"))
+                   .range(1024, 15 << 20)
+                   .group(limitGroup)
+                   .byDefault(2 << 20));
+    addSetting(Field::integer(QStringLiteral("limits.clients"), QStringLiteral("Clients at the same time"))
+                   .range(1, 1000)
+                   .group(limitGroup)
+                   .byDefault(16));
+    addSetting(Field::integer(QStringLiteral("limits.batch"), QStringLiteral("Requests in one batch"))
+                   .range(1, 100000)
+                   .group(limitGroup)
+                   .byDefault(1000));
+    addSetting(Field::number(QStringLiteral("limits.idle_s"),
+                             QStringLiteral(
+                                 "A new client without subscriptions is closed after this silence; 0: never"))
+                   .unit(QStringLiteral("s"))
+                   .range(0, 1e6)
+                   .group(limitGroup)
+                   .byDefault(900));
+    addSetting(Field::text(QStringLiteral("log.level"), QStringLiteral("Least level that is written"))
+                   .choices(levels)
+                   .group(logGroup)
+                   .byDefault(QStringLiteral("info")));
+    addSetting(
+        Field::integer(QStringLiteral("log.records"), QStringLiteral("Records kept in memory for log.tail"))
+            .range(1, 100000)
+            .group(logGroup)
+            .byDefault(1000));
+}
+
+void Daemon::applyCommonSettings() {
+    SessionLimits limits;
+    limits.frameBytes = configuration.integer(QStringLiteral("limits.frame_bytes"));
+    limits.topicBytes = configuration.integer(QStringLiteral("limits.topic_bytes"));
+    limits.replyBytes = configuration.integer(QStringLiteral("limits.reply_bytes"));
+    limits.batch = configuration.integer(QStringLiteral("limits.batch"));
+    limits.idle_s = configuration.number(QStringLiteral("limits.idle_s"));
+    channels.setLimits(limits, configuration.integer(QStringLiteral("limits.clients")));
+    Log::instance().setMinimumLevel(
+        LogLevel(levels.indexOf(configuration.text(QStringLiteral("log.level")))));
+    Log::instance().setCapacity(configuration.integer(QStringLiteral("log.records")));
+}
+
+} // namespace hermes

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <functional>
+#include <memory>
+
+namespace hermes {
+
+/// The answer that a handler owes. May be copied and kept for later, and be given from any thread; the first
+/// answer counts. When the last copy goes without an answer the caller gets an internal error.
+class Reply {
+public:
+    using Sink = std::function<void(Result<QJsonValue>)>;
+
+    /// sink is called once, in the thread of the application object.
+    explicit Reply(Sink sink);
+
+    void give(Result<QJsonValue> answer) const;
+    void result(const QJsonValue &value) const { give(value); }
+    void error(const Error &error) const { give(error); }
+
+private:
+    class State;
+    std::shared_ptr<State> state;
+};
+
+} // namespace hermes

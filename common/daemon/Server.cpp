@@ -1,0 +1,133 @@
+#include "common/daemon/Server.h"
+
+#include "common/Log.h"
+#include "common/interface/InterfaceRegistry.h"
+
+#include <QStringList>
+
+namespace hermes {
+namespace {
+
+const QString source = QStringLiteral("server");
+
+void addTo(QJsonObject &sums, const QString &key, quint64 count) {
+    sums.insert(key, sums.value(key).toDouble() + double(count));
+}
+
+void addSession(QJsonObject &sums, Session &session) {
+    const CodecCounters &codec = session.codecCounters();
+    addTo(sums, QStringLiteral("requests"), session.counters().requests);
+    addTo(sums, QStringLiteral("error_replies"), session.counters().errors);
+    addTo(sums, QStringLiteral("ignored_responses"), session.counters().ignored);
+    addTo(sums, QStringLiteral("malformed_frames"), codec.malformed);
+    addTo(sums, QStringLiteral("oversized_frames"), codec.oversized);
+    addTo(sums, QStringLiteral("dropped_topic_messages"), session.topics().dropped());
+}
+
+} // namespace
+
+Server::Server(const CommandRegistry &registry, TopicHub &hub, QObject *parent)
+    : QObject(parent)
+    , commands(registry)
+    , topics(hub) {
+    idleTimer.setInterval(1000);
+    connect(&idleTimer, &QTimer::timeout, this, [this] {
+        const auto all = sessions.values();
+        for (Session *session : all)
+            session->checkIdle();
+    });
+    idleTimer.start();
+}
+
+void Server::setLimits(const SessionLimits &session, int clients) {
+    limits = session;
+    clientLimit = clients;
+    idleTimer.setInterval(limits.idle_s > 0 && limits.idle_s < 4 ? int(limits.idle_s * 250) + 1 : 1000);
+}
+
+Result<void> Server::listen(const QString &text, bool insecure) {
+    const auto url = InterfaceUrl::parse(text);
+    if (!url)
+        return url.error();
+    if (!makeCodec(url->protocol())) {
+        return Error(ErrorCode::InvalidSetting,
+                     QStringLiteral("cannot listen on %1: unknown protocol \"%2\", known are: %3")
+                         .arg(text, url->protocol(), codecNames().join(QStringLiteral(", "))));
+    }
+    if (!isLocalOnly(*url) && !insecure) {
+        return Error(ErrorCode::NotAuthorised,
+                     QStringLiteral(
+                         "will not listen on %1: others on the network could command this daemon in plain "
+                         "text. Listen on 127.0.0.1, or accept that with \"insecure\": true in the settings "
+                         "(--set insecure=true)")
+                         .arg(text));
+    }
+    const auto listener = makeListener(*url, this);
+    if (!listener)
+        return listener.error();
+    connect(*listener, &Listener::accepted, this,
+            [this, protocol = url->protocol()](Interface *peer) { accept(peer, protocol); });
+    const auto listening = (*listener)->listen();
+    if (!listening) {
+        delete *listener;
+        return listening;
+    }
+    listeners.append(*listener);
+    logInfo(source,
+            QStringLiteral("listening on %1, protocol %2").arg((*listener)->address(), url->protocol()));
+    return {};
+}
+
+void Server::close() {
+    for (Listener *listener : qAsConst(listeners))
+        listener->close();
+    const auto all = sessions.values();
+    for (Session *session : all)
+        session->close(QStringLiteral("the daemon is stopping"));
+}
+
+QStringList Server::addresses() const {
+    QStringList result;
+    for (const Listener *listener : listeners)
+        result.append(listener->address());
+    return result;
+}
+
+QJsonObject Server::counters() const {
+    QJsonObject sums = past;
+    for (Session *session : sessions)
+        addSession(sums, *session);
+    sums.insert(QStringLiteral("clients"), sessions.size());
+    sums.insert(QStringLiteral("clients_in_all"), double(lastId));
+    sums.insert(QStringLiteral("clients_turned_away"), double(turnedAway));
+    return sums;
+}
+
+void Server::accept(Interface *peer, const QString &protocol) {
+    auto *channel = new Channel(peer, makeCodec(protocol), this);
+    auto *session = new Session(++lastId, channel, commands, limits, this);
+    if (sessions.size() >= clientLimit) {
+        ++turnedAway;
+        const QString reason =
+            QStringLiteral("%1 clients are connected already (limits.clients)").arg(clientLimit);
+        logWarning(source, QStringLiteral("%1 turned away: %2").arg(session->name(), reason));
+        session->refuse(RpcError(ErrorCode::OverLimit, reason));
+        session->close(reason);
+        return session->deleteLater();
+    }
+    sessions.insert(session->id(), session);
+    connect(session, &Session::closed, this,
+            [this, session](const QString &reason) { remove(session, reason); });
+}
+
+void Server::remove(Session *session, const QString &reason) {
+    if (sessions.remove(session->id()) == 0)
+        return;
+    logInfo(source, QStringLiteral("client %1 gone: %2").arg(session->name(), reason));
+    addSession(past, *session);
+    topics.forget(&session->topics());
+    session->deleteLater();
+    Q_EMIT clientGone(session->id());
+}
+
+} // namespace hermes

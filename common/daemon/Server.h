@@ -1,0 +1,55 @@
+#pragma once
+
+#include "common/Result.h"
+#include "common/daemon/Session.h"
+#include "common/daemon/TopicHub.h"
+#include "common/interface/InterfaceUrl.h"
+#include "common/interface/Listener.h"
+
+#include <QMap>
+#include <QObject>
+#include <QTimer>
+
+namespace hermes {
+
+/// The command channels of a daemon: its listeners and the clients that came through them.
+class Server : public QObject {
+    Q_OBJECT
+public:
+    Server(const CommandRegistry &commands, TopicHub &topics, QObject *parent);
+
+    /// For clients that come from now on.
+    void setLimits(const SessionLimits &session, int clients);
+    /// Adds a listener. Error: an unknown scheme or protocol, a port in use, an address that is open to the
+    /// network although insecure is false.
+    Result<void> listen(const QString &url, bool insecure);
+    void close();
+
+    /// Where it listens, with actual ports.
+    QStringList addresses() const;
+    Session *session(quint64 id) const { return sessions.value(id); }
+    /// Clients now and in all, requests, errors, damaged and oversized frames, dropped topic messages,
+    /// clients closed at a limit or turned away.
+    QJsonObject counters() const;
+
+Q_SIGNALS:
+    /// A client has gone: what it held (a lease, a job) ends with it.
+    void clientGone(quint64 client);
+
+private:
+    void accept(Interface *peer, const QString &protocol);
+    void remove(Session *session, const QString &reason);
+
+    const CommandRegistry &commands;
+    TopicHub &topics;
+    SessionLimits limits;
+    int clientLimit = 16;
+    QVector<Listener *> listeners;
+    QMap<quint64, Session *> sessions;
+    quint64 lastId = 0;
+    quint64 turnedAway = 0;
+    QJsonObject past; // the sums of clients that have gone
+    QTimer idleTimer;
+};
+
+} // namespace hermes

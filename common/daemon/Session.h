@@ -1,0 +1,67 @@
+#pragma once
+
+#include "common/channel/Channel.h"
+#include "common/daemon/CommandRegistry.h"
+#include "common/daemon/TopicQueue.h"
+
+#include <QObject>
+
+namespace hermes {
+
+/// What one client may cost; all settable under `limits`.
+struct SessionLimits {
+    int frameBytes = 1 << 20;      ///< largest frame accepted
+    qint64 topicBytes = 256 << 10; ///< unsent topic data, then the oldest is dropped
+    qint64 replyBytes = 2 << 20;   ///< unsent replies, then the client is closed
+    int batch = 1000;              ///< messages in a batch
+    double idle_s = 900;           ///< without a sign of life, then the client is closed
+};
+
+/// What a client has cost so far.
+struct SessionCounters {
+    quint64 requests = 0;
+    quint64 errors = 0;  ///< error replies
+    quint64 ignored = 0; ///< responses to nothing that was asked
+};
+
+/// One client of a daemon: reads requests, has them run, sends replies (those of a batch together, in the
+/// order of the requests), and carries its topic messages.
+class Session : public QObject {
+    Q_OBJECT
+public:
+    Session(quint64 id, Channel *channel, const CommandRegistry &commands, const SessionLimits &limits,
+            QObject *parent);
+
+    quint64 id() const { return number; }
+    QString name() const { return channel->interface().name(); }
+    TopicQueue &topics() { return queue; }
+    const SessionCounters &counters() const { return counts; }
+    const CodecCounters &codecCounters() const { return channel->codec().counters(); }
+    /// Closes it when it has been silent for too long.
+    void checkIdle();
+    void close(const QString &reason) { channel->close(reason); }
+    /// Sends an error that answers no request, as to a client that may not stay.
+    void refuse(const RpcError &error);
+
+Q_SIGNALS:
+    void closed(const QString &reason);
+
+private:
+    using Answer = std::function<void(const QJsonValue &)>; // takes undefined for "no reply"
+
+    void receive(const QJsonValue &frame);
+    void receiveBatch(const std::vector<RpcMessage> &messages);
+    void process(const RpcMessage &message, const Answer &answer);
+    void run(const RpcRequest &request, const Answer &answer);
+    void send(const QJsonValue &reply);
+
+    const quint64 number;
+    Channel *channel;
+    const CommandRegistry &commands;
+    const SessionLimits limits;
+    TopicQueue queue;
+    SessionCounters counts;
+    double lastSign = 0; // monotonic: bytes came or went
+};
+
+} // namespace hermes

@@ -1,0 +1,44 @@
+#include "common/daemon/SignalWatcher.h"
+
+#include <QSocketNotifier>
+#include <csignal>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace hermes {
+namespace {
+
+int pipeEnds[2] = {-1, -1}; // a handler may only write() to it
+
+void handle(int number) {
+    const char byte = char(number);
+    if (::write(pipeEnds[1], &byte, 1) < 0) {
+        // The pipe is full of the same news.
+    }
+}
+
+} // namespace
+
+SignalWatcher::SignalWatcher(QObject *parent)
+    : QObject(parent) {
+    if (::pipe2(pipeEnds, O_CLOEXEC | O_NONBLOCK) != 0)
+        qFatal("cannot make a pipe for signals");
+    auto *notifier = new QSocketNotifier(pipeEnds[0], QSocketNotifier::Read, this);
+    connect(notifier, &QSocketNotifier::activated, this, [this] {
+        char byte = 0;
+        if (::read(pipeEnds[0], &byte, 1) == 1)
+            Q_EMIT received(byte == SIGINT ? QStringLiteral("SIGINT") : QStringLiteral("SIGTERM"));
+    });
+    std::signal(SIGINT, handle);
+    std::signal(SIGTERM, handle);
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+SignalWatcher::~SignalWatcher() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    ::close(pipeEnds[0]);
+    ::close(pipeEnds[1]);
+}
+
+} // namespace hermes

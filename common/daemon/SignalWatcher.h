@@ -1,0 +1,19 @@
+#pragma once
+
+#include <QObject>
+
+namespace hermes {
+
+/// Brings SIGINT and SIGTERM into the event loop. One at a time.
+class SignalWatcher : public QObject {
+    Q_OBJECT
+public:
+    explicit SignalWatcher(QObject *parent);
+    ~SignalWatcher() override;
+
+Q_SIGNALS:
+    /// name: "SIGTERM" or "SIGINT".
+    void received(const QString &name);
+};
+
+} // namespace hermes

@@ -1,0 +1,65 @@
+#include "common/daemon/TopicHub.h"
+
+#include "common/Log.h"
+#include "common/Time.h"
+
+#include <QStringList>
+
+namespace hermes {
+
+bool TopicHub::hasSubscribers(const QString &topic) const {
+    const auto entry = topics.constFind(topic);
+    return entry != topics.constEnd() && !entry->queues.isEmpty();
+}
+
+void TopicHub::publish(const QString &topic, const QJsonValue &data, double stamp) {
+    const auto entry = topics.find(topic);
+    if (entry == topics.end())
+        return logError(QStringLiteral("topics"),
+                        QStringLiteral("published \"%1\", which is not declared").arg(topic));
+    ++entry->seq;
+    const auto queues = entry->queues;
+    for (TopicQueue *queue : queues)
+        queue->offer({topic, entry->seq, stamp, data});
+}
+
+Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions &options,
+                                    TopicQueue *queue) {
+    const auto entry = topics.find(topic);
+    if (entry == topics.end()) {
+        const QStringList known = topics.keys();
+        return Error(ErrorCode::NoSuchTopic, QStringLiteral("no topic \"%1\"; there is %2")
+                                                 .arg(topic.left(80), known.join(QStringLiteral(", "))));
+    }
+    const quint64 id = ++lastId;
+    queue->add(id, topic, options);
+    if (!entry->queues.contains(queue))
+        entry->queues.append(queue);
+    if (entry->topic.snapshot()) {
+        const QJsonValue state = entry->topic.snapshot()();
+        if (!state.isUndefined())
+            queue->offer({topic, entry->seq, stampNow(), state}, id);
+    }
+    return id;
+}
+
+bool TopicHub::unsubscribe(quint64 id, TopicQueue *queue) {
+    const auto topic = queue->remove(id);
+    if (topic && !queue->wants(*topic))
+        topics.find(*topic)->queues.removeAll(queue);
+    return topic.has_value();
+}
+
+void TopicHub::forget(TopicQueue *queue) {
+    for (Entry &entry : topics)
+        entry.queues.removeAll(queue);
+}
+
+QJsonArray TopicHub::description() const {
+    QJsonArray array;
+    for (const Entry &entry : topics)
+        array.append(entry.topic.description());
+    return array;
+}
+
+} // namespace hermes

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "common/Result.h"
+#include "common/daemon/Topic.h"
+#include "common/daemon/TopicQueue.h"
+
+#include <QJsonArray>
+#include <QMap>
+#include <QObject>
+#include <QVector>
+
+namespace hermes {
+
+/// The topics of a daemon and who subscribes to them. Use from the main thread.
+class TopicHub : public QObject {
+    Q_OBJECT
+public:
+    explicit TopicHub(QObject *parent)
+        : QObject(parent) {}
+
+    void declare(const Topic &topic) { topics.insert(topic.name(), {topic, 0, {}}); }
+
+    /// Ask before building costly data.
+    bool hasSubscribers(const QString &topic) const;
+    /// To all subscribers. stamp: when the data were true, in seconds since the epoch. An unknown topic is
+    /// an error in the log.
+    void publish(const QString &topic, const QJsonValue &data, double stamp);
+
+    /// The id of the new subscription, or NoSuchTopic. A topic with a snapshot sends it at once.
+    Result<quint64> subscribe(const QString &topic, const SubscribeOptions &options, TopicQueue *queue);
+    bool unsubscribe(quint64 id, TopicQueue *queue);
+    /// The client has gone.
+    void forget(TopicQueue *queue);
+
+    QJsonArray description() const;
+
+private:
+    struct Entry {
+        Topic topic;
+        quint64 seq;
+        QVector<TopicQueue *> queues;
+    };
+
+    QMap<QString, Entry> topics;
+    quint64 lastId = 0;
+};
+
+} // namespace hermes

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "common/channel/Channel.h"
+
+#include <QObject>
+#include <QTimer>
+#include <deque>
+#include <vector>
+
+namespace hermes {
+
+/// One message of a topic on its way.
+struct TopicMessage {
+    QString topic;
+    quint64 seq = 0; ///< counts the publications of the topic from 1
+    double stamp = 0;
+    QJsonValue data;
+};
+
+/// How a client wants a topic.
+struct SubscribeOptions {
+    double maximumRate_hz = 0; ///< 0: every message
+    int queue = 1;             ///< messages that may wait for a slow reader; 1: only the newest
+};
+
+/// The topic messages of one client: thinned to the rate asked for, waiting in bounded queues until the
+/// client reads. What does not fit is dropped, oldest first, and counted in `dropped` of the messages that
+/// follow.
+class TopicQueue : public QObject {
+    Q_OBJECT
+public:
+    TopicQueue(Channel &channel, qint64 byteLimit, QObject *parent);
+
+    void add(quint64 id, const QString &topic, const SubscribeOptions &options);
+    /// The topic of the subscription removed, or nothing when it is not one of this client.
+    std::optional<QString> remove(quint64 id);
+    bool wants(const QString &topic) const;
+    bool isEmpty() const { return subscriptions.empty(); }
+    /// To every subscription of this topic; or to one of them.
+    void offer(const TopicMessage &message, quint64 onlyTo = 0);
+    quint64 dropped() const { return droppedInAll; }
+
+private:
+    struct Subscription {
+        quint64 id = 0;
+        QString topic;
+        SubscribeOptions options;
+        double nextDue = 0;               // monotonic: not before, by the rate
+        std::optional<TopicMessage> held; // the newest, waiting for its time
+        int waiting = 0;                  // frames of it in the queue
+        quint64 dropped = 0;
+    };
+    struct Frame {
+        quint64 subscription;
+        QByteArray bytes;
+    };
+
+    void accept(Subscription &subscription, const TopicMessage &message);
+    void enqueue(Subscription &subscription, const TopicMessage &message);
+    void dropOldest(Subscription *of);
+    void releaseHeld();
+    void flush();
+    Subscription *find(quint64 id);
+
+    Channel &channel;
+    const qint64 byteLimit;
+    std::vector<Subscription> subscriptions;
+    std::deque<Frame> frames;
+    qint64 frameBytes = 0;
+    quint64 droppedInAll = 0;
+    QTimer rateTimer;
+};
+
+} // namespace hermes

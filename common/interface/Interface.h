@@ -1,0 +1,81 @@
+#pragma once
+
+#include <QByteArray>
+#include <QObject>
+#include <QString>
+#include <QTimer>
+#include <chrono>
+
+namespace hermes {
+
+/// What has passed through an interface since it was made.
+struct InterfaceCounters {
+    quint64 bytesIn = 0;
+    quint64 bytesOut = 0;
+    quint64 opened = 0;       ///< times it became open
+    quint64 errors = 0;       ///< failures of the carrier
+    quint64 refusedBytes = 0; ///< given to write() but not taken: closed, or over the write limit
+};
+
+/// The lower layer of a channel: the life cycle of a carrier of bytes or datagrams. It does not know what the
+/// bytes mean. With reconnecting on, a carrier that closes is opened again after 0.1 s, doubled each time up
+/// to 5 s. Everything is asynchronous; use from one thread.
+class Interface : public QObject {
+    Q_OBJECT
+public:
+    enum class State { Closed, Opening, Open };
+    static constexpr qint64 defaultWriteLimit = 16 << 20;
+
+    void open();
+    /// Ends it, without reconnecting; emits closed() if it was open or opening.
+    void close(const QString &reason = QStringLiteral("closed here"));
+    /// Takes all of bytes, or none of them (false): when not open, or when more than the write limit would
+    /// wait.
+    bool write(const QByteArray &bytes);
+
+    State state() const { return current; }
+    bool isOpen() const { return current == State::Open; }
+    /// Who it speaks to, for messages: "tcp://127.0.0.1:7410".
+    virtual QString name() const = 0;
+    /// Whether each received() is one whole datagram.
+    virtual bool isDatagram() const { return false; }
+    /// Gives what waits to the system now, as far as it takes it.
+    virtual void flush() {}
+    /// Bytes taken by write() and not yet given to the system.
+    virtual qint64 bytesToWrite() const = 0;
+    const InterfaceCounters &counters() const { return counts; }
+
+    void setReconnecting(bool on) { reconnecting = on; }
+    void setWriteLimit(qint64 bytes) { writeLimit = bytes; }
+
+Q_SIGNALS:
+    void opened();
+    /// The carrier ended or could not be opened; reason is a sentence for people.
+    void closed(const QString &reason);
+    void received(const QByteArray &bytes);
+    /// Some waiting bytes went out.
+    void drained();
+
+protected:
+    explicit Interface(QObject *parent);
+
+    // What a carrier implements. doOpen ends in nowOpen() or nowClosed(), at once or later.
+    virtual void doOpen() = 0;
+    virtual void doClose() = 0;
+    virtual bool doWrite(const QByteArray &bytes) = 0;
+
+    // What a carrier reports.
+    void nowOpen();
+    void nowClosed(const QString &reason, bool isError);
+    void nowReceived(const QByteArray &bytes);
+
+private:
+    State current = State::Closed;
+    bool reconnecting = false;
+    qint64 writeLimit = defaultWriteLimit;
+    InterfaceCounters counts;
+    QTimer retry;
+    std::chrono::milliseconds nextRetry;
+};
+
+} // namespace hermes

@@ -1,0 +1,85 @@
+#include "common/interface/InterfaceRegistry.h"
+
+#include "common/interface/TcpInterface.h"
+#include "common/interface/TcpServerInterface.h"
+#include "common/interface/UdpInterface.h"
+
+#include <QHostAddress>
+
+namespace hermes {
+namespace {
+
+enum class Reach { Network, Computer };
+
+struct Kind {
+    const char *scheme;
+    Reach reach; // who can be at the other end
+    Interface *(*connect)(const InterfaceUrl &, QObject *);
+    Listener *(*listen)(const InterfaceUrl &, QObject *);
+};
+
+template <typename T>
+Interface *make(const InterfaceUrl &url, QObject *parent) {
+    return new T(url, parent);
+}
+
+template <typename T>
+Listener *makeServer(const InterfaceUrl &url, QObject *parent) {
+    return new T(url, parent);
+}
+
+template <typename T>
+Listener *makeSinglePeer(const InterfaceUrl &url, QObject *parent) {
+    return new SinglePeerListener(new T(url, nullptr), parent);
+}
+
+// A new kind of carrier is one line here.
+const Kind kinds[] = {
+    {"tcp", Reach::Network, make<TcpInterface>, makeServer<TcpServerInterface>},
+    {"udp", Reach::Network, make<UdpInterface>, makeSinglePeer<UdpInterface>},
+};
+
+const Kind *findKind(const QString &scheme) {
+    for (const Kind &kind : kinds) {
+        if (scheme == QLatin1String(kind.scheme))
+            return &kind;
+    }
+    return nullptr;
+}
+
+Error unknownScheme(const InterfaceUrl &url) {
+    return Error(ErrorCode::InvalidParams,
+                 QStringLiteral("address %1: unknown scheme \"%2\", known are: %3")
+                     .arg(url.toString(), url.scheme, interfaceSchemes().join(QStringLiteral(", "))));
+}
+
+} // namespace
+
+Result<Interface *> makeInterface(const InterfaceUrl &url, QObject *parent) {
+    const Kind *kind = findKind(url.scheme);
+    if (!kind)
+        return unknownScheme(url);
+    return kind->connect(url, parent);
+}
+
+Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent) {
+    const Kind *kind = findKind(url.scheme);
+    if (!kind)
+        return unknownScheme(url);
+    return kind->listen(url, parent);
+}
+
+bool isLocalOnly(const InterfaceUrl &url) {
+    const Kind *kind = findKind(url.scheme);
+    return (kind && kind->reach == Reach::Computer) || url.host == QStringLiteral("localhost") ||
+           QHostAddress(url.host).isLoopback();
+}
+
+QStringList interfaceSchemes() {
+    QStringList schemes;
+    for (const Kind &kind : kinds)
+        schemes.append(QLatin1String(kind.scheme));
+    return schemes;
+}
+
+} // namespace hermes

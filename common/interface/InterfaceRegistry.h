@@ -1,0 +1,22 @@
+#pragma once
+
+#include "common/interface/InterfaceUrl.h"
+#include "common/interface/Listener.h"
+
+#include <QStringList>
+
+namespace hermes {
+
+/// The interface for a URL, closed, to be opened as a client. Error when the scheme is unknown or something
+/// it needs is missing.
+Result<Interface *> makeInterface(const InterfaceUrl &url, QObject *parent);
+
+/// The listener for a URL, not yet listening.
+Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent);
+
+/// Whether only programs of this computer can reach what listens there.
+bool isLocalOnly(const InterfaceUrl &url);
+
+QStringList interfaceSchemes();
+
+} // namespace hermes

@@ -1,0 +1,40 @@
+#include "common/interface/InterfaceUrl.h"
+
+#include <QUrl>
+#include <QUrlQuery>
+
+namespace hermes {
+
+Result<InterfaceUrl> InterfaceUrl::parse(const QString &text) {
+    const QUrl url(text.contains(QStringLiteral("://")) ? text : QStringLiteral("tcp://") + text,
+                   QUrl::StrictMode);
+    if (!url.isValid() || url.scheme().isEmpty()) {
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("address \"%1\": expected HOST:PORT or a URL like "
+                                    "tcp://127.0.0.1:7410?protocol=json (%2)")
+                         .arg(text, url.errorString()));
+    }
+    InterfaceUrl result;
+    result.scheme = url.scheme();
+    result.host = url.host();
+    result.port = quint16(url.port(0));
+    result.path = url.path();
+    const auto options = QUrlQuery(url).queryItems(QUrl::FullyDecoded);
+    for (const auto &option : options)
+        result.options.insert(option.first, option.second);
+    return result;
+}
+
+QString InterfaceUrl::option(const QString &name, const QString &fallback) const {
+    return options.value(name, fallback);
+}
+
+QString InterfaceUrl::toString() const {
+    QString text = scheme + QStringLiteral("://");
+    text += host.contains(QLatin1Char(':')) ? QLatin1Char('[') + host + QLatin1Char(']') : host;
+    if (port != 0)
+        text += QLatin1Char(':') + QString::number(port);
+    return text + path;
+}
+
+} // namespace hermes

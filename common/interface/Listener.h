@@ -1,0 +1,43 @@
+#pragma once
+
+#include "common/Result.h"
+#include "common/interface/Interface.h"
+
+#include <QObject>
+
+namespace hermes {
+
+/// Where peers arrive: yields one open Interface a peer.
+class Listener : public QObject {
+    Q_OBJECT
+public:
+    /// Error names the address and the reason (a port in use, no such device).
+    virtual Result<void> listen() = 0;
+    virtual void close() = 0;
+    /// Where it listens, with the port the system gave if 0 was asked for.
+    virtual QString address() const = 0;
+
+Q_SIGNALS:
+    /// A peer has come; the receiver owns it.
+    void accepted(hermes::Interface *peer);
+
+protected:
+    explicit Listener(QObject *parent)
+        : QObject(parent) {}
+};
+
+/// A listener for carriers that have no connections (UDP, a serial line): the carrier itself is the one peer.
+class SinglePeerListener : public Listener {
+    Q_OBJECT
+public:
+    SinglePeerListener(Interface *carrier, QObject *parent);
+
+    Result<void> listen() override;
+    void close() override;
+    QString address() const override;
+
+private:
+    Interface *carrier;
+};
+
+} // namespace hermes

@@ -1,0 +1,79 @@
+#include "common/interface/TcpInterface.h"
+
+namespace hermes {
+namespace {
+
+constexpr int receiveBufferBytes = 256 << 10; // what is not read stays with the sender
+constexpr int readAtOnceBytes = 64 << 10;     // then others get their turn
+
+} // namespace
+
+TcpInterface::TcpInterface(const InterfaceUrl &address, QObject *parent)
+    : Interface(parent)
+    , url(address)
+    , socket(new QTcpSocket(this)) {
+    prepare();
+    connect(socket, &QTcpSocket::connected, this, [this] {
+        socket->setSocketOption(QAbstractSocket::LowDelayOption, 1);
+        socket->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
+        nowOpen();
+    });
+}
+
+TcpInterface::TcpInterface(QTcpSocket *connected, QObject *parent)
+    : Interface(parent)
+    , socket(connected) {
+    socket->setParent(this);
+    url.scheme = QStringLiteral("tcp");
+    url.host = socket->peerAddress().toString();
+    url.port = socket->peerPort();
+    socket->setSocketOption(QAbstractSocket::LowDelayOption, 1);
+    socket->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
+    prepare();
+}
+
+void TcpInterface::prepare() {
+    socket->setReadBufferSize(receiveBufferBytes);
+    connect(socket, &QTcpSocket::readyRead, this, &TcpInterface::readSome);
+    connect(socket, &QTcpSocket::bytesWritten, this, &Interface::drained);
+    connect(socket, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
+        const bool peerClosed = error == QAbstractSocket::RemoteHostClosedError;
+        const QString reason = peerClosed ? QStringLiteral("closed by the peer") : socket->errorString();
+        socket->abort();
+        nowClosed(QStringLiteral("%1: %2").arg(name(), reason), !peerClosed);
+    });
+}
+
+void TcpInterface::readSome() {
+    const QByteArray bytes = socket->read(readAtOnceBytes);
+    if (socket->bytesAvailable() > 0)
+        QMetaObject::invokeMethod(this, &TcpInterface::readSome, Qt::QueuedConnection);
+    if (!bytes.isEmpty())
+        nowReceived(bytes);
+}
+
+QString TcpInterface::name() const {
+    return url.toString();
+}
+
+qint64 TcpInterface::bytesToWrite() const {
+    return socket->bytesToWrite();
+}
+
+void TcpInterface::doOpen() {
+    if (socket->state() == QAbstractSocket::ConnectedState)
+        nowOpen(); // a peer of a server
+    else
+        socket->connectToHost(url.host, url.port);
+}
+
+void TcpInterface::doClose() {
+    socket->flush();
+    socket->abort();
+}
+
+bool TcpInterface::doWrite(const QByteArray &bytes) {
+    return socket->write(bytes) == bytes.size();
+}
+
+} // namespace hermes

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "common/interface/Interface.h"
+#include "common/interface/InterfaceUrl.h"
+
+#include <QHostAddress>
+#include <QTcpSocket>
+
+namespace hermes {
+
+/// A byte stream over TCP: a client that connects to an address, or the server's side of one connection.
+class TcpInterface : public Interface {
+    Q_OBJECT
+public:
+    TcpInterface(const InterfaceUrl &address, QObject *parent);
+    /// Takes over a connected socket.
+    TcpInterface(QTcpSocket *connected, QObject *parent);
+
+    QString name() const override;
+    void flush() override { socket->flush(); }
+    qint64 bytesToWrite() const override;
+
+protected:
+    void doOpen() override;
+    void doClose() override;
+    bool doWrite(const QByteArray &bytes) override;
+
+private:
+    void prepare();
+    void readSome();
+
+    InterfaceUrl url;
+    QTcpSocket *socket;
+};
+
+} // namespace hermes

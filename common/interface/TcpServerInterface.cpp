@@ -1,0 +1,52 @@
+#include "common/interface/TcpServerInterface.h"
+
+#include "common/interface/TcpInterface.h"
+
+namespace hermes {
+
+TcpServerInterface::TcpServerInterface(const InterfaceUrl &address, QObject *parent)
+    : Listener(parent)
+    , url(address) {
+    connect(&server, &QTcpServer::newConnection, this, &TcpServerInterface::takePeers);
+}
+
+Result<void> TcpServerInterface::listen() {
+    QHostAddress host(url.host == QStringLiteral("localhost") ? QStringLiteral("127.0.0.1") : url.host);
+    if (host.isNull()) {
+        return Error(
+            ErrorCode::InputOutput,
+            QStringLiteral("cannot listen on %1: \"%2\" is not an IP address").arg(url.toString(), url.host));
+    }
+    if (server.listen(host, url.port))
+        return {};
+    QString reason = server.errorString();
+    if (server.serverError() == QAbstractSocket::AddressInUseError) {
+        reason = QStringLiteral("port %1 of %2 is already in use; end the program that uses it or listen "
+                                "elsewhere (--listen URL)")
+                     .arg(url.port)
+                     .arg(url.host);
+    }
+    return Error(ErrorCode::InputOutput,
+                 QStringLiteral("cannot listen on %1: %2").arg(url.toString(), reason));
+}
+
+void TcpServerInterface::close() {
+    server.close();
+}
+
+QString TcpServerInterface::address() const {
+    InterfaceUrl actual = url;
+    if (server.isListening())
+        actual.port = server.serverPort();
+    return actual.toString();
+}
+
+void TcpServerInterface::takePeers() {
+    while (QTcpSocket *socket = server.nextPendingConnection()) {
+        auto *peer = new TcpInterface(socket, this);
+        peer->open();
+        Q_EMIT accepted(peer);
+    }
+}
+
+} // namespace hermes

@@ -1,0 +1,175 @@
+#include "common/schema/SchemaValidator.h"
+
+#include "common/schema/SchemaText.h"
+
+#include <QStringList>
+#include <algorithm>
+#include <cmath>
+#include <valijson/adapters/qtjson_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+namespace hermes {
+namespace {
+
+const QString typeKey = QStringLiteral("type");
+const QString itemsKey = QStringLiteral("items");
+const QString propertiesKey = QStringLiteral("properties");
+
+QString joined(const QString &path, const QString &key) {
+    return path.isEmpty() ? key : path + QLatin1Char('.') + key;
+}
+
+// valijson on QJson takes only numbers of 32 bits for integers: whole numbers are checked in checkStructure.
+QJsonValue withoutIntegers(const QJsonValue &node) {
+    if (node.isArray()) {
+        QJsonArray result;
+        for (const QJsonValue &element : node.toArray())
+            result.append(withoutIntegers(element));
+        return result;
+    }
+    if (!node.isObject())
+        return node;
+    QJsonObject result;
+    const QJsonObject object = node.toObject();
+    for (auto member = object.begin(); member != object.end(); ++member) {
+        const bool integer = member.key() == typeKey && member.value() == QStringLiteral("integer");
+        result.insert(member.key(),
+                      integer ? QJsonValue(QStringLiteral("number")) : withoutIntegers(member.value()));
+    }
+    return result;
+}
+
+// Missing and unknown members, and numbers that should be whole, each named by its own path.
+void checkStructure(const QJsonObject &schema, const QJsonValue &value, const QString &path,
+                    std::vector<SchemaViolation> &found) {
+    if (schema.value(typeKey) == QStringLiteral("integer") && value.isDouble() &&
+        value.toDouble() != std::floor(value.toDouble()))
+        found.push_back({path, value, expectation(schema)});
+    if (value.isArray() && schema.value(itemsKey).isObject()) {
+        const QJsonArray array = value.toArray();
+        for (int i = 0; i < array.size(); ++i)
+            checkStructure(schema.value(itemsKey).toObject(), array.at(i), joined(path, QString::number(i)),
+                           found);
+    }
+    if (!value.isObject())
+        return;
+    const QJsonObject object = value.toObject();
+    const QJsonObject properties = schema.value(propertiesKey).toObject();
+    for (const QJsonValue &required : schema.value(QStringLiteral("required")).toArray()) {
+        const QString key = required.toString();
+        if (!object.contains(key))
+            found.push_back(
+                {joined(path, key), QJsonValue::Undefined, expectation(properties.value(key).toObject())});
+    }
+    const bool closed = schema.value(QStringLiteral("additionalProperties")) == QJsonValue(false);
+    for (auto member = object.begin(); member != object.end(); ++member) {
+        const QString memberPath = joined(path, member.key());
+        if (properties.contains(member.key()))
+            checkStructure(properties.value(member.key()).toObject(), member.value(), memberPath, found);
+        else if (closed)
+            found.push_back({memberPath, member.value(),
+                             properties.isEmpty() ? QStringLiteral("nothing of this name")
+                                                  : QStringLiteral("nothing of this name; known are: ") +
+                                                        properties.keys().join(QStringLiteral(", "))});
+    }
+}
+
+struct Place {
+    QString path;
+    QJsonValue value;
+    QJsonObject schema;
+};
+
+// Follows valijson's context ("<root>", "[motor]", "[0]") through the schema and the value.
+Place locate(const std::vector<std::string> &context, const QJsonObject &schema, const QJsonValue &root) {
+    Place place{QString(), root, schema};
+    for (size_t i = 1; i < context.size(); ++i) {
+        const QString key = QString::fromStdString(context[i].substr(1, context[i].size() - 2));
+        place.path = joined(place.path, key);
+        if (place.value.isArray()) {
+            place.value = place.value.toArray().at(key.toInt());
+            place.schema = place.schema.value(itemsKey).toObject();
+        } else {
+            place.value = place.value.toObject().value(key);
+            place.schema = place.schema.value(propertiesKey).toObject().value(key).toObject();
+        }
+    }
+    return place;
+}
+
+} // namespace
+
+struct SchemaValidator::Compiled {
+    QJsonObject source;
+    valijson::Schema schema;
+};
+
+SchemaValidator::SchemaValidator(const QJsonObject &schema)
+    : compiled(new Compiled) {
+    compiled->source = schema;
+    const QJsonValue adapted = withoutIntegers(schema);
+    valijson::SchemaParser parser;
+    parser.populateSchema(valijson::adapters::QtJsonAdapter(adapted), compiled->schema);
+}
+
+SchemaValidator::~SchemaValidator() = default;
+SchemaValidator::SchemaValidator(SchemaValidator &&) noexcept = default;
+SchemaValidator &SchemaValidator::operator=(SchemaValidator &&) noexcept = default;
+
+std::vector<SchemaViolation> SchemaValidator::check(const QJsonValue &value) const {
+    std::vector<SchemaViolation> found;
+    checkStructure(compiled->source, value, QString(), found);
+    valijson::Validator validator;
+    valijson::ValidationResults results;
+    validator.validate(compiled->schema, valijson::adapters::QtJsonAdapter(value), &results);
+    std::vector<Place> places;
+    for (const auto &error : results)
+        places.push_back(locate(error.context, compiled->source, value));
+    // valijson reports each parent of a bad value too; only the innermost place says something.
+    for (const Place &place : places) {
+        const auto inside = [&place](const QString &path) {
+            return path == place.path || place.path.isEmpty() ||
+                   path.startsWith(place.path + QLatin1Char('.'));
+        };
+        const bool known =
+            std::any_of(found.begin(), found.end(), [&](const auto &one) { return inside(one.path); });
+        const bool outer = std::any_of(places.begin(), places.end(), [&](const auto &other) {
+            return other.path != place.path && inside(other.path);
+        });
+        if (!known && !outer)
+            found.push_back({place.path, place.value, expectation(place.schema)});
+    }
+    return found;
+}
+
+QString SchemaViolation::toString() const {
+    const QString name = path.isEmpty() ? QStringLiteral("the value") : path;
+    if (value.isUndefined())
+        return QStringLiteral("%1 is missing, expected %2").arg(name, expected);
+    return QStringLiteral("%1 is %2, expected %3").arg(name, shown(value), expected);
+}
+
+QJsonObject SchemaViolation::toJson() const {
+    QJsonObject object{{QStringLiteral("path"), path}, {QStringLiteral("expected"), expected}};
+    if (!value.isUndefined())
+        object.insert(QStringLiteral("value"), value);
+    return object;
+}
+
+QString toString(const std::vector<SchemaViolation> &violations) {
+    QStringList texts;
+    for (const SchemaViolation &violation : violations)
+        texts.append(violation.toString());
+    return texts.join(QStringLiteral("; "));
+}
+
+QJsonArray toJson(const std::vector<SchemaViolation> &violations) {
+    QJsonArray array;
+    for (const SchemaViolation &violation : violations)
+        array.append(violation.toJson());
+    return array;
+}
+
+} // namespace hermes

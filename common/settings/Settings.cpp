@@ -1,0 +1,156 @@
+#include "common/settings/Settings.h"
+
+#include "common/settings/DottedPath.h"
+#include "protocol/jsonrpc/JsonText.h"
+
+#include <QFile>
+#include <QJsonDocument>
+#include <QSaveFile>
+
+namespace hermes {
+namespace {
+
+const QString propertiesKey = QStringLiteral("properties");
+
+QJsonObject emptySchema() {
+    return {{QStringLiteral("type"), QStringLiteral("object")},
+            {QStringLiteral("additionalProperties"), false},
+            {propertiesKey, QJsonObject()}};
+}
+
+QJsonObject withProperty(QJsonObject schema, const QString &path, const QJsonObject &property) {
+    QJsonObject properties = schema.value(propertiesKey).toObject();
+    const QString key = path.section(QLatin1Char('.'), 0, 0);
+    const QString rest = path.section(QLatin1Char('.'), 1);
+    const QJsonObject below = properties.contains(key) ? properties.value(key).toObject() : emptySchema();
+    properties.insert(key, rest.isEmpty() ? property : withProperty(below, rest, property));
+    schema.insert(propertiesKey, properties);
+    return schema;
+}
+
+QJsonObject propertyAt(QJsonObject schema, const QString &path) {
+    for (const QString &key : path.split(QLatin1Char('.')))
+        schema = schema.value(propertiesKey).toObject().value(key).toObject();
+    return schema;
+}
+
+Error fileError(const QString &file, const QString &what) {
+    return Error(ErrorCode::InputOutput, QStringLiteral("settings file %1: %2").arg(file, what),
+                 QJsonObject{{QStringLiteral("path"), file}});
+}
+
+} // namespace
+
+Settings::Settings(QObject *parent)
+    : QObject(parent)
+    , fullSchema(emptySchema()) {}
+
+void Settings::declare(const Field &field) {
+    Q_ASSERT_X(!field.defaultValue().isUndefined(), "Settings::declare", qPrintable(field.name()));
+    QJsonObject property = field.schema();
+    const QString applies = QStringLiteral("x-applies");
+    if (!property.contains(applies))
+        property.insert(applies, QStringLiteral("now"));
+    fullSchema = withProperty(fullSchema, field.name(), property);
+    initial = withValueAt(initial, field.name(), field.defaultValue());
+    current = withValueAt(current, field.name(), field.defaultValue());
+    validator.reset();
+}
+
+QJsonObject Settings::changes() const {
+    return difference(current, initial);
+}
+
+QJsonValue Settings::value(const QString &path) const {
+    return valueAt(current, path);
+}
+
+Result<QStringList> Settings::set(const QJsonObject &partial) {
+    return apply(merged(current, partial));
+}
+
+Result<QStringList> Settings::reset(const QStringList &paths) {
+    if (paths.isEmpty())
+        return apply(initial);
+    QJsonObject proposed = current;
+    for (const QString &path : paths) {
+        const QJsonValue value = valueAt(initial, path);
+        if (path.isEmpty() || value.isUndefined()) {
+            const SchemaViolation unknown{path, QJsonValue::Undefined,
+                                          QStringLiteral("the path of a setting")};
+            return Error(ErrorCode::InvalidSetting, QStringLiteral("no setting \"%1\"").arg(path),
+                         QJsonObject{{QStringLiteral("errors"), QJsonArray{unknown.toJson()}}});
+        }
+        proposed = withValueAt(proposed, path, value);
+    }
+    return apply(proposed);
+}
+
+std::vector<SchemaViolation> Settings::check(const QJsonObject &proposed) const {
+    if (!validator)
+        validator.emplace(fullSchema);
+    auto violations = validator->check(proposed);
+    if (violations.empty()) {
+        for (const Rule &rule : rules) {
+            for (const SchemaViolation &violation : rule(proposed))
+                violations.push_back(violation);
+        }
+    }
+    return violations;
+}
+
+Result<QStringList> Settings::apply(const QJsonObject &proposed) {
+    const auto violations = check(proposed);
+    if (!violations.empty()) {
+        return Error(ErrorCode::InvalidSetting, toString(violations),
+                     QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
+    }
+    const QStringList paths = leafPaths(difference(proposed, current));
+    current = proposed;
+    if (!paths.isEmpty())
+        Q_EMIT changed(paths);
+    return paths;
+}
+
+Result<void> Settings::load(const QString &name) {
+    QFile file(name);
+    if (!file.open(QIODevice::ReadOnly))
+        return fileError(name, file.errorString());
+    JsonTextError error;
+    const auto value = parseJson(file.readAll(), &error);
+    if (!value)
+        return fileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));
+    if (!value->isObject())
+        return fileError(name, QStringLiteral("line 1: expected a JSON object"));
+    const auto applied = apply(merged(initial, value->toObject()));
+    if (!applied) {
+        return Error(ErrorCode::InvalidSetting,
+                     QStringLiteral("settings file %1: %2").arg(name, applied.error().message),
+                     applied.error().data);
+    }
+    fileName = name;
+    return {};
+}
+
+Result<QString> Settings::save(const QString &name) const {
+    const QString target = name.isEmpty() ? fileName : name;
+    if (target.isEmpty())
+        return Error(ErrorCode::InputOutput,
+                     QStringLiteral("no settings file to save to: start with --config FILE"));
+    QSaveFile file(target);
+    const QByteArray text = QJsonDocument(changes()).toJson();
+    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.commit())
+        return fileError(target, file.errorString());
+    return target;
+}
+
+QStringList Settings::needRestart(const QStringList &paths) const {
+    QStringList result;
+    for (const QString &path : paths) {
+        if (propertyAt(fullSchema, path).value(QStringLiteral("x-applies")) == QStringLiteral("restart"))
+            result.append(path);
+    }
+    return result;
+}
+
+} // namespace hermes

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "common/Result.h"
+#include "common/schema/Field.h"
+#include "common/schema/SchemaValidator.h"
+
+#include <QJsonObject>
+#include <QObject>
+#include <QStringList>
+#include <functional>
+#include <optional>
+
+namespace hermes {
+
+/// The settings of a program: declared once with schema and default, always valid, changed all or nothing,
+/// kept in a JSON file. A dot in a name makes a group: "motor.radius_m" is {"motor": {"radius_m": ...}}.
+class Settings : public QObject {
+    Q_OBJECT
+public:
+    /// Checks what a schema cannot say (one value against another); gives what is wrong.
+    using Rule = std::function<std::vector<SchemaViolation>(const QJsonObject &settings)>;
+
+    explicit Settings(QObject *parent = nullptr);
+
+    /// Declares a setting. It must have a default.
+    void declare(const Field &field);
+    void addRule(Rule rule) { rules.push_back(std::move(rule)); }
+
+    /// The JSON Schema of all settings, with `x-applies` ("now" or "restart") on each.
+    QJsonObject schema() const { return fullSchema; }
+    const QJsonObject &values() const { return current; }
+    const QJsonObject &defaults() const { return initial; }
+    /// Only what differs from the defaults.
+    QJsonObject changes() const;
+
+    /// A value by its dotted path; a path that was not declared gives undefined.
+    QJsonValue value(const QString &path) const;
+    double number(const QString &path) const { return value(path).toDouble(); }
+    int integer(const QString &path) const { return int(value(path).toDouble()); }
+    bool flag(const QString &path) const { return value(path).toBool(); }
+    QString text(const QString &path) const { return value(path).toString(); }
+
+    /// Applies all of a partial object or nothing. InvalidSetting: data.errors has path, value, expected.
+    /// Gives the dotted paths whose value changed.
+    Result<QStringList> set(const QJsonObject &partial);
+    /// Puts the values at or below these paths back to their defaults; without paths, all of them.
+    Result<QStringList> reset(const QStringList &paths = {});
+
+    /// Reads a file of settings over the defaults. Errors name the file, the line or path, what was found and
+    /// what was expected. Remembers the file for save().
+    Result<void> load(const QString &file);
+    /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name.
+    Result<QString> save(const QString &file = QString()) const;
+
+    /// Those of the paths whose change waits for a restart.
+    QStringList needRestart(const QStringList &paths) const;
+
+Q_SIGNALS:
+    /// After a change that was applied, with the dotted paths of the values that differ.
+    void changed(const QStringList &paths);
+
+private:
+    Result<QStringList> apply(const QJsonObject &proposed);
+    std::vector<SchemaViolation> check(const QJsonObject &proposed) const;
+
+    QJsonObject fullSchema;
+    QJsonObject initial;
+    QJsonObject current;
+    QString fileName;
+    std::vector<Rule> rules;
+    mutable std::optional<SchemaValidator> validator; // made anew after declare()
+};
+
+} // namespace hermes
