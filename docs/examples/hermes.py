@@ -1,0 +1,71 @@
+"""A client for Hermes daemons in plain Python 3: call commands, follow topics.
+
+    with Daemon(port=7450) as matcher:
+        print(matcher.call("daemon.status")["state"])
+        for message in matcher.subscribe("pose", max_rate_hz=5):
+            print(message["stamp"], message["data"])
+"""
+import collections
+import itertools
+import json
+import socket
+
+
+class DaemonError(Exception):
+    """The daemon refused a call: code, message, and data that name the reason."""
+
+    def __init__(self, error):
+        super().__init__(f"{error['message']} ({error['code']})")
+        self.code, self.message, self.data = error["code"], error["message"], error.get("data")
+
+
+class Daemon:
+    """A connection to one daemon. Not for use from several threads at once."""
+
+    def __init__(self, host="127.0.0.1", port=7400, timeout=5.0):
+        self.socket = socket.create_connection((host, port), timeout)
+        self.lines = self.socket.makefile("r", encoding="utf-8")
+        self.ids = itertools.count(1)
+        self.topics = collections.deque()  # messages that came while a call waited for its reply
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self.lines.close()
+        self.socket.close()
+
+    def call(self, method, **params):
+        """The result of a command; raises DaemonError when the daemon refuses it."""
+        request = {"jsonrpc": "2.0", "id": next(self.ids), "method": method, "params": params}
+        self.socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
+        while True:
+            message = self._receive()
+            if message.get("method") == "topic":
+                self.topics.append(message["params"])
+            elif message.get("id") == request["id"]:
+                if "error" in message:
+                    raise DaemonError(message["error"])
+                return message["result"]
+
+    def subscribe(self, topic, **options):
+        """Yields the topic's messages {seq, stamp, dropped, data, ...} as they come, without end."""
+        subscription = self.call("topics.subscribe", topic=topic, **options)["subscription"]
+        return (message for message in self._messages() if message["subscription"] == subscription)
+
+    def _messages(self):
+        while True:
+            while self.topics:
+                yield self.topics.popleft()
+            message = self._receive()
+            if message.get("method") == "topic":
+                yield message["params"]
+
+    def _receive(self):
+        line = self.lines.readline()
+        if not line:
+            raise ConnectionError("the daemon closed the connection")
+        return json.loads(line)
