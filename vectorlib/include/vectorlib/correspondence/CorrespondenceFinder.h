@@ -90,10 +90,12 @@ private:
     void collectCandidates() {
         m_candidates.clear();
         m_votes.start(settings.permitted.dalpha);
+        const double cosine = std::cos(std::min(pi, settings.permitted.dalpha)) - 1e-9;
         for (std::size_t d = 0; d < m_moving->size(); ++d)
             for (std::size_t s = 0; s < m_fixed.size(); ++s) {
                 const LineSegment2D<double> &moving = (*m_moving)[d].segment, &fixed = m_fixed[s];
-                if (!mayCorrespond(fixed, moving, settings.permitted))
+                if (fixed.direction().dot(moving.direction()) < cosine || // most end here
+                    !mayCorrespond(fixed, moving, settings.permitted))
                     continue;
                 m_candidates.push_back({static_cast<int>(s), static_cast<int>(d)});
                 m_votes.add(angleBetween(fixed, moving), std::min(fixed.length(), moving.length()));

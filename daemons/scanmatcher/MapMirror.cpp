@@ -1,0 +1,67 @@
+#include "daemons/scanmatcher/MapMirror.h"
+
+namespace hermes {
+
+namespace {
+
+QJsonObject toJson(const vectorlib::MapSegment &m) {
+    return {{"id", qint64(m.id)},        {"x1", m.segment.begin().x},
+            {"y1", m.segment.begin().y}, {"x2", m.segment.end().x},
+            {"y2", m.segment.end().y},   {"n", m.sums.n},
+            {"sigma", m.sigma},          {"observations", qint64(m.observations)}};
+}
+
+} // namespace
+
+MapChanges takeChanges(vectorlib::VectorMap &map) {
+    MapChanges changes;
+    for (int number : map.takeChanges()) {
+        const vectorlib::MapEdge &e = map.slots()[size_t(number)];
+        if (e.observations > 0)
+            changes.changed.push_back({e.id, e.edge.segment, e.edge.sums, e.edge.sigma, e.observations});
+        else
+            changes.removed.push_back(e.id);
+    }
+    return changes;
+}
+
+QJsonObject MapMirror::apply(const MapChanges &changes) {
+    if (changes.cleared) {
+        edges.clear();
+        poses.clear();
+    }
+    QJsonArray changed, removed;
+    for (const vectorlib::MapSegment &m : changes.changed) {
+        edges[m.id] = m;
+        changed.append(toJson(m));
+    }
+    for (qint64 id : changes.removed) {
+        edges.erase(id);
+        removed.append(id);
+    }
+    return {{"revision", ++revision},
+            {"cleared", changes.cleared},
+            {"edges", changed},
+            {"removed", removed},
+            {"size", qint64(edges.size())}};
+}
+
+QJsonObject MapMirror::full() const {
+    QJsonArray all;
+    for (const auto &[id, edge] : edges)
+        all.append(toJson(edge));
+    return {{"revision", revision},
+            {"cleared", true},
+            {"edges", all},
+            {"removed", QJsonArray()},
+            {"size", qint64(edges.size())}};
+}
+
+std::vector<vectorlib::MapSegment> MapMirror::segments() const {
+    std::vector<vectorlib::MapSegment> result;
+    for (const auto &[id, edge] : edges)
+        result.push_back(edge);
+    return result;
+}
+
+} // namespace hermes

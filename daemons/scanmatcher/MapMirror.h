@@ -1,0 +1,43 @@
+#pragma once
+
+#include "vectorlib/io/MapSegment.h"
+#include "vectorlib/io/Tum.h"
+#include "vectorlib/mapping/VectorMap.h"
+
+#include <QJsonArray>
+#include <QJsonObject>
+#include <map>
+#include <vector>
+
+namespace hermes {
+
+/// What changed in a map since the last time.
+struct MapChanges {
+    std::vector<vectorlib::MapSegment> changed; ///< new and altered edges
+    std::vector<qint64> removed;                ///< edges that were merged into others
+    bool cleared = false;                       ///< everything before is gone
+};
+
+MapChanges takeChanges(vectorlib::VectorMap &map);
+
+/// A copy of the worker's map and trajectory for the main thread, kept up to date by changes: what files,
+/// replies and subscriptions are made from without disturbing the matching.
+class MapMirror {
+public:
+    /// Takes the changes in and gives the data of the topic `map`: {revision, cleared, edges, removed, size}.
+    QJsonObject apply(const MapChanges &changes);
+    void addPose(const vectorlib::StampedPose &pose) { poses.push_back(pose); }
+
+    /// The full state in the same form, `cleared` true.
+    QJsonObject full() const;
+    std::vector<vectorlib::MapSegment> segments() const;
+    const std::vector<vectorlib::StampedPose> &trajectory() const { return poses; }
+    size_t size() const { return edges.size(); }
+
+private:
+    std::map<qint64, vectorlib::MapSegment> edges;
+    std::vector<vectorlib::StampedPose> poses;
+    qint64 revision = 0;
+};
+
+} // namespace hermes

@@ -1,0 +1,107 @@
+#include "daemons/scanmatcher/ScanMatcher.h"
+
+namespace hermes {
+
+using vectorlib::Pose2D;
+
+namespace {
+
+const QJsonObject poseSchema{
+    {"type", "object"},
+    {"properties", QJsonObject{{"x", QJsonObject{{"type", "number"}, {"x-unit", "m"}}},
+                               {"y", QJsonObject{{"type", "number"}, {"x-unit", "m"}}},
+                               {"theta", QJsonObject{{"type", "number"}, {"x-unit", "rad"}}}}},
+    {"required", QJsonArray{"x", "y", "theta"}},
+    {"additionalProperties", false}};
+
+Pose2D poseOf(const QJsonObject &json) {
+    return {json["x"].toDouble(), json["y"].toDouble(), json["theta"].toDouble()};
+}
+
+// Points of a parameter {x: [], y: []}; the message names the parameter.
+Result<Scan> scanParameter(const Call &call, const char *name) {
+    QJsonObject data = call.value(name).toObject();
+    if (!data.contains("stamp"))
+        data["stamp"] = 0;
+    auto scan = parseScan(data);
+    if (!scan)
+        return Error(ErrorCode::InvalidParams, QString("%1: %2").arg(name, scan.error().message));
+    return scan;
+}
+
+} // namespace
+
+void ScanMatcher::declareMatcherCommands() {
+    addCommand(Command("matcher.start", "Begins to match scans")
+                   .param(Field::text("mode", "mapping: the map grows; localization: it stays as it is")
+                              .choices({"mapping", "localization"})
+                              .byDefault("mapping"))
+                   .returnsNull()
+                   .handler([this](const Call &call) -> Result<QJsonValue> {
+                       begin(call.text("mode") == "mapping" ? Tracker::Mode::Mapping
+                                                            : Tracker::Mode::Localization);
+                       return QJsonValue();
+                   }));
+    addCommand(Command("matcher.stop", "Takes no more scans; pose and map stay")
+                   .returnsNull()
+                   .handler([this](const Call &) -> Result<QJsonValue> {
+                       pause();
+                       return QJsonValue();
+                   }));
+    addCommand(
+        Command("matcher.state", "Mode, counts of scans, waiting and dropped ones, milliseconds a scan")
+            .returns({{"type", "object"}})
+            .handler([this](const Call &) -> Result<QJsonValue> { return QJsonValue(matcherState()); }));
+    addCommand(Command("matcher.match", "Matches two scans with each other; map and pose are not touched")
+                   .param(Field::object("reference", "The scan that stands still: {x: [], y: []} in metres, "
+                                                     "counter-clockwise"))
+                   .param(Field::object("current", "The scan whose pose in the other's frame is wanted"))
+                   .param(Field::schema("expected", "Where the current one is expected", poseSchema)
+                              .byDefault(QJsonObject{{"x", 0}, {"y", 0}, {"theta", 0}}))
+                   .returns({{"type", "object"}})
+                   .asyncHandler([this](const Call &call, const Reply &reply) { matchTwo(call, reply); }));
+    addCommand(Command("pose.set", "Tells where the sensor is, standing still, in the map's frame")
+                   .param(Field::number("x", "Position").unit("m"))
+                   .param(Field::number("y", "Position").unit("m"))
+                   .param(Field::number("theta", "Heading").unit("rad"))
+                   .returnsNull()
+                   .example({{"x", 1.5}, {"y", 0}, {"theta", 1.57}}, QJsonValue())
+                   .asyncHandler([this](const Call &call, const Reply &reply) {
+                       const Pose2D pose = poseOf(call.params);
+                       worker->post([pose, reply](Tracker &tracker) {
+                           tracker.place(pose);
+                           reply.result(QJsonValue());
+                       });
+                   }));
+}
+
+void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
+    const auto reference = scanParameter(call, "reference"), current = scanParameter(call, "current");
+    if (!reference || !current)
+        return reply.error(reference ? current.error() : reference.error());
+    const Pose2D expected = poseOf(call.value("expected").toObject());
+    worker->post([reference = *reference, current = *current, expected, reply](Tracker &tracker) {
+        vectorlib::MapBuilder pair;
+        pair.find.settings = tracker.builder.find.settings;
+        pair.find.settings.permitted = vectorlib::PermittedError(); // as far as the thesis searches
+        pair.find.settings.expectedDeviationXY = pair.find.settings.expectedDeviationAlpha = 0.5;
+        pair.extract.configure(2 * vectorlib::pi, reference.points.size());
+        pair.process(reference.points, {});
+        pair.extract.configure(2 * vectorlib::pi, current.points.size());
+        const vectorlib::ScanReport report = pair.process(current.points, expected);
+        const vectorlib::Match &match = pair.match();
+        const Pose2D pose = match.pose.pose();
+        reply.result(QJsonObject{{"x", pose.x},
+                                 {"y", pose.y},
+                                 {"theta", pose.theta},
+                                 {"accepted", match.accepted},
+                                 {"pairs", qint64(match.pairs.size())},
+                                 {"reliability", match.reliability},
+                                 {"ambiguity", match.ambiguity},
+                                 {"matched_length", match.matchedLength},
+                                 {"visible_length", match.visibleLength},
+                                 {"ms", report.totalMs()}});
+    });
+}
+
+} // namespace hermes

@@ -1,0 +1,302 @@
+#include "daemons/scanmatcher/ScanMatcher.h"
+
+#include "common/Log.h"
+#include "common/Time.h"
+
+#include <Eigen/LU>
+
+namespace hermes {
+
+using vectorlib::Pose2D;
+using vectorlib::ScanReport;
+
+namespace {
+
+QJsonObject toJson(const Pose2D &pose) {
+    return {{"x", pose.x}, {"y", pose.y}, {"theta", pose.theta}};
+}
+
+QString toText(ScanReport::Outcome outcome) {
+    switch (outcome) {
+    case ScanReport::Outcome::Matched:
+        return "matched";
+    case ScanReport::Outcome::Lost:
+        return "lost";
+    case ScanReport::Outcome::Skipped:
+        return "skipped";
+    }
+    return {};
+}
+
+// Row by row, of x, y (m) and theta (rad); null where the pairs leave a direction open.
+QJsonValue covariance(const vectorlib::Match &match) {
+    const Eigen::FullPivLU<Eigen::Matrix3d> lu(match.information);
+    if (match.pairs.empty() || !lu.isInvertible())
+        return QJsonValue::Null;
+    const Eigen::Matrix3d inverse = lu.inverse();
+    QJsonArray result;
+    for (int i = 0; i < 9; ++i)
+        result.append(inverse(i / 3, i % 3));
+    return result;
+}
+
+} // namespace
+
+ScanMatcher::ScanMatcher()
+    : Daemon({"scanmatcher", "Scan matcher",
+              "Turns laser scans into line segments, finds the sensor's pose among those of a vector map, "
+              "and lets the "
+              "map grow"}) {
+    declareSettings();
+    declareTopics();
+    declareMatcherCommands();
+    declareMapCommands();
+    connect(&source, &Client::connected, this, &ScanMatcher::updateHealth);
+    connect(&source, &Client::disconnected, this, &ScanMatcher::updateHealth);
+}
+
+void ScanMatcher::declareSettings() {
+    addSetting(Field::text("source.address", "Daemon that publishes the scans: HOST:PORT or a URL")
+                   .byDefault("127.0.0.1:7420")
+                   .group("Source"));
+    addSetting(Field::text("source.topic", "Its topic").byDefault("scan2d").group("Source"));
+    addSetting(Field::integer("source.queue", "Scans that may wait to be matched; more drop the oldest")
+                   .unit("scans")
+                   .range(1, 10000)
+                   .byDefault(50)
+                   .group("Source"));
+    addSetting(Field::text("matcher.start", "What to do from the start on")
+                   .choices({"mapping", "localization", "nothing"})
+                   .byDefault("mapping")
+                   .appliesOnRestart()
+                   .group("Matching"));
+    addSetting(Field::boolean("matcher.compensate_motion",
+                              "Correct each scan for the sensor's motion while it was taken")
+                   .byDefault(true)
+                   .group("Matching"));
+    addSetting(
+        Field::number("matcher.sigma_m", "Largest standard deviation of points from their line segment")
+            .unit("m")
+            .range(0.001, 1)
+            .byDefault(0.02)
+            .group("Matching"));
+    addSetting(Field::number("matcher.expected_deviation_m", "How far the expected position is usually wrong")
+                   .unit("m")
+                   .range(0.001, 10)
+                   .byDefault(0.05)
+                   .group("Matching"));
+    addSetting(
+        Field::number("matcher.expected_deviation_rad", "How far the expected heading is usually wrong")
+            .unit("rad")
+            .range(0.001, 3)
+            .byDefault(0.10)
+            .group("Matching"));
+    addSetting(Field::number("matcher.permitted_m", "Largest error of the expected position in x and y")
+                   .unit("m")
+                   .range(0.01, 20)
+                   .byDefault(0.5)
+                   .group("Matching"));
+    addSetting(Field::number("matcher.permitted_rad", "Largest error of the expected heading")
+                   .unit("rad")
+                   .range(0.01, 3.1)
+                   .byDefault(0.4)
+                   .group("Matching"));
+    addSetting(Field::number("matcher.min_matched_share", "Share of the seen length that must match the map")
+                   .range(0, 1)
+                   .byDefault(0.15)
+                   .group("Matching"));
+    addSetting(
+        Field::text("map.folder", "Where map files with a relative path are").byDefault(".").group("Map"));
+}
+
+void ScanMatcher::declareTopics() {
+    addTopic(Topic("pose", "Pose of the sensor after each scan, in the map's frame: x, y (m), theta (rad), "
+                           "velocity, covariance, outcome matched, lost or skipped")
+                 .schema({{"type", "object"}}));
+    addTopic(Topic("segments", "Line segments of the last scan in the map's frame, [x1, y1, x2, y2] each (m)")
+                 .schema({{"type", "array"}}));
+    addTopic(
+        Topic("map",
+              "Changes of the map: edges (new or altered), removed (ids), cleared. Begins with the full "
+              "map. A step of more than 1 in revision means that changes were missed: subscribe again or "
+              "call map.get")
+            .schema({{"type", "object"}})
+            .snapshot([this] { return QJsonValue(mirror.full()); }));
+    addTopic(Topic("match",
+                   "How the last scan was matched: correspondences [map edge, segment], reliability, "
+                   "ambiguity (m^2), matched and visible length (m), milliseconds of each step")
+                 .schema({{"type", "object"}}));
+}
+
+Result<void> ScanMatcher::start() {
+    worker = std::make_unique<Worker>([this](Tracker &tracker, const Scan &scan) {
+        const Outcome outcome = outcomeOf(tracker, scan);
+        QMetaObject::invokeMethod(this, [this, outcome] { show(outcome); });
+    });
+    settingsChanged({});
+    health().provide("tracking", [this] { updateHealth(); });
+    setState(DaemonState::Ready);
+    const QString wanted = settings().text("matcher.start");
+    if (wanted != "nothing")
+        begin(wanted == "mapping" ? Tracker::Mode::Mapping : Tracker::Mode::Localization);
+    return {};
+}
+
+void ScanMatcher::stop() {
+    source.close();
+    worker.reset();
+}
+
+void ScanMatcher::settingsChanged(const QStringList &paths) {
+    if (!worker)
+        return;
+    worker->setQueueLimit(size_t(settings().integer("source.queue")));
+    worker->post([s = trackerSettings()](Tracker &tracker) { tracker.apply(s); });
+    const bool sourceChanged = paths.filter("source.").size() > 0;
+    if (active && sourceChanged)
+        connectToSource();
+}
+
+TrackerSettings ScanMatcher::trackerSettings() const {
+    auto &values = const_cast<ScanMatcher *>(this)->settings();
+    TrackerSettings s;
+    s.compensateMotion = values.flag("matcher.compensate_motion");
+    s.sigma = values.number("matcher.sigma_m");
+    s.expectedDeviationXY = values.number("matcher.expected_deviation_m");
+    s.expectedDeviationAlpha = values.number("matcher.expected_deviation_rad");
+    s.permittedXY = values.number("matcher.permitted_m");
+    s.permittedAlpha = values.number("matcher.permitted_rad");
+    s.minMatchedShare = values.number("matcher.min_matched_share");
+    return s;
+}
+
+void ScanMatcher::begin(Tracker::Mode wanted) {
+    mode = wanted;
+    worker->post([wanted](Tracker &tracker) { tracker.setMode(wanted); });
+    active = true;
+    connectToSource();
+    setState(DaemonState::Running);
+}
+
+void ScanMatcher::pause() {
+    active = false;
+    source.close();
+    setState(DaemonState::Ready);
+}
+
+void ScanMatcher::connectToSource() {
+    source.close();
+    source.unsubscribe(subscription);
+    const auto connecting = source.connectTo(settings().text("source.address"));
+    if (!connecting) {
+        logError("source", connecting.error().message);
+        return;
+    }
+    subscription =
+        source.subscribe(settings().text("source.topic"), {{"queue", settings().integer("source.queue")}},
+                         [this](const TopicUpdate &update) { takeScan(update); });
+}
+
+void ScanMatcher::takeScan(const TopicUpdate &update) {
+    lastScan = monotonicNow();
+    droppedBySource = update.dropped;
+    auto scan = parseScan(update.data.toObject());
+    if (!scan) {
+        if (badScans++ == 0)
+            logWarning("source", scan.error().message);
+        lastBadScan = scan.error().message;
+        return;
+    }
+    if (!scan->partial)
+        worker->push(scan.take());
+}
+
+ScanMatcher::Outcome ScanMatcher::outcomeOf(Tracker &tracker, const Scan &scan) {
+    const vectorlib::MapBuilder &builder = tracker.builder;
+    const ScanReport &report = builder.report();
+    const vectorlib::Match &match = builder.match();
+    const vectorlib::Twist2D &twist = tracker.motion().twist();
+    Outcome o;
+    o.stamp = scan.stamp;
+    o.outcome = report.outcome;
+    o.counts = tracker.counts();
+    o.pose = toJson(report.pose);
+    o.pose["twist"] = QJsonObject{{"vx", twist.vx}, {"vy", twist.vy}, {"omega", twist.omega}};
+    o.pose["covariance"] = covariance(match);
+    o.pose["outcome"] = toText(report.outcome);
+    o.pose["scan"] = qint64(scan.number);
+
+    QJsonArray pairs;
+    for (const vectorlib::CorrespondencePair &p : match.pairs)
+        pairs.append(QJsonArray{builder.candidates()[size_t(p.fixed)], p.moving});
+    o.match = {{"scan", qint64(scan.number)},
+               {"accepted", match.accepted},
+               {"pairs", pairs},
+               {"reliability", match.reliability},
+               {"ambiguity", match.ambiguity},
+               {"matched_length", match.matchedLength},
+               {"visible_length", match.visibleLength},
+               {"rms", match.rms},
+               {"ms", QJsonObject{{"segment", report.segmentMs},
+                                  {"vectorize", report.vectorizeMs},
+                                  {"match", report.matchMs},
+                                  {"map", report.mapMs}}}};
+    const vectorlib::Transformation2D pose(report.pose);
+    for (const vectorlib::EdgeRaw2D &edge : builder.edges()) {
+        const vectorlib::LineSegment2D<double> s = pose * edge.segment;
+        o.segments.append(QJsonArray{s.begin().x, s.begin().y, s.end().x, s.end().y});
+    }
+    o.changes = takeChanges(tracker.builder.map);
+    return o;
+}
+
+void ScanMatcher::show(const Outcome &o) {
+    counts = o.counts;
+    lostInARow = o.outcome == ScanReport::Outcome::Lost ? lostInARow + 1 : 0;
+    const QJsonObject changes = mirror.apply(o.changes);
+    mirror.addPose({o.stamp, {o.pose["x"].toDouble(), o.pose["y"].toDouble(), o.pose["theta"].toDouble()}});
+    publish("pose", o.pose, o.stamp);
+    publish("match", o.match, o.stamp);
+    publish("segments", o.segments, o.stamp);
+    if (!o.changes.changed.empty() || !o.changes.removed.empty())
+        publish("map", changes, o.stamp);
+}
+
+void ScanMatcher::updateHealth() {
+    const QString address = settings().text("source.address");
+    if (!active)
+        health().set("source", HealthLevel::Ok, "not matching");
+    else if (!source.isConnected())
+        health().set("source", HealthLevel::Failed,
+                     QString("no connection to %1: %2").arg(address, source.lastError()));
+    else if (badScans > 0)
+        health().set("source", HealthLevel::Warn,
+                     QString("refused %1 scans, the last: %2").arg(badScans).arg(lastBadScan));
+    else
+        health().set("source", HealthLevel::Ok, "connected to " + address);
+    const quint64 dropped = droppedBySource + (worker ? worker->dropped() : 0);
+    health().set("queue", dropped ? HealthLevel::Warn : HealthLevel::Ok,
+                 dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
+                 matcherState());
+    health().set("tracking", lostInARow >= 3 ? HealthLevel::Failed : HealthLevel::Ok,
+                 lostInARow > 0 ? QString("lost for %1 scans").arg(lostInARow) : QString("on track"),
+                 {{"lost_in_a_row", lostInARow}});
+}
+
+QJsonObject ScanMatcher::matcherState() const {
+    const double scans = std::max<double>(1, double(counts.scans));
+    return {{"active", active},
+            {"mode", mode == Tracker::Mode::Mapping ? "mapping" : "localization"},
+            {"scans", qint64(counts.scans)},
+            {"matched", qint64(counts.matched)},
+            {"lost", qint64(counts.lost)},
+            {"skipped", qint64(counts.skipped)},
+            {"waiting", qint64(worker ? worker->waiting() : 0)},
+            {"dropped", qint64(worker ? worker->dropped() : 0)},
+            {"dropped_by_source", qint64(droppedBySource)},
+            {"refused", qint64(badScans)},
+            {"ms_per_scan", counts.totalMs / scans},
+            {"map_segments", qint64(mirror.size())}};
+}
+
+} // namespace hermes

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "common/client/Client.h"
+#include "common/daemon/Daemon.h"
+#include "daemons/scanmatcher/MapMirror.h"
+#include "daemons/scanmatcher/Worker.h"
+
+#include <memory>
+
+namespace hermes {
+
+/// The daemon hermes-scanmatcher: takes scans from another daemon's topic, finds the sensor's pose, builds
+/// the vector map. Receives and answers in the main thread; matches in a Worker.
+class ScanMatcher : public Daemon {
+    Q_OBJECT
+public:
+    ScanMatcher();
+
+protected:
+    Result<void> start() override;
+    void stop() override;
+    void settingsChanged(const QStringList &paths) override;
+
+private:
+    /// What the worker's thread hands over after a scan.
+    struct Outcome {
+        QJsonObject pose, match;
+        QJsonArray segments;
+        MapChanges changes;
+        double stamp = 0;
+        TrackerCounts counts;
+        vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
+    };
+
+    void declareSettings();
+    void declareTopics();
+    void declareMatcherCommands();
+    void declareMapCommands();
+    void updateHealth();
+
+    void connectToSource();
+    void takeScan(const TopicUpdate &update);
+    void begin(Tracker::Mode mode);
+    void pause();
+    static Outcome outcomeOf(Tracker &tracker, const Scan &scan);
+    void show(const Outcome &outcome);
+
+    TrackerSettings trackerSettings() const;
+    /// Runs in the worker's thread, then hands the map's changes over.
+    void postMapChange(const std::function<void(Tracker &)> &change, const Reply &reply,
+                       const QJsonValue &answer);
+    void matchTwo(const Call &call, const Reply &reply);
+    Result<QJsonValue> writeMapFile(const QString &path, const QString &format, bool force) const;
+    Result<std::vector<vectorlib::MapSegment>> readMapFile(const QString &path) const;
+    QString absolutePath(const QString &path) const;
+    QJsonObject matcherState() const;
+
+    std::unique_ptr<Worker> worker;
+    Client source;
+    int subscription = 0;
+    bool active = false;
+    Tracker::Mode mode = Tracker::Mode::Mapping;
+    MapMirror mirror;
+    TrackerCounts counts;
+    int lostInARow = 0;
+    quint64 badScans = 0, droppedBySource = 0;
+    double lastScan = 0; // monotonic
+    QString lastBadScan;
+};
+
+} // namespace hermes

@@ -1,0 +1,50 @@
+#include "daemons/scanmatcher/Tracker.h"
+
+namespace hermes {
+
+using vectorlib::ScanReport;
+
+void Tracker::apply(const TrackerSettings &settings) {
+    configured = settings;
+    builder.extract.vectorize.settings.sigma = settings.sigma;
+    vectorlib::CorrespondenceSettings &find = builder.find.settings;
+    find.permitted = {settings.permittedXY, settings.permittedXY, settings.permittedAlpha};
+    find.expectedDeviationXY = settings.expectedDeviationXY;
+    find.expectedDeviationAlpha = settings.expectedDeviationAlpha;
+    find.minMatchedShare = settings.minMatchedShare;
+}
+
+const ScanReport &Tracker::process(Scan &scan) {
+    if (configured.compensateMotion)
+        compensateMotion(scan.points, scan.seconds, model.twist());
+    builder.extract.configure(2 * vectorlib::pi, scan.points.size());
+    const ScanReport &report = builder.process(scan.points, model.predict(scan.stamp));
+    model.update(report.pose, scan.stamp);
+
+    ++total.scans;
+    total.totalMs += report.totalMs();
+    switch (report.outcome) {
+    case ScanReport::Outcome::Matched:
+        ++total.matched;
+        break;
+    case ScanReport::Outcome::Lost:
+        ++total.lost;
+        break;
+    case ScanReport::Outcome::Skipped:
+        ++total.skipped;
+        break;
+    }
+    return report;
+}
+
+void Tracker::place(const vectorlib::Pose2D &pose) {
+    model.reset(pose);
+}
+
+void Tracker::clear() {
+    builder.clear();
+    model.reset({});
+    total = TrackerCounts();
+}
+
+} // namespace hermes

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "daemons/scanmatcher/Tracker.h"
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace hermes {
+
+/// The thread that owns the tracker. Scans wait in a bounded queue that drops its oldest and counts; jobs
+/// (settings, commands) are never dropped and run in order with the scans.
+class Worker {
+public:
+    using Job = std::function<void(Tracker &)>;
+    /// Called in the worker's thread after each scan; the scan has its motion compensated.
+    using Done = std::function<void(Tracker &, const Scan &)>;
+
+    explicit Worker(Done done);
+    /// Finishes what waits, then ends the thread.
+    ~Worker();
+
+    void push(Scan scan);
+    void post(Job job);
+    void setQueueLimit(size_t scans);
+    quint64 dropped() const;
+    size_t waiting() const;
+
+private:
+    struct Item {
+        Scan scan;
+        Job job; // when empty, the scan is meant
+    };
+    void run();
+
+    Done whenDone;
+    Tracker tracker; // used by the thread alone
+    mutable std::mutex mutex;
+    std::condition_variable wake;
+    std::deque<Item> items;
+    size_t scans = 0; // among the items
+    size_t limit = 50;
+    quint64 lost = 0;
+    bool ending = false;
+    std::thread thread;
+};
+
+} // namespace hermes

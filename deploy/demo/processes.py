@@ -1,0 +1,79 @@
+"""Starts daemons as processes of their own and stops them in order, whatever happens to this one."""
+import ctypes
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "docs", "examples"))
+from hermes import Daemon  # noqa: E402
+
+PR_SET_PDEATHSIG = 1
+
+
+def free_port(preferred, kind=socket.SOCK_STREAM):
+    """The preferred port of the loopback address when it is free, else any free one."""
+    for port in (preferred, 0):
+        with socket.socket(socket.AF_INET, kind) as probe:
+            if kind == socket.SOCK_STREAM:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind(("127.0.0.1", port))
+                return probe.getsockname()[1]
+            except OSError:
+                continue
+    raise OSError("no free port on 127.0.0.1")
+
+
+def _die_with_parent():
+    # The children have a session of their own, so that Ctrl-C reaches only this process and it can stop them in order;
+    # should it be killed, the kernel ends them.
+    ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+class Process:
+    """A running daemon, its port and its log file."""
+
+    def __init__(self, binaries, name, port, log_folder, settings):
+        self.name, self.port = name, port
+        self.log_name = os.path.join(log_folder, name + ".log")
+        command = [os.path.join(binaries, "hermes-" + name), "--listen", f"tcp://127.0.0.1:{port}?protocol=json"]
+        for path, value in settings.items():
+            command += ["--set", f"{path}={value}"]
+        with open(self.log_name, "w", encoding="utf-8") as log:
+            self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                                            start_new_session=True, preexec_fn=_die_with_parent)
+
+    def connect(self, limit_s=10.0):
+        """A connection to the daemon, as soon as it answers."""
+        deadline = time.monotonic() + limit_s
+        while True:
+            if self.process.poll() is not None:
+                raise RuntimeError(f"hermes-{self.name} ended with status {self.process.returncode}:\n{self.last_words()}")
+            try:
+                return Daemon(port=self.port, timeout=30)
+            except OSError as error:
+                if time.monotonic() > deadline:
+                    raise RuntimeError(f"hermes-{self.name} does not answer on port {self.port}: {error}") from error
+                time.sleep(0.02)
+
+    def last_words(self):
+        with open(self.log_name, encoding="utf-8", errors="replace") as log:
+            return "".join(log.readlines()[-5:]).rstrip()
+
+    def stop(self):
+        """Asks the daemon to end, then makes it; gives its exit status."""
+        if self.process.poll() is None:
+            try:
+                with Daemon(port=self.port, timeout=2) as daemon:
+                    daemon.call("daemon.shutdown")
+            except OSError:
+                self.process.terminate()
+        for ask in (self.process.terminate, self.process.kill, lambda: None):
+            try:
+                return self.process.wait(3)
+            except subprocess.TimeoutExpired:
+                ask()
+        return self.process.wait()

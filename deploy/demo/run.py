@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""Drives a simulated robot once through a world and lets the daemons build its vector map, or does the same from a log."""
+import argparse
+import json
+import math
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+from processes import Daemon, Process, free_port
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+BINARIES = os.environ.get("HERMES_BIN", os.path.join(ROOT, "build", "release", "bin"))
+
+
+class Listener(threading.Thread):
+    """Collects all messages of a topic."""
+
+    def __init__(self, port, topic, queue):
+        super().__init__(daemon=True)
+        self.messages = []
+        self.dropped = 0
+        self.daemon_connection = Daemon(port=port, timeout=None)
+        self.stream = self.daemon_connection.subscribe(topic, queue=queue)
+        self.start()
+
+    def run(self):
+        try:
+            for message in self.stream:
+                self.dropped = message["dropped"]
+                self.messages.append(message)
+        except (OSError, ValueError):
+            pass  # the daemon has ended
+
+
+class Demo:
+    """The three daemons and one drive."""
+
+    def __init__(self, world, folder, logs):
+        lidar_port = free_port(2368, socket.SOCK_DGRAM)
+        ports = {name: free_port(port) for name, port in
+                 (("simulator", 7490), ("velodynelogger", 7420), ("scanmatcher", 7450))}
+        self.folder = folder
+        self.processes = []
+        try:
+            self.start("scanmatcher", ports, logs, {"source.address": f"127.0.0.1:{ports['velodynelogger']}",
+                                                    "map.folder": folder})
+            self.start("velodynelogger", ports, logs, {"source.port": lidar_port, "record.folder": folder})
+            self.start("simulator", ports, logs, {"world": world, "lidar.port": lidar_port})
+            self.matcher, self.logger, self.simulator = [process.connect() for process in self.processes]
+        except BaseException:
+            self.stop()
+            raise
+
+    def start(self, name, ports, logs, settings):
+        print(f"  starting hermes-{name:<15} port {ports[name]}")
+        self.processes.append(Process(BINARIES, name, ports[name], logs, settings))
+
+    def drive(self):
+        """One drive through the world; gives the estimated poses and the true ones."""
+        start = self.simulator.call("sim.state")["pose"]
+        self.matcher.call("pose.set", x=start["x"], y=start["y"], theta=start["theta"])
+        poses = Listener(self.processes[0].port, "pose", 1000)
+        truth = Listener(self.processes[2].port, "truth", 1000)
+        self.logger.call("record.start", name="recording")
+        self.wait(lambda: poses.messages, "the first scan")
+        self.simulator.call("sim.drive")
+        while True:
+            state = self.simulator.call("sim.state")
+            self.show(state["progress"], poses.messages)
+            if state["finished"]:
+                break
+            time.sleep(0.2)
+        # A few scans more, taken standing still, then the end of the stream.
+        seen = len(poses.messages)
+        self.wait(lambda: len(poses.messages) >= seen + 5, "the last scans")
+        self.recording = self.logger.call("record.stop")
+        self.logger_state = self.logger.call("daemon.status")
+        self.matcher.call("matcher.stop")
+        self.wait(lambda: self.matcher.call("matcher.state")["waiting"] == 0, "the matcher")
+        if sys.stderr.isatty():
+            print(file=sys.stderr)
+        return poses, truth
+
+    @staticmethod
+    def show(progress, messages):
+        if sys.stderr.isatty():
+            bar = "#" * round(30 * progress)
+            pose = messages[-1]["data"]
+            print(f"\r  driving [{bar:<30}] {100 * progress:3.0f} %  {len(messages)} scans  "
+                  f"x {pose['x']:6.2f} m  y {pose['y']:6.2f} m  {math.degrees(pose['theta']):6.1f} deg ",
+                  end="", file=sys.stderr, flush=True)
+
+    @staticmethod
+    def wait(condition, what, limit_s=20.0):
+        deadline = time.monotonic() + limit_s
+        while not condition():
+            if time.monotonic() > deadline:
+                raise RuntimeError(f"waited {limit_s:.0f} s for {what}, which did not come")
+            time.sleep(0.05)
+
+    def save(self):
+        self.matcher.call("map.save", path="map.csv")
+        self.matcher.call("map.export", format="svg", path="map.svg")
+        return self.matcher.call("matcher.state")
+
+    def stop(self):
+        """In order: first the source, then who listens to it."""
+        return {process.name: process.stop() for process in reversed(self.processes)}
+
+
+def true_pose(truth, stamp):
+    """The true pose at a time, interpolated between two messages."""
+    for before, after in zip(truth, truth[1:]):
+        if before["stamp"] <= stamp <= after["stamp"]:
+            k = (stamp - before["stamp"]) / max(1e-9, after["stamp"] - before["stamp"])
+            a, b = before["data"], after["data"]
+            turn = math.remainder(b["theta"] - a["theta"], 2 * math.pi)
+            return a["x"] + k * (b["x"] - a["x"]), a["y"] + k * (b["y"] - a["y"]), a["theta"] + k * turn
+    return None
+
+
+def errors(poses, truth):
+    """Position and heading error of every pose whose time the truth covers: [(metres, degrees)]."""
+    result = []
+    for message in poses:
+        real, pose = true_pose(truth, message["stamp"]), message["data"]
+        if real:
+            turn = math.remainder(pose["theta"] - real[2], 2 * math.pi)
+            result.append((math.hypot(pose["x"] - real[0], pose["y"] - real[1]), abs(math.degrees(turn))))
+    return result
+
+
+def write_tum(path, poses):
+    with open(path, "w", encoding="utf-8") as file:
+        for message in poses:
+            pose = message["data"]
+            half = pose["theta"] / 2
+            file.write(f"{message['stamp']:.6f} {pose['x']:.6f} {pose['y']:.6f} 0 0 0 "
+                       f"{math.sin(half):.9f} {math.cos(half):.9f}\n")
+
+
+def drive(world, folder, logs):
+    """The demo without a log; gives the summary."""
+    begin = time.monotonic()
+    demo = Demo(world, folder, logs)
+    try:
+        poses, truth = demo.drive()
+        state = demo.save()
+    finally:
+        statuses = demo.stop()
+    write_tum(os.path.join(folder, "trajectory.tum"), poses.messages)
+    deviations = errors(poses.messages, truth.messages)
+    if not deviations:
+        raise RuntimeError("no pose of the matcher lies within the time of the simulator's truth")
+    return {
+        "world": os.path.basename(world), "scans": state["scans"], "matched": state["matched"], "lost": state["lost"],
+        "skipped": state["skipped"], "dropped": state["dropped"] + state["dropped_by_source"] + poses.dropped,
+        "ms_per_scan": state["ms_per_scan"], "map_segments": state["map_segments"],
+        "final_error_m": deviations[-1][0], "final_error_deg": deviations[-1][1],
+        "largest_error_m": max(d[0] for d in deviations), "largest_error_deg": max(d[1] for d in deviations),
+        "recording": demo.recording, "exit_status": statuses, "seconds": time.monotonic() - begin}
+
+
+def map_log(log, corrected, folder):
+    """The demo from a log: hermes-vector does the same work without daemons; gives the summary."""
+    command = [os.path.join(BINARIES, "hermes-vector"), "map", log, "--out-map", os.path.join(folder, "map.csv"),
+               "--svg", os.path.join(folder, "map.svg"), "--out-trajectory", os.path.join(folder, "trajectory.tum"),
+               "--summary", os.path.join(folder, "summary.json")] + (["--corrected"] if corrected else [])
+    status = subprocess.run(command, stdin=subprocess.DEVNULL, check=False).returncode
+    if status != 0:
+        sys.exit(status)
+    with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    reference = summary.get("reference", {})
+    return {**summary, "ms_per_scan": sum(summary["ms_per_scan"].values()), "map_segments": summary["segments"],
+            "dropped": 0, "final_error_m": reference.get("final_drift_m"),
+            "final_error_deg": reference.get("final_drift_deg")}
+
+
+def table(summary):
+    rows = [("scans", f"{summary['scans']}"), ("matched", f"{summary['matched']}"), ("lost", f"{summary['lost']}"),
+            ("dropped", f"{summary['dropped']}"), ("time a scan", f"{summary['ms_per_scan']:.2f} ms"),
+            ("map segments", f"{summary['map_segments']}")]
+    if summary.get("final_error_m") is not None:
+        rows.append(("final error", f"{100 * summary['final_error_m']:.1f} cm, {summary['final_error_deg']:.2f} deg"))
+    if summary.get("largest_error_m") is not None:
+        rows.append(("largest error", f"{100 * summary['largest_error_m']:.1f} cm, {summary['largest_error_deg']:.2f} deg"))
+    rows.append(("seconds", f"{summary['seconds']:.1f}"))
+    return "\n".join(f"  {name:<14}{value:>22}" for name, value in rows)
+
+
+def replace(folder, target):
+    """Puts the finished results where those of the last run were."""
+    if os.path.exists(target):
+        shutil.rmtree(target)
+    shutil.move(folder, target)
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="./demo", description="Starts the simulator, the Velodyne logger and the scan matcher as processes of their "
+        "own, drives once through a world, and leaves map, trajectory, recording and summary in demo-out/.")
+    parser.add_argument("--log", metavar="FILE", help="map a CARMEN log (also .gz) or an HDL-32E capture instead")
+    parser.add_argument("--corrected", action="store_true", help="the log's scan poses are a corrected reference")
+    parser.add_argument("--world", default=os.path.join(ROOT, "deploy", "worlds", "pillars.json"), metavar="FILE",
+                        help="world to drive through (pillars)")
+    parser.add_argument("--out", default=os.path.join(ROOT, "demo-out"), metavar="FOLDER",
+                        help="where the results go (demo-out); replaced when it holds earlier results")
+    arguments = parser.parse_args()
+    if os.path.exists(arguments.out) and not os.path.exists(os.path.join(arguments.out, "summary.json")) \
+            and os.listdir(arguments.out):
+        parser.error(f"--out {arguments.out}: holds other things than results of the demo")
+    for name, value in (("--log", arguments.log), ("--world", arguments.world)):
+        if value is not None and not os.path.isfile(value):
+            parser.error(f"{name} {value}: no such file")
+
+    # From here on a signal to end becomes an exception, so that everything is stopped in order.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    with tempfile.TemporaryDirectory(prefix="hermes-demo-") as work:
+        results = os.path.join(work, "results")
+        os.mkdir(results)
+        try:
+            if arguments.log:
+                summary = map_log(os.path.abspath(arguments.log), arguments.corrected, results)
+            else:
+                summary = drive(os.path.abspath(arguments.world), results, work)
+        except KeyboardInterrupt:
+            print("\nInterrupted: all daemons are stopped, nothing was written.", file=sys.stderr)
+            return 130
+        except (RuntimeError, OSError) as error:
+            print(f"\ndemo: {error}", file=sys.stderr)
+            return 1
+        with open(os.path.join(results, "summary.json"), "w", encoding="utf-8") as file:
+            json.dump(summary, file, indent=2)
+            file.write("\n")
+        replace(results, arguments.out)
+    print(table(summary))
+    print(f"  results in {os.path.relpath(arguments.out)}: {', '.join(sorted(os.listdir(arguments.out)))}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
