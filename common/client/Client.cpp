@@ -1,7 +1,6 @@
 #include "common/client/Client.h"
 
 #include <QEventLoop>
-#include <QPointer>
 #include <QTimer>
 
 namespace hermes {
@@ -131,13 +130,8 @@ void Client::sendSubscription(int handle) {
     const Subscription &subscription = subscriptions.at(handle);
     QJsonObject params = subscription.options;
     params.insert(QStringLiteral("topic"), subscription.topic);
-    ++subscribing;
     call(QStringLiteral("topics.subscribe"), params, [this, handle](const Result<QJsonValue> &result) {
-        --subscribing;
         const qint64 id = result ? qint64((*result)[QStringLiteral("subscription")].toDouble()) : 0;
-        const auto messages = early.take(id);
-        if (subscribing == 0)
-            early.clear();
         const auto found = subscriptions.find(handle);
         if (found == subscriptions.end()) {
             if (result) // ended here before the daemon answered
@@ -151,14 +145,11 @@ void Client::sendSubscription(int handle) {
             return;
         }
         found->second.id = id;
-        for (const QJsonObject &message : messages)
-            deliver(handle, message);
     });
 }
 
 void Client::onOpened() {
     failure.clear();
-    const QPointer<Client> alive(this);
     for (const auto &subscription : subscriptions)
         sendSubscription(subscription.first);
     Q_EMIT connected();
@@ -204,8 +195,6 @@ void Client::onNotification(const RpcRequest &notification) {
         if (subscription.second.id == id)
             return deliver(subscription.first, params);
     }
-    if (subscribing > 0)
-        early[id].append(params); // a snapshot overtakes the reply
 }
 
 void Client::deliver(int handle, const QJsonObject &params) {

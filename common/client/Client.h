@@ -92,8 +92,6 @@ private:
     QHash<qint64, Callback> waiting;
     int lastHandle = 0;
     std::map<int, Subscription> subscriptions;
-    QHash<qint64, QVector<QJsonObject>> early; // topic messages that came before the reply with their id
-    int subscribing = 0;                       // requests for subscriptions that wait for their reply
 };
 
 } // namespace hermes

@@ -123,7 +123,7 @@ void Server::accept(Interface *peer, const QString &protocol) {
 void Server::remove(Session *session, const QString &reason) {
     if (sessions.remove(session->id()) == 0)
         return;
-    logInfo(source, QStringLiteral("client %1 gone: %2").arg(session->name(), reason));
+    logDebug(source, QStringLiteral("client %1 gone: %2").arg(session->name(), reason));
     addSession(past, *session);
     topics.forget(&session->topics());
     session->deleteLater();

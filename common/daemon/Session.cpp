@@ -46,7 +46,12 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
 void Session::checkIdle() {
     const bool waitsForTopics = !queue.isEmpty() && channel->interface().bytesToWrite() == 0;
     if (limits.idle_s > 0 && !waitsForTopics && monotonicNow() - lastSign > limits.idle_s)
-        close(QStringLiteral("no sign of life for %1 s").arg(limits.idle_s));
+        expel(QStringLiteral("no sign of life for %1 s").arg(limits.idle_s));
+}
+
+void Session::expel(const QString &reason) {
+    logWarning(QStringLiteral("server"), QStringLiteral("closing client %1: %2").arg(name(), reason));
+    close(reason);
 }
 
 void Session::refuse(const RpcError &error) {
@@ -123,8 +128,7 @@ void Session::send(const QJsonValue &reply) {
     if (carrier.bytesToWrite() > limits.replyBytes)
         carrier.flush();
     if (carrier.bytesToWrite() > limits.replyBytes) {
-        return close(QStringLiteral("%1 does not read its replies: %2 bytes are unsent (limits.reply_bytes)")
-                         .arg(name())
+        return expel(QStringLiteral("does not read its replies: %1 bytes are unsent (limits.reply_bytes)")
                          .arg(carrier.bytesToWrite()));
     }
     const auto sent = channel->send(reply);

@@ -40,6 +40,8 @@ public:
     /// Closes it when it has been silent for too long.
     void checkIdle();
     void close(const QString &reason) { channel->close(reason); }
+    /// The same, with the reason in the log.
+    void expel(const QString &reason);
     /// Sends an error that answers no request, as to a client that may not stay.
     void refuse(const RpcError &error);
 

@@ -35,12 +35,18 @@ Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions
     queue->add(id, topic, options);
     if (!entry->queues.contains(queue))
         entry->queues.append(queue);
-    if (entry->topic.snapshot()) {
-        const QJsonValue state = entry->topic.snapshot()();
-        if (!state.isUndefined())
-            queue->offer({topic, entry->seq, stampNow(), state}, id);
+    if (entry->topic.snapshot()) { // queued: it follows the reply that tells the id
+        QMetaObject::invokeMethod(
+            queue, [this, topic, id, queue] { sendSnapshot(topic, id, queue); }, Qt::QueuedConnection);
     }
     return id;
+}
+
+void TopicHub::sendSnapshot(const QString &topic, quint64 id, TopicQueue *queue) const {
+    const Entry &entry = *topics.constFind(topic);
+    const QJsonValue state = entry.topic.snapshot()();
+    if (!state.isUndefined())
+        queue->offer({topic, entry.seq, stampNow(), state}, id);
 }
 
 bool TopicHub::unsubscribe(quint64 id, TopicQueue *queue) {

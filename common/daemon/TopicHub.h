@@ -26,7 +26,7 @@ public:
     /// an error in the log.
     void publish(const QString &topic, const QJsonValue &data, double stamp);
 
-    /// The id of the new subscription, or NoSuchTopic. A topic with a snapshot sends it at once.
+    /// The id of the new subscription, or NoSuchTopic. A topic with a snapshot sends it next.
     Result<quint64> subscribe(const QString &topic, const SubscribeOptions &options, TopicQueue *queue);
     bool unsubscribe(quint64 id, TopicQueue *queue);
     /// The client has gone.
@@ -40,6 +40,8 @@ private:
         quint64 seq;
         QVector<TopicQueue *> queues;
     };
+
+    void sendSnapshot(const QString &topic, quint64 id, TopicQueue *queue) const;
 
     QMap<QString, Entry> topics;
     quint64 lastId = 0;

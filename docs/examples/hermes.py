@@ -26,7 +26,7 @@ class Daemon:
         self.socket = socket.create_connection((host, port), timeout)
         self.lines = self.socket.makefile("r", encoding="utf-8")
         self.ids = itertools.count(1)
-        self.topics = collections.deque()  # messages that came while a call waited for its reply
+        self.topics = collections.defaultdict(collections.deque)  # messages not yet asked for, by subscription
 
     def __enter__(self):
         return self
@@ -44,9 +44,7 @@ class Daemon:
         self.socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
         while True:
             message = self._receive()
-            if message.get("method") == "topic":
-                self.topics.append(message["params"])
-            elif message.get("id") == request["id"]:
+            if message.get("id") == request["id"]:
                 if "error" in message:
                     raise DaemonError(message["error"])
                 return message["result"]
@@ -54,18 +52,19 @@ class Daemon:
     def subscribe(self, topic, **options):
         """Yields the topic's messages {seq, stamp, dropped, data, ...} as they come, without end."""
         subscription = self.call("topics.subscribe", topic=topic, **options)["subscription"]
-        return (message for message in self._messages() if message["subscription"] == subscription)
+        return self._messages(self.topics[subscription])
 
-    def _messages(self):
+    def _messages(self, queue):
         while True:
-            while self.topics:
-                yield self.topics.popleft()
-            message = self._receive()
-            if message.get("method") == "topic":
-                yield message["params"]
+            while not queue:
+                self._receive()
+            yield queue.popleft()
 
     def _receive(self):
         line = self.lines.readline()
         if not line:
             raise ConnectionError("the daemon closed the connection")
-        return json.loads(line)
+        message = json.loads(line)
+        if message.get("method") == "topic":
+            self.topics[message["params"]["subscription"]].append(message["params"])
+        return message

@@ -1,0 +1,83 @@
+#include "gui/hermesctl/Arguments.h"
+
+#include <cmath>
+
+namespace hermes {
+namespace {
+
+Result<double> positive(const QString &option, const QString &text) {
+    bool ok = false;
+    const double value = text.toDouble(&ok);
+    if (!ok || !std::isfinite(value) || value <= 0 || value > 1e9)
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("option %1 is \"%2\", expected a number above 0").arg(option, text));
+    return value;
+}
+
+bool *flagOf(Arguments &arguments, const QString &option) {
+    if (option == QStringLiteral("--csv"))
+        return &arguments.csv;
+    if (option == QStringLiteral("--json"))
+        return &arguments.json;
+    if (option == QStringLiteral("--follow"))
+        return &arguments.follow;
+    if (option == QStringLiteral("--help") || option == QStringLiteral("-h"))
+        return &arguments.help;
+    return option == QStringLiteral("--version") ? &arguments.version : nullptr;
+}
+
+Result<void> takeNumber(Arguments &arguments, const QString &option, const QString &text) {
+    const auto value = positive(option, text);
+    if (!value)
+        return value.error();
+    if (option == QStringLiteral("--rate"))
+        arguments.rate_hz = *value;
+    else if (option == QStringLiteral("--timeout"))
+        arguments.timeout = std::chrono::milliseconds(int(std::min(*value, 1e6) * 1000));
+    else if (*value != std::floor(*value))
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("option --count is %1, expected a whole number").arg(text));
+    else
+        arguments.count = int(*value);
+    return {};
+}
+
+} // namespace
+
+Result<Arguments> Arguments::parse(const QStringList &list) {
+    const QStringList numbers{QStringLiteral("--rate"), QStringLiteral("--timeout"),
+                              QStringLiteral("--count")};
+    Arguments result;
+    for (int i = 0; i < list.size(); ++i) {
+        const QString &word = list.at(i);
+        if (!word.startsWith(QLatin1Char('-'))) {
+            if (result.command.isEmpty())
+                result.command = word;
+            else
+                result.words.append(word);
+            continue;
+        }
+        const QString option = word.section(QLatin1Char('='), 0, 0);
+        bool *const flag = flagOf(result, word);
+        if (flag) {
+            *flag = true;
+            continue;
+        }
+        if (!numbers.contains(option) && option != QStringLiteral("--host"))
+            return Error(ErrorCode::InvalidParams, QStringLiteral("unknown option %1").arg(word));
+        const bool inOne = word.contains(QLatin1Char('='));
+        if (!inOne && i + 1 == list.size())
+            return Error(ErrorCode::InvalidParams, QStringLiteral("option %1 needs a value").arg(option));
+        const QString value = inOne ? word.section(QLatin1Char('='), 1) : list.at(++i);
+        if (option == QStringLiteral("--host")) {
+            result.host = value;
+            continue;
+        }
+        const auto taken = takeNumber(result, option, value);
+        if (!taken)
+            return taken.error();
+    }
+    return result;
+}
+
+} // namespace hermes

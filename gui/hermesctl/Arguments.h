@@ -1,0 +1,28 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <QStringList>
+#include <chrono>
+
+namespace hermes {
+
+/// The command line of hermesctl.
+struct Arguments {
+    QString command;
+    QStringList words; ///< what follows the command, options taken out
+    QString host = QStringLiteral("127.0.0.1");
+    std::chrono::milliseconds timeout{5000};
+    double rate_hz = 0; ///< 0: every message
+    int count = 0;      ///< 0: without end
+    bool csv = false;
+    bool json = false;
+    bool follow = false;
+    bool help = false;
+    bool version = false;
+
+    /// arguments without the program's name. Error: a sentence that names the option.
+    static Result<Arguments> parse(const QStringList &arguments);
+};
+
+} // namespace hermes

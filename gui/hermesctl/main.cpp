@@ -1,0 +1,119 @@
+#include "common/Project.h"
+#include "gui/hermesctl/Commands.h"
+#include "protocol/jsonrpc/JsonText.h"
+
+#include <QCoreApplication>
+#include <cstdio>
+
+using namespace hermes;
+
+namespace {
+
+const char *const helpText = R"(Usage: hermesctl [OPTION]... COMMAND ...
+
+Speaks to the daemons of a robot.
+
+  list                           the daemons that answer at their default ports
+  discover D                     the commands and topics of a daemon (--json: its OpenRPC document)
+  call D METHOD [NAME=VALUE]...  calls a command and prints the result; VALUE is JSON, else a string
+  get D [PATH]                   all settings, or the value at a path
+  set D PATH=VALUE...            changes settings: all of them, or none when one is wrong
+  watch D TOPIC                  prints the messages of a topic, one JSON object a line
+  log D                          the last records of the log (--count N; --follow: new ones too)
+  doc D                          the reference of a daemon in Markdown
+
+D is the name of a daemon (at its default port), HOST:PORT, or a URL.
+
+  --host HOST    where daemons given by name run (127.0.0.1)
+  --timeout S    how long to wait for a connection and for a reply (5)
+  --rate HZ      watch: at most so many messages a second
+  --count N      watch: end after N messages; log: the last N records (100)
+  --csv          watch: CSV instead of JSON
+  --json         discover: the whole description as JSON
+  --follow       log: go on with new records
+  --help, --version
+
+Exit status: 0 success, 2 wrong usage, 1 any other failure.
+
+Examples:
+  hermesctl call scanmatcher daemon.status
+  hermesctl set velodynelogger limits.clients=20
+  hermesctl watch scanmatcher pose --rate 5 --csv > pose.csv
+)";
+
+struct Entry {
+    const char *name;
+    int leastWords;
+    int mostWords;
+    const char *usage;
+    DaemonCommand run;
+};
+
+constexpr int any = 1000000;
+
+const Entry commands[] = {
+    {"discover", 1, 1, "discover D", discover},
+    {"call", 2, any, "call D METHOD [NAME=VALUE]...", call},
+    {"get", 1, 2, "get D [PATH]", getSettings},
+    {"set", 2, any, "set D PATH=VALUE...", setSettings},
+    {"watch", 2, 2, "watch D TOPIC [--rate HZ] [--count N] [--csv]", watch},
+    {"log", 1, 1, "log D [--count N] [--follow]", showLog},
+    {"doc", 1, 1, "doc D", document},
+};
+
+int usageError(const QString &text) {
+    std::fprintf(stderr, "hermesctl: %s\nhermesctl --help tells what there is\n", qPrintable(text));
+    return 2;
+}
+
+int finish(const Result<void> &result) {
+    if (result)
+        return 0;
+    const Error &error = result.error();
+    std::fprintf(stderr, "hermesctl: %s (%d)\n", qPrintable(error.message), error.code);
+    if (!error.data.isUndefined())
+        std::fprintf(stderr, "%s\n", compactJson(error.data).constData());
+    return 1;
+}
+
+int runDaemonCommand(const Entry &entry, const Arguments &arguments) {
+    if (arguments.words.size() < entry.leastWords || arguments.words.size() > entry.mostWords)
+        return usageError(QStringLiteral("usage: hermesctl %1").arg(QLatin1String(entry.usage)));
+    const bool assigns = entry.run == call || entry.run == setSettings;
+    for (const QString &word : arguments.words.mid(assigns ? entry.run == call ? 2 : 1 : any)) {
+        if (word.indexOf(QLatin1Char('=')) <= 0)
+            return usageError(QStringLiteral("\"%1\": expected NAME=VALUE").arg(word));
+    }
+    const auto address = resolveDaemon(arguments.words.first(), arguments.host);
+    if (!address)
+        return usageError(address.error().message);
+    Client client;
+    const auto connection = connectOnce(client, *address, arguments.timeout);
+    if (!connection)
+        return connection.error().is(ErrorCode::InvalidParams) ? usageError(connection.error().message)
+                                                               : finish(connection);
+    return finish(entry.run(client, arguments));
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+    QCoreApplication application(argc, argv);
+    const auto arguments = Arguments::parse(QCoreApplication::arguments().mid(1));
+    if (!arguments)
+        return usageError(arguments.error().message);
+    if (arguments->help)
+        return std::fputs(helpText, stdout) < 0;
+    if (arguments->version)
+        return std::printf("hermesctl %s\n", qPrintable(projectVersion())) < 0;
+    if (arguments->command.isEmpty())
+        return usageError(QStringLiteral("a command is missing"));
+    if (arguments->command == QStringLiteral("list"))
+        return arguments->words.isEmpty() ? finish(listDaemons(*arguments))
+                                          : usageError(QStringLiteral("usage: hermesctl list"));
+    for (const Entry &entry : commands) {
+        if (arguments->command == QLatin1String(entry.name))
+            return runDaemonCommand(entry, *arguments);
+    }
+    return usageError(QStringLiteral("unknown command \"%1\"").arg(arguments->command));
+}
