@@ -73,6 +73,7 @@ int Daemon::run(const QStringList &arguments) {
         logInfo(self.name, name + QStringLiteral(" received"));
         shutDown();
     });
+    connect(this, &Daemon::finished, this, [](int status) { QCoreApplication::exit(status); });
     const auto launching = launch();
     if (!launching) {
         print(stderr, QStringLiteral("hermes-%1: %2\n").arg(self.name, launching.error().message));
@@ -179,7 +180,7 @@ void Daemon::shutDown(int status) {
     stop();
     logInfo(self.name, QStringLiteral("stopped"));
     channels.close();
-    QCoreApplication::exit(status);
+    Q_EMIT finished(status);
 }
 
 DaemonState Daemon::state() const {

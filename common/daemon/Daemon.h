@@ -43,8 +43,7 @@ public:
     int run(const QStringList &arguments);
 
     /// The parts of run(), for tests in one process. prepare() reads the command line: an exit status when
-    /// there is nothing to run. launch() listens and starts. shutDown() ends in order, then the event loop
-    /// with status.
+    /// there is nothing to run. launch() listens and starts. shutDown() ends in order, then emits finished().
     std::optional<int> prepare(const QStringList &arguments);
     Result<void> launch();
     void shutDown(int status = 0);
@@ -68,6 +67,8 @@ public:
 Q_SIGNALS:
     /// A client has gone; Call::client told who it was.
     void clientGone(quint64 client);
+    /// Everything has ended in order; status is for the program to exit with.
+    void finished(int status);
 
 protected:
     // For the constructor of a daemon.

@@ -253,13 +253,12 @@ ScanMatcher::Outcome ScanMatcher::outcomeOf(Tracker &tracker, const Scan &scan) 
 void ScanMatcher::show(const Outcome &o) {
     counts = o.counts;
     lostInARow = o.outcome == ScanReport::Outcome::Lost ? lostInARow + 1 : 0;
-    const QJsonObject changes = mirror.apply(o.changes);
     mirror.addPose({o.stamp, {o.pose["x"].toDouble(), o.pose["y"].toDouble(), o.pose["theta"].toDouble()}});
     publish("pose", o.pose, o.stamp);
     publish("match", o.match, o.stamp);
     publish("segments", o.segments, o.stamp);
     if (!o.changes.changed.empty() || !o.changes.removed.empty())
-        publish("map", changes, o.stamp);
+        publish("map", mirror.apply(o.changes), o.stamp);
 }
 
 void ScanMatcher::updateHealth() {

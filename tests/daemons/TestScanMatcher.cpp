@@ -1,0 +1,319 @@
+#include "common/client/Client.h"
+#include "daemons/scanmatcher/ScanMatcher.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <cmath>
+#include <future>
+#include <limits>
+
+using namespace hermes;
+
+namespace {
+
+// A logger that publishes what a test tells it.
+class ScanSource : public Daemon {
+public:
+    ScanSource()
+        : Daemon({"scansource", "Scan source", "Publishes the scans of a test"}) {
+        addTopic(Topic("scan2d", "Scans"));
+    }
+    using Daemon::publish;
+};
+
+// What a scanner without noise sees from a pose in a room of 8 m x 6 m with a niche.
+QJsonObject roomScan(const vectorlib::Pose2D &pose, double stamp) {
+    const std::vector<vectorlib::LineSegment2D<double>> walls{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},
+                                                              {{4, 3}, {-1, 3}},   {{-1, 3}, {-1, 2}},
+                                                              {{-1, 2}, {-4, 2}},  {{-4, 2}, {-4, -3}}};
+    QJsonArray x, y;
+    for (int i = 0; i < 1000; ++i) {
+        const double angle = 2 * vectorlib::pi * i / 1000;
+        const vectorlib::Vector2D<double> d(std::cos(pose.theta + angle), std::sin(pose.theta + angle)),
+            from(pose.x, pose.y);
+        double range = 1e9;
+        for (const auto &wall : walls) {
+            const double across = d.cross(wall.direction());
+            const double r = (wall.begin() - from).cross(wall.direction()) / across;
+            const double t = wall.along(from + d * r);
+            if (std::abs(across) > 1e-9 && r > 0 && t >= -1e-9 && t <= wall.length() + 1e-9)
+                range = std::min(range, r);
+        }
+        x.append(range * std::cos(angle));
+        y.append(range * std::sin(angle));
+    }
+    return {{"stamp", stamp}, {"turn", std::round(10 * stamp)}, {"x", x}, {"y", y}};
+}
+
+vectorlib::Pose2D onTheWay(int i) {
+    return {-1.5 + 0.05 * i, -0.5 + 0.02 * i, 0.03 * i};
+}
+
+} // namespace
+
+class TestScanMatcher : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void parsesScans_data();
+    void parsesScans();
+    void tracksAndMaps();
+    void savedMapLoadsTheSame();
+    void refusesToOverwriteAndNamesThePath();
+    void loadOfABadFileNamesTheLine();
+    void localizationLeavesTheMapAlone();
+    void refusedScansAreCountedAndShown();
+    void lossOfTheSourceIsShownAndMended();
+    void matchesTwoScans();
+    void mapTopicBeginsWithTheFullMap();
+    void queueDropsItsOldestAndCounts();
+
+private:
+    QJsonObject call(const QString &method, const QJsonObject &params = {});
+    Error failure(const QString &method, const QJsonObject &params);
+    void drive(int from, int to);
+    void startSource(quint16 port);
+    QJsonObject healthItem(const QString &name);
+
+    std::unique_ptr<QTemporaryDir> folder;
+    std::unique_ptr<ScanSource> source;
+    std::unique_ptr<ScanMatcher> matcher;
+    std::unique_ptr<Client> client;
+    quint16 sourcePort = 0;
+};
+
+void TestScanMatcher::startSource(quint16 port) {
+    source = std::make_unique<ScanSource>();
+    QVERIFY(!source->prepare({"scansource", "--listen", QString("tcp://127.0.0.1:%1").arg(port), "--set",
+                              "limits.topic_bytes=100000000"}));
+    const auto launched = source->launch();
+    QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
+    sourcePort = quint16(QUrl(source->server().addresses().value(0)).port());
+}
+
+void TestScanMatcher::init() {
+    folder = std::make_unique<QTemporaryDir>();
+    startSource(0);
+    matcher = std::make_unique<ScanMatcher>();
+    QVERIFY(!matcher->prepare({"scanmatcher", "--listen", "tcp://127.0.0.1:0", "--set",
+                               QString("source.address=127.0.0.1:%1").arg(sourcePort), "--set",
+                               "map.folder=" + folder->path()}));
+    QVERIFY(matcher->launch().ok());
+    client = std::make_unique<Client>();
+    QVERIFY(client->connectTo(matcher->server().addresses().value(0)).ok());
+    QVERIFY(client->waitConnected().ok());
+    QTRY_VERIFY(source->hasSubscribers("scan2d"));
+}
+
+void TestScanMatcher::cleanup() {
+    client.reset();
+    matcher->shutDown();
+    matcher.reset();
+    if (source)
+        source->shutDown();
+    source.reset();
+}
+
+QJsonObject TestScanMatcher::call(const QString &method, const QJsonObject &params) {
+    const auto result = client->callAndWait(method, params);
+    if (!result)
+        qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
+    return result ? result->toObject() : QJsonObject{{"failed", result.error().message}};
+}
+
+Error TestScanMatcher::failure(const QString &method, const QJsonObject &params) {
+    const auto result = client->callAndWait(method, params);
+    return result ? Error(ErrorCode::InternalError, "succeeded, though it should not") : result.error();
+}
+
+QJsonObject TestScanMatcher::healthItem(const QString &name) {
+    for (const QJsonValue &item : call("daemon.status")["health"].toArray())
+        if (item.toObject()["name"] == name)
+            return item.toObject();
+    return {};
+}
+
+void TestScanMatcher::drive(int from, int to) {
+    for (int i = from; i < to; ++i)
+        source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
+    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
+}
+
+void TestScanMatcher::parsesScans_data() {
+    QTest::addColumn<QJsonObject>("data");
+    QTest::addColumn<QString>("error");
+    const QJsonArray one{1.0}, two{1.0, 2.0};
+    QTest::newRow("good") << QJsonObject{{"stamp", 1}, {"x", two}, {"y", two}, {"t", two}} << "";
+    QTest::newRow("no points") << QJsonObject{{"stamp", 1}, {"x", QJsonArray()}, {"y", QJsonArray()}} << "";
+    QTest::newRow("no stamp") << QJsonObject{{"x", two}, {"y", two}} << "stamp";
+    QTest::newRow("no x") << QJsonObject{{"stamp", 1}, {"y", two}} << "member x: found nothing";
+    QTest::newRow("fewer y") << QJsonObject{{"stamp", 1}, {"x", two}, {"y", one}}
+                             << "found 1 numbers, expected 2";
+    QTest::newRow("null in x") << QJsonObject{{"stamp", 1},
+                                              {"x", QJsonArray{1, QJsonValue::Null}},
+                                              {"y", two}}
+                               << "element 1";
+    QTest::newRow("too large") << QJsonObject{{"stamp", 1}, {"x", QJsonArray{1, 1e300}}, {"y", two}}
+                               << "element 1";
+    QTest::newRow("t of another size")
+        << QJsonObject{{"stamp", 1}, {"x", two}, {"y", two}, {"t", one}} << "member t";
+}
+
+void TestScanMatcher::parsesScans() {
+    QFETCH(QJsonObject, data);
+    QFETCH(QString, error);
+    const auto scan = parseScan(data);
+    QCOMPARE(scan.ok(), error.isEmpty());
+    if (!scan)
+        QVERIFY2(scan.error().message.contains(error), qPrintable(scan.error().message));
+}
+
+void TestScanMatcher::tracksAndMaps() {
+    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+    QJsonObject last;
+    client->subscribe("pose", {{"queue", 100}},
+                      [&](const TopicUpdate &update) { last = update.data.toObject(); });
+    QTRY_VERIFY(matcher->hasSubscribers("pose"));
+    drive(0, 40);
+    QTRY_COMPARE(last["scan"].toInt(), 39);
+    const vectorlib::Pose2D truth = onTheWay(39);
+    QVERIFY(std::hypot(last["x"].toDouble() - truth.x, last["y"].toDouble() - truth.y) < 0.01);
+    QVERIFY(std::abs(last["theta"].toDouble() - truth.theta) < 0.005);
+    QCOMPARE(last["outcome"].toString(), QString("matched"));
+    QCOMPARE(last["covariance"].toArray().size(), 9);
+    QVERIFY(std::abs(last["twist"].toObject()["omega"].toDouble() - 0.3) < 0.05);
+    const QJsonObject state = call("matcher.state");
+    QCOMPARE(state["matched"].toInt(), 40);
+    QCOMPARE(state["dropped"].toInt(), 0);
+    QCOMPARE(call("map.get")["edges"].toArray().size(), 6);
+    QCOMPARE(call("daemon.status")["state"].toString(), QString("running"));
+}
+
+void TestScanMatcher::savedMapLoadsTheSame() {
+    drive(0, 10);
+    const QJsonObject saved = call("map.save", {{"path", "room.csv"}});
+    QCOMPARE(saved["path"].toString(), folder->filePath("room.csv"));
+    const QJsonArray before = call("map.get")["edges"].toArray();
+    call("map.clear");
+    QCOMPARE(call("map.get")["size"].toInt(), 0);
+    QCOMPARE(call("map.load", {{"path", "room.csv"}})["segments"].toInt(), before.size());
+    const QJsonArray after = call("map.get")["edges"].toArray();
+    QCOMPARE(after.size(), before.size());
+    for (int i = 0; i < after.size(); ++i)
+        for (const char *member : {"x1", "y1", "x2", "y2", "n", "sigma", "observations"})
+            QCOMPARE(after[i].toObject()[member], before[i].toObject()[member]);
+    for (const char *format : {"svg", "geojson", "dxf"})
+        QVERIFY(
+            call("map.export", {{"format", format}, {"path", QString("room.") + format}})["bytes"].toInt() >
+            500);
+}
+
+void TestScanMatcher::refusesToOverwriteAndNamesThePath() {
+    drive(0, 3);
+    call("map.save", {{"path", "room.csv"}});
+    const Error exists = failure("map.save", {{"path", "room.csv"}});
+    QVERIFY(exists.is(ErrorCode::InputOutput));
+    QCOMPARE(exists.data.toObject()["path"].toString(), folder->filePath("room.csv"));
+    QVERIFY(call("map.save", {{"path", "room.csv"}, {"force", true}}).contains("bytes"));
+    const Error nowhere = failure("map.save", {{"path", "no/such/folder/room.csv"}});
+    QVERIFY(nowhere.is(ErrorCode::InputOutput));
+    QVERIFY(nowhere.data.toObject()["path"].toString().endsWith("no/such/folder/room.csv"));
+    QCOMPARE(QDir(folder->path()).entryList(QDir::Files), QStringList("room.csv"));
+}
+
+void TestScanMatcher::loadOfABadFileNamesTheLine() {
+    drive(0, 3);
+    QFile file(folder->filePath("bad.csv"));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write("id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n0,1,nan,2,2,5,0.1,1,0,0,0,0,0\n");
+    file.close();
+    const Error error = failure("map.load", {{"path", "bad.csv"}});
+    QVERIFY2(error.message.contains("bad.csv:2"), qPrintable(error.message));
+    QVERIFY(call("map.get")["size"].toInt() > 0); // the old map stays
+    QVERIFY(failure("map.load", {{"path", "none.csv"}}).is(ErrorCode::InputOutput));
+}
+
+void TestScanMatcher::localizationLeavesTheMapAlone() {
+    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+    drive(0, 10);
+    const int revision = call("map.get")["revision"].toInt();
+    call("matcher.start", {{"mode", "localization"}});
+    QTRY_VERIFY(source->hasSubscribers("scan2d"));
+    drive(10, 20);
+    QCOMPARE(call("map.get")["revision"].toInt(), revision);
+    QCOMPARE(call("matcher.state")["matched"].toInt(), 20);
+    for (const QJsonValue &edge : call("map.get")["edges"].toArray())
+        QVERIFY(edge.toObject()["observations"].toInt() <= 10);
+}
+
+void TestScanMatcher::refusedScansAreCountedAndShown() {
+    source->publish("scan2d", QJsonObject{{"stamp", 1}, {"x", QJsonArray{1}}, {"y", QJsonArray()}}, 1);
+    source->publish("scan2d", "nonsense", 1);
+    QTRY_COMPARE(call("matcher.state")["refused"].toInt(), 2);
+    QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
+    drive(0, 3); // and goes on
+}
+
+void TestScanMatcher::lossOfTheSourceIsShownAndMended() {
+    drive(0, 3);
+    const quint16 port = sourcePort;
+    source->shutDown();
+    source.reset();
+    QTRY_COMPARE(healthItem("source")["level"].toString(), QString("error"));
+    QVERIFY(healthItem("source")["message"].toString().contains(QString::number(port)));
+    startSource(port);
+    QTRY_VERIFY(source->hasSubscribers("scan2d"));
+    drive(3, 6);
+    QCOMPARE(healthItem("source")["level"].toString(), QString("ok"));
+}
+
+void TestScanMatcher::matchesTwoScans() {
+    QJsonObject reference = roomScan({0, 0, 0}, 0), current = roomScan({0.4, -0.3, 0.2}, 0);
+    const QJsonObject match = call("matcher.match", {{"reference", reference}, {"current", current}});
+    QVERIFY(match["accepted"].toBool());
+    QVERIFY(std::abs(match["x"].toDouble() - 0.4) < 0.01 && std::abs(match["y"].toDouble() + 0.3) < 0.01);
+    QVERIFY(std::abs(match["theta"].toDouble() - 0.2) < 0.005);
+    QVERIFY(match["reliability"].toDouble() > 0.9);
+    current["y"] = QJsonArray{1};
+    const Error error = failure("matcher.match", {{"reference", reference}, {"current", current}});
+    QVERIFY(error.is(ErrorCode::InvalidParams));
+    QVERIFY2(error.message.startsWith("current:"), qPrintable(error.message));
+}
+
+void TestScanMatcher::mapTopicBeginsWithTheFullMap() {
+    drive(0, 5);
+    QVector<QJsonObject> updates;
+    client->subscribe("map", {{"queue", 100}},
+                      [&](const TopicUpdate &update) { updates.append(update.data.toObject()); });
+    QTRY_COMPARE(updates.size(), 1);
+    QVERIFY(updates[0]["cleared"].toBool());
+    QCOMPARE(updates[0]["edges"].toArray().size(), updates[0]["size"].toInt());
+    drive(5, 6);
+    QTRY_COMPARE(updates.size(), 2);
+    QCOMPARE(updates[1]["revision"].toInt(), updates[0]["revision"].toInt() + 1);
+    QVERIFY(!updates[1]["cleared"].toBool());
+}
+
+void TestScanMatcher::queueDropsItsOldestAndCounts() {
+    std::promise<void> release;
+    std::vector<quint64> seen;
+    {
+        Worker worker([&](Tracker &, const Scan &scan) { seen.push_back(scan.number); });
+        worker.setQueueLimit(3);
+        worker.post([&](Tracker &) { release.get_future().wait(); });
+        for (quint64 i = 0; i < 10; ++i) {
+            Scan scan;
+            scan.number = i;
+            worker.push(scan);
+        }
+        QCOMPARE(worker.dropped(), quint64(7));
+        QCOMPARE(worker.waiting(), size_t(3));
+        release.set_value();
+    } // finishes what waits
+    QCOMPARE(seen, (std::vector<quint64>{7, 8, 9}));
+}
+
+QTEST_GUILESS_MAIN(TestScanMatcher)
+#include "TestScanMatcher.moc"
