@@ -138,4 +138,4 @@ void TestWorld::pillarsCanBeDriven() {
 }
 
 QTEST_APPLESS_MAIN(TestWorld)
-#include "test_world.moc"
+#include "TestWorld.moc"

@@ -350,4 +350,4 @@ void TestCapture::realPositionPacketHasAWrongLength() {
 }
 
 QTEST_APPLESS_MAIN(TestCapture)
-#include "test_capture.moc"
+#include "TestCapture.moc"

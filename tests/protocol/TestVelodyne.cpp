@@ -372,4 +372,4 @@ void TestVelodyne::randomBytesDoNoHarm() {
 }
 
 QTEST_APPLESS_MAIN(TestVelodyne)
-#include "test_velodyne.moc"
+#include "TestVelodyne.moc"

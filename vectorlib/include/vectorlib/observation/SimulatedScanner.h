@@ -1,0 +1,76 @@
+#pragma once
+
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/observation/Ray.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace vectorlib {
+
+/// A planar scanner in a world of segments: rays at even steps, Gaussian noise of the range, outliers. A ray
+/// is stopped by either side of an edge. The same seed gives the same scans. Owns its buffers.
+template <typename Scalar = float>
+class SimulatedScanner {
+public:
+    int rays = 720;              ///< over the field of view
+    double fieldOfView = 2 * pi; ///< radians, half of it to each side of the heading
+    double sigma = 0.01;         ///< standard deviation of the range; metres
+    double outliers = 0;         ///< share of rays, 0 to 1, that stop anywhere before the wall
+    double minRange = 0.05;      ///< metres; nearer walls give no point
+    double maxRange = 100;       ///< metres; farther walls give no point
+
+    explicit SimulatedScanner(std::uint64_t seed = 1)
+        : m_random(seed) {}
+
+    /// The direction of a ray, counter-clockwise from the heading; radians. A full turn has no ray twice: the
+    /// last is a step short of the first; a smaller field of view has a ray at each of its limits.
+    double angle(int ray) const {
+        const int steps = fieldOfView >= 2 * pi ? rays : std::max(1, rays - 1);
+        return -fieldOfView / 2 + ray * fieldOfView / steps;
+    }
+
+    /// The points of one scan in the sensor's frame, counter-clockwise; rays without return are left out.
+    /// Valid until the next call.
+    const std::vector<Vector2D<Scalar>> &operator()(const std::vector<LineSegment2D<Scalar>> &world,
+                                                    const Pose2D &pose) {
+        const Transformation2D toSensor = Transformation2D(pose).inverse();
+        m_edges.clear();
+        for (const LineSegment2D<Scalar> &edge : world)
+            m_edges.push_back({toSensor * Vector(edge.begin()), toSensor * Vector(edge.end())});
+        m_points.clear();
+        for (int ray = 0; ray < rays; ++ray) {
+            const Vector direction(std::cos(angle(ray)), std::sin(angle(ray)));
+            const double range = measure(direction);
+            if (range >= minRange && range <= maxRange)
+                m_points.push_back(Vector2D<Scalar>(direction * range));
+        }
+        return m_points;
+    }
+
+private:
+    using Vector = Vector2D<double>;
+    struct Edge {
+        Vector begin;
+        Vector end;
+    };
+
+    double measure(Vector direction) {
+        double range = noHit;
+        for (const Edge &edge : m_edges)
+            range = std::min(range, rayDistance(direction, edge.begin, edge.end));
+        if (outliers > 0 && m_uniform(m_random) < outliers)
+            return minRange + m_uniform(m_random) * std::max(0.0, std::min(range, maxRange) - minRange);
+        return range + sigma * m_normal(m_random);
+    }
+
+    std::mt19937_64 m_random;
+    std::normal_distribution<double> m_normal;
+    std::uniform_real_distribution<double> m_uniform;
+    std::vector<Edge> m_edges;
+    std::vector<Vector2D<Scalar>> m_points;
+};
+
+} // namespace vectorlib
