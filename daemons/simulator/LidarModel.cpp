@@ -1,0 +1,88 @@
+#include "daemons/simulator/LidarModel.h"
+
+#include "vectorlib/geometry/Angle.h"
+#include "vectorlib/observation/Ray.h"
+
+#include <algorithm>
+
+namespace hermes {
+
+namespace {
+
+constexpr double degree = vectorlib::pi / 180;
+constexpr std::uint8_t wallIntensity = 100; // made up, to tell the two apart
+constexpr std::uint8_t floorIntensity = 40;
+
+struct Beam {
+    double cosine;
+    double tangent; ///< of the elevation
+};
+
+std::array<Beam, velodyne::lasers> makeBeams() {
+    std::array<Beam, velodyne::lasers> beams;
+    for (int laser = 0; laser < velodyne::lasers; ++laser) {
+        const double elevation = velodyne::elevation_deg[laser] * degree;
+        beams[laser] = {std::cos(elevation), std::tan(elevation)};
+    }
+    return beams;
+}
+
+const std::array<Beam, velodyne::lasers> beams = makeBeams();
+
+} // namespace
+
+LidarModel::LidarModel(const std::vector<vectorlib::LineSegment2D<double>> &walls, const Options &options,
+                       std::uint64_t seed)
+    : m_walls(walls)
+    , m_options(options)
+    , m_random(seed) {}
+
+void LidarModel::fire(const vectorlib::Pose2D &pose, double azimuth, double gap,
+                      velodyne::DataPacketWriter &packet, int block) {
+    // The head turns clockwise: from left to right.
+    const double first = pose.theta - azimuth * degree;
+    const double last = first - gap * velodyne::laserGap * (velodyne::lasers - 1) * degree;
+    const Vector left(std::cos(first), std::sin(first)), right(std::cos(last), std::sin(last));
+    selectWalls({pose.x, pose.y}, left, right);
+    const Vector step = (right - left) / (velodyne::lasers - 1); // the arc is so short that its chord serves
+    for (int laser = 0; laser < velodyne::lasers; ++laser)
+        measure(laser, wallDistance(left + step * laser), packet, block);
+}
+
+void LidarModel::selectWalls(Vector position, Vector left, Vector right) {
+    m_inReach.clear();
+    for (const auto &wall : m_walls) {
+        const Vector begin = wall.begin() - position, end = wall.end() - position;
+        const bool leftOfAll = left.cross(begin) > 0 && left.cross(end) > 0;
+        const bool rightOfAll = right.cross(begin) < 0 && right.cross(end) < 0;
+        const bool behind = left.dot(begin) < 0 && left.dot(end) < 0;
+        if (!leftOfAll && !rightOfAll && !behind)
+            m_inReach.push_back({begin, end});
+    }
+}
+
+double LidarModel::wallDistance(Vector direction) const {
+    double distance = vectorlib::noHit;
+    for (const Wall &wall : m_inReach)
+        distance = std::min(distance, vectorlib::rayDistance(direction, wall.begin, wall.end));
+    return distance;
+}
+
+void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block) {
+    const Beam &beam = beams[laser];
+    double horizontal = wallDistance;
+    std::uint8_t intensity = wallIntensity;
+    if (beam.tangent < 0 && m_options.sensorHeight / -beam.tangent < wallDistance) {
+        horizontal = m_options.sensorHeight / -beam.tangent;
+        intensity = floorIntensity;
+    } else if (m_options.sensorHeight + wallDistance * beam.tangent > m_options.wallHeight) {
+        horizontal = vectorlib::noHit;
+    }
+    double range = horizontal / beam.cosine;
+    if (range <= m_options.maxRange)
+        range += m_options.sigma * m_normal(m_random);
+    const bool returns = range >= m_options.minRange && range <= m_options.maxRange;
+    packet.setReturn(block, laser, returns ? velodyne::toDistanceCounts(range) : 0, returns ? intensity : 0);
+}
+
+} // namespace hermes

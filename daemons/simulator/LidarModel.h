@@ -1,0 +1,54 @@
+#pragma once
+
+#include "protocol/velodyne/DataPacket.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Pose2D.h"
+
+#include <random>
+#include <vector>
+
+namespace hermes {
+
+/// What an HDL-32E measures in a world of upright walls on a level floor. The sensor stands upright at the
+/// robot's pose.
+class LidarModel {
+public:
+    struct Options {
+        double sigma = 0.01;       ///< standard deviation of the range; metres
+        double sensorHeight = 0.5; ///< above the floor; metres
+        double wallHeight = 2.5;   ///< beams above it return nothing; metres
+        double minRange = 0.05;    ///< metres. Manual: data range 5 cm to 100 m
+        double maxRange = 100;     ///< metres
+    };
+
+    LidarModel() = default;
+    LidarModel(const std::vector<vectorlib::LineSegment2D<double>> &walls, const Options &options,
+               std::uint64_t seed);
+
+    void setSigma(double sigma) { m_options.sigma = sigma; }
+    const Options &options() const { return m_options; }
+
+    /// Measures with all lasers and fills a block. azimuth: of the first laser, degrees clockwise from the
+    /// heading; gap: how far the head turns until the next firing, degrees.
+    void fire(const vectorlib::Pose2D &pose, double azimuth, double gap, velodyne::DataPacketWriter &packet,
+              int block);
+
+private:
+    using Vector = vectorlib::Vector2D<double>;
+    struct Wall {
+        Vector begin; ///< relative to the sensor, in the world's directions
+        Vector end;
+    };
+
+    void selectWalls(Vector position, Vector left, Vector right);
+    double wallDistance(Vector direction) const;
+    void measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block);
+
+    std::vector<vectorlib::LineSegment2D<double>> m_walls;
+    Options m_options;
+    std::mt19937_64 m_random;
+    std::normal_distribution<double> m_normal;
+    std::vector<Wall> m_inReach; ///< of the current firing
+};
+
+} // namespace hermes

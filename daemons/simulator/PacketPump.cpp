@@ -1,0 +1,144 @@
+#include "daemons/simulator/PacketPump.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+namespace hermes {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::nanoseconds;
+
+constexpr std::int64_t truthPeriod_ns = 20000000; // 50 Hz
+constexpr int catchUpPackets = 4;                 // sent in a row when late
+constexpr nanoseconds catchUpPause{300000};       // after them: at most seven times the rate of the sensor
+constexpr nanoseconds stall = std::chrono::seconds(2);
+
+std::int64_t utcNow_ns() {
+    return std::chrono::duration_cast<nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+        .count();
+}
+
+} // namespace
+
+PacketPump::PacketPump(TruthSink truth)
+    : m_truth(std::move(truth)) {}
+
+PacketPump::~PacketPump() {
+    stop();
+}
+
+std::string PacketPump::start(const World &world, const Simulation::Options &options, const std::string &host,
+                              std::uint16_t port) {
+    stop();
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1)
+        return host + ": an IPv4 address such as 127.0.0.1 expected";
+    m_socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (m_socket < 0)
+        return std::string("no UDP socket: ") + std::strerror(errno);
+    const int on = 1;
+    ::setsockopt(m_socket, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
+    // Connected, so that the address is not looked up for each packet. A receiver that is not there shows as
+    // ECONNREFUSED of a later packet, which step() knows.
+    if (::connect(m_socket, reinterpret_cast<const sockaddr *>(&address), sizeof address) != 0) {
+        const std::string error =
+            host + ":" + std::to_string(port) + " cannot be sent to: " + std::strerror(errno);
+        ::close(m_socket);
+        m_socket = -1;
+        return error;
+    }
+    m_simulation = Simulation(world, options, utcNow_ns());
+    m_random.seed(std::minstd_rand::result_type(options.seed));
+    m_counts = Counts();
+    m_nextTruth_ns = m_simulation.now_ns();
+    m_running = true;
+    m_thread = std::thread([this] { run(); });
+    return {};
+}
+
+void PacketPump::stop() {
+    m_running = false;
+    if (m_thread.joinable())
+        m_thread.join();
+    if (m_socket >= 0)
+        ::close(m_socket);
+    m_socket = -1;
+}
+
+void PacketPump::run() {
+    Clock::time_point due = Clock::now();
+    int inARow = 0;
+    while (m_running) {
+        const nanoseconds lag = Clock::now() - due;
+        if (lag < nanoseconds(0)) {
+            std::this_thread::sleep_until(due);
+            inARow = 0;
+        } else if (++inARow > catchUpPackets) {
+            std::this_thread::sleep_for(catchUpPause);
+            inARow = 0;
+        }
+        const std::lock_guard<std::mutex> lock(m_mutex);
+        if (lag > stall) {
+            const auto missed = std::uint64_t(lag.count() / velodyne::packetPeriod_ns);
+            m_simulation.skip(missed);
+            m_counts.skipped += missed;
+            due += nanoseconds(std::int64_t(missed) * velodyne::packetPeriod_ns);
+        }
+        step();
+        m_counts.worstLag_s = std::max(m_counts.worstLag_s, lag.count() * 1e-9);
+        due += nanoseconds(velodyne::packetPeriod_ns);
+    }
+}
+
+void PacketPump::step() {
+    if (m_simulation.now_ns() >= m_nextTruth_ns) {
+        m_truth(m_simulation.truth());
+        m_nextTruth_ns += truthPeriod_ns;
+        if (m_nextTruth_ns <= m_simulation.now_ns()) // after a stall
+            m_nextTruth_ns = m_simulation.now_ns() + truthPeriod_ns;
+    }
+    const auto &packet = m_simulation.nextPacket();
+    if (m_fault.swallows(m_random)) {
+        ++m_counts.swallowed;
+        return;
+    }
+    ssize_t size = ::send(m_socket, packet.data(), packet.size(), 0);
+    if (size < 0 && errno == ECONNREFUSED) // told of an earlier packet: nobody listens, as with a real sensor
+        size = ::send(m_socket, packet.data(), packet.size(), 0);
+    if (size == ssize_t(packet.size()) || errno == ECONNREFUSED)
+        ++m_counts.sent;
+    else
+        ++m_counts.sendErrors;
+}
+
+void PacketPump::with(const std::function<void(Simulation &)> &function) {
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    if (m_running)
+        function(m_simulation);
+}
+
+void PacketPump::setFault(const LidarFault &fault) {
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    m_fault = fault;
+}
+
+LidarFault PacketPump::fault() const {
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    return m_fault;
+}
+
+PacketPump::Counts PacketPump::counts() const {
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    return m_counts;
+}
+
+} // namespace hermes

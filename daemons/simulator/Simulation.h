@@ -1,0 +1,67 @@
+#pragma once
+
+#include "daemons/simulator/LidarModel.h"
+#include "daemons/simulator/PathFollower.h"
+
+namespace hermes {
+
+/// The robot in its world and the packets its sensor sends, firing after firing. Knows no clock: time
+/// advances with the packets. Not for several threads at once.
+class Simulation {
+public:
+    struct Options {
+        double speed = 0.8;        ///< m/s
+        double acceleration = 0.8; ///< m/s^2
+        double turnRate = 1.0;     ///< rad/s
+        double rpm = 600;          ///< turns of the sensor's head a minute
+        LidarModel::Options lidar;
+        std::uint64_t seed = 1;
+    };
+    /// Where the robot truly is.
+    struct Truth {
+        std::int64_t stamp_ns = 0; ///< since the Unix epoch, of the firing that comes next
+        vectorlib::Pose2D pose;
+        Twist twist;
+        double progress = 0; ///< share of the path, 0 to 1
+        bool driving = false;
+        bool finished = false;
+    };
+
+    Simulation() = default;
+    /// start_ns: time of the first firing, since the Unix epoch. The robot stands at the world's first pose.
+    Simulation(const World &world, const Options &options, std::int64_t start_ns);
+
+    /// False when there is no path, or it is at its end.
+    bool drive();
+    void halt() { m_follower.halt(); }
+    /// Back to the first pose of the path, standing.
+    void restart();
+    /// Puts the robot anywhere, standing; restart() brings it back to its path.
+    void place(const vectorlib::Pose2D &pose);
+    void setSigma(double sigma) { m_lidar.setSigma(sigma); }
+
+    /// The packet of the next twelve firings, each measured from where the robot is at its own time.
+    const std::array<std::uint8_t, velodyne::packetSize> &nextPacket();
+    /// Time passes without packets being made.
+    void skip(std::uint64_t packets);
+
+    Truth truth() const;
+    double sigma() const { return m_lidar.options().sigma; }
+    bool isPlaced() const { return m_placed; }
+    /// Time of the next firing: of the packet that nextPacket() makes.
+    std::int64_t now_ns() const { return m_start_ns + std::int64_t(m_firings) * velodyne::firingPeriod_ns; }
+
+private:
+    vectorlib::Pose2D pose() const { return m_placed ? m_place : m_follower.pose(); }
+
+    PathFollower m_follower;
+    LidarModel m_lidar;
+    velodyne::DataPacketWriter m_packet;
+    double m_gap = 0; ///< degrees a firing
+    std::int64_t m_start_ns = 0;
+    std::uint64_t m_firings = 0;
+    bool m_placed = false;
+    vectorlib::Pose2D m_place;
+};
+
+} // namespace hermes
