@@ -1,4 +1,5 @@
 #include "protocol/velodyne/TurnAssembler.h"
+#include "tests/support/Sensor.h"
 
 #include <QtTest>
 
@@ -11,31 +12,6 @@ namespace {
 
 constexpr std::int64_t second_ns = 1000000000;
 constexpr std::int64_t hour_ns = 3600 * second_ns;
-
-/// A sensor that turns evenly and sees a wall at a range in every direction; counts packets.
-class Sensor {
-public:
-    std::int64_t start_ns = 400000 * hour_ns + 12345 * second_ns / 10;
-    int azimuthStep = 17;
-    std::uint16_t counts = 2500;
-    bool dual = false;
-
-    std::array<std::uint8_t, packetSize> packet(int number) const {
-        DataPacketWriter writer;
-        const int returns = dual ? 2 : 1;
-        for (int block = 0; block < blocksPerPacket; ++block) {
-            const int firing = number * blocksPerPacket / returns + block / returns;
-            writer.setAzimuth(block, std::uint16_t((35000 + firing * azimuthStep) % azimuthSteps));
-            for (int laser = 0; laser < lasers; ++laser)
-                writer.setReturn(block, laser, std::uint16_t(counts + (dual && block % 2 == 0 ? 100 : 0)),
-                                 std::uint8_t(laser));
-        }
-        writer.setTail(std::uint32_t(stamp(number) / 1000 % 3600000000),
-                       dual ? ReturnMode::Dual : ReturnMode::Strongest);
-        return writer.bytes();
-    }
-    std::int64_t stamp(int number) const { return start_ns + number * packetPeriod_ns / (dual ? 2 : 1); }
-};
 
 PacketFault feed(TurnAssembler &assembler, const Sensor &sensor, int number) {
     const auto bytes = sensor.packet(number);

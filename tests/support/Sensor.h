@@ -1,0 +1,44 @@
+#pragma once
+
+#include "common/capture/Datagram.h"
+#include "protocol/velodyne/DataPacket.h"
+
+/// Packets of a sensor that turns evenly, 0.17 degrees a firing, and sees a wall 5 m away all around.
+class Sensor {
+public:
+    std::int64_t start_ns = 1700000000000000000;
+    int azimuthStep = 17; ///< hundredths of a degree
+    bool dual = false;
+
+    std::array<std::uint8_t, hermes::velodyne::packetSize> packet(int number) const {
+        using namespace hermes::velodyne;
+        DataPacketWriter writer;
+        const int returns = dual ? 2 : 1;
+        for (int block = 0; block < blocksPerPacket; ++block) {
+            const int firing = number * blocksPerPacket / returns + block / returns;
+            writer.setAzimuth(block, std::uint16_t((35000 + firing * azimuthStep) % azimuthSteps));
+            const int distance = dual && block % 2 == 0 ? 2600 : 2500;
+            for (int laser = 0; laser < lasers; ++laser)
+                writer.setReturn(block, laser, std::uint16_t(distance), std::uint8_t(laser));
+        }
+        writer.setTail(std::uint32_t(stamp(number) / 1000 % stampPeriod_us),
+                       dual ? ReturnMode::Dual : ReturnMode::Strongest);
+        return writer.bytes();
+    }
+    std::int64_t stamp(int number) const {
+        return start_ns + number * hermes::velodyne::packetPeriod_ns / (dual ? 2 : 1);
+    }
+};
+
+/// A datagram as a sensor sends it, around a payload that somebody else keeps.
+template <typename Bytes>
+hermes::Datagram sensorDatagram(const Bytes &payload, std::int64_t stamp_ns) {
+    hermes::Datagram datagram;
+    datagram.stamp_ns = stamp_ns;
+    datagram.source = 0xC0A801C8; // 192.168.1.200
+    datagram.destination = 0xFFFFFFFF;
+    datagram.sourcePort = datagram.destinationPort = hermes::velodyne::dataPort;
+    datagram.payload = reinterpret_cast<const std::uint8_t *>(payload.data());
+    datagram.size = std::size_t(payload.size());
+    return datagram;
+}
