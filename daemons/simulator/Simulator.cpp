@@ -1,0 +1,251 @@
+#include "daemons/simulator/Simulator.h"
+
+#include "common/Log.h"
+#include "common/world/WorldFile.h"
+#include "vectorlib/geometry/Angle.h"
+
+namespace hermes {
+
+namespace {
+
+constexpr auto healthItem = "lidar";
+
+QJsonObject toJson(const Simulation::Truth &truth) {
+    return {{"stamp", double(truth.stamp_ns) * 1e-9},
+            {"x", truth.pose.x},
+            {"y", truth.pose.y},
+            {"theta", truth.pose.theta},
+            {"vx", truth.twist.vx},
+            {"vy", truth.twist.vy},
+            {"omega", truth.twist.omega},
+            {"progress", truth.progress},
+            {"driving", truth.driving},
+            {"finished", truth.finished}};
+}
+
+QString toText(LidarFault::Kind kind) {
+    switch (kind) {
+    case LidarFault::Kind::None:
+        return "none";
+    case LidarFault::Kind::Silence:
+        return "silence";
+    case LidarFault::Kind::Loss:
+        return "loss";
+    }
+    return {};
+}
+
+} // namespace
+
+Simulator::Simulator()
+    : Daemon({"simulator", "Simulator",
+              "A robot in a made-up world, with an HDL-32E that sends true packets over UDP"})
+    , m_pump([this](const Simulation::Truth &truth) {
+        QMetaObject::invokeMethod(
+            this, [this, truth] { publishTruth(truth); }, Qt::QueuedConnection);
+    }) {
+    declareSettings();
+    declareTopics();
+    declareCommands();
+    health().provide(healthItem, [this] { updateHealth(); });
+}
+
+void Simulator::declareTopics() {
+    addTopic(
+        Topic("truth",
+              "Where the robot truly is, 50 times a second on the clock of the lidar's stamps: stamp (s), "
+              "x, y (m), theta (rad), vx, vy (m/s, the robot's frame), omega (rad/s), progress along the "
+              "path (0 to 1), driving, finished")
+            .schema({{"type", "object"}}));
+}
+
+void Simulator::declareCommands() {
+    addCommand(
+        Command("sim.load", "Loads a world file and puts the robot, standing, at its first pose")
+            .param(Field::text("world", "World file (JSON)"))
+            .returns({{"type", "object"}})
+            .example({{"world", "deploy/worlds/pillars.json"}}, QJsonObject{{"edges", 36}, {"poses", 39}})
+            .handler([this](const Call &call) -> Result<QJsonValue> {
+                const Result<void> loaded = load(call.text("world"));
+                if (!loaded)
+                    return loaded.error();
+                return QJsonObject{{"name", QString::fromStdString(m_world.name)},
+                                   {"edges", int(m_world.edges.size())},
+                                   {"poses", int(m_world.poses.size())}};
+            }));
+    addCommand(Command("sim.state", "World, true pose, progress along the path, packets sent and left out")
+                   .returns({{"type", "object"}})
+                   .handler([this](const Call &) -> Result<QJsonValue> { return state(); }));
+    addCommand(Command("sim.drive", "Follows the path of the world from where the robot is on it")
+                   .param(Field::boolean("restart", "Begin again at the first pose").byDefault(false))
+                   .returnsNull()
+                   .handler([this](const Call &call) { return drive(call.flag("restart")); }));
+    addCommand(Command("sim.halt", "Slows down to a stand")
+                   .returnsNull()
+                   .handler([this](const Call &) -> Result<QJsonValue> {
+                       m_pump.with([](Simulation &simulation) { simulation.halt(); });
+                       return QJsonValue();
+                   }));
+    addCommand(Command("sim.place",
+                       "Puts the robot anywhere, standing; sim.drive with restart brings it back to its path")
+                   .param(Field::number("x", "Position").unit("m"))
+                   .param(Field::number("y", "Position").unit("m"))
+                   .param(Field::number("theta", "Heading").unit("rad"))
+                   .returnsNull()
+                   .handler([this](const Call &call) { return place(call); }));
+    addCommand(Command("sim.noise", "Sets the noise of the sensor until the next start")
+                   .param(Field::number("sigma_m", "Standard deviation of the range").unit("m").range(0, 1))
+                   .returnsNull()
+                   .handler([this](const Call &call) { return setNoise(call); }));
+    addCommand(
+        Command("sim.fault",
+                "Makes a device fail: silence sends no packets, loss leaves out a share of them, none "
+                "ends the fault")
+            .param(Field::text("device", "Which device").choices({"lidar"}))
+            .param(Field::text("kind", "What it does wrong").choices({"none", "silence", "loss"}))
+            .param(Field::number("share", "Of the packets that a loss leaves out").range(0, 1).byDefault(0.1))
+            .returnsNull()
+            .example({{"device", "lidar"}, {"kind", "loss"}, {"share", 0.05}}, QJsonValue())
+            .handler([this](const Call &call) { return setFault(call); }));
+}
+
+Result<void> Simulator::start() {
+    const QString world = settings().text("world");
+    if (world.isEmpty()) {
+        setState(DaemonState::Ready);
+        return {};
+    }
+    const Result<void> loaded = load(world);
+    if (loaded && settings().flag("robot.autostart"))
+        drive(false);
+    return loaded;
+}
+
+void Simulator::settingsChanged(const QStringList &paths) {
+    if (paths.contains("lidar.sigma_m"))
+        m_pump.with(
+            [this](Simulation &simulation) { simulation.setSigma(settings().number("lidar.sigma_m")); });
+}
+
+Result<void> Simulator::load(const QString &path) {
+    std::string error;
+    const std::optional<World> world = readWorld(path.toStdString(), error);
+    if (!world)
+        return Error(ErrorCode::InputOutput, QString::fromStdString(error), QJsonObject{{"path", path}});
+    error = m_pump.start(*world, options(), settings().text("lidar.host").toStdString(),
+                         quint16(settings().integer("lidar.port")));
+    if (!error.empty()) {
+        setState(DaemonState::Fault);
+        return Error(ErrorCode::InputOutput, QString::fromStdString(error));
+    }
+    m_world = *world;
+    m_worldPath = path;
+    setState(DaemonState::Running);
+    logInfo("simulator", QString("world %1: %2 edges, %3 poses; packets go to %4:%5")
+                             .arg(path)
+                             .arg(m_world.edges.size())
+                             .arg(m_world.poses.size())
+                             .arg(settings().text("lidar.host"))
+                             .arg(settings().integer("lidar.port")));
+    return {};
+}
+
+Result<QJsonValue> Simulator::drive(bool restart) {
+    if (m_world.poses.size() < 2)
+        return Error(ErrorCode::NotReady, m_worldPath.isEmpty()
+                                              ? QString("no world is loaded; sim.load loads one")
+                                              : m_worldPath + " has no path: two poses or more expected");
+    bool drives = false;
+    m_pump.with([&](Simulation &simulation) {
+        if (restart)
+            simulation.restart();
+        drives = simulation.drive();
+    });
+    if (!drives)
+        return Error(
+            ErrorCode::NotReady,
+            "the robot is at the end of its path, or was placed beside it; restart: true begins again");
+    return QJsonValue();
+}
+
+Result<QJsonValue> Simulator::place(const Call &call) {
+    if (m_worldPath.isEmpty())
+        return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
+    const vectorlib::Pose2D pose{call.number("x"), call.number("y"),
+                                 vectorlib::wrapAngle(call.number("theta"))};
+    m_pump.with([&](Simulation &simulation) { simulation.place(pose); });
+    return QJsonValue();
+}
+
+Result<QJsonValue> Simulator::setNoise(const Call &call) {
+    if (m_worldPath.isEmpty())
+        return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
+    m_pump.with([&](Simulation &simulation) { simulation.setSigma(call.number("sigma_m")); });
+    return QJsonValue();
+}
+
+Result<QJsonValue> Simulator::setFault(const Call &call) {
+    LidarFault fault;
+    const QString kind = call.text("kind");
+    if (kind == "silence")
+        fault.kind = LidarFault::Kind::Silence;
+    if (kind == "loss")
+        fault = {LidarFault::Kind::Loss, call.number("share")};
+    m_pump.setFault(fault);
+    logInfo("simulator", "fault of the lidar: " + kind);
+    return QJsonValue();
+}
+
+QJsonObject Simulator::state() {
+    Simulation::Truth truth;
+    double sigma = 0;
+    bool placed = false;
+    m_pump.with([&](Simulation &simulation) {
+        truth = simulation.truth();
+        sigma = simulation.sigma();
+        placed = simulation.isPlaced();
+    });
+    const PacketPump::Counts counts = m_pump.counts();
+    const LidarFault fault = m_pump.fault();
+    return {
+        {"world", m_worldPath},
+        {"stamp", double(truth.stamp_ns) * 1e-9},
+        {"pose", QJsonObject{{"x", truth.pose.x}, {"y", truth.pose.y}, {"theta", truth.pose.theta}}},
+        {"twist", QJsonObject{{"vx", truth.twist.vx}, {"vy", truth.twist.vy}, {"omega", truth.twist.omega}}},
+        {"progress", truth.progress},
+        {"driving", truth.driving},
+        {"finished", truth.finished},
+        {"placed", placed},
+        {"sigma_m", sigma},
+        {"fault", QJsonObject{{"kind", toText(fault.kind)}, {"share", fault.share}}},
+        {"packets", double(counts.sent)},
+        {"swallowed", double(counts.swallowed)},
+        {"skipped", double(counts.skipped)},
+        {"send_errors", double(counts.sendErrors)},
+        {"worst_lag_s", counts.worstLag_s}};
+}
+
+void Simulator::publishTruth(const Simulation::Truth &truth) {
+    if (hasSubscribers("truth"))
+        publish("truth", toJson(truth), double(truth.stamp_ns) * 1e-9);
+}
+
+void Simulator::updateHealth() {
+    const PacketPump::Counts counts = m_pump.counts();
+    const LidarFault fault = m_pump.fault();
+    const QJsonObject values{{"packets", double(counts.sent)},
+                             {"swallowed", double(counts.swallowed)},
+                             {"skipped", double(counts.skipped)},
+                             {"send_errors", double(counts.sendErrors)}};
+    if (m_worldPath.isEmpty())
+        health().set(healthItem, HealthLevel::Ok, "no world is loaded; nothing is sent", values);
+    else if (counts.sendErrors > 0 || counts.skipped > 0)
+        health().set(healthItem, HealthLevel::Warn, "packets could not be sent, or not in time", values);
+    else if (fault.kind != LidarFault::Kind::None)
+        health().set(healthItem, HealthLevel::Warn, "fails as it was asked to: " + toText(fault.kind),
+                     values);
+    else
+        health().set(healthItem, HealthLevel::Ok, "sending", values);
+}
+
+} // namespace hermes
