@@ -46,7 +46,7 @@ bool PcapReader::open(const std::string &path) {
 
 PcapReader::Next PcapReader::next(Datagram &datagram) {
     if (!m_pcap)
-        return m_error.empty() ? Next::End : Next::Error;
+        return m_error.empty() ? Next::End : Next::Failed;
     for (;;) {
         const long begin = std::ftell(pcap_file(m_pcap.get()));
         pcap_pkthdr *header = nullptr;
@@ -61,7 +61,7 @@ PcapReader::Next PcapReader::next(Datagram &datagram) {
                       std::to_string(begin) + " cannot be read, the " + std::to_string(m_counts.records) +
                       " before it are whole: " + pcap_geterr(m_pcap.get());
             close();
-            return Next::Error;
+            return Next::Failed;
         }
         ++m_counts.records;
         const FrameFault fault = parseFrame(LinkType(m_linkType), frame, header->caplen, datagram);

@@ -13,7 +13,7 @@ namespace hermes {
 /// been delivered and the message names the file, the record and the byte where it begins.
 class PcapReader {
 public:
-    enum class Next { Datagram, End, Error };
+    enum class Next { Datagram, End, Failed };
     /// Records that gave no datagram, by reason; and those that did.
     struct Counts {
         std::uint64_t records = 0;

@@ -2,10 +2,9 @@
 
 namespace hermes {
 
-LidarFeed::LidarFeed(Recorder &recorder, Notify turnReady, Ended ended)
+LidarFeed::LidarFeed(Recorder &recorder, Notify turnReady)
     : m_recorder(recorder)
     , m_turnReady(std::move(turnReady))
-    , m_ended(std::move(ended))
     , m_receiver([this](const Datagram &datagram) { handle(datagram); })
     , m_player([this](const Datagram &datagram) { handle(datagram); },
                [this](const std::string &error) {
@@ -28,8 +27,9 @@ std::string LidarFeed::openLive(const std::string &address, std::uint16_t port, 
     return m_receiver.start(address, port, bufferBytes);
 }
 
-std::string LidarFeed::openPcap(const std::string &path, double speed, const Options &options) {
+std::string LidarFeed::openPcap(const std::string &path, double speed, const Options &options, Ended ended) {
     close();
+    m_ended = std::move(ended);
     m_lossless = speed == 0;
     begin(options);
     return m_player.start(path, speed);

@@ -33,15 +33,15 @@ public:
     using Notify = std::function<void()>;
     using Ended = std::function<void(const std::string &error)>;
 
-    /// Both functions are called in other threads: a turn waits to be taken; a capture has been played to its
-    /// end, or to the error given.
-    LidarFeed(Recorder &recorder, Notify turnReady, Ended ended);
+    /// turnReady is called in another thread when a turn waits to be taken.
+    LidarFeed(Recorder &recorder, Notify turnReady);
     ~LidarFeed();
 
     /// An empty string on success, else what failed. Whatever was open is closed first.
     std::string openLive(const std::string &address, std::uint16_t port, int bufferBytes,
                          const Options &options);
-    std::string openPcap(const std::string &path, double speed, const Options &options);
+    /// ended is called in another thread when the capture has been played to its end, or to the error given.
+    std::string openPcap(const std::string &path, double speed, const Options &options, Ended ended);
     /// Delivers the turn that was under way as a partial one.
     void close();
 
@@ -62,7 +62,7 @@ private:
 
     Recorder &m_recorder;
     Notify m_turnReady;
-    Ended m_ended;
+    Ended m_ended;           ///< set before the player starts
     bool m_lossless = false; ///< the source waits rather than lose; set before it starts
 
     mutable std::mutex m_decoderMutex; // guards what follows

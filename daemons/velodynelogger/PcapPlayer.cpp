@@ -56,7 +56,7 @@ void PcapPlayer::run() {
         m_sink(datagram);
     }
     if (waitUntil(begin))
-        m_end(next == PcapReader::Next::Error ? m_reader.error() : std::string());
+        m_end(next == PcapReader::Next::Failed ? m_reader.error() : std::string());
 }
 
 bool PcapPlayer::waitUntil(std::chrono::steady_clock::time_point due) {

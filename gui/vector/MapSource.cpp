@@ -78,7 +78,7 @@ MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &
     while ((next = reader.next(datagram)) == PcapReader::Next::Datagram)
         if (datagram.destinationPort == velodyne::dataPort)
             assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
-    if (next == PcapReader::Next::Error)
+    if (next == PcapReader::Next::Failed)
         throw Failure(file.inWordsOfOriginal(reader.error()));
     assembler.finish();
     if (turns == 0)

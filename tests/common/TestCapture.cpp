@@ -248,11 +248,11 @@ void TestCapture::cutFilesNameRecordAndByte() {
     Datagram d;
     QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
     QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
-    QCOMPARE(reader.next(d), PcapReader::Next::Error);
+    QCOMPARE(reader.next(d), PcapReader::Next::Failed);
     const std::string begin =
         path + ": record 3 at byte " + std::to_string(third) + " cannot be read, the 2 before it";
     QVERIFY2(reader.error().find(begin) == 0, reader.error().c_str());
-    QCOMPARE(reader.next(d), PcapReader::Next::Error);
+    QCOMPARE(reader.next(d), PcapReader::Next::Failed);
 }
 
 void TestCapture::filesThatAreNoCapture_data() {
@@ -277,7 +277,7 @@ void TestCapture::filesThatAreNoCapture() {
     QCOMPARE(QByteArray::fromStdString(reader.error()),
              QByteArray("/nonexistent/c.pcap: cannot be opened: No such file or directory"));
     Datagram d;
-    QCOMPARE(reader.next(d), PcapReader::Next::Error);
+    QCOMPARE(reader.next(d), PcapReader::Next::Failed);
 }
 
 void TestCapture::unknownLinkTypeIsRefused() {

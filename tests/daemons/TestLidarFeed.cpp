@@ -23,11 +23,14 @@ public:
     std::atomic<int> ready{0};
     std::atomic<bool> ended{false};
     std::string error;
-    LidarFeed feed{recorder, [this] { ++ready; },
-                   [this](const std::string &why) {
-                       error = why;
-                       ended = true;
-                   }};
+    LidarFeed feed{recorder, [this] { ++ready; }};
+
+    std::string openPcap(const std::string &path, double speed) {
+        return feed.openPcap(path, speed, {}, [this](const std::string &why) {
+            error = why;
+            ended = true;
+        });
+    }
 
     void take() {
         for (const LidarFeed::Turn &turn : feed.takeTurns())
@@ -137,7 +140,7 @@ void TestLidarFeed::replayGivesWhatDirectDecodingGives() {
     if (path.isEmpty())
         QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
     Listener listener;
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), speed, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), speed), std::string());
     QVERIFY(listener.waitForEnd());
     QCOMPARE(listener.error, std::string());
     QVERIFY(listener.turns.size() >= 3);
@@ -174,7 +177,7 @@ void TestLidarFeed::fastReplayWaitsForItsReader() {
     QTemporaryDir folder;
     const QString path = makeCapture(folder, 6000); // 34 turns
     Listener listener;
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), 0, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
     QTRY_COMPARE(listener.ready.load(), 16);                   // the queue is full
     QCOMPARE(listener.feed.counts().turns, std::uint64_t(16)); // answers meanwhile
     QVERIFY(!listener.ended);
@@ -189,7 +192,7 @@ void TestLidarFeed::replayKeepsItsPace() {
     Listener listener;
     QElapsedTimer timer;
     timer.start();
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), 1, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
     QVERIFY(listener.waitForEnd());
     QVERIFY(timer.elapsed() > 540);
     QVERIFY(same(listener.turns, decode(path)));
@@ -200,7 +203,7 @@ void TestLidarFeed::cutCaptureGivesAllBeforeTheCut() {
     const QString path = makeCapture(folder, 500);
     QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
     Listener listener;
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), 0, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
     QVERIFY(listener.waitForEnd());
     QVERIFY2(listener.error.find(path.toStdString() + ": record 301 at byte 379224 cannot be read") == 0,
              listener.error.c_str());
@@ -213,7 +216,7 @@ void TestLidarFeed::cutCaptureGivesAllBeforeTheCut() {
 
 void TestLidarFeed::sourcesThatCannotBeOpened() {
     Listener listener;
-    QCOMPARE(listener.feed.openPcap("/nonexistent.pcap", 1, {}),
+    QCOMPARE(listener.openPcap("/nonexistent.pcap", 1),
              std::string("/nonexistent.pcap: cannot be opened: No such file or directory"));
     QUdpSocket other;
     QVERIFY(other.bind(QHostAddress(QHostAddress::LocalHost), 0));
@@ -229,7 +232,7 @@ void TestLidarFeed::slowReadersLoseTurnsAndAreTold() {
     QTemporaryDir folder;
     const QString path = makeCapture(folder, 6000);
     Listener listener;
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), 1000, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), 1000), std::string());
     QTRY_VERIFY(listener.ended.load());
     listener.take();
     const LidarFeed::Counts counts = listener.feed.counts();
@@ -263,7 +266,7 @@ void TestLidarFeed::allLasersOfATurn() {
     Listener listener;
     std::atomic<std::size_t> points{0};
     std::atomic<int> clouds{0};
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), 1, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
     listener.feed.captureCloud([&](const Turn &turn) {
         points = turn.points.size();
         ++clouds;
@@ -277,7 +280,7 @@ void TestLidarFeed::closingEndsAWaitingReplay() {
     QTemporaryDir folder;
     const QString path = makeCapture(folder, 6000);
     Listener listener;
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), 0, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
     QTRY_COMPARE(listener.ready.load(), 16);
     listener.feed.close(); // does not hang
     QVERIFY(!listener.ended);
@@ -289,7 +292,7 @@ void TestLidarFeed::recordsWhatComesIn() {
     const QString copy = folder.filePath(QStringLiteral("copy.pcap"));
     Listener listener;
     QCOMPARE(listener.recorder.start(copy.toStdString()), std::string());
-    QCOMPARE(listener.feed.openPcap(path.toStdString(), 0, {}), std::string());
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
     QVERIFY(listener.waitForEnd());
     QCOMPARE(listener.recorder.stop(), std::string());
     QCOMPARE(listener.recorder.status().packets, std::uint64_t(3000));

@@ -1,0 +1,154 @@
+// What the Velodyne logger offers: its settings, topics and commands.
+#include "daemons/velodynelogger/VelodyneLogger.h"
+
+#include "common/Log.h"
+
+namespace hermes {
+
+void VelodyneLogger::declareSettings() {
+    addSetting(Field::text("source.address", "Local IPv4 address to receive on; 0.0.0.0 for all")
+                   .byDefault("0.0.0.0")
+                   .appliesOnRestart()
+                   .group("Source"));
+    addSetting(Field::integer("source.port", "UDP port of the sensor's data packets")
+                   .range(1, 65535)
+                   .byDefault(velodyne::dataPort)
+                   .appliesOnRestart()
+                   .group("Source"));
+    addSetting(
+        Field::integer("source.receive_buffer_bytes", "Room the system keeps for packets not yet taken")
+            .unit("byte")
+            .range(65536, 268435456)
+            .byDefault(4194304) // 1.7 s of packets
+            .appliesOnRestart()
+            .group("Source"));
+    addSetting(Field::text("source.pcap", "Capture file to replay at the start instead of receiving")
+                   .byDefault("")
+                   .appliesOnRestart()
+                   .group("Source"));
+    addSetting(
+        Field::number("source.speed", "Of that replay: 1 real time, 0 as fast as possible without loss")
+            .range(0, 1000)
+            .byDefault(1)
+            .appliesOnRestart()
+            .group("Source"));
+    addSetting(Field::integer("decode.laser", "Laser whose ring is published; 15 looks along the horizon")
+                   .range(0, velodyne::lasers - 1)
+                   .byDefault(velodyne::horizonLaser)
+                   .appliesOnRestart()
+                   .group("Decoding"));
+    addSetting(Field::text("decode.returns", "Which returns of a sensor in dual return mode are taken")
+                   .choices({"strongest", "last", "both"})
+                   .byDefault("strongest")
+                   .appliesOnRestart()
+                   .group("Decoding"));
+    addSetting(Field::number("decode.stamp_offset_s", "Added to the sensor's stamps")
+                   .unit("s")
+                   .range(-3600, 3600)
+                   .byDefault(0)
+                   .appliesOnRestart()
+                   .group("Decoding"));
+    addSetting(Field::text("record.folder", "Where recordings are kept; made when missing")
+                   .byDefault("recordings")
+                   .appliesOnRestart()
+                   .group("Recording"));
+}
+
+void VelodyneLogger::declareTopics() {
+    addTopic(
+        Topic("scan2d",
+              "Each turn of one laser: turn, stamp (s, of its first firing), duration_s, partial (first, "
+              "last or cut), lost_packets, frame, laser, and of its points, counter-clockwise: x, y (m, "
+              "sensor's frame: x ahead, y left), t (s after stamp), intensity (0 to 255)")
+            .schema({{"type", "object"}}));
+    addTopic(
+        Topic("lidar",
+              "Once a second: source, rpm, packet_rate_hz, and since the source was opened packets, turns, "
+              "lost and wrong packets by kind, drops by kernel and queues, recording")
+            .schema({{"type", "object"}})
+            .snapshot([this] { return lidarState(); }));
+}
+
+void VelodyneLogger::declareSourceCommands() {
+    addCommand(
+        Command("source.open", "Receives live, or replays a capture file; what was open is closed")
+            .param(Field::boolean("live", "Receive on the UDP port of the settings").optional())
+            .param(Field::text("pcap", "Capture file to replay, pcap or pcapng").optional())
+            .param(Field::number("speed", "Of the replay: 1 real time, 0 as fast as possible without loss")
+                       .range(0, 1000)
+                       .byDefault(1))
+            .returns({{"type", "object"}})
+            .example({{"pcap", "drive.pcap"}, {"speed", 1}},
+                     QJsonObject{{"state", "replay"}, {"name", "drive.pcap"}, {"speed", 1}})
+            .handler([this](const Call &call) { return openSource(call); }));
+    addCommand(Command("source.close", "Stops receiving or replaying")
+                   .returnsNull()
+                   .handler([this](const Call &) -> Result<QJsonValue> {
+                       ++m_generation;
+                       m_feed.close();
+                       publishTurns();
+                       opened(Source::None, {}, 1);
+                       updateHealth();
+                       return QJsonValue();
+                   }));
+    addCommand(Command("source.status", "What the topic lidar says, now")
+                   .returns({{"type", "object"}})
+                   .handler([this](const Call &) -> Result<QJsonValue> { return lidarState(); }));
+    addCommand(Command("capture.turn",
+                       "Writes the next complete turn of all lasers to a file in the folder of recordings")
+                   .param(Field::text("name", "Of the file, without path"))
+                   .param(Field::text("format", "Of the file").choices({"csv"}).byDefault("csv"))
+                   .returns({{"type", "object"}})
+                   .example({{"name", "hall"}}, QJsonObject{{"path", "/data/hall.csv"}, {"points", 60123}})
+                   .asyncHandler([this](const Call &call, const Reply &reply) { captureTurn(call, reply); }));
+}
+
+void VelodyneLogger::declareRecordCommands() {
+    addCommand(
+        Command("record.start", "Records all packets that come in to NAME.pcap in the folder of recordings")
+            .param(Field::text("name", "Of the recording, without path"))
+            .returns({{"type", "object"}})
+            .example({{"name", "drive"}}, QJsonObject{{"recording", true}, {"path", "/data/drive.pcap"}})
+            .handler([this](const Call &call) { return startRecording(call.text("name")); }));
+    addCommand(Command("record.stop", "Ends the recording; everything is on disk when this returns")
+                   .returns({{"type", "object"}})
+                   .handler([this](const Call &) { return stopRecording(); }));
+    addCommand(Command("record.status",
+                       "Path, packets, bytes, packets dropped, and the error that ended a recording")
+                   .returns({{"type", "object"}})
+                   .handler([this](const Call &) -> Result<QJsonValue> { return recordStatus(); }));
+    addCommand(
+        Command("record.list", "The recordings in the folder, the latest first: name, bytes, modified (s)")
+            .returns({{"type", "array"}})
+            .handler([this](const Call &) -> Result<QJsonValue> { return m_folder.list(); }));
+}
+
+Result<QJsonValue> VelodyneLogger::startRecording(const QString &name) {
+    if (m_recorder.isRecording())
+        return Error(ErrorCode::NotReady, "already recording to " +
+                                              QString::fromStdString(m_recorder.status().path) +
+                                              "; record.stop ends it");
+    const Result<QString> path = m_folder.newFile(name, "pcap");
+    if (!path)
+        return path.error();
+    const std::string error = m_recorder.start(path->toStdString());
+    if (!error.empty())
+        return diskError(QString::fromStdString(error), *path);
+    logInfo("recording", "recording to " + *path);
+    updateHealth();
+    return recordStatus();
+}
+
+Result<QJsonValue> VelodyneLogger::stopRecording() {
+    const QString path = QString::fromStdString(m_recorder.status().path);
+    if (!m_recorder.isRecording() && m_recorder.status().error.empty())
+        return Error(ErrorCode::NotReady, "nothing is being recorded; record.start begins");
+    const std::string error = m_recorder.stop();
+    updateHealth();
+    if (!error.empty())
+        return diskError(QString::fromStdString(error), path);
+    logInfo("recording", path + " is complete");
+    return recordStatus();
+}
+
+} // namespace hermes
