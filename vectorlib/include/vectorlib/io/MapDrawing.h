@@ -27,10 +27,14 @@ inline void drawMap(std::ostream &out, const MapDrawing &map) {
         picture.path({colour::reference, 1.5, "reference trajectory", true}, pathOf(map.reference));
     if (!map.trajectory.empty())
         picture.path({colour::estimate, 1.2, "trajectory"}, pathOf(map.trajectory));
-    std::vector<LineSegment2D<double>> segments;
+    // What only one or two scans saw is drawn lighter: people and things that moved, or noise.
+    std::vector<LineSegment2D<double>> seldom, often;
     for (const MapSegment &m : map.segments)
-        segments.push_back(m.segment);
-    picture.segments({colour::map, 1.8, "map: " + std::to_string(segments.size()) + " segments"}, segments);
+        (m.observations < 3 ? seldom : often).push_back(m.segment);
+    if (!seldom.empty())
+        picture.segments(
+            {colour::points, 1.2, std::to_string(seldom.size()) + " segments seen once or twice"}, seldom);
+    picture.segments({colour::map, 1.8, std::to_string(often.size()) + " segments seen more often"}, often);
     if (!map.trajectory.empty()) {
         const Pose2D &first = map.trajectory.front().pose, &last = map.trajectory.back().pose;
         picture.pose({"#009e73", 2, "start"}, {first.x, first.y}, first.theta);

@@ -1,0 +1,132 @@
+#include "common/world/WorldFile.h"
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+#include "gui/vector/Options.h"
+#include "vectorlib/io/CsvPoints.h"
+#include "vectorlib/io/CsvSegments.h"
+#include "vectorlib/io/Svg.h"
+#include "vectorlib/observation/Observer.h"
+#include "vectorlib/observation/SimulatedScanner.h"
+
+namespace hermes {
+
+namespace {
+
+using Point = vectorlib::Vector2D<double>;
+using Segment = vectorlib::LineSegment2D<double>;
+
+struct ObserveCommand {
+    std::string in;
+    std::string pose;
+    int rays = 0; ///< 0: the exact view instead of a scan
+    double noise = 0;
+    double fieldOfView = 360; ///< degrees
+    double outliers = 0;
+    std::uint64_t seed = 1;
+    OutputOptions output;
+
+    void run() const {
+        OutputSet files(output.force);
+        std::ostream &out = files.open(output.out);
+        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const std::vector<Segment> world = loadWorld();
+        const vectorlib::Pose2D at = parsePose(pose);
+        const std::vector<Segment> view = observe(world, at);
+        std::vector<Point> scan;
+        if (rays > 0) {
+            scan = simulate(world, at);
+            vectorlib::writeCsvPoints(out, scan);
+        } else {
+            vectorlib::writeCsvSegments(out, view);
+        }
+        if (svg)
+            draw(*svg, world, at, view, scan);
+        files.commit();
+    }
+
+    std::vector<Segment> loadWorld() const {
+        Input input(in);
+        std::string error;
+        const std::optional<World> world = parseWorld(input.readAll(), input.name(), error);
+        if (!world)
+            throw Failure(error);
+        std::vector<Segment> edges;
+        for (const World::Edge &e : world->edges)
+            edges.emplace_back(Point(e.x1, e.y1), Point(e.x2, e.y2));
+        return edges;
+    }
+    double radians() const {
+        return fieldOfView == 360 ? 2 * vectorlib::pi : fieldOfView * vectorlib::pi / 180;
+    }
+
+    std::vector<Segment> observe(const std::vector<Segment> &world, const vectorlib::Pose2D &at) const {
+        vectorlib::Observer<double> observer;
+        observer.fieldOfView = radians();
+        std::vector<Segment> view;
+        for (const auto &part : observer(world, at))
+            view.push_back(part.segment);
+        return view;
+    }
+    std::vector<Point> simulate(const std::vector<Segment> &world, const vectorlib::Pose2D &at) const {
+        vectorlib::SimulatedScanner<double> scanner(seed);
+        scanner.rays = rays;
+        scanner.fieldOfView = radians();
+        scanner.sigma = noise;
+        scanner.outliers = outliers;
+        return scanner(world, at);
+    }
+    static void draw(std::ostream &svg, const std::vector<Segment> &world, const vectorlib::Pose2D &at,
+                     const std::vector<Segment> &view, const std::vector<Point> &scan) {
+        std::vector<Segment> around;
+        for (const Segment &s : world)
+            around.push_back(vectorlib::Transformation2D(at).inverse() * s);
+        vectorlib::SvgPicture picture("What a sensor sees, in its own frame");
+        picture.segments({vectorlib::colour::points, 1.2, "world"}, around);
+        picture.segments({vectorlib::colour::estimate, 3, "expected view"}, view);
+        if (!scan.empty())
+            picture.points({vectorlib::colour::reference, 3, "simulated scan"}, scan);
+        picture.pose({vectorlib::colour::map, 2, "sensor"}, {}, 0);
+        picture.write(svg);
+    }
+};
+
+} // namespace
+
+void addObserveCommand(CLI::App &app) {
+    auto command = std::make_shared<ObserveCommand>();
+    CLI::App *sub =
+        app.add_subcommand("observe", "What a sensor sees of a world: the exact view (CSV x1,y1,x2,y2) or a "
+                                      "simulated scan (CSV x,y), in the sensor's frame");
+    sub->add_option("WORLD", command->in, "World: JSON with edges")->required();
+    sub->add_option("--pose", command->pose, "Where the sensor is: metres, radians")
+        ->required()
+        ->check(poseText())
+        ->type_name("X,Y,THETA");
+    CLI::Option *scan = sub->add_option("--scan", command->rays, "Simulate a scan of so many rays")
+                            ->check(between(1, 1e7))
+                            ->type_name("N");
+    sub->add_option("--fov", command->fieldOfView,
+                    "Field of view, half of it to each side of the heading, degrees")
+        ->check(between(0.001, 360))
+        ->type_name("DEG")
+        ->capture_default_str();
+    sub->add_option("--noise", command->noise, "Standard deviation of the range, metres")
+        ->check(between(0, 1e6))
+        ->needs(scan)
+        ->type_name("M")
+        ->capture_default_str();
+    sub->add_option("--outliers", command->outliers, "Share of rays, 0 to 1, that stop before the wall")
+        ->check(between(0, 1))
+        ->needs(scan)
+        ->type_name("F")
+        ->capture_default_str();
+    sub->add_option("--seed", command->seed, "The same seed gives the same scan")
+        ->needs(scan)
+        ->type_name("I")
+        ->capture_default_str();
+    command->output.addTo(*sub, true);
+    sub->footer(example("hermes-vector observe pillars.json --pose 1,1,0.5 --scan 720 --noise 0.01"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes
