@@ -2,6 +2,7 @@
 
 #include "vectorlib/io/TextInput.h"
 
+#include <iomanip>
 #include <sstream>
 
 namespace hermes {
@@ -21,7 +22,7 @@ CLI::Validator numberThat(std::string expected, std::function<bool(double)> hold
 
 std::string plain(double value) {
     std::ostringstream out;
-    out << value;
+    out << std::setprecision(12) << value;
     return out.str();
 }
 

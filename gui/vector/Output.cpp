@@ -41,7 +41,7 @@ mode_t usualPermissions() {
 } // namespace
 
 void removeTemporariesOnSignal() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE})
         std::signal(signal, removeAndDie);
 }
 

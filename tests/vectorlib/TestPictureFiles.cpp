@@ -1,0 +1,130 @@
+#include <vectorlib/io/Dxf.h>
+#include <vectorlib/io/GeoJson.h>
+#include <vectorlib/io/Pgm.h>
+#include <vectorlib/io/Svg.h>
+#include <vectorlib/io/Tum.h>
+
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QXmlStreamReader>
+#include <QtTest>
+
+#include <limits>
+#include <sstream>
+
+using namespace vectorlib;
+
+namespace {
+
+std::vector<MapSegment> corner() {
+    std::vector<MapSegment> map(2);
+    map[0].id = 4;
+    map[0].segment = {{0, 0}, {2, 0}};
+    map[1].id = 5;
+    map[1].segment = {{2, 0}, {2, 1.5}};
+    return map;
+}
+
+QByteArray written(SvgPicture &picture) {
+    std::ostringstream out;
+    picture.write(out);
+    return QByteArray::fromStdString(out.str());
+}
+
+/// Elements and text of an SVG file; fails the test when it is not well-formed.
+QByteArray contents(const QByteArray &svg) {
+    QXmlStreamReader xml(svg);
+    QByteArray seen;
+    while (!xml.atEnd())
+        if (xml.readNext() == QXmlStreamReader::StartElement)
+            seen += '<' + xml.name().toUtf8() + '>';
+        else if (xml.isCharacters())
+            seen += xml.text().toUtf8();
+    return xml.hasError() ? "malformed: " + xml.errorString().toUtf8() : seen;
+}
+
+} // namespace
+
+/// Pictures and drawings of maps in the formats of other programs.
+class TestPictureFiles : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void svgHasLegendScaleAndLayers() {
+        SvgPicture picture("Room <1> & hall");
+        picture.segments<double>({colour::map, 2, "walls & doors"}, {{{0, 0}, {8, 0}}, {{8, 0}, {8, 6}}});
+        picture.points<float>({colour::points, 3, "points"}, {{1, 1}, {2, 2}});
+        picture.path({colour::estimate, 1, "trajectory", true}, {{1, 1}, {2, 3}});
+        picture.pose({colour::reference, 2, "sensor"}, {1, 1}, 0.5);
+        const QByteArray svg = contents(written(picture));
+        for (const char *part :
+             {"Room <1> & hall", "walls & doors", "points", "trajectory", "sensor", "1 m", "<circle>"})
+            QVERIFY2(svg.contains(part), svg.constData());
+    }
+    void svgOfNothingAndOfNonsense() {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        SvgPicture empty("empty"), wild("wild");
+        wild.points<double>({colour::points, 1, "p"}, {{nan, 0}, {1, 1}});
+        wild.segments<double>({colour::map, 1, "s"}, {{{0, nan}, {1, 1}}});
+        for (SvgPicture *picture : {&empty, &wild}) {
+            const QByteArray svg = written(*picture);
+            QVERIFY(!contents(svg).startsWith("malformed"));
+            QVERIFY2(!svg.contains("nan") && !svg.contains("inf"), svg.constData());
+        }
+    }
+
+    void geoJson() {
+        std::ostringstream out;
+        writeGeoJson(out, corner());
+        const QJsonArray features = QJsonDocument::fromJson(QByteArray::fromStdString(out.str()))
+                                        .object()
+                                        .value("features")
+                                        .toArray();
+        QCOMPARE(features.size(), 2);
+        const QJsonObject second = features[1].toObject();
+        QCOMPARE(second["id"].toInt(), 5);
+        QCOMPARE(second["geometry"].toObject()["coordinates"].toArray()[1].toArray()[1].toDouble(), 1.5);
+    }
+
+    void dxf() {
+        std::ostringstream out;
+        writeDxf(out, corner());
+        const QByteArray text = QByteArray::fromStdString(out.str());
+        QCOMPARE(text.count("\nLINE\n"), 2);
+        QVERIFY(text.contains("10\n2\n20\n0\n30\n0\n11\n2\n21\n1.5\n"));
+        QVERIFY(text.endsWith("0\nEOF\n"));
+    }
+
+    void tum() {
+        std::ostringstream out;
+        writeTum(out, {{1234567890.125, {1, -2.5, pi}}});
+        QCOMPARE(QByteArray::fromStdString(out.str()).left(32),
+                 QByteArray("1234567890.125 1 -2.5 0 0 0 1 6."));
+    }
+
+    void occupancy() {
+        const auto picture = OccupancyPicture::draw(corner(), {{0, {1, 0.5, 0}}, {1, {1, 1, 0}}}, 0.1);
+        QVERIFY(picture.has_value());
+        std::ostringstream pgm, yaml;
+        picture->writePgm(pgm);
+        picture->writeYaml(yaml, "a.pgm");
+        const std::string cells = pgm.str();
+        QVERIFY(cells.rfind("P5\n40 35\n255\n", 0) == 0); // 2 m x 1.5 m and 1 m around
+        const auto cell = [&](double x, double y) {
+            const int column = int((x + 1) / 0.1), row = 34 - int((y + 1) / 0.1);
+            return int(static_cast<unsigned char>(cells[13 + std::size_t(row * 40 + column)]));
+        };
+        QCOMPARE(cell(1.05, 0.02), 0);   // wall
+        QCOMPARE(cell(1.05, 0.72), 254); // driven
+        QCOMPARE(cell(0.25, 1.25), 205); // never seen
+        QVERIFY(yaml.str().find("image: a.pgm\nresolution: 0.1\norigin: [-1, -1, 0]") == 0);
+    }
+    void hugeMapsAreNotDrawn() {
+        std::vector<MapSegment> map(1);
+        map[0].segment = {{0, 0}, {1e7, 1e7}};
+        QVERIFY(!OccupancyPicture::draw(map, {}));
+    }
+};
+
+QTEST_APPLESS_MAIN(TestPictureFiles)
+#include "TestPictureFiles.moc"
