@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vectorlib/geometry/LineSegment2D.h>
+
+#include <random>
+#include <vector>
+
+/// A scan of a room of ten walls by a scanner amid it, counter-clockwise, at even steps of the angle, with 1
+/// cm noise of the range: one continuous cluster.
+inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays) {
+    using Point = vectorlib::Vector2D<double>;
+    // Begins behind the scanner, where the scan begins and ends.
+    const std::vector<Point> corners = {{-5, 0},   {-5, -3}, {-1, -3}, {-1, -4}, {3, -4}, {3, -2.5},
+                                        {6, -2.5}, {6, 3},   {1.5, 3}, {1.5, 4}, {-5, 4}};
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, 0.01);
+    std::vector<vectorlib::Vector2D<float>> points;
+    for (int i = 0; i < rays; ++i) {
+        const double angle = -3.14159265 + 6.2831853 * i / rays;
+        const Point direction(std::cos(angle), std::sin(angle));
+        double range = 100;
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+            const Point begin = corners[c], edge = corners[(c + 1) % corners.size()] - begin;
+            const double across = direction.cross(edge);
+            const double distance = begin.cross(edge) / across, along = begin.cross(direction) / across;
+            if (distance > 0 && along >= 0 && along <= 1)
+                range = std::min(range, distance);
+        }
+        points.emplace_back(direction * (range + noise(random)));
+    }
+    return points;
+}
