@@ -15,7 +15,7 @@ int main(int argc, char **argv) {
     CLI::App app("Scans to line segments, and line segments to maps.");
     app.name("hermes-vector");
     app.set_version_flag("--version", "hermes-vector " HERMES_VERSION);
-    app.require_subcommand(1);
+    app.require_subcommand(0, 1); // none is told below: CLI11 would not name a wrong one
     app.footer("hermes-vector COMMAND --help says more and shows an example.");
     hermes::addSegmentCommand(app);
     hermes::addVectorizeCommand(app);
@@ -26,6 +26,8 @@ int main(int argc, char **argv) {
     hermes::removeTemporariesOnSignal();
     try {
         app.parse(argc, argv);
+        if (app.get_subcommands().empty())
+            throw CLI::RequiredError("A subcommand");
     } catch (const CLI::ParseError &e) {
         if (e.get_exit_code() == int(CLI::ExitCodes::Success))
             return app.exit(e); // prints the help or the version

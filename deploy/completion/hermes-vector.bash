@@ -1,0 +1,35 @@
+# Bash completion of hermes-vector. The options are those its own --help lists.
+
+_hermes_vector() {
+    local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command="" i
+    COMPREPLY=()
+    for ((i = 1; i < COMP_CWORD; ++i)); do
+        case ${COMP_WORDS[i]} in
+        -*) ;;
+        *)
+            command=${COMP_WORDS[i]}
+            break
+            ;;
+        esac
+    done
+    if [ -z "$command" ]; then
+        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register observe map ring --help --version" -- "$word")
+        return
+    fi
+    case $previous in
+    --algorithm) mapfile -t COMPREPLY < <(compgen -W "ftls tls" -- "$word") && return ;;
+    --rotation) mapfile -t COMPREPLY < <(compgen -W "mitsuta wahba" -- "$word") && return ;;
+    --weights) mapfile -t COMPREPLY < <(compgen -W "none length column" -- "$word") && return ;;
+    --odometry) mapfile -t COMPREPLY < <(compgen -W "use ignore" -- "$word") && return ;;
+    --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --scan | \
+        --noise | --fov | --outliers | --seed | --every | --laser | --turn) return ;;
+    esac
+    if [[ $word == -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "$(hermes-vector "$command" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u)" -- "$word")
+        return
+    fi
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -f -- "$word")
+}
+
+complete -F _hermes_vector hermes-vector

@@ -1,0 +1,419 @@
+#include "common/capture/PcapWriter.h"
+#include "protocol/velodyne/DataPacket.h"
+#include "tests/support/RealData.h"
+
+#include <QDir>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QProcess>
+#include <QTemporaryDir>
+#include <QtTest>
+
+namespace {
+
+struct Result {
+    int status = -1;
+    QByteArray out;
+    QByteArray err;
+};
+
+Result run(const QStringList &arguments, const QByteArray &input = QByteArray()) {
+    QProcess process;
+    process.start(qEnvironmentVariable("HERMES_BIN") + QStringLiteral("/hermes-vector"), arguments);
+    process.write(input);
+    process.closeWriteChannel();
+    process.waitForFinished(60000);
+    Result r;
+    r.status = process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1;
+    r.out = process.readAllStandardOutput();
+    r.err = process.readAllStandardError();
+    return r;
+}
+
+QString data(const char *name) {
+    return QStringLiteral(TEST_DATA_DIR "/vector/") + QLatin1String(name);
+}
+
+QByteArray contents(const QString &path) {
+    QFile file(path);
+    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
+}
+
+void write(const QString &path, const QByteArray &text) {
+    QFile file(path);
+    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size())
+        qFatal("cannot write a file of the test");
+}
+
+QJsonObject json(const QByteArray &text) {
+    return QJsonDocument::fromJson(text).object();
+}
+
+/// A capture of `packets` data packets, 10 turns a second, a wall 5 m away all around on every laser.
+void writeCapture(const QString &path, int packets) {
+    using namespace hermes;
+    PcapWriter writer;
+    if (!writer.open(path.toStdString(), true))
+        qFatal("%s", writer.error().c_str());
+    int azimuth = 18000;
+    for (int p = 0; p < packets; ++p) {
+        velodyne::DataPacketWriter packet;
+        for (int block = 0; block < velodyne::blocksPerPacket; ++block, azimuth = (azimuth + 17) % 36000) {
+            packet.setAzimuth(block, std::uint16_t(azimuth));
+            for (int laser = 0; laser < velodyne::lasers; ++laser)
+                packet.setReturn(block, laser, velodyne::toDistanceCounts(5), 100);
+        }
+        const std::int64_t stamp = 1000000000 + p * velodyne::packetPeriod_ns;
+        packet.setTail(std::uint32_t(stamp / 1000));
+        Datagram d;
+        d.stamp_ns = stamp;
+        d.sourcePort = d.destinationPort = velodyne::dataPort;
+        d.payload = packet.bytes().data();
+        d.size = packet.bytes().size();
+        writer.write(d);
+    }
+    if (!writer.close())
+        qFatal("%s", writer.error().c_str());
+}
+
+} // namespace
+
+/// hermes-vector as its users meet it: columns, exit status, messages, files.
+class TestVectorProgram : public QObject {
+    Q_OBJECT
+
+    QTemporaryDir m_folder;
+
+    QString path(const char *name) const { return m_folder.filePath(QLatin1String(name)); }
+    /// What is left in the folder of the test, temporary files too.
+    QStringList files() const {
+        return QDir(m_folder.path()).entryList(QDir::Files | QDir::Hidden, QDir::Name);
+    }
+
+private Q_SLOTS:
+    void initTestCase() { QVERIFY(m_folder.isValid()); }
+    void init() {
+        for (const QString &name : files())
+            QFile::remove(m_folder.filePath(name));
+    }
+
+    void columns_data() {
+        QTest::addColumn<QStringList>("arguments");
+        QTest::addColumn<QByteArray>("header");
+        QTest::addColumn<int>("rows");
+        QTest::newRow("segment") << QStringList{"segment", data("room.csv")} << QByteArray("index,cluster")
+                                 << 360;
+        QTest::newRow("vectorize tls")
+            << QStringList{"vectorize", data("room.csv"), "--algorithm", "tls", "--no-segment"}
+            << QByteArray("cluster,first,last,a,b,c,sigma,x1,y1,x2,y2") << 1;
+        QTest::newRow("observe") << QStringList{"observe", data("world.json"), "--pose", "-1,0.5,1.5"}
+                                 << QByteArray("x1,y1,x2,y2") << 6;
+        QTest::newRow("observe a scan")
+            << QStringList{"observe", data("world.json"), "--pose=0,0,0", "--scan", "100", "--noise",
+                           "0.01",    "--outliers",       "0.1",          "--seed", "3",   "--fov",
+                           "180"}
+            << QByteArray("x,y") << 100;
+    }
+    void columns() {
+        QFETCH(QStringList, arguments);
+        QFETCH(QByteArray, header);
+        QFETCH(int, rows);
+        const Result r = run(arguments);
+        QCOMPARE(r.err, QByteArray());
+        QCOMPARE(r.status, 0);
+        const QList<QByteArray> lines = r.out.trimmed().split('\n');
+        QCOMPARE(lines.first(), header);
+        QCOMPARE(lines.size() - 1, rows);
+    }
+
+    void vectorizeFindsTheWalls() {
+        const Result r = run({"vectorize", data("room.csv"), "--no-segment"});
+        QCOMPARE(r.status, 0);
+        int next = 0;
+        for (const QByteArray &line : r.out.trimmed().split('\n').mid(1)) {
+            const QList<QByteArray> f = line.split(',');
+            QCOMPARE(f.size(), 11);
+            QCOMPARE(f[0], QByteArray("0"));
+            QCOMPARE(f[1].toInt(), next); // every point belongs to one line
+            next = f[2].toInt() + 1;
+            QVERIFY(f[5].toDouble() >= 0);           // c
+            QVERIFY(f[6].toDouble() <= 0.02 + 1e-9); // sigma
+            QVERIFY(std::abs(std::hypot(f[3].toDouble(), f[4].toDouble()) - 1) < 1e-9);
+        }
+        QCOMPARE(next, 360);
+    }
+
+    void registerTellsThePose_data() {
+        QTest::addColumn<QStringList>("options");
+        QTest::newRow("default") << QStringList{};
+        QTest::newRow("wahba, length") << QStringList{"--rotation", "wahba", "--weights", "length"};
+        QTest::newRow("column") << QStringList{"--weights", "column", "--k-alpha", "2", "--k-xy", "0.5"};
+    }
+    void registerTellsThePose() {
+        QFETCH(QStringList, options);
+        const Result r = run(QStringList{"register", data("pairs.csv")} + options);
+        QCOMPARE(r.status, 0);
+        const QJsonObject pose = json(r.out);
+        QCOMPARE(pose.keys(), (QStringList{"alpha", "ambiguity", "ambiguity_alpha", "ambiguity_xy", "pairs",
+                                           "reliability", "x", "y"}));
+        QVERIFY(std::abs(pose["x"].toDouble() - 1) < 1e-9);
+        QVERIFY(std::abs(pose["y"].toDouble() + 2) < 1e-9);
+        QVERIFY(std::abs(pose["alpha"].toDouble() - 0.3) < 1e-9);
+        QCOMPARE(pose["pairs"].toInt(), 6);
+    }
+    /// Far from the origin an error of rotation must not turn into one of translation (erratum 13): the
+    /// middle of the segments stays where it is although the angles do not agree.
+    void registerFarFromTheOrigin() {
+        const Result r = run({"register", "-"},
+                             "100000,0,100001,0.01,100000,0,100001,0\n100000,0,100000,1,100000,0,100000,1\n");
+        QCOMPARE(r.status, 0);
+        const QJsonObject p = json(r.out);
+        const double a = p["alpha"].toDouble(), x = 100000.5, y = 0.25;
+        QVERIFY(a > 0.001);
+        QVERIFY(std::abs(std::cos(a) * x - std::sin(a) * y + p["x"].toDouble() - x) < 0.02);
+        QVERIFY(std::abs(std::sin(a) * x + std::cos(a) * y + p["y"].toDouble() - y) < 0.02);
+    }
+
+    void mapWritesEveryKind() {
+        const Result r =
+            run({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv"), "--out-trajectory",
+                 path("t.tum"), "--summary", path("s.json"), "--svg", path("p.svg")});
+        QCOMPARE(r.err, QByteArray());
+        QCOMPARE(r.out, QByteArray());
+        QCOMPARE(r.status, 0);
+        QCOMPARE(files(), (QStringList{"m.csv", "p.svg", "s.json", "t.tum"}));
+        QVERIFY(contents(path("m.csv")).startsWith("id,x1,y1,x2,y2,n,sigma,observations,"));
+        QVERIFY(contents(path("p.svg")).startsWith("<svg"));
+        const QJsonObject s = json(contents(path("s.json")));
+        for (const char *key : {"scans", "skipped", "matched", "lost", "closures", "ms_per_scan", "segments",
+                                "map_bytes", "seconds"})
+            QVERIFY2(s.contains(QLatin1String(key)), key);
+        QCOMPARE(s["ms_per_scan"].toObject().keys(), (QStringList{"map", "match", "segment", "vectorize"}));
+        QCOMPARE(s["scans"].toInt(), 8);
+        QCOMPARE(s["matched"].toInt(), 8);
+        QCOMPARE(s["map_bytes"].toInt(), contents(path("m.csv")).size());
+        QCOMPARE(s["reference"].toObject()["within_10cm_2deg"].toDouble(), 1.0);
+        const QList<QByteArray> poses = contents(path("t.tum")).trimmed().split('\n');
+        QCOMPARE(poses.size(), 8);
+        QCOMPARE(poses[7].split(' ').size(), 8);
+        QCOMPARE(poses[7].split(' ')[0].toDouble(), 7.0);
+        QVERIFY(std::abs(poses[7].split(' ')[1].toDouble() - 1.05) < 0.05);
+
+        for (const char *name : {"m.svg", "m.geojson", "m.dxf", "m.pgm"})
+            QCOMPARE(
+                run({"map", data("raw.log"), "--out-map", path(name), "--odometry", "ignore", "--every", "2"})
+                    .status,
+                0);
+        QVERIFY(files().contains("m.yaml"));
+        QVERIFY(contents(path("m.yaml")).contains("image: m.pgm"));
+    }
+
+    void mapOfAFolder() {
+        QVERIFY(QDir(m_folder.path()).mkpath("scans"));
+        for (int i = 0; i < 3; ++i)
+            QCOMPARE(
+                run({"observe", data("world.json"), "--pose", QStringLiteral("0.%1,0,0").arg(i), "--scan",
+                     "400", "--out", m_folder.filePath(QStringLiteral("scans/%1.csv").arg(i)), "--force"})
+                    .status,
+                0);
+        const Result r = run({"map", path("scans"), "--out-trajectory", path("t.tum")});
+        QCOMPARE(r.status, 0);
+        QCOMPARE(json(r.out)["matched"].toInt(), 3);
+        QVERIFY(std::abs(contents(path("t.tum")).split('\n')[2].split(' ')[1].toDouble() - 0.2) < 0.01);
+    }
+
+    void ring() {
+        writeCapture(path("c.pcap"), 400); // 400 * 12 * 0.17 degrees: two turns and a quarter
+        const Result r = run({"ring", path("c.pcap")});
+        QCOMPARE(r.err, QByteArray());
+        QCOMPARE(r.status, 0);
+        const QList<QByteArray> lines = r.out.trimmed().split('\n');
+        QCOMPARE(lines[0], QByteArray("turn,stamp,azimuth,range,intensity,x,y"));
+        QCOMPARE(lines.size() - 1, 4800);
+        const QList<QByteArray> last = lines.last().split(',');
+        QCOMPARE(last[0], QByteArray("2"));
+        QCOMPARE(last[3].toDouble(), 5.0);
+        const double azimuth = last[2].toDouble() * M_PI / 180;
+        QVERIFY(std::abs(last[5].toDouble() - 5 * std::cos(azimuth)) < 1e-6); // x forward
+        QVERIFY(std::abs(last[6].toDouble() + 5 * std::sin(azimuth)) <
+                1e-6); // y left, the azimuth runs clockwise
+
+        const Result one = run({"ring", path("c.pcap"), "--turn", "1", "--all"});
+        QVERIFY(one.out.startsWith("turn,stamp,laser,azimuth,range,intensity,x,y,z\n1,"));
+        const Result laser = run({"ring", path("c.pcap"), "--laser", "0", "--turn", "1"});
+        QCOMPARE(one.out.count('\n') - 1, 32 * (laser.out.count('\n') - 1));
+        QCOMPARE(run({"ring", path("c.pcap"), "--turn", "3"}).status, 1);
+        const Result map = run({"map", path("c.pcap")});
+        QCOMPARE(map.status, 0);
+        QCOMPARE(json(map.out)["scans"].toInt(), 3);
+    }
+
+    void wrongUsage_data() {
+        QTest::addColumn<QStringList>("arguments");
+        QTest::addColumn<QByteArray>("named");
+        const QString room = data("room.csv"), world = data("world.json"), log = data("raw.log");
+        const auto row = [](const char *name, const QStringList &arguments, const char *named) {
+            QTest::newRow(name) << arguments << QByteArray(named);
+        };
+        row("nothing", {}, "subcommand");
+        row("no such command", {"draw"}, "draw");
+        row("no file", {"segment"}, "IN");
+        row("unknown option", {"segment", room, "--colour", "red"}, "--colour");
+        row("no number", {"segment", room, "--k", "many"}, "--k");
+        row("not a number", {"segment", room, "--min-threshold", "nan"}, "--min-threshold");
+        row("negative", {"segment", room, "--min-points", "-1"}, "--min-points");
+        row("bounds crossed", {"segment", room, "--min-threshold", "0.5"}, "--min-threshold");
+        row("sigma 0", {"vectorize", room, "--sigma", "0"}, "--sigma");
+        row("unknown algorithm", {"vectorize", room, "--algorithm", "magic"}, "--algorithm");
+        row("unknown weights", {"register", data("pairs.csv"), "--weights", "heavy"}, "--weights");
+        row("no pose", {"observe", world}, "--pose");
+        row("half a pose", {"observe", world, "--pose", "1,2"}, "--pose");
+        row("noise without scan", {"observe", world, "--pose", "0,0,0", "--noise", "1"}, "--noise");
+        row("field of view", {"observe", world, "--pose", "0,0,0", "--fov", "400"}, "--fov");
+        row("unknown map", {"map", log, "--out-map", "map.png"}, "--out-map");
+        row("every 0th", {"map", log, "--every", "0"}, "--every");
+        row("odometry", {"map", log, "--odometry", "maybe"}, "--odometry");
+        row("laser 32", {"ring", "x.pcap", "--laser", "32"}, "--laser");
+    }
+    void wrongUsage() {
+        QFETCH(QStringList, arguments);
+        QFETCH(QByteArray, named);
+        const Result r = run(arguments);
+        QCOMPARE(r.status, 2);
+        QVERIFY2(r.err.contains(named), r.err.constData());
+        QCOMPARE(r.out, QByteArray());
+    }
+
+    void badInput_data() {
+        QTest::addColumn<QString>("command");
+        QTest::addColumn<QByteArray>("text");
+        QTest::addColumn<QByteArray>("place");
+        QTest::addColumn<QByteArray>("expected");
+        const QByteArray log = contents(data("raw.log"));
+        QTest::newRow("nan in points") << "segment" << QByteArray("x,y\n1,2\nnan,3\n") << QByteArray("in:3:")
+                                       << QByteArray("a finite number");
+        QTest::newRow("one column") << "vectorize" << QByteArray("1,2\n3\n") << QByteArray("in:2:")
+                                    << QByteArray("2 fields");
+        QTest::newRow("no pairs") << "register" << QByteArray("1,2,3,4\n") << QByteArray("in:1:")
+                                  << QByteArray("dx1");
+        QTest::newRow("world without edges") << "observe" << QByteArray("{\"name\": \"x\", \"edges\": []}")
+                                             << QByteArray("in") << QByteArray("x1");
+        QTest::newRow("world that is none")
+            << "observe" << QByteArray("{\"edges\": [\n[0,0,1]]}") << QByteArray("in:2") << QByteArray();
+        QTest::newRow("log cut short")
+            << "map" << log.left(log.size() / 2) << QByteArray("in:8:") << QByteArray("of FLASER");
+        QTest::newRow("no log") << "map" << QByteArray("hello\n") << QByteArray("in:1:")
+                                << QByteArray("CARMEN");
+        QTest::newRow("no capture") << "ring" << QByteArray("hello\n") << QByteArray("in") << QByteArray();
+        QTest::newRow("empty file") << "map" << QByteArray() << QByteArray("in") << QByteArray("FLASER");
+    }
+    /// Status 1, a message that names the place, and not a trace of any output file.
+    void badInput() {
+        QFETCH(QString, command);
+        QFETCH(QByteArray, text);
+        QFETCH(QByteArray, place);
+        QFETCH(QByteArray, expected);
+        write(path("in"), text);
+        QStringList arguments{command, path("in"), "--out", path("out")};
+        if (command == QLatin1String("observe"))
+            arguments += {"--pose", "0,0,0"};
+        if (command == QLatin1String("map"))
+            arguments +=
+                {"--out-map", path("m.csv"), "--out-trajectory", path("t.tum"), "--svg", path("m.svg")};
+        const Result r = run(arguments);
+        QVERIFY2(r.status == 1, r.err.constData());
+        QVERIFY2(r.err.contains('/' + place), r.err.constData());
+        QVERIFY2(r.err.contains(expected), r.err.constData());
+        QCOMPARE(files(), QStringList{"in"});
+    }
+
+    void captureCutInMidRecord() {
+        writeCapture(path("whole.pcap"), 250);
+        write(path("c.pcap"), contents(path("whole.pcap")).left(200 * 1264 + 500));
+        QFile::remove(path("whole.pcap"));
+        for (const char *command : {"ring", "map"}) {
+            const Result r = run({command, path("c.pcap"), "--out", path("out")});
+            QCOMPARE(r.status, 1);
+            QVERIFY2(r.err.contains("c.pcap: record 2"), r.err.constData());
+            QCOMPARE(files(), QStringList{"c.pcap"});
+        }
+    }
+
+    void damagedLinesAreCountedOnDemand() {
+        QByteArray log = contents(data("raw.log"));
+        write(path("in"), log.left(log.size() / 2));
+        const Result r = run({"map", path("in"), "--skip-damaged"});
+        QCOMPARE(r.status, 0);
+        QCOMPARE(json(r.out)["damaged_lines"].toInt(), 1);
+        QVERIFY2(r.err.contains("in:8: found a line cut short"), r.err.constData());
+    }
+
+    void nothingIsOverwritten() {
+        write(path("out"), "precious");
+        const Result refused =
+            run({"segment", data("room.csv"), "--out", path("out"), "--svg", path("new.svg")});
+        QCOMPARE(refused.status, 1);
+        QVERIFY2(refused.err.contains("--force"), refused.err.constData());
+        QCOMPARE(contents(path("out")), QByteArray("precious"));
+        QCOMPARE(files(), QStringList{"out"});
+        QCOMPARE(run({"segment", data("room.csv"), "--out", path("out"), "--force"}).status, 0);
+        QVERIFY(contents(path("out")).startsWith("index,cluster\n"));
+        QCOMPARE(run({"segment", data("room.csv"), "--out", path("a"), "--svg", path("a")}).status, 1);
+        QCOMPARE(run({"segment", data("room.csv"), "--out", path("no/such/folder")}).status, 1);
+        QCOMPARE(files(), QStringList{"out"});
+    }
+
+    void compressedAndStandardInput() {
+        const QByteArray plain = run({"segment", data("room.csv")}).out;
+        QCOMPARE(run({"segment", "-"}, contents(data("room.csv"))).out, plain);
+        QProcess gzip;
+        gzip.setStandardInputFile(data("room.csv"));
+        gzip.start("gzip", {"-c"});
+        QVERIFY(gzip.waitForFinished());
+        const QByteArray compressed = gzip.readAllStandardOutput();
+        write(path("room.csv.gz"), compressed);
+        QCOMPARE(run({"segment", path("room.csv.gz")}).out, plain);
+        write(path("cut.gz"), compressed.left(compressed.size() - 20));
+        const Result cut = run({"segment", path("cut.gz")});
+        QCOMPARE(cut.status, 1);
+        QVERIFY2(cut.err.contains("breaks off"), cut.err.constData());
+    }
+
+    void helpAndVersion() {
+        QCOMPARE(run({"--version"}).out.left(14), QByteArray("hermes-vector "));
+        for (const char *command : {"segment", "vectorize", "register", "observe", "map", "ring"}) {
+            const Result r = run({command, "--help"});
+            QCOMPARE(r.status, 0);
+            QVERIFY2(r.out.contains(QByteArray("Example:\n  hermes-vector ") + command), r.out.constData());
+        }
+    }
+
+    void realLogs_data() {
+        QTest::addColumn<QString>("name");
+        for (const char *name : {"intel", "fhw", "belgioioso", "orebro", "freiburg-079"})
+            QTest::newRow(name) << QString::fromLatin1(name) + "-corrected.log.gz";
+    }
+    void realLogs() {
+        QFETCH(QString, name);
+        const QString log = realData(name);
+        if (log.isEmpty())
+            QSKIP("the real logs are not here");
+        const Result r = run({"map", log, "--corrected", "--every", "2", "--out-map", path("m.csv")});
+        QVERIFY2(r.status == 0, r.err.constData());
+        QVERIFY(json(r.out)["scans"].toInt() > 100);
+        QVERIFY(contents(path("m.csv")).count('\n') > 100);
+    }
+
+    void realCapture() {
+        const QString capture = realData(QStringLiteral("hdl32e-outdoor.pcap"));
+        if (capture.isEmpty())
+            QSKIP("the real capture is not here");
+        const Result r = run({"ring", capture});
+        QCOMPARE(r.status, 0);
+        QVERIFY(r.out.count('\n') > 2000);
+        QCOMPARE(run({"ring", realData(QStringLiteral("vlp16-single-packet.pcap"))}).status, 1);
+    }
+};
+
+QTEST_GUILESS_MAIN(TestVectorProgram)
+#include "TestVectorProgram.moc"
