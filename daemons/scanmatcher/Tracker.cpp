@@ -15,8 +15,10 @@ void Tracker::apply(const TrackerSettings &settings) {
 }
 
 const ScanReport &Tracker::process(Scan &scan) {
+    const float middle = vectorlib::middleTime(scan.seconds);
+    scan.stamp += double(middle);
     if (configured.compensateMotion)
-        compensateMotion(scan.points, scan.seconds, model.twist());
+        compensateMotion(scan.points, scan.seconds, middle, model.twist());
     builder.extract.configure(2 * vectorlib::pi, scan.points.size());
     const ScanReport &report = builder.process(scan.points, model.predict(scan.stamp));
     model.update(report.pose, scan.stamp);

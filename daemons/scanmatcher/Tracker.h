@@ -37,7 +37,8 @@ public:
     void apply(const TrackerSettings &settings);
     void setMode(Mode mode) { builder.settings.grow = mode == Mode::Mapping; }
 
-    /// Compensates the motion during the scan, predicts, matches, maps.
+    /// Compensates the motion during the scan, predicts, matches, maps. The scan's stamp becomes the middle
+    /// of its time, to which the pose refers.
     const vectorlib::ScanReport &process(Scan &scan);
     /// Puts the sensor somewhere, standing still.
     void place(const vectorlib::Pose2D &pose);

@@ -156,6 +156,7 @@ def drive(world, folder, logs):
     finally:
         statuses = demo.stop()
     write_tum(os.path.join(folder, "trajectory.tum"), poses.messages)
+    write_tum(os.path.join(folder, "truth.tum"), truth.messages)
     deviations = errors(poses.messages, truth.messages)
     if not deviations:
         raise RuntimeError("no pose of the matcher lies within the time of the simulator's truth")

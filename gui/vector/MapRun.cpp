@@ -9,7 +9,9 @@ using vectorlib::ScanReport;
 using vectorlib::Transformation2D;
 
 void MapRun::take(const MapScan &scan) {
-    const Pose2D expected = expectedPose(scan);
+    const float middle = vectorlib::middleTime(scan.seconds);
+    const double stamp = scan.stamp + double(middle);
+    const Pose2D expected = expectedPose(scan, stamp);
     vectorlib::EarSettings &segment = builder.extract.segment.settings;
     segment.closed = scan.closed;
     segment.fieldOfView = scan.fieldOfView;
@@ -18,7 +20,7 @@ void MapRun::take(const MapScan &scan) {
     ScanReport::Outcome outcome = ScanReport::Outcome::Skipped;
     if (!scan.partial) {
         m_points = scan.points;
-        compensateMotion(m_points, scan.seconds, m_motion.twist());
+        compensateMotion(m_points, scan.seconds, middle, m_motion.twist());
         const ScanReport &report = builder.process(m_points, expected);
         pose = report.pose;
         outcome = report.outcome;
@@ -30,19 +32,19 @@ void MapRun::take(const MapScan &scan) {
     ++(outcome == ScanReport::Outcome::Matched ? m_matched
        : outcome == ScanReport::Outcome::Lost  ? m_lost
                                                : m_skipped);
-    m_motion.update(pose, scan.stamp);
-    m_trajectory.push_back({scan.stamp, pose});
+    m_motion.update(pose, stamp);
+    m_trajectory.push_back({stamp, pose});
     if (scan.reference)
-        m_reference.push_back({scan.stamp, *scan.reference});
+        m_reference.push_back({stamp, *scan.reference});
 }
 
 // A reference gives the map its frame, by the first pose, and nothing else.
-Pose2D MapRun::expectedPose(const MapScan &scan) const {
+Pose2D MapRun::expectedPose(const MapScan &scan, double stamp) const {
     if (m_trajectory.empty())
         return scan.reference ? *scan.reference : Pose2D();
     if (useOdometry && scan.motion)
         return (Transformation2D(m_trajectory.back().pose) * *scan.motion).pose();
-    return m_motion.predict(scan.stamp);
+    return m_motion.predict(stamp);
 }
 
 std::vector<vectorlib::MapSegment> MapRun::segments() const {

@@ -26,7 +26,7 @@ public:
     nlohmann::ordered_json summary() const;
 
 private:
-    vectorlib::Pose2D expectedPose(const MapScan &scan) const;
+    vectorlib::Pose2D expectedPose(const MapScan &scan, double stamp) const;
     nlohmann::ordered_json errors() const;
 
     vectorlib::MotionModel m_motion;

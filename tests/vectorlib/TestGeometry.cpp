@@ -111,7 +111,8 @@ void TestGeometry::compensationStraightensAWallSeenWhileMoving() {
         seconds.push_back(t);
     }
     QVERIFY(std::abs(points.back().x - 3) > 0.05f);
-    compensateMotion(points, seconds, twist);
+    QVERIFY(std::abs(middleTime(seconds) - 0.0495f) < 1e-6f);
+    compensateMotion(points, seconds, 0, twist);
     for (const Vector2D<float> &p : points)
         QVERIFY(std::abs(p.x - 3) < 1e-5f);
 }

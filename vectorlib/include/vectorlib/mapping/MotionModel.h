@@ -3,6 +3,7 @@
 #include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace vectorlib {
@@ -35,13 +36,21 @@ class MotionModel {
 public:
     double maxGap =
         1.0; ///< after a longer pause, or a stamp that steps back, the velocity is forgotten; seconds
+    double lastStepShare = 0.5; ///< of the last step in the velocity; less is smoother and later
 
     void update(const Pose2D &pose, double stamp) {
         const double seconds = stamp - m_stamp;
-        const bool follows = m_known && seconds > 0 && seconds <= maxGap;
-        m_twist = follows
-                      ? Twist2D::between(Transformation2D(m_pose).inverse() * Transformation2D(pose), seconds)
-                      : Twist2D();
+        if (!m_known || !(seconds > 0) || seconds > maxGap) {
+            m_twist = Twist2D();
+            m_velocityKnown = false;
+        } else {
+            const Twist2D last =
+                Twist2D::between(Transformation2D(m_pose).inverse() * Transformation2D(pose), seconds);
+            const double k = m_velocityKnown ? lastStepShare : 1;
+            m_twist = {m_twist.vx + k * (last.vx - m_twist.vx), m_twist.vy + k * (last.vy - m_twist.vy),
+                       m_twist.omega + k * (last.omega - m_twist.omega)};
+            m_velocityKnown = true;
+        }
         m_pose = pose;
         m_stamp = stamp;
         m_known = true;
@@ -50,7 +59,7 @@ public:
     void reset(const Pose2D &pose) {
         m_pose = pose;
         m_twist = Twist2D();
-        m_known = false;
+        m_known = m_velocityKnown = false;
     }
     Pose2D predict(double stamp) const {
         const double seconds = stamp - m_stamp;
@@ -59,7 +68,7 @@ public:
         return (Transformation2D(m_pose) * m_twist.motion(seconds)).pose();
     }
     const Pose2D &pose() const { return m_pose; }
-    /// Over the last step; zero when unknown.
+    /// Smoothed over the last steps; zero when unknown.
     const Twist2D &twist() const { return m_twist; }
 
 private:
@@ -67,14 +76,26 @@ private:
     Twist2D m_twist;
     double m_stamp = 0;
     bool m_known = false;
+    bool m_velocityKnown = false;
 };
 
-/// Moves points measured while the sensor moved to where they had been seen from its place at time 0.
-/// `seconds` holds the time of each point; both of the same size.
+/// The middle between the first and the last of the points' times; 0 without any. The best time to refer a
+/// scan to: a wrong velocity then bends the scan without shifting it, while at its beginning the shift would
+/// come back as a wrong velocity of the next scan, and grow.
+inline float middleTime(const std::vector<float> &seconds) {
+    if (seconds.empty())
+        return 0;
+    const auto [first, last] = std::minmax_element(seconds.begin(), seconds.end());
+    return (*first + *last) / 2;
+}
+
+/// Moves points measured while the sensor moved to where they would have been seen from its place at time
+/// `reference`. `seconds` holds the time of each point; both of the same size, or no times for a scan
+/// measured at once.
 inline void compensateMotion(std::vector<Vector2D<float>> &points, const std::vector<float> &seconds,
-                             const Twist2D &twist) {
+                             float reference, const Twist2D &twist) {
     for (std::size_t i = 0; i < points.size() && i < seconds.size(); ++i)
-        points[i] = twist.motion(seconds[i]) * points[i];
+        points[i] = twist.motion(seconds[i] - reference) * points[i];
 }
 
 } // namespace vectorlib

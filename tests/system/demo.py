@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Runs the demo as a newcomer does, interrupts it, kills it, and looks at what it leaves."""
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import uuid
+
+SOURCE = os.environ["HERMES_SOURCE"]
+RUN = os.path.join(SOURCE, "deploy", "demo", "run.py")
+DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
+
+
+def marked(mark):
+    """Processes whose environment holds the mark."""
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{pid}/environ", "rb") as environment:
+                if mark.encode() in environment.read():
+                    found.append(int(pid))
+        except OSError:
+            pass
+    return found
+
+
+def wait_for(condition, limit_s):
+    deadline = time.monotonic() + limit_s
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return condition()
+
+
+class DemoTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="hermes-test-")
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.out = os.path.join(self.folder, "out")
+        self.mark = str(uuid.uuid4())
+
+    def start(self, *arguments):
+        return subprocess.Popen([sys.executable, RUN, "--out", self.out, *arguments], stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+                                env={**os.environ, "HERMES_DEMO_MARK": self.mark, "TMPDIR": self.folder})
+
+    def finish(self, process, limit_s):
+        out, err = process.communicate(timeout=limit_s)
+        self.assertEqual(marked(self.mark), [], "processes are left behind")
+        return process.returncode, out, err
+
+    def test_drives_and_maps(self):
+        begin = time.monotonic()
+        status, out, err = self.finish(self.start(), 120)
+        seconds = time.monotonic() - begin
+        self.assertEqual(status, 0, out + err)
+        self.assertLessEqual({"map.svg", "map.csv", "trajectory.tum", "recording.pcap", "summary.json"},
+                             set(os.listdir(self.out)))
+        with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.assertGreater(summary["scans"], 200)
+        self.assertEqual(summary["matched"], summary["scans"], summary)
+        self.assertEqual(summary["dropped"], 0, summary)
+        self.assertLess(summary["final_error_m"], 0.05)
+        self.assertLess(summary["final_error_deg"], 1.0)
+        self.assertLess(seconds, 60)
+        self.assertEqual(set(summary["exit_status"].values()), {0})
+        with open(os.path.join(self.out, "trajectory.tum"), encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        self.assertGreaterEqual(len(lines), summary["scans"])
+        self.assertTrue(all(len(line.split()) == 8 for line in lines))
+        if shutil.which("capinfos"):
+            told = subprocess.run(["capinfos", "-M", "-c", os.path.join(self.out, "recording.pcap")],
+                                  capture_output=True, text=True, check=True).stdout
+            self.assertGreater(int(told.split("Number of packets:")[1].split()[0]), 30 * 1800)
+
+    def interrupt(self, number):
+        process = self.start()
+        wait_for(lambda: len(marked(self.mark)) >= 4, 20)
+        time.sleep(1)
+        process.send_signal(number)
+        return self.finish(process, 15)
+
+    def test_ctrl_c_leaves_nothing(self):
+        status, out, err = self.interrupt(signal.SIGINT)
+        self.assertEqual(status, 130, out + err)
+        self.assertIn("Interrupted", err)
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_term_leaves_nothing(self):
+        status, _, _ = self.interrupt(signal.SIGTERM)
+        self.assertEqual(status, 143)
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def test_kill_leaves_no_process(self):
+        process = self.start()
+        self.assertTrue(wait_for(lambda: len(marked(self.mark)) >= 4, 20))
+        process.kill()
+        process.communicate()
+        self.assertTrue(wait_for(lambda: not marked(self.mark), 10), "daemons outlive a killed demo")
+
+    def test_ports_in_use_are_no_obstacle(self):
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            sys.path.insert(0, os.path.dirname(RUN))
+            from processes import free_port
+            self.assertNotEqual(free_port(taken.getsockname()[1]), taken.getsockname()[1])
+
+    def test_usage_errors(self):
+        for arguments in (["--log", "/no/such/file"], ["--world", "/no/such/world"], ["--nonsense"]):
+            status, _, err = self.finish(self.start(*arguments), 20)
+            self.assertEqual(status, 2, err)
+            self.assertIn(arguments[0], err)
+            self.assertFalse(os.path.exists(self.out))
+
+    def test_other_peoples_folder_is_not_replaced(self):
+        os.mkdir(self.out)
+        with open(os.path.join(self.out, "thesis.txt"), "w", encoding="utf-8") as file:
+            file.write("ten years of work")
+        status, _, err = self.finish(self.start(), 20)
+        self.assertEqual(status, 2, err)
+        self.assertEqual(os.listdir(self.out), ["thesis.txt"])
+
+    def test_bad_world(self):
+        world = os.path.join(self.folder, "empty.json")
+        with open(world, "w", encoding="utf-8") as file:
+            file.write('{"name": "empty", "edges": [], "poses": [[0, 0, 0]]}')
+        status, _, err = self.finish(self.start("--world", world), 20)
+        self.assertEqual(status, 1, err)
+        self.assertIn("empty.json", err)
+        self.assertFalse(os.path.exists(self.out))
+
+    @unittest.skipUnless(os.path.isdir(DATA), "no real data (HERMES_DATA)")
+    def test_real_log(self):
+        log = os.path.join(DATA, "belgioioso-corrected.log.gz")
+        status, out, err = self.finish(self.start("--log", log, "--corrected"), 60)
+        self.assertEqual(status, 0, out + err)
+        self.assertLessEqual({"map.svg", "map.csv", "trajectory.tum", "summary.json"}, set(os.listdir(self.out)))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
