@@ -1,6 +1,5 @@
 #include "common/daemon/CommandRegistry.h"
 
-#include <QRegularExpression>
 #include <QStringList>
 
 namespace hermes {
@@ -10,9 +9,11 @@ void CommandRegistry::execute(const RpcRequest &request, const Call &call, const
     if (found != commands.constEnd())
         return found->execute(request.params, call, reply);
     const QString group = request.method.section(QLatin1Char('.'), 0, 0) + QLatin1Char('.');
-    const QStringList near =
-        QStringList(commands.keys())
-            .filter(QRegularExpression(QLatin1Char('^') + QRegularExpression::escape(group)));
+    QStringList near;
+    for (const QString &name : commands.keys()) {
+        if (name.startsWith(group))
+            near.append(name);
+    }
     const QString hint = near.isEmpty() ? QStringLiteral("rpc.discover lists what there is")
                                         : QStringLiteral("there is ") + near.join(QStringLiteral(", "));
     reply.error(Error(ErrorCode::MethodNotFound,

@@ -53,7 +53,12 @@ void FaultyInterface::later(const QByteArray &bytes, const Delivery &deliver) {
     const double delay = std::uniform_int_distribution<int>(0, faults.longestDelay_ms)(random) / 1000.0;
     lastDue = std::max(lastDue, now + delay);
     const int wait_ms = int(std::ceil((lastDue - now) * 1000));
-    QTimer::singleShot(wait_ms, Qt::PreciseTimer, this, [bytes, deliver] { deliver(bytes); });
+    waiting.emplace_back(bytes, deliver);
+    QTimer::singleShot(wait_ms, Qt::PreciseTimer, this, [this] { // timers of one instant fire in any order
+        const auto [piece, target] = std::move(waiting.front());
+        waiting.pop_front();
+        target(piece);
+    });
 }
 
 } // namespace hermes

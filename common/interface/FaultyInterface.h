@@ -2,7 +2,10 @@
 
 #include "common/interface/Interface.h"
 
+#include <deque>
+#include <functional>
 #include <random>
+#include <utility>
 
 namespace hermes {
 
@@ -43,6 +46,7 @@ private:
     Faults faults;
     std::mt19937 random;
     quint64 faultsMade = 0;
+    std::deque<std::pair<QByteArray, Delivery>> waiting; // in order
     double lastDue = 0; // monotonic; a later piece is never due before an earlier one
 };
 

@@ -1,0 +1,201 @@
+#include "common/Log.h"
+#include "common/client/Client.h"
+#include "common/daemon/Daemon.h"
+#include "common/interface/FaultyInterface.h"
+#include "common/interface/TcpInterface.h"
+
+#include <QtTest>
+
+using namespace hermes;
+
+namespace {
+
+class Echo : public Daemon {
+public:
+    Echo()
+        : Daemon({"echo", "Echo", "For tests", 1}) {
+        addTopic(Topic("numbers", "Numbers"));
+        addCommand(Command("echo", "Gives back")
+                       .param(Field::any("value", "Anything"))
+                       .handler([](const Call &call) { return call.value("value"); }));
+        addCommand(Command("hang", "Never answers").asyncHandler([this](const Call &, const Reply &reply) {
+            kept.push_back(reply);
+        }));
+    }
+    using Daemon::publish;
+    std::vector<Reply> kept;
+};
+
+} // namespace
+
+class TestClient : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void callsAndFails();
+    void timesOut();
+    void failsWhenNotConnected();
+    void pendingCallFailsWithTheConnection();
+    void reconnectsAndSubscribesAgain();
+    void subscribesBeforeConnecting();
+    void unknownTopicIsReported();
+    void closesFromInsideACallback();
+    void everyRequestEndsOverABadLine_data();
+    void everyRequestEndsOverABadLine();
+
+private:
+    void start(const QString &listen);
+
+    std::unique_ptr<Echo> daemon;
+    QString address;
+};
+
+void TestClient::init() {
+    Log::instance().setStderr(false);
+    start("tcp://127.0.0.1:0");
+    address = daemon->server().addresses().value(0);
+}
+
+void TestClient::start(const QString &listen) {
+    daemon.reset();
+    daemon = std::make_unique<Echo>();
+    QVERIFY(!daemon->prepare({"echo", "--listen", listen}));
+    QVERIFY(daemon->launch());
+}
+
+void TestClient::callsAndFails() {
+    Client client;
+    QVERIFY(client.connectTo(address));
+    QVERIFY(client.waitConnected());
+    const auto result = client.callAndWait("echo", QJsonObject{{"value", QJsonArray{1, "a"}}});
+    QVERIFY(result);
+    QCOMPARE(*result, QJsonValue(QJsonArray{1, "a"}));
+    QVERIFY(client.callAndWait("nothing").error().is(ErrorCode::MethodNotFound));
+    QVERIFY(!client.connectTo("tcp://a b"));
+    QVERIFY(!client.connectTo("pigeon://a"));
+    QVERIFY(!client.connectTo("tcp://127.0.0.1:1?protocol=morse"));
+}
+
+void TestClient::timesOut() {
+    Client client;
+    client.connectTo(address);
+    QVERIFY(client.waitConnected());
+    const auto result = client.callAndWait("hang", QJsonObject(), std::chrono::milliseconds(50));
+    QVERIFY(result.error().is(ErrorCode::TimedOut));
+    daemon->kept[0].result("too late");
+    QVERIFY(client.callAndWait("echo", QJsonArray{1})); // the late reply is not taken for this one
+}
+
+void TestClient::failsWhenNotConnected() {
+    Client client;
+    client.connectTo("127.0.0.1:1");
+    QVERIFY(client.callAndWait("echo").error().is(ErrorCode::Disconnected));
+    QVERIFY(!client.waitConnected(std::chrono::milliseconds(50)));
+    QVERIFY2(client.lastError().contains("refused"), qPrintable(client.lastError()));
+}
+
+void TestClient::pendingCallFailsWithTheConnection() {
+    Client client;
+    client.connectTo(address);
+    QVERIFY(client.waitConnected());
+    QTimer::singleShot(20, [this] { daemon.reset(); });
+    QVERIFY(client.callAndWait("hang").error().is(ErrorCode::Disconnected));
+}
+
+void TestClient::reconnectsAndSubscribesAgain() {
+    Client client;
+    QSignalSpy connected(&client, &Client::connected);
+    QSignalSpy disconnected(&client, &Client::disconnected);
+    client.connectTo(address);
+    std::vector<TopicUpdate> updates;
+    const int handle = client.subscribe("numbers", {{"queue", 10}},
+                                        [&](const TopicUpdate &update) { updates.push_back(update); });
+    QTRY_VERIFY(daemon->hasSubscribers("numbers"));
+    daemon->publish("numbers", 1);
+    QTRY_COMPARE(updates.size(), size_t(1));
+    start(address); // a new daemon at the same place
+    QTRY_COMPARE(connected.count(), 2);
+    QVERIFY(disconnected.count() >= 1);
+    QTRY_VERIFY(daemon->hasSubscribers("numbers"));
+    daemon->publish("numbers", 2);
+    QTRY_COMPARE(updates.size(), size_t(2));
+    QCOMPARE(updates[1].data, QJsonValue(2));
+    QCOMPARE(updates[1].handle, handle);
+    client.unsubscribe(handle);
+    QTRY_VERIFY(!daemon->hasSubscribers("numbers"));
+}
+
+void TestClient::subscribesBeforeConnecting() {
+    Client client;
+    int count = 0;
+    client.subscribe("numbers", {}, [&count](const TopicUpdate &) { ++count; });
+    client.connectTo(address);
+    QTRY_VERIFY(daemon->hasSubscribers("numbers"));
+    daemon->publish("numbers", 1);
+    QTRY_COMPARE(count, 1);
+}
+
+void TestClient::unknownTopicIsReported() {
+    Client client;
+    QString message;
+    connect(&client, &Client::subscriptionFailed,
+            [&](int, const RpcError &error) { message = error.message; });
+    client.connectTo(address);
+    client.subscribe("absent", {}, {});
+    QTRY_VERIFY2(message.contains("absent"), qPrintable(message));
+}
+
+void TestClient::closesFromInsideACallback() {
+    Client client;
+    client.connectTo(address);
+    QVERIFY(client.waitConnected());
+    bool done = false;
+    client.call("echo", QJsonArray{1}, [&](const Result<QJsonValue> &) {
+        client.close();
+        done = true;
+    });
+    QTRY_VERIFY(done);
+    QVERIFY(!client.isConnected());
+}
+
+void TestClient::everyRequestEndsOverABadLine_data() {
+    QTest::addColumn<double>("drop");
+    QTest::addColumn<double>("flip");
+    QTest::addColumn<double>("split");
+    QTest::newRow("splits") << 0.0 << 0.0 << 1.0;
+    QTest::newRow("drops") << 0.2 << 0.0 << 0.2;
+    QTest::newRow("flips") << 0.0 << 0.2 << 0.2;
+    QTest::newRow("all") << 0.1 << 0.1 << 0.5;
+}
+
+void TestClient::everyRequestEndsOverABadLine() {
+    QFETCH(double, drop);
+    QFETCH(double, flip);
+    QFETCH(double, split);
+    const unsigned int seed = 42;
+    auto *faulty = new FaultyInterface(new TcpInterface(*InterfaceUrl::parse(address), nullptr),
+                                       {drop, flip, split, 2, seed}, nullptr);
+    Client client;
+    client.connectTo(new Channel(faulty, makeCodec("json"), nullptr));
+    QVERIFY(client.waitConnected());
+    const int requests = 200;
+    int answered = 0;
+    int failed = 0;
+    for (int i = 0; i < requests; ++i) {
+        client.call(
+            "echo", QJsonArray{i}, [&](const Result<QJsonValue> &result) { ++(result ? answered : failed); },
+            std::chrono::milliseconds(1000));
+        if (i % 10 == 0)
+            QTest::qWait(1);
+    }
+    QTRY_COMPARE_WITH_TIMEOUT(answered + failed, requests, 10000);
+    QVERIFY(answered > 0);
+    if (drop + flip == 0)
+        QCOMPARE(answered, requests);
+    else
+        QVERIFY(failed > 0);
+    QVERIFY(daemon->state() == DaemonState::Ready);
+}
+
+QTEST_GUILESS_MAIN(TestClient)
+#include "TestClient.moc"

@@ -1,0 +1,240 @@
+#include "common/interface/FaultyInterface.h"
+#include "common/interface/InterfaceRegistry.h"
+#include "common/interface/LoopbackInterface.h"
+#include "common/interface/TcpInterface.h"
+#include "common/interface/TcpServerInterface.h"
+#include "common/interface/UdpInterface.h"
+
+#include <QtTest>
+
+using namespace hermes;
+
+class TestInterfaces : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void parsesUrls_data();
+    void parsesUrls();
+    void knowsWhatIsLocal_data();
+    void knowsWhatIsLocal();
+    void tcpCarriesBothWays();
+    void tcpReconnects();
+    void portInUseIsNamed();
+    void closedInterfaceRefusesAndCounts();
+    void writeLimitRefusesWhole();
+    void udpKeepsDatagramsWhole();
+    void loopbackIsAsynchronous();
+    void faultsAreRepeatable();
+    void faultyKeepsOrderWithDelays();
+};
+
+void TestInterfaces::parsesUrls_data() {
+    QTest::addColumn<QString>("text");
+    QTest::addColumn<QString>("parsed"); // "" means refused
+    QTest::addColumn<QString>("protocol");
+    QTest::newRow("full") << "tcp://127.0.0.1:7410?protocol=cbor"
+                          << "tcp://127.0.0.1:7410"
+                          << "cbor";
+    QTest::newRow("bare") << "robot:7410"
+                          << "tcp://robot:7410"
+                          << "json";
+    QTest::newRow("IPv6") << "[::1]:7410"
+                          << "tcp://[::1]:7410"
+                          << "json";
+    QTest::newRow("device") << "serial:///dev/ttyS1?baud=9600"
+                            << "serial:///dev/ttyS1"
+                            << "json";
+    QTest::newRow("port too large") << "tcp://1.2.3.4:99999"
+                                    << ""
+                                    << "";
+    QTest::newRow("space") << "tcp://a b:1"
+                           << ""
+                           << "";
+}
+
+void TestInterfaces::parsesUrls() {
+    QFETCH(QString, text);
+    QFETCH(QString, parsed);
+    const auto url = InterfaceUrl::parse(text);
+    QCOMPARE(url.ok(), !parsed.isEmpty());
+    if (!url) {
+        QVERIFY(url.error().message.contains(text));
+        return;
+    }
+    QCOMPARE(url->toString(), parsed);
+    QTEST(url->protocol(), "protocol");
+}
+
+void TestInterfaces::knowsWhatIsLocal_data() {
+    QTest::addColumn<QString>("text");
+    QTest::addColumn<bool>("local");
+    QTest::newRow("loopback") << "tcp://127.0.0.1:1" << true;
+    QTest::newRow("other loopback") << "tcp://127.0.0.9:1" << true;
+    QTest::newRow("IPv6 loopback") << "tcp://[::1]:1" << true;
+    QTest::newRow("localhost") << "tcp://localhost:1" << true;
+    QTest::newRow("any") << "tcp://0.0.0.0:1" << false;
+    QTest::newRow("any IPv6") << "tcp://[::]:1" << false;
+    QTest::newRow("address") << "udp://192.168.1.5:1" << false;
+    QTest::newRow("nothing") << "tcp://:1" << false;
+}
+
+void TestInterfaces::knowsWhatIsLocal() {
+    QFETCH(QString, text);
+    QTEST(isLocalOnly(*InterfaceUrl::parse(text)), "local");
+}
+
+void TestInterfaces::tcpCarriesBothWays() {
+    TcpServerInterface server(*InterfaceUrl::parse("127.0.0.1:0"), nullptr);
+    Interface *peer = nullptr;
+    connect(&server, &Listener::accepted, [&peer](Interface *accepted) { peer = accepted; });
+    QVERIFY(server.listen());
+    TcpInterface client(*InterfaceUrl::parse(server.address()), nullptr);
+    client.open();
+    QTRY_VERIFY(peer && client.isOpen());
+    QByteArray atServer;
+    QByteArray atClient;
+    connect(peer, &Interface::received, [&](const QByteArray &bytes) { atServer += bytes; });
+    connect(&client, &Interface::received, [&](const QByteArray &bytes) { atClient += bytes; });
+    const QByteArray much(3 << 20, 'x'); // more than one read
+    QVERIFY(client.write(much));
+    QVERIFY(peer->write("back"));
+    QTRY_COMPARE(atServer.size(), much.size());
+    QTRY_COMPARE(atClient, QByteArray("back"));
+    QCOMPARE(peer->counters().bytesIn, quint64(much.size()));
+    QSignalSpy closed(&client, &Interface::closed);
+    peer->close();
+    QTRY_COMPARE(closed.count(), 1);
+}
+
+void TestInterfaces::tcpReconnects() {
+    auto server = std::make_unique<TcpServerInterface>(*InterfaceUrl::parse("127.0.0.1:0"), nullptr);
+    QVERIFY(server->listen());
+    const auto url = *InterfaceUrl::parse(server->address());
+    TcpInterface client(url, nullptr);
+    client.setReconnecting(true);
+    client.open();
+    QTRY_VERIFY(client.isOpen());
+    server.reset();
+    QTRY_VERIFY(!client.isOpen());
+    server = std::make_unique<TcpServerInterface>(url, nullptr);
+    QVERIFY(server->listen());
+    QTRY_VERIFY(client.isOpen());
+    QCOMPARE(client.counters().opened, quint64(2));
+    client.close();
+    QCOMPARE(client.state(), Interface::State::Closed);
+}
+
+void TestInterfaces::portInUseIsNamed() {
+    TcpServerInterface first(*InterfaceUrl::parse("127.0.0.1:0"), nullptr);
+    QVERIFY(first.listen());
+    const auto url = *InterfaceUrl::parse(first.address());
+    const auto result = TcpServerInterface(url, nullptr).listen();
+    QVERIFY(!result);
+    QVERIFY2(result.error().message.contains(QString("port %1 of 127.0.0.1 is already in use").arg(url.port)),
+             qPrintable(result.error().message));
+}
+
+void TestInterfaces::closedInterfaceRefusesAndCounts() {
+    TcpInterface client(*InterfaceUrl::parse("127.0.0.1:1"), nullptr);
+    QVERIFY(!client.write("abc"));
+    QCOMPARE(client.counters().refusedBytes, quint64(3));
+    QSignalSpy closed(&client, &Interface::closed);
+    client.open();
+    QTRY_COMPARE(closed.count(), 1);
+    QVERIFY(closed[0][0].toString().contains("127.0.0.1:1"));
+    QCOMPARE(client.counters().errors, quint64(1));
+}
+
+void TestInterfaces::writeLimitRefusesWhole() {
+    const auto [near, far] = LoopbackInterface::pair(this);
+    near->open();
+    far->open();
+    near->setWriteLimit(10);
+    QVERIFY(near->write("12345678"));
+    QVERIFY(!near->write("123"));
+    QTRY_COMPARE(near->bytesToWrite(), qint64(0));
+    QVERIFY(near->write("123"));
+    QCOMPARE(near->counters().refusedBytes, quint64(3));
+}
+
+void TestInterfaces::udpKeepsDatagramsWhole() {
+    UdpInterface server(*InterfaceUrl::parse("udp://127.0.0.1:0"), nullptr);
+    server.open();
+    QVERIFY(server.isOpen());
+    UdpInterface client(
+        *InterfaceUrl::parse(QString("udp://127.0.0.1:0?peer=127.0.0.1:%1").arg(server.localPort())),
+        nullptr);
+    client.open();
+    QSignalSpy received(&server, &Interface::received);
+    QSignalSpy answered(&client, &Interface::received);
+    QVERIFY(!server.write("to nobody yet"));
+    QVERIFY(client.write("one"));
+    QVERIFY(client.write(QByteArray(1206, 'v')));
+    QTRY_COMPARE(received.count(), 2);
+    QCOMPARE(received[0][0].toByteArray(), QByteArray("one"));
+    QCOMPARE(received[1][0].toByteArray().size(), 1206);
+    QVERIFY(server.write("back"));
+    QTRY_COMPARE(answered.count(), 1);
+    UdpInterface second(*InterfaceUrl::parse(server.name()), nullptr);
+    QSignalSpy closed(&second, &Interface::closed);
+    second.open();
+    QCOMPARE(closed.count(), 1); // the port is in use
+}
+
+void TestInterfaces::loopbackIsAsynchronous() {
+    const auto [near, far] = LoopbackInterface::pair(this);
+    near->open();
+    far->open();
+    QSignalSpy received(far, &Interface::received);
+    near->write("x");
+    QCOMPARE(received.count(), 0);
+    QTRY_COMPARE(received.count(), 1);
+    QSignalSpy closed(far, &Interface::closed);
+    near->close();
+    QTRY_COMPARE(closed.count(), 1);
+}
+
+void TestInterfaces::faultsAreRepeatable() {
+    const auto run = [this](unsigned int seed) {
+        const auto [near, far] = LoopbackInterface::pair(this);
+        FaultyInterface faulty(near, {0.3, 0.3, 0.3, 0, seed}, nullptr);
+        faulty.open();
+        far->open();
+        QByteArray got;
+        connect(far, &Interface::received, [&got](const QByteArray &bytes) { got += bytes + '|'; });
+        for (int i = 0; i < 100; ++i)
+            faulty.write("message " + QByteArray::number(i));
+        faulty.write("end");
+        QTest::qWait(0);
+        QElapsedTimer limit;
+        limit.start();
+        for (int size = -1; size != got.size() && limit.elapsed() < 5000;) {
+            size = got.size();
+            QTest::qWait(20);
+        }
+        return std::make_pair(got, faulty.faultCount());
+    };
+    const auto first = run(7);
+    QVERIFY(first.second > 10);
+    QVERIFY(first.first.size() > 100);
+    QCOMPARE(run(7), first);
+    QVERIFY(run(8) != first);
+}
+
+void TestInterfaces::faultyKeepsOrderWithDelays() {
+    const auto [near, far] = LoopbackInterface::pair(this);
+    FaultyInterface faulty(near, {0, 0, 0.5, 5, 3}, nullptr);
+    faulty.open();
+    far->open();
+    QByteArray sent;
+    QByteArray got;
+    connect(far, &Interface::received, [&got](const QByteArray &bytes) { got += bytes; });
+    for (int i = 0; i < 50; ++i) {
+        const QByteArray piece = QByteArray::number(i) + ',';
+        sent += piece;
+        faulty.write(piece);
+    }
+    QTRY_COMPARE(got, sent);
+}
+
+QTEST_GUILESS_MAIN(TestInterfaces)
+#include "TestInterfaces.moc"

@@ -1,0 +1,173 @@
+#include "common/settings/DottedPath.h"
+#include "common/settings/Settings.h"
+
+#include <QtTest>
+
+using namespace hermes;
+
+class TestSettings : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void refusesAllOrNothing_data();
+    void refusesAllOrNothing();
+    void appliesPartialObject();
+    void namesEveryViolation();
+    void resetsSomeOrAll();
+    void schemaTellsAll();
+    void savesOnlyChangesAndReadsThemBack();
+    void fileErrorsNameFileAndPlace_data();
+    void fileErrorsNameFileAndPlace();
+    void failedSaveLeavesTheOldFile();
+    void ruleAcrossSettings();
+
+private:
+    std::unique_ptr<Settings> settings;
+    QTemporaryDir folder;
+};
+
+void TestSettings::init() {
+    settings = std::make_unique<Settings>();
+    settings->declare(Field::number("motor.radius_m", "Wheel").unit("m").range(0.01, 1).byDefault(0.1));
+    settings->declare(Field::integer("motor.ticks", "A turn").minimum(1).byDefault(1024));
+    settings->declare(
+        Field::text("mode", "How").choices({"live", "file"}).byDefault("live").appliesOnRestart());
+    settings->declare(Field::boolean("on", "Whether").byDefault(true));
+    settings->declare(Field::array("listen", "Where", {{"type", "string"}}).byDefault(QJsonArray{"a"}));
+}
+
+void TestSettings::refusesAllOrNothing_data() {
+    QTest::addColumn<QString>("path");
+    QTest::addColumn<QJsonValue>("value");
+    QTest::newRow("too small") << "motor.radius_m" << QJsonValue(0);
+    QTest::newRow("too large") << "motor.radius_m" << QJsonValue(1.5);
+    QTest::newRow("number as text") << "motor.radius_m" << QJsonValue("0.5");
+    QTest::newRow("not whole") << "motor.ticks" << QJsonValue(1.5);
+    QTest::newRow("not a choice") << "mode" << QJsonValue("other");
+    QTest::newRow("choice of another type") << "mode" << QJsonValue(1);
+    QTest::newRow("number for boolean") << "on" << QJsonValue(1);
+    QTest::newRow("null") << "on" << QJsonValue();
+    QTest::newRow("value for a group") << "motor" << QJsonValue(5);
+    QTest::newRow("element of an array") << "listen.1" << QJsonValue(QJsonArray{"a", 5});
+    QTest::newRow("unknown at the top") << "moter" << QJsonValue(5);
+    QTest::newRow("unknown in a group") << "motor.radius" << QJsonValue(0.5);
+}
+
+void TestSettings::refusesAllOrNothing() {
+    QFETCH(QString, path);
+    QFETCH(QJsonValue, value);
+    const QJsonObject before = settings->values();
+    const QString target = path == "listen.1" ? "listen" : path;
+    const QJsonObject good{{"motor", QJsonObject{{"ticks", 5}}}};
+    QSignalSpy changed(settings.get(), &Settings::changed);
+    const auto result = settings->set(merged(good, withValueAt({}, target, value)));
+    QVERIFY(!result);
+    QVERIFY(result.error().is(ErrorCode::InvalidSetting));
+    const QJsonObject error = result.error().data["errors"][0].toObject();
+    QCOMPARE(error["path"].toString(), path);
+    QVERIFY(!error["expected"].toString().isEmpty());
+    QVERIFY2(result.error().message.startsWith(path + " is "), qPrintable(result.error().message));
+    QCOMPARE(settings->values(), before);
+    QCOMPARE(changed.count(), 0);
+}
+
+void TestSettings::appliesPartialObject() {
+    QSignalSpy changed(settings.get(), &Settings::changed);
+    const auto result =
+        settings->set({{"motor", QJsonObject{{"ticks", 4e9}}}, {"mode", "file"}, {"on", true}});
+    QVERIFY(result);
+    QCOMPARE(*result, QStringList({"mode", "motor.ticks"}));
+    QCOMPARE(changed.count(), 1);
+    QCOMPARE(settings->number("motor.ticks"), 4e9);
+    QCOMPARE(settings->number("motor.radius_m"), 0.1);
+    QCOMPARE(settings->needRestart(*result), QStringList{"mode"});
+    QCOMPARE(settings->changes(), (QJsonObject{{"motor", QJsonObject{{"ticks", 4e9}}}, {"mode", "file"}}));
+}
+
+void TestSettings::namesEveryViolation() {
+    const auto result = settings->set({{"on", 1}, {"x", 1}, {"motor", QJsonObject{{"ticks", 0}, {"y", 1}}}});
+    QCOMPARE(result.error().data["errors"].toArray().size(), 4);
+    QVERIFY(result.error().message.contains("an integer of at least 1"));
+    QVERIFY(result.error().message.contains("known are: radius_m, ticks"));
+}
+
+void TestSettings::resetsSomeOrAll() {
+    settings->set({{"motor", QJsonObject{{"ticks", 5}, {"radius_m", 0.5}}}, {"on", false}});
+    QCOMPARE(*settings->reset({"motor.ticks"}), QStringList{"motor.ticks"});
+    QCOMPARE(settings->number("motor.radius_m"), 0.5);
+    QVERIFY(!settings->reset({"motor.foo"}));
+    settings->reset();
+    QCOMPARE(settings->values(), settings->defaults());
+    QVERIFY(settings->changes().isEmpty());
+}
+
+void TestSettings::schemaTellsAll() {
+    const QJsonObject radius = valueAt(settings->schema(), "properties.motor.properties.radius_m").toObject();
+    QCOMPARE(radius["unit"].toString(), QString("m"));
+    QCOMPARE(radius["default"].toDouble(), 0.1);
+    QCOMPARE(radius["maximum"].toDouble(), 1.0);
+    QCOMPARE(radius["x-applies"].toString(), QString("now"));
+    QCOMPARE(valueAt(settings->schema(), "properties.mode.x-applies").toString(), QString("restart"));
+}
+
+void TestSettings::savesOnlyChangesAndReadsThemBack() {
+    const QString file = folder.filePath("settings.json");
+    settings->set({{"mode", "file"}});
+    QCOMPARE(*settings->save(file), file);
+    settings->reset();
+    QVERIFY(settings->load(file));
+    QCOMPARE(settings->text("mode"), QString("file"));
+    QCOMPARE(*settings->save(), file); // remembered
+    QFile saved(file);
+    QVERIFY(saved.open(QIODevice::ReadOnly));
+    QCOMPARE(QJsonDocument::fromJson(saved.readAll()).object(), (QJsonObject{{"mode", "file"}}));
+}
+
+void TestSettings::fileErrorsNameFileAndPlace_data() {
+    QTest::addColumn<QByteArray>("text");
+    QTest::addColumn<QString>("says");
+    QTest::newRow("syntax") << QByteArray("{\n  \"on\": true,\n  oops\n}\n") << "line 3";
+    QTest::newRow("cut") << QByteArray("{\n\"on\": tr") << "line 2";
+    QTest::newRow("repeated key") << QByteArray("{\"on\": true,\n\"on\": false}")
+                                  << "line 2: the key \"on\" occurs twice";
+    QTest::newRow("not an object") << QByteArray("[1]") << "expected a JSON object";
+    QTest::newRow("unknown key") << QByteArray("{\"motor\": {\"raduis\": 1}}") << "motor.raduis is 1";
+    QTest::newRow("bad value") << QByteArray("{\"mode\": \"x\"}")
+                               << "mode is \"x\", expected one of \"live\", \"file\"";
+    QTest::newRow("empty") << QByteArray("") << "line 1";
+}
+
+void TestSettings::fileErrorsNameFileAndPlace() {
+    QFETCH(QByteArray, text);
+    QFETCH(QString, says);
+    QFile file(folder.filePath("bad.json"));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write(text);
+    file.close();
+    const auto result = settings->load(file.fileName());
+    QVERIFY(!result);
+    QVERIFY2(result.error().message.contains(file.fileName()), qPrintable(result.error().message));
+    QVERIFY2(result.error().message.contains(says), qPrintable(result.error().message));
+    QCOMPARE(settings->values(), settings->defaults());
+}
+
+void TestSettings::failedSaveLeavesTheOldFile() {
+    QVERIFY(!settings->save());
+    const auto result = settings->save(folder.filePath("no/such/folder.json"));
+    QVERIFY(!result);
+    QVERIFY(result.error().is(ErrorCode::InputOutput));
+    QVERIFY(!settings->load(folder.filePath("absent.json")));
+}
+
+void TestSettings::ruleAcrossSettings() {
+    settings->addRule([](const QJsonObject &values) -> std::vector<SchemaViolation> {
+        if (values["mode"].toString() == "file" && values["on"].toBool())
+            return {{"on", true, "false when mode is file"}};
+        return {};
+    });
+    QVERIFY(!settings->set({{"mode", "file"}}));
+    QVERIFY(settings->set({{"mode", "file"}, {"on", false}}));
+}
+
+QTEST_GUILESS_MAIN(TestSettings)
+#include "TestSettings.moc"

@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""hermesctl against a small daemon."""
+import json
+import os
+import socket
+import subprocess
+import unittest
+
+BUILD = os.environ["HERMES_BUILD"]
+PROGRAM = os.path.join(BUILD, "bin", "hermesctl")
+DAEMON = os.path.join(BUILD, "tests", "common", "hermes-thermometer")
+
+
+def ctl(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=30)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Hermesctl(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = subprocess.Popen([DAEMON, "--listen", "tcp://127.0.0.1:0", "--set", "period_s=0.01"],
+                                      stderr=subprocess.PIPE, text=True)
+        line = cls.daemon.stderr.readline()
+        cls.address = "127.0.0.1:" + line.split("tcp://127.0.0.1:")[1].split(",")[0]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.terminate()
+        cls.daemon.stderr.close()
+        assert cls.daemon.wait(20) == 0
+
+    def ok(self, *arguments):
+        shown = ctl(*arguments)
+        self.assertEqual(shown.returncode, 0, shown.stderr)
+        self.assertEqual(shown.stderr, "")
+        return shown.stdout
+
+    def test_call(self):
+        self.assertEqual(json.loads(self.ok("call", self.address, "thermometer.echo", 'value={"a":[1,"x"]}')),
+                         {"a": [1, "x"]})
+        self.assertEqual(json.loads(self.ok("call", "tcp://" + self.address, "thermometer.echo", "value=a=b")), "a=b")
+        shown = ctl("call", self.address, "thermometer.read", "unit=F", "foo=1")
+        self.assertEqual(shown.returncode, 1)
+        self.assertIn('unit is "F", expected one of "C", "K"', shown.stderr)
+        self.assertIn("foo", shown.stderr)
+
+    def test_get_and_set(self):
+        self.assertIn("changed, from the next start on", self.ok("set", self.address, "sensor.name=cellar"))
+        self.assertEqual(json.loads(self.ok("get", self.address, "sensor")), {"name": "cellar"})
+        self.assertIn("limits", json.loads(self.ok("get", self.address)))
+        self.assertEqual(ctl("set", self.address, "sensor.name=attic", "period_s=0").returncode, 1)
+        self.assertEqual(json.loads(self.ok("get", self.address, "sensor.name")), "cellar")
+
+    def test_watch(self):
+        lines = self.ok("watch", self.address, "temperature", "--count", "3").splitlines()
+        self.assertEqual(len(lines), 3)
+        self.assertAlmostEqual(json.loads(lines[0])["data"], 20, delta=3)
+        table = self.ok("watch", self.address, "extremes", "--csv", "--count=1").splitlines()
+        self.assertEqual(table[0], "stamp,seq,dropped,greatest,least")
+        self.assertTrue(table[1].endswith(",21,19"))
+        shown = ctl("watch", self.address, "nothing")
+        self.assertEqual(shown.returncode, 1)
+        self.assertIn("temperature", shown.stderr)
+
+    def test_discover_doc_log(self):
+        self.assertIn("thermometer.calibrate {offset_k, settle_ms?}", self.ok("discover", self.address))
+        self.assertEqual(json.loads(self.ok("discover", self.address, "--json"))["openrpc"], "1.2.6")
+        page = self.ok("doc", self.address)
+        self.assertIn("### thermometer.read", page)
+        self.assertIn("| `period_s` | a number from 0.001 to 60 in s | 0.1 | now |", page)
+        self.assertIn("running", self.ok("log", self.address))
+
+    def test_usage_errors(self):
+        for arguments in ([], ["fly"], ["call"], ["call", self.address], ["call", "nobody", "x"], ["list", "x"],
+                          ["call", self.address, "m", "novalue"], ["watch", self.address, "t", "--rate", "fast"],
+                          ["get", self.address, "--foo"], ["log", self.address, "--count"], ["get", "tcp://a b"]):
+            shown = ctl(*arguments)
+            self.assertEqual(shown.returncode, 2, arguments)
+            self.assertTrue(shown.stderr.startswith("hermesctl: "), shown.stderr)
+            self.assertEqual(shown.stdout, "")
+
+    def test_nobody_there(self):
+        shown = ctl("call", f"127.0.0.1:{free_port()}", "daemon.info")
+        self.assertEqual(shown.returncode, 1)
+        self.assertIn("refused", shown.stderr)
+
+    def test_help_and_version(self):
+        self.assertIn("watch D TOPIC", self.ok("--help"))
+        self.assertRegex(self.ok("--version"), r"^hermesctl \d")
+
+    def test_list(self):
+        shown = ctl("list", "--host", "127.0.0.77")  # loopback too, but nobody listens there
+        self.assertEqual(shown.returncode, 1)
+        daemon = subprocess.Popen([DAEMON, "--listen", "tcp://127.0.0.78:7490"], stderr=subprocess.PIPE, text=True)
+        try:
+            daemon.stderr.readline()
+            self.assertRegex(self.ok("list", "--host", "127.0.0.78"), r"thermometer +running +\S+ +tcp://127.0.0.78:7490")
+        finally:
+            daemon.terminate()
+            daemon.stderr.close()
+            daemon.wait(20)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,210 @@
+#include "protocol/jsonrpc/JsonCodec.h"
+#include "protocol/jsonrpc/JsonText.h"
+
+#include <QtTest>
+#include <cmath>
+
+using namespace hermes;
+
+// Framing and strict parsing.
+class TestJsonCodec : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void accepts_data();
+    void accepts();
+    void refuses_data();
+    void refuses();
+    void sameMessagesAtEverySplit();
+    void oversizedLineIsSkippedOnce();
+    void limitIsExact_data();
+    void limitIsExact();
+    void hugeLineIsNotBuffered();
+    void emptyLinesAreIgnored();
+    void resetForgetsBegunLine();
+    void encodesOneLine();
+    void notFiniteNumbersAreNamed();
+    void randomBytesNeverCrash();
+    void unknownCodecIsNull();
+};
+
+void TestJsonCodec::accepts_data() {
+    QTest::addColumn<QByteArray>("line");
+    QTest::addColumn<QJsonValue>("value");
+    QTest::newRow("object") << QByteArray("{\"a\":1}") << QJsonValue(QJsonObject{{"a", 1}});
+    QTest::newRow("array") << QByteArray(" [1,2]") << QJsonValue(QJsonArray{1, 2});
+    QTest::newRow("number") << QByteArray("-2.5e3") << QJsonValue(-2500);
+    QTest::newRow("string") << QByteArray("\"x\"") << QJsonValue("x");
+    QTest::newRow("null") << QByteArray("null") << QJsonValue();
+    QTest::newRow("carriage return") << QByteArray("{\"a\":true}\r") << QJsonValue(QJsonObject{{"a", true}});
+    QTest::newRow("same key in two objects")
+        << QByteArray("[{\"a\":1},{\"a\":1}]")
+        << QJsonValue(QJsonArray{QJsonObject{{"a", 1}}, QJsonObject{{"a", 1}}});
+    QTest::newRow("key as value") << QByteArray("{\"a\":\"a\",\"b\":\"a\"}")
+                                  << QJsonValue(QJsonObject{{"a", "a"}, {"b", "a"}});
+    QTest::newRow("braces in a string")
+        << QByteArray("[\"{\\\"a\\\":[[[\"]") << QJsonValue(QJsonArray{"{\"a\":[[["});
+    QTest::newRow("UTF-8") << QByteArray("\"\xc3\xa4\"") << QJsonValue(QString::fromUtf8("\xc3\xa4"));
+    QTest::newRow("2^53") << QByteArray("9007199254740992") << QJsonValue(9007199254740992.0);
+}
+
+void TestJsonCodec::accepts() {
+    QFETCH(QByteArray, line);
+    QFETCH(QJsonValue, value);
+    JsonCodec codec;
+    const auto items = codec.feed(line + '\n');
+    QCOMPARE(items.size(), size_t(1));
+    QVERIFY2(!items[0].error, items[0].error ? qPrintable(items[0].error->message) : "");
+    QCOMPARE(items[0].message, value);
+    QCOMPARE(codec.counters().messagesIn, quint64(1));
+}
+
+void TestJsonCodec::refuses_data() {
+    QTest::addColumn<QByteArray>("line");
+    QTest::newRow("not JSON") << QByteArray("hello");
+    QTest::newRow("cut object") << QByteArray("{\"a\":1");
+    QTest::newRow("cut string") << QByteArray("{\"a");
+    QTest::newRow("cut escape") << QByteArray("\"\\");
+    QTest::newRow("two values") << QByteArray("1 2");
+    QTest::newRow("two values, comma") << QByteArray("1,2");
+    QTest::newRow("closes the wrapping array") << QByteArray("1],[2");
+    QTest::newRow("garbage behind") << QByteArray("{} x");
+    QTest::newRow("trailing comma") << QByteArray("{\"a\":1,}");
+    QTest::newRow("repeated key") << QByteArray("{\"a\":1,\"b\":{\"a\":2},\"a\":3}");
+    QTest::newRow("repeated key, escaped") << QByteArray("{\"a\":1,\"\\u0061\":3}");
+    QTest::newRow("overlong UTF-8") << QByteArray("\"\xc0\xaf\"");
+    QTest::newRow("lone continuation") << QByteArray("\"\x80\"");
+    QTest::newRow("bare byte") << QByteArray("\xff");
+    QTest::newRow("NUL") << QByteArray("{\"a\":\0}", 7);
+    QTest::newRow("NaN") << QByteArray("[NaN]");
+    QTest::newRow("number too large") << QByteArray("[1e999]");
+    QTest::newRow("nested 101") << QByteArray(101, '[') + QByteArray(101, ']');
+    QTest::newRow("nested 100000") << QByteArray(100000, '[');
+    QTest::newRow("closing only") << QByteArray("]]]]");
+}
+
+void TestJsonCodec::refuses() {
+    QFETCH(QByteArray, line);
+    JsonCodec codec;
+    const auto items = codec.feed(line + "\n{\"next\":1}\n");
+    QCOMPARE(items.size(), size_t(2));
+    QVERIFY(items[0].error);
+    QVERIFY(items[0].error->is(ErrorCode::ParseError));
+    QVERIFY(!items[1].error); // the next line is untouched
+    QCOMPARE(codec.counters().malformed, quint64(1));
+}
+
+void TestJsonCodec::sameMessagesAtEverySplit() {
+    const QByteArray stream = "{\"a\":\"\xc3\xa4\"}\r\n\n[1]\nnonsense\n{\"b\":{}}\n";
+    for (int cut = 0; cut <= stream.size(); ++cut) {
+        JsonCodec codec;
+        auto items = codec.feed(stream.left(cut));
+        for (const CodecItem &item : codec.feed(stream.mid(cut)))
+            items.push_back(item);
+        QCOMPARE(items.size(), size_t(4));
+        QCOMPARE(items[0].message, QJsonValue(QJsonObject{{"a", QString::fromUtf8("\xc3\xa4")}}));
+        QCOMPARE(items[1].message, QJsonValue(QJsonArray{1}));
+        QVERIFY(items[2].error);
+        QCOMPARE(items[3].message, QJsonValue(QJsonObject{{"b", QJsonObject()}}));
+    }
+}
+
+void TestJsonCodec::oversizedLineIsSkippedOnce() {
+    JsonCodec codec;
+    codec.setFrameLimit(10);
+    auto items = codec.feed("[1,2,3,4,5,6");
+    QCOMPARE(items.size(), size_t(1)); // told at once, not at its end
+    QVERIFY(items[0].error->is(ErrorCode::OverLimit));
+    QVERIFY(codec.feed(",7,8,9,10").empty());
+    items = codec.feed(",11]\n[2]\n");
+    QCOMPARE(items.size(), size_t(1));
+    QCOMPARE(items[0].message, QJsonValue(QJsonArray{2}));
+    QCOMPARE(codec.counters().oversized, quint64(1));
+}
+
+void TestJsonCodec::limitIsExact_data() {
+    QTest::addColumn<QByteArray>("line");
+    QTest::addColumn<bool>("fits");
+    QTest::newRow("at the limit") << QByteArray("[111,2222]\n") << true;
+    QTest::newRow("at the limit with CR") << QByteArray("[111,2222]\r\n") << true;
+    QTest::newRow("one more") << QByteArray("[1111,2222]\n") << false;
+    QTest::newRow("one more with CR") << QByteArray("[1111,2222]\r\n") << false;
+}
+
+void TestJsonCodec::limitIsExact() {
+    QFETCH(QByteArray, line);
+    QFETCH(bool, fits);
+    JsonCodec codec;
+    codec.setFrameLimit(10);
+    const auto items = codec.feed(line + "[1]\n");
+    QCOMPARE(items.size(), size_t(2));
+    QCOMPARE(!items[0].error, fits);
+    QVERIFY(!items[1].error);
+}
+
+void TestJsonCodec::hugeLineIsNotBuffered() {
+    JsonCodec codec;
+    codec.setFrameLimit(1000);
+    int errors = 0;
+    for (int i = 0; i < 1000; ++i)
+        errors += int(codec.feed(QByteArray(1 << 16, 'x')).size());
+    QCOMPARE(errors, 1);
+}
+
+void TestJsonCodec::emptyLinesAreIgnored() {
+    QVERIFY(JsonCodec().feed("\n\r\n  \n").empty());
+}
+
+void TestJsonCodec::resetForgetsBegunLine() {
+    JsonCodec codec;
+    codec.feed("{\"a\":");
+    codec.reset();
+    const auto items = codec.feed("[1]\n");
+    QCOMPARE(items.size(), size_t(1));
+    QVERIFY(!items[0].error);
+}
+
+void TestJsonCodec::encodesOneLine() {
+    JsonCodec codec;
+    const auto frame =
+        codec.encode(QJsonObject{{"text", "two\nlines"}, {"list", QJsonArray{1, QJsonObject()}}});
+    QVERIFY(!frame.error);
+    QCOMPARE(frame.bytes.count('\n'), 1);
+    QVERIFY(frame.bytes.endsWith('\n'));
+    QCOMPARE(codec.encode(QJsonValue("x")).bytes, QByteArray("\"x\"\n"));
+}
+
+void TestJsonCodec::notFiniteNumbersAreNamed() {
+    JsonCodec codec;
+    const QJsonObject data{{"pose", QJsonArray{1, QJsonObject{{"x", std::nan("")}}}}};
+    const auto frame = codec.encode(data);
+    QVERIFY(frame.error);
+    QVERIFY(frame.bytes.isEmpty());
+    QVERIFY2(frame.error->message.contains("pose.1.x"), qPrintable(frame.error->message));
+    QVERIFY(codec.encode(QJsonArray{INFINITY}).error);
+    QCOMPARE(codec.counters().refused, quint64(2));
+}
+
+void TestJsonCodec::randomBytesNeverCrash() {
+    const uint seed = 20240607;
+    QRandomGenerator random(seed);
+    JsonCodec codec;
+    codec.setFrameLimit(4096);
+    const QByteArray alphabet = "{}[]\",:\\u0019eE+-.ntf\n \r\xff\xc3";
+    for (int round = 0; round < 2000; ++round) {
+        QByteArray bytes;
+        for (int i = random.bounded(200); i > 0; --i)
+            bytes.append(alphabet[random.bounded(alphabet.size())]);
+        codec.feed(bytes);
+    }
+    codec.feed("\n");
+    QCOMPARE(codec.feed("[1]\n").size(), size_t(1));
+}
+
+void TestJsonCodec::unknownCodecIsNull() {
+    QVERIFY(!makeCodec("morse"));
+    QVERIFY(makeCodec("json"));
+    QVERIFY(codecNames().contains("json"));
+}
+
+QTEST_APPLESS_MAIN(TestJsonCodec)
+#include "TestJsonCodec.moc"
