@@ -80,11 +80,9 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     if (!reference || !current)
         return reply.error(reference ? current.error() : reference.error());
     const Pose2D expected = poseOf(call.value("expected").toObject());
-    worker->post([reference = *reference, current = *current, expected, reply](Tracker &tracker) {
+    worker->post([reference = *reference, current = *current, expected, reply](Tracker &) {
         vectorlib::MapBuilder pair;
-        pair.find.settings = tracker.builder.find.settings;
-        pair.find.settings.permitted = vectorlib::PermittedError(); // as far as the thesis searches
-        pair.find.settings.expectedDeviationXY = pair.find.settings.expectedDeviationAlpha = 0.5;
+        pair.find.settings = vectorlib::CorrespondenceSettings::forPoorExpectation();
         pair.extract.configure(2 * vectorlib::pi, reference.points.size());
         pair.process(reference.points, {});
         pair.extract.configure(2 * vectorlib::pi, current.points.size());

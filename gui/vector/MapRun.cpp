@@ -20,6 +20,9 @@ void MapRun::take(const MapScan &scan) {
     ScanReport::Outcome outcome = ScanReport::Outcome::Skipped;
     if (!scan.partial) {
         m_points = scan.points;
+        builder.find.settings = isWellExpected(scan, stamp)
+                                    ? vectorlib::CorrespondenceSettings()
+                                    : vectorlib::CorrespondenceSettings::forPoorExpectation();
         compensateMotion(m_points, scan.seconds, middle, m_motion.twist());
         const ScanReport &report = builder.process(m_points, expected);
         pose = report.pose;
@@ -36,6 +39,15 @@ void MapRun::take(const MapScan &scan) {
     m_trajectory.push_back({stamp, pose});
     if (scan.reference)
         m_reference.push_back({stamp, *scan.reference});
+}
+
+// By odometry, or because the last scan was a moment ago.
+bool MapRun::isWellExpected(const MapScan &scan, double stamp) const {
+    constexpr double moment = 0.5; // seconds
+    if (m_trajectory.empty() || (useOdometry && scan.motion))
+        return true;
+    const double since = stamp - m_trajectory.back().stamp;
+    return since > 0 && since <= moment;
 }
 
 // A reference gives the map its frame, by the first pose, and nothing else.

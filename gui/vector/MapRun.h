@@ -26,6 +26,7 @@ public:
     nlohmann::ordered_json summary() const;
 
 private:
+    bool isWellExpected(const MapScan &scan, double stamp) const;
     vectorlib::Pose2D expectedPose(const MapScan &scan, double stamp) const;
     nlohmann::ordered_json errors() const;
 

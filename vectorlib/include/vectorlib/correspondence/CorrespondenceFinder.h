@@ -30,6 +30,16 @@ struct CorrespondenceSettings {
     int iterations = 12;            ///< most refinement steps for each
     double gateFactor = 0.6;        ///< how fast the gates narrow from the permitted error to the final ones
     double expectationScore = 0.05; ///< metres of matched length that one squared standard deviation costs
+
+    /// For an expected pose that is hardly more than a guess: scans far apart, without odometry.
+    static CorrespondenceSettings forPoorExpectation() {
+        CorrespondenceSettings s;
+        s.permitted = {2, 2, 1.26};
+        s.expectedDeviationXY = 1;
+        s.expectedDeviationAlpha = 0.5;
+        s.minMatchedShare = 0.3;
+        return s;
+    }
 };
 
 /// Finds which edges of a scan correspond to which of the map, tracking from an expected pose.
