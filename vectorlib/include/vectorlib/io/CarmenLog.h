@@ -196,11 +196,16 @@ private:
                 return problem;
         if (const auto problem = readField(stamp, "the time stamp", scan.stamp))
             return problem;
-        if (m_last && !m_log.scans.empty())
+        // A single ODOM that repeats the pose of the scan before it tells nothing: the wheels were not asked
+        // again.
+        const bool told = m_last && (m_follows > 1 || m_last->x != m_base->x || m_last->y != m_base->y ||
+                                     m_last->theta != m_base->theta);
+        if (told && !m_log.scans.empty())
             scan.wheelMotion = m_moved * Transformation2D(*m_base).inverse() * Transformation2D(*m_last);
         m_moved = {};
         m_base = scan.laserPose;
         m_last.reset();
+        m_follows = 0;
         m_log.scans.push_back(std::move(scan));
         return {};
     }
@@ -211,6 +216,7 @@ private:
             m_base = pose; // the first after a damaged scan: where the odometry restarted is not known but
                            // from here
         m_last = pose;
+        ++m_follows;
     }
     /// A scan that cannot be read: the odometry restarts at its unknown pose.
     void interrupted() {
@@ -246,6 +252,7 @@ private:
     std::vector<std::string_view> m_fields;
     std::optional<Pose2D> m_base; ///< where the wheels' motion since the last scan began
     std::optional<Pose2D> m_last; ///< the last ODOM since the last scan
+    int m_follows = 0;            ///< ODOM lines since the last scan
     Transformation2D m_moved;     ///< by the wheels before m_base, over damaged scans
 };
 

@@ -27,7 +27,8 @@ struct CarmenScan {
     Pose2D laserPose;          ///< first triple; the reference pose in corrected logs
     Pose2D robotPose;          ///< second triple; the odometry in ordinary logs
     /// Motion since the previous scan by the ODOM lines between them, begun at the previous scan's pose as
-    /// corrected logs write it. Never holds this scan's own pose. Nothing when no ODOM line stands between.
+    /// corrected logs write it. Never holds this scan's own pose. Nothing when no ODOM line stands between
+    /// that says more than the scan itself.
     std::optional<Transformation2D> wheelMotion;
 
     bool isReturn(std::size_t ray) const { return ranges[ray] > 0 && ranges[ray] < maxRange; }
