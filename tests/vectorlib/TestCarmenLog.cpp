@@ -119,6 +119,15 @@ private Q_SLOTS:
         QVERIFY(!log->odometryMotion(0, 3, CarmenOdometryKind::Corrected));
     }
 
+    /// The line that restarts the odometry at a scan's pose says nothing yet; a second one says that the
+    /// robot stood.
+    void restartAloneIsNoOdometry() {
+        const QByteArray scan = flaser("1 1", pose(1, 2, 0.5) + pose(1, 2, 0.5)), restart = odom(1, 2, 0.5);
+        QVERIFY(!read(scan + restart + scan)->scans[1].wheelMotion);
+        const auto stood = read(scan + restart + restart + scan)->scans[1].wheelMotion;
+        QVERIFY(stood && stood->translation().norm() < 1e-12);
+    }
+
     void motionGoesOverADamagedScan() {
         const auto scan = [](double x) { return flaser("1 1", pose(x, 0, 0) + pose(x, 0, 0)); };
         const auto log = read(
@@ -151,6 +160,9 @@ private Q_SLOTS:
             << QByteArray("range 2 of 2, a finite number");
         QTest::newRow("infinite pose") << flaser("1 2", "0 inf 0 " + pose(0, 0, 0)) << QByteArray("a.log:1:")
                                        << QByteArray("y of a pose");
+        QTest::newRow("pose beyond all measure")
+            << flaser("1 2", "0 1e300 0 " + pose(0, 0, 0)) << QByteArray("a.log:1:")
+            << QByteArray("y of a pose below 1e7");
         QTest::newRow("negative range") << flaser("1 -2", pose(0, 0, 0) + pose(0, 0, 0))
                                         << QByteArray("a.log:1:") << QByteArray("range 2 of 2");
         QTest::newRow("huge count") << QByteArray("FLASER 99999999999999999999 1 2\n")

@@ -89,6 +89,8 @@ public:
 private:
     using Problem = std::optional<InputError>;
     static constexpr std::size_t maxRays = 100000;
+    static constexpr double farthest = 1000; // metres; no scanner of such logs sees as far
+    static constexpr double widest = 1e7;    // metres; nor does a robot drive as far
 
     Problem readLine(std::string_view line) {
         if (line.empty() || line.front() == '#')
@@ -155,6 +157,7 @@ private:
         if (!(scan.angleStep > 0) || !(scan.maxRange > 0))
             return m_lines.errorHere(quoted(m_fields[scan.angleStep > 0 ? 5 : 4]),
                                      "a resolution and a maximum range above 0");
+        scan.maxRange = std::min(scan.maxRange, farthest);
         std::size_t at = 8;
         if (const auto problem = readRanges("ROBOTLASER1", at, 15, scan))
             return problem;
@@ -182,7 +185,7 @@ private:
                 return m_lines.errorHere(quoted(m_fields[at + 1 + i]), "range " + std::to_string(i + 1) +
                                                                            " of " + std::to_string(*count) +
                                                                            ", a finite number of metres");
-            scan.ranges.push_back(static_cast<float>(*range));
+            scan.ranges.push_back(static_cast<float>(std::min(*range, farthest)));
         }
         at += 1 + *count;
         return {};
@@ -229,9 +232,12 @@ private:
     Problem readPose(std::size_t at, Pose2D &pose) {
         for (const auto &[offset, what, value] :
              {std::tuple(0u, "x of a pose", &pose.x), std::tuple(1u, "y of a pose", &pose.y),
-              std::tuple(2u, "theta of a pose", &pose.theta)})
+              std::tuple(2u, "theta of a pose", &pose.theta)}) {
             if (const auto problem = readField(at + offset, what, *value))
                 return problem;
+            if (std::abs(*value) > widest)
+                return m_lines.errorHere(quoted(m_fields[at + offset]), std::string(what) + " below 1e7");
+        }
         return {};
     }
     Problem readField(std::size_t at, const char *what, double &value) {
