@@ -63,6 +63,8 @@ public:
     QJsonObject status();
 
     bool hasSubscribers(const QString &topic) const { return topics.hasSubscribers(topic); }
+    /// False while a subscriber with a queue longer than one is behind: for data that can wait.
+    bool hasRoom(const QString &topic) const { return topics.hasRoom(topic); }
 
 Q_SIGNALS:
     /// A client has gone; Call::client told who it was.

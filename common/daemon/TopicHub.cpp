@@ -4,12 +4,20 @@
 #include "common/Time.h"
 
 #include <QStringList>
+#include <algorithm>
 
 namespace hermes {
 
 bool TopicHub::hasSubscribers(const QString &topic) const {
     const auto entry = topics.constFind(topic);
     return entry != topics.constEnd() && !entry->queues.isEmpty();
+}
+
+bool TopicHub::hasRoom(const QString &topic) const {
+    const auto entry = topics.constFind(topic);
+    return entry == topics.constEnd() ||
+           std::all_of(entry->queues.begin(), entry->queues.end(),
+                       [&topic](TopicQueue *queue) { return queue->hasRoom(topic); });
 }
 
 void TopicHub::publish(const QString &topic, const QJsonValue &data, double stamp) {

@@ -22,6 +22,8 @@ public:
 
     /// Ask before building costly data.
     bool hasSubscribers(const QString &topic) const;
+    /// False while a reader who wants every message is behind: for sources that can wait.
+    bool hasRoom(const QString &topic) const;
     /// To all subscribers. stamp: when the data were true, in seconds since the epoch. An unknown topic is
     /// an error in the log.
     void publish(const QString &topic, const QJsonValue &data, double stamp);

@@ -53,6 +53,13 @@ bool TopicQueue::wants(const QString &topic) const {
                        [&topic](const Subscription &one) { return one.topic == topic; });
 }
 
+bool TopicQueue::hasRoom(const QString &topic) const {
+    return frames.empty() ||
+           std::none_of(subscriptions.begin(), subscriptions.end(), [&topic](const Subscription &one) {
+               return one.topic == topic && one.options.queue > 1;
+           });
+}
+
 void TopicQueue::offer(const TopicMessage &message, quint64 onlyTo) {
     for (Subscription &subscription : subscriptions) {
         if (subscription.topic == message.topic && (onlyTo == 0 || subscription.id == onlyTo))

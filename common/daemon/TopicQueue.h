@@ -35,6 +35,8 @@ public:
     /// The topic of the subscription removed, or nothing when it is not one of this client.
     std::optional<QString> remove(quint64 id);
     bool wants(const QString &topic) const;
+    /// False while messages wait for a reader of this topic who asked for a queue longer than one.
+    bool hasRoom(const QString &topic) const;
     bool isEmpty() const { return subscriptions.empty(); }
     /// To every subscription of this topic; or to one of them.
     void offer(const TopicMessage &message, quint64 onlyTo = 0);
