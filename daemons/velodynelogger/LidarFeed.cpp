@@ -103,15 +103,17 @@ void LidarFeed::enqueue(const velodyne::Turn &turn) {
     m_turnReady();
 }
 
-std::vector<LidarFeed::Turn> LidarFeed::takeTurns() {
-    std::vector<Turn> turns;
+LidarFeed::Turn LidarFeed::takeTurn() {
+    Turn turn;
     {
         const std::lock_guard<std::mutex> lock(m_queueMutex);
-        turns.assign(m_turns.begin(), m_turns.end());
-        m_turns.clear();
+        if (m_turns.empty())
+            return turn;
+        turn = std::move(m_turns.front());
+        m_turns.pop_front();
     }
     m_taken.notify_all();
-    return turns;
+    return turn;
 }
 
 void LidarFeed::captureCloud(std::function<void(const velodyne::Turn &)> function) {

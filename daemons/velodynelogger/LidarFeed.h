@@ -45,7 +45,8 @@ public:
     /// Delivers the turn that was under way as a partial one.
     void close();
 
-    std::vector<Turn> takeTurns();
+    /// The oldest turn that waits, or null.
+    Turn takeTurn();
     /// The next complete turn of all lasers goes to the function, in another thread.
     void captureCloud(std::function<void(const velodyne::Turn &)> function);
     Counts counts() const;

@@ -57,9 +57,9 @@ void Recorder::push(const Datagram &datagram, bool wait) {
     const auto fits = [&] { return m_queue.bytes.size() + datagram.size <= m_capacity; };
     if (wait)
         m_emptied.wait(lock, [&] { return fits() || !m_status.recording || m_stopping; });
-    if (!m_status.recording)
+    if (!m_status.recording || m_stopping)
         return;
-    if (!fits() || m_stopping) {
+    if (!fits()) {
         ++m_status.dropped;
         return;
     }

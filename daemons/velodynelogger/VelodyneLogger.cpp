@@ -8,6 +8,13 @@
 
 namespace hermes {
 
+namespace {
+
+constexpr int retry_ms = 2;
+constexpr qint64 patience_ms = 5000;
+
+} // namespace
+
 VelodyneLogger::VelodyneLogger()
     : Daemon({"velodynelogger", "Velodyne logger",
               "Receives an HDL-32E or replays a capture of one, publishes its horizontal ring as scans, "
@@ -21,6 +28,8 @@ VelodyneLogger::VelodyneLogger()
     declareSourceCommands();
     declareRecordCommands();
     connect(&m_second, &QTimer::timeout, this, &VelodyneLogger::tick);
+    m_retry.setSingleShot(true);
+    connect(&m_retry, &QTimer::timeout, this, &VelodyneLogger::publishTurns);
 }
 
 Result<void> VelodyneLogger::start() {
@@ -35,6 +44,7 @@ Result<void> VelodyneLogger::start() {
 
 void VelodyneLogger::stop() {
     m_second.stop();
+    m_retry.stop();
     m_feed.close();
     m_recorder.stop();
 }
@@ -67,11 +77,16 @@ Result<void> VelodyneLogger::openLive() {
 }
 
 Result<void> VelodyneLogger::openPcap(const QString &path, double speed) {
+    PcapReader probe; // a wrong name does not close what is open
+    if (!probe.open(path.toStdString()))
+        return diskError(QString::fromStdString(probe.error()), path);
     ++m_generation;
     const auto ended = [this, generation = m_generation](const std::string &failure) {
         const auto tell = [this, generation, failure] {
-            if (generation == m_generation) // and not of a source that was closed meanwhile
-                replayEnded(QString::fromStdString(failure));
+            if (generation != m_generation) // a source that was closed meanwhile
+                return;
+            m_replayEnd = QString::fromStdString(failure);
+            publishTurns();
         };
         QMetaObject::invokeMethod(this, tell, Qt::QueuedConnection);
     };
@@ -89,6 +104,8 @@ void VelodyneLogger::opened(Source source, const QString &name, double speed) {
     m_sourceName = name;
     m_speed = speed;
     m_sourceError.clear();
+    m_replayEnd.reset();
+    m_sincePublished.start();
     m_packetsAtTick = 0;
     m_packetRate = 0;
     m_sincePacket.start();
@@ -110,10 +127,10 @@ Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
     return sourceState();
 }
 
-void VelodyneLogger::replayEnded(const QString &error) {
-    publishTurns();
+void VelodyneLogger::replayEnded(QString error) {
     m_source = Source::Ended;
     m_sourceError = error;
+    m_replayEnd.reset();
     if (error.isEmpty())
         logInfo("source", m_sourceName + " has been played to its end");
     else
@@ -150,10 +167,22 @@ void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
 
 void VelodyneLogger::publishTurns() {
     const int laser = settings().integer("decode.laser");
-    for (const LidarFeed::Turn &turn : m_feed.takeTurns()) {
+    // A replay without loss waits for readers who are behind, but not for one that reads no more.
+    const bool patient = m_source == Source::Replay && m_speed == 0;
+    for (;;) {
+        if (patient && !hasRoom("scan2d") && m_sincePublished.elapsed() < patience_ms) {
+            m_retry.start(retry_ms);
+            return;
+        }
+        const LidarFeed::Turn turn = m_feed.takeTurn();
+        if (!turn)
+            break;
+        m_sincePublished.start();
         if (hasSubscribers("scan2d"))
             publish("scan2d", toScanMessage(*turn, laser), double(turn->begin_ns) * 1e-9);
     }
+    if (m_replayEnd)
+        replayEnded(*m_replayEnd);
 }
 
 void VelodyneLogger::tick() {

@@ -32,7 +32,7 @@ private:
     Result<void> openLive();
     Result<void> openPcap(const QString &path, double speed);
     Result<QJsonValue> openSource(const Call &call);
-    void replayEnded(const QString &error);
+    void replayEnded(QString error);
     void opened(Source source, const QString &name, double speed);
 
     Result<QJsonValue> startRecording(const QString &name);
@@ -59,7 +59,10 @@ private:
     RecordFolder m_folder;
     LidarFeed m_feed;
     QTimer m_second;
-    QElapsedTimer m_sincePacket; ///< since the last second in which one came
+    QTimer m_retry; ///< of publishing what a reader had no room for
+    QElapsedTimer m_sincePublished;
+    std::optional<QString> m_replayEnd; ///< the replay is at its end; what waits is yet to be published
+    QElapsedTimer m_sincePacket;        ///< since the last second in which one came
     QElapsedTimer m_sinceTick;
     std::uint64_t m_packetsAtTick = 0;
     double m_packetRate = 0; ///< a second

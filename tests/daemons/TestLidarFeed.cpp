@@ -33,7 +33,7 @@ public:
     }
 
     void take() {
-        for (const LidarFeed::Turn &turn : feed.takeTurns())
+        while (const LidarFeed::Turn turn = feed.takeTurn())
             turns.push_back(*turn);
     }
     /// Takes turns until the capture has ended.

@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Simulator and logger as processes of their own: scans lie on the walls of the world, the pace is that of the sensor, the
+recording opens in tshark and replays to the same scans, bad input is refused with a message, a signal ends them in order."""
+import bisect
+import json
+import math
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
+import velodyne_reference as reference  # noqa: E402
+from processes import Daemon, Process, free_port  # noqa: E402
+
+SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
+WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
+SIGMA = 0.01
+
+
+class Listener(threading.Thread):
+    """Collects all messages of a topic."""
+
+    def __init__(self, port, topic):
+        super().__init__(daemon=True)
+        self.messages = []
+        self.stream = Daemon(port=port, timeout=None).subscribe(topic, queue=1000)
+        self.start()
+
+    def run(self):
+        try:
+            for message in self.stream:
+                self.messages.append(message)
+        except (OSError, ValueError):
+            pass  # the daemon has ended
+
+    def wait(self, count, limit_s=30):
+        deadline = time.monotonic() + limit_s
+        while len(self.messages) < count:
+            assert time.monotonic() < deadline, f"{len(self.messages)} messages came, {count} were expected"
+            time.sleep(0.02)
+
+
+def wall_distance(edges, x, y):
+    best = math.inf
+    for x1, y1, x2, y2 in edges:
+        dx, dy = x2 - x1, y2 - y1
+        k = min(1.0, max(0.0, ((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy)))
+        best = min(best, math.hypot(x1 + k * dx - x, y1 + k * dy - y))
+    return best
+
+
+def check_geometry(edges, scans, truth):
+    """Every point, taken from where the robot was at that moment, lies on a wall within four sigma."""
+    stamps = [message["stamp"] for message in truth]
+    checked = far = 0
+    for message in scans:
+        scan = message["data"]
+        angles = [math.atan2(y, x) for x, y in zip(scan["x"], scan["y"])]
+        # The head begins straight ahead and turns clockwise; reversed: from just left of ahead all the way round.
+        falls = sum(1 for a, b in zip(angles, angles[1:]) if b < a - 0.02)
+        assert falls <= 1, f"turn {scan['turn']} is not counter-clockwise"
+        for i in range(0, len(scan["x"]), 37):
+            stamp = scan["stamp"] + scan["t"][i]
+            after = bisect.bisect(stamps, stamp)
+            if not 0 < after < len(truth):
+                continue
+            a, b = truth[after - 1]["data"], truth[after]["data"]
+            k = (stamp - stamps[after - 1]) / (stamps[after] - stamps[after - 1])
+            theta = a["theta"] + k * math.remainder(b["theta"] - a["theta"], 2 * math.pi)
+            c, s = math.cos(theta), math.sin(theta)
+            x = a["x"] + k * (b["x"] - a["x"]) + c * scan["x"][i] - s * scan["y"][i]
+            y = a["y"] + k * (b["y"] - a["y"]) + s * scan["x"][i] + c * scan["y"][i]
+            checked += 1
+            far += wall_distance(edges, x, y) > 4 * SIGMA + 0.004  # and what rounding and interpolation add
+    assert checked > 1000, checked
+    assert far <= 1 + checked * 2e-4, f"{far} of {checked} points are off the walls"
+    return checked
+
+
+def check_refusals(folder, busy_port):
+    """Bad input ends a program with status 1 or 2 and a message that names what is wrong."""
+    empty = os.path.join(folder, "empty.json")
+    with open(empty, "w", encoding="utf-8") as file:
+        file.write('{"name": "empty", "edges": []}\n')
+    listen = ["--listen", f"tcp://127.0.0.1:{free_port(0)}?protocol=json"]
+    for program, arguments, status, words in (
+            ("simulator", ["--set", f"world={empty}"], 1, [empty, "no edges"]),
+            ("simulator", ["--set", "world=/nonexistent.json"], 1, ["/nonexistent.json", "No such file"]),
+            ("simulator", ["--set", "lidar.rpms=600"], 1, ["lidar.rpms"]),
+            ("simulator", ["--set", f"world={WORLD}", "--set", "lidar.host=nowhere"], 1, ["nowhere", "IPv4"]),
+            ("velodynelogger", ["--set", "source.pcap=/nonexistent.pcap"], 1, ["/nonexistent.pcap", "No such file"]),
+            ("velodynelogger", ["--set", f"source.port={busy_port}", "--set", "source.address=127.0.0.1"], 1,
+             [f"UDP port {busy_port}", "in use"])):
+        done = subprocess.run([os.path.join(BINARIES, "hermes-" + program)] + listen + arguments, timeout=20, check=False,
+                              capture_output=True, text=True, stdin=subprocess.DEVNULL, cwd=folder)
+        assert done.returncode in (1, 2) and done.returncode >= status, (program, arguments, done)
+        for word in words:
+            assert word in done.stderr, (program, arguments, word, done.stderr)
+
+
+def check_tshark(path, packets):
+    if not shutil.which("tshark"):
+        print("tshark is not installed: the recording is read by the reference only")
+        return
+    done = subprocess.run(["tshark", "-r", path, "-o", "ip.check_checksum:TRUE", "-T", "fields", "-e", "udp.length", "-e",
+                           "ip.checksum.status", "-e", "_ws.malformed"], capture_output=True, text=True, check=True,
+                          stdin=subprocess.DEVNULL)
+    assert done.stdout.splitlines() == ["1214\t1\t"] * packets, done.stdout[:200]
+
+
+def drive(folder):
+    lidar_port = free_port(0, socket.SOCK_DGRAM)
+    processes = []
+    try:
+        for name, settings in (("velodynelogger", {"source.port": lidar_port, "source.address": "127.0.0.1",
+                                                   "record.folder": folder}),
+                               ("simulator", {"world": WORLD, "lidar.port": lidar_port, "lidar.sigma_m": SIGMA})):
+            processes.append(Process(BINARIES, name, free_port(0), folder, settings))
+        logger, simulator = [process.connect() for process in processes]
+        scans, truth, lidar = (Listener(processes[0].port, "scan2d"), Listener(processes[1].port, "truth"),
+                               Listener(processes[0].port, "lidar"))
+        truth.wait(2)
+        scans.wait(2)
+        recorded = logger.call("record.start", name="drive")["path"]
+        before, begin = simulator.call("sim.state"), time.monotonic()
+        simulator.call("sim.drive")
+        scans.wait(len(scans.messages) + 50)
+        after = simulator.call("sim.state")
+        seconds = after["stamp"] - before["stamp"]
+        assert abs((after["packets"] - before["packets"]) / seconds - 1808.45) < 2, (before, after)
+        assert abs(seconds - (time.monotonic() - begin)) < 0.5, "the simulator's time drifts"
+        assert after["driving"] and abs(after["twist"]["vx"] - 0.8) < 0.01, after
+        status = logger.call("record.stop")
+        assert status["dropped"] == 0 and status["packets"] > 8000, status
+        check_tshark(recorded, status["packets"])
+        check_state(lidar, logger)
+        check_refusals(folder, lidar_port)
+        check_faults(simulator, logger)
+        check_replay(logger, recorded)
+        check_end(processes)
+        return scans.messages, truth.messages
+    finally:
+        for process in processes:
+            if process.process.poll() is None:
+                process.stop()
+
+
+def check_state(lidar, logger):
+    state = lidar.messages[-1]["data"]
+    assert abs(state["rpm"] - 600) < 3 and abs(state["packet_rate_hz"] - 1808) < 200, state
+    for name in ("lost", "out_of_order", "kernel_drops", "turns_dropped", "wrong_size", "wrong_flag"):
+        assert state[name] == 0, state
+    assert logger.call("daemon.status")["state"] == "running"
+    assert [entry["name"] for entry in logger.call("record.list")] == ["drive"]
+
+
+def check_faults(simulator, logger):
+    simulator.call("sim.fault", device="lidar", kind="loss", share=0.2)
+    deadline = time.monotonic() + 10
+    while logger.call("source.status")["lost"] < 50:
+        assert time.monotonic() < deadline, "lost packets are not noticed"
+        time.sleep(0.05)
+    simulator.call("sim.fault", device="lidar", kind="none")
+
+
+def check_replay(logger, recorded):
+    expected = reference.turns(recorded)
+    stream = Daemon(port=logger.socket.getpeername()[1], timeout=30).subscribe("scan2d", queue=1000)
+    logger.call("source.open", pcap=recorded, speed=0)
+    scans = (message["data"] for message in stream)
+    scan = next(scan for scan in scans if scan["turn"] == 0)  # behind the last turns of the live source
+    for turn in expected:
+        assert len(scan["x"]) == len(turn), (scan["turn"], len(scan["x"]), len(turn))
+        for x, y, point in zip(scan["x"], scan["y"], reversed(turn)):
+            assert abs(x - point.x) < 2e-5 and abs(y - point.y) < 2e-5, (scan["turn"], x, y, point)
+        if turn is not expected[-1]:
+            scan = next(scans)
+
+
+def check_end(processes):
+    for process in processes:
+        process.process.send_signal(signal.SIGTERM)
+        begin = time.monotonic()
+        assert process.process.wait(10) == 0, process.last_words()
+        assert time.monotonic() - begin < 3, f"{process.name} took its time to end"
+
+
+def main():
+    with open(WORLD, encoding="utf-8") as file:
+        edges = json.load(file)["edges"]
+    with tempfile.TemporaryDirectory() as folder:
+        scans, truth = drive(folder)
+    # Without the packets lost on purpose.
+    scans = [message for message in scans if not message["data"]["partial"]][:50]
+    print(f"{len(scans)} scans, {check_geometry(edges, scans, truth)} points checked against the walls")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
