@@ -1,101 +1,18 @@
-#include "common/capture/PcapWriter.h"
-#include "protocol/velodyne/DataPacket.h"
+#include "tests/gui/VectorProgram.h"
 #include "tests/support/RealData.h"
 
-#include <QDir>
-#include <QJsonDocument>
-#include <QJsonObject>
-#include <QProcess>
-#include <QTemporaryDir>
-#include <QtTest>
-
-namespace {
-
-struct Result {
-    int status = -1;
-    QByteArray out;
-    QByteArray err;
-};
-
-Result run(const QStringList &arguments, const QByteArray &input = QByteArray()) {
-    QProcess process;
-    process.start(qEnvironmentVariable("HERMES_BIN") + QStringLiteral("/hermes-vector"), arguments);
-    process.write(input);
-    process.closeWriteChannel();
-    process.waitForFinished(60000);
-    Result r;
-    r.status = process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1;
-    r.out = process.readAllStandardOutput();
-    r.err = process.readAllStandardError();
-    return r;
-}
-
-QString data(const char *name) {
-    return QStringLiteral(TEST_DATA_DIR "/vector/") + QLatin1String(name);
-}
-
-QByteArray contents(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
-void write(const QString &path, const QByteArray &text) {
-    QFile file(path);
-    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size())
-        qFatal("cannot write a file of the test");
-}
-
-QJsonObject json(const QByteArray &text) {
-    return QJsonDocument::fromJson(text).object();
-}
-
-/// A capture of `packets` data packets, 10 turns a second, a wall 5 m away all around on every laser.
-void writeCapture(const QString &path, int packets) {
-    using namespace hermes;
-    PcapWriter writer;
-    if (!writer.open(path.toStdString(), true))
-        qFatal("%s", writer.error().c_str());
-    int azimuth = 18000;
-    for (int p = 0; p < packets; ++p) {
-        velodyne::DataPacketWriter packet;
-        for (int block = 0; block < velodyne::blocksPerPacket; ++block, azimuth = (azimuth + 17) % 36000) {
-            packet.setAzimuth(block, std::uint16_t(azimuth));
-            for (int laser = 0; laser < velodyne::lasers; ++laser)
-                packet.setReturn(block, laser, velodyne::toDistanceCounts(5), 100);
-        }
-        const std::int64_t stamp = 1000000000 + p * velodyne::packetPeriod_ns;
-        packet.setTail(std::uint32_t(stamp / 1000));
-        Datagram d;
-        d.stamp_ns = stamp;
-        d.sourcePort = d.destinationPort = velodyne::dataPort;
-        d.payload = packet.bytes().data();
-        d.size = packet.bytes().size();
-        writer.write(d);
-    }
-    if (!writer.close())
-        qFatal("%s", writer.error().c_str());
-}
-
-} // namespace
-
-/// hermes-vector as its users meet it: columns, exit status, messages, files.
+/// hermes-vector as its users meet it: columns, values, files, help.
 class TestVectorProgram : public QObject {
     Q_OBJECT
 
-    QTemporaryDir m_folder;
+    TestFolder m_folder;
 
-    QString path(const char *name) const { return m_folder.filePath(QLatin1String(name)); }
-    /// What is left in the folder of the test, temporary files too.
-    QStringList files() const {
-        return QDir(m_folder.path()).entryList(QDir::Files | QDir::Hidden, QDir::Name);
-    }
+    QString path(const char *name) const { return m_folder.path(name); }
+    QStringList files() const { return m_folder.files(); }
 
 private Q_SLOTS:
     void initTestCase() { QVERIFY(m_folder.isValid()); }
-    void init() {
-        for (const QString &name : files())
-            QFile::remove(m_folder.filePath(name));
-    }
+    void init() { m_folder.empty(); }
 
     void columns_data() {
         QTest::addColumn<QStringList>("arguments");
@@ -209,11 +126,11 @@ private Q_SLOTS:
     }
 
     void mapOfAFolder() {
-        QVERIFY(QDir(m_folder.path()).mkpath("scans"));
+        QVERIFY(QDir(path("")).mkpath("scans"));
         for (int i = 0; i < 3; ++i)
             QCOMPARE(
                 run({"observe", data("world.json"), "--pose", QStringLiteral("0.%1,0,0").arg(i), "--scan",
-                     "400", "--out", m_folder.filePath(QStringLiteral("scans/%1.csv").arg(i)), "--force"})
+                     "400", "--out", path(qPrintable(QStringLiteral("scans/%1.csv").arg(i))), "--force"})
                     .status,
                 0);
         const Result r = run({"map", path("scans"), "--out-trajectory", path("t.tum")});
@@ -246,121 +163,6 @@ private Q_SLOTS:
         const Result map = run({"map", path("c.pcap")});
         QCOMPARE(map.status, 0);
         QCOMPARE(json(map.out)["scans"].toInt(), 3);
-    }
-
-    void wrongUsage_data() {
-        QTest::addColumn<QStringList>("arguments");
-        QTest::addColumn<QByteArray>("named");
-        const QString room = data("room.csv"), world = data("world.json"), log = data("raw.log");
-        const auto row = [](const char *name, const QStringList &arguments, const char *named) {
-            QTest::newRow(name) << arguments << QByteArray(named);
-        };
-        row("nothing", {}, "subcommand");
-        row("no such command", {"draw"}, "draw");
-        row("no file", {"segment"}, "IN");
-        row("unknown option", {"segment", room, "--colour", "red"}, "--colour");
-        row("no number", {"segment", room, "--k", "many"}, "--k");
-        row("not a number", {"segment", room, "--min-threshold", "nan"}, "--min-threshold");
-        row("negative", {"segment", room, "--min-points", "-1"}, "--min-points");
-        row("bounds crossed", {"segment", room, "--min-threshold", "0.5"}, "--min-threshold");
-        row("sigma 0", {"vectorize", room, "--sigma", "0"}, "--sigma");
-        row("unknown algorithm", {"vectorize", room, "--algorithm", "magic"}, "--algorithm");
-        row("unknown weights", {"register", data("pairs.csv"), "--weights", "heavy"}, "--weights");
-        row("no pose", {"observe", world}, "--pose");
-        row("half a pose", {"observe", world, "--pose", "1,2"}, "--pose");
-        row("noise without scan", {"observe", world, "--pose", "0,0,0", "--noise", "1"}, "--noise");
-        row("field of view", {"observe", world, "--pose", "0,0,0", "--fov", "400"}, "--fov");
-        row("unknown map", {"map", log, "--out-map", "map.png"}, "--out-map");
-        row("every 0th", {"map", log, "--every", "0"}, "--every");
-        row("odometry", {"map", log, "--odometry", "maybe"}, "--odometry");
-        row("laser 32", {"ring", "x.pcap", "--laser", "32"}, "--laser");
-    }
-    void wrongUsage() {
-        QFETCH(QStringList, arguments);
-        QFETCH(QByteArray, named);
-        const Result r = run(arguments);
-        QCOMPARE(r.status, 2);
-        QVERIFY2(r.err.contains(named), r.err.constData());
-        QCOMPARE(r.out, QByteArray());
-    }
-
-    void badInput_data() {
-        QTest::addColumn<QString>("command");
-        QTest::addColumn<QByteArray>("text");
-        QTest::addColumn<QByteArray>("place");
-        QTest::addColumn<QByteArray>("expected");
-        const QByteArray log = contents(data("raw.log"));
-        QTest::newRow("nan in points") << "segment" << QByteArray("x,y\n1,2\nnan,3\n") << QByteArray("in:3:")
-                                       << QByteArray("a finite number");
-        QTest::newRow("one column") << "vectorize" << QByteArray("1,2\n3\n") << QByteArray("in:2:")
-                                    << QByteArray("2 fields");
-        QTest::newRow("no pairs") << "register" << QByteArray("1,2,3,4\n") << QByteArray("in:1:")
-                                  << QByteArray("dx1");
-        QTest::newRow("world without edges") << "observe" << QByteArray("{\"name\": \"x\", \"edges\": []}")
-                                             << QByteArray("in") << QByteArray("x1");
-        QTest::newRow("world that is none")
-            << "observe" << QByteArray("{\"edges\": [\n[0,0,1]]}") << QByteArray("in:2") << QByteArray();
-        QTest::newRow("log cut short")
-            << "map" << log.left(log.size() / 2) << QByteArray("in:8:") << QByteArray("of FLASER");
-        QTest::newRow("no log") << "map" << QByteArray("hello\n") << QByteArray("in:1:")
-                                << QByteArray("CARMEN");
-        QTest::newRow("no capture") << "ring" << QByteArray("hello\n") << QByteArray("in") << QByteArray();
-        QTest::newRow("empty file") << "map" << QByteArray() << QByteArray("in") << QByteArray("FLASER");
-    }
-    /// Status 1, a message that names the place, and not a trace of any output file.
-    void badInput() {
-        QFETCH(QString, command);
-        QFETCH(QByteArray, text);
-        QFETCH(QByteArray, place);
-        QFETCH(QByteArray, expected);
-        write(path("in"), text);
-        QStringList arguments{command, path("in"), "--out", path("out")};
-        if (command == QLatin1String("observe"))
-            arguments += {"--pose", "0,0,0"};
-        if (command == QLatin1String("map"))
-            arguments +=
-                {"--out-map", path("m.csv"), "--out-trajectory", path("t.tum"), "--svg", path("m.svg")};
-        const Result r = run(arguments);
-        QVERIFY2(r.status == 1, r.err.constData());
-        QVERIFY2(r.err.contains('/' + place), r.err.constData());
-        QVERIFY2(r.err.contains(expected), r.err.constData());
-        QCOMPARE(files(), QStringList{"in"});
-    }
-
-    void captureCutInMidRecord() {
-        writeCapture(path("whole.pcap"), 250);
-        write(path("c.pcap"), contents(path("whole.pcap")).left(200 * 1264 + 500));
-        QFile::remove(path("whole.pcap"));
-        for (const char *command : {"ring", "map"}) {
-            const Result r = run({command, path("c.pcap"), "--out", path("out")});
-            QCOMPARE(r.status, 1);
-            QVERIFY2(r.err.contains("c.pcap: record 2"), r.err.constData());
-            QCOMPARE(files(), QStringList{"c.pcap"});
-        }
-    }
-
-    void damagedLinesAreCountedOnDemand() {
-        QByteArray log = contents(data("raw.log"));
-        write(path("in"), log.left(log.size() / 2));
-        const Result r = run({"map", path("in"), "--skip-damaged"});
-        QCOMPARE(r.status, 0);
-        QCOMPARE(json(r.out)["damaged_lines"].toInt(), 1);
-        QVERIFY2(r.err.contains("in:8: found a line cut short"), r.err.constData());
-    }
-
-    void nothingIsOverwritten() {
-        write(path("out"), "precious");
-        const Result refused =
-            run({"segment", data("room.csv"), "--out", path("out"), "--svg", path("new.svg")});
-        QCOMPARE(refused.status, 1);
-        QVERIFY2(refused.err.contains("--force"), refused.err.constData());
-        QCOMPARE(contents(path("out")), QByteArray("precious"));
-        QCOMPARE(files(), QStringList{"out"});
-        QCOMPARE(run({"segment", data("room.csv"), "--out", path("out"), "--force"}).status, 0);
-        QVERIFY(contents(path("out")).startsWith("index,cluster\n"));
-        QCOMPARE(run({"segment", data("room.csv"), "--out", path("a"), "--svg", path("a")}).status, 1);
-        QCOMPARE(run({"segment", data("room.csv"), "--out", path("no/such/folder")}).status, 1);
-        QCOMPARE(files(), QStringList{"out"});
     }
 
     void compressedAndStandardInput() {

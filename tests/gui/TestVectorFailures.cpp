@@ -1,0 +1,133 @@
+#include "tests/gui/VectorProgram.h"
+
+/// hermes-vector when something is wrong: exit status, message, and no trace of a file.
+class TestVectorFailures : public QObject {
+    Q_OBJECT
+
+    TestFolder m_folder;
+
+    QString path(const char *name) const { return m_folder.path(name); }
+    QStringList files() const { return m_folder.files(); }
+
+private Q_SLOTS:
+    void initTestCase() { QVERIFY(m_folder.isValid()); }
+    void init() { m_folder.empty(); }
+
+    void wrongUsage_data() {
+        QTest::addColumn<QStringList>("arguments");
+        QTest::addColumn<QByteArray>("named");
+        const QString room = data("room.csv"), world = data("world.json"), log = data("raw.log");
+        const auto row = [](const char *name, const QStringList &arguments, const char *named) {
+            QTest::newRow(name) << arguments << QByteArray(named);
+        };
+        row("nothing", {}, "subcommand");
+        row("no such command", {"draw"}, "draw");
+        row("no file", {"segment"}, "IN");
+        row("unknown option", {"segment", room, "--colour", "red"}, "--colour");
+        row("no number", {"segment", room, "--k", "many"}, "--k");
+        row("not a number", {"segment", room, "--min-threshold", "nan"}, "--min-threshold");
+        row("negative", {"segment", room, "--min-points", "-1"}, "--min-points");
+        row("bounds crossed", {"segment", room, "--min-threshold", "0.5"}, "--min-threshold");
+        row("sigma 0", {"vectorize", room, "--sigma", "0"}, "--sigma");
+        row("unknown algorithm", {"vectorize", room, "--algorithm", "magic"}, "--algorithm");
+        row("unknown weights", {"register", data("pairs.csv"), "--weights", "heavy"}, "--weights");
+        row("no pose", {"observe", world}, "--pose");
+        row("half a pose", {"observe", world, "--pose", "1,2"}, "--pose");
+        row("noise without scan", {"observe", world, "--pose", "0,0,0", "--noise", "1"}, "--noise");
+        row("field of view", {"observe", world, "--pose", "0,0,0", "--fov", "400"}, "--fov");
+        row("unknown map", {"map", log, "--out-map", "map.png"}, "--out-map");
+        row("every 0th", {"map", log, "--every", "0"}, "--every");
+        row("odometry", {"map", log, "--odometry", "maybe"}, "--odometry");
+        row("laser 32", {"ring", "x.pcap", "--laser", "32"}, "--laser");
+    }
+    void wrongUsage() {
+        QFETCH(QStringList, arguments);
+        QFETCH(QByteArray, named);
+        const Result r = run(arguments);
+        QCOMPARE(r.status, 2);
+        QVERIFY2(r.err.contains(named), r.err.constData());
+        QCOMPARE(r.out, QByteArray());
+    }
+
+    void badInput_data() {
+        QTest::addColumn<QString>("command");
+        QTest::addColumn<QByteArray>("text");
+        QTest::addColumn<QByteArray>("place");
+        QTest::addColumn<QByteArray>("expected");
+        const QByteArray log = contents(data("raw.log"));
+        QTest::newRow("nan in points") << "segment" << QByteArray("x,y\n1,2\nnan,3\n") << QByteArray("in:3:")
+                                       << QByteArray("a finite number");
+        QTest::newRow("one column") << "vectorize" << QByteArray("1,2\n3\n") << QByteArray("in:2:")
+                                    << QByteArray("2 fields");
+        QTest::newRow("no pairs") << "register" << QByteArray("1,2,3,4\n") << QByteArray("in:1:")
+                                  << QByteArray("dx1");
+        QTest::newRow("world without edges") << "observe" << QByteArray("{\"name\": \"x\", \"edges\": []}")
+                                             << QByteArray("in") << QByteArray("x1");
+        QTest::newRow("world that is none")
+            << "observe" << QByteArray("{\"edges\": [\n[0,0,1]]}") << QByteArray("in:2") << QByteArray();
+        QTest::newRow("log cut short")
+            << "map" << log.left(log.size() / 2) << QByteArray("in:8:") << QByteArray("of FLASER");
+        QTest::newRow("no log") << "map" << QByteArray("hello\n") << QByteArray("in:1:")
+                                << QByteArray("CARMEN");
+        QTest::newRow("no capture") << "ring" << QByteArray("hello\n") << QByteArray("in") << QByteArray();
+        QTest::newRow("empty file") << "map" << QByteArray() << QByteArray("in") << QByteArray("FLASER");
+    }
+    /// Status 1, a message that names the place, and not a trace of any output file.
+    void badInput() {
+        QFETCH(QString, command);
+        QFETCH(QByteArray, text);
+        QFETCH(QByteArray, place);
+        QFETCH(QByteArray, expected);
+        write(path("in"), text);
+        QStringList arguments{command, path("in"), "--out", path("out")};
+        if (command == QLatin1String("observe"))
+            arguments += {"--pose", "0,0,0"};
+        if (command == QLatin1String("map"))
+            arguments +=
+                {"--out-map", path("m.csv"), "--out-trajectory", path("t.tum"), "--svg", path("m.svg")};
+        const Result r = run(arguments);
+        QVERIFY2(r.status == 1, r.err.constData());
+        QVERIFY2(r.err.contains('/' + place), r.err.constData());
+        QVERIFY2(r.err.contains(expected), r.err.constData());
+        QCOMPARE(files(), QStringList{"in"});
+    }
+
+    void captureCutInMidRecord() {
+        writeCapture(path("whole.pcap"), 250);
+        write(path("c.pcap"), contents(path("whole.pcap")).left(200 * 1264 + 500));
+        QFile::remove(path("whole.pcap"));
+        for (const char *command : {"ring", "map"}) {
+            const Result r = run({command, path("c.pcap"), "--out", path("out")});
+            QCOMPARE(r.status, 1);
+            QVERIFY2(r.err.contains("c.pcap: record 2"), r.err.constData());
+            QCOMPARE(files(), QStringList{"c.pcap"});
+        }
+    }
+
+    void damagedLinesAreCountedOnDemand() {
+        QByteArray log = contents(data("raw.log"));
+        write(path("in"), log.left(log.size() / 2));
+        const Result r = run({"map", path("in"), "--skip-damaged"});
+        QCOMPARE(r.status, 0);
+        QCOMPARE(json(r.out)["damaged_lines"].toInt(), 1);
+        QVERIFY2(r.err.contains("in:8: found a line cut short"), r.err.constData());
+    }
+
+    void nothingIsOverwritten() {
+        write(path("out"), "precious");
+        const Result refused =
+            run({"segment", data("room.csv"), "--out", path("out"), "--svg", path("new.svg")});
+        QCOMPARE(refused.status, 1);
+        QVERIFY2(refused.err.contains("--force"), refused.err.constData());
+        QCOMPARE(contents(path("out")), QByteArray("precious"));
+        QCOMPARE(files(), QStringList{"out"});
+        QCOMPARE(run({"segment", data("room.csv"), "--out", path("out"), "--force"}).status, 0);
+        QVERIFY(contents(path("out")).startsWith("index,cluster\n"));
+        QCOMPARE(run({"segment", data("room.csv"), "--out", path("a"), "--svg", path("a")}).status, 1);
+        QCOMPARE(run({"segment", data("room.csv"), "--out", path("no/such/folder")}).status, 1);
+        QCOMPARE(files(), QStringList{"out"});
+    }
+};
+
+QTEST_GUILESS_MAIN(TestVectorFailures)
+#include "TestVectorFailures.moc"

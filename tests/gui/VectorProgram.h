@@ -1,0 +1,96 @@
+#pragma once
+
+#include "common/capture/PcapWriter.h"
+#include "protocol/velodyne/DataPacket.h"
+
+#include <QDir>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QProcess>
+#include <QTemporaryDir>
+#include <QtTest>
+
+struct Result {
+    int status = -1;
+    QByteArray out;
+    QByteArray err;
+};
+
+/// Runs hermes-vector to its end.
+inline Result run(const QStringList &arguments, const QByteArray &input = QByteArray()) {
+    QProcess process;
+    process.start(qEnvironmentVariable("HERMES_BIN") + QStringLiteral("/hermes-vector"), arguments);
+    process.write(input);
+    process.closeWriteChannel();
+    process.waitForFinished(60000);
+    Result r;
+    r.status = process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1;
+    r.out = process.readAllStandardOutput();
+    r.err = process.readAllStandardError();
+    return r;
+}
+
+/// A file of tests/data/vector.
+inline QString data(const char *name) {
+    return QStringLiteral(TEST_DATA_DIR "/vector/") + QLatin1String(name);
+}
+
+inline QByteArray contents(const QString &path) {
+    QFile file(path);
+    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
+}
+
+inline void write(const QString &path, const QByteArray &text) {
+    QFile file(path);
+    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size())
+        qFatal("cannot write a file of the test");
+}
+
+inline QJsonObject json(const QByteArray &text) {
+    return QJsonDocument::fromJson(text).object();
+}
+
+/// A capture of `packets` data packets, 10 turns a second, a wall 5 m away all around on every laser.
+inline void writeCapture(const QString &path, int packets) {
+    using namespace hermes;
+    PcapWriter writer;
+    if (!writer.open(path.toStdString(), true))
+        qFatal("%s", writer.error().c_str());
+    int azimuth = 18000;
+    for (int p = 0; p < packets; ++p) {
+        velodyne::DataPacketWriter packet;
+        for (int block = 0; block < velodyne::blocksPerPacket; ++block, azimuth = (azimuth + 17) % 36000) {
+            packet.setAzimuth(block, std::uint16_t(azimuth));
+            for (int laser = 0; laser < velodyne::lasers; ++laser)
+                packet.setReturn(block, laser, velodyne::toDistanceCounts(5), 100);
+        }
+        const std::int64_t stamp = 1000000000 + p * velodyne::packetPeriod_ns;
+        packet.setTail(std::uint32_t(stamp / 1000));
+        Datagram d;
+        d.stamp_ns = stamp;
+        d.sourcePort = d.destinationPort = velodyne::dataPort;
+        d.payload = packet.bytes().data();
+        d.size = packet.bytes().size();
+        writer.write(d);
+    }
+    if (!writer.close())
+        qFatal("%s", writer.error().c_str());
+}
+
+/// A folder whose files are removed before every test.
+class TestFolder {
+public:
+    bool isValid() const { return m_folder.isValid(); }
+    QString path(const char *name = "") const { return m_folder.filePath(QLatin1String(name)); }
+    /// What is left in it, temporary files too.
+    QStringList files() const {
+        return QDir(m_folder.path()).entryList(QDir::Files | QDir::Hidden, QDir::Name);
+    }
+    void empty() {
+        for (const QString &name : files())
+            QFile::remove(m_folder.filePath(name));
+    }
+
+private:
+    QTemporaryDir m_folder;
+};
