@@ -16,16 +16,18 @@ Result<void> SinglePeerListener::listen() {
     disconnect(connection);
     if (!failure.isEmpty())
         return Error(ErrorCode::InputOutput, failure);
+    lastAddress = carrier->name();
     Q_EMIT accepted(carrier);
     return {};
 }
 
 void SinglePeerListener::close() {
-    carrier->close();
+    if (carrier)
+        carrier->close();
 }
 
 QString SinglePeerListener::address() const {
-    return carrier->name();
+    return lastAddress;
 }
 
 } // namespace hermes

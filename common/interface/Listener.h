@@ -4,6 +4,7 @@
 #include "common/interface/Interface.h"
 
 #include <QObject>
+#include <QPointer>
 
 namespace hermes {
 
@@ -37,7 +38,8 @@ public:
     QString address() const override;
 
 private:
-    Interface *carrier;
+    QPointer<Interface> carrier; // ends with the client it was given to
+    QString lastAddress;
 };
 
 } // namespace hermes

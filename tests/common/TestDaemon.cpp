@@ -3,7 +3,9 @@
 #include "common/daemon/Daemon.h"
 #include "protocol/jsonrpc/JsonText.h"
 
+#include <QNetworkDatagram>
 #include <QTcpSocket>
+#include <QUdpSocket>
 #include <QtTest>
 #include <stdexcept>
 #include <thread>
@@ -108,6 +110,7 @@ private Q_SLOTS:
     void idleClientIsClosed();
     void oversizedRequest();
     void networkNeedsInsecure();
+    void datagramsCarryRequests();
     void healthDegradesAndGoesStale();
     void logIsATopic();
 
@@ -476,6 +479,19 @@ void TestDaemon::networkNeedsInsecure() {
     QVERIFY(insecure.launch());
     const QByteArray status = compactJson(insecure.status());
     QVERIFY2(status.contains("\"level\":\"warn\"") && status.contains("\"name\":\"insecure\""), status);
+}
+
+void TestDaemon::datagramsCarryRequests() {
+    TestedDaemon udp;
+    QVERIFY(!udp.prepare({"tested", "--listen", "udp://127.0.0.1:0", "--set", "limits.idle_s=0.2"}));
+    QVERIFY(udp.launch());
+    QUdpSocket client;
+    client.writeDatagram(compactJson(makeRequest(1, "subtract", QJsonArray{5, 3})) + '\n',
+                         QHostAddress::LocalHost, quint16(QUrl(udp.server().addresses().value(0)).port()));
+    QTRY_VERIFY(client.hasPendingDatagrams());
+    QCOMPARE(QJsonDocument::fromJson(client.receiveDatagram().data()).object()["result"].toInt(), 2);
+    QTRY_COMPARE(udp.server().counters()["clients"].toInt(), 0);
+    QCOMPARE(udp.server().addresses().size(), 1); // the carrier is gone, the listener is not confused
 }
 
 void TestDaemon::healthDegradesAndGoesStale() {
