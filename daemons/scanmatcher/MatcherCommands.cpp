@@ -83,9 +83,11 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     worker->post([reference = *reference, current = *current, expected, reply](Tracker &) {
         vectorlib::MapBuilder pair;
         pair.find.settings = vectorlib::CorrespondenceSettings::forPoorExpectation();
-        pair.extract.configure(2 * vectorlib::pi, reference.points.size());
+        pair.extract.segment.settings =
+            vectorlib::EarSettings::forScanner(2 * vectorlib::pi, reference.points.size());
         pair.process(reference.points, {});
-        pair.extract.configure(2 * vectorlib::pi, current.points.size());
+        pair.extract.segment.settings =
+            vectorlib::EarSettings::forScanner(2 * vectorlib::pi, current.points.size());
         const vectorlib::ScanReport report = pair.process(current.points, expected);
         const vectorlib::Match &match = pair.match();
         const Pose2D pose = match.pose.pose();

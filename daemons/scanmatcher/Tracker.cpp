@@ -19,7 +19,8 @@ const ScanReport &Tracker::process(Scan &scan) {
     scan.stamp += double(middle);
     if (configured.compensateMotion)
         compensateMotion(scan.points, scan.seconds, middle, model.twist());
-    builder.extract.configure(2 * vectorlib::pi, scan.points.size());
+    builder.extract.segment.settings =
+        vectorlib::EarSettings::forScanner(2 * vectorlib::pi, scan.points.size());
     const ScanReport &report = builder.process(scan.points, model.predict(scan.stamp));
     model.update(report.pose, scan.stamp);
 

@@ -22,20 +22,14 @@ struct MapCommand {
     std::string svg;
     bool force = false;
     SegmentOptions segment;
-    double sigma = 0.03;
-
-    // Tracking wants every edge it can get also from scanners of one ray a degree: smaller clusters, over
-    // wider gaps, than the published ones for dense scans.
-    MapCommand() {
-        segment.settings.minPoints = 5;
-        segment.settings.maxThreshold = 0.40;
-    }
+    double sigma = vectorlib::VectorizerSettings().sigma;
 
     void run() {
         const auto begin = std::chrono::steady_clock::now();
         MapRun run;
         run.useOdometry = odometry == "use";
-        run.builder.extract.segment.settings = segment.checked();
+        segment.over({}); // contradictions come to light before any file is touched
+        run.segmentation = segment;
         run.builder.extract.vectorize.settings.sigma = sigma;
         source.open = segment.open;
 
@@ -134,7 +128,8 @@ void addMapCommand(CLI::App &app) {
         ->check(aboveZero())
         ->type_name("M")
         ->capture_default_str();
-    command->segment.addTo(*sub);
+    command->segment.addTo(
+        *sub, "defaults by the scanner: 10, 0.05, 0.20, 15 for a dense one, else 5, 0.10, 0.60, 4");
     sub->add_flag("--force", command->force, "Overwrite files that exist");
     sub->footer(
         example("hermes-vector map intel.log.gz --corrected --out-map intel.svg --out-trajectory intel.tum"));

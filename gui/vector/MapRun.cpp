@@ -12,10 +12,9 @@ void MapRun::take(const MapScan &scan) {
     const float middle = vectorlib::middleTime(scan.seconds);
     const double stamp = scan.stamp + double(middle);
     const Pose2D expected = expectedPose(scan, stamp);
-    vectorlib::EarSettings &segment = builder.extract.segment.settings;
-    segment.closed = scan.closed;
-    segment.fieldOfView = scan.fieldOfView;
-    segment.nominalPoints = scan.rays;
+    vectorlib::EarSettings scanner = vectorlib::EarSettings::forScanner(scan.fieldOfView, scan.rays);
+    scanner.closed = scan.closed;
+    builder.extract.segment.settings = segmentation.over(scanner);
     Pose2D pose = expected;
     ScanReport::Outcome outcome = ScanReport::Outcome::Skipped;
     if (!scan.partial) {

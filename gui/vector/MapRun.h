@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/vector/MapSource.h"
+#include "gui/vector/Options.h"
 #include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/MapBuilder.h"
@@ -14,7 +15,8 @@ namespace hermes {
 class MapRun {
 public:
     vectorlib::MapBuilder builder;
-    bool useOdometry = true; ///< where a scan has any; else the motion is expected to go on as before
+    SegmentOptions segmentation; ///< over the defaults of each scan's scanner
+    bool useOdometry = true;     ///< where a scan has any; else the motion is expected to go on as before
 
     void take(const MapScan &scan);
 

@@ -67,35 +67,38 @@ void OutputOptions::addTo(CLI::App &command, bool withSvg) {
     command.add_flag("--force", force, "Overwrite files that exist");
 }
 
-void SegmentOptions::addTo(CLI::App &command) {
-    command.add_option("--k", settings.neighbours, "How many earlier points each point is compared with")
+void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {
+    const std::string group = "Segmentation (" + defaults + ")";
+    command.add_option("--k", m_neighbours, "How many earlier points each point is compared with")
         ->check(between(1, 100000))
         ->type_name("N")
-        ->capture_default_str();
-    command
-        .add_option("--min-threshold", settings.minThreshold, "Lower bound of the distance threshold, metres")
+        ->group(group);
+    command.add_option("--min-threshold", m_minThreshold, "Lower bound of the distance threshold, metres")
         ->check(aboveZero())
         ->type_name("M")
-        ->capture_default_str();
-    command
-        .add_option("--max-threshold", settings.maxThreshold, "Upper bound of the distance threshold, metres")
+        ->group(group);
+    command.add_option("--max-threshold", m_maxThreshold, "Upper bound of the distance threshold, metres")
         ->check(aboveZero())
         ->type_name("M")
-        ->capture_default_str();
-    command.add_option("--min-points", settings.minPoints, "Smaller clusters are outliers")
+        ->group(group);
+    command.add_option("--min-points", m_minPoints, "Smaller clusters are outliers")
         ->check(between(1, 1e9))
         ->type_name("N")
-        ->capture_default_str();
-    command.add_flag("--open", open, "The last point is no neighbour of the first: less than a full turn");
+        ->group(group);
+    command.add_flag("--open", open, "The last point is no neighbour of the first: less than a full turn")
+        ->group(group);
 }
 
-vectorlib::EarSettings SegmentOptions::checked() const {
+vectorlib::EarSettings SegmentOptions::over(vectorlib::EarSettings settings) const {
+    settings.neighbours = m_neighbours.value_or(settings.neighbours);
+    settings.minThreshold = m_minThreshold.value_or(settings.minThreshold);
+    settings.maxThreshold = m_maxThreshold.value_or(settings.maxThreshold);
+    settings.minPoints = m_minPoints.value_or(settings.minPoints);
     if (settings.minThreshold > settings.maxThreshold)
         throw CLI::ValidationError("--min-threshold",
                                    "found a value above --max-threshold, expected at most that");
-    vectorlib::EarSettings result = settings;
-    result.closed = !open;
-    return result;
+    settings.closed = settings.closed && !open;
+    return settings;
 }
 
 std::string example(const std::string &text) {

@@ -6,6 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
+
 namespace hermes {
 
 /// Where a command's results go.
@@ -29,12 +31,17 @@ vectorlib::Pose2D parsePose(const std::string &text);
 
 /// The options of segmentation: --k --min-threshold --max-threshold --min-points --open.
 struct SegmentOptions {
-    vectorlib::EarSettings settings;
     bool open = false;
 
-    void addTo(CLI::App &command);
-    /// The settings; throws CLI::ValidationError when the thresholds contradict each other.
-    vectorlib::EarSettings checked() const;
+    /// defaults tells people what holds where an option is not given.
+    void addTo(CLI::App &command, const std::string &defaults);
+    /// The settings with what was given on top; throws CLI::ValidationError when the thresholds contradict
+    /// each other.
+    vectorlib::EarSettings over(vectorlib::EarSettings settings) const;
+
+private:
+    std::optional<int> m_neighbours, m_minPoints;
+    std::optional<double> m_minThreshold, m_maxThreshold;
 };
 
 /// The footer of a command's help: an example of its use.

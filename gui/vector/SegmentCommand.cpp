@@ -14,7 +14,7 @@ struct SegmentCommand {
     void run() const {
         using Point = vectorlib::Vector2D<double>;
         vectorlib::EarSegmenter<double> segmenter;
-        segmenter.settings = segment.checked();
+        segmenter.settings = segment.over({});
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
         std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
@@ -63,7 +63,7 @@ void addSegmentCommand(CLI::App &app) {
         "segment", "Split a scan into clusters of neighbouring points (CSV index,cluster; -1 is "
                    "an outlier)");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
-    command->segment.addTo(*sub);
+    command->segment.addTo(*sub, "defaults 10, 0.05, 0.20, 15");
     command->output.addTo(*sub, true);
     sub->footer(example("hermes-vector segment scan.csv --open --svg scan.svg"));
     sub->callback([command] { command->run(); });

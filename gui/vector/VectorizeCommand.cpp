@@ -35,7 +35,7 @@ struct VectorizeCommand {
 
     void run() const {
         vectorlib::EarSegmenter<double> segmenter;
-        segmenter.settings = segment.checked();
+        segmenter.settings = segment.over({});
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
         std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
@@ -138,7 +138,7 @@ void addVectorizeCommand(CLI::App &app) {
     sub->add_flag("--no-segment", command->noSegment, "The whole file is one open cluster");
     sub->add_flag("--polyline", command->polyline,
                   "Join the consecutive lines of a cluster where they cross");
-    command->segment.addTo(*sub);
+    command->segment.addTo(*sub, "defaults 10, 0.05, 0.20, 15");
     command->output.addTo(*sub, true);
     sub->footer(example("hermes-vector vectorize scan.csv --algorithm ftls --sigma 0.02 --polyline"));
     sub->callback([command] { command->run(); });

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-/// A scan of a room of ten walls by a scanner amid it, counter-clockwise, at even steps of the angle, with 1
-/// cm noise of the range: one continuous cluster.
+/// A scan of a room of eleven walls by a scanner amid it, counter-clockwise, at even steps of the angle, with
+/// 1 cm noise of the range: one continuous cluster.
 inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays) {
     using Point = vectorlib::Vector2D<double>;
     // Begins behind the scanner, where the scan begins and ends.

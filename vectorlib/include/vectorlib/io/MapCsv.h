@@ -39,6 +39,9 @@ inline Expected<std::vector<MapSegment>> readMapCsv(std::istream &in, std::strin
         for (const std::size_t column : {5, 6, 10, 12})
             if (r[column] < 0)
                 return csv.errorHere("a negative n, sigma, xx or yy", "numbers from 0");
+        for (const std::size_t column : {1, 2, 3, 4, 8, 9})
+            if (std::abs(r[column]) > 1e6)
+                return csv.errorHere("a coordinate beyond 1000 km", "metres in the map's frame");
         MapSegment m;
         m.id = static_cast<std::int64_t>(r[0]);
         m.segment = {{r[1], r[2]}, {r[3], r[4]}};

@@ -26,23 +26,6 @@ public:
     std::size_t minPoints = 4; ///< lines through fewer points are no edges
     double minLength = 0.10;   ///< shorter lines are no edges; metres
 
-    /// Sets the segmentation for a scanner of `rays` rays over `fieldOfView` (radians, 2 pi for a full turn).
-    /// Up to 0.3 degree between rays the settings of thesis 5.3; beyond, points of one wall lie farther
-    /// apart.
-    void configure(double fieldOfView, std::size_t rays) {
-        EarSettings &s = segment.settings;
-        s = EarSettings();
-        s.fieldOfView = fieldOfView;
-        s.nominalPoints = rays;
-        s.closed = fieldOfView > 1.99 * pi;
-        if (rays > 0 && fieldOfView / static_cast<double>(rays) > 0.3 * pi / 180) {
-            s.neighbours = 5;
-            s.minThreshold = 0.10;
-            s.maxThreshold = 0.60;
-            s.minPoints = 4;
-        }
-    }
-
     /// The edges of a scan (sensor frame, points in order of acquisition), without links to rich edges.
     const std::vector<EdgeRaw2D> &operator()(PointSpan<float> scan) {
         m_edges.clear();

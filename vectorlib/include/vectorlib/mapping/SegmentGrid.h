@@ -2,6 +2,7 @@
 
 #include "vectorlib/geometry/LineSegment2D.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
@@ -56,8 +57,15 @@ public:
     }
 
 private:
-    std::int64_t index(double v) const { return static_cast<std::int64_t>(std::floor(v / m_cell)); }
-    static std::int64_t key(std::int64_t i, std::int64_t j) { return (i << 32) ^ (j & 0xffffffff); }
+    // Cells beyond 10^9 are all one, so that no coordinate overflows; NaN is in cell 0.
+    std::int64_t index(double v) const {
+        const double i = std::floor(v / m_cell);
+        return i == i ? static_cast<std::int64_t>(std::clamp(i, -1e9, 1e9)) : 0;
+    }
+    static std::int64_t key(std::int64_t i, std::int64_t j) {
+        return static_cast<std::int64_t>((static_cast<std::uint64_t>(i) << 32) ^
+                                         (static_cast<std::uint64_t>(j) & 0xffffffffu));
+    }
 
     double m_cell;
     std::unordered_map<std::int64_t, std::vector<int>> m_cells;
