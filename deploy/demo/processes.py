@@ -27,10 +27,12 @@ def free_port(preferred, kind=socket.SOCK_STREAM):
     raise OSError("no free port on 127.0.0.1")
 
 
-def _die_with_parent():
+def _die_with(parent):
     # The children have a session of their own, so that Ctrl-C reaches only this process and it can stop them in order;
-    # should it be killed, the kernel ends them.
+    # should it be killed, the kernel ends them. It may have been killed a moment ago.
     ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    if os.getppid() != parent:
+        os._exit(1)
 
 
 class Process:
@@ -42,9 +44,10 @@ class Process:
         command = [os.path.join(binaries, "hermes-" + name), "--listen", f"tcp://127.0.0.1:{port}?protocol=json"]
         for path, value in settings.items():
             command += ["--set", f"{path}={value}"]
+        parent = os.getpid()
         with open(self.log_name, "w", encoding="utf-8") as log:
             self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-                                            start_new_session=True, preexec_fn=_die_with_parent)
+                                            start_new_session=True, preexec_fn=lambda: _die_with(parent))
 
     def connect(self, limit_s=10.0):
         """A connection to the daemon, as soon as it answers."""
