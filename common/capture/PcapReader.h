@@ -34,16 +34,16 @@ public:
     Next next(Datagram &datagram);
     void close();
 
-    const std::string &path() const { return m_path; }
-    const std::string &error() const { return m_error; }
-    const Counts &counts() const { return m_counts; }
+    const std::string &path() const { return path_; }
+    const std::string &error() const { return error_; }
+    const Counts &counts() const { return counts_; }
 
 private:
-    std::string m_path;
-    std::string m_error;
-    Counts m_counts;
-    int m_linkType = 0;
-    std::unique_ptr<pcap, void (*)(pcap *)> m_pcap;
+    std::string path_;
+    std::string error_;
+    Counts counts_;
+    int linkType_ = 0;
+    std::unique_ptr<pcap, void (*)(pcap *)> pcap_;
 };
 
 } // namespace hermes

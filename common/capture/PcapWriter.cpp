@@ -26,14 +26,14 @@ PcapWriter::~PcapWriter() {
 
 bool PcapWriter::open(const std::string &path, bool overwrite) {
     close();
-    m_path = path;
-    m_error.clear();
-    m_writtenPackets = m_writtenBytes = m_bufferedPackets = 0;
-    m_buffer.clear();
-    m_buffer.reserve(bufferSize + frameHeaderSize + 16 + maximumPayload);
-    m_file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
-    if (m_file < 0) {
-        m_error =
+    path_ = path;
+    error_.clear();
+    writtenPackets_ = writtenBytes_ = bufferedPackets_ = 0;
+    buffer_.clear();
+    buffer_.reserve(bufferSize + frameHeaderSize + 16 + maximumPayload);
+    file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (overwrite ? O_TRUNC : O_EXCL), 0644);
+    if (file_ < 0) {
+        error_ =
             path + ": cannot be created: " + (errno == EEXIST ? "it exists already" : std::strerror(errno));
         return false;
     }
@@ -48,13 +48,13 @@ bool PcapWriter::open(const std::string &path, bool overwrite) {
 
 bool PcapWriter::write(const Datagram &datagram) {
     if (!isOpen()) {
-        if (m_error.empty())
-            m_error = "no capture file is open";
+        if (error_.empty())
+            error_ = "no capture file is open";
         return false;
     }
     if (datagram.size > maximumPayload) {
-        m_error =
-            m_path + ": a datagram of " + std::to_string(datagram.size) + " bytes is larger than UDP allows";
+        error_ =
+            path_ + ": a datagram of " + std::to_string(datagram.size) + " bytes is larger than UDP allows";
         return false;
     }
     const std::uint32_t length = std::uint32_t(frameHeaderSize + datagram.size);
@@ -65,58 +65,58 @@ bool PcapWriter::write(const Datagram &datagram) {
     const auto header = makeFrameHeader(datagram);
     append(header.data(), header.size());
     append(datagram.payload, datagram.size);
-    ++m_bufferedPackets;
-    return m_buffer.size() < bufferSize || flush();
+    ++bufferedPackets_;
+    return buffer_.size() < bufferSize || flush();
 }
 
 bool PcapWriter::flush() {
     if (!isOpen())
-        return m_error.empty();
+        return error_.empty();
     std::size_t done = 0;
-    while (done < m_buffer.size()) {
-        const ssize_t count = ::write(m_file, m_buffer.data() + done, m_buffer.size() - done);
+    while (done < buffer_.size()) {
+        const ssize_t count = ::write(file_, buffer_.data() + done, buffer_.size() - done);
         if (count < 0 && errno == EINTR)
             continue;
         if (count <= 0)
             return fail(count < 0 ? std::strerror(errno) : "nothing was written");
         done += std::size_t(count);
     }
-    m_writtenBytes += m_buffer.size();
-    m_writtenPackets += m_bufferedPackets;
-    m_buffer.clear();
-    m_bufferedPackets = 0;
+    writtenBytes_ += buffer_.size();
+    writtenPackets_ += bufferedPackets_;
+    buffer_.clear();
+    bufferedPackets_ = 0;
     return true;
 }
 
 bool PcapWriter::close() {
     if (!isOpen())
-        return m_error.empty();
+        return error_.empty();
     if (!flush())
         return false;
-    const int result = ::close(m_file);
-    m_file = -1;
+    const int result = ::close(file_);
+    file_ = -1;
     if (result != 0)
-        m_error = m_path + ": cannot be closed: " + std::strerror(errno);
+        error_ = path_ + ": cannot be closed: " + std::strerror(errno);
     return result == 0;
 }
 
 bool PcapWriter::fail(const std::string &what) {
-    m_error = m_path + ": cannot be written after byte " + std::to_string(m_writtenBytes) + ": " + what;
-    if (m_bufferedPackets > 0)
-        m_error += "; " + std::to_string(m_bufferedPackets) + " packets are lost";
+    error_ = path_ + ": cannot be written after byte " + std::to_string(writtenBytes_) + ": " + what;
+    if (bufferedPackets_ > 0)
+        error_ += "; " + std::to_string(bufferedPackets_) + " packets are lost";
     // Part of the buffer may have been written: cut it off, so that the file ends with a whole record.
-    if (::ftruncate(m_file, off_t(m_writtenBytes)) != 0)
-        m_error += "; the file may end in a broken record";
-    ::close(m_file);
-    m_file = -1;
-    m_buffer.clear();
-    m_bufferedPackets = 0;
+    if (::ftruncate(file_, off_t(writtenBytes_)) != 0)
+        error_ += "; the file may end in a broken record";
+    ::close(file_);
+    file_ = -1;
+    buffer_.clear();
+    bufferedPackets_ = 0;
     return false;
 }
 
 void PcapWriter::append(const void *bytes, std::size_t size) {
     const auto *begin = static_cast<const std::uint8_t *>(bytes);
-    m_buffer.insert(m_buffer.end(), begin, begin + size);
+    buffer_.insert(buffer_.end(), begin, begin + size);
 }
 
 void PcapWriter::appendLittleEndian(std::uint32_t value) {

@@ -28,24 +28,24 @@ public:
     /// Flushes and closes. False when something could not be written.
     bool close();
 
-    bool isOpen() const { return m_file >= 0; }
-    const std::string &path() const { return m_path; }
-    const std::string &error() const { return m_error; }
-    std::uint64_t packets() const { return m_writtenPackets + m_bufferedPackets; }
-    std::uint64_t bytes() const { return m_writtenBytes + m_buffer.size(); }
+    bool isOpen() const { return file_ >= 0; }
+    const std::string &path() const { return path_; }
+    const std::string &error() const { return error_; }
+    std::uint64_t packets() const { return writtenPackets_ + bufferedPackets_; }
+    std::uint64_t bytes() const { return writtenBytes_ + buffer_.size(); }
 
 private:
     bool fail(const std::string &what);
     void append(const void *bytes, std::size_t size);
     void appendLittleEndian(std::uint32_t value);
 
-    int m_file = -1;
-    std::string m_path;
-    std::string m_error;
-    std::vector<std::uint8_t> m_buffer;
-    std::uint64_t m_writtenPackets = 0;
-    std::uint64_t m_writtenBytes = 0;
-    std::uint64_t m_bufferedPackets = 0;
+    int file_ = -1;
+    std::string path_;
+    std::string error_;
+    std::vector<std::uint8_t> buffer_;
+    std::uint64_t writtenPackets_ = 0;
+    std::uint64_t writtenBytes_ = 0;
+    std::uint64_t bufferedPackets_ = 0;
 };
 
 } // namespace hermes

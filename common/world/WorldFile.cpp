@@ -31,20 +31,20 @@ public:
     using reference = const char &;
 
     LineCounter(const char *position, int *line)
-        : m_position(position)
-        , m_line(line) {}
-    reference operator*() const { return *m_position; }
+        : position_(position)
+        , line_(line) {}
+    reference operator*() const { return *position_; }
     LineCounter &operator++() {
-        *m_line += *m_position == '\n';
-        ++m_position;
+        *line_ += *position_ == '\n';
+        ++position_;
         return *this;
     }
-    bool operator==(const LineCounter &o) const { return m_position == o.m_position; }
-    bool operator!=(const LineCounter &o) const { return m_position != o.m_position; }
+    bool operator==(const LineCounter &o) const { return position_ == o.position_; }
+    bool operator!=(const LineCounter &o) const { return position_ != o.position_; }
 
 private:
-    const char *m_position;
-    int *m_line;
+    const char *position_;
+    int *line_;
 };
 
 /// The document and the lines in which the rows of its lists end.

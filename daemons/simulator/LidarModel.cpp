@@ -33,9 +33,9 @@ const std::array<Beam, velodyne::lasers> beams = makeBeams();
 
 LidarModel::LidarModel(const std::vector<vectorlib::LineSegment2D<double>> &walls, const Options &options,
                        std::uint64_t seed)
-    : m_walls(walls)
-    , m_options(options)
-    , m_random(seed) {}
+    : walls_(walls)
+    , options_(options)
+    , random_(seed) {}
 
 void LidarModel::fire(const vectorlib::Pose2D &pose, double azimuth, double gap,
                       velodyne::DataPacketWriter &packet, int block) {
@@ -50,20 +50,20 @@ void LidarModel::fire(const vectorlib::Pose2D &pose, double azimuth, double gap,
 }
 
 void LidarModel::selectWalls(Vector position, Vector left, Vector right) {
-    m_inReach.clear();
-    for (const auto &wall : m_walls) {
+    inReach_.clear();
+    for (const auto &wall : walls_) {
         const Vector begin = wall.begin() - position, end = wall.end() - position;
         const bool leftOfAll = left.cross(begin) > 0 && left.cross(end) > 0;
         const bool rightOfAll = right.cross(begin) < 0 && right.cross(end) < 0;
         const bool behind = left.dot(begin) < 0 && left.dot(end) < 0;
         if (!leftOfAll && !rightOfAll && !behind)
-            m_inReach.push_back({begin, end});
+            inReach_.push_back({begin, end});
     }
 }
 
 double LidarModel::wallDistance(Vector direction) const {
     double distance = vectorlib::noHit;
-    for (const Wall &wall : m_inReach)
+    for (const Wall &wall : inReach_)
         distance = std::min(distance, vectorlib::rayDistance(direction, wall.begin, wall.end));
     return distance;
 }
@@ -72,16 +72,16 @@ void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWri
     const Beam &beam = beams[laser];
     double horizontal = wallDistance;
     std::uint8_t intensity = wallIntensity;
-    if (beam.tangent < 0 && m_options.sensorHeight / -beam.tangent < wallDistance) {
-        horizontal = m_options.sensorHeight / -beam.tangent;
+    if (beam.tangent < 0 && options_.sensorHeight / -beam.tangent < wallDistance) {
+        horizontal = options_.sensorHeight / -beam.tangent;
         intensity = floorIntensity;
-    } else if (m_options.sensorHeight + wallDistance * beam.tangent > m_options.wallHeight) {
+    } else if (options_.sensorHeight + wallDistance * beam.tangent > options_.wallHeight) {
         horizontal = vectorlib::noHit;
     }
     double range = horizontal / beam.cosine;
-    if (range <= m_options.maxRange)
-        range += m_options.sigma * m_normal(m_random);
-    const bool returns = range >= m_options.minRange && range <= m_options.maxRange;
+    if (range <= options_.maxRange)
+        range += options_.sigma * normal_(random_);
+    const bool returns = range >= options_.minRange && range <= options_.maxRange;
     packet.setReturn(block, laser, returns ? velodyne::toDistanceCounts(range) : 0, returns ? intensity : 0);
 }
 

@@ -25,8 +25,8 @@ public:
     LidarModel(const std::vector<vectorlib::LineSegment2D<double>> &walls, const Options &options,
                std::uint64_t seed);
 
-    void setSigma(double sigma) { m_options.sigma = sigma; }
-    const Options &options() const { return m_options; }
+    void setSigma(double sigma) { options_.sigma = sigma; }
+    const Options &options() const { return options_; }
 
     /// Measures with all lasers and fills a block. azimuth: of the first laser, degrees clockwise from the
     /// heading; gap: how far the head turns until the next firing, degrees.
@@ -44,11 +44,11 @@ private:
     double wallDistance(Vector direction) const;
     void measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block);
 
-    std::vector<vectorlib::LineSegment2D<double>> m_walls;
-    Options m_options;
-    std::mt19937_64 m_random;
-    std::normal_distribution<double> m_normal;
-    std::vector<Wall> m_inReach; ///< of the current firing
+    std::vector<vectorlib::LineSegment2D<double>> walls_;
+    Options options_;
+    std::mt19937_64 random_;
+    std::normal_distribution<double> normal_;
+    std::vector<Wall> inReach_; ///< of the current firing
 };
 
 } // namespace hermes

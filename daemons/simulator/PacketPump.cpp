@@ -28,7 +28,7 @@ std::int64_t utcNow_ns() {
 } // namespace
 
 PacketPump::PacketPump(TruthSink truth)
-    : m_truth(std::move(truth)) {}
+    : truth_(std::move(truth)) {}
 
 PacketPump::~PacketPump() {
     stop();
@@ -42,42 +42,42 @@ std::string PacketPump::start(const World &world, const Simulation::Options &opt
     address.sin_port = htons(port);
     if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1)
         return host + ": an IPv4 address such as 127.0.0.1 expected";
-    m_socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (m_socket < 0)
+    socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (socket_ < 0)
         return std::string("no UDP socket: ") + std::strerror(errno);
     const int on = 1;
-    ::setsockopt(m_socket, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
+    ::setsockopt(socket_, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
     // Connected, so that the address is not looked up for each packet. A receiver that is not there shows as
     // ECONNREFUSED of a later packet, which step() knows.
-    if (::connect(m_socket, reinterpret_cast<const sockaddr *>(&address), sizeof address) != 0) {
+    if (::connect(socket_, reinterpret_cast<const sockaddr *>(&address), sizeof address) != 0) {
         const std::string error =
             host + ":" + std::to_string(port) + " cannot be sent to: " + std::strerror(errno);
-        ::close(m_socket);
-        m_socket = -1;
+        ::close(socket_);
+        socket_ = -1;
         return error;
     }
-    m_simulation = Simulation(world, options, utcNow_ns());
-    m_random.seed(std::minstd_rand::result_type(options.seed));
-    m_counts = Counts();
-    m_nextTruth_ns = m_simulation.now_ns();
-    m_running = true;
-    m_thread = std::thread([this] { run(); });
+    simulation_ = Simulation(world, options, utcNow_ns());
+    random_.seed(std::minstd_rand::result_type(options.seed));
+    counts_ = Counts();
+    nextTruth_ns_ = simulation_.now_ns();
+    running_ = true;
+    thread_ = std::thread([this] { run(); });
     return {};
 }
 
 void PacketPump::stop() {
-    m_running = false;
-    if (m_thread.joinable())
-        m_thread.join();
-    if (m_socket >= 0)
-        ::close(m_socket);
-    m_socket = -1;
+    running_ = false;
+    if (thread_.joinable())
+        thread_.join();
+    if (socket_ >= 0)
+        ::close(socket_);
+    socket_ = -1;
 }
 
 void PacketPump::run() {
     Clock::time_point due = Clock::now();
     int inARow = 0;
-    while (m_running) {
+    while (running_) {
         const nanoseconds lag = Clock::now() - due;
         if (lag < nanoseconds(0)) {
             std::this_thread::sleep_until(due);
@@ -86,59 +86,59 @@ void PacketPump::run() {
             std::this_thread::sleep_for(catchUpPause);
             inARow = 0;
         }
-        const std::lock_guard<std::mutex> lock(m_mutex);
+        const std::lock_guard<std::mutex> lock(mutex_);
         if (lag > stall) {
             const auto missed = std::uint64_t(lag.count() / velodyne::packetPeriod_ns);
-            m_simulation.skip(missed);
-            m_counts.skipped += missed;
+            simulation_.skip(missed);
+            counts_.skipped += missed;
             due += nanoseconds(std::int64_t(missed) * velodyne::packetPeriod_ns);
         }
         step();
-        m_counts.worstLag_s = std::max(m_counts.worstLag_s, lag.count() * 1e-9);
+        counts_.worstLag_s = std::max(counts_.worstLag_s, lag.count() * 1e-9);
         due += nanoseconds(velodyne::packetPeriod_ns);
     }
 }
 
 void PacketPump::step() {
-    if (m_simulation.now_ns() >= m_nextTruth_ns) {
-        m_truth(m_simulation.truth());
-        m_nextTruth_ns += truthPeriod_ns;
-        if (m_nextTruth_ns <= m_simulation.now_ns()) // after a stall
-            m_nextTruth_ns = m_simulation.now_ns() + truthPeriod_ns;
+    if (simulation_.now_ns() >= nextTruth_ns_) {
+        truth_(simulation_.truth());
+        nextTruth_ns_ += truthPeriod_ns;
+        if (nextTruth_ns_ <= simulation_.now_ns()) // after a stall
+            nextTruth_ns_ = simulation_.now_ns() + truthPeriod_ns;
     }
-    const auto &packet = m_simulation.nextPacket();
-    if (m_fault.swallows(m_random)) {
-        ++m_counts.swallowed;
+    const auto &packet = simulation_.nextPacket();
+    if (fault_.swallows(random_)) {
+        ++counts_.swallowed;
         return;
     }
-    ssize_t size = ::send(m_socket, packet.data(), packet.size(), 0);
+    ssize_t size = ::send(socket_, packet.data(), packet.size(), 0);
     if (size < 0 && errno == ECONNREFUSED) // told of an earlier packet: nobody listens, as with a real sensor
-        size = ::send(m_socket, packet.data(), packet.size(), 0);
+        size = ::send(socket_, packet.data(), packet.size(), 0);
     if (size == ssize_t(packet.size()) || errno == ECONNREFUSED)
-        ++m_counts.sent;
+        ++counts_.sent;
     else
-        ++m_counts.sendErrors;
+        ++counts_.sendErrors;
 }
 
 void PacketPump::with(const std::function<void(Simulation &)> &function) {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    if (m_running)
-        function(m_simulation);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (running_)
+        function(simulation_);
 }
 
 void PacketPump::setFault(const LidarFault &fault) {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    m_fault = fault;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    fault_ = fault;
 }
 
 LidarFault PacketPump::fault() const {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    return m_fault;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return fault_;
 }
 
 PacketPump::Counts PacketPump::counts() const {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    return m_counts;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return counts_;
 }
 
 } // namespace hermes

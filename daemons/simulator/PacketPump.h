@@ -44,17 +44,17 @@ private:
     void run();
     void step();
 
-    TruthSink m_truth;
-    int m_socket = -1;
-    std::thread m_thread;
-    std::atomic<bool> m_running{false};
+    TruthSink truth_;
+    int socket_ = -1;
+    std::thread thread_;
+    std::atomic<bool> running_{false};
 
-    mutable std::mutex m_mutex; // guards what follows
-    Simulation m_simulation;
-    LidarFault m_fault;
-    std::minstd_rand m_random;
-    Counts m_counts;
-    std::int64_t m_nextTruth_ns = 0;
+    mutable std::mutex mutex_; // guards what follows
+    Simulation simulation_;
+    LidarFault fault_;
+    std::minstd_rand random_;
+    Counts counts_;
+    std::int64_t nextTruth_ns_ = 0;
 };
 
 } // namespace hermes

@@ -13,27 +13,27 @@ public:
     PathFollower(PosePath path, double acceleration);
 
     /// Goes on from where it is.
-    void drive() { m_driving = !m_path.isEmpty(); }
+    void drive() { driving_ = !path_.isEmpty(); }
     /// Slows down to a stand.
-    void halt() { m_driving = false; }
+    void halt() { driving_ = false; }
     /// Back to the start, standing.
     void restart();
     void advance(double seconds);
 
-    const PosePath &path() const { return m_path; }
-    double progress() const { return m_progress; } ///< seconds at full speed
-    double rate() const { return m_rate; }         ///< 0 standing, 1 at full speed
-    bool isDriving() const { return m_driving; }
-    bool isFinished() const { return m_progress >= m_path.length(); }
-    vectorlib::Pose2D pose() const { return m_path.poseAt(m_progress); }
-    Twist twist() const { return m_path.twistAt(m_progress, m_rate); }
+    const PosePath &path() const { return path_; }
+    double progress() const { return progress_; } ///< seconds at full speed
+    double rate() const { return rate_; }         ///< 0 standing, 1 at full speed
+    bool isDriving() const { return driving_; }
+    bool isFinished() const { return progress_ >= path_.length(); }
+    vectorlib::Pose2D pose() const { return path_.poseAt(progress_); }
+    Twist twist() const { return path_.twistAt(progress_, rate_); }
 
 private:
-    PosePath m_path;
-    double m_acceleration = 1;
-    double m_progress = 0;
-    double m_rate = 0;
-    bool m_driving = false;
+    PosePath path_;
+    double acceleration_ = 1;
+    double progress_ = 0;
+    double rate_ = 0;
+    bool driving_ = false;
 };
 
 } // namespace hermes

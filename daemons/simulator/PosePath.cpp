@@ -28,7 +28,7 @@ PosePath::PosePath(const std::vector<World::Pose> &poses, double speed, double t
     for (std::size_t i = 1; i < poses.size(); ++i)
         headings.push_back(headings.back() + vectorlib::wrapAngle(poses[i].theta - headings.back()));
 
-    m_samples.push_back({0, poses.front().x, poses.front().y, headings.front()});
+    samples_.push_back({0, poses.front().x, poses.front().y, headings.front()});
     for (std::size_t i = 1; i < poses.size(); ++i) {
         // At the ends of the path the end itself stands in for the missing neighbour.
         const std::size_t before = i < 2 ? i - 1 : i - 2, after = std::min(i + 1, poses.size() - 1);
@@ -37,28 +37,28 @@ PosePath::PosePath(const std::vector<World::Pose> &poses, double speed, double t
             const double t = double(k) / samplesPerSpan;
             Sample sample{0, catmullRom(a.x, b.x, c.x, d.x, t), catmullRom(a.y, b.y, c.y, d.y, t),
                           catmullRom(headings[before], headings[i - 1], headings[i], headings[after], t)};
-            const Sample &last = m_samples.back();
+            const Sample &last = samples_.back();
             const double driving = std::hypot(sample.x - last.x, sample.y - last.y) / speed;
             const double turning = (sample.theta - last.theta) / turnRate;
             const double step = std::hypot(driving, turning);
             if (step <= 0) // the same pose twice
                 continue;
             sample.progress = last.progress + step;
-            m_samples.push_back(sample);
+            samples_.push_back(sample);
         }
     }
 }
 
 const PosePath::Sample &PosePath::sampleBefore(double progress) const {
-    const auto after = std::upper_bound(m_samples.begin() + 1, m_samples.end() - 1, progress,
+    const auto after = std::upper_bound(samples_.begin() + 1, samples_.end() - 1, progress,
                                         [](double p, const Sample &s) { return p < s.progress; });
     return *(after - 1);
 }
 
 vectorlib::Pose2D PosePath::poseAt(double progress) const {
-    if (m_samples.size() < 2)
-        return m_samples.empty() ? vectorlib::Pose2D()
-                                 : vectorlib::Pose2D{m_samples[0].x, m_samples[0].y, m_samples[0].theta};
+    if (samples_.size() < 2)
+        return samples_.empty() ? vectorlib::Pose2D()
+                                : vectorlib::Pose2D{samples_[0].x, samples_[0].y, samples_[0].theta};
     progress = std::clamp(progress, 0.0, length());
     const Sample &a = sampleBefore(progress), &b = *(&a + 1);
     const double t = (progress - a.progress) / (b.progress - a.progress);
@@ -67,7 +67,7 @@ vectorlib::Pose2D PosePath::poseAt(double progress) const {
 }
 
 Twist PosePath::twistAt(double progress, double rate) const {
-    if (m_samples.size() < 2 || rate == 0)
+    if (samples_.size() < 2 || rate == 0)
         return {};
     const Sample &a = sampleBefore(std::clamp(progress, 0.0, length())), &b = *(&a + 1);
     const double scale = rate / (b.progress - a.progress);

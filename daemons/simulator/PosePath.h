@@ -23,9 +23,9 @@ public:
     /// speed: m/s; turnRate: rad/s; both positive. Between two poses the heading turns the shorter way.
     PosePath(const std::vector<World::Pose> &poses, double speed, double turnRate);
 
-    bool isEmpty() const { return m_samples.empty(); }
+    bool isEmpty() const { return samples_.empty(); }
     /// Seconds at full speed from the first pose to the last.
-    double length() const { return m_samples.empty() ? 0 : m_samples.back().progress; }
+    double length() const { return samples_.empty() ? 0 : samples_.back().progress; }
     /// Beyond the ends it stands at them.
     vectorlib::Pose2D poseAt(double progress) const;
     /// While moving along the path at rate (1 is full speed).
@@ -41,7 +41,7 @@ private:
     /// The sample at or before progress; one is always behind it.
     const Sample &sampleBefore(double progress) const;
 
-    std::vector<Sample> m_samples;
+    std::vector<Sample> samples_;
 };
 
 } // namespace hermes

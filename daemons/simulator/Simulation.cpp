@@ -18,57 +18,57 @@ std::vector<vectorlib::LineSegment2D<double>> wallsOf(const World &world) {
 } // namespace
 
 Simulation::Simulation(const World &world, const Options &options, std::int64_t start_ns)
-    : m_follower(PosePath(world.poses, options.speed, options.turnRate), options.acceleration / options.speed)
-    , m_lidar(wallsOf(world), options.lidar, options.seed)
-    , m_gap(options.rpm / 60 * 360 * firingPeriod)
-    , m_start_ns(start_ns) {}
+    : follower_(PosePath(world.poses, options.speed, options.turnRate), options.acceleration / options.speed)
+    , lidar_(wallsOf(world), options.lidar, options.seed)
+    , gap_(options.rpm / 60 * 360 * firingPeriod)
+    , start_ns_(start_ns) {}
 
 bool Simulation::drive() {
-    if (m_placed || m_follower.path().length() <= 0 || m_follower.isFinished())
+    if (placed_ || follower_.path().length() <= 0 || follower_.isFinished())
         return false;
-    m_follower.drive();
+    follower_.drive();
     return true;
 }
 
 void Simulation::restart() {
-    m_placed = false;
-    m_follower.halt();
-    m_follower.restart();
+    placed_ = false;
+    follower_.halt();
+    follower_.restart();
 }
 
 void Simulation::place(const vectorlib::Pose2D &pose) {
     restart();
-    m_placed = true;
-    m_place = pose;
+    placed_ = true;
+    place_ = pose;
 }
 
 const std::array<std::uint8_t, velodyne::packetSize> &Simulation::nextPacket() {
-    m_packet.setTail(std::uint32_t(now_ns() / 1000 % velodyne::stampPeriod_us));
+    packet_.setTail(std::uint32_t(now_ns() / 1000 % velodyne::stampPeriod_us));
     for (int block = 0; block < velodyne::blocksPerPacket; ++block) {
-        const double azimuth = std::fmod(double(m_firings) * m_gap, 360.0);
-        m_packet.setAzimuth(block, std::uint16_t(std::lround(azimuth * 100) % velodyne::azimuthSteps));
-        m_lidar.fire(pose(), azimuth, m_gap, m_packet, block);
-        m_follower.advance(firingPeriod);
-        ++m_firings;
+        const double azimuth = std::fmod(double(firings_) * gap_, 360.0);
+        packet_.setAzimuth(block, std::uint16_t(std::lround(azimuth * 100) % velodyne::azimuthSteps));
+        lidar_.fire(pose(), azimuth, gap_, packet_, block);
+        follower_.advance(firingPeriod);
+        ++firings_;
     }
-    return m_packet.bytes();
+    return packet_.bytes();
 }
 
 void Simulation::skip(std::uint64_t packets) {
     for (std::uint64_t i = 0; i < packets * velodyne::blocksPerPacket; ++i)
-        m_follower.advance(firingPeriod);
-    m_firings += packets * velodyne::blocksPerPacket;
+        follower_.advance(firingPeriod);
+    firings_ += packets * velodyne::blocksPerPacket;
 }
 
 Simulation::Truth Simulation::truth() const {
-    const double length = m_follower.path().length();
+    const double length = follower_.path().length();
     Truth truth;
     truth.stamp_ns = now_ns();
     truth.pose = pose();
-    truth.twist = m_placed ? Twist() : m_follower.twist();
-    truth.progress = !m_placed && length > 0 ? m_follower.progress() / length : 0;
-    truth.driving = m_follower.isDriving() || m_follower.rate() > 0;
-    truth.finished = !m_placed && length > 0 && m_follower.isFinished();
+    truth.twist = placed_ ? Twist() : follower_.twist();
+    truth.progress = !placed_ && length > 0 ? follower_.progress() / length : 0;
+    truth.driving = follower_.isDriving() || follower_.rate() > 0;
+    truth.finished = !placed_ && length > 0 && follower_.isFinished();
     return truth;
 }
 

@@ -33,12 +33,12 @@ public:
 
     /// False when there is no path, or it is at its end.
     bool drive();
-    void halt() { m_follower.halt(); }
+    void halt() { follower_.halt(); }
     /// Back to the first pose of the path, standing.
     void restart();
     /// Puts the robot anywhere, standing; restart() brings it back to its path.
     void place(const vectorlib::Pose2D &pose);
-    void setSigma(double sigma) { m_lidar.setSigma(sigma); }
+    void setSigma(double sigma) { lidar_.setSigma(sigma); }
 
     /// The packet of the next twelve firings, each measured from where the robot is at its own time.
     const std::array<std::uint8_t, velodyne::packetSize> &nextPacket();
@@ -46,22 +46,22 @@ public:
     void skip(std::uint64_t packets);
 
     Truth truth() const;
-    double sigma() const { return m_lidar.options().sigma; }
-    bool isPlaced() const { return m_placed; }
+    double sigma() const { return lidar_.options().sigma; }
+    bool isPlaced() const { return placed_; }
     /// Time of the next firing: of the packet that nextPacket() makes.
-    std::int64_t now_ns() const { return m_start_ns + std::int64_t(m_firings) * velodyne::firingPeriod_ns; }
+    std::int64_t now_ns() const { return start_ns_ + std::int64_t(firings_) * velodyne::firingPeriod_ns; }
 
 private:
-    vectorlib::Pose2D pose() const { return m_placed ? m_place : m_follower.pose(); }
+    vectorlib::Pose2D pose() const { return placed_ ? place_ : follower_.pose(); }
 
-    PathFollower m_follower;
-    LidarModel m_lidar;
-    velodyne::DataPacketWriter m_packet;
-    double m_gap = 0; ///< degrees a firing
-    std::int64_t m_start_ns = 0;
-    std::uint64_t m_firings = 0;
-    bool m_placed = false;
-    vectorlib::Pose2D m_place;
+    PathFollower follower_;
+    LidarModel lidar_;
+    velodyne::DataPacketWriter packet_;
+    double gap_ = 0; ///< degrees a firing
+    std::int64_t start_ns_ = 0;
+    std::uint64_t firings_ = 0;
+    bool placed_ = false;
+    vectorlib::Pose2D place_;
 };
 
 } // namespace hermes

@@ -40,7 +40,7 @@ QString toText(LidarFault::Kind kind) {
 Simulator::Simulator()
     : Daemon({"simulator", "Simulator",
               "A robot in a made-up world, with an HDL-32E that sends true packets over UDP"})
-    , m_pump([this](const Simulation::Truth &truth) {
+    , pump_([this](const Simulation::Truth &truth) {
         QMetaObject::invokeMethod(
             this, [this, truth] { publishTruth(truth); }, Qt::QueuedConnection);
     }) {
@@ -69,9 +69,9 @@ void Simulator::declareCommands() {
                 const Result<void> loaded = load(call.text("world"));
                 if (!loaded)
                     return loaded.error();
-                return QJsonObject{{"name", QString::fromStdString(m_world.name)},
-                                   {"edges", int(m_world.edges.size())},
-                                   {"poses", int(m_world.poses.size())}};
+                return QJsonObject{{"name", QString::fromStdString(world_.name)},
+                                   {"edges", int(world_.edges.size())},
+                                   {"poses", int(world_.poses.size())}};
             }));
     addCommand(Command("sim.state", "World, true pose, progress along the path, packets sent and left out")
                    .returns({{"type", "object"}})
@@ -83,7 +83,7 @@ void Simulator::declareCommands() {
     addCommand(Command("sim.halt", "Slows down to a stand")
                    .returnsNull()
                    .handler([this](const Call &) -> Result<QJsonValue> {
-                       m_pump.with([](Simulation &simulation) { simulation.halt(); });
+                       pump_.with([](Simulation &simulation) { simulation.halt(); });
                        return QJsonValue();
                    }));
     addCommand(Command("sim.place",
@@ -123,7 +123,7 @@ Result<void> Simulator::start() {
 
 void Simulator::settingsChanged(const QStringList &paths) {
     if (paths.contains("lidar.sigma_m"))
-        m_pump.with(
+        pump_.with(
             [this](Simulation &simulation) { simulation.setSigma(settings().number("lidar.sigma_m")); });
 }
 
@@ -132,31 +132,31 @@ Result<void> Simulator::load(const QString &path) {
     const std::optional<World> world = readWorld(path.toStdString(), error);
     if (!world)
         return Error(ErrorCode::InputOutput, QString::fromStdString(error), QJsonObject{{"path", path}});
-    error = m_pump.start(*world, options(), settings().text("lidar.host").toStdString(),
-                         quint16(settings().integer("lidar.port")));
+    error = pump_.start(*world, options(), settings().text("lidar.host").toStdString(),
+                        quint16(settings().integer("lidar.port")));
     if (!error.empty()) {
         setState(DaemonState::Fault);
         return Error(ErrorCode::InputOutput, QString::fromStdString(error));
     }
-    m_world = *world;
-    m_worldPath = path;
+    world_ = *world;
+    worldPath_ = path;
     setState(DaemonState::Running);
     logInfo("simulator", QString("world %1: %2 edges, %3 poses; packets go to %4:%5")
                              .arg(path)
-                             .arg(m_world.edges.size())
-                             .arg(m_world.poses.size())
+                             .arg(world_.edges.size())
+                             .arg(world_.poses.size())
                              .arg(settings().text("lidar.host"))
                              .arg(settings().integer("lidar.port")));
     return {};
 }
 
 Result<QJsonValue> Simulator::drive(bool restart) {
-    if (m_world.poses.size() < 2)
-        return Error(ErrorCode::NotReady, m_worldPath.isEmpty()
+    if (world_.poses.size() < 2)
+        return Error(ErrorCode::NotReady, worldPath_.isEmpty()
                                               ? QString("no world is loaded; sim.load loads one")
-                                              : m_worldPath + " has no path: two poses or more expected");
+                                              : worldPath_ + " has no path: two poses or more expected");
     bool drives = false;
-    m_pump.with([&](Simulation &simulation) {
+    pump_.with([&](Simulation &simulation) {
         if (restart)
             simulation.restart();
         drives = simulation.drive();
@@ -169,18 +169,18 @@ Result<QJsonValue> Simulator::drive(bool restart) {
 }
 
 Result<QJsonValue> Simulator::place(const Call &call) {
-    if (m_worldPath.isEmpty())
+    if (worldPath_.isEmpty())
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
     const vectorlib::Pose2D pose{call.number("x"), call.number("y"),
                                  vectorlib::wrapAngle(call.number("theta"))};
-    m_pump.with([&](Simulation &simulation) { simulation.place(pose); });
+    pump_.with([&](Simulation &simulation) { simulation.place(pose); });
     return QJsonValue();
 }
 
 Result<QJsonValue> Simulator::setNoise(const Call &call) {
-    if (m_worldPath.isEmpty())
+    if (worldPath_.isEmpty())
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
-    m_pump.with([&](Simulation &simulation) { simulation.setSigma(call.number("sigma_m")); });
+    pump_.with([&](Simulation &simulation) { simulation.setSigma(call.number("sigma_m")); });
     return QJsonValue();
 }
 
@@ -191,7 +191,7 @@ Result<QJsonValue> Simulator::setFault(const Call &call) {
         fault.kind = LidarFault::Kind::Silence;
     if (kind == "loss")
         fault = {LidarFault::Kind::Loss, call.number("share")};
-    m_pump.setFault(fault);
+    pump_.setFault(fault);
     logInfo("simulator", "fault of the lidar: " + kind);
     return QJsonValue();
 }
@@ -200,15 +200,15 @@ QJsonObject Simulator::state() {
     Simulation::Truth truth;
     double sigma = 0;
     bool placed = false;
-    m_pump.with([&](Simulation &simulation) {
+    pump_.with([&](Simulation &simulation) {
         truth = simulation.truth();
         sigma = simulation.sigma();
         placed = simulation.isPlaced();
     });
-    const PacketPump::Counts counts = m_pump.counts();
-    const LidarFault fault = m_pump.fault();
+    const PacketPump::Counts counts = pump_.counts();
+    const LidarFault fault = pump_.fault();
     return {
-        {"world", m_worldPath},
+        {"world", worldPath_},
         {"stamp", double(truth.stamp_ns) * 1e-9},
         {"pose", QJsonObject{{"x", truth.pose.x}, {"y", truth.pose.y}, {"theta", truth.pose.theta}}},
         {"twist", QJsonObject{{"vx", truth.twist.vx}, {"vy", truth.twist.vy}, {"omega", truth.twist.omega}}},
@@ -231,13 +231,13 @@ void Simulator::publishTruth(const Simulation::Truth &truth) {
 }
 
 void Simulator::updateHealth() {
-    const PacketPump::Counts counts = m_pump.counts();
-    const LidarFault fault = m_pump.fault();
+    const PacketPump::Counts counts = pump_.counts();
+    const LidarFault fault = pump_.fault();
     const QJsonObject values{{"packets", double(counts.sent)},
                              {"swallowed", double(counts.swallowed)},
                              {"skipped", double(counts.skipped)},
                              {"send_errors", double(counts.sendErrors)}};
-    if (m_worldPath.isEmpty())
+    if (worldPath_.isEmpty())
         health().set(healthItem, HealthLevel::Ok, "no world is loaded; nothing is sent", values);
     else if (counts.sendErrors > 0 || counts.skipped > 0)
         health().set(healthItem, HealthLevel::Warn, "packets could not be sent, or not in time", values);

@@ -12,7 +12,7 @@ public:
 
 protected:
     Result<void> start() override;
-    void stop() override { m_pump.stop(); }
+    void stop() override { pump_.stop(); }
     void settingsChanged(const QStringList &paths) override;
 
 private:
@@ -31,9 +31,9 @@ private:
     void publishTruth(const Simulation::Truth &truth);
     void updateHealth();
 
-    PacketPump m_pump;
-    World m_world;
-    QString m_worldPath;
+    PacketPump pump_;
+    World world_;
+    QString worldPath_;
 };
 
 } // namespace hermes

@@ -3,17 +3,17 @@
 namespace hermes {
 
 LidarFeed::LidarFeed(Recorder &recorder, Notify turnReady)
-    : m_recorder(recorder)
-    , m_turnReady(std::move(turnReady))
-    , m_receiver([this](const Datagram &datagram) { handle(datagram); })
-    , m_player([this](const Datagram &datagram) { handle(datagram); },
-               [this](const std::string &error) {
-                   {
-                       const std::lock_guard<std::mutex> lock(m_decoderMutex);
-                       m_assembler->finish();
-                   }
-                   m_ended(error);
-               }) {}
+    : recorder_(recorder)
+    , turnReady_(std::move(turnReady))
+    , receiver_([this](const Datagram &datagram) { handle(datagram); })
+    , player_([this](const Datagram &datagram) { handle(datagram); },
+              [this](const std::string &error) {
+                  {
+                      const std::lock_guard<std::mutex> lock(decoderMutex_);
+                      assembler_->finish();
+                  }
+                  ended_(error);
+              }) {}
 
 LidarFeed::~LidarFeed() {
     close();
@@ -22,123 +22,123 @@ LidarFeed::~LidarFeed() {
 std::string LidarFeed::openLive(const std::string &address, std::uint16_t port, int bufferBytes,
                                 const Options &options) {
     close();
-    m_lossless = false;
+    lossless_ = false;
     begin(options);
-    return m_receiver.start(address, port, bufferBytes);
+    return receiver_.start(address, port, bufferBytes);
 }
 
 std::string LidarFeed::openPcap(const std::string &path, double speed, const Options &options, Ended ended) {
     close();
-    m_ended = std::move(ended);
-    m_lossless = speed == 0;
+    ended_ = std::move(ended);
+    lossless_ = speed == 0;
     begin(options);
-    return m_player.start(path, speed);
+    return player_.start(path, speed);
 }
 
 void LidarFeed::begin(const Options &options) {
-    const std::lock_guard<std::mutex> lock(m_decoderMutex);
-    m_options = options;
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    options_ = options;
     velodyne::TurnAssembler::Options ring;
     ring.laser = options.laser;
     ring.returns = options.returns;
     ring.stampOffset_ns = options.stampOffset_ns;
-    m_assembler = std::make_unique<velodyne::TurnAssembler>(
+    assembler_ = std::make_unique<velodyne::TurnAssembler>(
         ring, [this](const velodyne::Turn &turn) { enqueue(turn); });
-    m_counts = Counts();
-    const std::lock_guard<std::mutex> queueLock(m_queueMutex);
-    m_closing = false;
+    counts_ = Counts();
+    const std::lock_guard<std::mutex> queueLock(queueMutex_);
+    closing_ = false;
 }
 
 void LidarFeed::close() {
     {
-        const std::lock_guard<std::mutex> lock(m_queueMutex);
-        m_closing = true; // a player that waits for room must end
+        const std::lock_guard<std::mutex> lock(queueMutex_);
+        closing_ = true; // a player that waits for room must end
     }
-    m_taken.notify_all();
-    m_receiver.stop();
-    m_player.stop();
-    const std::lock_guard<std::mutex> lock(m_decoderMutex);
-    if (m_assembler)
-        m_assembler->finish();
-    m_cloudAssembler.reset();
+    taken_.notify_all();
+    receiver_.stop();
+    player_.stop();
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    if (assembler_)
+        assembler_->finish();
+    cloudAssembler_.reset();
 }
 
 void LidarFeed::handle(const Datagram &datagram) {
-    m_recorder.push(datagram, m_lossless);
-    if (m_lossless) { // before the decoder is locked, so that counts() answers meanwhile
-        std::unique_lock<std::mutex> lock(m_queueMutex);
-        m_taken.wait(lock, [this] { return m_turns.size() < turnCapacity || m_closing; });
+    recorder_.push(datagram, lossless_);
+    if (lossless_) { // before the decoder is locked, so that counts() answers meanwhile
+        std::unique_lock<std::mutex> lock(queueMutex_);
+        taken_.wait(lock, [this] { return turns_.size() < turnCapacity || closing_; });
     }
-    const std::lock_guard<std::mutex> lock(m_decoderMutex);
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
     decode(datagram);
 }
 
 void LidarFeed::decode(const Datagram &datagram) {
     if (datagram.size == velodyne::positionPacketSize) {
-        ++m_counts.position;
+        ++counts_.position;
         return;
     }
-    if (datagram.size != velodyne::packetSize && datagram.destinationPort != m_options.dataPort) {
-        ++m_counts.other;
+    if (datagram.size != velodyne::packetSize && datagram.destinationPort != options_.dataPort) {
+        ++counts_.other;
         return;
     }
-    m_assembler->feed(datagram.payload, datagram.size, datagram.stamp_ns);
-    if (m_cloudAssembler)
-        m_cloudAssembler->feed(datagram.payload, datagram.size, datagram.stamp_ns);
-    if (m_cloudAssembler && !m_cloudSink) // delivered
-        m_cloudAssembler.reset();
+    assembler_->feed(datagram.payload, datagram.size, datagram.stamp_ns);
+    if (cloudAssembler_)
+        cloudAssembler_->feed(datagram.payload, datagram.size, datagram.stamp_ns);
+    if (cloudAssembler_ && !cloudSink_) // delivered
+        cloudAssembler_.reset();
 }
 
 void LidarFeed::enqueue(const velodyne::Turn &turn) {
-    ++m_counts.turns;
+    ++counts_.turns;
     auto copy = std::make_shared<velodyne::Turn>(turn);
     {
-        const std::lock_guard<std::mutex> lock(m_queueMutex);
-        if (m_turns.size() >= turnCapacity && !m_lossless) {
-            ++m_counts.turnsDropped;
+        const std::lock_guard<std::mutex> lock(queueMutex_);
+        if (turns_.size() >= turnCapacity && !lossless_) {
+            ++counts_.turnsDropped;
             return;
         }
-        m_turns.push_back(std::move(copy));
+        turns_.push_back(std::move(copy));
     }
-    m_turnReady();
+    turnReady_();
 }
 
 LidarFeed::Turn LidarFeed::takeTurn() {
     Turn turn;
     {
-        const std::lock_guard<std::mutex> lock(m_queueMutex);
-        if (m_turns.empty())
+        const std::lock_guard<std::mutex> lock(queueMutex_);
+        if (turns_.empty())
             return turn;
-        turn = std::move(m_turns.front());
-        m_turns.pop_front();
+        turn = std::move(turns_.front());
+        turns_.pop_front();
     }
-    m_taken.notify_all();
+    taken_.notify_all();
     return turn;
 }
 
 void LidarFeed::captureCloud(std::function<void(const velodyne::Turn &)> function) {
-    const std::lock_guard<std::mutex> lock(m_decoderMutex);
-    m_cloudSink = std::move(function);
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    cloudSink_ = std::move(function);
     velodyne::TurnAssembler::Options all;
     all.laser = velodyne::PacketDecoder::allLasers;
-    all.returns = m_options.returns;
-    all.stampOffset_ns = m_options.stampOffset_ns;
-    m_cloudAssembler = std::make_unique<velodyne::TurnAssembler>(all, [this](const velodyne::Turn &turn) {
-        if (turn.partial || !m_cloudSink)
+    all.returns = options_.returns;
+    all.stampOffset_ns = options_.stampOffset_ns;
+    cloudAssembler_ = std::make_unique<velodyne::TurnAssembler>(all, [this](const velodyne::Turn &turn) {
+        if (turn.partial || !cloudSink_)
             return;
-        m_cloudSink(turn);
-        m_cloudSink = nullptr;
+        cloudSink_(turn);
+        cloudSink_ = nullptr;
     });
 }
 
 LidarFeed::Counts LidarFeed::counts() const {
-    const std::lock_guard<std::mutex> lock(m_decoderMutex);
-    Counts counts = m_counts;
-    if (m_assembler) {
-        counts.packets = m_assembler->counts();
-        counts.rpm = m_assembler->rpm();
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    Counts counts = counts_;
+    if (assembler_) {
+        counts.packets = assembler_->counts();
+        counts.rpm = assembler_->rpm();
     }
-    counts.udp = m_receiver.counts();
+    counts.udp = receiver_.counts();
     return counts;
 }
 

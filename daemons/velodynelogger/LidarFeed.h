@@ -50,8 +50,8 @@ public:
     /// The next complete turn of all lasers goes to the function, in another thread.
     void captureCloud(std::function<void(const velodyne::Turn &)> function);
     Counts counts() const;
-    std::uint16_t port() const { return m_receiver.port(); } ///< of live reception
-    std::string receiveError() const { return m_receiver.error(); }
+    std::uint16_t port() const { return receiver_.port(); } ///< of live reception
+    std::string receiveError() const { return receiver_.error(); }
 
 private:
     void begin(const Options &options);
@@ -61,25 +61,25 @@ private:
 
     static constexpr std::size_t turnCapacity = 16; // over a second
 
-    Recorder &m_recorder;
-    Notify m_turnReady;
-    Ended m_ended;           ///< set before the player starts
-    bool m_lossless = false; ///< the source waits rather than lose; set before it starts
+    Recorder &recorder_;
+    Notify turnReady_;
+    Ended ended_;           ///< set before the player starts
+    bool lossless_ = false; ///< the source waits rather than lose; set before it starts
 
-    mutable std::mutex m_decoderMutex; // guards what follows
-    Options m_options;
-    std::unique_ptr<velodyne::TurnAssembler> m_assembler;
-    std::unique_ptr<velodyne::TurnAssembler> m_cloudAssembler;
-    std::function<void(const velodyne::Turn &)> m_cloudSink;
-    Counts m_counts;
+    mutable std::mutex decoderMutex_; // guards what follows
+    Options options_;
+    std::unique_ptr<velodyne::TurnAssembler> assembler_;
+    std::unique_ptr<velodyne::TurnAssembler> cloudAssembler_;
+    std::function<void(const velodyne::Turn &)> cloudSink_;
+    Counts counts_;
 
-    std::mutex m_queueMutex; // guards what follows
-    std::condition_variable m_taken;
-    std::deque<Turn> m_turns;
-    bool m_closing = false;
+    std::mutex queueMutex_; // guards what follows
+    std::condition_variable taken_;
+    std::deque<Turn> turns_;
+    bool closing_ = false;
 
-    UdpReceiver m_receiver; // last: their threads end before what they use
-    PcapPlayer m_player;
+    UdpReceiver receiver_; // last: their threads end before what they use
+    PcapPlayer player_;
 };
 
 } // namespace hermes

@@ -84,8 +84,8 @@ void VelodyneLogger::declareSourceCommands() {
     addCommand(Command("source.close", "Stops receiving or replaying")
                    .returnsNull()
                    .handler([this](const Call &) -> Result<QJsonValue> {
-                       ++m_generation;
-                       m_feed.close();
+                       ++generation_;
+                       feed_.close();
                        publishTurns();
                        opened(Source::None, {}, 1);
                        updateHealth();
@@ -120,18 +120,18 @@ void VelodyneLogger::declareRecordCommands() {
     addCommand(
         Command("record.list", "The recordings in the folder, the latest first: name, bytes, modified (s)")
             .returns({{"type", "array"}})
-            .handler([this](const Call &) -> Result<QJsonValue> { return m_folder.list(); }));
+            .handler([this](const Call &) -> Result<QJsonValue> { return folder_.list(); }));
 }
 
 Result<QJsonValue> VelodyneLogger::startRecording(const QString &name) {
-    if (m_recorder.isRecording())
+    if (recorder_.isRecording())
         return Error(ErrorCode::NotReady, "already recording to " +
-                                              QString::fromStdString(m_recorder.status().path) +
+                                              QString::fromStdString(recorder_.status().path) +
                                               "; record.stop ends it");
-    const Result<QString> path = m_folder.newFile(name, "pcap");
+    const Result<QString> path = folder_.newFile(name, "pcap");
     if (!path)
         return path.error();
-    const std::string error = m_recorder.start(path->toStdString());
+    const std::string error = recorder_.start(path->toStdString());
     if (!error.empty())
         return diskError(QString::fromStdString(error), *path);
     logInfo("recording", "recording to " + *path);
@@ -140,10 +140,10 @@ Result<QJsonValue> VelodyneLogger::startRecording(const QString &name) {
 }
 
 Result<QJsonValue> VelodyneLogger::stopRecording() {
-    const QString path = QString::fromStdString(m_recorder.status().path);
-    if (!m_recorder.isRecording() && m_recorder.status().error.empty())
+    const QString path = QString::fromStdString(recorder_.status().path);
+    if (!recorder_.isRecording() && recorder_.status().error.empty())
         return Error(ErrorCode::NotReady, "nothing is being recorded; record.start begins");
-    const std::string error = m_recorder.stop();
+    const std::string error = recorder_.stop();
     updateHealth();
     if (!error.empty())
         return diskError(QString::fromStdString(error), path);

@@ -18,18 +18,18 @@ QString VelodyneLogger::toText(Source source) {
 }
 
 QJsonObject VelodyneLogger::sourceState() const {
-    QJsonObject state{{"state", toText(m_source)}, {"name", m_sourceName}, {"speed", m_speed}};
-    if (!m_sourceError.isEmpty())
-        state.insert("error", m_sourceError);
+    QJsonObject state{{"state", toText(source_)}, {"name", sourceName_}, {"speed", speed_}};
+    if (!sourceError_.isEmpty())
+        state.insert("error", sourceError_);
     return state;
 }
 
 QJsonObject VelodyneLogger::lidarState() {
-    const LidarFeed::Counts counts = m_feed.counts();
+    const LidarFeed::Counts counts = feed_.counts();
     const velodyne::PacketCounts &packets = counts.packets;
     return {{"source", sourceState()},
             {"rpm", counts.rpm},
-            {"packet_rate_hz", m_packetRate},
+            {"packet_rate_hz", packetRate_},
             {"packets", double(packets.packets)},
             {"turns", double(counts.turns)},
             {"lost", double(packets.lost)},
@@ -48,7 +48,7 @@ QJsonObject VelodyneLogger::lidarState() {
 }
 
 QJsonObject VelodyneLogger::recordStatus() const {
-    const Recorder::Status status = m_recorder.status();
+    const Recorder::Status status = recorder_.status();
     QJsonObject state{{"recording", status.recording},
                       {"path", QString::fromStdString(status.path)},
                       {"packets", double(status.packets)},
@@ -64,7 +64,7 @@ QJsonObject VelodyneLogger::recordStatus() const {
 }
 
 void VelodyneLogger::updateHealth() {
-    updateSourceHealth(m_feed.counts());
+    updateSourceHealth(feed_.counts());
     updateRecordHealth();
 }
 
@@ -75,7 +75,7 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     const std::uint64_t lost =
         packets.lost + packets.outOfOrder + counts.udp.kernelDrops + counts.turnsDropped;
     const QJsonObject values{{"packets", double(packets.packets)},
-                             {"packet_rate_hz", m_packetRate},
+                             {"packet_rate_hz", packetRate_},
                              {"rpm", counts.rpm},
                              {"lost", double(packets.lost)},
                              {"out_of_order", double(packets.outOfOrder)},
@@ -85,16 +85,16 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     const auto set = [&](HealthLevel level, const QString &message) {
         health().set("lidar", level, message, values);
     };
-    const std::string receiveError = m_feed.receiveError();
-    if (m_source == Source::None)
+    const std::string receiveError = feed_.receiveError();
+    if (source_ == Source::None)
         set(HealthLevel::Warn, "no source is open; source.open opens one");
-    else if (!receiveError.empty() || !m_sourceError.isEmpty())
-        set(HealthLevel::Failed, receiveError.empty() ? m_sourceError : QString::fromStdString(receiveError));
-    else if (m_source == Source::Ended)
-        set(HealthLevel::Ok, m_sourceName + " has been played to its end");
-    else if (m_source == Source::Live && m_sincePacket.elapsed() > 3000)
+    else if (!receiveError.empty() || !sourceError_.isEmpty())
+        set(HealthLevel::Failed, receiveError.empty() ? sourceError_ : QString::fromStdString(receiveError));
+    else if (source_ == Source::Ended)
+        set(HealthLevel::Ok, sourceName_ + " has been played to its end");
+    else if (source_ == Source::Live && sincePacket_.elapsed() > 3000)
         set(HealthLevel::Stale,
-            QString("no packet on %1 for %2 s").arg(m_sourceName).arg(m_sincePacket.elapsed() / 1000));
+            QString("no packet on %1 for %2 s").arg(sourceName_).arg(sincePacket_.elapsed() / 1000));
     else if (packets.otherModel > 0)
         set(HealthLevel::Warn, velodyne::describe(velodyne::PacketFault::Model));
     else if (wrong > 0)
@@ -102,11 +102,11 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     else if (lost > 0)
         set(HealthLevel::Warn, "packets or turns were lost");
     else
-        set(HealthLevel::Ok, "packets come from " + m_sourceName);
+        set(HealthLevel::Ok, "packets come from " + sourceName_);
 }
 
 void VelodyneLogger::updateRecordHealth() {
-    const Recorder::Status status = m_recorder.status();
+    const Recorder::Status status = recorder_.status();
     const QJsonObject values = recordStatus();
     if (!status.error.empty())
         health().set("recording", HealthLevel::Failed, QString::fromStdString(status.error), values);

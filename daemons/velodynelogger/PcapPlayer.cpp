@@ -3,8 +3,8 @@
 namespace hermes {
 
 PcapPlayer::PcapPlayer(Sink sink, End end)
-    : m_sink(std::move(sink))
-    , m_end(std::move(end)) {}
+    : sink_(std::move(sink))
+    , end_(std::move(end)) {}
 
 PcapPlayer::~PcapPlayer() {
     stop();
@@ -12,29 +12,29 @@ PcapPlayer::~PcapPlayer() {
 
 std::string PcapPlayer::start(const std::string &path, double speed) {
     stop();
-    if (!m_reader.open(path))
-        return m_reader.error();
-    m_speed = speed;
-    m_stopping = false;
-    m_played = 0;
-    m_thread = std::thread([this] { run(); });
+    if (!reader_.open(path))
+        return reader_.error();
+    speed_ = speed;
+    stopping_ = false;
+    played_ = 0;
+    thread_ = std::thread([this] { run(); });
     return {};
 }
 
 void PcapPlayer::stop() {
     {
-        const std::lock_guard<std::mutex> lock(m_mutex);
-        m_stopping = true;
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stopping_ = true;
     }
-    m_wake.notify_all();
-    if (m_thread.joinable())
-        m_thread.join();
-    m_reader.close();
+    wake_.notify_all();
+    if (thread_.joinable())
+        thread_.join();
+    reader_.close();
 }
 
 std::uint64_t PcapPlayer::played() const {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    return m_played;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return played_;
 }
 
 void PcapPlayer::run() {
@@ -44,26 +44,26 @@ void PcapPlayer::run() {
     Datagram datagram;
     PcapReader::Next next;
     bool started = false;
-    while ((next = m_reader.next(datagram)) == PcapReader::Next::Datagram) {
+    while ((next = reader_.next(datagram)) == PcapReader::Next::Datagram) {
         if (!started) {
             first_ns = datagram.stamp_ns;
             started = true;
         }
         const auto since = std::chrono::nanoseconds(
-            m_speed > 0 ? std::int64_t(double(datagram.stamp_ns - first_ns) / m_speed) : 0);
+            speed_ > 0 ? std::int64_t(double(datagram.stamp_ns - first_ns) / speed_) : 0);
         if (!waitUntil(begin + since))
             return;
-        m_sink(datagram);
+        sink_(datagram);
     }
     if (waitUntil(begin))
-        m_end(next == PcapReader::Next::Failed ? m_reader.error() : std::string());
+        end_(next == PcapReader::Next::Failed ? reader_.error() : std::string());
 }
 
 bool PcapPlayer::waitUntil(std::chrono::steady_clock::time_point due) {
-    std::unique_lock<std::mutex> lock(m_mutex);
-    m_wake.wait_until(lock, due, [this] { return m_stopping; });
-    m_played += m_stopping ? 0 : 1;
-    return !m_stopping;
+    std::unique_lock<std::mutex> lock(mutex_);
+    wake_.wait_until(lock, due, [this] { return stopping_; });
+    played_ += stopping_ ? 0 : 1;
+    return !stopping_;
 }
 
 } // namespace hermes

@@ -26,22 +26,22 @@ public:
     std::string start(const std::string &path, double speed);
     void stop();
 
-    bool isRunning() const { return m_thread.joinable(); }
+    bool isRunning() const { return thread_.joinable(); }
     std::uint64_t played() const;
 
 private:
     void run();
     bool waitUntil(std::chrono::steady_clock::time_point due);
 
-    Sink m_sink;
-    End m_end;
-    PcapReader m_reader; ///< of the thread while it runs
-    double m_speed = 1;
-    std::thread m_thread;
-    mutable std::mutex m_mutex; // guards what follows
-    std::condition_variable m_wake;
-    bool m_stopping = false;
-    std::uint64_t m_played = 0;
+    Sink sink_;
+    End end_;
+    PcapReader reader_; ///< of the thread while it runs
+    double speed_ = 1;
+    std::thread thread_;
+    mutable std::mutex mutex_; // guards what follows
+    std::condition_variable wake_;
+    bool stopping_ = false;
+    std::uint64_t played_ = 0;
 };
 
 } // namespace hermes

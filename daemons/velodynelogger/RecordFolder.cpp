@@ -15,9 +15,9 @@ Result<QString> RecordFolder::newFile(const QString &name, const QString &suffix
         return Error(ErrorCode::InvalidParams,
                      QString("name: found \"%1\", expected the name of a file without a path").arg(name),
                      QJsonObject{{"name", "the name of a file without a path, not beginning with a dot"}});
-    const QDir folder(m_path);
+    const QDir folder(path_);
     if (!folder.mkpath("."))
-        return diskError(m_path + ": the folder for recordings cannot be made", m_path);
+        return diskError(path_ + ": the folder for recordings cannot be made", path_);
     const QString path = folder.absoluteFilePath(name.endsWith('.' + suffix) ? name : name + '.' + suffix);
     if (QFileInfo::exists(path))
         return diskError(path + ": it exists already; recordings are not overwritten", path);
@@ -26,7 +26,7 @@ Result<QString> RecordFolder::newFile(const QString &name, const QString &suffix
 
 QJsonArray RecordFolder::list() const {
     QJsonArray files;
-    for (const QFileInfo &file : QDir(m_path).entryInfoList({"*.pcap"}, QDir::Files, QDir::Time))
+    for (const QFileInfo &file : QDir(path_).entryInfoList({"*.pcap"}, QDir::Files, QDir::Time))
         files.append(QJsonObject{{"name", file.completeBaseName()},
                                  {"bytes", double(file.size())},
                                  {"modified", double(file.lastModified().toMSecsSinceEpoch()) * 1e-3}});

@@ -10,8 +10,8 @@ namespace hermes {
 /// The folder of the settings in which recordings and captured turns are kept.
 class RecordFolder {
 public:
-    void setPath(const QString &path) { m_path = path; }
-    const QString &path() const { return m_path; }
+    void setPath(const QString &path) { path_ = path; }
+    const QString &path() const { return path_; }
 
     /// The path of a new file NAME.SUFFIX; makes the folder where it is missing. Refuses names that lead out
     /// of the folder (InvalidParams) and files that exist (InputOutput, data.path).
@@ -20,7 +20,7 @@ public:
     QJsonArray list() const;
 
 private:
-    QString m_path;
+    QString path_;
 };
 
 /// An error of the disk: InputOutput with data.path.

@@ -18,7 +18,7 @@ void Recorder::Batch::clear() {
 }
 
 Recorder::Recorder(std::size_t capacity)
-    : m_capacity(capacity) {}
+    : capacity_(capacity) {}
 
 Recorder::~Recorder() {
     stop();
@@ -26,58 +26,58 @@ Recorder::~Recorder() {
 
 std::string Recorder::start(const std::string &path) {
     stop();
-    if (!m_writer.open(path))
-        return m_writer.error();
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    m_status = Status();
-    m_status.recording = true;
-    m_status.path = path;
-    m_status.bytes = m_writer.bytes();
-    m_stopping = false;
-    m_queue.clear();
-    m_accepted = 0;
-    m_thread = std::thread([this] { run(); });
+    if (!writer_.open(path))
+        return writer_.error();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_ = Status();
+    status_.recording = true;
+    status_.path = path;
+    status_.bytes = writer_.bytes();
+    stopping_ = false;
+    queue_.clear();
+    accepted_ = 0;
+    thread_ = std::thread([this] { run(); });
     return {};
 }
 
 std::string Recorder::stop() {
     {
-        const std::lock_guard<std::mutex> lock(m_mutex);
-        m_stopping = true;
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stopping_ = true;
     }
-    m_filled.notify_all();
-    m_emptied.notify_all();
-    if (m_thread.joinable())
-        m_thread.join();
+    filled_.notify_all();
+    emptied_.notify_all();
+    if (thread_.joinable())
+        thread_.join();
     return status().error;
 }
 
 void Recorder::push(const Datagram &datagram, bool wait) {
-    std::unique_lock<std::mutex> lock(m_mutex);
-    const auto fits = [&] { return m_queue.bytes.size() + datagram.size <= m_capacity; };
+    std::unique_lock<std::mutex> lock(mutex_);
+    const auto fits = [&] { return queue_.bytes.size() + datagram.size <= capacity_; };
     if (wait)
-        m_emptied.wait(lock, [&] { return fits() || !m_status.recording || m_stopping; });
-    if (!m_status.recording || m_stopping)
+        emptied_.wait(lock, [&] { return fits() || !status_.recording || stopping_; });
+    if (!status_.recording || stopping_)
         return;
     if (!fits()) {
-        ++m_status.dropped;
+        ++status_.dropped;
         return;
     }
-    m_queue.datagrams.push_back(datagram);
-    m_queue.bytes.insert(m_queue.bytes.end(), datagram.payload, datagram.payload + datagram.size);
-    ++m_accepted;
-    if (m_queue.bytes.size() >= collectBytes)
-        m_filled.notify_one();
+    queue_.datagrams.push_back(datagram);
+    queue_.bytes.insert(queue_.bytes.end(), datagram.payload, datagram.payload + datagram.size);
+    ++accepted_;
+    if (queue_.bytes.size() >= collectBytes)
+        filled_.notify_one();
 }
 
 bool Recorder::isRecording() const {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    return m_status.recording;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return status_.recording;
 }
 
 Recorder::Status Recorder::status() const {
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    return m_status;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return status_;
 }
 
 void Recorder::run() {
@@ -87,32 +87,32 @@ void Recorder::run() {
     bool stopping = false;
     while (writing && !stopping) {
         {
-            std::unique_lock<std::mutex> lock(m_mutex);
-            m_filled.wait_for(lock, collectPeriod,
-                              [this] { return m_stopping || m_queue.bytes.size() >= collectBytes; });
-            stopping = m_stopping;
-            std::swap(batch, m_queue);
+            std::unique_lock<std::mutex> lock(mutex_);
+            filled_.wait_for(lock, collectPeriod,
+                             [this] { return stopping_ || queue_.bytes.size() >= collectBytes; });
+            stopping = stopping_;
+            std::swap(batch, queue_);
         }
-        m_emptied.notify_all();
+        emptied_.notify_all();
         writing = write(batch);
         if (writing && std::chrono::steady_clock::now() >= nextFlush) {
-            writing = m_writer.flush();
+            writing = writer_.flush();
             nextFlush = std::chrono::steady_clock::now() + flushPeriod;
         }
-        const std::lock_guard<std::mutex> lock(m_mutex);
-        m_status.packets = m_writer.packets();
-        m_status.bytes = m_writer.bytes();
+        const std::lock_guard<std::mutex> lock(mutex_);
+        status_.packets = writer_.packets();
+        status_.bytes = writer_.bytes();
         batch.clear();
     }
-    const bool closed = m_writer.close();
-    const std::lock_guard<std::mutex> lock(m_mutex);
-    m_status.recording = false;
-    m_status.bytes = m_writer.bytes();
-    m_status.packets = m_writer.packets();
-    m_status.dropped += m_accepted - m_writer.packets();
+    const bool closed = writer_.close();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.recording = false;
+    status_.bytes = writer_.bytes();
+    status_.packets = writer_.packets();
+    status_.dropped += accepted_ - writer_.packets();
     if (!closed)
-        m_status.error = m_writer.error();
-    m_emptied.notify_all();
+        status_.error = writer_.error();
+    emptied_.notify_all();
 }
 
 bool Recorder::write(const Batch &batch) {
@@ -120,7 +120,7 @@ bool Recorder::write(const Batch &batch) {
     for (Datagram datagram : batch.datagrams) {
         datagram.payload = batch.bytes.data() + offset;
         offset += datagram.size;
-        if (!m_writer.write(datagram))
+        if (!writer_.write(datagram))
             return false;
     }
     return true;

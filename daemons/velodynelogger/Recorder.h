@@ -44,16 +44,16 @@ private:
     void run();
     bool write(const Batch &batch);
 
-    const std::size_t m_capacity;
-    std::thread m_thread;
-    PcapWriter m_writer;        ///< of the thread while it runs
-    mutable std::mutex m_mutex; // guards what follows
-    std::condition_variable m_filled;
-    std::condition_variable m_emptied;
-    bool m_stopping = false;
-    Batch m_queue;
-    std::uint64_t m_accepted = 0; ///< of this recording
-    Status m_status;
+    const std::size_t capacity_;
+    std::thread thread_;
+    PcapWriter writer_;        ///< of the thread while it runs
+    mutable std::mutex mutex_; // guards what follows
+    std::condition_variable filled_;
+    std::condition_variable emptied_;
+    bool stopping_ = false;
+    Batch queue_;
+    std::uint64_t accepted_ = 0; ///< of this recording
+    Status status_;
 };
 
 } // namespace hermes

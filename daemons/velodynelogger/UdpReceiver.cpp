@@ -76,7 +76,7 @@ struct Annotations {
 } // namespace
 
 UdpReceiver::UdpReceiver(Sink sink)
-    : m_sink(std::move(sink)) {}
+    : sink_(std::move(sink)) {}
 
 UdpReceiver::~UdpReceiver() {
     stop();
@@ -84,24 +84,24 @@ UdpReceiver::~UdpReceiver() {
 
 std::string UdpReceiver::start(const std::string &address, std::uint16_t port, int bufferBytes) {
     stop();
-    m_failed = false;
-    m_received = m_kernelDrops = m_tooLong = 0;
+    failed_ = false;
+    received_ = kernelDrops_ = tooLong_ = 0;
     sockaddr_in local{};
     local.sin_family = AF_INET;
     local.sin_port = htons(port);
     if (inet_pton(AF_INET, address.c_str(), &local.sin_addr) != 1)
         return address + ": a local IPv4 address such as 0.0.0.0 expected";
-    m_socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    m_wake = ::eventfd(0, EFD_CLOEXEC);
-    if (m_socket < 0 || m_wake < 0)
+    socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    wake_ = ::eventfd(0, EFD_CLOEXEC);
+    if (socket_ < 0 || wake_ < 0)
         return fail("no UDP socket");
     setOptions(bufferBytes);
-    if (::bind(m_socket, reinterpret_cast<const sockaddr *>(&local), sizeof local) != 0)
+    if (::bind(socket_, reinterpret_cast<const sockaddr *>(&local), sizeof local) != 0)
         return fail("UDP port " + std::to_string(port) + " of " + address + " cannot be opened");
     socklen_t size = sizeof local;
-    ::getsockname(m_socket, reinterpret_cast<sockaddr *>(&local), &size);
-    m_port = ntohs(local.sin_port);
-    m_thread = std::thread([this] { run(); });
+    ::getsockname(socket_, reinterpret_cast<sockaddr *>(&local), &size);
+    port_ = ntohs(local.sin_port);
+    thread_ = std::thread([this] { run(); });
     return {};
 }
 
@@ -113,25 +113,25 @@ std::string UdpReceiver::fail(const std::string &what) {
 
 void UdpReceiver::setOptions(int bufferBytes) {
     // The first needs a privilege and goes beyond the limit of the system, the second does not.
-    if (::setsockopt(m_socket, SOL_SOCKET, SO_RCVBUFFORCE, &bufferBytes, sizeof bufferBytes) != 0)
-        ::setsockopt(m_socket, SOL_SOCKET, SO_RCVBUF, &bufferBytes, sizeof bufferBytes);
-    socklen_t size = sizeof m_bufferBytes;
-    ::getsockopt(m_socket, SOL_SOCKET, SO_RCVBUF, &m_bufferBytes, &size);
+    if (::setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &bufferBytes, sizeof bufferBytes) != 0)
+        ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &bufferBytes, sizeof bufferBytes);
+    socklen_t size = sizeof bufferBytes_;
+    ::getsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &bufferBytes_, &size);
     const int on = 1;
-    ::setsockopt(m_socket, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
-    ::setsockopt(m_socket, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-    ::setsockopt(m_socket, IPPROTO_IP, IP_PKTINFO, &on, sizeof on);
+    ::setsockopt(socket_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+    ::setsockopt(socket_, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+    ::setsockopt(socket_, IPPROTO_IP, IP_PKTINFO, &on, sizeof on);
 }
 
 void UdpReceiver::stop() {
-    if (m_thread.joinable()) {
+    if (thread_.joinable()) {
         const std::uint64_t one = 1;
-        if (::write(m_wake, &one, sizeof one) == sizeof one)
-            m_thread.join();
+        if (::write(wake_, &one, sizeof one) == sizeof one)
+            thread_.join();
         else
             std::abort(); // an eventfd that was never written to cannot be full
     }
-    for (int *descriptor : {&m_socket, &m_wake}) {
+    for (int *descriptor : {&socket_, &wake_}) {
         if (*descriptor >= 0)
             ::close(*descriptor);
         *descriptor = -1;
@@ -139,7 +139,7 @@ void UdpReceiver::stop() {
 }
 
 void UdpReceiver::run() {
-    pollfd waits[2] = {{m_socket, POLLIN, 0}, {m_wake, POLLIN, 0}};
+    pollfd waits[2] = {{socket_, POLLIN, 0}, {wake_, POLLIN, 0}};
     for (;;) {
         if (::poll(waits, 2, -1) < 0 && errno != EINTR)
             break;
@@ -148,22 +148,22 @@ void UdpReceiver::run() {
         if (receiveBatch() < 0 && errno != EINTR && errno != EAGAIN)
             break;
     }
-    m_error = "receiving on UDP port " + std::to_string(m_port) + " failed: " + std::strerror(errno);
-    m_failed = true;
+    error_ = "receiving on UDP port " + std::to_string(port_) + " failed: " + std::strerror(errno);
+    failed_ = true;
 }
 
 int UdpReceiver::receiveBatch() {
     thread_local Batch batch;
     batch.prepare();
-    const int count = ::recvmmsg(m_socket, batch.headers, batchSize, MSG_DONTWAIT, nullptr);
+    const int count = ::recvmmsg(socket_, batch.headers, batchSize, MSG_DONTWAIT, nullptr);
     for (int i = 0; i < count; ++i) {
         msghdr &header = batch.headers[i].msg_hdr;
         const Annotations annotations(header);
         if (annotations.hasDrops)
-            m_kernelDrops = annotations.drops;
-        ++m_received;
+            kernelDrops_ = annotations.drops;
+        ++received_;
         if (header.msg_flags & MSG_TRUNC) {
-            ++m_tooLong;
+            ++tooLong_;
             continue;
         }
         Datagram datagram;
@@ -171,16 +171,16 @@ int UdpReceiver::receiveBatch() {
         datagram.source = ntohl(batch.sources[i].sin_addr.s_addr);
         datagram.sourcePort = ntohs(batch.sources[i].sin_port);
         datagram.destination = annotations.destination;
-        datagram.destinationPort = m_port;
+        datagram.destinationPort = port_;
         datagram.payload = batch.payloads[i];
         datagram.size = batch.headers[i].msg_len;
-        m_sink(datagram);
+        sink_(datagram);
     }
     return count;
 }
 
 UdpReceiver::Counts UdpReceiver::counts() const {
-    return {m_received, m_kernelDrops, m_tooLong, m_bufferBytes};
+    return {received_, kernelDrops_, tooLong_, bufferBytes_};
 }
 
 } // namespace hermes

@@ -30,11 +30,11 @@ public:
     std::string start(const std::string &address, std::uint16_t port, int bufferBytes);
     void stop();
 
-    bool isRunning() const { return m_thread.joinable(); }
-    std::uint16_t port() const { return m_port; } ///< the one bound
+    bool isRunning() const { return thread_.joinable(); }
+    std::uint16_t port() const { return port_; } ///< the one bound
     Counts counts() const;
     /// Why receiving ended by itself, or an empty string.
-    std::string error() const { return m_failed ? m_error : std::string(); }
+    std::string error() const { return failed_ ? error_ : std::string(); }
 
 private:
     std::string fail(const std::string &what);
@@ -42,17 +42,17 @@ private:
     void run();
     int receiveBatch();
 
-    Sink m_sink;
-    int m_socket = -1;
-    int m_wake = -1; ///< an eventfd that ends the wait
-    std::uint16_t m_port = 0;
-    std::thread m_thread;
-    std::atomic<bool> m_failed{false};
-    std::string m_error; ///< set before m_failed
-    std::atomic<std::uint64_t> m_received{0};
-    std::atomic<std::uint64_t> m_kernelDrops{0};
-    std::atomic<std::uint64_t> m_tooLong{0};
-    int m_bufferBytes = 0;
+    Sink sink_;
+    int socket_ = -1;
+    int wake_ = -1; ///< an eventfd that ends the wait
+    std::uint16_t port_ = 0;
+    std::thread thread_;
+    std::atomic<bool> failed_{false};
+    std::string error_; ///< set before failed_
+    std::atomic<std::uint64_t> received_{0};
+    std::atomic<std::uint64_t> kernelDrops_{0};
+    std::atomic<std::uint64_t> tooLong_{0};
+    int bufferBytes_ = 0;
 };
 
 } // namespace hermes

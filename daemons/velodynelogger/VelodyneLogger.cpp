@@ -19,7 +19,7 @@ VelodyneLogger::VelodyneLogger()
     : Daemon({"velodynelogger", "Velodyne logger",
               "Receives an HDL-32E or replays a capture of one, publishes its horizontal ring as scans, "
               "records pcap"})
-    , m_feed(m_recorder, [this] {
+    , feed_(recorder_, [this] {
         QMetaObject::invokeMethod(
             this, [this] { publishTurns(); }, Qt::QueuedConnection);
     }) {
@@ -27,14 +27,14 @@ VelodyneLogger::VelodyneLogger()
     declareTopics();
     declareSourceCommands();
     declareRecordCommands();
-    connect(&m_second, &QTimer::timeout, this, &VelodyneLogger::tick);
-    m_retry.setSingleShot(true);
-    connect(&m_retry, &QTimer::timeout, this, &VelodyneLogger::publishTurns);
+    connect(&second_, &QTimer::timeout, this, &VelodyneLogger::tick);
+    retry_.setSingleShot(true);
+    connect(&retry_, &QTimer::timeout, this, &VelodyneLogger::publishTurns);
 }
 
 Result<void> VelodyneLogger::start() {
-    m_folder.setPath(settings().text("record.folder"));
-    m_second.start(1000);
+    folder_.setPath(settings().text("record.folder"));
+    second_.start(1000);
     const QString pcap = settings().text("source.pcap");
     const Result<void> result =
         pcap.isEmpty() ? openLive() : openPcap(pcap, settings().number("source.speed"));
@@ -43,10 +43,10 @@ Result<void> VelodyneLogger::start() {
 }
 
 void VelodyneLogger::stop() {
-    m_second.stop();
-    m_retry.stop();
-    m_feed.close();
-    m_recorder.stop();
+    second_.stop();
+    retry_.stop();
+    feed_.close();
+    recorder_.stop();
 }
 
 LidarFeed::Options VelodyneLogger::options() {
@@ -65,9 +65,9 @@ Result<void> VelodyneLogger::openLive() {
     const QString address = settings().text("source.address");
     const int port = settings().integer("source.port");
     const QString name = QString("udp://%1:%2").arg(address).arg(port);
-    ++m_generation;
-    const std::string error = m_feed.openLive(address.toStdString(), quint16(port),
-                                              settings().integer("source.receive_buffer_bytes"), options());
+    ++generation_;
+    const std::string error = feed_.openLive(address.toStdString(), quint16(port),
+                                             settings().integer("source.receive_buffer_bytes"), options());
     if (!error.empty()) {
         opened(Source::None, {}, 1);
         return diskError(QString::fromStdString(error), name);
@@ -80,17 +80,17 @@ Result<void> VelodyneLogger::openPcap(const QString &path, double speed) {
     PcapReader probe; // a wrong name does not close what is open
     if (!probe.open(path.toStdString()))
         return diskError(QString::fromStdString(probe.error()), path);
-    ++m_generation;
-    const auto ended = [this, generation = m_generation](const std::string &failure) {
+    ++generation_;
+    const auto ended = [this, generation = generation_](const std::string &failure) {
         const auto tell = [this, generation, failure] {
-            if (generation != m_generation) // a source that was closed meanwhile
+            if (generation != generation_) // a source that was closed meanwhile
                 return;
-            m_replayEnd = QString::fromStdString(failure);
+            replayEnd_ = QString::fromStdString(failure);
             publishTurns();
         };
         QMetaObject::invokeMethod(this, tell, Qt::QueuedConnection);
     };
-    const std::string error = m_feed.openPcap(path.toStdString(), speed, options(), ended);
+    const std::string error = feed_.openPcap(path.toStdString(), speed, options(), ended);
     if (!error.empty()) {
         opened(Source::None, {}, 1);
         return diskError(QString::fromStdString(error), path);
@@ -100,16 +100,16 @@ Result<void> VelodyneLogger::openPcap(const QString &path, double speed) {
 }
 
 void VelodyneLogger::opened(Source source, const QString &name, double speed) {
-    m_source = source;
-    m_sourceName = name;
-    m_speed = speed;
-    m_sourceError.clear();
-    m_replayEnd.reset();
-    m_sincePublished.start();
-    m_packetsAtTick = 0;
-    m_packetRate = 0;
-    m_sincePacket.start();
-    m_sinceTick.start();
+    source_ = source;
+    sourceName_ = name;
+    speed_ = speed;
+    sourceError_.clear();
+    replayEnd_.reset();
+    sincePublished_.start();
+    packetsAtTick_ = 0;
+    packetRate_ = 0;
+    sincePacket_.start();
+    sinceTick_.start();
     setState(source == Source::None ? DaemonState::Ready : DaemonState::Running);
     if (source != Source::None)
         logInfo("source", "packets come from " + name);
@@ -128,11 +128,11 @@ Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
 }
 
 void VelodyneLogger::replayEnded(QString error) {
-    m_source = Source::Ended;
-    m_sourceError = error;
-    m_replayEnd.reset();
+    source_ = Source::Ended;
+    sourceError_ = error;
+    replayEnd_.reset();
     if (error.isEmpty())
-        logInfo("source", m_sourceName + " has been played to its end");
+        logInfo("source", sourceName_ + " has been played to its end");
     else
         logError("source", error);
     setState(DaemonState::Ready);
@@ -141,13 +141,13 @@ void VelodyneLogger::replayEnded(QString error) {
 }
 
 void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
-    const Result<QString> path = m_folder.newFile(call.text("name"), "csv");
-    if (!path || (m_source != Source::Live && m_source != Source::Replay)) {
+    const Result<QString> path = folder_.newFile(call.text("name"), "csv");
+    if (!path || (source_ != Source::Live && source_ != Source::Replay)) {
         reply.error(path ? Error(ErrorCode::NotReady, "no source is open; source.open opens one")
                          : path.error());
         return;
     }
-    m_feed.captureCloud([path = *path, reply](const velodyne::Turn &turn) {
+    feed_.captureCloud([path = *path, reply](const velodyne::Turn &turn) {
         // Not here, where receiving would wait for the disk.
         QThreadPool::globalInstance()->start(QRunnable::create([path, reply, copy = turn] {
             QFile file(path);
@@ -168,31 +168,31 @@ void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
 void VelodyneLogger::publishTurns() {
     const int laser = settings().integer("decode.laser");
     // A replay without loss waits for readers who are behind, but not for one that reads no more.
-    const bool patient = m_source == Source::Replay && m_speed == 0;
+    const bool patient = source_ == Source::Replay && speed_ == 0;
     for (;;) {
-        if (patient && !hasRoom("scan2d") && m_sincePublished.elapsed() < patience_ms) {
-            m_retry.start(retry_ms);
+        if (patient && !hasRoom("scan2d") && sincePublished_.elapsed() < patience_ms) {
+            retry_.start(retry_ms);
             return;
         }
-        const LidarFeed::Turn turn = m_feed.takeTurn();
+        const LidarFeed::Turn turn = feed_.takeTurn();
         if (!turn)
             break;
-        m_sincePublished.start();
+        sincePublished_.start();
         if (hasSubscribers("scan2d"))
             publish("scan2d", toScanMessage(*turn, laser), double(turn->begin_ns) * 1e-9);
     }
-    if (m_replayEnd)
-        replayEnded(*m_replayEnd);
+    if (replayEnd_)
+        replayEnded(*replayEnd_);
 }
 
 void VelodyneLogger::tick() {
-    const std::uint64_t packets = m_feed.counts().packets.packets;
-    if (packets != m_packetsAtTick)
-        m_sincePacket.start();
-    m_packetRate =
-        double(packets - m_packetsAtTick) * 1e9 / double(std::max<qint64>(1, m_sinceTick.nsecsElapsed()));
-    m_sinceTick.start();
-    m_packetsAtTick = packets;
+    const std::uint64_t packets = feed_.counts().packets.packets;
+    if (packets != packetsAtTick_)
+        sincePacket_.start();
+    packetRate_ =
+        double(packets - packetsAtTick_) * 1e9 / double(std::max<qint64>(1, sinceTick_.nsecsElapsed()));
+    sinceTick_.start();
+    packetsAtTick_ = packets;
     updateHealth();
     publish("lidar", lidarState());
 }

@@ -48,24 +48,24 @@ private:
     void updateSourceHealth(const LidarFeed::Counts &counts);
     void updateRecordHealth();
 
-    Source m_source = Source::None;
-    QString m_sourceName; ///< "udp://ADDRESS:PORT" or a path
-    double m_speed = 1;
-    QString m_sourceError;
-    quint64 m_generation =
+    Source source_ = Source::None;
+    QString sourceName_; ///< "udp://ADDRESS:PORT" or a path
+    double speed_ = 1;
+    QString sourceError_;
+    quint64 generation_ =
         0; ///< counts sources, so that the end of an old one is not taken for that of the new
 
-    Recorder m_recorder;
-    RecordFolder m_folder;
-    LidarFeed m_feed;
-    QTimer m_second;
-    QTimer m_retry; ///< of publishing what a reader had no room for
-    QElapsedTimer m_sincePublished;
-    std::optional<QString> m_replayEnd; ///< the replay is at its end; what waits is yet to be published
-    QElapsedTimer m_sincePacket;        ///< since the last second in which one came
-    QElapsedTimer m_sinceTick;
-    std::uint64_t m_packetsAtTick = 0;
-    double m_packetRate = 0; ///< a second
+    Recorder recorder_;
+    RecordFolder folder_;
+    LidarFeed feed_;
+    QTimer second_;
+    QTimer retry_; ///< of publishing what a reader had no room for
+    QElapsedTimer sincePublished_;
+    std::optional<QString> replayEnd_; ///< the replay is at its end; what waits is yet to be published
+    QElapsedTimer sincePacket_;        ///< since the last second in which one came
+    QElapsedTimer sinceTick_;
+    std::uint64_t packetsAtTick_ = 0;
+    double packetRate_ = 0; ///< a second
 };
 
 } // namespace hermes

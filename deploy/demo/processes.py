@@ -56,27 +56,28 @@ class Process:
             if self.process.poll() is not None:
                 raise RuntimeError(f"hermes-{self.name} ended with status {self.process.returncode}:\n{self.last_words()}")
             try:
-                return Daemon(port=self.port, timeout=30)
+                daemon = Daemon(port=self.port, timeout=30)
+                if daemon.call("daemon.info")["pid"] == self.process.pid:
+                    return daemon
+                daemon.close()  # somebody else has taken the port meanwhile; ours says so and ends
             except OSError as error:
-                if time.monotonic() > deadline:
-                    raise RuntimeError(f"hermes-{self.name} does not answer on port {self.port}: {error}") from error
-                time.sleep(0.02)
+                reason = error
+            else:
+                reason = "another program answers there"
+            if time.monotonic() > deadline:
+                raise RuntimeError(f"hermes-{self.name} does not answer on port {self.port}: {reason}")
+            time.sleep(0.02)
 
     def last_words(self):
         with open(self.log_name, encoding="utf-8", errors="replace") as log:
             return "".join(log.readlines()[-5:]).rstrip()
 
     def stop(self):
-        """Asks the daemon to end, then makes it; gives its exit status."""
-        if self.process.poll() is None:
+        """Asks the daemon to end in order, then makes it; gives its exit status."""
+        for ask in (self.process.terminate, self.process.kill):
+            ask()
             try:
-                with Daemon(port=self.port, timeout=2) as daemon:
-                    daemon.call("daemon.shutdown")
-            except OSError:
-                self.process.terminate()
-        for ask in (self.process.terminate, self.process.kill, lambda: None):
-            try:
-                return self.process.wait(3)
+                return self.process.wait(5)
             except subprocess.TimeoutExpired:
-                ask()
+                continue
         return self.process.wait()

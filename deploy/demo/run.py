@@ -80,8 +80,7 @@ class Demo:
         # A few scans more, taken standing still, then the end of the stream.
         seen = len(poses.messages)
         self.wait(lambda: len(poses.messages) >= seen + 5, "the last scans")
-        self.recording = self.logger.call("record.stop")
-        self.logger_state = self.logger.call("daemon.status")
+        self.recording = {**self.logger.call("record.stop"), "path": "recording.pcap"}  # where it will be
         self.matcher.call("matcher.stop")
         self.wait(lambda: self.matcher.call("matcher.state")["waiting"] == 0, "the matcher")
         if sys.stderr.isatty():

@@ -22,30 +22,30 @@ namespace fs = std::filesystem;
 class Input::Buffer : public std::streambuf {
 public:
     explicit Buffer(int file)
-        : m_file(gzdopen(file, "rb")) {
-        if (m_file == nullptr)
+        : file_(gzdopen(file, "rb")) {
+        if (file_ == nullptr)
             throw std::bad_alloc();
-        gzbuffer(m_file, 1 << 17);
+        gzbuffer(file_, 1 << 17);
     }
-    ~Buffer() override { gzclose(m_file); }
+    ~Buffer() override { gzclose(file_); }
     Buffer(const Buffer &) = delete;
     Buffer &operator=(const Buffer &) = delete;
 
 protected:
     int_type underflow() override {
-        const int count = gzread(m_file, m_block.data(), unsigned(m_block.size()));
+        const int count = gzread(file_, block_.data(), unsigned(block_.size()));
         int code = Z_OK;
-        gzerror(m_file, &code);
+        gzerror(file_, &code);
         // A stream that throws here is bad, and its readers say so: compressed data damaged or cut short.
         if (count < 0 || (count == 0 && code != Z_OK && code != Z_STREAM_END))
             throw Failure("damaged data");
-        setg(m_block.data(), m_block.data(), m_block.data() + count);
-        return count == 0 ? traits_type::eof() : traits_type::to_int_type(m_block[0]);
+        setg(block_.data(), block_.data(), block_.data() + count);
+        return count == 0 ? traits_type::eof() : traits_type::to_int_type(block_[0]);
     }
 
 private:
-    gzFile m_file;
-    std::array<char, 1 << 16> m_block;
+    gzFile file_;
+    std::array<char, 1 << 16> block_;
 };
 
 namespace {
@@ -80,24 +80,24 @@ bool isCompressed(const std::string &path) {
 } // namespace
 
 Input::Input(const std::string &path)
-    : m_name(path == "-" ? "standard input" : path)
-    , m_buffer(std::make_unique<Buffer>(openForReading(path)))
-    , m_stream(m_buffer.get()) {}
+    : name_(path == "-" ? "standard input" : path)
+    , buffer_(std::make_unique<Buffer>(openForReading(path)))
+    , stream_(buffer_.get()) {}
 
 Input::~Input() = default;
 
 std::string Input::readAll(std::size_t limit) {
     std::string text;
     std::array<char, 1 << 16> block;
-    while (m_stream.read(block.data(), block.size()) || m_stream.gcount() > 0) {
-        text.append(block.data(), static_cast<std::size_t>(m_stream.gcount()));
+    while (stream_.read(block.data(), block.size()) || stream_.gcount() > 0) {
+        text.append(block.data(), static_cast<std::size_t>(stream_.gcount()));
         if (text.size() > limit)
-            throw Failure(m_name + ": found over " + std::to_string(limit) +
+            throw Failure(name_ + ": found over " + std::to_string(limit) +
                           " bytes, expected a smaller file");
     }
-    if (m_stream.bad())
+    if (stream_.bad())
         throw Failure(
-            m_name +
+            name_ +
             ": found input that ends or breaks off too early, expected input that can be read to its end");
     return text;
 }
@@ -127,8 +127,8 @@ bool isCapture(const std::string &path) {
 }
 
 PlainFile::PlainFile(const std::string &path)
-    : m_original(path)
-    , m_path(path) {
+    : original_(path)
+    , path_(path) {
     if (path == "-")
         return;
     Input input(path);
@@ -139,8 +139,8 @@ PlainFile::PlainFile(const std::string &path)
     if (file < 0)
         throw Failure(name + ": cannot be made: " + std::strerror(errno));
     close(file);
-    m_path = name;
-    m_temporary = true;
+    path_ = name;
+    temporary_ = true;
     std::ofstream out(name, std::ios::binary);
     std::array<char, 1 << 16> block;
     while (out && (input.stream().read(block.data(), block.size()) || input.stream().gcount() > 0))
@@ -154,14 +154,14 @@ PlainFile::PlainFile(const std::string &path)
 }
 
 std::string PlainFile::inWordsOfOriginal(std::string message) const {
-    const std::size_t at = m_temporary ? message.find(m_path) : std::string::npos;
-    return at == std::string::npos ? message : message.replace(at, m_path.size(), m_original);
+    const std::size_t at = temporary_ ? message.find(path_) : std::string::npos;
+    return at == std::string::npos ? message : message.replace(at, path_.size(), original_);
 }
 
 PlainFile::~PlainFile() {
     std::error_code ignored;
-    if (m_temporary)
-        fs::remove(m_path, ignored);
+    if (temporary_)
+        fs::remove(path_, ignored);
 }
 
 } // namespace hermes

@@ -15,17 +15,17 @@ public:
     explicit Input(const std::string &path);
     ~Input();
 
-    std::istream &stream() { return m_stream; }
+    std::istream &stream() { return stream_; }
     /// How messages call it.
-    const std::string &name() const { return m_name; }
+    const std::string &name() const { return name_; }
     /// Everything that is left, as one text; throws Failure over `limit` bytes.
     std::string readAll(std::size_t limit = std::size_t(256) << 20);
 
 private:
     class Buffer;
-    std::string m_name;
-    std::unique_ptr<Buffer> m_buffer;
-    std::istream m_stream;
+    std::string name_;
+    std::unique_ptr<Buffer> buffer_;
+    std::istream stream_;
 };
 
 /// Whether the path ends with the extension (with dot, lower case), a further .gz left aside; case does not
@@ -44,14 +44,14 @@ public:
     PlainFile(const PlainFile &) = delete;
     PlainFile &operator=(const PlainFile &) = delete;
 
-    const std::string &path() const { return m_path; }
+    const std::string &path() const { return path_; }
     /// A reader's message about the copy, with the name of the file it was made from.
     std::string inWordsOfOriginal(std::string message) const;
 
 private:
-    std::string m_original;
-    std::string m_path;
-    bool m_temporary = false;
+    std::string original_;
+    std::string path_;
+    bool temporary_ = false;
 };
 
 } // namespace hermes

@@ -23,28 +23,28 @@ bool MapFile::isKnown(const std::string &path) {
 }
 
 MapFile::MapFile(OutputSet &files, const std::string &path)
-    : m_path(path)
-    , m_out(&files.open(path)) {
+    : path_(path)
+    , out_(&files.open(path)) {
     if (hasExtension(path, ".pgm"))
-        m_yaml = &files.open(std::filesystem::path(path).replace_extension(".yaml").string());
+        yaml_ = &files.open(std::filesystem::path(path).replace_extension(".yaml").string());
 }
 
 void MapFile::write(const vectorlib::MapDrawing &map) {
-    if (hasExtension(m_path, ".csv")) {
-        vectorlib::writeMapCsv(*m_out, map.segments);
-    } else if (hasExtension(m_path, ".geojson")) {
-        vectorlib::writeGeoJson(*m_out, map.segments);
-    } else if (hasExtension(m_path, ".dxf")) {
-        vectorlib::writeDxf(*m_out, map.segments);
-    } else if (hasExtension(m_path, ".svg")) {
-        drawMap(*m_out, map);
+    if (hasExtension(path_, ".csv")) {
+        vectorlib::writeMapCsv(*out_, map.segments);
+    } else if (hasExtension(path_, ".geojson")) {
+        vectorlib::writeGeoJson(*out_, map.segments);
+    } else if (hasExtension(path_, ".dxf")) {
+        vectorlib::writeDxf(*out_, map.segments);
+    } else if (hasExtension(path_, ".svg")) {
+        drawMap(*out_, map);
     } else {
         const auto picture = vectorlib::OccupancyPicture::draw(map.segments, map.trajectory);
         if (!picture)
-            throw Failure(m_path + ": found a map too large to draw, expected at most " +
+            throw Failure(path_ + ": found a map too large to draw, expected at most " +
                           std::to_string(vectorlib::OccupancyPicture::maxCells) + " cells of 5 cm");
-        picture->writePgm(*m_out);
-        picture->writeYaml(*m_yaml, std::filesystem::path(m_path).filename().string());
+        picture->writePgm(*out_);
+        picture->writeYaml(*yaml_, std::filesystem::path(path_).filename().string());
     }
 }
 

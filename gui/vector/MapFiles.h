@@ -18,9 +18,9 @@ public:
     void write(const vectorlib::MapDrawing &map);
 
 private:
-    std::string m_path;
-    std::ostream *m_out;
-    std::ostream *m_yaml = nullptr;
+    std::string path_;
+    std::ostream *out_;
+    std::ostream *yaml_ = nullptr;
 };
 
 } // namespace hermes

@@ -18,44 +18,44 @@ void MapRun::take(const MapScan &scan) {
     Pose2D pose = expected;
     ScanReport::Outcome outcome = ScanReport::Outcome::Skipped;
     if (!scan.partial) {
-        m_points = scan.points;
+        points_ = scan.points;
         builder.find.settings = isWellExpected(scan, stamp)
                                     ? vectorlib::CorrespondenceSettings()
                                     : vectorlib::CorrespondenceSettings::forPoorExpectation();
-        compensateMotion(m_points, scan.seconds, middle, m_motion.twist());
-        const ScanReport &report = builder.process(m_points, expected);
+        compensateMotion(points_, scan.seconds, middle, motion_.twist());
+        const ScanReport &report = builder.process(points_, expected);
         pose = report.pose;
         outcome = report.outcome;
-        m_segmentMs += report.segmentMs;
-        m_vectorizeMs += report.vectorizeMs;
-        m_matchMs += report.matchMs;
-        m_mapMs += report.mapMs;
+        segmentMs_ += report.segmentMs;
+        vectorizeMs_ += report.vectorizeMs;
+        matchMs_ += report.matchMs;
+        mapMs_ += report.mapMs;
     }
-    ++(outcome == ScanReport::Outcome::Matched ? m_matched
-       : outcome == ScanReport::Outcome::Lost  ? m_lost
-                                               : m_skipped);
-    m_motion.update(pose, stamp);
-    m_trajectory.push_back({stamp, pose});
+    ++(outcome == ScanReport::Outcome::Matched ? matched_
+       : outcome == ScanReport::Outcome::Lost  ? lost_
+                                               : skipped_);
+    motion_.update(pose, stamp);
+    trajectory_.push_back({stamp, pose});
     if (scan.reference)
-        m_reference.push_back({stamp, *scan.reference});
+        reference_.push_back({stamp, *scan.reference});
 }
 
 // By odometry, or because the last scan was a moment ago.
 bool MapRun::isWellExpected(const MapScan &scan, double stamp) const {
     constexpr double moment = 0.5; // seconds
-    if (m_trajectory.empty() || (useOdometry && scan.motion))
+    if (trajectory_.empty() || (useOdometry && scan.motion))
         return true;
-    const double since = stamp - m_trajectory.back().stamp;
+    const double since = stamp - trajectory_.back().stamp;
     return since > 0 && since <= moment;
 }
 
 // A reference gives the map its frame, by the first pose, and nothing else.
 Pose2D MapRun::expectedPose(const MapScan &scan, double stamp) const {
-    if (m_trajectory.empty())
+    if (trajectory_.empty())
         return scan.reference ? *scan.reference : Pose2D();
     if (useOdometry && scan.motion)
-        return (Transformation2D(m_trajectory.back().pose) * *scan.motion).pose();
-    return m_motion.predict(stamp);
+        return (Transformation2D(trajectory_.back().pose) * *scan.motion).pose();
+    return motion_.predict(stamp);
 }
 
 std::vector<vectorlib::MapSegment> MapRun::segments() const {
@@ -73,18 +73,18 @@ std::vector<vectorlib::MapSegment> MapRun::segments() const {
 }
 
 nlohmann::ordered_json MapRun::summary() const {
-    const double scans = std::max<double>(1, double(m_trajectory.size()));
+    const double scans = std::max<double>(1, double(trajectory_.size()));
     nlohmann::ordered_json json;
-    json["scans"] = m_trajectory.size();
-    json["skipped"] = m_skipped;
-    json["matched"] = m_matched;
-    json["lost"] = m_lost;
+    json["scans"] = trajectory_.size();
+    json["skipped"] = skipped_;
+    json["matched"] = matched_;
+    json["lost"] = lost_;
     json["closures"] = 0;
-    json["ms_per_scan"] = {{"segment", m_segmentMs / scans},
-                           {"vectorize", m_vectorizeMs / scans},
-                           {"match", m_matchMs / scans},
-                           {"map", m_mapMs / scans}};
-    if (m_reference.size() > 1)
+    json["ms_per_scan"] = {{"segment", segmentMs_ / scans},
+                           {"vectorize", vectorizeMs_ / scans},
+                           {"match", matchMs_ / scans},
+                           {"map", mapMs_ / scans}};
+    if (reference_.size() > 1)
         json["reference"] = errors();
     return json;
 }
@@ -100,9 +100,9 @@ nlohmann::ordered_json MapRun::errors() const {
         const auto motion = [&](const std::vector<vectorlib::StampedPose> &poses) {
             return Transformation2D(poses[from].pose).inverse() * Transformation2D(poses[to].pose);
         };
-        return motion(m_reference).inverse() * motion(m_trajectory);
+        return motion(reference_).inverse() * motion(trajectory_);
     };
-    for (std::size_t i = 1; i < m_reference.size(); ++i) {
+    for (std::size_t i = 1; i < reference_.size(); ++i) {
         const Transformation2D d = difference(i - 1, i);
         metres.push_back(d.translation().norm());
         turned.push_back(std::abs(d.alpha()) * degrees);
@@ -113,7 +113,7 @@ nlohmann::ordered_json MapRun::errors() const {
         std::nth_element(values.begin(), middle, values.end());
         return *middle;
     };
-    const Transformation2D drift = difference(0, m_reference.size() - 1);
+    const Transformation2D drift = difference(0, reference_.size() - 1);
     return {{"motions", metres.size()},
             {"within_10cm_2deg", double(near) / double(metres.size())},
             {"median_error_m", median(metres)},

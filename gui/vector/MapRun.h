@@ -20,9 +20,9 @@ public:
 
     void take(const MapScan &scan);
 
-    const std::vector<vectorlib::StampedPose> &trajectory() const { return m_trajectory; }
+    const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Reference poses, one a pose of the trajectory; empty without reference.
-    const std::vector<vectorlib::StampedPose> &reference() const { return m_reference; }
+    const std::vector<vectorlib::StampedPose> &reference() const { return reference_; }
     std::vector<vectorlib::MapSegment> segments() const;
     /// Counts, milliseconds a scan and, with a reference, the errors against it.
     nlohmann::ordered_json summary() const;
@@ -32,12 +32,12 @@ private:
     vectorlib::Pose2D expectedPose(const MapScan &scan, double stamp) const;
     nlohmann::ordered_json errors() const;
 
-    vectorlib::MotionModel m_motion;
-    std::vector<vectorlib::StampedPose> m_trajectory;
-    std::vector<vectorlib::StampedPose> m_reference;
-    std::vector<vectorlib::Vector2D<float>> m_points;
-    std::size_t m_matched = 0, m_lost = 0, m_skipped = 0;
-    double m_segmentMs = 0, m_vectorizeMs = 0, m_matchMs = 0, m_mapMs = 0;
+    vectorlib::MotionModel motion_;
+    std::vector<vectorlib::StampedPose> trajectory_;
+    std::vector<vectorlib::StampedPose> reference_;
+    std::vector<vectorlib::Vector2D<float>> points_;
+    std::size_t matched_ = 0, lost_ = 0, skipped_ = 0;
+    double segmentMs_ = 0, vectorizeMs_ = 0, matchMs_ = 0, mapMs_ = 0;
 };
 
 } // namespace hermes

@@ -69,19 +69,19 @@ void OutputOptions::addTo(CLI::App &command, bool withSvg) {
 
 void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {
     const std::string group = "Segmentation (" + defaults + ")";
-    command.add_option("--k", m_neighbours, "How many earlier points each point is compared with")
+    command.add_option("--k", neighbours_, "How many earlier points each point is compared with")
         ->check(between(1, 100000))
         ->type_name("N")
         ->group(group);
-    command.add_option("--min-threshold", m_minThreshold, "Lower bound of the distance threshold, metres")
+    command.add_option("--min-threshold", minThreshold_, "Lower bound of the distance threshold, metres")
         ->check(aboveZero())
         ->type_name("M")
         ->group(group);
-    command.add_option("--max-threshold", m_maxThreshold, "Upper bound of the distance threshold, metres")
+    command.add_option("--max-threshold", maxThreshold_, "Upper bound of the distance threshold, metres")
         ->check(aboveZero())
         ->type_name("M")
         ->group(group);
-    command.add_option("--min-points", m_minPoints, "Smaller clusters are outliers")
+    command.add_option("--min-points", minPoints_, "Smaller clusters are outliers")
         ->check(between(1, 1e9))
         ->type_name("N")
         ->group(group);
@@ -90,10 +90,10 @@ void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {
 }
 
 vectorlib::EarSettings SegmentOptions::over(vectorlib::EarSettings settings) const {
-    settings.neighbours = m_neighbours.value_or(settings.neighbours);
-    settings.minThreshold = m_minThreshold.value_or(settings.minThreshold);
-    settings.maxThreshold = m_maxThreshold.value_or(settings.maxThreshold);
-    settings.minPoints = m_minPoints.value_or(settings.minPoints);
+    settings.neighbours = neighbours_.value_or(settings.neighbours);
+    settings.minThreshold = minThreshold_.value_or(settings.minThreshold);
+    settings.maxThreshold = maxThreshold_.value_or(settings.maxThreshold);
+    settings.minPoints = minPoints_.value_or(settings.minPoints);
     if (settings.minThreshold > settings.maxThreshold)
         throw CLI::ValidationError("--min-threshold",
                                    "found a value above --max-threshold, expected at most that");

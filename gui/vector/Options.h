@@ -40,8 +40,8 @@ struct SegmentOptions {
     vectorlib::EarSettings over(vectorlib::EarSettings settings) const;
 
 private:
-    std::optional<int> m_neighbours, m_minPoints;
-    std::optional<double> m_minThreshold, m_maxThreshold;
+    std::optional<int> neighbours_, minPoints_;
+    std::optional<double> minThreshold_, maxThreshold_;
 };
 
 /// The footer of a command's help: an example of its use.

@@ -81,10 +81,10 @@ struct OutputSet::File {
 };
 
 OutputSet::OutputSet(bool force)
-    : m_force(force) {}
+    : force_(force) {}
 
 OutputSet::~OutputSet() {
-    for (const auto &file : m_files)
+    for (const auto &file : files_)
         file->discard();
 }
 
@@ -93,7 +93,7 @@ std::ostream &OutputSet::open(const std::string &path) {
     if (path.empty() || path == "-") {
         file->path = "standard output";
         file->stream = &std::cout;
-        for (const auto &other : m_files)
+        for (const auto &other : files_)
             if (other->stream == &std::cout)
                 throw Failure(
                     "standard output: asked for twice, expected a name of its own for every output");
@@ -103,11 +103,11 @@ std::ostream &OutputSet::open(const std::string &path) {
         if (fs::is_directory(status))
             throw Failure(path + ": found a folder, expected the name of a file to write");
         const bool plain = !fs::exists(status) || fs::is_regular_file(status);
-        if (plain && fs::exists(status) && !m_force)
+        if (plain && fs::exists(status) && !force_)
             throw Failure(path + ": exists already; choose another name or overwrite it with --force");
         // Through a symbolic link the file it points to is replaced, not the link.
         file->path = fs::exists(status) ? fs::canonical(path).string() : path;
-        for (const auto &other : m_files)
+        for (const auto &other : files_)
             if (fs::absolute(other->path).lexically_normal() == fs::absolute(file->path).lexically_normal())
                 throw Failure(path + ": asked for twice, expected a name of its own for every output");
         if (plain)
@@ -120,26 +120,26 @@ std::ostream &OutputSet::open(const std::string &path) {
             throw Failure(path + ": cannot be written: " + why);
         }
     }
-    m_files.push_back(std::move(file));
-    return *m_files.back()->stream;
+    files_.push_back(std::move(file));
+    return *files_.back()->stream;
 }
 
 void OutputSet::commit() {
-    for (const auto &file : m_files) {
+    for (const auto &file : files_) {
         file->stream->flush();
         if (file->stream == &file->file)
             file->file.close();
         if (!*file->stream)
             throw Failure(file->path + ": cannot be written to its end: " + std::strerror(errno));
     }
-    for (const auto &file : m_files) {
+    for (const auto &file : files_) {
         if (file->temporary.empty())
             continue;
         // Another program may have made the file meanwhile: without force it is not replaced.
-        const int result = m_force ? rename(file->temporary.c_str(), file->path.c_str())
-                                   : link(file->temporary.c_str(), file->path.c_str());
+        const int result = force_ ? rename(file->temporary.c_str(), file->path.c_str())
+                                  : link(file->temporary.c_str(), file->path.c_str());
         if (result != 0 &&
-            (m_force || errno == EEXIST || rename(file->temporary.c_str(), file->path.c_str()) != 0))
+            (force_ || errno == EEXIST || rename(file->temporary.c_str(), file->path.c_str()) != 0))
             throw Failure(file->path + ": cannot be put in its place: " + std::strerror(errno));
         unlink(file->temporary.c_str());
         file->forget();

@@ -25,8 +25,8 @@ public:
 
 private:
     struct File;
-    bool m_force;
-    std::vector<std::unique_ptr<File>> m_files;
+    bool force_;
+    std::vector<std::unique_ptr<File>> files_;
 };
 
 /// Makes the program remove its temporary files when a signal ends it.

@@ -16,10 +16,10 @@ public:
     void update(std::size_t done, std::size_t total);
 
 private:
-    std::string m_what;
-    bool m_terminal;
-    bool m_shown = false;
-    std::chrono::steady_clock::time_point m_last;
+    std::string what_;
+    bool terminal_;
+    bool shown_ = false;
+    std::chrono::steady_clock::time_point last_;
 };
 
 } // namespace hermes

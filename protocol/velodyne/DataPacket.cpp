@@ -47,7 +47,7 @@ PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size) {
 }
 
 DataPacketWriter::DataPacketWriter() {
-    m_bytes.fill(0);
+    bytes_.fill(0);
     for (int block = 0; block < blocksPerPacket; ++block)
         setWord(block * blockSize, blockFlag);
     setTail(0);
@@ -60,14 +60,14 @@ void DataPacketWriter::setAzimuth(int block, std::uint16_t azimuth) {
 void DataPacketWriter::setReturn(int block, int laser, std::uint16_t distance, std::uint8_t intensity) {
     const std::size_t offset = block * blockSize + 4 + 3 * laser;
     setWord(offset, distance);
-    m_bytes[offset + 2] = intensity;
+    bytes_[offset + 2] = intensity;
 }
 
 void DataPacketWriter::setTail(std::uint32_t stamp_us, ReturnMode mode, Model model) {
     setWord(1200, std::uint16_t(stamp_us));
     setWord(1202, std::uint16_t(stamp_us >> 16));
-    m_bytes[1204] = std::uint8_t(mode);
-    m_bytes[1205] = std::uint8_t(model);
+    bytes_[1204] = std::uint8_t(mode);
+    bytes_[1205] = std::uint8_t(model);
 }
 
 void DataPacketWriter::clear() {
@@ -78,8 +78,8 @@ void DataPacketWriter::clear() {
 }
 
 void DataPacketWriter::setWord(std::size_t offset, std::uint16_t value) {
-    m_bytes[offset] = std::uint8_t(value);
-    m_bytes[offset + 1] = std::uint8_t(value >> 8);
+    bytes_[offset] = std::uint8_t(value);
+    bytes_[offset + 1] = std::uint8_t(value >> 8);
 }
 
 std::uint16_t toDistanceCounts(double range) {

@@ -24,17 +24,17 @@ public:
     static PacketFault check(const std::uint8_t *bytes, std::size_t size);
 
     explicit DataPacket(const std::uint8_t *bytes)
-        : m_bytes(bytes) {}
+        : bytes_(bytes) {}
 
     /// Hundredths of a degree, clockwise seen from above, 0 to 35999: where the head was as the block began.
     std::uint16_t azimuth(int block) const { return word(block * blockSize + 2); }
     /// Counts of 2 mm; 0 means no return.
     std::uint16_t distance(int block, int laser) const { return word(returnOffset(block, laser)); }
-    std::uint8_t intensity(int block, int laser) const { return m_bytes[returnOffset(block, laser) + 2]; }
+    std::uint8_t intensity(int block, int laser) const { return bytes_[returnOffset(block, laser) + 2]; }
     /// Microseconds since the top of the hour, when the first laser of the packet fired.
     std::uint32_t stamp_us() const { return word(1200) | std::uint32_t(word(1202)) << 16; }
-    ReturnMode returnMode() const { return ReturnMode(m_bytes[1204]); }
-    Model model() const { return Model(m_bytes[1205]); }
+    ReturnMode returnMode() const { return ReturnMode(bytes_[1204]); }
+    Model model() const { return Model(bytes_[1205]); }
     /// Blocks that hold the same firing: 2 in dual return mode, else 1.
     int returns() const { return returnMode() == ReturnMode::Dual ? 2 : 1; }
     int firings() const { return blocksPerPacket / returns(); }
@@ -42,10 +42,10 @@ public:
 private:
     static std::size_t returnOffset(int block, int laser) { return block * blockSize + 4 + 3 * laser; }
     std::uint16_t word(std::size_t offset) const {
-        return std::uint16_t(m_bytes[offset] | m_bytes[offset + 1] << 8);
+        return std::uint16_t(bytes_[offset] | bytes_[offset + 1] << 8);
     }
 
-    const std::uint8_t *m_bytes;
+    const std::uint8_t *bytes_;
 };
 
 /// A data packet under construction, all returns empty at first.
@@ -63,12 +63,12 @@ public:
     /// Empties all returns.
     void clear();
 
-    const std::array<std::uint8_t, packetSize> &bytes() const { return m_bytes; }
+    const std::array<std::uint8_t, packetSize> &bytes() const { return bytes_; }
 
 private:
     void setWord(std::size_t offset, std::uint16_t value);
 
-    std::array<std::uint8_t, packetSize> m_bytes;
+    std::array<std::uint8_t, packetSize> bytes_;
 };
 
 /// Counts of 2 mm nearest to a range in metres; 0 (no return) when it rounds to nothing or lies beyond 131.07

@@ -11,12 +11,12 @@ constexpr double degree = 3.14159265358979323846 / 180;
 } // namespace
 
 PacketDecoder::PacketDecoder(int laser, Returns returns)
-    : m_firstLaser(laser == allLasers ? 0 : laser)
-    , m_lastLaser(laser == allLasers ? lasers - 1 : laser)
-    , m_returns(returns) {
+    : firstLaser_(laser == allLasers ? 0 : laser)
+    , lastLaser_(laser == allLasers ? lasers - 1 : laser)
+    , returns_(returns) {
     for (int i = 0; i < lasers; ++i) {
-        m_cosElevation[i] = std::cos(elevation_deg[i] * degree);
-        m_sinElevation[i] = std::sin(elevation_deg[i] * degree);
+        cosElevation_[i] = std::cos(elevation_deg[i] * degree);
+        sinElevation_[i] = std::sin(elevation_deg[i] * degree);
     }
 }
 
@@ -24,10 +24,10 @@ void PacketDecoder::decode(const DataPacket &packet, int firing, std::int64_t pa
                            std::vector<Point> &points) const {
     // In a dual-return packet the even block holds the last return and the odd one the strongest.
     const int returns = packet.returns();
-    const int firstBlock = firing * returns + (returns == 2 && m_returns == Returns::Strongest ? 1 : 0);
-    const int lastBlock = firing * returns + (returns == 2 && m_returns != Returns::Last ? 1 : 0);
+    const int firstBlock = firing * returns + (returns == 2 && returns_ == Returns::Strongest ? 1 : 0);
+    const int lastBlock = firing * returns + (returns == 2 && returns_ != Returns::Last ? 1 : 0);
     const double gap = azimuthGap(packet, firing);
-    for (int laser = m_firstLaser; laser <= m_lastLaser; ++laser) {
+    for (int laser = firstLaser_; laser <= lastLaser_; ++laser) {
         for (int block = firstBlock; block <= lastBlock; ++block) {
             const std::uint16_t counts = packet.distance(block, laser);
             const bool repeated = block > firstBlock && counts == packet.distance(firstBlock, laser);
@@ -39,10 +39,10 @@ void PacketDecoder::decode(const DataPacket &packet, int firing, std::int64_t pa
             point.stamp_ns = packetStamp_ns + firing * firingPeriod_ns + laser * laserPeriod_ns;
             point.azimuth = azimuth;
             point.range = counts * distanceUnit;
-            const double horizontal = point.range * m_cosElevation[laser];
+            const double horizontal = point.range * cosElevation_[laser];
             point.x = horizontal * std::cos(azimuth * degree);
             point.y = -horizontal * std::sin(azimuth * degree); // the sensor counts clockwise
-            point.z = point.range * m_sinElevation[laser];
+            point.z = point.range * sinElevation_[laser];
             point.laser = std::uint8_t(laser);
             point.intensity = packet.intensity(block, laser);
             points.push_back(point);

@@ -36,11 +36,11 @@ public:
                 std::vector<Point> &points) const;
 
 private:
-    int m_firstLaser;
-    int m_lastLaser;
-    Returns m_returns;
-    std::array<double, lasers> m_cosElevation;
-    std::array<double, lasers> m_sinElevation;
+    int firstLaser_;
+    int lastLaser_;
+    Returns returns_;
+    std::array<double, lasers> cosElevation_;
+    std::array<double, lasers> sinElevation_;
 };
 
 /// How far the head turned during a firing: to the next block's azimuth; for the last firing of a packet as

@@ -23,13 +23,13 @@ std::int64_t nearest(std::int64_t ofHour_ns, std::int64_t reference_ns) {
 
 std::int64_t StampClock::absolute(std::uint32_t stamp_us, std::int64_t receive_ns) {
     const std::int64_t ofHour_ns = std::int64_t(stamp_us) * 1000;
-    const std::int64_t expected_ns = receive_ns + (m_started ? m_offset_ns : 0);
+    const std::int64_t expected_ns = receive_ns + (started_ ? offset_ns_ : 0);
     std::int64_t stamp_ns = nearest(ofHour_ns, expected_ns);
     const std::int64_t off_ns = stamp_ns - expected_ns;
     if (off_ns > jump_ns || off_ns < -jump_ns)
         stamp_ns = nearest(ofHour_ns, receive_ns);
-    m_offset_ns = stamp_ns - receive_ns;
-    m_started = true;
+    offset_ns_ = stamp_ns - receive_ns;
+    started_ = true;
     return stamp_ns;
 }
 

@@ -11,11 +11,11 @@ class StampClock {
 public:
     /// Nanoseconds since the Unix epoch. receive_ns: when the packet came in, on the same scale.
     std::int64_t absolute(std::uint32_t stamp_us, std::int64_t receive_ns);
-    void reset() { m_started = false; }
+    void reset() { started_ = false; }
 
 private:
-    bool m_started = false;
-    std::int64_t m_offset_ns = 0; ///< of the last stamp from its receive time
+    bool started_ = false;
+    std::int64_t offset_ns_ = 0; ///< of the last stamp from its receive time
 };
 
 } // namespace hermes::velodyne

@@ -24,58 +24,58 @@ void count(PacketCounts &counts, PacketFault fault) {
 } // namespace
 
 TurnAssembler::TurnAssembler(const Options &options, Sink sink)
-    : m_options(options)
-    , m_sink(std::move(sink))
-    , m_decoder(options.laser, options.returns) {}
+    : options_(options)
+    , sink_(std::move(sink))
+    , decoder_(options.laser, options.returns) {}
 
 PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns) {
     const PacketFault fault = DataPacket::check(bytes, size);
-    count(m_counts, fault);
+    count(counts_, fault);
     if (fault != PacketFault::None)
         return fault;
     const DataPacket packet(bytes);
-    const std::int64_t stamp_ns = m_clock.absolute(packet.stamp_us(), receive_ns) + m_options.stampOffset_ns;
+    const std::int64_t stamp_ns = clock_.absolute(packet.stamp_us(), receive_ns) + options_.stampOffset_ns;
     if (!isInOrder(packet, stamp_ns, receive_ns))
         return PacketFault::None;
 
     for (int firing = 0; firing < packet.firings(); ++firing) {
         const int azimuth = packet.azimuth(firing * packet.returns());
-        const bool wraps = m_turn.firings > 0 && m_lastAzimuth - azimuth > azimuthSteps / 2;
-        if (wraps || m_turn.firings >= maximumFirings) {
-            endTurn(m_turn.partial || !wraps);
+        const bool wraps = turn_.firings > 0 && lastAzimuth_ - azimuth > azimuthSteps / 2;
+        if (wraps || turn_.firings >= maximumFirings) {
+            endTurn(turn_.partial || !wraps);
             beginTurn(!wraps);
         }
-        if (m_turn.firings == 0)
-            m_turn.begin_ns = stamp_ns + firing * firingPeriod_ns;
-        m_decoder.decode(packet, firing, stamp_ns, m_turn.points);
-        ++m_turn.firings;
-        m_turn.end_ns = stamp_ns + (firing + 1) * firingPeriod_ns;
-        m_lastAzimuth = azimuth;
+        if (turn_.firings == 0)
+            turn_.begin_ns = stamp_ns + firing * firingPeriod_ns;
+        decoder_.decode(packet, firing, stamp_ns, turn_.points);
+        ++turn_.firings;
+        turn_.end_ns = stamp_ns + (firing + 1) * firingPeriod_ns;
+        lastAzimuth_ = azimuth;
     }
-    m_lastStamp_ns = stamp_ns;
-    m_lastReceive_ns = receive_ns;
-    m_nextStamp_ns = stamp_ns + packet.firings() * firingPeriod_ns;
+    lastStamp_ns_ = stamp_ns;
+    lastReceive_ns_ = receive_ns;
+    nextStamp_ns_ = stamp_ns + packet.firings() * firingPeriod_ns;
     return PacketFault::None;
 }
 
 bool TurnAssembler::isInOrder(const DataPacket &packet, std::int64_t stamp_ns, std::int64_t receive_ns) {
-    if (!m_started) {
-        m_started = true;
+    if (!started_) {
+        started_ = true;
         beginTurn(true);
         return true;
     }
-    const std::int64_t step_ns = stamp_ns - m_lastStamp_ns;
-    if (std::abs(step_ns - (receive_ns - m_lastReceive_ns)) > second_ns) {
-        ++m_counts.clockJumps;
+    const std::int64_t step_ns = stamp_ns - lastStamp_ns_;
+    if (std::abs(step_ns - (receive_ns - lastReceive_ns_)) > second_ns) {
+        ++counts_.clockJumps;
         endTurn(true);
         beginTurn(true);
         return true;
     }
     if (step_ns <= 0) {
-        ++m_counts.outOfOrder;
+        ++counts_.outOfOrder;
         return false;
     }
-    noteGap(stamp_ns - m_nextStamp_ns, packet.firings() * firingPeriod_ns);
+    noteGap(stamp_ns - nextStamp_ns_, packet.firings() * firingPeriod_ns);
     return true;
 }
 
@@ -83,9 +83,9 @@ void TurnAssembler::noteGap(std::int64_t gap_ns, std::int64_t period_ns) {
     const std::int64_t lost = (gap_ns + period_ns / 2) / period_ns; // the stamps are whole microseconds
     if (gap_ns <= 0 || lost <= 0)
         return;
-    ++m_counts.gaps;
-    m_counts.lost += std::uint64_t(lost);
-    m_turn.lostPackets += std::uint32_t(lost);
+    ++counts_.gaps;
+    counts_.lost += std::uint64_t(lost);
+    turn_.lostPackets += std::uint32_t(lost);
     if (gap_ns > longGap_ns) {
         endTurn(true);
         beginTurn(true);
@@ -93,20 +93,20 @@ void TurnAssembler::noteGap(std::int64_t gap_ns, std::int64_t period_ns) {
 }
 
 void TurnAssembler::beginTurn(bool partial) {
-    m_turn.partial = partial;
-    m_turn.firings = 0;
-    m_turn.lostPackets = 0;
-    m_turn.points.clear();
+    turn_.partial = partial;
+    turn_.firings = 0;
+    turn_.lostPackets = 0;
+    turn_.points.clear();
 }
 
 void TurnAssembler::endTurn(bool partial) {
-    if (m_turn.firings == 0)
+    if (turn_.firings == 0)
         return;
-    m_turn.partial = partial;
+    turn_.partial = partial;
     if (!partial)
-        m_rpm = 60.0 * second_ns / double(m_turn.end_ns - m_turn.begin_ns);
-    m_sink(m_turn);
-    ++m_turn.number;
+        rpm_ = 60.0 * second_ns / double(turn_.end_ns - turn_.begin_ns);
+    sink_(turn_);
+    ++turn_.number;
 }
 
 void TurnAssembler::finish() {
@@ -115,12 +115,12 @@ void TurnAssembler::finish() {
 }
 
 void TurnAssembler::reset() {
-    m_turn.number = 0;
+    turn_.number = 0;
     beginTurn(true);
-    m_clock.reset();
-    m_counts = PacketCounts();
-    m_started = false;
-    m_rpm = 0;
+    clock_.reset();
+    counts_ = PacketCounts();
+    started_ = false;
+    rpm_ = 0;
 }
 
 } // namespace hermes::velodyne

@@ -52,9 +52,9 @@ public:
     /// For a new source: forgets the current turn, the clock and the counts.
     void reset();
 
-    const PacketCounts &counts() const { return m_counts; }
+    const PacketCounts &counts() const { return counts_; }
     /// Turns of the head a minute, from the last complete turn; 0 at first.
-    double rpm() const { return m_rpm; }
+    double rpm() const { return rpm_; }
 
 private:
     bool isInOrder(const DataPacket &packet, std::int64_t stamp_ns, std::int64_t receive_ns);
@@ -62,18 +62,18 @@ private:
     void beginTurn(bool partial);
     void endTurn(bool partial);
 
-    Options m_options;
-    Sink m_sink;
-    PacketDecoder m_decoder;
-    StampClock m_clock;
-    PacketCounts m_counts;
-    Turn m_turn;
-    bool m_started = false;
-    int m_lastAzimuth = 0;           ///< hundredths of a degree
-    std::int64_t m_lastStamp_ns = 0; ///< of the last packet in order
-    std::int64_t m_lastReceive_ns = 0;
-    std::int64_t m_nextStamp_ns = 0; ///< of the packet that should follow
-    double m_rpm = 0;
+    Options options_;
+    Sink sink_;
+    PacketDecoder decoder_;
+    StampClock clock_;
+    PacketCounts counts_;
+    Turn turn_;
+    bool started_ = false;
+    int lastAzimuth_ = 0;           ///< hundredths of a degree
+    std::int64_t lastStamp_ns_ = 0; ///< of the last packet in order
+    std::int64_t lastReceive_ns_ = 0;
+    std::int64_t nextStamp_ns_ = 0; ///< of the packet that should follow
+    double rpm_ = 0;
 };
 
 } // namespace hermes::velodyne

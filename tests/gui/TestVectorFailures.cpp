@@ -4,14 +4,14 @@
 class TestVectorFailures : public QObject {
     Q_OBJECT
 
-    TestFolder m_folder;
+    TestFolder folder_;
 
-    QString path(const char *name) const { return m_folder.path(name); }
-    QStringList files() const { return m_folder.files(); }
+    QString path(const char *name) const { return folder_.path(name); }
+    QStringList files() const { return folder_.files(); }
 
 private Q_SLOTS:
-    void initTestCase() { QVERIFY(m_folder.isValid()); }
-    void init() { m_folder.empty(); }
+    void initTestCase() { QVERIFY(folder_.isValid()); }
+    void init() { folder_.empty(); }
 
     void wrongUsage_data() {
         QTest::addColumn<QStringList>("arguments");

@@ -80,17 +80,17 @@ inline void writeCapture(const QString &path, int packets) {
 /// A folder whose files are removed before every test.
 class TestFolder {
 public:
-    bool isValid() const { return m_folder.isValid(); }
-    QString path(const char *name = "") const { return m_folder.filePath(QLatin1String(name)); }
+    bool isValid() const { return folder_.isValid(); }
+    QString path(const char *name = "") const { return folder_.filePath(QLatin1String(name)); }
     /// What is left in it, temporary files too.
     QStringList files() const {
-        return QDir(m_folder.path()).entryList(QDir::Files | QDir::Hidden, QDir::Name);
+        return QDir(folder_.path()).entryList(QDir::Files | QDir::Hidden, QDir::Name);
     }
     void empty() {
         for (const QString &name : files())
-            QFile::remove(m_folder.filePath(name));
+            QFile::remove(folder_.filePath(name));
     }
 
 private:
-    QTemporaryDir m_folder;
+    QTemporaryDir folder_;
 };

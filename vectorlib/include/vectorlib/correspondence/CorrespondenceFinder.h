@@ -58,34 +58,34 @@ public:
                             const std::vector<EdgeRaw2D> &moving, const Transformation2D &expected) {
         // Everything happens in the expected sensor frame, where segments are near the origin (erratum 13).
         const Transformation2D toLocal = expected.inverse();
-        m_fixed.clear();
+        fixed_.clear();
         for (const LineSegment2D<double> &segment : fixed)
-            m_fixed.push_back(toLocal * segment);
-        m_moving = &moving;
+            fixed_.push_back(toLocal * segment);
+        moving_ = &moving;
         collectCandidates();
 
         Transformation2D best = track(Transformation2D());
         double bestScore = score(best);
-        m_bestPairs = m_pairs;
-        for (double alpha : m_votes.peaks(settings.rotations)) {
+        bestPairs_ = pairs_;
+        for (double alpha : votes_.peaks(settings.rotations)) {
             const Transformation2D other = track(Transformation2D(0, 0, alpha));
             const double otherScore = score(other);
             if (otherScore > bestScore) {
                 bestScore = otherScore;
                 best = other;
-                m_bestPairs = m_pairs;
+                bestPairs_ = pairs_;
             }
         }
         conclude(expected, best);
-        return m_match;
+        return match_;
     }
 
 private:
     const LineSegment2D<double> &fixedOf(const CorrespondencePair &p) const {
-        return m_fixed[static_cast<std::size_t>(p.fixed)];
+        return fixed_[static_cast<std::size_t>(p.fixed)];
     }
     const EdgeRaw2D &movingOf(const CorrespondencePair &p) const {
-        return (*m_moving)[static_cast<std::size_t>(p.moving)];
+        return (*moving_)[static_cast<std::size_t>(p.moving)];
     }
     static double angleBetween(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving) {
         return std::atan2(moving.direction().cross(fixed.direction()),
@@ -98,20 +98,20 @@ private:
     }
 
     void collectCandidates() {
-        m_candidates.clear();
-        m_votes.start(settings.permitted.dalpha);
+        candidates_.clear();
+        votes_.start(settings.permitted.dalpha);
         const double cosine = std::cos(std::min(pi, settings.permitted.dalpha)) - 1e-9;
-        for (std::size_t d = 0; d < m_moving->size(); ++d)
-            for (std::size_t s = 0; s < m_fixed.size(); ++s) {
-                const LineSegment2D<double> &moving = (*m_moving)[d].segment, &fixed = m_fixed[s];
+        for (std::size_t d = 0; d < moving_->size(); ++d)
+            for (std::size_t s = 0; s < fixed_.size(); ++s) {
+                const LineSegment2D<double> &moving = (*moving_)[d].segment, &fixed = fixed_[s];
                 if (fixed.direction().dot(moving.direction()) < cosine || // most end here
                     !mayCorrespond(fixed, moving, settings.permitted))
                     continue;
-                m_candidates.push_back({static_cast<int>(s), static_cast<int>(d)});
-                m_votes.add(angleBetween(fixed, moving), std::min(fixed.length(), moving.length()));
+                candidates_.push_back({static_cast<int>(s), static_cast<int>(d)});
+                votes_.add(angleBetween(fixed, moving), std::min(fixed.length(), moving.length()));
             }
     }
-    // Follows the nearest pairs from a start to where they agree; leaves the final pairs in m_pairs.
+    // Follows the nearest pairs from a start to where they agree; leaves the final pairs in pairs_.
     Transformation2D track(Transformation2D correction) {
         double gate = std::max(settings.permitted.dx, settings.permitted.dy),
                angle = settings.permitted.dalpha;
@@ -130,12 +130,12 @@ private:
     }
     // For every dynamic edge its nearest potential partner within the gates.
     void choosePairs(const Transformation2D &correction, double gate, double angle) {
-        m_pairs.clear();
+        pairs_.clear();
         const double cosine = std::cos(angle);
         int current = -1;
         double nearest = 0;
         LineSegment2D<double> moved;
-        for (const CorrespondencePair &c : m_candidates) { // sorted by dynamic edge
+        for (const CorrespondencePair &c : candidates_) { // sorted by dynamic edge
             if (c.moving != current) {
                 current = c.moving;
                 moved = correction * movingOf(c).segment;
@@ -149,24 +149,24 @@ private:
                 fixed.overlap(moved) < settings.minOverlap * std::min(fixed.length(), moved.length()))
                 continue;
             nearest = distance;
-            if (!m_pairs.empty() && m_pairs.back().moving == c.moving)
-                m_pairs.back().fixed = c.fixed;
+            if (!pairs_.empty() && pairs_.back().moving == c.moving)
+                pairs_.back().fixed = c.fixed;
             else
-                m_pairs.push_back(c);
+                pairs_.push_back(c);
         }
     }
     Transformation2D refine(const Transformation2D &correction) {
         const double xy = settings.pointDeviation / settings.expectedDeviationXY;
         const double alpha = settings.pointDeviation / settings.expectedDeviationAlpha;
-        m_refinement.start(xy * xy, alpha * alpha);
-        for (const CorrespondencePair &p : m_pairs)
-            m_refinement.add(fixedOf(p), correction * movingOf(p).sums, 1.0);
-        return m_refinement.step();
+        refinement_.start(xy * xy, alpha * alpha);
+        for (const CorrespondencePair &p : pairs_)
+            refinement_.add(fixedOf(p), correction * movingOf(p).sums, 1.0);
+        return refinement_.step();
     }
     // Matched length, less the more the pairs lie apart and the farther the pose is from the expected one.
     double score(const Transformation2D &correction) const {
         double sum = 0;
-        for (const CorrespondencePair &p : m_pairs) {
+        for (const CorrespondencePair &p : pairs_) {
             const LineSegment2D<double> moved = correction * movingOf(p).segment;
             const double distance = squaredDistance(fixedOf(p), moved);
             sum += fixedOf(p).overlap(moved) *
@@ -177,27 +177,27 @@ private:
         return sum - settings.expectationScore * (xy * xy + alpha * alpha);
     }
     void conclude(const Transformation2D &expected, const Transformation2D &correction) {
-        Match &m = m_match;
+        Match &m = match_;
         m.pose = expected * correction;
-        m.pairs = m_bestPairs;
+        m.pairs = bestPairs_;
         m.matchedLength = m.visibleLength = 0;
-        for (const EdgeRaw2D &edge : *m_moving)
+        for (const EdgeRaw2D &edge : *moving_)
             m.visibleLength += edge.segment.length();
-        m_registration.clear();
-        m_refinement.start(0, 0);
+        registration_.clear();
+        refinement_.start(0, 0);
         double squares = 0, points = 0;
         for (const CorrespondencePair &p : m.pairs) {
             const LineSegment2D<double> &fixed = fixedOf(p), &moving = movingOf(p).segment;
             m.matchedLength += moving.length();
-            m_registration.add(fixed, moving, std::min(fixed.length(), moving.length()));
+            registration_.add(fixed, moving, std::min(fixed.length(), moving.length()));
             const EdgeRaw2D moved = correction * movingOf(p);
             squares += moved.sums.n * squaredDistance(fixed, moved.segment);
             points += moved.sums.n;
-            m_refinement.add(fixed, moved.sums, 1 / (settings.pointDeviation * settings.pointDeviation));
+            refinement_.add(fixed, moved.sums, 1 / (settings.pointDeviation * settings.pointDeviation));
         }
         m.rms = points > 0 ? std::sqrt(squares / points) : 0;
-        m.reliability = m_registration.reliability();
-        m.ambiguity = m_registration.ambiguity(correction).total();
+        m.reliability = registration_.reliability();
+        m.ambiguity = registration_.ambiguity(correction).total();
         m.accepted = m.pairs.size() >= settings.minPairs &&
                      m.matchedLength >= settings.minMatchedShare * m.visibleLength &&
                      std::abs(correction.x()) <= settings.permitted.dx &&
@@ -205,18 +205,18 @@ private:
                      std::abs(correction.alpha()) <= settings.permitted.dalpha;
         Eigen::Matrix3d toMap = Eigen::Matrix3d::Identity();
         toMap.topLeftCorner<2, 2>() << expected.cos(), -expected.sin(), expected.sin(), expected.cos();
-        m.information = toMap * m_refinement.information() * toMap.transpose();
+        m.information = toMap * refinement_.information() * toMap.transpose();
     }
 
-    std::vector<LineSegment2D<double>> m_fixed; // in the expected sensor frame
-    const std::vector<EdgeRaw2D> *m_moving = nullptr;
-    std::vector<CorrespondencePair> m_candidates; // sorted by moving edge
-    std::vector<CorrespondencePair> m_pairs;
-    std::vector<CorrespondencePair> m_bestPairs;
-    RotationVotes m_votes;
-    LineSegmentRegistration m_registration;
-    PointToLineRefinement m_refinement;
-    Match m_match;
+    std::vector<LineSegment2D<double>> fixed_; // in the expected sensor frame
+    const std::vector<EdgeRaw2D> *moving_ = nullptr;
+    std::vector<CorrespondencePair> candidates_; // sorted by moving edge
+    std::vector<CorrespondencePair> pairs_;
+    std::vector<CorrespondencePair> bestPairs_;
+    RotationVotes votes_;
+    LineSegmentRegistration registration_;
+    PointToLineRefinement refinement_;
+    Match match_;
 };
 
 } // namespace vectorlib

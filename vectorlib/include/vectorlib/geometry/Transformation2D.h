@@ -12,29 +12,29 @@ class Transformation2D {
 public:
     Transformation2D() = default;
     Transformation2D(double x, double y, double alpha)
-        : m_cos(std::cos(alpha))
-        , m_sin(std::sin(alpha))
-        , m_translation(x, y) {}
+        : cos_(std::cos(alpha))
+        , sin_(std::sin(alpha))
+        , translation_(x, y) {}
     explicit Transformation2D(const Pose2D &pose)
         : Transformation2D(pose.x, pose.y, pose.theta) {}
 
-    double x() const { return m_translation.x; }
-    double y() const { return m_translation.y; }
+    double x() const { return translation_.x; }
+    double y() const { return translation_.y; }
     /// In (-pi, pi].
-    double alpha() const { return std::atan2(m_sin, m_cos); }
-    double cos() const { return m_cos; }
-    double sin() const { return m_sin; }
-    Vector2D<double> translation() const { return m_translation; }
+    double alpha() const { return std::atan2(sin_, cos_); }
+    double cos() const { return cos_; }
+    double sin() const { return sin_; }
+    Vector2D<double> translation() const { return translation_; }
     Pose2D pose() const { return {x(), y(), alpha()}; }
 
     template <typename Scalar>
     Vector2D<Scalar> rotate(Vector2D<Scalar> v) const {
-        return Vector2D<Scalar>(Vector2D<double>(m_cos * v.x - m_sin * v.y, m_sin * v.x + m_cos * v.y));
+        return Vector2D<Scalar>(Vector2D<double>(cos_ * v.x - sin_ * v.y, sin_ * v.x + cos_ * v.y));
     }
     template <typename Scalar>
     Vector2D<Scalar> operator*(Vector2D<Scalar> p) const {
-        return Vector2D<Scalar>(Vector2D<double>(m_cos * p.x - m_sin * p.y + m_translation.x,
-                                                 m_sin * p.x + m_cos * p.y + m_translation.y));
+        return Vector2D<Scalar>(Vector2D<double>(cos_ * p.x - sin_ * p.y + translation_.x,
+                                                 sin_ * p.x + cos_ * p.y + translation_.y));
     }
     template <typename Scalar>
     LineSegment2D<Scalar> operator*(const LineSegment2D<Scalar> &s) const {
@@ -43,27 +43,27 @@ public:
     /// First o, then this.
     Transformation2D operator*(const Transformation2D &o) const {
         Transformation2D r;
-        r.m_cos = m_cos * o.m_cos - m_sin * o.m_sin;
-        r.m_sin = m_sin * o.m_cos + m_cos * o.m_sin;
-        const double correction = 1.5 - 0.5 * (r.m_cos * r.m_cos + r.m_sin * r.m_sin); // stays a rotation
-        r.m_cos *= correction;
-        r.m_sin *= correction;
-        r.m_translation = *this * o.m_translation;
+        r.cos_ = cos_ * o.cos_ - sin_ * o.sin_;
+        r.sin_ = sin_ * o.cos_ + cos_ * o.sin_;
+        const double correction = 1.5 - 0.5 * (r.cos_ * r.cos_ + r.sin_ * r.sin_); // stays a rotation
+        r.cos_ *= correction;
+        r.sin_ *= correction;
+        r.translation_ = *this * o.translation_;
         return r;
     }
     Transformation2D inverse() const {
         Transformation2D r;
-        r.m_cos = m_cos;
-        r.m_sin = -m_sin;
-        r.m_translation = -r.rotate(m_translation);
+        r.cos_ = cos_;
+        r.sin_ = -sin_;
+        r.translation_ = -r.rotate(translation_);
         return r;
     }
-    bool isFinite() const { return m_translation.isFinite() && std::isfinite(m_cos) && std::isfinite(m_sin); }
+    bool isFinite() const { return translation_.isFinite() && std::isfinite(cos_) && std::isfinite(sin_); }
 
 private:
-    double m_cos = 1;
-    double m_sin = 0;
-    Vector2D<double> m_translation;
+    double cos_ = 1;
+    double sin_ = 0;
+    Vector2D<double> translation_;
 };
 
 } // namespace vectorlib

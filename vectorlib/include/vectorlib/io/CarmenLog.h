@@ -62,28 +62,28 @@ namespace detail {
 class CarmenReader {
 public:
     CarmenReader(std::istream &in, std::string name, CarmenOptions options)
-        : m_lines(in, std::move(name))
-        , m_options(options) {}
+        : lines_(in, std::move(name))
+        , options_(options) {}
 
     Expected<CarmenLog> read() {
-        while (const auto line = m_lines.next()) {
+        while (const auto line = lines_.next()) {
             if (const auto error = readLine(trimmed(*line))) {
-                if (!m_options.skipDamaged)
+                if (!options_.skipDamaged)
                     return *error;
-                if (m_log.damaged++ == 0)
-                    m_log.firstDamage = error;
+                if (log_.damaged++ == 0)
+                    log_.firstDamage = error;
             }
         }
-        if (m_lines.error())
-            return *m_lines.error();
-        if (m_log.scans.empty())
-            return m_lines.errorHere("the end of the log and no scan",
-                                     "at least one line FLASER or ROBOTLASER1");
-        const double maxRange = m_log.guessMaxRange();
-        for (CarmenScan &scan : m_log.scans)
+        if (lines_.error())
+            return *lines_.error();
+        if (log_.scans.empty())
+            return lines_.errorHere("the end of the log and no scan",
+                                    "at least one line FLASER or ROBOTLASER1");
+        const double maxRange = log_.guessMaxRange();
+        for (CarmenScan &scan : log_.scans)
             if (std::isinf(scan.maxRange))
                 scan.maxRange = maxRange;
-        return std::move(m_log);
+        return std::move(log_);
     }
 
 private:
@@ -95,8 +95,8 @@ private:
     Problem readLine(std::string_view line) {
         if (line.empty() || line.front() == '#')
             return {};
-        splitBlanks(line, m_fields);
-        const std::string_view keyword = m_fields.front();
+        splitBlanks(line, fields_);
+        const std::string_view keyword = fields_.front();
         if (keyword == "ODOM")
             return readOdometry();
         if (keyword == "FLASER" || keyword == "ROBOTLASER1") {
@@ -108,22 +108,22 @@ private:
         const bool isKeyword = std::all_of(keyword.begin(), keyword.end(), [](char c) {
             return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
         });
-        if (!isKeyword || (!m_lines.terminated() && m_fields.size() == 1))
-            return m_lines.errorHere(quoted(keyword), "a CARMEN message such as FLASER, ROBOTLASER1 or ODOM");
+        if (!isKeyword || (!lines_.terminated() && fields_.size() == 1))
+            return lines_.errorHere(quoted(keyword), "a CARMEN message such as FLASER, ROBOTLASER1 or ODOM");
         return {}; // PARAM, NEFF, SYNC, RLASER, TRUEPOS and others tell nothing of the front laser
     }
 
     Problem readOdometry() {
         CarmenOdometry odometry;
-        odometry.line = m_lines.number();
-        if (m_fields.size() < 10)
+        odometry.line = lines_.number();
+        if (fields_.size() < 10)
             return tooShort("ODOM", 10);
         if (const auto problem = readPose(1, odometry.pose))
             return problem;
         if (const auto problem = readField(7, "the time stamp", odometry.stamp))
             return problem;
         follow(odometry.pose);
-        m_log.odometry.push_back(odometry);
+        log_.odometry.push_back(odometry);
         return {};
     }
 
@@ -132,10 +132,10 @@ private:
         std::size_t at = 1;
         if (const auto problem = readRanges("FLASER", at, 9, scan))
             return problem;
-        if (m_fields.size() != at + 9)
-            return m_lines.errorHere(std::to_string(m_fields.size()) + " fields",
-                                     std::to_string(at + 9) + " fields of FLASER with " +
-                                         std::to_string(scan.ranges.size()) + " ranges");
+        if (fields_.size() != at + 9)
+            return lines_.errorHere(std::to_string(fields_.size()) + " fields",
+                                    std::to_string(at + 9) + " fields of FLASER with " +
+                                        std::to_string(scan.ranges.size()) + " ranges");
         // 180 or 181 rays stand 1 degree apart, 360 or 361 half a degree: an even count lacks the last ray.
         const std::size_t n = scan.ranges.size();
         scan.startAngle = -pi / 2;
@@ -144,7 +144,7 @@ private:
     }
 
     Problem readRobotLaser() {
-        if (m_fields.size() < 9)
+        if (fields_.size() < 9)
             return tooShort("ROBOTLASER1", 9);
         CarmenScan scan;
         double fieldOfView = 0;
@@ -155,36 +155,36 @@ private:
             if (const auto problem = readField(index, what, *value))
                 return problem;
         if (!(scan.angleStep > 0) || !(scan.maxRange > 0))
-            return m_lines.errorHere(quoted(m_fields[scan.angleStep > 0 ? 5 : 4]),
-                                     "a resolution and a maximum range above 0");
+            return lines_.errorHere(quoted(fields_[scan.angleStep > 0 ? 5 : 4]),
+                                    "a resolution and a maximum range above 0");
         scan.maxRange = std::min(scan.maxRange, farthest);
         std::size_t at = 8;
         if (const auto problem = readRanges("ROBOTLASER1", at, 15, scan))
             return problem;
-        const auto remissions = parseCount(m_fields[at], maxRays);
+        const auto remissions = parseCount(fields_[at], maxRays);
         if (!remissions)
-            return m_lines.errorHere(quoted(m_fields[at]), "the number of remissions");
+            return lines_.errorHere(quoted(fields_[at]), "the number of remissions");
         at += 1 + *remissions;
-        if (m_fields.size() < at + 14)
+        if (fields_.size() < at + 14)
             return tooShort("ROBOTLASER1", at + 14);
         return finish(scan, at, at + 11);
     }
 
     /// The count at field `at` and so many ranges; moves `at` behind them. `rest` fields must follow.
     Problem readRanges(const char *keyword, std::size_t &at, std::size_t rest, CarmenScan &scan) {
-        const auto count = m_fields.size() > at ? parseCount(m_fields[at], maxRays) : std::nullopt;
+        const auto count = fields_.size() > at ? parseCount(fields_[at], maxRays) : std::nullopt;
         if (!count || *count < 2)
-            return m_lines.errorHere(m_fields.size() > at ? quoted(m_fields[at]) : "the end of the line",
-                                     "the number of ranges, 2 to " + std::to_string(maxRays));
-        if (m_fields.size() < at + 1 + *count + rest)
+            return lines_.errorHere(fields_.size() > at ? quoted(fields_[at]) : "the end of the line",
+                                    "the number of ranges, 2 to " + std::to_string(maxRays));
+        if (fields_.size() < at + 1 + *count + rest)
             return tooShort(keyword, at + 1 + *count + rest);
         scan.ranges.reserve(*count);
         for (std::size_t i = 0; i < *count; ++i) {
-            const auto range = parseNumber(m_fields[at + 1 + i]);
+            const auto range = parseNumber(fields_[at + 1 + i]);
             if (!range || *range < 0)
-                return m_lines.errorHere(quoted(m_fields[at + 1 + i]), "range " + std::to_string(i + 1) +
-                                                                           " of " + std::to_string(*count) +
-                                                                           ", a finite number of metres");
+                return lines_.errorHere(quoted(fields_[at + 1 + i]), "range " + std::to_string(i + 1) +
+                                                                         " of " + std::to_string(*count) +
+                                                                         ", a finite number of metres");
             scan.ranges.push_back(static_cast<float>(std::min(*range, farthest)));
         }
         at += 1 + *count;
@@ -192,7 +192,7 @@ private:
     }
 
     Problem finish(CarmenScan &scan, std::size_t poses, std::size_t stamp) {
-        scan.line = m_lines.number();
+        scan.line = lines_.number();
         for (const auto &[at, pose] :
              {std::pair(poses, &scan.laserPose), std::pair(poses + 3, &scan.robotPose)})
             if (const auto problem = readPose(at, *pose))
@@ -201,32 +201,32 @@ private:
             return problem;
         // A single ODOM that repeats the pose of the scan before it tells nothing: the wheels were not asked
         // again.
-        const bool told = m_last && (m_follows > 1 || m_last->x != m_base->x || m_last->y != m_base->y ||
-                                     m_last->theta != m_base->theta);
-        if (told && !m_log.scans.empty())
-            scan.wheelMotion = m_moved * Transformation2D(*m_base).inverse() * Transformation2D(*m_last);
-        m_moved = {};
-        m_base = scan.laserPose;
-        m_last.reset();
-        m_follows = 0;
-        m_log.scans.push_back(std::move(scan));
+        const bool told = last_ && (follows_ > 1 || last_->x != base_->x || last_->y != base_->y ||
+                                    last_->theta != base_->theta);
+        if (told && !log_.scans.empty())
+            scan.wheelMotion = moved_ * Transformation2D(*base_).inverse() * Transformation2D(*last_);
+        moved_ = {};
+        base_ = scan.laserPose;
+        last_.reset();
+        follows_ = 0;
+        log_.scans.push_back(std::move(scan));
         return {};
     }
 
     /// A pose of the wheels between two scans.
     void follow(const Pose2D &pose) {
-        if (!m_base)
-            m_base = pose; // the first after a damaged scan: where the odometry restarted is not known but
-                           // from here
-        m_last = pose;
-        ++m_follows;
+        if (!base_)
+            base_ = pose; // the first after a damaged scan: where the odometry restarted is not known but
+                          // from here
+        last_ = pose;
+        ++follows_;
     }
     /// A scan that cannot be read: the odometry restarts at its unknown pose.
     void interrupted() {
-        if (m_last)
-            m_moved = m_moved * Transformation2D(*m_base).inverse() * Transformation2D(*m_last);
-        m_base.reset();
-        m_last.reset();
+        if (last_)
+            moved_ = moved_ * Transformation2D(*base_).inverse() * Transformation2D(*last_);
+        base_.reset();
+        last_.reset();
     }
 
     Problem readPose(std::size_t at, Pose2D &pose) {
@@ -236,30 +236,30 @@ private:
             if (const auto problem = readField(at + offset, what, *value))
                 return problem;
             if (std::abs(*value) > widest)
-                return m_lines.errorHere(quoted(m_fields[at + offset]), std::string(what) + " below 1e7");
+                return lines_.errorHere(quoted(fields_[at + offset]), std::string(what) + " below 1e7");
         }
         return {};
     }
     Problem readField(std::size_t at, const char *what, double &value) {
-        const auto number = parseNumber(m_fields[at]);
+        const auto number = parseNumber(fields_[at]);
         if (!number)
-            return m_lines.errorHere(quoted(m_fields[at]), std::string(what) + ", a finite number");
+            return lines_.errorHere(quoted(fields_[at]), std::string(what) + ", a finite number");
         value = *number;
         return {};
     }
     InputError tooShort(const char *keyword, std::size_t fields) const {
-        return m_lines.errorHere("a line cut short after " + std::to_string(m_fields.size()) + " fields",
-                                 std::to_string(fields) + " fields of " + keyword);
+        return lines_.errorHere("a line cut short after " + std::to_string(fields_.size()) + " fields",
+                                std::to_string(fields) + " fields of " + keyword);
     }
 
-    LineReader m_lines;
-    CarmenOptions m_options;
-    CarmenLog m_log;
-    std::vector<std::string_view> m_fields;
-    std::optional<Pose2D> m_base; ///< where the wheels' motion since the last scan began
-    std::optional<Pose2D> m_last; ///< the last ODOM since the last scan
-    int m_follows = 0;            ///< ODOM lines since the last scan
-    Transformation2D m_moved;     ///< by the wheels before m_base, over damaged scans
+    LineReader lines_;
+    CarmenOptions options_;
+    CarmenLog log_;
+    std::vector<std::string_view> fields_;
+    std::optional<Pose2D> base_; ///< where the wheels' motion since the last scan began
+    std::optional<Pose2D> last_; ///< the last ODOM since the last scan
+    int follows_ = 0;            ///< ODOM lines since the last scan
+    Transformation2D moved_;     ///< by the wheels before base_, over damaged scans
 };
 
 } // namespace detail

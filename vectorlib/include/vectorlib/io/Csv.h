@@ -20,40 +20,40 @@ struct CsvColumns {
 class CsvReader {
 public:
     CsvReader(std::istream &in, std::string name, CsvColumns columns, bool furtherColumns = false)
-        : m_lines(in, std::move(name))
-        , m_columns(std::move(columns))
-        , m_furtherColumns(furtherColumns) {}
+        : lines_(in, std::move(name))
+        , columns_(std::move(columns))
+        , furtherColumns_(furtherColumns) {}
 
     /// The next row: the values of all required columns, then of the optional ones the file has. Nothing at
     /// the end of the file or on an error, see error().
     const std::vector<double> *next() {
-        while (const auto line = m_lines.next()) {
+        while (const auto line = lines_.next()) {
             const std::string_view text = trimmed(*line);
             if (text.empty() || text.front() == '#')
                 continue;
-            splitCommas(text, m_fields);
-            if (m_width == 0 && takeHeader())
+            splitCommas(text, fields_);
+            if (width_ == 0 && takeHeader())
                 continue;
-            return !m_error && takeRow() ? &m_row : nullptr;
+            return !error_ && takeRow() ? &row_ : nullptr;
         }
-        if (!m_error)
-            m_error = m_lines.error();
-        if (!m_error && m_lines.number() == 0)
-            m_error = m_lines.errorHere("an empty file", expectation());
+        if (!error_)
+            error_ = lines_.error();
+        if (!error_ && lines_.number() == 0)
+            error_ = lines_.errorHere("an empty file", expectation());
         return nullptr;
     }
 
-    const std::optional<InputError> &error() const { return m_error; }
-    std::size_t line() const { return m_lines.number(); }
+    const std::optional<InputError> &error() const { return error_; }
+    std::size_t line() const { return lines_.number(); }
     InputError errorHere(std::string found, std::string expected) const {
-        return m_lines.errorHere(std::move(found), std::move(expected));
+        return lines_.errorHere(std::move(found), std::move(expected));
     }
     /// Whether the file has the optional column `index`; known after the first row.
-    bool hasOptional(std::size_t index) const { return m_row.size() > m_columns.required.size() + index; }
+    bool hasOptional(std::size_t index) const { return row_.size() > columns_.required.size() + index; }
     /// The columns that were not asked for, as they stand in the current row, and their names (empty without
     /// header).
-    const std::vector<std::string_view> &further() const { return m_further; }
-    const std::vector<std::string> &furtherNames() const { return m_furtherNames; }
+    const std::vector<std::string_view> &further() const { return further_; }
+    const std::vector<std::string> &furtherNames() const { return furtherNames_; }
 
 private:
     static bool isNumberLike(std::string_view field) {
@@ -70,81 +70,81 @@ private:
 
     /// Settles where the columns are from the first line; true when it is a header.
     bool takeHeader() {
-        m_width = m_fields.size();
-        const bool header = !isNumberLike(m_fields.front());
-        for (std::size_t i = 0; i < m_columns.required.size() + m_columns.optional.size(); ++i) {
-            const bool required = i < m_columns.required.size();
+        width_ = fields_.size();
+        const bool header = !isNumberLike(fields_.front());
+        for (std::size_t i = 0; i < columns_.required.size() + columns_.optional.size(); ++i) {
+            const bool required = i < columns_.required.size();
             const std::string &column =
-                required ? m_columns.required[i] : m_columns.optional[i - m_columns.required.size()];
+                required ? columns_.required[i] : columns_.optional[i - columns_.required.size()];
             const std::size_t at =
-                header ? static_cast<std::size_t>(std::find(m_fields.begin(), m_fields.end(), column) -
-                                                  m_fields.begin())
+                header ? static_cast<std::size_t>(std::find(fields_.begin(), fields_.end(), column) -
+                                                  fields_.begin())
                        : i;
-            if (at < m_width)
-                m_positions.push_back(at);
-            else if (required && !m_error)
-                m_error = m_lines.errorHere("no column " + column, expectation());
+            if (at < width_)
+                positions_.push_back(at);
+            else if (required && !error_)
+                error_ = lines_.errorHere("no column " + column, expectation());
             else if (!required)
                 break; // optional columns count from the first on
         }
-        for (std::size_t at = 0; at < m_width; ++at)
-            if (std::find(m_positions.begin(), m_positions.end(), at) == m_positions.end()) {
-                m_furtherPositions.push_back(at);
-                m_furtherNames.emplace_back(header ? m_fields[at] : std::string_view());
+        for (std::size_t at = 0; at < width_; ++at)
+            if (std::find(positions_.begin(), positions_.end(), at) == positions_.end()) {
+                furtherPositions_.push_back(at);
+                furtherNames_.emplace_back(header ? fields_[at] : std::string_view());
             }
-        if (!header && !m_furtherColumns && !m_furtherPositions.empty() && !m_error)
-            m_error = m_lines.errorHere(std::to_string(m_width) + " fields and no header", expectation());
-        return header && !m_error;
+        if (!header && !furtherColumns_ && !furtherPositions_.empty() && !error_)
+            error_ = lines_.errorHere(std::to_string(width_) + " fields and no header", expectation());
+        return header && !error_;
     }
 
     bool takeRow() {
-        if (m_fields.size() != m_width) {
-            m_error = m_lines.errorHere(
-                std::to_string(m_fields.size()) + (m_fields.size() == 1 ? " field" : " fields"),
-                std::to_string(m_width) + " fields as in the first line: " + expectation());
+        if (fields_.size() != width_) {
+            error_ = lines_.errorHere(
+                std::to_string(fields_.size()) + (fields_.size() == 1 ? " field" : " fields"),
+                std::to_string(width_) + " fields as in the first line: " + expectation());
             return false;
         }
-        m_row.clear();
-        for (const std::size_t at : m_positions) {
-            const auto number = parseNumber(m_fields[at]);
+        row_.clear();
+        for (const std::size_t at : positions_) {
+            const auto number = parseNumber(fields_[at]);
             if (!number) {
-                m_error =
-                    m_lines.errorHere(quoted(m_fields[at]), "a finite number as " + columnName(m_row.size()));
+                error_ =
+                    lines_.errorHere(quoted(fields_[at]), "a finite number as " + columnName(row_.size()));
                 return false;
             }
-            m_row.push_back(*number);
+            row_.push_back(*number);
         }
-        m_further.clear();
-        for (const std::size_t at : m_furtherPositions)
-            m_further.push_back(m_fields[at]);
+        further_.clear();
+        for (const std::size_t at : furtherPositions_)
+            further_.push_back(fields_[at]);
         return true;
     }
 
     const std::string &columnName(std::size_t i) const {
-        return i < m_columns.required.size() ? m_columns.required[i]
-                                             : m_columns.optional[i - m_columns.required.size()];
+        return i < columns_.required.size() ? columns_.required[i]
+                                            : columns_.optional[i - columns_.required.size()];
     }
     /// `columns x,y` or `columns a,b[,weight]`
     std::string expectation() const {
         std::string text = "columns ";
-        for (std::size_t i = 0; i < m_columns.required.size(); ++i)
-            text += (i ? "," : "") + m_columns.required[i];
-        for (const std::string &column : m_columns.optional)
+        for (std::size_t i = 0; i < columns_.required.size(); ++i)
+            text += (i ? "," : "") + columns_.required[i];
+        for (const std::string &column : columns_.optional)
             text += "[," + column + "]";
         return text;
     }
 
-    LineReader m_lines;
-    CsvColumns m_columns;
-    bool m_furtherColumns;
-    std::size_t m_width = 0;
-    std::vector<std::size_t> m_positions;
-    std::vector<std::size_t> m_furtherPositions;
-    std::vector<std::string> m_furtherNames;
-    std::vector<std::string_view> m_fields;
-    std::vector<std::string_view> m_further;
-    std::vector<double> m_row;
-    std::optional<InputError> m_error;
+    LineReader lines_;
+    CsvColumns columns_;
+    bool furtherColumns_;
+    std::size_t width_ = 0;
+    std::vector<std::size_t> positions_;
+    std::vector<std::size_t> furtherPositions_;
+    std::vector<std::string> furtherNames_;
+    std::vector<std::string_view> fields_;
+    std::vector<std::string_view> further_;
+    std::vector<double> row_;
+    std::optional<InputError> error_;
 };
 
 } // namespace vectorlib

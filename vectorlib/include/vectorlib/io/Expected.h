@@ -26,22 +26,22 @@ template <typename T>
 class Expected {
 public:
     Expected(T value)
-        : m_state(std::move(value)) {}
+        : state_(std::move(value)) {}
     Expected(InputError error)
-        : m_state(std::move(error)) {}
+        : state_(std::move(error)) {}
 
-    bool hasValue() const { return m_state.index() == 0; }
+    bool hasValue() const { return state_.index() == 0; }
     explicit operator bool() const { return hasValue(); }
-    T &value() { return std::get<0>(m_state); }
-    const T &value() const { return std::get<0>(m_state); }
+    T &value() { return std::get<0>(state_); }
+    const T &value() const { return std::get<0>(state_); }
     T &operator*() { return value(); }
     const T &operator*() const { return value(); }
     T *operator->() { return &value(); }
     const T *operator->() const { return &value(); }
-    const InputError &error() const { return std::get<1>(m_state); }
+    const InputError &error() const { return std::get<1>(state_); }
 
 private:
-    std::variant<T, InputError> m_state;
+    std::variant<T, InputError> state_;
 };
 
 } // namespace vectorlib

@@ -23,7 +23,7 @@ public:
                                                 const std::vector<StampedPose> &trajectory,
                                                 double resolution = 0.05, double driven = 0.25) {
         OccupancyPicture p;
-        p.m_resolution = resolution;
+        p.resolution_ = resolution;
         if (!p.frame(map, trajectory))
             return std::nullopt;
         for (std::size_t i = 0; i + 1 < trajectory.size(); ++i)
@@ -35,14 +35,13 @@ public:
     }
 
     void writePgm(std::ostream &out) const {
-        out << "P5\n" << m_width << ' ' << m_height << "\n255\n";
-        out.write(reinterpret_cast<const char *>(m_cells.data()),
-                  static_cast<std::streamsize>(m_cells.size()));
+        out << "P5\n" << width_ << ' ' << height_ << "\n255\n";
+        out.write(reinterpret_cast<const char *>(cells_.data()), static_cast<std::streamsize>(cells_.size()));
     }
     /// picture: name of the PGM file as the YAML file shall refer to it.
     void writeYaml(std::ostream &out, const std::string &picture) const {
-        out << "image: " << picture << "\nresolution: " << Number(m_resolution) << "\norigin: ["
-            << Number(m_origin.x) << ", " << Number(m_origin.y)
+        out << "image: " << picture << "\nresolution: " << Number(resolution_) << "\norigin: ["
+            << Number(origin_.x) << ", " << Number(origin_.y)
             << ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
     }
 
@@ -64,26 +63,26 @@ private:
         }
         for (const StampedPose &s : trajectory)
             include({s.pose.x, s.pose.y});
-        m_origin = low - Vector2D<double>(margin, margin);
-        const double width = std::ceil((high.x - low.x + 2 * margin) / m_resolution);
-        const double height = std::ceil((high.y - low.y + 2 * margin) / m_resolution);
+        origin_ = low - Vector2D<double>(margin, margin);
+        const double width = std::ceil((high.x - low.x + 2 * margin) / resolution_);
+        const double height = std::ceil((high.y - low.y + 2 * margin) / resolution_);
         if (!(width * height <= static_cast<double>(maxCells)))
             return false;
-        m_width = static_cast<std::size_t>(width);
-        m_height = static_cast<std::size_t>(height);
-        m_cells.assign(m_width * m_height, unknownCell);
+        width_ = static_cast<std::size_t>(width);
+        height_ = static_cast<std::size_t>(height);
+        cells_.assign(width_ * height_, unknownCell);
         return true;
     }
     void line(Vector2D<double> a, Vector2D<double> b, double radius, unsigned char value) {
         const double length = (b - a).norm();
-        const auto steps = static_cast<std::size_t>(std::ceil(length / m_resolution * 2)) + 1;
+        const auto steps = static_cast<std::size_t>(std::ceil(length / resolution_ * 2)) + 1;
         for (std::size_t i = 0; i <= steps; ++i)
             disc(a + (b - a) * (static_cast<double>(i) / static_cast<double>(steps)), radius, value);
     }
     void disc(Vector2D<double> centre, double radius, unsigned char value) {
-        const int reach = static_cast<int>(std::floor(radius / m_resolution));
-        const int column = static_cast<int>((centre.x - m_origin.x) / m_resolution);
-        const int row = static_cast<int>((centre.y - m_origin.y) / m_resolution);
+        const int reach = static_cast<int>(std::floor(radius / resolution_));
+        const int column = static_cast<int>((centre.x - origin_.x) / resolution_);
+        const int row = static_cast<int>((centre.y - origin_.y) / resolution_);
         for (int dy = -reach; dy <= reach; ++dy)
             for (int dx = -reach; dx <= reach; ++dx)
                 if (dx * dx + dy * dy <= reach * reach)
@@ -91,17 +90,17 @@ private:
     }
     // The picture's first row is the map's highest.
     void set(int column, int row, unsigned char value) {
-        if (column < 0 || row < 0 || column >= static_cast<int>(m_width) || row >= static_cast<int>(m_height))
+        if (column < 0 || row < 0 || column >= static_cast<int>(width_) || row >= static_cast<int>(height_))
             return;
-        m_cells[(m_height - 1 - static_cast<std::size_t>(row)) * m_width + static_cast<std::size_t>(column)] =
+        cells_[(height_ - 1 - static_cast<std::size_t>(row)) * width_ + static_cast<std::size_t>(column)] =
             value;
     }
 
-    double m_resolution = 0.05;
-    Vector2D<double> m_origin; ///< lower left corner
-    std::size_t m_width = 0;
-    std::size_t m_height = 0;
-    std::vector<unsigned char> m_cells;
+    double resolution_ = 0.05;
+    Vector2D<double> origin_; ///< lower left corner
+    std::size_t width_ = 0;
+    std::size_t height_ = 0;
+    std::vector<unsigned char> cells_;
 };
 
 } // namespace vectorlib

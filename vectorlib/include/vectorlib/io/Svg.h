@@ -39,7 +39,7 @@ public:
     };
 
     explicit SvgPicture(std::string title)
-        : m_title(std::move(title)) {}
+        : title_(std::move(title)) {}
 
     template <typename Scalar>
     void points(Style style, const std::vector<Vector2D<Scalar>> &points) {
@@ -70,12 +70,12 @@ public:
 
     void write(std::ostream &out) {
         layOut();
-        out << R"(<svg xmlns="http://www.w3.org/2000/svg" width=")" << Fixed{m_width, 0} << R"(" height=")"
-            << Fixed{m_height, 0} << R"(" viewBox="0 0 )" << Fixed{m_width, 0} << ' ' << Fixed{m_height, 0}
+        out << R"(<svg xmlns="http://www.w3.org/2000/svg" width=")" << Fixed{width_, 0} << R"(" height=")"
+            << Fixed{height_, 0} << R"(" viewBox="0 0 )" << Fixed{width_, 0} << ' ' << Fixed{height_, 0}
             << R"(" font-family="sans-serif" font-size="13" fill="#333">)"
             << "\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
         writeGrid(out);
-        for (const Layer &layer : m_layers)
+        for (const Layer &layer : layers_)
             writeLayer(out, layer);
         writeScaleBar(out);
         writeLegend(out);
@@ -94,29 +94,29 @@ private:
                             mostHigh = 1200;
 
     Layer &add(Kind kind, Style style) {
-        m_layers.push_back({kind, std::move(style), {}, 0});
-        return m_layers.back();
+        layers_.push_back({kind, std::move(style), {}, 0});
+        return layers_.back();
     }
     void take(Layer &layer, Point p) {
         if (!p.isFinite())
             return;
         layer.vertices.push_back(p);
-        m_low = m_any ? Point(std::min(m_low.x, p.x), std::min(m_low.y, p.y)) : p;
-        m_high = m_any ? Point(std::max(m_high.x, p.x), std::max(m_high.y, p.y)) : p;
-        m_any = true;
+        low_ = any_ ? Point(std::min(low_.x, p.x), std::min(low_.y, p.y)) : p;
+        high_ = any_ ? Point(std::max(high_.x, p.x), std::max(high_.y, p.y)) : p;
+        any_ = true;
     }
 
     void layOut() {
-        Point size = m_high - m_low;
+        Point size = high_ - low_;
         const double margin = std::max(0.03 * std::max(size.x, size.y), 0.2);
         size += Point(2 * margin, 2 * margin);
-        m_origin = m_low - Point(margin, margin);
-        m_scale = std::min(mostWide / size.x, mostHigh / size.y);
-        m_plot = size * m_scale;
-        m_width = std::max(left + m_plot.x + right, 480.0);
-        m_top = 34 + rowHeight * static_cast<double>(legendRows());
-        m_height = m_top + m_plot.y + bottom;
-        m_step = niceStep(std::max(size.x, size.y) / 10);
+        origin_ = low_ - Point(margin, margin);
+        scale_ = std::min(mostWide / size.x, mostHigh / size.y);
+        plot_ = size * scale_;
+        width_ = std::max(left + plot_.x + right, 480.0);
+        top_ = 34 + rowHeight * static_cast<double>(legendRows());
+        height_ = top_ + plot_.y + bottom;
+        step_ = niceStep(std::max(size.x, size.y) / 10);
     }
     /// 1, 2 or 5 times a power of ten, at least `wanted`.
     static double niceStep(double wanted) {
@@ -127,31 +127,29 @@ private:
         return 10 * power;
     }
     Point toPixel(Point p) const {
-        return {left + (p.x - m_origin.x) * m_scale, m_top + m_plot.y - (p.y - m_origin.y) * m_scale};
+        return {left + (p.x - origin_.x) * scale_, top_ + plot_.y - (p.y - origin_.y) * scale_};
     }
     static void writePoint(std::ostream &out, Point p) { out << Fixed{p.x, 1} << ' ' << Fixed{p.y, 1}; }
 
     void writeGrid(std::ostream &out) const {
-        const double low = m_top + m_plot.y, high = m_top;
-        const int decimals = m_step < 0.1 ? 2 : m_step < 1 ? 1 : 0;
+        const double low = top_ + plot_.y, high = top_;
+        const int decimals = step_ < 0.1 ? 2 : step_ < 1 ? 1 : 0;
         out << "<g stroke=\"#e3e7ee\" stroke-width=\"1\" font-size=\"11\" fill=\"#6b7280\">\n";
-        for (double x = std::ceil(m_origin.x / m_step) * m_step; x <= m_origin.x + m_plot.x / m_scale;
-             x += m_step) {
+        for (double x = std::ceil(origin_.x / step_) * step_; x <= origin_.x + plot_.x / scale_; x += step_) {
             const double at = toPixel({x, 0}).x;
             out << "<path d=\"M" << Fixed{at, 1} << ' ' << Fixed{low, 1} << 'V' << Fixed{high, 1}
                 << "\"/><text x=\"" << Fixed{at, 1} << "\" y=\"" << Fixed{low + 16, 1}
                 << "\" stroke=\"none\" text-anchor=\"middle\">" << Fixed{rounded(x), decimals} << "</text>\n";
         }
-        for (double y = std::ceil(m_origin.y / m_step) * m_step; y <= m_origin.y + m_plot.y / m_scale;
-             y += m_step) {
+        for (double y = std::ceil(origin_.y / step_) * step_; y <= origin_.y + plot_.y / scale_; y += step_) {
             const double at = toPixel({0, y}).y;
-            out << "<path d=\"M" << Fixed{left, 1} << ' ' << Fixed{at, 1} << 'H' << Fixed{left + m_plot.x, 1}
+            out << "<path d=\"M" << Fixed{left, 1} << ' ' << Fixed{at, 1} << 'H' << Fixed{left + plot_.x, 1}
                 << "\"/><text x=\"" << Fixed{left - 6, 1} << "\" y=\"" << Fixed{at + 4, 1}
                 << "\" stroke=\"none\" text-anchor=\"end\">" << Fixed{rounded(y), decimals} << "</text>\n";
         }
         out << "</g>\n";
     }
-    double rounded(double v) const { return std::abs(v) < m_step / 2 ? 0 : v; }
+    double rounded(double v) const { return std::abs(v) < step_ / 2 ? 0 : v; }
 
     void writeLayer(std::ostream &out, const Layer &layer) const {
         if (layer.vertices.empty())
@@ -185,23 +183,23 @@ private:
     }
 
     void writeScaleBar(std::ostream &out) const {
-        const double y = m_height - 20, x = left, length = m_step * m_scale;
+        const double y = height_ - 20, x = left, length = step_ * scale_;
         out << "<path stroke=\"#333\" stroke-width=\"2\" fill=\"none\" d=\"M" << Fixed{x, 1} << ' '
             << Fixed{y - 5, 1} << "v10m0 -5h" << Fixed{length, 1} << "m0 -5v10\"/><text x=\""
-            << Fixed{x + length + 8, 1} << "\" y=\"" << Fixed{y + 4, 1} << "\">" << Number(m_step)
+            << Fixed{x + length + 8, 1} << "\" y=\"" << Fixed{y + 4, 1} << "\">" << Number(step_)
             << " m</text>\n";
     }
     std::size_t legendRows() const {
         std::size_t rows = 0;
-        for (const Layer &layer : m_layers)
+        for (const Layer &layer : layers_)
             rows += !layer.style.label.empty();
         return rows;
     }
     void writeLegend(std::ostream &out) const {
-        out << "<text x=\"" << left << "\" y=\"22\" font-size=\"15\" font-weight=\"bold\">"
-            << escaped(m_title) << "</text>\n";
+        out << "<text x=\"" << left << "\" y=\"22\" font-size=\"15\" font-weight=\"bold\">" << escaped(title_)
+            << "</text>\n";
         double y = 40;
-        for (const Layer &layer : m_layers) {
+        for (const Layer &layer : layers_) {
             if (layer.style.label.empty())
                 continue;
             if (layer.kind == Kind::Pose)
@@ -231,14 +229,14 @@ private:
         return result;
     }
 
-    std::string m_title;
-    std::vector<Layer> m_layers;
-    bool m_any = false;
-    Point m_low, m_high;
-    Point m_origin, m_plot; ///< lower left corner in metres; size in pixels
-    double m_scale = 1;     ///< pixels a metre
-    double m_step = 1;      ///< of the grid, metres
-    double m_top = 0, m_width = 0, m_height = 0;
+    std::string title_;
+    std::vector<Layer> layers_;
+    bool any_ = false;
+    Point low_, high_;
+    Point origin_, plot_; ///< lower left corner in metres; size in pixels
+    double scale_ = 1;    ///< pixels a metre
+    double step_ = 1;     ///< of the grid, metres
+    double top_ = 0, width_ = 0, height_ = 0;
 };
 
 } // namespace vectorlib

@@ -19,74 +19,74 @@ public:
     static constexpr std::size_t maxLineLength = 1 << 20;
 
     LineReader(std::istream &in, std::string name)
-        : m_in(in)
-        , m_name(std::move(name)) {}
+        : in_(in)
+        , name_(std::move(name)) {}
 
     /// The next line without its end; nothing at the end of the input or on an error, see error().
     std::optional<std::string_view> next() {
-        m_line.clear();
-        m_terminated = false;
-        if (m_error || (m_at == m_filled && !fill()))
+        line_.clear();
+        terminated_ = false;
+        if (error_ || (at_ == filled_ && !fill()))
             return std::nullopt;
-        ++m_number;
-        while (!m_terminated && (m_at < m_filled || fill()))
+        ++number_;
+        while (!terminated_ && (at_ < filled_ || fill()))
             takeRestOfLine();
-        if (m_error)
+        if (error_)
             return std::nullopt;
-        if (!m_line.empty() && m_line.back() == '\r')
-            m_line.pop_back();
-        if (m_line.find('\0') != std::string::npos)
+        if (!line_.empty() && line_.back() == '\r')
+            line_.pop_back();
+        if (line_.find('\0') != std::string::npos)
             return fail("a NUL byte", "a line of text");
-        return m_line;
+        return line_;
     }
 
     /// Set when the input is no text, has an endless line or could not be read to its end.
-    const std::optional<InputError> &error() const { return m_error; }
+    const std::optional<InputError> &error() const { return error_; }
     /// Number of the line that next() gave last, from 1.
-    std::size_t number() const { return m_number; }
+    std::size_t number() const { return number_; }
     /// False when the last line ended with the input instead of a line feed: it may be cut short.
-    bool terminated() const { return m_terminated; }
-    const std::string &name() const { return m_name; }
+    bool terminated() const { return terminated_; }
+    const std::string &name() const { return name_; }
     InputError errorHere(std::string found, std::string expected) const {
-        return {m_name, m_number, std::move(found), std::move(expected)};
+        return {name_, number_, std::move(found), std::move(expected)};
     }
 
 private:
     bool fill() {
-        m_in.read(m_block.data(), static_cast<std::streamsize>(m_block.size()));
-        m_at = 0;
-        m_filled = static_cast<std::size_t>(m_in.gcount());
-        if (m_in.bad()) {
+        in_.read(block_.data(), static_cast<std::streamsize>(block_.size()));
+        at_ = 0;
+        filled_ = static_cast<std::size_t>(in_.gcount());
+        if (in_.bad()) {
             fail("input that ends or breaks off too early", "input that can be read to its end");
             return false;
         }
-        return m_filled > 0;
+        return filled_ > 0;
     }
     void takeRestOfLine() {
-        const std::string_view rest(m_block.data() + m_at, m_filled - m_at);
+        const std::string_view rest(block_.data() + at_, filled_ - at_);
         const std::size_t length = std::min(rest.find('\n'), rest.size());
-        m_line.append(rest.substr(0, length));
-        m_terminated = length < rest.size();
-        m_at += length + (m_terminated ? 1 : 0);
-        if (m_line.size() > maxLineLength)
+        line_.append(rest.substr(0, length));
+        terminated_ = length < rest.size();
+        at_ += length + (terminated_ ? 1 : 0);
+        if (line_.size() > maxLineLength)
             fail("a line of over " + std::to_string(maxLineLength) + " characters", "lines of text");
-        if (m_error)
-            m_terminated = true;
+        if (error_)
+            terminated_ = true;
     }
     std::nullopt_t fail(std::string found, std::string expected) {
-        m_error = errorHere(std::move(found), std::move(expected));
+        error_ = errorHere(std::move(found), std::move(expected));
         return std::nullopt;
     }
 
-    std::istream &m_in;
-    std::string m_name;
-    std::string m_line;
-    std::array<char, 1 << 16> m_block;
-    std::size_t m_at = 0;
-    std::size_t m_filled = 0;
-    std::size_t m_number = 0;
-    bool m_terminated = false;
-    std::optional<InputError> m_error;
+    std::istream &in_;
+    std::string name_;
+    std::string line_;
+    std::array<char, 1 << 16> block_;
+    std::size_t at_ = 0;
+    std::size_t filled_ = 0;
+    std::size_t number_ = 0;
+    bool terminated_ = false;
+    std::optional<InputError> error_;
 };
 
 inline bool isBlank(char c) {

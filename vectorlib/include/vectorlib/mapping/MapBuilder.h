@@ -42,37 +42,37 @@ public:
     /// Takes a scan (sensor frame, in order of acquisition) and where the sensor is expected to be (map
     /// frame).
     const ScanReport &process(PointSpan<float> scan, const Pose2D &expected) {
-        m_report = ScanReport();
+        report_ = ScanReport();
         const auto t0 = Clock::now();
         const Segmentation &clusters = extract.segment(scan);
         const auto t1 = Clock::now();
         const std::vector<EdgeRaw2D> &edges = extract.vectorizeClusters(clusters, scan);
         const auto t2 = Clock::now();
-        m_edges = &edges;
+        edges_ = &edges;
         locate(Transformation2D(expected));
         const auto t3 = Clock::now();
         updateMap();
         const auto t4 = Clock::now();
-        m_report.segmentMs = milliseconds(t0, t1);
-        m_report.vectorizeMs = milliseconds(t1, t2);
-        m_report.matchMs = milliseconds(t2, t3);
-        m_report.mapMs = milliseconds(t3, t4);
-        return m_report;
+        report_.segmentMs = milliseconds(t0, t1);
+        report_.vectorizeMs = milliseconds(t1, t2);
+        report_.matchMs = milliseconds(t2, t3);
+        report_.mapMs = milliseconds(t3, t4);
+        return report_;
     }
 
-    const ScanReport &report() const { return m_report; }
+    const ScanReport &report() const { return report_; }
     /// The match of the last scan; pairs refer to matchedNumbers() and edges().
-    const Match &match() const { return m_match; }
+    const Match &match() const { return match_; }
     /// Map edges that the last scan was compared with, by index of the match's static set.
-    const std::vector<int> &candidates() const { return m_numbers; }
+    const std::vector<int> &candidates() const { return numbers_; }
     /// The edges of the last scan, sensor frame.
-    const std::vector<EdgeRaw2D> &edges() const { return *m_edges; }
+    const std::vector<EdgeRaw2D> &edges() const { return *edges_; }
 
     void clear() {
         map.clear();
-        m_lost = 0;
-        m_match = Match();
-        m_numbers.clear();
+        lost_ = 0;
+        match_ = Match();
+        numbers_.clear();
     }
 
 private:
@@ -82,47 +82,47 @@ private:
     }
 
     void locate(const Transformation2D &expected) {
-        m_pose = expected;
-        m_match = Match();
-        m_numbers.clear();
-        if (m_edges->size() < settings.minEdges)
-            m_report.outcome = ScanReport::Outcome::Skipped;
+        pose_ = expected;
+        match_ = Match();
+        numbers_.clear();
+        if (edges_->size() < settings.minEdges)
+            report_.outcome = ScanReport::Outcome::Skipped;
         else if (map.isEmpty())
-            m_report.outcome = settings.grow ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
+            report_.outcome = settings.grow ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
         else {
             collectVisible(expected);
-            m_match = find(m_static, *m_edges, expected);
-            m_report.outcome = m_match.accepted ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
-            if (m_match.accepted)
-                m_pose = m_match.pose;
+            match_ = find(static_, *edges_, expected);
+            report_.outcome = match_.accepted ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
+            if (match_.accepted)
+                pose_ = match_.pose;
         }
-        m_lost = m_report.outcome == ScanReport::Outcome::Lost ? m_lost + 1 : 0;
-        m_report.pose = m_pose.pose();
+        lost_ = report_.outcome == ScanReport::Outcome::Lost ? lost_ + 1 : 0;
+        report_.pose = pose_.pose();
     }
     // The part of the map that the scan can touch from any permitted pose.
     void collectVisible(const Transformation2D &expected) {
         double reach = 0;
-        for (const EdgeRaw2D &e : *m_edges)
+        for (const EdgeRaw2D &e : *edges_)
             reach = std::max({reach, e.segment.begin().squaredNorm(), e.segment.end().squaredNorm()});
         reach = std::sqrt(reach) + std::max(find.settings.permitted.dx, find.settings.permitted.dy);
         const Vector2D<double> centre = expected.translation(), half(reach, reach);
-        m_static.clear();
+        static_.clear();
         for (int number : map.near(centre - half, centre + half)) {
-            m_numbers.push_back(number);
-            m_static.push_back(map.slots()[static_cast<std::size_t>(number)].edge.segment);
+            numbers_.push_back(number);
+            static_.push_back(map.slots()[static_cast<std::size_t>(number)].edge.segment);
         }
     }
     void updateMap() {
-        if (!settings.grow || m_report.outcome == ScanReport::Outcome::Skipped ||
-            (m_report.outcome == ScanReport::Outcome::Lost && m_lost < settings.lostBeforeRestart))
+        if (!settings.grow || report_.outcome == ScanReport::Outcome::Skipped ||
+            (report_.outcome == ScanReport::Outcome::Lost && lost_ < settings.lostBeforeRestart))
             return;
-        m_partner.assign(m_edges->size(), -1);
-        if (m_report.outcome == ScanReport::Outcome::Matched)
-            for (const CorrespondencePair &p : m_match.pairs)
-                m_partner[static_cast<std::size_t>(p.moving)] = m_numbers[static_cast<std::size_t>(p.fixed)];
-        for (std::size_t i = 0; i < m_edges->size(); ++i) {
-            const EdgeRaw2D seen = m_pose * (*m_edges)[i];
-            int number = m_partner[i];
+        partner_.assign(edges_->size(), -1);
+        if (report_.outcome == ScanReport::Outcome::Matched)
+            for (const CorrespondencePair &p : match_.pairs)
+                partner_[static_cast<std::size_t>(p.moving)] = numbers_[static_cast<std::size_t>(p.fixed)];
+        for (std::size_t i = 0; i < edges_->size(); ++i) {
+            const EdgeRaw2D seen = pose_ * (*edges_)[i];
+            int number = partner_[i];
             if (number >= 0 &&
                 mergeable(map.slots()[static_cast<std::size_t>(number)].edge.segment, seen.segment) &&
                 map.merge(number, seen))
@@ -138,14 +138,14 @@ private:
         return (a * a + a * b + b * b) / 3 <= settings.mergeDistance * settings.mergeDistance;
     }
 
-    const std::vector<EdgeRaw2D> *m_edges = nullptr;
-    std::vector<LineSegment2D<double>> m_static;
-    std::vector<int> m_numbers;
-    std::vector<int> m_partner;
-    Transformation2D m_pose;
-    Match m_match;
-    ScanReport m_report;
-    int m_lost = 0;
+    const std::vector<EdgeRaw2D> *edges_ = nullptr;
+    std::vector<LineSegment2D<double>> static_;
+    std::vector<int> numbers_;
+    std::vector<int> partner_;
+    Transformation2D pose_;
+    Match match_;
+    ScanReport report_;
+    int lost_ = 0;
 };
 
 } // namespace vectorlib

@@ -39,44 +39,44 @@ public:
     double lastStepShare = 0.5; ///< of the last step in the velocity; less is smoother and later
 
     void update(const Pose2D &pose, double stamp) {
-        const double seconds = stamp - m_stamp;
-        if (!m_known || !(seconds > 0) || seconds > maxGap) {
-            m_twist = Twist2D();
-            m_velocityKnown = false;
+        const double seconds = stamp - stamp_;
+        if (!known_ || !(seconds > 0) || seconds > maxGap) {
+            twist_ = Twist2D();
+            velocityKnown_ = false;
         } else {
             const Twist2D last =
-                Twist2D::between(Transformation2D(m_pose).inverse() * Transformation2D(pose), seconds);
-            const double k = m_velocityKnown ? lastStepShare : 1;
-            m_twist = {m_twist.vx + k * (last.vx - m_twist.vx), m_twist.vy + k * (last.vy - m_twist.vy),
-                       m_twist.omega + k * (last.omega - m_twist.omega)};
-            m_velocityKnown = true;
+                Twist2D::between(Transformation2D(pose_).inverse() * Transformation2D(pose), seconds);
+            const double k = velocityKnown_ ? lastStepShare : 1;
+            twist_ = {twist_.vx + k * (last.vx - twist_.vx), twist_.vy + k * (last.vy - twist_.vy),
+                      twist_.omega + k * (last.omega - twist_.omega)};
+            velocityKnown_ = true;
         }
-        m_pose = pose;
-        m_stamp = stamp;
-        m_known = true;
+        pose_ = pose;
+        stamp_ = stamp;
+        known_ = true;
     }
     /// Puts the sensor somewhere else, standing still.
     void reset(const Pose2D &pose) {
-        m_pose = pose;
-        m_twist = Twist2D();
-        m_known = m_velocityKnown = false;
+        pose_ = pose;
+        twist_ = Twist2D();
+        known_ = velocityKnown_ = false;
     }
     Pose2D predict(double stamp) const {
-        const double seconds = stamp - m_stamp;
-        if (!m_known || !(seconds > 0) || seconds > maxGap)
-            return m_pose;
-        return (Transformation2D(m_pose) * m_twist.motion(seconds)).pose();
+        const double seconds = stamp - stamp_;
+        if (!known_ || !(seconds > 0) || seconds > maxGap)
+            return pose_;
+        return (Transformation2D(pose_) * twist_.motion(seconds)).pose();
     }
-    const Pose2D &pose() const { return m_pose; }
+    const Pose2D &pose() const { return pose_; }
     /// Smoothed over the last steps; zero when unknown.
-    const Twist2D &twist() const { return m_twist; }
+    const Twist2D &twist() const { return twist_; }
 
 private:
-    Pose2D m_pose;
-    Twist2D m_twist;
-    double m_stamp = 0;
-    bool m_known = false;
-    bool m_velocityKnown = false;
+    Pose2D pose_;
+    Twist2D twist_;
+    double stamp_ = 0;
+    bool known_ = false;
+    bool velocityKnown_ = false;
 };
 
 /// The middle between the first and the last of the points' times; 0 without any. The best time to refer a

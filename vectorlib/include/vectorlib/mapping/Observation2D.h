@@ -28,18 +28,18 @@ public:
 
     /// The edges of a scan (sensor frame, points in order of acquisition), without links to rich edges.
     const std::vector<EdgeRaw2D> &operator()(PointSpan<float> scan) {
-        m_edges.clear();
+        edges_.clear();
         forEachLine(segment(scan), scan,
-                    [this](const VectorizedLine &l) { m_edges.emplace_back(l.sums, l.segment, l.sigma); });
-        return m_edges;
+                    [this](const VectorizedLine &l) { edges_.emplace_back(l.sums, l.segment, l.sigma); });
+        return edges_;
     }
 
     /// The second half of operator(), for callers that time both halves.
     const std::vector<EdgeRaw2D> &vectorizeClusters(const Segmentation &clusters, PointSpan<float> scan) {
-        m_edges.clear();
+        edges_.clear();
         forEachLine(clusters, scan,
-                    [this](const VectorizedLine &l) { m_edges.emplace_back(l.sums, l.segment, l.sigma); });
-        return m_edges;
+                    [this](const VectorizedLine &l) { edges_.emplace_back(l.sums, l.segment, l.sigma); });
+        return edges_;
     }
 
     /// Fills the edges and outliers of an observation from its cloud. The observation must not move
@@ -48,17 +48,17 @@ public:
         observation.edges.clear();
         observation.outliers.clear();
         const PointSpan<float> scan(observation.cloud);
-        m_used.assign(scan.size(), 0);
+        used_.assign(scan.size(), 0);
         const Segmentation &clusters = segment(scan);
         std::size_t cluster = 0;
         forEachLine(
             clusters, scan,
             [&](const VectorizedLine &l) {
                 EdgeRich2D edge;
-                edge.points.assign(m_cluster.begin() + static_cast<std::ptrdiff_t>(l.first),
-                                   m_cluster.begin() + static_cast<std::ptrdiff_t>(l.last) + 1);
+                edge.points.assign(cluster_.begin() + static_cast<std::ptrdiff_t>(l.first),
+                                   cluster_.begin() + static_cast<std::ptrdiff_t>(l.last) + 1);
                 for (std::size_t i = l.first; i <= l.last; ++i)
-                    m_used[static_cast<std::size_t>(clusters.order[clusters.starts[cluster] + i])] = 1;
+                    used_[static_cast<std::size_t>(clusters.order[clusters.starts[cluster] + i])] = 1;
                 edge.sums = l.sums;
                 edge.segment = l.segment;
                 edge.sigma = l.sigma;
@@ -66,8 +66,8 @@ public:
                 observation.edges.push_back(std::move(edge));
             },
             &cluster);
-        for (std::size_t i = 0; i < m_used.size(); ++i)
-            if (!m_used[i])
+        for (std::size_t i = 0; i < used_.size(); ++i)
+            if (!used_[i])
                 observation.outliers.push_back(static_cast<int>(i));
     }
 
@@ -76,21 +76,21 @@ private:
     void forEachLine(const Segmentation &clusters, PointSpan<float> scan, Take take,
                      std::size_t *index = nullptr) {
         for (std::size_t c = 0; c < clusters.size(); ++c) {
-            m_cluster.clear();
+            cluster_.clear();
             for (std::size_t i = clusters.starts[c]; i < clusters.starts[c + 1]; ++i)
-                m_cluster.push_back(scan[static_cast<std::size_t>(clusters.order[i])]);
+                cluster_.push_back(scan[static_cast<std::size_t>(clusters.order[i])]);
             if (index)
                 *index = c;
-            for (const VectorizedLine &line : vectorize(m_cluster))
+            for (const VectorizedLine &line : vectorize(cluster_))
                 if (line.line.isValid() && line.last - line.first + 1 >= minPoints &&
                     line.segment.length() >= minLength)
                     take(line);
         }
     }
 
-    std::vector<Vector2D<float>> m_cluster;
-    std::vector<char> m_used;
-    std::vector<EdgeRaw2D> m_edges;
+    std::vector<Vector2D<float>> cluster_;
+    std::vector<char> used_;
+    std::vector<EdgeRaw2D> edges_;
 };
 
 } // namespace vectorlib

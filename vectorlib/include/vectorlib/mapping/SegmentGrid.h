@@ -15,42 +15,42 @@ namespace vectorlib {
 class SegmentGrid {
 public:
     explicit SegmentGrid(double cell = 2.0)
-        : m_cell(cell) {}
+        : cell_(cell) {}
 
     void clear() {
-        m_cells.clear();
-        m_mark.clear();
+        cells_.clear();
+        mark_.clear();
     }
     /// Enters a segment under its number; entering it again after it grew adds the new cells. Nothing is
     /// taken out: whoever asks checks what it finds.
     void insert(int number, const LineSegment2D<double> &segment) {
-        const int steps = 1 + static_cast<int>(segment.length() / (0.5 * m_cell));
+        const int steps = 1 + static_cast<int>(segment.length() / (0.5 * cell_));
         for (int i = 0; i <= steps; ++i) {
             const Vector2D<double> p =
                 segment.begin() + (segment.end() - segment.begin()) * (double(i) / steps);
-            std::vector<int> &cell = m_cells[key(index(p.x), index(p.y))];
+            std::vector<int> &cell = cells_[key(index(p.x), index(p.y))];
             if (cell.empty() || cell.back() != number)
                 if (std::find(cell.begin(), cell.end(), number) == cell.end())
                     cell.push_back(number);
         }
-        if (static_cast<std::size_t>(number) >= m_mark.size())
-            m_mark.resize(static_cast<std::size_t>(number) + 1, 0);
+        if (static_cast<std::size_t>(number) >= mark_.size())
+            mark_.resize(static_cast<std::size_t>(number) + 1, 0);
     }
     /// Calls take(number) once for every segment near the box; at most two cells beyond it, never fewer than
     /// those that touch it.
     template <typename Take>
     void query(Vector2D<double> low, Vector2D<double> high, Take take) {
-        ++m_query;
+        ++query_;
         // Sampling at half a cell can cut a corner of at most a quarter of a cell: one cell of margin covers
         // it.
         for (std::int64_t i = index(low.x) - 1; i <= index(high.x) + 1; ++i)
             for (std::int64_t j = index(low.y) - 1; j <= index(high.y) + 1; ++j) {
-                const auto cell = m_cells.find(key(i, j));
-                if (cell == m_cells.end())
+                const auto cell = cells_.find(key(i, j));
+                if (cell == cells_.end())
                     continue;
                 for (int number : cell->second)
-                    if (m_mark[static_cast<std::size_t>(number)] != m_query) {
-                        m_mark[static_cast<std::size_t>(number)] = m_query;
+                    if (mark_[static_cast<std::size_t>(number)] != query_) {
+                        mark_[static_cast<std::size_t>(number)] = query_;
                         take(number);
                     }
             }
@@ -59,7 +59,7 @@ public:
 private:
     // Cells beyond 10^9 are all one, so that no coordinate overflows; NaN is in cell 0.
     std::int64_t index(double v) const {
-        const double i = std::floor(v / m_cell);
+        const double i = std::floor(v / cell_);
         return i == i ? static_cast<std::int64_t>(std::clamp(i, -1e9, 1e9)) : 0;
     }
     static std::int64_t key(std::int64_t i, std::int64_t j) {
@@ -67,10 +67,10 @@ private:
                                          (static_cast<std::uint64_t>(j) & 0xffffffffu));
     }
 
-    double m_cell;
-    std::unordered_map<std::int64_t, std::vector<int>> m_cells;
-    std::vector<unsigned> m_mark; // the last query that took each number
-    unsigned m_query = 0;
+    double cell_;
+    std::unordered_map<std::int64_t, std::vector<int>> cells_;
+    std::vector<unsigned> mark_; // the last query that took each number
+    unsigned query_ = 0;
 };
 
 } // namespace vectorlib

@@ -30,61 +30,61 @@ public:
     VectorMapSettings settings;
 
     /// The edges; those of observations == 0 were merged into others and are to be skipped.
-    const std::vector<MapEdge> &slots() const { return m_edges; }
-    std::size_t size() const { return m_alive; }
-    bool isEmpty() const { return m_alive == 0; }
+    const std::vector<MapEdge> &slots() const { return edges_; }
+    std::size_t size() const { return alive_; }
+    bool isEmpty() const { return alive_ == 0; }
     void clear() {
-        m_edges.clear();
-        m_grid.clear();
-        m_alive = 0;
-        m_changed.clear();
+        edges_.clear();
+        grid_.clear();
+        alive_ = 0;
+        changed_.clear();
     }
 
     template <typename Take>
     void forEach(Take take) const {
-        for (const MapEdge &e : m_edges)
+        for (const MapEdge &e : edges_)
             if (e.observations > 0)
                 take(e);
     }
     /// Numbers of the edges near a box; sorted by number, so that results do not depend on hashing.
     const std::vector<int> &near(Vector2D<double> low, Vector2D<double> high) {
-        m_found.clear();
-        m_grid.query(low, high, [this](int number) {
-            if (m_edges[static_cast<std::size_t>(number)].observations > 0)
-                m_found.push_back(number);
+        found_.clear();
+        grid_.query(low, high, [this](int number) {
+            if (edges_[static_cast<std::size_t>(number)].observations > 0)
+                found_.push_back(number);
         });
-        std::sort(m_found.begin(), m_found.end());
-        return m_found;
+        std::sort(found_.begin(), found_.end());
+        return found_;
     }
 
     /// Adds an edge seen for the first time (or read from a file); returns its number.
     int add(const EdgeRaw2D &edge, int observations = 1) {
-        const int number = static_cast<int>(m_edges.size());
-        m_edges.push_back({number, edge, observations});
-        m_edges.back().edge.rich = nullptr;
-        m_grid.insert(number, edge.segment);
-        ++m_alive;
-        m_changed.push_back(number);
+        const int number = static_cast<int>(edges_.size());
+        edges_.push_back({number, edge, observations});
+        edges_.back().edge.rich = nullptr;
+        grid_.insert(number, edge.segment);
+        ++alive_;
+        changed_.push_back(number);
         return number;
     }
     /// Merges an edge (map frame) into the map's edge of that number; false, and nothing changed, when the
     /// points would no longer lie within maxSigma of one line.
     bool merge(int number, const EdgeRaw2D &edge) {
-        MapEdge &target = m_edges[static_cast<std::size_t>(number)];
+        MapEdge &target = edges_[static_cast<std::size_t>(number)];
         const EdgeRaw2D joint = merged(target.edge, edge);
         if (joint.sigma > settings.maxSigma)
             return false;
         target.edge = joint;
         ++target.observations;
-        m_grid.insert(number, joint.segment);
-        m_changed.push_back(number);
+        grid_.insert(number, joint.segment);
+        changed_.push_back(number);
         return true;
     }
     /// Joins the edge with others that lie on the same line and touch it; returns how many it took in.
     int consolidate(int number) {
         int joined = 0;
         for (bool again = true; again;) {
-            const LineSegment2D<double> s = m_edges[static_cast<std::size_t>(number)].edge.segment;
+            const LineSegment2D<double> s = edges_[static_cast<std::size_t>(number)].edge.segment;
             const double g = settings.joinGap;
             const Vector2D<double> low(std::min(s.begin().x, s.end().x) - g,
                                        std::min(s.begin().y, s.end().y) - g);
@@ -102,14 +102,14 @@ public:
     }
     /// Numbers of edges that were added, merged or removed since the last call, for those who send changes.
     std::vector<int> takeChanges() {
-        std::sort(m_changed.begin(), m_changed.end());
-        m_changed.erase(std::unique(m_changed.begin(), m_changed.end()), m_changed.end());
-        return std::exchange(m_changed, {});
+        std::sort(changed_.begin(), changed_.end());
+        changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+        return std::exchange(changed_, {});
     }
 
 private:
     bool join(int number, int other) {
-        MapEdge &a = m_edges[static_cast<std::size_t>(number)], &b = m_edges[static_cast<std::size_t>(other)];
+        MapEdge &a = edges_[static_cast<std::size_t>(number)], &b = edges_[static_cast<std::size_t>(other)];
         const LineSegment2D<double> &s = a.edge.segment, &o = b.edge.segment;
         if (s.direction().dot(o.direction()) < std::cos(settings.joinAngle))
             return false;
@@ -125,18 +125,18 @@ private:
         a.edge = joint;
         a.observations = std::max(a.observations, b.observations);
         b.observations = 0;
-        --m_alive;
-        m_grid.insert(number, joint.segment);
-        m_changed.push_back(number);
-        m_changed.push_back(other);
+        --alive_;
+        grid_.insert(number, joint.segment);
+        changed_.push_back(number);
+        changed_.push_back(other);
         return true;
     }
 
-    std::vector<MapEdge> m_edges; // by number; an id is never used again
-    SegmentGrid m_grid;
-    std::size_t m_alive = 0;
-    std::vector<int> m_found;
-    std::vector<int> m_changed;
+    std::vector<MapEdge> edges_; // by number; an id is never used again
+    SegmentGrid grid_;
+    std::size_t alive_ = 0;
+    std::vector<int> found_;
+    std::vector<int> changed_;
 };
 
 } // namespace vectorlib

@@ -30,14 +30,14 @@ public:
     /// call. Edges and poses that are not finite see and are seen nowhere.
     const std::vector<VisiblePart<Scalar>> &operator()(const std::vector<Segment> &world,
                                                        const Pose2D &pose) {
-        m_parts.clear();
+        parts_.clear();
         place(world, pose);
         collectAngles();
-        for (std::size_t i = 1; i < m_angles.size(); ++i)
-            look(m_angles[i - 1], m_angles[i]);
+        for (std::size_t i = 1; i < angles_.size(); ++i)
+            look(angles_[i - 1], angles_[i]);
         closeTurn();
         clip();
-        return m_parts;
+        return parts_;
     }
 
 private:
@@ -52,33 +52,33 @@ private:
 
     void place(const std::vector<Segment> &world, const Pose2D &pose) {
         const Transformation2D toSensor = Transformation2D(pose).inverse();
-        m_edges.clear();
+        edges_.clear();
         for (std::size_t i = 0; i < world.size(); ++i) {
             const Edge edge{toSensor * Vector(world[i].begin()), toSensor * Vector(world[i].end()), i};
             if (edge.begin.isFinite() && edge.end.isFinite())
-                m_edges.push_back(edge);
+                edges_.push_back(edge);
         }
     }
 
     /// The directions between which the nearest edge cannot change: to ends and crossings of edges.
     void collectAngles() {
         const double limit = std::min(fieldOfView / 2, pi);
-        m_angles.assign({-limit, limit});
+        angles_.assign({-limit, limit});
         const auto add = [&](Vector p) {
             const double angle = std::atan2(p.y, p.x);
             if (angle > -limit && angle < limit)
-                m_angles.push_back(angle);
+                angles_.push_back(angle);
         };
-        for (std::size_t i = 0; i < m_edges.size(); ++i) {
-            add(m_edges[i].begin);
-            add(m_edges[i].end);
+        for (std::size_t i = 0; i < edges_.size(); ++i) {
+            add(edges_[i].begin);
+            add(edges_[i].end);
             for (std::size_t j = 0; j < i; ++j) {
                 Vector crossing;
-                if (cross(m_edges[i], m_edges[j], crossing))
+                if (cross(edges_[i], edges_[j], crossing))
                     add(crossing);
             }
         }
-        std::sort(m_angles.begin(), m_angles.end());
+        std::sort(angles_.begin(), angles_.end());
     }
 
     static bool cross(const Edge &a, const Edge &b, Vector &point) {
@@ -99,7 +99,7 @@ private:
         const Vector middle = towards((right + left) / 2);
         const Edge *nearest = nullptr;
         double nearestDistance = noHit;
-        for (const Edge &edge : m_edges) {
+        for (const Edge &edge : edges_) {
             const double distance = rayDistance(middle, edge.begin, edge.end);
             if (distance < nearestDistance) {
                 nearestDistance = distance;
@@ -110,11 +110,11 @@ private:
             return;
         const Segment part(Vector2D<Scalar>(meet(*nearest, towards(right))),
                            Vector2D<Scalar>(meet(*nearest, towards(left))));
-        if (!m_parts.empty() && m_parts.back().edge == nearest->number && m_lastLeft == right)
-            m_parts.back().segment = Segment(m_parts.back().segment.begin(), part.end());
+        if (!parts_.empty() && parts_.back().edge == nearest->number && lastLeft_ == right)
+            parts_.back().segment = Segment(parts_.back().segment.begin(), part.end());
         else
-            m_parts.push_back({part, nearest->number});
-        m_lastLeft = left;
+            parts_.push_back({part, nearest->number});
+        lastLeft_ = left;
     }
 
     static Vector towards(double angle) { return {std::cos(angle), std::sin(angle)}; }
@@ -128,20 +128,20 @@ private:
 
     /// Joins the two halves of the edge right behind the sensor, where a full turn begins and ends.
     void closeTurn() {
-        if (m_parts.size() < 2 || fieldOfView < 2 * pi || m_parts.front().edge != m_parts.back().edge)
+        if (parts_.size() < 2 || fieldOfView < 2 * pi || parts_.front().edge != parts_.back().edge)
             return;
-        const Segment first = m_parts.front().segment, last = m_parts.back().segment;
+        const Segment first = parts_.front().segment, last = parts_.back().segment;
         if ((first.begin() - last.end()).norm() > Scalar(1e-6) * (Scalar(1) + first.begin().norm()))
             return;
-        m_parts.front().segment = Segment(last.begin(), first.end());
-        m_parts.pop_back();
+        parts_.front().segment = Segment(last.begin(), first.end());
+        parts_.pop_back();
     }
 
     void clip() {
         if (!(maxRange < noHit))
             return;
         std::size_t kept = 0;
-        for (const VisiblePart<Scalar> &part : m_parts) {
+        for (const VisiblePart<Scalar> &part : parts_) {
             const Segment &s = part.segment;
             const double across = s.across({0, 0});
             if (std::abs(across) >= maxRange)
@@ -151,15 +151,15 @@ private:
             if (from >= to)
                 continue;
             const auto at = [&](double t) { return s.begin() + s.direction() * Scalar(t); };
-            m_parts[kept++] = {Segment(at(from), at(to), s.direction()), part.edge};
+            parts_[kept++] = {Segment(at(from), at(to), s.direction()), part.edge};
         }
-        m_parts.resize(kept);
+        parts_.resize(kept);
     }
 
-    std::vector<Edge> m_edges;
-    std::vector<double> m_angles;
-    std::vector<VisiblePart<Scalar>> m_parts;
-    double m_lastLeft = 0;
+    std::vector<Edge> edges_;
+    std::vector<double> angles_;
+    std::vector<VisiblePart<Scalar>> parts_;
+    double lastLeft_ = 0;
 };
 
 } // namespace vectorlib

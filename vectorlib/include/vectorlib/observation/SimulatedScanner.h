@@ -23,7 +23,7 @@ public:
     double maxRange = 100;       ///< metres; farther walls give no point
 
     explicit SimulatedScanner(std::uint64_t seed = 1)
-        : m_random(seed) {}
+        : random_(seed) {}
 
     /// The direction of a ray, counter-clockwise from the heading; radians. A full turn has no ray twice: the
     /// last is a step short of the first; a smaller field of view has a ray at each of its limits.
@@ -37,17 +37,17 @@ public:
     const std::vector<Vector2D<Scalar>> &operator()(const std::vector<LineSegment2D<Scalar>> &world,
                                                     const Pose2D &pose) {
         const Transformation2D toSensor = Transformation2D(pose).inverse();
-        m_edges.clear();
+        edges_.clear();
         for (const LineSegment2D<Scalar> &edge : world)
-            m_edges.push_back({toSensor * Vector(edge.begin()), toSensor * Vector(edge.end())});
-        m_points.clear();
+            edges_.push_back({toSensor * Vector(edge.begin()), toSensor * Vector(edge.end())});
+        points_.clear();
         for (int ray = 0; ray < rays; ++ray) {
             const Vector direction(std::cos(angle(ray)), std::sin(angle(ray)));
             const double range = measure(direction);
             if (range >= minRange && range <= maxRange)
-                m_points.push_back(Vector2D<Scalar>(direction * range));
+                points_.push_back(Vector2D<Scalar>(direction * range));
         }
-        return m_points;
+        return points_;
     }
 
 private:
@@ -59,18 +59,18 @@ private:
 
     double measure(Vector direction) {
         double range = noHit;
-        for (const Edge &edge : m_edges)
+        for (const Edge &edge : edges_)
             range = std::min(range, rayDistance(direction, edge.begin, edge.end));
-        if (outliers > 0 && m_uniform(m_random) < outliers)
-            return minRange + m_uniform(m_random) * std::max(0.0, std::min(range, maxRange) - minRange);
-        return range + sigma * m_normal(m_random);
+        if (outliers > 0 && uniform_(random_) < outliers)
+            return minRange + uniform_(random_) * std::max(0.0, std::min(range, maxRange) - minRange);
+        return range + sigma * normal_(random_);
     }
 
-    std::mt19937_64 m_random;
-    std::normal_distribution<double> m_normal;
-    std::uniform_real_distribution<double> m_uniform;
-    std::vector<Edge> m_edges;
-    std::vector<Vector2D<Scalar>> m_points;
+    std::mt19937_64 random_;
+    std::normal_distribution<double> normal_;
+    std::uniform_real_distribution<double> uniform_;
+    std::vector<Edge> edges_;
+    std::vector<Vector2D<Scalar>> points_;
 };
 
 } // namespace vectorlib

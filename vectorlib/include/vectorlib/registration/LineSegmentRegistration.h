@@ -42,33 +42,33 @@ public:
         if (!usable(fixed) || !usable(moving) || !(weight > 0) || !std::isfinite(weight))
             return false;
         accumulate(fixed, moving, weight);
-        ++m_pairs;
+        ++pairs_;
         return true;
     }
     /// Takes away a pair that was added with the same weight.
     void remove(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving, double weight = 1) {
         accumulate(fixed, moving, -weight);
-        --m_pairs;
-        if (m_pairs == 0)
+        --pairs_;
+        if (pairs_ == 0)
             clear();
     }
     /// Adds all pairs of another set.
     void add(const LineSegmentRegistration &o) { combine(o, 1); }
     void remove(const LineSegmentRegistration &o) { combine(o, -1); }
     void clear() {
-        m_sums = Sums();
-        m_pairs = 0;
+        sums_ = Sums();
+        pairs_ = 0;
     }
-    int pairs() const { return m_pairs; }
-    double weight() const { return m_sums.w; }
+    int pairs() const { return pairs_; }
+    double weight() const { return sums_.w; }
 
     /// Whether the translation is determined: false for no pairs and for collinear ones.
-    bool isSolvable() const { return determinant() > 1e-12 * m_sums.w * m_sums.w; }
+    bool isSolvable() const { return determinant() > 1e-12 * sums_.w * sums_.w; }
 
     /// The optimal transformation. Where the translation is not determined, its part along the lines is 0:
     /// only the shift across them is made. Paper (5) to (9) with erratum 7. Identity without pairs.
     Transformation2D transformation() const {
-        if (m_pairs == 0)
+        if (pairs_ == 0)
             return {};
         const Vector2D<double> t = translation();
         return {t.x, t.y, angle()};
@@ -76,14 +76,14 @@ public:
     /// In [0, 1]; 0 means that all lines are parallel, 1 that directions are spread evenly. Paper (28),
     /// erratum 9.
     double reliability() const {
-        return m_sums.w > 0 ? 2 * std::sqrt(std::max(0.0, determinant())) / m_sums.w : 0;
+        return sums_.w > 0 ? 2 * std::sqrt(std::max(0.0, determinant())) / sums_.w : 0;
     }
     /// How much compromise the optimum needed; m^2. Paper (17) to (20).
-    Ambiguity ambiguity() const { return m_pairs ? ambiguityAt(translation(), angle()) : Ambiguity(); }
+    Ambiguity ambiguity() const { return pairs_ ? ambiguityAt(translation(), angle()) : Ambiguity(); }
     /// The same for any transformation: the full expansion thesis (7.40) with the stiffness coefficients
     /// (erratum 10).
     Ambiguity ambiguity(const Transformation2D &t) const {
-        return m_pairs ? ambiguityAt(t.translation(), t.alpha()) : Ambiguity();
+        return pairs_ ? ambiguityAt(t.translation(), t.alpha()) : Ambiguity();
     }
 
 private:
@@ -92,7 +92,7 @@ private:
         double vxx = 0, vxy = 0, vyy = 0; // S_x2, S_xy, S_y2 of the static directions
         double px = 0, py = 0;            // S_Px, S_Py
         double pp = 0;                    // sum w (P_x v_y - P_y v_x)^2 = sum w |P|^2
-        double a = 0, aa = 0;             // of the angles, unwrapped near m_reference
+        double a = 0, aa = 0;             // of the angles, unwrapped near reference_
         double sine = 0, cosine = 0;      // sum w sin, w cos of the angles: Wahba
     };
 
@@ -105,49 +105,49 @@ private:
         const double shift = fixed.begin().dot(n) - moving.begin().dot(moving.normal());
         const double sine = moving.direction().cross(v), cosine = moving.direction().dot(v);
         const double wrapped = std::atan2(sine, cosine);
-        if (m_pairs == 0)
-            m_reference = wrapped;
+        if (pairs_ == 0)
+            reference_ = wrapped;
         // Erratum 8: the sums take the unwrapped angle itself. Unwrapping near the first angle, and not near
         // the previous one, lets pairs be removed in any order.
-        const double alpha = m_reference + wrapAngle(wrapped - m_reference);
-        m_sums.w += w;
-        m_sums.vxx += w * v.x * v.x;
-        m_sums.vxy += w * v.x * v.y;
-        m_sums.vyy += w * v.y * v.y;
-        m_sums.px += w * shift * n.x;
-        m_sums.py += w * shift * n.y;
-        m_sums.pp += w * shift * shift;
-        m_sums.a += w * alpha;
-        m_sums.aa += w * alpha * alpha;
-        m_sums.sine += w * sine;
-        m_sums.cosine += w * cosine;
+        const double alpha = reference_ + wrapAngle(wrapped - reference_);
+        sums_.w += w;
+        sums_.vxx += w * v.x * v.x;
+        sums_.vxy += w * v.x * v.y;
+        sums_.vyy += w * v.y * v.y;
+        sums_.px += w * shift * n.x;
+        sums_.py += w * shift * n.y;
+        sums_.pp += w * shift * shift;
+        sums_.a += w * alpha;
+        sums_.aa += w * alpha * alpha;
+        sums_.sine += w * sine;
+        sums_.cosine += w * cosine;
     }
     void combine(const LineSegmentRegistration &o, int sign) {
-        if (o.m_pairs == 0)
+        if (o.pairs_ == 0)
             return;
-        if (m_pairs == 0)
-            m_reference = o.m_reference;
+        if (pairs_ == 0)
+            reference_ = o.reference_;
         // The other set's angles were unwrapped near another reference: bring its mean next to this one's.
-        const double turn = 2 * pi * std::round((m_reference - o.m_sums.a / o.m_sums.w) / (2 * pi));
-        const Sums &s = o.m_sums;
-        m_sums.w += sign * s.w;
-        m_sums.vxx += sign * s.vxx;
-        m_sums.vxy += sign * s.vxy;
-        m_sums.vyy += sign * s.vyy;
-        m_sums.px += sign * s.px;
-        m_sums.py += sign * s.py;
-        m_sums.pp += sign * s.pp;
-        m_sums.a += sign * (s.a + turn * s.w);
-        m_sums.aa += sign * (s.aa + 2 * turn * s.a + turn * turn * s.w);
-        m_sums.sine += sign * s.sine;
-        m_sums.cosine += sign * s.cosine;
-        m_pairs += sign * o.m_pairs;
-        if (m_pairs == 0)
+        const double turn = 2 * pi * std::round((reference_ - o.sums_.a / o.sums_.w) / (2 * pi));
+        const Sums &s = o.sums_;
+        sums_.w += sign * s.w;
+        sums_.vxx += sign * s.vxx;
+        sums_.vxy += sign * s.vxy;
+        sums_.vyy += sign * s.vyy;
+        sums_.px += sign * s.px;
+        sums_.py += sign * s.py;
+        sums_.pp += sign * s.pp;
+        sums_.a += sign * (s.a + turn * s.w);
+        sums_.aa += sign * (s.aa + 2 * turn * s.a + turn * turn * s.w);
+        sums_.sine += sign * s.sine;
+        sums_.cosine += sign * s.cosine;
+        pairs_ += sign * o.pairs_;
+        if (pairs_ == 0)
             clear();
     }
-    double determinant() const { return m_sums.vxx * m_sums.vyy - m_sums.vxy * m_sums.vxy; }
+    double determinant() const { return sums_.vxx * sums_.vyy - sums_.vxy * sums_.vxy; }
     Vector2D<double> translation() const {
-        const Sums &s = m_sums;
+        const Sums &s = sums_;
         if (isSolvable()) {
             const double d = determinant();
             return {(s.px * s.vxx + s.vxy * s.py) / d, (s.py * s.vyy + s.vxy * s.px) / d}; // erratum 7
@@ -156,11 +156,11 @@ private:
         return s.w > 0 ? Vector2D<double>(s.px / s.w, s.py / s.w) : Vector2D<double>();
     }
     double angle() const {
-        return rotation == Rotation::Mitsuta ? wrapAngle(m_sums.a / m_sums.w)
-                                             : std::atan2(m_sums.sine, m_sums.cosine);
+        return rotation == Rotation::Mitsuta ? wrapAngle(sums_.a / sums_.w)
+                                             : std::atan2(sums_.sine, sums_.cosine);
     }
     Ambiguity ambiguityAt(Vector2D<double> t, double alpha) const {
-        const Sums &s = m_sums;
+        const Sums &s = sums_;
         Ambiguity result;
         if (rotation == Rotation::Mitsuta) {
             const double mean = s.a / s.w, offset = wrapAngle(alpha - mean);
@@ -177,9 +177,9 @@ private:
         return result;
     }
 
-    Sums m_sums;
-    double m_reference = 0;
-    int m_pairs = 0;
+    Sums sums_;
+    double reference_ = 0;
+    int pairs_ = 0;
 };
 
 } // namespace vectorlib

@@ -20,8 +20,8 @@ public:
     /// A prior that the step is zero; standard deviations in metres and radians, relative to noise of 1
     /// metre.
     void start(double weightXY, double weightAlpha) {
-        m_h = Eigen::Vector3d(weightXY, weightXY, weightAlpha).asDiagonal();
-        m_g.setZero();
+        h_ = Eigen::Vector3d(weightXY, weightXY, weightAlpha).asDiagonal();
+        g_.setZero();
     }
     /// Points with `sums` belong onto `fixed`. Working frame: near the sensor.
     void add(const LineSegment2D<double> &fixed, const TlsSums &sums, double weight) {
@@ -30,23 +30,23 @@ public:
         const double uu = w.x * w.x * sums.xx + 2 * w.x * w.y * sums.xy + w.y * w.y * sums.yy;
         const double ur = w.x * n.x * sums.xx + (w.x * n.y + w.y * n.x) * sums.xy + w.y * n.y * sums.yy;
         const Eigen::Vector3d j(n.x, n.y, u);
-        m_h.noalias() += (weight * sums.n) * j * j.transpose();
-        m_h(2, 2) += weight * uu;
-        m_g += (weight * sums.n * r) * j;
-        m_g(2) += weight * ur;
+        h_.noalias() += (weight * sums.n) * j * j.transpose();
+        h_(2, 2) += weight * uu;
+        g_ += (weight * sums.n * r) * j;
+        g_(2) += weight * ur;
     }
     /// The step (to be multiplied from the left); identity when the equations are singular.
     Transformation2D step() const {
-        const Eigen::LDLT<Eigen::Matrix3d> ldlt(m_h);
-        const Eigen::Vector3d x = ldlt.solve(-m_g);
+        const Eigen::LDLT<Eigen::Matrix3d> ldlt(h_);
+        const Eigen::Vector3d x = ldlt.solve(-g_);
         return ldlt.info() == Eigen::Success && x.allFinite() ? Transformation2D(x(0), x(1), x(2))
                                                               : Transformation2D();
     }
-    const Eigen::Matrix3d &information() const { return m_h; }
+    const Eigen::Matrix3d &information() const { return h_; }
 
 private:
-    Eigen::Matrix3d m_h = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d m_g = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d h_ = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d g_ = Eigen::Vector3d::Zero();
 };
 
 } // namespace vectorlib

@@ -56,27 +56,27 @@ public:
 
     const Segmentation &operator()(PointSpan<Scalar> points) {
         const std::size_t count = points.size();
-        m_parent.resize(count);
-        m_threshold.resize(count);
-        m_valid.clear();
+        parent_.resize(count);
+        threshold_.resize(count);
+        valid_.clear();
         const double perMetre = thresholdPerMetre(count);
         for (std::size_t i = 0; i < count; ++i) {
-            m_parent[i] = static_cast<int>(i);
+            parent_[i] = static_cast<int>(i);
             if (points[i].isFinite()) {
                 const double t =
                     std::clamp(perMetre * points[i].norm(), settings.minThreshold, settings.maxThreshold);
-                m_threshold[i] = static_cast<Scalar>(t * t);
-                m_valid.push_back(static_cast<int>(i));
+                threshold_[i] = static_cast<Scalar>(t * t);
+                valid_.push_back(static_cast<int>(i));
             }
         }
         const std::size_t reach = static_cast<std::size_t>(std::max(1, settings.neighbours));
-        for (std::size_t v = 1; v < m_valid.size(); ++v)
+        for (std::size_t v = 1; v < valid_.size(); ++v)
             for (std::size_t back = 1; back <= std::min(reach, v); ++back)
-                joinIfNear(points, m_valid[v], m_valid[v - back]);
+                joinIfNear(points, valid_[v], valid_[v - back]);
         if (settings.closed)
             close(points, reach);
         collect(points);
-        return m_result;
+        return result_;
     }
 
 private:
@@ -86,45 +86,45 @@ private:
         return rays ? settings.neighbours * settings.fieldOfView / static_cast<double>(rays) : 0;
     }
     int root(int i) {
-        while (m_parent[i] != i)
-            i = m_parent[i] = m_parent[m_parent[i]];
+        while (parent_[i] != i)
+            i = parent_[i] = parent_[parent_[i]];
         return i;
     }
     // The earlier root stays, so that clusters are numbered by their first point.
     void joinIfNear(PointSpan<Scalar> points, int i, int j) {
-        if (!((points[i] - points[j]).squaredNorm() <= m_threshold[i]))
+        if (!((points[i] - points[j]).squaredNorm() <= threshold_[i]))
             return;
         const int a = root(i), b = root(j);
-        m_parent[std::max(a, b)] = std::min(a, b);
+        parent_[std::max(a, b)] = std::min(a, b);
     }
     // The first K points are examined again, with the last ones as their predecessors.
     void close(PointSpan<Scalar> points, std::size_t reach) {
-        const std::size_t valid = m_valid.size();
+        const std::size_t valid = valid_.size();
         for (std::size_t v = 0; v < std::min(reach, valid); ++v)
             for (std::size_t back = v + 1; back <= reach && back < valid; ++back)
-                joinIfNear(points, m_valid[v], m_valid[valid + v - back]);
+                joinIfNear(points, valid_[v], valid_[valid + v - back]);
     }
     void collect(PointSpan<Scalar> points) {
         const std::size_t count = points.size();
-        Segmentation &r = m_result;
+        Segmentation &r = result_;
         r.labels.assign(count, -1);
         r.starts.assign(1, 0);
-        m_size.assign(count, 0);
-        for (int i : m_valid)
-            ++m_size[root(i)];
+        size_.assign(count, 0);
+        for (int i : valid_)
+            ++size_[root(i)];
         int clusters = 0;
-        for (int i : m_valid)
-            if (m_parent[i] == i && m_size[i] >= std::max(1, settings.minPoints)) {
+        for (int i : valid_)
+            if (parent_[i] == i && size_[i] >= std::max(1, settings.minPoints)) {
                 r.labels[i] = clusters++;
-                r.starts.push_back(r.starts.back() + static_cast<std::size_t>(m_size[i]));
+                r.starts.push_back(r.starts.back() + static_cast<std::size_t>(size_[i]));
             }
         r.order.resize(r.starts.back());
-        m_next.assign(r.starts.begin(), r.starts.end());
-        for (int i : m_valid) {
+        next_.assign(r.starts.begin(), r.starts.end());
+        for (int i : valid_) {
             const int label = r.labels[root(i)];
             r.labels[i] = label;
             if (label >= 0)
-                r.order[m_next[static_cast<std::size_t>(label)]++] = i;
+                r.order[next_[static_cast<std::size_t>(label)]++] = i;
         }
         if (settings.closed)
             for (std::size_t c = 0; c < r.size(); ++c)
@@ -132,10 +132,10 @@ private:
     }
     // A cluster that runs over the end of the scan begins after the widest gap between its points.
     void startAfterWidestGap(PointSpan<Scalar> points, std::size_t cluster) {
-        const auto first = m_result.order.begin() + static_cast<std::ptrdiff_t>(m_result.starts[cluster]);
-        const auto last = m_result.order.begin() + static_cast<std::ptrdiff_t>(m_result.starts[cluster + 1]);
-        const std::size_t reach = std::min(m_valid.size(), static_cast<std::size_t>(settings.neighbours));
-        if (*first > m_valid[reach - 1] || *(last - 1) < m_valid[m_valid.size() - reach])
+        const auto first = result_.order.begin() + static_cast<std::ptrdiff_t>(result_.starts[cluster]);
+        const auto last = result_.order.begin() + static_cast<std::ptrdiff_t>(result_.starts[cluster + 1]);
+        const std::size_t reach = std::min(valid_.size(), static_cast<std::size_t>(settings.neighbours));
+        if (*first > valid_[reach - 1] || *(last - 1) < valid_[valid_.size() - reach])
             return;
         const auto gap = [&](int i, int j) { return (points[i] - points[j]).squaredNorm(); };
         auto start = first;
@@ -148,12 +148,12 @@ private:
         std::rotate(first, start, last);
     }
 
-    std::vector<int> m_parent;
-    std::vector<Scalar> m_threshold; // squared, of each point
-    std::vector<int> m_valid;        // indices of the finite points
-    std::vector<int> m_size;
-    std::vector<std::size_t> m_next;
-    Segmentation m_result;
+    std::vector<int> parent_;
+    std::vector<Scalar> threshold_; // squared, of each point
+    std::vector<int> valid_;        // indices of the finite points
+    std::vector<int> size_;
+    std::vector<std::size_t> next_;
+    Segmentation result_;
 };
 
 } // namespace vectorlib

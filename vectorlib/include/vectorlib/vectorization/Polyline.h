@@ -17,16 +17,16 @@ public:
     template <typename Scalar>
     void operator()(PointSpan<Scalar> points, const PrefixSums &sums, const VectorizerSettings &settings,
                     std::vector<VectorizedLine> &lines) {
-        m_joined.clear();
+        joined_.clear();
         for (const VectorizedLine &next : lines) {
-            if (!m_joined.empty() && !join(points, m_joined.back(), next, settings.delta)) {
+            if (!joined_.empty() && !join(points, joined_.back(), next, settings.delta)) {
                 if (bridge(points, sums, next, settings))
                     continue;
             }
-            m_joined.push_back(next);
+            joined_.push_back(next);
         }
         cutAtCorners(points, settings.delta);
-        lines.swap(m_joined);
+        lines.swap(joined_);
     }
 
 private:
@@ -52,7 +52,7 @@ private:
     template <typename Scalar>
     bool bridge(PointSpan<Scalar> points, const PrefixSums &sums, const VectorizedLine &next,
                 const VectorizerSettings &settings) {
-        const VectorizedLine previous = m_joined.back();
+        const VectorizedLine previous = joined_.back();
         const std::size_t first = previous.first, count = next.last - first + 1;
         if (count < 6)
             return false;
@@ -64,27 +64,27 @@ private:
         const VectorizedLine a = makeLine(points, first, cut1 - 1, sums.sums(first, cut1));
         const VectorizedLine b = makeLine(points, cut1, cut2 - 1, sums.sums(cut1, cut2));
         const VectorizedLine c = makeLine(points, cut2, next.last, sums.sums(cut2, next.last + 1));
-        const bool stillMeetsBefore = m_joined.size() < 2 ||
-                                      join(points, m_joined[m_joined.size() - 2], a, settings.delta) ||
-                                      !join(points, m_joined[m_joined.size() - 2], previous, settings.delta);
+        const bool stillMeetsBefore = joined_.size() < 2 ||
+                                      join(points, joined_[joined_.size() - 2], a, settings.delta) ||
+                                      !join(points, joined_[joined_.size() - 2], previous, settings.delta);
         if (!stillMeetsBefore || !join(points, a, b, settings.delta) || !join(points, b, c, settings.delta))
             return false;
-        m_joined.back() = a;
-        m_joined.push_back(b);
-        m_joined.push_back(c);
+        joined_.back() = a;
+        joined_.push_back(b);
+        joined_.push_back(c);
         return true;
     }
     template <typename Scalar>
     void cutAtCorners(PointSpan<Scalar> points, double delta) {
         Vector2D<double> point;
-        for (std::size_t i = 0; i + 1 < m_joined.size(); ++i)
-            if (corner(points, m_joined[i], m_joined[i + 1], delta, point)) {
-                m_joined[i].segment = {m_joined[i].segment.begin(), point};
-                m_joined[i + 1].segment = {point, m_joined[i + 1].segment.end()};
+        for (std::size_t i = 0; i + 1 < joined_.size(); ++i)
+            if (corner(points, joined_[i], joined_[i + 1], delta, point)) {
+                joined_[i].segment = {joined_[i].segment.begin(), point};
+                joined_[i + 1].segment = {point, joined_[i + 1].segment.end()};
             }
     }
 
-    std::vector<VectorizedLine> m_joined;
+    std::vector<VectorizedLine> joined_;
 };
 
 } // namespace vectorlib

@@ -13,34 +13,34 @@ class PrefixSums {
 public:
     template <typename Scalar>
     void assign(PointSpan<Scalar> points) {
-        m_rows.resize(points.size() + 1);
-        m_rows[0] = Row();
+        rows_.resize(points.size() + 1);
+        rows_[0] = Row();
         if (points.empty())
             return;
-        m_origin = Vector2D<double>(points.front());
+        origin_ = Vector2D<double>(points.front());
         Row sum;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const double x = points[i].x - m_origin.x, y = points[i].y - m_origin.y;
+            const double x = points[i].x - origin_.x, y = points[i].y - origin_.y;
             sum.x += x;
             sum.y += y;
             sum.xx += x * x;
             sum.xy += x * y;
             sum.yy += y * y;
-            m_rows[i + 1] = sum;
+            rows_[i + 1] = sum;
         }
     }
 
     /// The sums of points first .. end - 1; end > first.
     TlsSums sums(std::size_t first, std::size_t end) const {
-        const Row &a = m_rows[first], &b = m_rows[end];
+        const Row &a = rows_[first], &b = rows_[end];
         return TlsSums::fromPlain(static_cast<double>(end - first), b.x - a.x, b.y - a.y, b.xx - a.xx,
-                                  b.xy - a.xy, b.yy - a.yy, m_origin);
+                                  b.xy - a.xy, b.yy - a.yy, origin_);
     }
 
     /// Whether points first .. end - 1 lie within sigma of their line; like fitsWithin(), but multiplied
     /// through by the count, so that the search makes no division.
     bool fitWithin(std::size_t first, std::size_t end, double variance) const {
-        const Row &a = m_rows[first], &b = m_rows[end];
+        const Row &a = rows_[first], &b = rows_[end];
         const double n = static_cast<double>(end - first), x = b.x - a.x, y = b.y - a.y;
         const double limit = n * n * variance;
         const double xx = n * (b.xx - a.xx) - x * x - limit;
@@ -53,8 +53,8 @@ private:
     struct Row {
         double x = 0, y = 0, xx = 0, xy = 0, yy = 0;
     };
-    std::vector<Row> m_rows; // m_rows[i] sums the points before i
-    Vector2D<double> m_origin;
+    std::vector<Row> rows_; // rows_[i] sums the points before i
+    Vector2D<double> origin_;
 };
 
 } // namespace vectorlib

@@ -14,15 +14,15 @@ public:
     VectorizerSettings settings;
 
     const std::vector<VectorizedLine> &operator()(PointSpan<Scalar> points) {
-        m_lines.clear();
+        lines_.clear();
         if (points.size() >= 2)
-            m_lines.push_back(
+            lines_.push_back(
                 makeLine(points, 0, points.size() - 1, TlsSums::of(points.begin(), points.end())));
-        return m_lines;
+        return lines_;
     }
 
 private:
-    std::vector<VectorizedLine> m_lines;
+    std::vector<VectorizedLine> lines_;
 };
 
 } // namespace vectorlib
