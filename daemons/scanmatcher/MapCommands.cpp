@@ -61,8 +61,8 @@ void ScanMatcher::declareMapCommands() {
                        postMapChange(
                            [loaded = segments.take()](Tracker &tracker) {
                                tracker.clear();
-                               for (const vectorlib::MapSegment &m : loaded)
-                                   tracker.builder.map.add({m.sums, m.segment, m.sigma}, int(m.observations));
+                               for (const vectorlib::MapEdge &m : loaded)
+                                   tracker.builder.map.add(m, m.observations);
                            },
                            reply, answer);
                    }));
@@ -96,7 +96,7 @@ Result<QJsonValue> ScanMatcher::writeMapFile(const QString &path, const QString 
     const QString name = absolutePath(path);
     if (QFileInfo::exists(name) && !force)
         return fileError(name, "exists already, expected a new name or force: true");
-    const std::vector<vectorlib::MapSegment> segments = mirror.segments();
+    const std::vector<vectorlib::MapEdge> segments = mirror.segments();
     std::ostringstream text;
     if (format == "svg")
         vectorlib::drawMap(
@@ -115,7 +115,7 @@ Result<QJsonValue> ScanMatcher::writeMapFile(const QString &path, const QString 
         QJsonObject{{"path", name}, {"segments", qint64(segments.size())}, {"bytes", qint64(bytes.size())}});
 }
 
-Result<std::vector<vectorlib::MapSegment>> ScanMatcher::readMapFile(const QString &path) const {
+Result<std::vector<vectorlib::MapEdge>> ScanMatcher::readMapFile(const QString &path) const {
     const QString name = absolutePath(path);
     QFile file(name);
     if (!file.open(QIODevice::ReadOnly))

@@ -4,7 +4,7 @@ namespace hermes {
 
 namespace {
 
-QJsonObject toJson(const vectorlib::MapSegment &m) {
+QJsonObject toJson(const vectorlib::MapEdge &m) {
     return {{"id", qint64(m.id)},        {"x1", m.segment.begin().x},
             {"y1", m.segment.begin().y}, {"x2", m.segment.end().x},
             {"y2", m.segment.end().y},   {"n", m.sums.n},
@@ -18,7 +18,7 @@ MapChanges takeChanges(vectorlib::VectorMap &map) {
     for (int number : map.takeChanges()) {
         const vectorlib::MapEdge &e = map.slots()[size_t(number)];
         if (e.observations > 0)
-            changes.changed.push_back({e.id, e.edge.segment, e.edge.sums, e.edge.sigma, e.observations});
+            changes.changed.push_back(e);
         else
             changes.removed.push_back(e.id);
     }
@@ -31,7 +31,7 @@ QJsonObject MapMirror::apply(const MapChanges &changes) {
         poses.clear();
     }
     QJsonArray changed, removed;
-    for (const vectorlib::MapSegment &m : changes.changed) {
+    for (const vectorlib::MapEdge &m : changes.changed) {
         edges[m.id] = m;
         changed.append(toJson(m));
     }
@@ -57,8 +57,8 @@ QJsonObject MapMirror::full() const {
             {"size", qint64(edges.size())}};
 }
 
-std::vector<vectorlib::MapSegment> MapMirror::segments() const {
-    std::vector<vectorlib::MapSegment> result;
+std::vector<vectorlib::MapEdge> MapMirror::segments() const {
+    std::vector<vectorlib::MapEdge> result;
     for (const auto &[id, edge] : edges)
         result.push_back(edge);
     return result;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Tum.h"
+#include "vectorlib/mapping/MapEdge.h"
 #include "vectorlib/mapping/VectorMap.h"
 
 #include <QJsonArray>
@@ -13,9 +13,9 @@ namespace hermes {
 
 /// What changed in a map since the last time.
 struct MapChanges {
-    std::vector<vectorlib::MapSegment> changed; ///< new and altered edges
-    std::vector<qint64> removed;                ///< edges that were merged into others
-    bool cleared = false;                       ///< everything before is gone
+    std::vector<vectorlib::MapEdge> changed; ///< new and altered edges
+    std::vector<qint64> removed;             ///< edges that were merged into others
+    bool cleared = false;                    ///< everything before is gone
 };
 
 MapChanges takeChanges(vectorlib::VectorMap &map);
@@ -30,12 +30,12 @@ public:
 
     /// The full state in the same form, `cleared` true.
     QJsonObject full() const;
-    std::vector<vectorlib::MapSegment> segments() const;
+    std::vector<vectorlib::MapEdge> segments() const;
     const std::vector<vectorlib::StampedPose> &trajectory() const { return poses; }
     size_t size() const { return edges.size(); }
 
 private:
-    std::map<qint64, vectorlib::MapSegment> edges;
+    std::map<qint64, vectorlib::MapEdge> edges;
     std::vector<vectorlib::StampedPose> poses;
     qint64 revision = 0;
 };

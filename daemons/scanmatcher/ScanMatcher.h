@@ -51,7 +51,7 @@ private:
                        const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
     Result<QJsonValue> writeMapFile(const QString &path, const QString &format, bool force) const;
-    Result<std::vector<vectorlib::MapSegment>> readMapFile(const QString &path) const;
+    Result<std::vector<vectorlib::MapEdge>> readMapFile(const QString &path) const;
     QString absolutePath(const QString &path) const;
     QJsonObject matcherState() const;
 

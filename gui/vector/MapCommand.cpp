@@ -74,7 +74,7 @@ struct MapCommand {
         return std::filesystem::path(source.path).filename().string() + ": map of " +
                std::to_string(run.trajectory().size()) + " scans";
     }
-    static std::size_t sizeAsCsv(const std::vector<vectorlib::MapSegment> &segments) {
+    static std::size_t sizeAsCsv(const std::vector<vectorlib::MapEdge> &segments) {
         std::ostringstream text;
         vectorlib::writeMapCsv(text, segments);
         return text.str().size();

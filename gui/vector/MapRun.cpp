@@ -58,17 +58,9 @@ Pose2D MapRun::expectedPose(const MapScan &scan, double stamp) const {
     return motion_.predict(stamp);
 }
 
-std::vector<vectorlib::MapSegment> MapRun::segments() const {
-    std::vector<vectorlib::MapSegment> result;
-    builder.map.forEach([&](const vectorlib::MapEdge &e) {
-        vectorlib::MapSegment s;
-        s.id = e.id;
-        s.segment = e.edge.segment;
-        s.sums = e.edge.sums;
-        s.sigma = e.edge.sigma;
-        s.observations = e.observations;
-        result.push_back(s);
-    });
+std::vector<vectorlib::MapEdge> MapRun::segments() const {
+    std::vector<vectorlib::MapEdge> result;
+    builder.map.forEach([&](const vectorlib::MapEdge &e) { result.push_back(e); });
     return result;
 }
 

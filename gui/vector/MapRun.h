@@ -2,9 +2,9 @@
 
 #include "gui/vector/MapSource.h"
 #include "gui/vector/Options.h"
-#include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/mapping/MapEdge.h"
 #include "vectorlib/mapping/MotionModel.h"
 
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@ public:
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Reference poses, one a pose of the trajectory; empty without reference.
     const std::vector<vectorlib::StampedPose> &reference() const { return reference_; }
-    std::vector<vectorlib::MapSegment> segments() const;
+    std::vector<vectorlib::MapEdge> segments() const;
     /// Counts, milliseconds a scan and, with a reference, the errors against it.
     nlohmann::ordered_json summary() const;
 

@@ -78,7 +78,7 @@ void TestMapBuilder::mergedEdgeIsTheFitOfAllPoints() {
     VectorMap map;
     const int number = map.add(edge(first));
     QVERIFY(map.merge(number, edge(second)));
-    const EdgeRaw2D &joint = map.slots()[0].edge;
+    const EdgeRaw2D &joint = map.slots()[0];
     const TlsLine fit = fitLine(edge(all).sums);
     QVERIFY(std::abs(joint.sigma * joint.sigma - fit.variance) < 1e-12);
     QVERIFY(std::abs(fit.line.signedDistance(joint.segment.begin())) < 1e-9);
@@ -100,7 +100,7 @@ void TestMapBuilder::collinearEdgesJoin() {
     const int middle = map.add(straight({1.05, 0}, {2, 0.01}));
     QCOMPARE(map.consolidate(middle), 2);
     QCOMPARE(map.size(), std::size_t(1));
-    QCOMPARE(map.slots()[std::size_t(middle)].edge.sums.n, 153.0);
+    QCOMPARE(map.slots()[std::size_t(middle)].sums.n, 153.0);
     QCOMPARE(map.takeChanges(), (std::vector<int>{0, 1, 2}));
     QVERIFY(map.takeChanges().empty());
 }
@@ -117,7 +117,7 @@ void TestMapBuilder::mergeRefusesWhatIsNoLine() {
     VectorMap map;
     const int number = map.add(straight({0, 0}, {1, 0}));
     QVERIFY(!map.merge(number, straight({1, 0}, {1.5, 0.8})));
-    QCOMPARE(map.slots()[0].edge.segment.length(), 1.0);
+    QCOMPARE(map.slots()[0].segment.length(), 1.0);
 }
 
 void TestMapBuilder::gridFindsWhatTouchesTheBox() {

@@ -17,8 +17,8 @@ using namespace vectorlib;
 
 namespace {
 
-std::vector<MapSegment> corner() {
-    std::vector<MapSegment> map(2);
+std::vector<MapEdge> corner() {
+    std::vector<MapEdge> map(2);
     map[0].id = 4;
     map[0].segment = {{0, 0}, {2, 0}};
     map[1].id = 5;
@@ -120,7 +120,7 @@ private Q_SLOTS:
         QVERIFY(yaml.str().find("image: a.pgm\nresolution: 0.1\norigin: [-1, -1, 0]") == 0);
     }
     void hugeMapsAreNotDrawn() {
-        std::vector<MapSegment> map(1);
+        std::vector<MapEdge> map(1);
         map[0].segment = {{0, 0}, {1e7, 1e7}};
         QVERIFY(!OccupancyPicture::draw(map, {}));
     }

@@ -141,9 +141,9 @@ private Q_SLOTS:
     void mapComesBack() {
         std::mt19937 random(7);
         std::uniform_real_distribution<double> number(-1e4, 1e4);
-        std::vector<MapSegment> map;
+        std::vector<MapEdge> map;
         for (int i = 0; i < 200; ++i) {
-            MapSegment m;
+            MapEdge m;
             m.id = i * 3;
             m.segment = {{number(random), number(random)}, {number(random), number(random)}};
             m.sums = {double(i + 2),
@@ -162,7 +162,7 @@ private Q_SLOTS:
         const auto back = readMapCsv(text, "f");
         QVERIFY(back && back->size() == map.size());
         for (std::size_t i = 0; i < map.size(); ++i) {
-            const MapSegment &a = map[i], &b = (*back)[i];
+            const MapEdge &a = map[i], &b = (*back)[i];
             QVERIFY(a.id == b.id && a.observations == b.observations && a.sigma == b.sigma);
             QVERIFY(a.segment.begin() == b.segment.begin() && a.segment.end() == b.segment.end());
             QVERIFY(a.sums.n == b.sums.n && a.sums.mean == b.sums.mean && a.sums.xx == b.sums.xx &&

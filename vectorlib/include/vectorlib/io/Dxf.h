@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Number.h"
+#include "vectorlib/mapping/MapEdge.h"
 
 #include <vector>
 
@@ -9,9 +9,9 @@ namespace vectorlib {
 
 /// A map as a DXF drawing (release 12, which every CAD program reads): one LINE a segment on layer MAP, one
 /// unit a metre.
-inline void writeDxf(std::ostream &out, const std::vector<MapSegment> &map) {
+inline void writeDxf(std::ostream &out, const std::vector<MapEdge> &map) {
     out << "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1009\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
-    for (const MapSegment &m : map) {
+    for (const MapEdge &m : map) {
         const auto a = m.segment.begin(), b = m.segment.end();
         out << "0\nLINE\n8\nMAP\n10\n"
             << Number(a.x) << "\n20\n"

@@ -1,17 +1,17 @@
 #pragma once
 
-#include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Number.h"
+#include "vectorlib/mapping/MapEdge.h"
 
 #include <vector>
 
 namespace vectorlib {
 
 /// A map as GeoJSON: one LineString a segment. Coordinates are metres in the map's own frame, not degrees.
-inline void writeGeoJson(std::ostream &out, const std::vector<MapSegment> &map) {
+inline void writeGeoJson(std::ostream &out, const std::vector<MapEdge> &map) {
     out << "{\"type\": \"FeatureCollection\", \"units\": \"metres in the frame of the map\", \"features\": [";
     const char *separator = "\n";
-    for (const MapSegment &m : map) {
+    for (const MapEdge &m : map) {
         const auto a = m.segment.begin(), b = m.segment.end();
         out << separator << R"({"type": "Feature", "id": )" << m.id
             << R"(, "geometry": {"type": "LineString", "coordinates": [[)" << Number(a.x) << ", "

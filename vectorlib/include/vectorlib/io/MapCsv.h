@@ -1,16 +1,16 @@
 #pragma once
 
 #include "vectorlib/io/Csv.h"
-#include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Number.h"
+#include "vectorlib/mapping/MapEdge.h"
 
 namespace vectorlib {
 
 /// A map as CSV: `id,x1,y1,x2,y2,n,sigma,observations`, then the mean of the points and their second moments
 /// about it (TlsSums). Numbers keep every bit: reading gives the map that was written.
-inline void writeMapCsv(std::ostream &out, const std::vector<MapSegment> &map) {
+inline void writeMapCsv(std::ostream &out, const std::vector<MapEdge> &map) {
     out << "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n";
-    for (const MapSegment &m : map) {
+    for (const MapEdge &m : map) {
         out << m.id;
         for (const double value : {m.segment.begin().x, m.segment.begin().y, m.segment.end().x,
                                    m.segment.end().y, m.sums.n, m.sigma})
@@ -24,12 +24,12 @@ inline void writeMapCsv(std::ostream &out, const std::vector<MapSegment> &map) {
 
 /// Reads what writeMapCsv wrote. A missing column, a number that is none, or an id or count that is not whole
 /// is an error.
-inline Expected<std::vector<MapSegment>> readMapCsv(std::istream &in, std::string name) {
+inline Expected<std::vector<MapEdge>> readMapCsv(std::istream &in, std::string name) {
     CsvReader csv(
         in, std::move(name),
         {{"id", "x1", "y1", "x2", "y2", "n", "sigma", "observations", "mean_x", "mean_y", "xx", "xy", "yy"},
          {}});
-    std::vector<MapSegment> map;
+    std::vector<MapEdge> map;
     const auto isWhole = [](double v) { return v >= 0 && v < 9007199254740992.0 && v == std::floor(v); };
     while (const auto *row = csv.next()) {
         const std::vector<double> &r = *row;
@@ -42,7 +42,7 @@ inline Expected<std::vector<MapSegment>> readMapCsv(std::istream &in, std::strin
         for (const std::size_t column : {1, 2, 3, 4, 8, 9})
             if (std::abs(r[column]) > 1e6)
                 return csv.errorHere("a coordinate beyond 1000 km", "metres in the map's frame");
-        MapSegment m;
+        MapEdge m;
         m.id = static_cast<std::int64_t>(r[0]);
         m.segment = {{r[1], r[2]}, {r[3], r[4]}};
         m.sums.n = r[5];

@@ -1,15 +1,15 @@
 #pragma once
 
-#include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Svg.h"
 #include "vectorlib/io/Tum.h"
+#include "vectorlib/mapping/MapEdge.h"
 
 namespace vectorlib {
 
 /// A map and what belongs into a picture of it; metres, map frame.
 struct MapDrawing {
     std::string title;
-    std::vector<MapSegment> segments;
+    std::vector<MapEdge> segments;
     std::vector<StampedPose> trajectory; ///< may be empty
     std::vector<StampedPose> reference;  ///< the true or a better trajectory; may be empty
 };
@@ -29,7 +29,7 @@ inline void drawMap(std::ostream &out, const MapDrawing &map) {
         picture.path({colour::estimate, 1.2, "trajectory"}, pathOf(map.trajectory));
     // What only one or two scans saw is drawn lighter: people and things that moved, or noise.
     std::vector<LineSegment2D<double>> seldom, often;
-    for (const MapSegment &m : map.segments)
+    for (const MapEdge &m : map.segments)
         (m.observations < 3 ? seldom : often).push_back(m.segment);
     if (!seldom.empty())
         picture.segments(

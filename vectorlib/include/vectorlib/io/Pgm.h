@@ -1,9 +1,9 @@
 #pragma once
 
 #include "vectorlib/io/Expected.h"
-#include "vectorlib/io/MapSegment.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Tum.h"
+#include "vectorlib/mapping/MapEdge.h"
 
 #include <algorithm>
 #include <optional>
@@ -19,7 +19,7 @@ public:
 
     /// Draws the map; nothing when it would have over maxCells cells. resolution: metres a cell; driven:
     /// metres to either side of the trajectory that count as free.
-    static std::optional<OccupancyPicture> draw(const std::vector<MapSegment> &map,
+    static std::optional<OccupancyPicture> draw(const std::vector<MapEdge> &map,
                                                 const std::vector<StampedPose> &trajectory,
                                                 double resolution = 0.05, double driven = 0.25) {
         OccupancyPicture p;
@@ -29,7 +29,7 @@ public:
         for (std::size_t i = 0; i + 1 < trajectory.size(); ++i)
             p.line({trajectory[i].pose.x, trajectory[i].pose.y},
                    {trajectory[i + 1].pose.x, trajectory[i + 1].pose.y}, driven, freeCell);
-        for (const MapSegment &m : map)
+        for (const MapEdge &m : map)
             p.line(m.segment.begin(), m.segment.end(), 0, occupiedCell);
         return p;
     }
@@ -49,7 +49,7 @@ private:
     static constexpr unsigned char occupiedCell = 0, unknownCell = 205, freeCell = 254;
     static constexpr double margin = 1; // metres around everything drawn
 
-    bool frame(const std::vector<MapSegment> &map, const std::vector<StampedPose> &trajectory) {
+    bool frame(const std::vector<MapEdge> &map, const std::vector<StampedPose> &trajectory) {
         Vector2D<double> low, high;
         bool any = false;
         const auto include = [&](Vector2D<double> p) {
@@ -57,7 +57,7 @@ private:
             high = any ? Vector2D<double>(std::max(high.x, p.x), std::max(high.y, p.y)) : p;
             any = true;
         };
-        for (const MapSegment &m : map) {
+        for (const MapEdge &m : map) {
             include(m.segment.begin());
             include(m.segment.end());
         }

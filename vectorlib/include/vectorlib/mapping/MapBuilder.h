@@ -109,7 +109,7 @@ private:
         static_.clear();
         for (int number : map.near(centre - half, centre + half)) {
             numbers_.push_back(number);
-            static_.push_back(map.slots()[static_cast<std::size_t>(number)].edge.segment);
+            static_.push_back(map.slots()[static_cast<std::size_t>(number)].segment);
         }
     }
     void updateMap() {
@@ -124,7 +124,7 @@ private:
             const EdgeRaw2D seen = pose_ * (*edges_)[i];
             int number = partner_[i];
             if (number >= 0 &&
-                mergeable(map.slots()[static_cast<std::size_t>(number)].edge.segment, seen.segment) &&
+                mergeable(map.slots()[static_cast<std::size_t>(number)].segment, seen.segment) &&
                 map.merge(number, seen))
                 map.consolidate(number);
             else if (seen.segment.length() >= settings.newEdgeLength) {

@@ -1,18 +1,12 @@
 #pragma once
 
-#include "vectorlib/mapping/Edge2D.h"
+#include "vectorlib/mapping/MapEdge.h"
 #include "vectorlib/mapping/SegmentGrid.h"
 
 #include <utility>
 #include <vector>
 
 namespace vectorlib {
-
-struct MapEdge {
-    int id = 0;
-    EdgeRaw2D edge;       ///< map frame
-    int observations = 1; ///< how many scans it was seen in
-};
 
 struct VectorMapSettings {
     double maxSigma = 0.05; ///< edges are merged only while the points stay within this of one line; metres
@@ -58,10 +52,9 @@ public:
     }
 
     /// Adds an edge seen for the first time (or read from a file); returns its number.
-    int add(const EdgeRaw2D &edge, int observations = 1) {
+    int add(const EdgeRaw2D &edge, std::int64_t observations = 1) {
         const int number = static_cast<int>(edges_.size());
-        edges_.push_back({number, edge, observations});
-        edges_.back().edge.rich = nullptr;
+        edges_.emplace_back(number, edge, observations);
         grid_.insert(number, edge.segment);
         ++alive_;
         changed_.push_back(number);
@@ -71,10 +64,10 @@ public:
     /// points would no longer lie within maxSigma of one line.
     bool merge(int number, const EdgeRaw2D &edge) {
         MapEdge &target = edges_[static_cast<std::size_t>(number)];
-        const EdgeRaw2D joint = merged(target.edge, edge);
+        const EdgeRaw2D joint = merged(target, edge);
         if (joint.sigma > settings.maxSigma)
             return false;
-        target.edge = joint;
+        static_cast<EdgeRaw2D &>(target) = joint;
         ++target.observations;
         grid_.insert(number, joint.segment);
         changed_.push_back(number);
@@ -84,7 +77,7 @@ public:
     int consolidate(int number) {
         int joined = 0;
         for (bool again = true; again;) {
-            const LineSegment2D<double> s = edges_[static_cast<std::size_t>(number)].edge.segment;
+            const LineSegment2D<double> s = edges_[static_cast<std::size_t>(number)].segment;
             const double g = settings.joinGap;
             const Vector2D<double> low(std::min(s.begin().x, s.end().x) - g,
                                        std::min(s.begin().y, s.end().y) - g);
@@ -110,7 +103,7 @@ public:
 private:
     bool join(int number, int other) {
         MapEdge &a = edges_[static_cast<std::size_t>(number)], &b = edges_[static_cast<std::size_t>(other)];
-        const LineSegment2D<double> &s = a.edge.segment, &o = b.edge.segment;
+        const LineSegment2D<double> &s = a.segment, &o = b.segment;
         if (s.direction().dot(o.direction()) < std::cos(settings.joinAngle))
             return false;
         const double t0 = s.along(o.begin()), t1 = s.along(o.end());
@@ -119,10 +112,10 @@ private:
         if (std::abs(s.across(o.begin())) > settings.joinDistance ||
             std::abs(s.across(o.end())) > settings.joinDistance)
             return false;
-        const EdgeRaw2D joint = merged(a.edge, b.edge);
+        const EdgeRaw2D joint = merged(a, b);
         if (joint.sigma > settings.maxSigma)
             return false;
-        a.edge = joint;
+        static_cast<EdgeRaw2D &>(a) = joint;
         a.observations = std::max(a.observations, b.observations);
         b.observations = 0;
         --alive_;
