@@ -27,17 +27,15 @@ install_missing() {
         "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# build_preset PRESET: configures (when needed) and builds.
+# build_preset PRESET [TARGET...]: configures and builds; everything when no target is named.
 build_preset() {
     local preset=$1
-    if [ ! -f "build/$preset/build.ninja" ]; then
-        mkdir -p "build/$preset"
-        echo "Configuring ($preset) ..."
-        cmake --preset "$preset" >"build/$preset/configure.log" 2>&1 || {
-            cat "build/$preset/configure.log" >&2
-            return 1
-        }
-    fi
+    shift
+    mkdir -p "build/$preset"
+    cmake --preset "$preset" >"build/$preset/configure.log" 2>&1 || {
+        cat "build/$preset/configure.log" >&2
+        return 1
+    }
     echo "Building ($preset) ..."
-    cmake --build --preset "$preset"
+    cmake --build --preset "$preset" ${1:+--target "$@"}
 }
