@@ -52,6 +52,7 @@ void addSegmentCommand(CLI::App &app);
 void addVectorizeCommand(CLI::App &app);
 void addRegisterCommand(CLI::App &app);
 void addObserveCommand(CLI::App &app);
+void addExperimentCommand(CLI::App &app);
 void addMapCommand(CLI::App &app);
 void addRingCommand(CLI::App &app);
 

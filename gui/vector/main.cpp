@@ -23,6 +23,7 @@ int main(int argc, char **argv) {
     hermes::addObserveCommand(app);
     hermes::addMapCommand(app);
     hermes::addRingCommand(app);
+    hermes::addExperimentCommand(app);
     hermes::removeTemporariesOnSignal();
     try {
         app.parse(argc, argv);

@@ -1,0 +1,141 @@
+#include "gui/vector/Failure.h"
+#include "gui/vector/Options.h"
+#include "gui/vector/Progress.h"
+#include "gui/vector/experiment/Gnuplot.h"
+#include "gui/vector/experiment/SegmentationExperiment.h"
+#include "gui/vector/experiment/VectorizationExperiment.h"
+
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <sstream>
+
+namespace hermes {
+
+namespace {
+
+const Quantity timeQuantity{"time", "time a scan [us]", [](const ResultRow &r) { return r.microseconds; },
+                            true};
+const Quantity linesQuantity{"lines", "lines", [](const ResultRow &r) { return r.linesFound; }, true};
+const Quantity extraQuantity{"lines", "additional lines [percent]",
+                             [](const ResultRow &r) { return r.linesPercent(); }, false};
+const Quantity areaQuantity{"area", "error area [m^2]", [](const ResultRow &r) { return r.area; }, true};
+
+const std::map<std::string, std::string> experiments = {
+    {"segmentation-room", "figure 5.6: a room, by noise and outliers"},
+    {"segmentation-objects", "figure 5.7: the same with small objects"},
+    {"semicircle", "figure 6.7: time by the number of lines"},
+    {"edges", "figure 6.8: four solitary edges"},
+    {"corners", "figure 6.9: one cluster with sharp corners"},
+    {"room", "figure 6.10: a furnished room"}};
+
+struct ExperimentCommand {
+    std::string name;
+    std::string folder = ".";
+    ExperimentOptions options;
+    bool force = false;
+
+    void run() {
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error)
+            throw Failure(folder + ": cannot be made: " + error.message());
+        Progress progress("run");
+        options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
+        OutputSet files(force);
+        if (name == "segmentation-room")
+            segment(files, furnishedRoom());
+        else if (name == "segmentation-objects")
+            segment(files, roomWithSmallObjects());
+        else if (name == "semicircle")
+            semicircle(files);
+        else
+            scene(files, name == "edges"     ? solitaryEdges()
+                         : name == "corners" ? sharpCorners()
+                                             : furnishedRoom());
+        files.commit();
+    }
+
+private:
+    std::ostream &open(OutputSet &files, const std::string &suffix) const {
+        return files.open((std::filesystem::path(folder) / (name + suffix)).string());
+    }
+    void segment(OutputSet &files, const Scene &scene) const {
+        std::ostream &csv = open(files, ".csv");
+        const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
+        writeCsv(csv, panels);
+        for (const SegmentationPanel &panel : panels)
+            draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
+                                 std::to_string(std::lround(100 * panel.outlierShare)) + "percent.svg"),
+                 scene, panel);
+    }
+    void semicircle(OutputSet &files) const {
+        std::ostream &csv = open(files, ".csv");
+        const std::vector<ResultRow> rows = semicircleExperiment(options);
+        writeCsv(csv, rows);
+        std::map<double, std::vector<ResultRow>, std::greater<>> bySigma;
+        for (const ResultRow &row : rows)
+            bySigma[row.sigma].push_back(row);
+        for (const auto &[sigma, some] : bySigma) {
+            std::ostringstream text;
+            text << "-sigma" << sigma;
+            plots(files, text.str(), "semicircle, sigma " + text.str().substr(6) + " m",
+                  {timeQuantity, linesQuantity}, some);
+        }
+    }
+    void scene(OutputSet &files, const Scene &scene) const {
+        std::ostream &csv = open(files, ".csv");
+        const std::vector<ResultRow> rows = sceneExperiment(scene, options);
+        writeCsv(csv, rows);
+        plots(files, "", scene.title, {timeQuantity, extraQuantity, areaQuantity}, rows);
+    }
+    void plots(OutputSet &files, const std::string &suffix, const std::string &title,
+               const std::vector<Quantity> &quantities, const std::vector<ResultRow> &rows) const {
+        writeLatex(open(files, suffix + ".tex"), title, quantities, rows);
+        for (const Quantity &quantity : quantities) {
+            std::ostringstream script;
+            writeGnuplot(script, title, quantity, rows);
+            const std::optional<std::string> svg = runGnuplot(script.str());
+            if (!svg) {
+                std::cerr << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX "
+                             "files\n";
+                return;
+            }
+            open(files, suffix + "-" + quantity.name + ".svg") << *svg;
+        }
+    }
+};
+
+} // namespace
+
+void addExperimentCommand(CLI::App &app) {
+    auto command = std::make_shared<ExperimentCommand>();
+    CLI::App *sub =
+        app.add_subcommand("experiment", "Regenerate an experiment of the thesis as CSV, SVG and LaTeX");
+    std::string list = "Which one:";
+    std::vector<std::string> names;
+    for (const auto &[name, what] : experiments) {
+        names.push_back(name);
+        list += "\n  " + name + ": " + what;
+    }
+    sub->add_option("NAME", command->name, list)->required()->check(CLI::IsMember(names));
+    sub->add_option("--out", command->folder, "Folder for the files; made when missing")
+        ->type_name("FOLDER")
+        ->capture_default_str();
+    sub->add_option("--runs", command->options.runs, "Scans for each number of points")
+        ->check(between(1, 10000))
+        ->type_name("N")
+        ->capture_default_str();
+    sub->add_option("--max-points", command->options.maxPoints, "Leave out larger clouds")
+        ->check(between(20, 1e6))
+        ->type_name("N")
+        ->capture_default_str();
+    sub->add_option("--seed", command->options.seed, "Of the noise; the same seed gives the same scans")
+        ->type_name("I")
+        ->capture_default_str();
+    sub->add_flag("--force", command->force, "Overwrite files that exist");
+    sub->footer(example("hermes-vector experiment corners --out results"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "vectorlib/vectorization/VectorizedLine.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace hermes {
+
+/// One of the vectorizers, chosen at run time.
+struct Algorithm {
+    std::string name;   ///< as the option --algorithm takes it
+    std::string label;  ///< as papers write it
+    std::string colour; ///< in plots, as in the thesis where it has one
+    std::function<const std::vector<vectorlib::VectorizedLine> &(vectorlib::PointSpan<float>)> run;
+};
+
+/// Those that the experiments of thesis 6.5 compare, for a standard deviation sigma (metres) of points from
+/// their line; those that eliminate points take 3 sigma as their distance.
+std::vector<Algorithm> comparedAlgorithms(double sigma, bool polyline);
+
+} // namespace hermes
