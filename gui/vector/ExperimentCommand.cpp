@@ -1,9 +1,12 @@
 #include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
 #include "gui/vector/experiment/Gnuplot.h"
+#include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/SegmentationExperiment.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
+#include "vectorlib/io/CarmenLog.h"
 
 #include <filesystem>
 #include <iostream>
@@ -14,24 +17,20 @@ namespace hermes {
 
 namespace {
 
-const Quantity timeQuantity{"time", "time a scan [us]", [](const ResultRow &r) { return r.microseconds; },
-                            true};
-const Quantity linesQuantity{"lines", "lines", [](const ResultRow &r) { return r.linesFound; }, true};
-const Quantity extraQuantity{"lines", "additional lines [percent]",
-                             [](const ResultRow &r) { return r.linesPercent(); }, false};
-const Quantity areaQuantity{"area", "error area [m^2]", [](const ResultRow &r) { return r.area; }, true};
-
 const std::map<std::string, std::string> experiments = {
     {"segmentation-room", "figure 5.6: a room, by noise and outliers"},
     {"segmentation-objects", "figure 5.7: the same with small objects"},
     {"semicircle", "figure 6.7: time by the number of lines"},
     {"edges", "figure 6.8: four solitary edges"},
     {"corners", "figure 6.9: one cluster with sharp corners"},
-    {"room", "figure 6.10: a furnished room"}};
+    {"room", "figure 6.10: a furnished room"},
+    {"polygons", "closed polygons: error by the number of vertices"},
+    {"log", "the scans of --log: error by the number of vertices"}};
 
 struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
+    std::string log;
     ExperimentOptions options;
     bool force = false;
 
@@ -49,6 +48,8 @@ struct ExperimentCommand {
             segment(files, roomWithSmallObjects());
         else if (name == "semicircle")
             semicircle(files);
+        else if (name == "polygons" || name == "log")
+            quality(files);
         else
             scene(files, name == "edges"     ? solitaryEdges()
                          : name == "corners" ? sharpCorners()
@@ -65,9 +66,10 @@ private:
         const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
         writeCsv(csv, panels);
         for (const SegmentationPanel &panel : panels)
-            draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
-                                 std::to_string(std::lround(100 * panel.outlierShare)) + "percent.svg"),
-                 scene, panel);
+            hermes::draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
+                                         std::to_string(std::lround(100 * panel.outlierShare)) +
+                                         "percent.svg"),
+                         scene, panel);
     }
     void semicircle(OutputSet &files) const {
         std::ostream &csv = open(files, ".csv");
@@ -79,29 +81,43 @@ private:
         for (const auto &[sigma, some] : bySigma) {
             std::ostringstream text;
             text << "-sigma" << sigma;
-            plots(files, text.str(), "semicircle, sigma " + text.str().substr(6) + " m",
-                  {timeQuantity, linesQuantity}, some);
+            draw(files, text.str(), plotsOf("semicircle, sigma " + text.str().substr(6) + " m", some));
         }
+    }
+    void quality(OutputSet &files) const {
+        std::ostream &csv = open(files, ".csv");
+        const std::vector<QualityRow> rows =
+            name == "polygons" ? polygonExperiment(options) : logExperiment(scans(), options);
+        writeCsv(csv, rows);
+        draw(files, "", plotsOf(rows));
+    }
+    std::vector<vectorlib::CarmenScan> scans() const {
+        if (log.empty())
+            throw CLI::ValidationError("--log", "the experiment log needs the name of a CARMEN log");
+        Input input(log);
+        auto read = vectorlib::readCarmenLog(input.stream(), input.name());
+        if (!read)
+            throw Failure(read.error().message());
+        return std::move(read->scans);
     }
     void scene(OutputSet &files, const Scene &scene) const {
         std::ostream &csv = open(files, ".csv");
         const std::vector<ResultRow> rows = sceneExperiment(scene, options);
         writeCsv(csv, rows);
-        plots(files, "", scene.title, {timeQuantity, extraQuantity, areaQuantity}, rows);
+        draw(files, "", plotsOf(scene.title, rows));
     }
-    void plots(OutputSet &files, const std::string &suffix, const std::string &title,
-               const std::vector<Quantity> &quantities, const std::vector<ResultRow> &rows) const {
-        writeLatex(open(files, suffix + ".tex"), title, quantities, rows);
-        for (const Quantity &quantity : quantities) {
+    void draw(OutputSet &files, const std::string &suffix, const std::vector<Plot> &plots) const {
+        writeLatex(open(files, suffix + ".tex"), name, plots);
+        for (const Plot &plot : plots) {
             std::ostringstream script;
-            writeGnuplot(script, title, quantity, rows);
+            writeGnuplot(script, plot);
             const std::optional<std::string> svg = runGnuplot(script.str());
             if (!svg) {
                 std::cerr << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX "
                              "files\n";
                 return;
             }
-            open(files, suffix + "-" + quantity.name + ".svg") << *svg;
+            open(files, suffix + "-" + plot.name + ".svg") << *svg;
         }
     }
 };
@@ -122,6 +138,7 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
+    sub->add_option("--log", command->log, "CARMEN log for the experiment log")->type_name("FILE");
     sub->add_option("--runs", command->options.runs, "Scans for each number of points")
         ->check(between(1, 10000))
         ->type_name("N")

@@ -15,6 +15,7 @@ private Q_SLOTS:
     void writesTablePlotsAndDocument();
     void sameSeedGivesTheSameLines();
     void segmentationLeavesNinePanels();
+    void polygonsAreMeasuredByVertices();
     void refusesToOverwrite();
     void unknownExperimentIsAUsageError();
 
@@ -86,6 +87,21 @@ void TestExperiments::segmentationLeavesNinePanels() {
     QCOMPARE(rows.size(), 10);
     const QList<QByteArray> clean = rows[1].split(','); // 1 cm of noise, no outliers
     QCOMPARE(clean[4], clean[3]);                       // all clusters, none broken
+}
+
+void TestExperiments::polygonsAreMeasuredByVertices() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"polygons", "--runs", "2", "--out", folder.path()}), 0);
+    const auto rows = lines(folder.filePath("polygons.csv"));
+    QCOMPARE(rows.value(0), QByteArray("vertices_true,algorithm,sigma,vertices,rmse,hit_share,area_error"));
+    for (const QByteArray &row : rows.mid(1)) {
+        const QList<QByteArray> fields = row.split(',');
+        if (fields[0] != "6" || fields[2] != "0.02") // a hexagon at the noise of the scan
+            continue;
+        QVERIFY2(fields[3].toDouble() < 20 && fields[4].toDouble() < 0.2, row.constData());
+        QVERIFY2(fields[5].toDouble() > 0.9 && fields[6].toDouble() < 0.05, row.constData());
+    }
+    QCOMPARE(run({"log", "--out", folder.path(), "--force"}), 2);
 }
 
 void TestExperiments::refusesToOverwrite() {

@@ -1,6 +1,7 @@
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
 #include "gui/vector/experiment/Algorithms.h"
+#include "vectorlib/io/Number.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
@@ -145,6 +146,41 @@ std::vector<ResultRow> sceneExperiment(const Scene &scene, const ExperimentOptio
             rows.push_back(collector.row(sceneSigma, n, truth.size()));
     }
     return rows;
+}
+
+void writeCsv(std::ostream &out, const std::vector<ResultRow> &rows) {
+    using vectorlib::Number;
+    out << "sigma,points,algorithm,runs,lines_true,lines_found,lines_percent,area_m2,time_us\n";
+    for (const ResultRow &r : rows)
+        out << Number(r.sigma) << ',' << r.points << ',' << r.algorithm << ',' << r.runs << ','
+            << Number(r.linesTrue) << ',' << Number(r.linesFound) << ',' << Number(r.linesPercent()) << ','
+            << Number(r.area) << ',' << Number(r.microseconds) << '\n';
+}
+
+std::vector<Plot> plotsOf(const std::string &title, const std::vector<ResultRow> &rows) {
+    const bool truth = !rows.empty() && rows.front().linesTrue > 0;
+    std::vector<Plot> plots;
+    const auto add = [&](const char *name, const char *axis, bool logarithmic, auto quantity) {
+        Plot plot{name, title, "points", axis, true, logarithmic, {}};
+        for (const Algorithm &algorithm : comparedAlgorithms(sceneSigma, false)) {
+            Curve curve{algorithm.label, algorithm.colour, {}};
+            for (const ResultRow &row : rows)
+                if (row.algorithm == algorithm.label)
+                    curve.points.emplace_back(row.points, quantity(row));
+            if (!curve.points.empty())
+                plot.curves.push_back(std::move(curve));
+        }
+        plots.push_back(std::move(plot));
+    };
+    add("time", "time a scan [us]", true, [](const ResultRow &r) { return r.microseconds; });
+    if (truth) {
+        add("lines", "additional lines [percent]", false,
+            [](const ResultRow &r) { return r.linesPercent(); });
+        add("area", "error area [m^2]", true, [](const ResultRow &r) { return r.area; });
+    } else {
+        add("lines", "lines", true, [](const ResultRow &r) { return r.linesFound; });
+    }
+    return plots;
 }
 
 } // namespace hermes

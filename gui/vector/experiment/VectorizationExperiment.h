@@ -1,11 +1,25 @@
 #pragma once
 
+#include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/Scene.h"
-#include "gui/vector/experiment/Table.h"
 
 #include <functional>
 
 namespace hermes {
+
+/// One result: an algorithm on so many points.
+struct ResultRow {
+    double sigma = 0;        ///< permitted standard deviation of points from a line; metres
+    std::size_t points = 0;  ///< rays of the scanner, or points of the cluster
+    std::string algorithm;   ///< label
+    int runs = 0;            ///< scans, each with noise of its own
+    double linesTrue = 0;    ///< 0 where there is no true number
+    double linesFound = 0;   ///< mean
+    double area = 0;         ///< mean error area; m^2
+    double microseconds = 0; ///< median time of a scan, vectorization alone
+
+    double linesPercent() const { return linesTrue > 0 ? 100 * (linesFound / linesTrue - 1) : 0; }
+};
 
 struct ExperimentOptions {
     int runs = 20; ///< scans with noise of their own for each number of points
@@ -18,5 +32,10 @@ struct ExperimentOptions {
 std::vector<ResultRow> semicircleExperiment(const ExperimentOptions &options);
 /// Figures 6.8 to 6.10: scans of a scene with noise of 1 cm, segmented as in thesis 5.3, sigma 0.02 m.
 std::vector<ResultRow> sceneExperiment(const Scene &scene, const ExperimentOptions &options);
+
+void writeCsv(std::ostream &out, const std::vector<ResultRow> &rows);
+/// Time, lines (additional ones in percent where the true number is known) and error area (where there is
+/// one) over the number of points.
+std::vector<Plot> plotsOf(const std::string &title, const std::vector<ResultRow> &rows);
 
 } // namespace hermes
