@@ -39,6 +39,19 @@ inline TlsLine fitLine(const TlsSums &s) {
     return fit;
 }
 
+/// The sum of the squared distances of the points from their line, that is N times the variance (6.22),
+/// without the line: the smaller eigenvalue of the moments. The search for break points needs nothing else.
+inline double sumOfSquares(const TlsSums &s) {
+    const double difference = s.xx - s.yy;
+    const double root = std::sqrt(difference * difference + 4 * s.xy * s.xy);
+    return std::max(0.0, 0.5 * (s.xx + s.yy - root));
+}
+
+/// Whether the sums are of finite points.
+inline bool isFinite(const TlsSums &s) {
+    return s.mean.isFinite() && std::isfinite(s.xx) && std::isfinite(s.xy) && std::isfinite(s.yy);
+}
+
 /// Whether the standard deviation of the points from their line is at most sigma. Neither root nor division:
 /// the smaller eigenvalue of the moments exceeds n sigma^2 exactly when the moments less n sigma^2 are
 /// positive definite.
