@@ -16,12 +16,15 @@ struct VectorizedLine {
     LineSegment2D<double> segment;
 };
 
-/// Fits the line of points first .. last (sums given) and cuts it at their projections.
+/// Fits the line of points first .. last (sums given) and cuts it at their projections. Where one of the
+/// points is not finite the line is invalid and its sums are empty, never NaN.
 template <typename Scalar>
 VectorizedLine makeLine(PointSpan<Scalar> points, std::size_t first, std::size_t last, const TlsSums &sums) {
     VectorizedLine v;
     v.first = first;
     v.last = last;
+    if (!isFinite(sums))
+        return v;
     v.sums = sums;
     const TlsLine fit = fitLine(sums);
     v.line = fit.line;
@@ -42,6 +45,12 @@ struct VectorizerSettings {
         0.10; ///< largest distance of a polyline's corner from the break point, see Polyline.h; metres
     bool polyline =
         true; ///< join consecutive lines at their intersections (thesis 6.3.3); else cut at end points
+
+    /// The square of sigma; 0 for a sigma that is negative or no number: then only exact lines are accepted.
+    double variance() const {
+        const double s = std::max(0.0, sigma);
+        return s * s;
+    }
 };
 
 } // namespace vectorlib
