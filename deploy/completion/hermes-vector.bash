@@ -17,7 +17,7 @@ _hermes_vector() {
         return
     fi
     case $previous in
-    --algorithm) mapfile -t COMPREPLY < <(compgen -W "ftls tls" -- "$word") && return ;;
+    --algorithm) mapfile -t COMPREPLY < <(compgen -W "tls ftls aftls inc dp rw sam" -- "$word") && return ;;
     --rotation) mapfile -t COMPREPLY < <(compgen -W "mitsuta wahba" -- "$word") && return ;;
     --weights) mapfile -t COMPREPLY < <(compgen -W "none length column" -- "$word") && return ;;
     --odometry) mapfile -t COMPREPLY < <(compgen -W "use ignore" -- "$word") && return ;;

@@ -1,10 +1,15 @@
 #include "gui/vector/Options.h"
 #include "gui/vector/Points.h"
 #include "vectorlib/io/Svg.h"
-#include "vectorlib/vectorization/FtlsVectorizer.h"
+#include "vectorlib/vectorization/AftlsVectorizer.h"
+#include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
+#include "vectorlib/vectorization/IncVectorizer.h"
+#include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
+#include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
 #include "vectorlib/vectorization/TlsVectorizer.h"
 
 #include <iostream>
+#include <map>
 #include <numeric>
 
 namespace hermes {
@@ -41,9 +46,7 @@ struct VectorizeCommand {
         std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
         const std::vector<Point> points = loadPoints(in);
         const vectorlib::Segmentation clusters = noSegment ? oneCluster(points.size()) : segmenter(points);
-        const std::vector<Row> rows = algorithm == "tls"
-                                          ? vectorize<vectorlib::TlsVectorizer<double>>(points, clusters)
-                                          : vectorize<vectorlib::FtlsVectorizer<double>>(points, clusters);
+        const std::vector<Row> rows = (this->*algorithms().at(algorithm))(points, clusters);
         out << "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2\n";
         for (const Row &r : rows) {
             out << r.cluster << ',' << r.first << ',' << r.last;
@@ -66,11 +69,26 @@ struct VectorizeCommand {
         return s;
     }
 
+    using Vectorize = std::vector<Row> (VectorizeCommand::*)(const std::vector<Point> &,
+                                                             const vectorlib::Segmentation &) const;
+    static const std::map<std::string, Vectorize> &algorithms() {
+        using Command = VectorizeCommand;
+        static const std::map<std::string, Vectorize> all = {
+            {"tls", &Command::vectorize<vectorlib::TlsVectorizer<double>>},
+            {"ftls", &Command::vectorize<vectorlib::FtlsVectorizer<double>>},
+            {"aftls", &Command::vectorize<vectorlib::AftlsVectorizer<double>>},
+            {"inc", &Command::vectorize<vectorlib::IncVectorizer<double>>},
+            {"dp", &Command::vectorize<vectorlib::DouglasPeuckerVectorizer<double>>},
+            {"rw", &Command::vectorize<vectorlib::ReumannWitkamVectorizer<double>>},
+            {"sam", &Command::vectorize<vectorlib::SplitAndMergeVectorizer<double>>}};
+        return all;
+    }
+
     template <typename Vectorizer>
     std::vector<Row> vectorize(const std::vector<Point> &points,
                                const vectorlib::Segmentation &clusters) const {
         Vectorizer vectorizer;
-        vectorizer.settings = settings;
+        static_cast<vectorlib::VectorizerSettings &>(vectorizer.settings) = settings;
         vectorizer.settings.polyline = polyline;
         std::vector<Row> rows;
         std::vector<Point> part;
@@ -120,9 +138,12 @@ void addVectorizeCommand(CLI::App &app) {
     CLI::App *sub = app.add_subcommand("vectorize", "Replace points by line segments (CSV "
                                                     "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
-    sub->add_option("--algorithm", command->algorithm,
-                    "tls: one line a cluster; ftls: as many as sigma asks for")
-        ->check(CLI::IsMember({"ftls", "tls"}))
+    sub->add_option(
+           "--algorithm", command->algorithm,
+           "tls: one line a cluster; ftls: as many as sigma asks for; aftls: ftls with the corners where "
+           "they fit best; inc: point by point; dp: Douglas-Peucker, rw: Reumann-Witkam, sam: split and "
+           "merge, these three with a tolerance of 3 sigma")
+        ->check(CLI::IsMember({"tls", "ftls", "aftls", "inc", "dp", "rw", "sam"}))
         ->type_name("A")
         ->capture_default_str();
     sub->add_option("--sigma", command->settings.sigma,
