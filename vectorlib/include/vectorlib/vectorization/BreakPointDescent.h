@@ -14,7 +14,7 @@ namespace vectorlib {
 /// keeps at least two points (erratum 4). E never grows.
 class BreakPointDescent {
 public:
-    int rounds = 4; ///< over all break points, at most
+    int rounds = 2; ///< over all break points, at most
 
     /// Lines that partition the points; afterwards their intervals and sums are the better ones, their lines
     /// and segments still those of before.
@@ -34,7 +34,7 @@ public:
                 const std::size_t before = right.first;
                 improve(points, left, right, round == 0 ? std::max<std::size_t>(smaller / 16, 5) : 1);
                 const std::size_t move = std::max(before, right.first) - std::min(before, right.first);
-                moved_[i] = move * 16 > smaller; // less hardly turns a line
+                moved_[i] = move * 10 > smaller; // less hardly turns a line
                 any = any || moved_[i];
             }
             moved_[0] = moved_[lines.size()] = 0;
@@ -121,7 +121,7 @@ private:
         const Vector2D<double> origin(points[start]);
         const Sides sides(left.sums, right.sums, origin);
         Place best{start, sides.squares(), sides};
-        std::size_t back = stride == 1 ? 2 : 3, forth = 2;
+        std::size_t back = stride == 1 ? 2 : 3, forth = stride == 1 ? 2 : 1;
         for (;;) {
             const Place middle = best;
             std::size_t first = middle.at, last = middle.at;
@@ -142,7 +142,7 @@ private:
                 continue; // the best is at the border of what was looked at
             if (stride == 1)
                 break;
-            const std::size_t finer = std::max<std::size_t>(stride / 4, 1);
+            const std::size_t finer = std::max<std::size_t>(stride / 3, 1);
             back = forth = (stride - 1) / finer;
             stride = finer;
         }
