@@ -2,8 +2,12 @@
 
 #include "vectorlib/geometry/Angle.h"
 #include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/segmentation/Nearness.h"
+#include "vectorlib/segmentation/PolarScan.h"
+#include "vectorlib/segmentation/RunClusters.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace vectorlib {
@@ -53,30 +57,47 @@ template <typename Scalar = float>
 class EarSegmenter {
 public:
     EarSettings settings;
+    simd::Level level = simd::bestLevel(); ///< the instruction set to use
 
     const Segmentation &operator()(PointSpan<Scalar> points) {
-        const std::size_t count = points.size();
-        parent_.resize(count);
-        threshold_.resize(count);
+        const double k = thresholdPerMetre(points.size()), low = settings.minThreshold;
+        const double high = settings.maxThreshold;
+        CartesianNearness<Scalar> nearness{points.begin(), Scalar(k * k), Scalar(low * low),
+                                           Scalar(high * high)};
+        if (allFinite(points))
+            return segment(nearness, points.size(), points.size());
         valid_.clear();
-        const double perMetre = thresholdPerMetre(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            parent_[i] = static_cast<int>(i);
+        compact_.clear();
+        for (std::size_t i = 0; i < points.size(); ++i)
             if (points[i].isFinite()) {
-                const double t =
-                    std::clamp(perMetre * points[i].norm(), settings.minThreshold, settings.maxThreshold);
-                threshold_[i] = static_cast<Scalar>(t * t);
                 valid_.push_back(static_cast<int>(i));
+                compact_.push_back(points[i]);
             }
-        }
-        const std::size_t reach = static_cast<std::size_t>(std::max(1, settings.neighbours));
-        for (std::size_t v = 1; v < valid_.size(); ++v)
-            for (std::size_t back = 1; back <= std::min(reach, v); ++back)
-                joinIfNear(points, valid_[v], valid_[v - back]);
-        if (settings.closed)
-            close(points, reach);
-        collect(points);
-        return result_;
+        nearness.points = compact_.data();
+        return segment(nearness, points.size(), valid_.size());
+    }
+
+    /// Ranges straight from a lidar, with the threshold in polar coordinates (thesis 5.2.2): a neighbour is
+    /// at most K rays away and its range differs by at most K F / N of the range (5.1), within the bounds.
+    /// What is no return is an outlier and takes no part. Indices are those of the rays.
+    template <typename Range>
+    const Segmentation &operator()(const PolarScan<Range> &scan) {
+        valid_.clear();
+        ranges_.clear();
+        for (std::size_t i = 0; i < scan.count; ++i)
+            if (const double r = scan.range(i); scan.isReturn(r)) {
+                valid_.push_back(static_cast<int>(i));
+                ranges_.push_back(static_cast<float>(r));
+            }
+        const PolarNearness nearness{ranges_.data(),
+                                     valid_.data(),
+                                     static_cast<float>(thresholdPerMetre(scan.count)),
+                                     static_cast<float>(settings.minThreshold),
+                                     static_cast<float>(settings.maxThreshold),
+                                     static_cast<int>(reach()),
+                                     settings.closed ? static_cast<int>(scan.count) : 0,
+                                     std::abs(scan.step)};
+        return segment(nearness, scan.count, valid_.size());
     }
 
 private:
@@ -85,74 +106,106 @@ private:
         const std::size_t rays = settings.nominalPoints ? settings.nominalPoints : count;
         return rays ? settings.neighbours * settings.fieldOfView / static_cast<double>(rays) : 0;
     }
-    int root(int i) {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    // The earlier root stays, so that clusters are numbered by their first point.
-    void joinIfNear(PointSpan<Scalar> points, int i, int j) {
-        if (!((points[i] - points[j]).squaredNorm() <= threshold_[i]))
-            return;
-        const int a = root(i), b = root(j);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-    // The first K points are examined again, with the last ones as their predecessors.
-    void close(PointSpan<Scalar> points, std::size_t reach) {
-        const std::size_t valid = valid_.size();
-        for (std::size_t v = 0; v < std::min(reach, valid); ++v)
-            for (std::size_t back = v + 1; back <= reach && back < valid; ++back)
-                joinIfNear(points, valid_[v], valid_[valid + v - back]);
-    }
-    void collect(PointSpan<Scalar> points) {
-        const std::size_t count = points.size();
-        Segmentation &r = result_;
-        r.labels.assign(count, -1);
-        r.starts.assign(1, 0);
-        size_.assign(count, 0);
-        for (int i : valid_)
-            ++size_[root(i)];
-        int clusters = 0;
-        for (int i : valid_)
-            if (parent_[i] == i && size_[i] >= std::max(1, settings.minPoints)) {
-                r.labels[i] = clusters++;
-                r.starts.push_back(r.starts.back() + static_cast<std::size_t>(size_[i]));
-            }
-        r.order.resize(r.starts.back());
-        next_.assign(r.starts.begin(), r.starts.end());
-        for (int i : valid_) {
-            const int label = r.labels[root(i)];
-            r.labels[i] = label;
-            if (label >= 0)
-                r.order[next_[static_cast<std::size_t>(label)]++] = i;
-        }
-        if (settings.closed)
-            for (std::size_t c = 0; c < r.size(); ++c)
-                startAfterWidestGap(points, c);
-    }
-    // A cluster that runs over the end of the scan begins after the widest gap between its points.
-    void startAfterWidestGap(PointSpan<Scalar> points, std::size_t cluster) {
-        const auto first = result_.order.begin() + static_cast<std::ptrdiff_t>(result_.starts[cluster]);
-        const auto last = result_.order.begin() + static_cast<std::ptrdiff_t>(result_.starts[cluster + 1]);
-        const std::size_t reach = std::min(valid_.size(), static_cast<std::size_t>(settings.neighbours));
-        if (*first > valid_[reach - 1] || *(last - 1) < valid_[valid_.size() - reach])
-            return;
-        const auto gap = [&](int i, int j) { return (points[i] - points[j]).squaredNorm(); };
-        auto start = first;
-        Scalar widest = gap(*first, *(last - 1));
-        for (auto i = first + 1; i != last; ++i)
-            if (const Scalar g = gap(*i, *(i - 1)); g > widest) {
-                widest = g;
-                start = i;
-            }
-        std::rotate(first, start, last);
+    std::size_t reach() const { return static_cast<std::size_t>(std::max(1, settings.neighbours)); }
+
+    // 0 times a number is 0, times infinity or NaN it is NaN: sums in lanes, without branches.
+    static bool allFinite(PointSpan<Scalar> points) {
+        constexpr std::size_t lanes = 16;
+        const std::size_t count = points.size(), eights = count / (lanes / 2) * (lanes / 2);
+        const Scalar *p = count ? &points.begin()->x : nullptr;
+        Scalar sum[lanes] = {};
+        for (std::size_t i = 0; i < 2 * eights; i += lanes)
+            for (std::size_t k = 0; k < lanes; ++k)
+                sum[k] += p[i + k] * Scalar(0);
+        for (std::size_t i = 2 * eights; i < 2 * count; ++i)
+            sum[0] += p[i] * Scalar(0);
+        for (std::size_t k = 1; k < lanes; ++k)
+            sum[0] += sum[k];
+        return sum[0] == Scalar(0);
     }
 
-    std::vector<int> parent_;
-    std::vector<Scalar> threshold_; // squared, of each point
-    std::vector<int> valid_;        // indices of the finite points
-    std::vector<int> size_;
-    std::vector<std::size_t> next_;
+    // `taking` of `count` points take part: those of valid_, or all.
+    template <typename Nearness>
+    const Segmentation &segment(const Nearness &nearness, std::size_t count, std::size_t taking) {
+        all_ = taking == count;
+        runs_.find(nearness, taking, reach(), settings.closed, level);
+        number(count);
+        if (settings.closed)
+            for (std::size_t c = 0; c < result_.size(); ++c)
+                startAfterWidestGap(nearness, c, taking);
+        if (!all_)
+            for (int &i : result_.order)
+                i = valid_[static_cast<std::size_t>(i)];
+        return result_;
+    }
+    // Labels and order, run by run.
+    void number(std::size_t count) {
+        Segmentation &r = result_;
+        size_.assign(runs_.runs(), 0);
+        for (std::size_t run = 0; run < size_.size(); ++run)
+            size_[runs_.root(run)] += runs_.length(run);
+        label_.assign(size_.size(), -1);
+        r.starts.assign(1, 0);
+        for (std::size_t run = 0; run < size_.size(); ++run)
+            if (size_[run] >= static_cast<std::size_t>(std::max(1, settings.minPoints))) {
+                label_[run] = static_cast<int>(r.starts.size() - 1);
+                r.starts.push_back(r.starts.back() + size_[run]);
+            }
+        next_.assign(r.starts.begin(), r.starts.end());
+        r.order.resize(r.starts.back());
+        r.labels.resize(count);
+        if (!all_)
+            std::fill(r.labels.begin(), r.labels.end(), -1);
+        for (std::size_t run = 0; run < size_.size(); ++run)
+            numberRun(runs_.begin(run), runs_.begin(run + 1), label_[runs_.root(run)]);
+    }
+    void numberRun(std::size_t begin, std::size_t end, int label) {
+        int *labels = result_.labels.data();
+        if (all_)
+            std::fill(labels + begin, labels + end, label);
+        else
+            for (std::size_t i = begin; i < end; ++i)
+                labels[valid_[i]] = label;
+        if (label < 0)
+            return;
+        int *order = result_.order.data() + next_[static_cast<std::size_t>(label)];
+        next_[static_cast<std::size_t>(label)] += end - begin;
+        // Counted among those that take part, until segment() is done.
+        std::iota(order, order + (end - begin), static_cast<int>(begin));
+    }
+    // A cluster that runs over the end of the scan begins after the widest gap between its points.
+    template <typename Nearness>
+    void startAfterWidestGap(const Nearness &nearness, std::size_t cluster, std::size_t taking) {
+        const auto first = result_.order.begin() + static_cast<std::ptrdiff_t>(result_.starts[cluster]);
+        const auto last = result_.order.begin() + static_cast<std::ptrdiff_t>(result_.starts[cluster + 1]);
+        const std::size_t near = std::min(taking, static_cast<std::size_t>(settings.neighbours));
+        if (static_cast<std::size_t>(*first) + 1 > near ||
+            static_cast<std::size_t>(*(last - 1)) < taking - near)
+            return;
+        Gap<decltype(nearness.gap(0, 0))> widest{nearness.gap(index(*first), index(*(last - 1))),
+                                                 index(*first)};
+        std::size_t before = 0;
+        for (std::size_t run = 0; run < runs_.runs(); ++run) {
+            const std::size_t begin = runs_.begin(run), end = runs_.begin(run + 1);
+            if (label_[runs_.root(run)] != static_cast<int>(cluster))
+                continue;
+            if (begin != index(*first))
+                if (const auto g = nearness.gap(begin, before); g > widest.size)
+                    widest = {g, begin};
+            nearness.widen(begin, end, level, widest);
+            before = end - 1;
+        }
+        std::rotate(first, std::lower_bound(first, last, static_cast<int>(widest.at)), last);
+    }
+    static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+    RunClusters runs_;
+    bool all_ = true;                       // every point takes part
+    std::vector<int> valid_;                // the points that take part
+    std::vector<Vector2D<Scalar>> compact_; // these points, where some do not
+    std::vector<float> ranges_;             // the ranges of polar input
+    std::vector<std::size_t> size_, next_;
+    std::vector<int> label_;
     Segmentation result_;
 };
 

@@ -21,9 +21,10 @@ inline TlsLine fitLine(const TlsSums &s) {
     // Below the rounding of the moments themselves a direction would be noise.
     if (!(root > 1e-14 * (s.xx + s.yy)) || !(s.n >= 2))
         return fit;
-    // (6.19) with sqrt(1/2 - |q|/(2 root)) written without its cancellation.
-    const double large = std::sqrt((root + std::abs(q)) / (2 * root));
-    const double small = std::abs(p) / (root * large);
+    // (6.19) without its cancellation: the larger is sqrt(h / root), the smaller |p| / sqrt(h root).
+    const double h = 0.5 * (root + std::abs(q)), inverse = 1 / std::sqrt(h * root);
+    const double large = h * inverse;
+    const double small = std::abs(p) * inverse;
     double a = q > 0 ? small : large;
     double b = q > 0 ? large : small;
     if (p <= 0)

@@ -24,7 +24,7 @@ struct TlsSums {
         if (n <= 0)
             return s;
         s.n = n;
-        const double mx = sx / n, my = sy / n;
+        const double inverse = 1 / n, mx = sx * inverse, my = sy * inverse;
         s.mean = origin + Vector2D<double>(mx, my);
         s.xx = std::max(0.0, sxx - sx * mx);
         s.xy = sxy - sx * my;

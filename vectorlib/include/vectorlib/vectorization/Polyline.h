@@ -14,8 +14,9 @@ namespace vectorlib {
 /// there.
 class PolylineJoiner {
 public:
-    template <typename Scalar>
-    void operator()(PointSpan<Scalar> points, const PrefixSums &sums, const VectorizerSettings &settings,
+    /// `sums` are those of the points: PrefixSums or BlockSums.
+    template <typename Scalar, typename Sums>
+    void operator()(PointSpan<Scalar> points, const Sums &sums, const VectorizerSettings &settings,
                     std::vector<VectorizedLine> &lines) {
         joined_.clear();
         for (const VectorizedLine &next : lines) {
@@ -49,8 +50,8 @@ private:
     }
     // Replaces the last joined line and `next` by three lines when these fit and meet; the correction of
     // figure 6.6b.
-    template <typename Scalar>
-    bool bridge(PointSpan<Scalar> points, const PrefixSums &sums, const VectorizedLine &next,
+    template <typename Scalar, typename Sums>
+    bool bridge(PointSpan<Scalar> points, const Sums &sums, const VectorizedLine &next,
                 const VectorizerSettings &settings) {
         const VectorizedLine previous = joined_.back();
         const std::size_t first = previous.first, count = next.last - first + 1;

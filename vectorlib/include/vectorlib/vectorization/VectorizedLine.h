@@ -33,6 +33,12 @@ VectorizedLine makeLine(PointSpan<Scalar> points, std::size_t first, std::size_t
     if (fit.line.isValid()) {
         begin = fit.line.project(begin);
         end = fit.line.project(end);
+        // The direction is that of the line: no further root.
+        const Vector2D<double> along(-fit.line.b, fit.line.a);
+        if (const double length = along.dot(end - begin); length != 0) {
+            v.segment = LineSegment2D<double>(begin, end, length > 0 ? along : -along);
+            return v;
+        }
     }
     v.segment = LineSegment2D<double>(begin, end);
     return v;
