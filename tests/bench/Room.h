@@ -5,13 +5,28 @@
 #include <random>
 #include <vector>
 
-/// A scan of a room of eleven walls by a scanner amid it, counter-clockwise, at even steps of the angle, with
-/// 1 cm noise of the range: one continuous cluster.
-inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays) {
+using Corners = std::vector<vectorlib::Vector2D<double>>;
+
+/// A room of eleven walls around the origin; begins behind the scanner, where the scan begins and ends.
+inline Corners plainRoom() {
+    return {{-5, 0},   {-5, -3}, {-1, -3}, {-1, -4}, {3, -4}, {3, -2.5},
+            {6, -2.5}, {6, 3},   {1.5, 3}, {1.5, 4}, {-5, 4}};
+}
+
+/// A hall of fifty walls, as folded as a paper screen, all in sight of the origin.
+inline Corners foldedHall() {
+    Corners corners;
+    for (int i = 0; i < 50; ++i) {
+        const double angle = -3.14159265 + 6.2831853 * i / 50, radius = i % 2 ? 5 : 4;
+        corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return corners;
+}
+
+/// The scan of walls by a scanner at the origin, counter-clockwise, at even steps of the angle, with 1 cm
+/// noise of the range: one continuous cluster.
+inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays, const Corners &corners = plainRoom()) {
     using Point = vectorlib::Vector2D<double>;
-    // Begins behind the scanner, where the scan begins and ends.
-    const std::vector<Point> corners = {{-5, 0},   {-5, -3}, {-1, -3}, {-1, -4}, {3, -4}, {3, -2.5},
-                                        {6, -2.5}, {6, 3},   {1.5, 3}, {1.5, 4}, {-5, 4}};
     std::mt19937 random(1);
     std::normal_distribution<double> noise(0, 0.01);
     std::vector<vectorlib::Vector2D<float>> points;

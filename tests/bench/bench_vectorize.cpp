@@ -1,3 +1,5 @@
+#include "tests/bench/Library.h"
+#include "tests/bench/Rivals.h"
 #include "tests/bench/Room.h"
 
 #include <vectorlib/segmentation/EarSegmenter.h>
@@ -9,61 +11,79 @@ using namespace vectorlib;
 
 namespace {
 
-/// The yardstick: five prefix sums in doubles and nothing else.
-void fivePrefixSums(benchmark::State &state) {
-    const auto points = roomScan(int(state.range(0)));
-    struct Row {
-        double x, y, xx, xy, yy;
-    };
-    std::vector<Row> rows(points.size() + 1);
-    for (auto _ : state) {
-        Row sum{};
-        rows[0] = sum;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const double x = points[i].x, y = points[i].y;
-            sum.x += x;
-            sum.y += y;
-            sum.xx += x * x;
-            sum.xy += x * y;
-            sum.yy += y * y;
-            rows[i + 1] = sum;
-        }
-        benchmark::DoNotOptimize(rows.data());
-        benchmark::ClobberMemory();
-    }
+std::vector<Vector2D<float>> scan(const benchmark::State &state) {
+    return roomScan(int(state.range(1)), state.range(0) > 20 ? foldedHall() : plainRoom());
 }
 
-void ftls(benchmark::State &state, bool polyline) {
-    const auto points = roomScan(int(state.range(0)));
-    FtlsVectorizer<float> vectorize;
-    vectorize.settings.polyline = polyline;
+/// Runs a vectorizer that returns how many lines it found.
+template <typename Method>
+void run(benchmark::State &state, Method method) {
+    const auto points = scan(state);
     std::size_t lines = 0;
     for (auto _ : state) {
-        lines = vectorize(points).size();
+        lines = method(PointSpan<float>(points));
         benchmark::DoNotOptimize(lines);
         benchmark::ClobberMemory();
     }
     state.counters["lines"] = double(lines);
 }
 
-void segment(benchmark::State &state) {
-    const auto points = roomScan(int(state.range(0)));
-    EarSegmenter<float> segmenter;
-    for (auto _ : state) {
-        benchmark::DoNotOptimize(segmenter(points).size());
-        benchmark::ClobberMemory();
+template <bool polyline>
+class Ftls {
+public:
+    Ftls() { vectorize_.settings.polyline = polyline; }
+    std::size_t operator()(PointSpan<float> points) { return vectorize_(points).size(); }
+
+private:
+    FtlsVectorizer<float> vectorize_;
+};
+
+struct Segment {
+    std::size_t operator()(PointSpan<float> points) { return segment(points).size(); }
+    EarSegmenter<float> segment;
+};
+
+/// Reads every coordinate once.
+struct Read {
+    std::size_t operator()(PointSpan<float> points) {
+        float x[8] = {};
+        for (std::size_t i = 0; i + 4 <= points.size(); i += 4)
+            for (std::size_t k = 0; k < 4; ++k) {
+                x[2 * k] += points[i + k].x;
+                x[2 * k + 1] += points[i + k].y;
+            }
+        benchmark::DoNotOptimize(x);
+        return 0;
     }
-}
+};
 
-void sizes(benchmark::internal::Benchmark *b) {
-    b->Arg(2000)->Arg(20000);
+template <typename Method>
+void add(const char *name) {
+    benchmark::RegisterBenchmark(name, [](benchmark::State &state) {
+        run(state, Method());
+    })->ArgsProduct({{10, 50}, {180, 2000, 20000}});
 }
-
-BENCHMARK(fivePrefixSums)->Apply(sizes);
-BENCHMARK_CAPTURE(ftls, intervals, false)->Apply(sizes);
-BENCHMARK_CAPTURE(ftls, polyline, true)->Apply(sizes);
-BENCHMARK(segment)->Apply(sizes);
 
 } // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char **argv) {
+    add<Ftls<false>>("FTLS");
+    add<Ftls<true>>("FTLS, polyline");
+    add<rivals::PlainSums>("five prefix sums");
+    add<rivals::DouglasPeucker<rivals::farthestPlain>>("Douglas-Peucker");
+    add<rivals::DouglasPeucker<rivals::farthestAvx2>>("Douglas-Peucker, SIMD");
+    add<rivals::ReumannWitkam>("Reumann-Witkam");
+    add<rivals::Inc<true>>("INC");
+    add<rivals::Inc<false>>("INC without root");
+#ifdef BENCH_BOOST
+    add<rivals::BoostSimplify>("Boost.Geometry simplify");
+#endif
+#ifdef BENCH_OPENCV
+    add<rivals::OpenCvApprox>("OpenCV approxPolyDP");
+#endif
+    add<Segment>("EarSegmenter");
+    add<Read>("reading the points");
+    benchmark::AddCustomContext("compiler", BENCH_COMPILER);
+    benchmark::Initialize(&argc, argv);
+    benchmark::RunSpecifiedBenchmarks();
+}
