@@ -43,20 +43,6 @@ struct Segment {
     EarSegmenter<float> segment;
 };
 
-/// Reads every coordinate once.
-struct Read {
-    std::size_t operator()(PointSpan<float> points) {
-        float x[8] = {};
-        for (std::size_t i = 0; i + 4 <= points.size(); i += 4)
-            for (std::size_t k = 0; k < 4; ++k) {
-                x[2 * k] += points[i + k].x;
-                x[2 * k + 1] += points[i + k].y;
-            }
-        benchmark::DoNotOptimize(x);
-        return 0;
-    }
-};
-
 template <typename Method>
 void add(const char *name) {
     benchmark::RegisterBenchmark(name, [](benchmark::State &state) {
@@ -82,7 +68,6 @@ int main(int argc, char **argv) {
     add<rivals::OpenCvApprox>("OpenCV approxPolyDP");
 #endif
     add<Segment>("EarSegmenter");
-    add<Read>("reading the points");
     benchmark::AddCustomContext("compiler", BENCH_COMPILER);
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();
