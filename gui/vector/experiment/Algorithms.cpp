@@ -1,6 +1,11 @@
 #include "gui/vector/experiment/Algorithms.h"
 
+#include "vectorlib/vectorization/AftlsVectorizer.h"
+#include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
 #include "vectorlib/vectorization/FtlsVectorizer.h"
+#include "vectorlib/vectorization/IncVectorizer.h"
+#include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
+#include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
 
 #include <memory>
 
@@ -23,7 +28,12 @@ Algorithm make(const char *name, const char *label, const char *colour, double s
 } // namespace
 
 std::vector<Algorithm> comparedAlgorithms(double sigma, bool polyline) {
-    return {make<vectorlib::FtlsVectorizer>("ftls", "FTLS", "#2e9e3f", sigma, polyline)};
+    return {make<vectorlib::AftlsVectorizer>("aftls", "AFTLS", "#7ed957", sigma, polyline),
+            make<vectorlib::FtlsVectorizer>("ftls", "FTLS", "#2e9e3f", sigma, polyline),
+            make<vectorlib::IncVectorizer>("inc", "INC", "#0b5d1e", sigma, polyline),
+            make<vectorlib::DouglasPeuckerVectorizer>("dp", "DP", "#000000", sigma, polyline),
+            make<vectorlib::ReumannWitkamVectorizer>("rw", "RW", "#9a9a9a", sigma, polyline),
+            make<vectorlib::SplitAndMergeVectorizer>("sam", "SAM", "#0072b2", sigma, polyline)};
 }
 
 } // namespace hermes
