@@ -32,9 +32,10 @@ inline void drawMap(std::ostream &out, const MapDrawing &map) {
     for (const MapEdge &m : map.segments)
         (m.observations < 3 ? seldom : often).push_back(m.segment);
     if (!seldom.empty())
-        picture.segments(
-            {colour::points, 1.2, std::to_string(seldom.size()) + " segments seen once or twice"}, seldom);
-    picture.segments({colour::map, 1.8, std::to_string(often.size()) + " segments seen more often"}, often);
+        picture.segments({colour::points, 1.2, "seen once or twice: " + std::to_string(seldom.size())},
+                         seldom);
+    picture.segments({colour::map, 1.8, "map segments seen more often: " + std::to_string(often.size())},
+                     often);
     if (!map.trajectory.empty()) {
         const Pose2D &first = map.trajectory.front().pose, &last = map.trajectory.back().pose;
         picture.pose({"#009e73", 2, "start"}, {first.x, first.y}, first.theta);

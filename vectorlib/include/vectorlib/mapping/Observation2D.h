@@ -2,7 +2,7 @@
 
 #include "vectorlib/mapping/Edge2D.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
-#include "vectorlib/vectorization/FtlsVectorizer.h"
+#include "vectorlib/vectorization/AftlsVectorizer.h"
 
 #include <vector>
 
@@ -22,7 +22,7 @@ struct Observation2D {
 class EdgeExtractor {
 public:
     EarSegmenter<float> segment;
-    FtlsVectorizer<float> vectorize;
+    AftlsVectorizer<float> vectorize;
     std::size_t minPoints = 4; ///< lines through fewer points are no edges
     double minLength = 0.10;   ///< shorter lines are no edges; metres
 
