@@ -123,7 +123,8 @@ Result<std::vector<vectorlib::MapEdge>> ScanMatcher::readMapFile(const QString &
     std::istringstream in(file.readAll().toStdString());
     auto map = vectorlib::readMapCsv(in, name.toStdString());
     if (!map)
-        return fileError(name, QString::fromStdString(map.error().message()));
+        return Error(ErrorCode::InputOutput, QString::fromStdString(map.error().message()),
+                     QJsonObject{{"path", name}});
     return std::move(*map);
 }
 

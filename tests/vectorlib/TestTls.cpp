@@ -38,6 +38,7 @@ private Q_SLOTS:
     void varianceHoldsFarFromTheOrigin();
     void sumOfUnionIsExact();
     void sumOfTransformedPointsIsExact();
+    void momentsOfAStraightLineStayPositive();
     void thresholdTestAgreesWithTheVariance();
 };
 
@@ -147,6 +148,15 @@ void TestTls::sumOfTransformedPointsIsExact() {
     QVERIFY((moved.mean - direct.mean).norm() < 1e-12);
     QVERIFY(std::abs(moved.xx - direct.xx) < 1e-9 && std::abs(moved.xy - direct.xy) < 1e-9 &&
             std::abs(moved.yy - direct.yy) < 1e-9);
+}
+
+void TestTls::momentsOfAStraightLineStayPositive() {
+    const TlsSums s = sumsOf(noisyLine(0.3, 2.0, 100, 0));
+    for (int i = 0; i < 1000; ++i) {
+        const TlsSums moved = Transformation2D(1, 2, 0.01 * i - 0.3) * s; // some of them onto an axis
+        QVERIFY(moved.xx >= 0 && moved.yy >= 0);
+        QVERIFY(std::isfinite(fitLine(moved).variance));
+    }
 }
 
 void TestTls::thresholdTestAgreesWithTheVariance() {

@@ -72,9 +72,10 @@ struct TlsSums {
         TlsSums r;
         r.n = s.n;
         r.mean = t * s.mean;
-        r.xx = c * c * s.xx - 2 * c * i * s.xy + i * i * s.yy;
+        // Points on one line have no moment across it; rounding must not make it negative.
+        r.xx = std::max(0.0, c * c * s.xx - 2 * c * i * s.xy + i * i * s.yy);
         r.xy = c * i * (s.xx - s.yy) + (c * c - i * i) * s.xy;
-        r.yy = i * i * s.xx + 2 * c * i * s.xy + c * c * s.yy;
+        r.yy = std::max(0.0, i * i * s.xx + 2 * c * i * s.xy + c * c * s.yy);
         return r;
     }
 };
