@@ -15,6 +15,8 @@ namespace hermes {
 
 namespace {
 
+constexpr qint64 maxMapBytes = 64 << 20; // some 400,000 edges
+
 Error fileError(const QString &path, const QString &what) {
     return {ErrorCode::InputOutput, path + ": " + what, QJsonObject{{"path", path}}};
 }
@@ -117,10 +119,14 @@ Result<QJsonValue> ScanMatcher::writeMapFile(const QString &path, const QString 
 
 Result<std::vector<vectorlib::MapEdge>> ScanMatcher::readMapFile(const QString &path) const {
     const QString name = absolutePath(path);
+    // Before it is opened: a pipe would wait for its writer, a device never ends, and the event loop with it.
+    const QFileInfo info(name);
+    if (info.exists() && (!info.isFile() || info.size() > maxMapBytes))
+        return fileError(name, QString("expected a map file of at most %1 bytes").arg(maxMapBytes));
     QFile file(name);
     if (!file.open(QIODevice::ReadOnly))
         return fileError(name, "cannot read the map: " + file.errorString());
-    std::istringstream in(file.readAll().toStdString());
+    std::istringstream in(file.read(maxMapBytes).toStdString());
     auto map = vectorlib::readMapCsv(in, name.toStdString());
     if (!map)
         return Error(ErrorCode::InputOutput, QString::fromStdString(map.error().message()),
