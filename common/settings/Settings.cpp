@@ -139,7 +139,9 @@ Result<QString> Settings::save(const QString &name) const {
                      QStringLiteral("no settings file to save to: start with --config FILE"));
     QSaveFile file(target);
     const QByteArray text = QJsonDocument(changes()).toJson();
-    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.commit())
+    // commit() alone does not notice a full disk
+    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
+        !file.commit())
         return fileError(target, file.errorString());
     return target;
 }

@@ -111,7 +111,8 @@ Result<QJsonValue> ScanMatcher::writeMapFile(const QString &path, const QString 
         vectorlib::writeMapCsv(text, segments);
     const QByteArray bytes = QByteArray::fromStdString(text.str());
     QSaveFile file(name);
-    if (!file.open(QIODevice::WriteOnly) || file.write(bytes) != bytes.size() || !file.commit())
+    if (!file.open(QIODevice::WriteOnly) || file.write(bytes) != bytes.size() || !file.flush() ||
+        !file.commit()) // commit() alone does not notice a full disk
         return fileError(name, "cannot write the map: " + file.errorString());
     return QJsonValue(
         QJsonObject{{"path", name}, {"segments", qint64(segments.size())}, {"bytes", qint64(bytes.size())}});

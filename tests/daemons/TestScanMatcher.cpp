@@ -5,8 +5,10 @@
 #include <QtTest>
 
 #include <cmath>
+#include <csignal>
 #include <future>
 #include <limits>
+#include <sys/resource.h>
 
 using namespace hermes;
 
@@ -62,6 +64,7 @@ private Q_SLOTS:
     void tracksAndMaps();
     void savedMapLoadsTheSame();
     void refusesToOverwriteAndNamesThePath();
+    void fullDiskLeavesNoFile();
     void loadOfABadFileNamesTheLine();
     void localizationLeavesTheMapAlone();
     void refusedScansAreCountedAndShown();
@@ -221,6 +224,21 @@ void TestScanMatcher::refusesToOverwriteAndNamesThePath() {
     QVERIFY(nowhere.is(ErrorCode::InputOutput));
     QVERIFY(nowhere.data.toObject()["path"].toString().endsWith("no/such/folder/room.csv"));
     QCOMPARE(QDir(folder->path()).entryList(QDir::Files), QStringList("room.csv"));
+}
+
+void TestScanMatcher::fullDiskLeavesNoFile() {
+    drive(0, 3);
+    std::signal(SIGXFSZ, SIG_IGN); // a limit of the file size stands for the disk
+    rlimit before;
+    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const rlimit tiny{100, before.rlim_max};
+    QCOMPARE(setrlimit(RLIMIT_FSIZE, &tiny), 0);
+    const Error map = failure("map.save", {{"path", "room.csv"}});
+    const auto settings = matcher->settings().save(folder->filePath("settings.json"));
+    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
+    QVERIFY2(map.is(ErrorCode::InputOutput), qPrintable(map.message));
+    QVERIFY(!settings.ok());
+    QVERIFY(QDir(folder->path()).entryList(QDir::Files).isEmpty());
 }
 
 void TestScanMatcher::loadOfABadFileNamesTheLine() {
