@@ -1,16 +1,9 @@
 #pragma once
 
-#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/SegmentPair.h"
 #include "vectorlib/io/Csv.h"
 
 namespace vectorlib {
-
-/// Two segments that are known to be the same edge, seen in two frames; metres.
-struct SegmentPair {
-    LineSegment2D<double> fixed;  ///< of the static set
-    LineSegment2D<double> moving; ///< of the dynamic set
-    double weight = 1;
-};
 
 struct PairTable {
     std::vector<SegmentPair> pairs;

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "vectorlib/geometry/Transformation2D.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vectorlib {
+
+/// Finds a transformation with a small criterion by the Nelder-Mead simplex, as overview paper 2.2 did: no
+/// derivatives, many evaluations, and no promise that it is the global minimum. The criterion is any callable
+/// that takes a Transformation2D and gives a number.
+class NelderMeadFitter {
+public:
+    double stepXY = 0.1;       ///< size of the first simplex; metres
+    double stepAlpha = 0.1;    ///< the same for the rotation; radians
+    double tolerance = 1e-9;   ///< size of the simplex, metres and radians, at which the search ends
+    int maxEvaluations = 2000; ///< of the criterion
+
+    template <typename Criterion>
+    Transformation2D operator()(const Criterion &criterion, const Transformation2D &start) {
+        evaluations_ = 0;
+        const auto at = [&](const Point &p) {
+            ++evaluations_;
+            const double value = criterion(Transformation2D(p[0], p[1], p[2]));
+            return Vertex{p, std::isnan(value) ? std::numeric_limits<double>::infinity() : value};
+        };
+        const Point first{start.x(), start.y(), start.alpha()}, steps{stepXY, stepXY, stepAlpha};
+        std::array<Vertex, 4> simplex;
+        for (std::size_t i = 0; i < simplex.size(); ++i) {
+            Point p = first;
+            if (i > 0)
+                p[i - 1] += steps[i - 1];
+            simplex[i] = at(p);
+        }
+        for (sort(simplex); !hasCollapsed(simplex) && evaluations_ < maxEvaluations; sort(simplex))
+            iterate(simplex, at);
+        const Point &p = simplex.front().at;
+        return {p[0], p[1], p[2]};
+    }
+    /// Of the criterion in the last call.
+    int evaluations() const { return evaluations_; }
+
+private:
+    using Point = std::array<double, 3>; // x, y, alpha
+    struct Vertex {
+        Point at{};
+        double value = 0;
+    };
+
+    template <typename At>
+    static void iterate(std::array<Vertex, 4> &simplex, const At &at) {
+        Vertex &worst = simplex[3];
+        Point middle{}; // of all but the worst
+        for (std::size_t v = 0; v < 3; ++v)
+            for (std::size_t i = 0; i < 3; ++i)
+                middle[i] += simplex[v].at[i] / 3;
+        const Vertex reflected = at(along(middle, worst.at, -1));
+        if (reflected.value < simplex[0].value) {
+            const Vertex expanded = at(along(middle, worst.at, -2));
+            worst = expanded.value < reflected.value ? expanded : reflected;
+        } else if (reflected.value < simplex[2].value) {
+            worst = reflected;
+        } else {
+            const bool outside = reflected.value < worst.value;
+            const Vertex contracted = at(along(middle, worst.at, outside ? -0.5 : 0.5));
+            if (contracted.value < std::min(worst.value, reflected.value))
+                worst = contracted;
+            else
+                for (std::size_t v = 1; v < 4; ++v)
+                    simplex[v] = at(along(simplex[0].at, simplex[v].at, 0.5));
+        }
+    }
+    static Point along(const Point &from, const Point &to, double k) {
+        Point p;
+        for (std::size_t i = 0; i < 3; ++i)
+            p[i] = from[i] + k * (to[i] - from[i]);
+        return p;
+    }
+    static void sort(std::array<Vertex, 4> &simplex) {
+        std::sort(simplex.begin(), simplex.end(),
+                  [](const Vertex &a, const Vertex &b) { return a.value < b.value; });
+    }
+    bool hasCollapsed(const std::array<Vertex, 4> &simplex) const {
+        double size = 0;
+        for (const Vertex &v : simplex)
+            for (std::size_t i = 0; i < 3; ++i)
+                size = std::max(size, std::abs(v.at[i] - simplex[0].at[i]));
+        return size <= tolerance;
+    }
+
+    int evaluations_ = 0;
+};
+
+} // namespace vectorlib
