@@ -3,7 +3,7 @@
 // Everything that scan processing needs, in one include.
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/mapping/MapBuilder.h"
-#include "vectorlib/registration/LineSegmentRegistration.h"
+#include "vectorlib/registration/RegistrationCovariance.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/similarity/CriterionMinimizer.h"
 #include "vectorlib/similarity/NelderMeadFitter.h"

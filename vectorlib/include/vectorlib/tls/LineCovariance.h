@@ -12,7 +12,15 @@ struct LineCovariance {
     /// Rows and columns: angle (radians), offset (metres). With an offset about a far origin the two are
     /// strongly correlated: the line turns about the mean of its points.
     Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
-    bool valid = false; ///< false when the line has no direction or the noise is unknown
+    Vector2D<double> normal; ///< (a, b) of the line, which says what the signs mean
+    bool valid = false;      ///< false when the line has no direction or the noise is unknown
+
+    /// Of a line that is known exactly, as in a given map.
+    static LineCovariance exact() {
+        LineCovariance c;
+        c.valid = true;
+        return c;
+    }
 };
 
 /// The covariance of fitLine(sums), when each coordinate of a point has the standard deviation `noise`
@@ -27,6 +35,7 @@ inline LineCovariance lineCovariance(const TlsSums &sums, double noise = 0) {
     const Line2D line = isFinite(sums) ? fitLine(sums).line : Line2D();
     if (!line.isValid())
         return result;
+    result.normal = line.normal();
     const double difference = std::hypot(sums.xx - sums.yy, 2 * sums.xy); // L - l
     double variance = noise * noise;
     if (!(noise > 0)) {

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "vectorlib/registration/LineSegmentRegistration.h"
+#include "vectorlib/tls/LineCovariance.h"
+
+#include <Eigen/LU>
+
+#include <optional>
+
+namespace vectorlib {
+
+/// How sure the result of a registration is, from how sure its lines are: first order, for lines whose errors
+/// are independent and small. Paper (5), (1) and erratum 6 differentiated by the angle and the offset p = B.n
+/// of every line; the terms that are as small as the disagreement of the pairs are left out.
+///
+/// Make it with the registration of all pairs, add the same pairs with the covariances of their lines, then
+/// ask.
+class RegistrationCovariance {
+public:
+    explicit RegistrationCovariance(const LineSegmentRegistration &registration)
+        : translation_(registration.transformation().translation())
+        , solvable_(registration.isSolvable()) {}
+
+    /// False (and from then on no covariance) when the pair is not usable or a covariance is not valid.
+    bool add(const SegmentPair &pair, const LineCovariance &fixed, const LineCovariance &moving) {
+        solvable_ = solvable_ && isUsable(pair) && fixed.valid && moving.valid;
+        if (!solvable_)
+            return false;
+        const Vector2D<double> n = pair.fixed.normal();
+        const double lever = pair.fixed.direction().dot(translation_);
+        // By the angle and the offset p of the line: what moves (x, y, alpha), before the sums are divided
+        // out.
+        Eigen::Matrix<double, 3, 2> byFixed, byMoving;
+        byFixed << n.x * lever, n.x, n.y * lever, n.y, 1, 0;
+        byMoving << 0, -n.x, 0, -n.y, -1, 0;
+        const double square = pair.weight * pair.weight;
+        spread_ += square * byFixed * oriented(fixed, pair.fixed) * byFixed.transpose();
+        spread_ += square * byMoving * oriented(moving, pair.moving) * byMoving.transpose();
+        const Eigen::Vector2d normal(n.x, n.y);
+        sums_.topLeftCorner<2, 2>() += pair.weight * normal * normal.transpose();
+        sums_(2, 2) += pair.weight;
+        return true;
+    }
+
+    /// Rows and columns x, y (metres), alpha (radians). Nothing without pairs, where all lines are parallel
+    /// (the shift along them is not known at all), and where a covariance was missing.
+    std::optional<Eigen::Matrix3d> operator()() const {
+        if (!solvable_)
+            return std::nullopt;
+        const Eigen::Matrix3d inverse = sums_.inverse();
+        const Eigen::Matrix3d covariance = inverse * spread_ * inverse;
+        return covariance.allFinite() ? std::optional<Eigen::Matrix3d>(covariance) : std::nullopt;
+    }
+
+private:
+    /// About the segment's own normal: the offset c of ax + by + c = 0 is -p there, and p where the line's
+    /// normal is the other one.
+    static Eigen::Matrix2d oriented(const LineCovariance &line, const LineSegment2D<double> &segment) {
+        Eigen::Matrix2d m = line.matrix;
+        if (line.normal.dot(segment.normal()) > 0)
+            m(0, 1) = m(1, 0) = -m(0, 1);
+        return m;
+    }
+
+    Vector2D<double> translation_;
+    bool solvable_;
+    Eigen::Matrix3d spread_ = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d sums_ = Eigen::Matrix3d::Zero();
+};
+
+} // namespace vectorlib
