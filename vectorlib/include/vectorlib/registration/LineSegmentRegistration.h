@@ -107,17 +107,17 @@ public:
         if (pairs_ == 0)
             return {};
         const Vector2D<double> t = fromFrame(translation());
-        return {t.x, t.y, angle()};
+        return {t.x, t.y, turnAngle() + meanAngle()};
     }
     /// In [0, 1]; 0 means that the translation is not determined, 1 that directions are spread evenly. Paper
     /// (28), erratum 9.
     double reliability() const { return isSolvable() ? 2 * std::sqrt(determinant()) / sums_.w : 0; }
     /// How much compromise the optimum needed; m^2. Paper (17) to (20).
-    Ambiguity ambiguity() const { return pairs_ ? ambiguityAt(translation(), angle()) : Ambiguity(); }
+    Ambiguity ambiguity() const { return pairs_ ? ambiguityAt(translation(), meanAngle()) : Ambiguity(); }
     /// The same for any transformation: the full expansion thesis (7.40) with the stiffness coefficients
     /// (erratum 10).
     Ambiguity ambiguity(const Transformation2D &t) const {
-        return pairs_ ? ambiguityAt(toFrame(t.translation()), t.alpha()) : Ambiguity();
+        return pairs_ ? ambiguityAt(toFrame(t.translation()), t.alpha() - turnAngle()) : Ambiguity();
     }
 
 private:
@@ -211,14 +211,12 @@ private:
         // One direction only: the mean shift across it.
         return s.w > 0 ? Vector2D<double>(s.px / s.w, s.py / s.w) : Vector2D<double>();
     }
-    double angle() const {
-        const double mean =
-            rotation == Rotation::Mitsuta ? sums_.a / sums_.w : std::atan2(sums_.sine, sums_.cosine);
-        return wrapAngle(std::atan2(turn_.y, turn_.x) + mean);
+    double turnAngle() const { return std::atan2(turn_.y, turn_.x); }
+    double meanAngle() const { // beside turn_
+        return rotation == Rotation::Mitsuta ? sums_.a / sums_.w : std::atan2(sums_.sine, sums_.cosine);
     }
-    Ambiguity ambiguityAt(Vector2D<double> t, double alpha) const { // t in the frame
+    Ambiguity ambiguityAt(Vector2D<double> t, double alpha) const { // t in the frame, alpha beside turn_
         const Sums &s = sums_;
-        alpha -= std::atan2(turn_.y, turn_.x);
         Ambiguity result;
         if (rotation == Rotation::Mitsuta) {
             const double mean = s.a / s.w, offset = wrapAngle(alpha - mean);
