@@ -1,0 +1,444 @@
+#include "vectorlib/correspondence/CorrespondenceSearch.h"
+
+#include "tests/support/RandomRoom.h"
+
+#include <QtTest>
+
+#include <chrono>
+
+using namespace vectorlib;
+
+namespace {
+
+using Segment = LineSegment2D<double>;
+using Segments = std::vector<Segment>;
+using Point = Vector2D<double>;
+
+/// What a sensor sees of a world, without noise.
+Segments seenFrom(const Segments &world, const Pose2D &pose) {
+    Observer<double> observe;
+    Segments view;
+    for (const auto &part : observe(world, pose))
+        view.push_back(part.segment);
+    return view;
+}
+Transformation2D between(const Pose2D &first, const Pose2D &second) {
+    return Transformation2D(first).inverse() * Transformation2D(second);
+}
+double distance(const Transformation2D &a, const Transformation2D &b) {
+    return (a.translation() - b.translation()).norm() + std::abs(wrapAngle(a.alpha() - b.alpha()));
+}
+/// A room of 6 m x 4 m about the origin with a notch, so that it looks different from everywhere.
+Segments room() {
+    const std::vector<Point> corners = {{-3, -2}, {3, -2}, {3, 1}, {2, 1}, {2, 2}, {-3, 2}};
+    Segments edges;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        edges.emplace_back(corners[i], corners[(i + 1) % corners.size()]);
+    return edges;
+}
+Segments moved(const Transformation2D &t, const Segments &segments) {
+    Segments result;
+    for (const Segment &s : segments)
+        result.push_back(t * s);
+    return result;
+}
+std::vector<PotentialPair> pairsOf(const Segments &fixed, const Segments &moving) {
+    std::vector<PotentialPair> pairs;
+    for (std::size_t m = 0; m < moving.size(); ++m)
+        for (std::size_t f = 0; f < fixed.size(); ++f)
+            if (mayCorrespond(fixed[f], moving[m], PermittedError()))
+                pairs.emplace_back(CorrespondencePair{int(f), int(m)}, fixed[f], moving[m], Stiffness());
+    return pairs;
+}
+/// A map of rooms side by side, with at most so many segments, and the middle of its middle room.
+SegmentMap hall(std::size_t segments, Point &middle) {
+    const int side = static_cast<int>(std::ceil(std::sqrt(double(segments) / 12)));
+    SegmentMap map;
+    const auto addRing = [&](Point at, double half, bool inside) {
+        const std::vector<Point> c = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
+        for (std::size_t i = 0; i < 4 && map.size() < segments; ++i)
+            inside ? map.add(Segment(at + c[i], at + c[(i + 1) % 4]))
+                   : map.add(Segment(at + c[(i + 1) % 4], at + c[i]));
+    };
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) {
+            const Point at(15.0 * i, 15.0 * j);
+            addRing(at, 6, true);
+            addRing(at + Point(2.5, 1), 0.4, false);
+            addRing(at + Point(-1, -3), 0.6, false);
+        }
+    middle = Point(15.0 * (side / 2), 15.0 * (side / 2));
+    return map;
+}
+
+} // namespace
+
+/// The search for corresponding segments, thesis 7.4.
+class TestCorrespondence : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void pairsOfOneShiftAreOneBundle();
+    void facingWallsAreOneBundle();
+    void badPairDoesNotHideInALargeBundle();
+    void bucketsAreDirections();
+    void combinationsAreThoseOfExhaustiveSearch();
+    void boundOnCombinationsIsReported();
+    void findsThePoseOfRandomRooms();
+    void expectedTransformationMovesTheSearch();
+    void otherDirectionsAreOutOfThePermittedSet();
+    void everySymmetryIsASolution();
+    void viewThatSeesNothingIsNoEvidence();
+    void numbersAreThoseOfTheCaller();
+    void searchesAMap();
+    void mapSearchDoesNotSlowDownWithTheMap();
+    void saysWhyThereIsNothing_data();
+    void saysWhyThereIsNothing();
+    void thresholdsOfZeroAcceptNothing_data();
+    void thresholdsOfZeroAcceptNothing();
+    void givesTheSameAgain();
+};
+
+void TestCorrespondence::pairsOfOneShiftAreOneBundle() {
+    // Two parts of one wall, and a wall 30 cm behind: 2 x 2 pairs without shift, 2 with 30 cm, 2 with -30 cm.
+    const Segments scan = {Segment({2, -1}, {2, 0}), Segment({2, 0.5}, {2, 1.5}),
+                           Segment({2.3, -3}, {2.3, -2})};
+    auto pairs = pairsOf(scan, scan);
+    CollinearBundles bundle;
+    const auto &bundles = bundle(pairs);
+    QCOMPARE(bundles.size(), std::size_t(3));
+    std::map<double, int> counts;
+    for (const Bundle &b : bundles)
+        for (int i = b.first; i >= 0; i = bundle.next(i))
+            ++counts[std::round(b.shift * 10)];
+    QCOMPARE(counts.size(), std::size_t(3));
+    QVERIFY(counts[0] >= 3 && counts[3] >= 1 && counts[-3] >= 1);
+    for (const Bundle &b : bundles)
+        QVERIFY(b.sums.reliability() < 1e-6);
+}
+
+void TestCorrespondence::facingWallsAreOneBundle() {
+    const Segments scan = {Segment({2, -1}, {2, 1}), Segment({-2, 1}, {-2, -1})};
+    auto pairs = pairsOf(moved({0.5, 0.2, 0}, scan), scan);
+    CollinearBundles bundle;
+    QCOMPARE(bundle(pairs).size(), std::size_t(1));
+    QCOMPARE(bundle(pairs)[0].sums.pairs(), 2);
+}
+
+void TestCorrespondence::badPairDoesNotHideInALargeBundle() {
+    Segments scan = {Segment({2, -4}, {2, 4})};
+    std::vector<PotentialPair> pairs = pairsOf(scan, scan);
+    pairs.emplace_back(CorrespondencePair{1, 1}, Segment({3.12, 0}, {3.12, 0.3}), Segment({3, 0}, {3, 0.3}),
+                       Stiffness());
+    CollinearBundles bundle;
+    QCOMPARE(bundle(pairs).size(), std::size_t(2)); // though 0.3 m of 12 cm beside 8 m is little on average
+}
+
+void TestCorrespondence::bucketsAreDirections() {
+    auto pairs = pairsOf(room(), room());
+    CollinearBundles bundle;
+    BundleBuckets buckets;
+    const auto &bundles = bundle(pairs);
+    buckets(bundles);
+    QCOMPARE(buckets.size(), std::size_t(2));
+    for (std::size_t b = 0; b < buckets.size(); ++b)
+        for (std::size_t i = buckets.begin(b) + 1; i < buckets.begin(b + 1); ++i) {
+            QVERIFY(std::abs(buckets.bundle(i).normal.cross(buckets.bundle(i - 1).normal)) < 0.1);
+            QVERIFY(buckets.bundle(i).length <= buckets.bundle(i - 1).length);
+        }
+}
+
+void TestCorrespondence::combinationsAreThoseOfExhaustiveSearch() {
+    const unsigned seed = std::random_device()();
+    qInfo("seed %u", seed);
+    for (unsigned k = 0; k < 20; ++k) {
+        const RandomRoom made(seed + k);
+        auto pairs = pairsOf(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second));
+        CollinearBundles bundle;
+        BundleBuckets buckets;
+        const auto &bundles = bundle(pairs);
+        buckets(bundles);
+        BundleCombinations combine;
+        combine.most = 10000000;
+        combine.keep = 4;
+        const std::vector<Combination> few = combine(buckets);
+        combine.keep = 1000000; // nothing is ever cut off
+        const std::vector<Combination> all = combine(buckets);
+        QVERIFY(!combine.isCut());
+        QCOMPARE(few.size(), std::min<std::size_t>(4, all.size()));
+        if (!all.empty())
+            QCOMPARE(few[0].length, all[0].length);
+    }
+}
+
+void TestCorrespondence::boundOnCombinationsIsReported() {
+    const RandomRoom made(4);
+    CorrespondenceSearch search;
+    search.settings.maxCombinations = 3;
+    const auto &result = search(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second));
+    QVERIFY(result.outcome == SearchOutcome::Cut);
+    QCOMPARE(result.combinations, std::uint64_t(3));
+    QVERIFY(QByteArray(describe(result.outcome)).contains("bound"));
+    search.settings.maxCombinations = 100000;
+    QVERIFY(search(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second)).outcome ==
+            SearchOutcome::Complete);
+}
+
+void TestCorrespondence::findsThePoseOfRandomRooms() {
+    const unsigned seed = std::random_device()();
+    qInfo("seed %u", seed);
+    CorrespondenceSearch search;
+    for (unsigned k = 0; k < 200; ++k) {
+        const RandomRoom made(seed + k);
+        const auto &result = search(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second));
+        const QByteArray which = "room " + QByteArray::number(seed + k);
+        QVERIFY2(!result.solutions.empty() && result.solutions[0].accepted, which);
+        QVERIFY2(distance(result.solutions[0].pose, between(made.first, made.second)) < 1e-6, which);
+    }
+}
+
+void TestCorrespondence::expectedTransformationMovesTheSearch() {
+    const Pose2D first{-1, 0.2, 0.3}, second{1.4, -0.5, 2.5}; // farther than the permitted set reaches
+    CorrespondenceSearch search;
+    const Transformation2D truth = between(first, second);
+    const auto &result =
+        search(seenFrom(room(), first), seenFrom(room(), second), truth * Transformation2D(0.3, -0.4, 0.2));
+    QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
+    QVERIFY(distance(result.solutions[0].pose, truth) < 1e-6);
+}
+
+void TestCorrespondence::otherDirectionsAreOutOfThePermittedSet() {
+    CorrespondenceSearch search;
+    search.settings.permitted = {0.3, 0.3, 0.1};
+    for (const Solution &s : search(seenFrom(room(), {0, 0, 0}), seenFrom(room(), {1, 0, 0})).solutions)
+        QVERIFY(!s.accepted);
+}
+
+void TestCorrespondence::everySymmetryIsASolution() {
+    Segments square;
+    const std::vector<Point> c = {{-2, -2}, {2, -2}, {2, 2}, {-2, 2}};
+    for (std::size_t i = 0; i < 4; ++i)
+        square.emplace_back(c[i], c[(i + 1) % 4]);
+    CorrespondenceSearch search;
+    search.settings.permitted.dalpha = 3.2;
+    int accepted = 0;
+    for (const Solution &s : search(square, square).solutions)
+        accepted += s.accepted;
+    QCOMPARE(accepted, 4);
+}
+
+void TestCorrespondence::viewThatSeesNothingIsNoEvidence() {
+    // An outer corner fits upside down as well, from where it would be seen from behind.
+    const Segments corner = {Segment({1, 1}, {1, -1}).reversed(), Segment({1, 1}, {-1, 1})};
+    const Segments other = {Segment({-3, -3}, {-3, -3.8}), Segment({-3.8, -3}, {-3, -3})};
+    ExpectedViewTest test;
+    test.setFixed(other);
+    test.setMoving(corner);
+    QVERIFY(test(Transformation2D()).angle == 0);
+    QVERIFY(test(Transformation2D()).discrepancy == 0);
+    CorrespondenceSearch search;
+    search.settings.permitted = {9, 9, 1};
+    for (const Solution &s :
+         search(moved({5, 5, 0}, {corner[0].reversed(), corner[1].reversed()}), corner).solutions)
+        QVERIFY(!s.accepted || s.view.angle > 0);
+    search.settings.sharedView = search.settings.matchedShare = 0;
+    search.settings.permitted = {9, 9, 3.2};
+    for (const Solution &s :
+         search(moved({-1, -1, pi}, {corner[0].reversed(), corner[1].reversed()}), corner).solutions)
+        QVERIFY(s.view.angle > 0 || (!s.accepted && s.score == 0));
+}
+
+void TestCorrespondence::numbersAreThoseOfTheCaller() {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const Segments bad = {Segment({nan, 0}, {1, 1}), Segment({1, 1}, {1, 1}), Segment({0, 0}, {0, noHit})};
+    Segments fixed = bad, moving = bad;
+    for (const Segment &s : room()) {
+        fixed.push_back(s);
+        moving.push_back(Transformation2D(-0.2, 0.1, 0.1) * s);
+    }
+    fixed.erase(fixed.begin());
+    CorrespondenceSearch search;
+    const auto &result = search(fixed, moving);
+    QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
+    QCOMPARE(result.solutions[0].pairs.size(), room().size());
+    for (const CorrespondencePair &p : result.solutions[0].pairs)
+        QVERIFY(p.moving >= 3 && p.fixed == p.moving - 1);
+}
+
+void TestCorrespondence::searchesAMap() {
+    Point middle;
+    SegmentMap map = hall(2000, middle);
+    Segments all;
+    for (int i = 0; i < static_cast<int>(map.size()); ++i)
+        all.push_back(map[i]);
+    map.add(Segment({0, std::numeric_limits<double>::quiet_NaN()}, {1, 1}));
+    map.add(Segment(middle + Point(-1e6, 100), middle + Point(1e6, 100)));
+    const Pose2D pose{middle.x + 0.4, middle.y - 0.3, 0.5};
+    CorrespondenceSearch search;
+    const auto &result = search(map, seenFrom(all, pose), Transformation2D(middle.x, middle.y, 0.2));
+    QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
+    QVERIFY(distance(result.solutions[0].pose, Transformation2D(pose)) < 1e-6);
+    for (const CorrespondencePair &p : result.solutions[0].pairs)
+        QVERIFY(all[std::size_t(p.fixed)].distance(middle) < 9);
+    QVERIFY(search(map, seenFrom(all, pose), Transformation2D(-500, 0, 0)).outcome ==
+                SearchOutcome::NothingFixed ||
+            search(map, seenFrom(all, pose), Transformation2D(-500, 0, 0)).outcome ==
+                SearchOutcome::NoPotentialPair);
+    search.settings.permitted = {1e12, 1e12, 1}; // the whole map is in reach, at once
+    search(map, seenFrom(all, pose), Transformation2D(pose));
+}
+
+void TestCorrespondence::mapSearchDoesNotSlowDownWithTheMap() {
+    std::vector<double> medians;
+    for (const std::size_t size : {std::size_t(100), std::size_t(100000)}) {
+        Point middle;
+        SegmentMap map = hall(size, middle);
+        QCOMPARE(map.size(), size);
+        Segments near;
+        for (int number : map.near(middle, 8))
+            near.push_back(map[number]);
+        const Segments scan = seenFrom(near, {middle.x + 0.4, middle.y - 0.3, 0.5});
+        CorrespondenceSearch search;
+        std::vector<double> times;
+        for (int i = 0; i < 101; ++i) {
+            const auto begin = std::chrono::steady_clock::now();
+            const auto &result = search(map, scan, Transformation2D(middle.x, middle.y, 0.2));
+            times.push_back(
+                std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+            QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
+        }
+        std::nth_element(times.begin(), times.begin() + 50, times.end());
+        medians.push_back(times[50]);
+    }
+    qInfo("100 segments %.1f us, 100,000 segments %.1f us", medians[0], medians[1]);
+    QVERIFY(medians[1] < 2 * medians[0]);
+}
+
+void TestCorrespondence::saysWhyThereIsNothing_data() {
+    QTest::addColumn<int>("which");
+    QTest::addColumn<int>("outcome");
+    const char *names[] = {"nothing static",
+                           "nothing dynamic",
+                           "only bad segments",
+                           "too far apart",
+                           "one wall",
+                           "corridor",
+                           "other angle between the walls",
+                           "NaN threshold",
+                           "negative threshold",
+                           "no solution wanted",
+                           "infinite reach",
+                           "NaN pose",
+                           "too many pairs"};
+    const SearchOutcome outcomes[] = {
+        SearchOutcome::NothingFixed,    SearchOutcome::NothingMoving, SearchOutcome::NothingMoving,
+        SearchOutcome::NoPotentialPair, SearchOutcome::OneDirection,  SearchOutcome::OneDirection,
+        SearchOutcome::NoCombination,   SearchOutcome::BadSettings,   SearchOutcome::BadSettings,
+        SearchOutcome::BadSettings,     SearchOutcome::BadSettings,   SearchOutcome::BadSettings,
+        SearchOutcome::TooManyPairs};
+    for (int i = 0; i < 13; ++i)
+        QTest::newRow(names[i]) << i << static_cast<int>(outcomes[i]);
+}
+
+void TestCorrespondence::saysWhyThereIsNothing() {
+    QFETCH(int, which);
+    QFETCH(int, outcome);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    CorrespondenceSearch search;
+    Segments fixed = room(), moving = room();
+    Transformation2D expected;
+    switch (which) {
+    case 0:
+        fixed.clear();
+        break;
+    case 1:
+        moving.clear();
+        break;
+    case 2:
+        moving = {Segment({nan, 0}, {1, 1}), Segment({1, 1}, {1, 1})};
+        break;
+    case 3:
+        expected = Transformation2D(100, 0, 0);
+        break;
+    case 4:
+        moving = {Segment({2, -1}, {2, 1})};
+        fixed = moving;
+        break;
+    case 5:
+        fixed = moving = {Segment({2, -1}, {2, 1}), Segment({-2, 3}, {-2, -3})};
+        break;
+    case 6:
+        fixed = {Segment({2, -1}, {2, 1}), Segment({2, 1}, {-2, 1})};
+        moving = {Segment({2, -1}, {2, 1}), Segment({1.5, 1}, {-1.5, 3})};
+        break;
+    case 7:
+        search.settings.ambiguity = nan;
+        break;
+    case 8:
+        search.settings.permitted.dx = -1;
+        break;
+    case 9:
+        search.settings.maxSolutions = 0;
+        break;
+    case 10:
+        search.settings.permitted.dy = noHit;
+        break;
+    case 11:
+        expected = Transformation2D(nan, 0, 0);
+        break;
+    case 12:
+        search.settings.maxPairs = 3;
+        break;
+    }
+    const auto &result = search(fixed, moving, expected);
+    QCOMPARE(QByteArray(describe(result.outcome)), QByteArray(describe(SearchOutcome(outcome))));
+    QVERIFY(result.solutions.empty());
+}
+
+void TestCorrespondence::thresholdsOfZeroAcceptNothing_data() {
+    QTest::addColumn<int>("which");
+    for (int i = 0; i < 6; ++i)
+        QTest::addRow("threshold %d", i) << i;
+}
+
+void TestCorrespondence::thresholdsOfZeroAcceptNothing() {
+    QFETCH(int, which);
+    CorrespondenceSearch search;
+    SearchSettings &s = search.settings;
+    double *thresholds[] = {&s.permitted.dx, &s.permitted.dalpha, &s.reliability,
+                            &s.ambiguity,    &s.discrepancy,      &s.stiffness.alpha};
+    *thresholds[which] = 0;
+    s.discrepancyShare = 0;
+    Segments moving;
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, 0.02);
+    for (const Segment &edge : room()) {
+        const Segment there = Transformation2D(-0.3, 0.1, 0.2) * edge;
+        moving.emplace_back(there.begin() + Point(noise(random), noise(random)),
+                            there.end() + Point(noise(random), noise(random)));
+    }
+    const bool mayAccept = thresholds[which] == &s.reliability || thresholds[which] == &s.stiffness.alpha;
+    for (const Solution &solution : search(room(), moving).solutions) {
+        QVERIFY(mayAccept || !solution.accepted);
+        QVERIFY(solution.pose.isFinite() && solution.score >= 0 && solution.score <= 1);
+    }
+}
+
+void TestCorrespondence::givesTheSameAgain() {
+    const RandomRoom made(11), other(12);
+    CorrespondenceSearch search, fresh;
+    const Segments fixed = seenFrom(made.edges, made.first), moving = seenFrom(made.edges, made.second);
+    const SearchResult once = search(fixed, moving);
+    search(seenFrom(other.edges, other.first), seenFrom(other.edges, other.second));
+    search({}, {});
+    for (const SearchResult &again : {search(fixed, moving), fresh(fixed, moving)}) {
+        QCOMPARE(again.solutions.size(), once.solutions.size());
+        for (std::size_t i = 0; i < once.solutions.size(); ++i) {
+            QCOMPARE(again.solutions[i].score, once.solutions[i].score);
+            QCOMPARE(again.solutions[i].pairs.size(), once.solutions[i].pairs.size());
+        }
+    }
+}
+
+QTEST_APPLESS_MAIN(TestCorrespondence)
+#include "TestCorrespondence.moc"

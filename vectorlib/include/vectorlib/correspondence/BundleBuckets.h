@@ -1,0 +1,57 @@
+#pragma once
+
+#include "vectorlib/correspondence/CollinearBundles.h"
+
+namespace vectorlib {
+
+/// Sorts bundles into buckets: bundles of one bucket have nearly parallel lines, so that any two of them
+/// collide and at most one can be part of a solution. Thesis 7.4.1, figure 7.18. The buckets and the bundles
+/// in each come longest first. Keeps its buffers.
+class BundleBuckets {
+public:
+    double reliability = 0.10; ///< sine of the largest angle between lines of one bucket
+
+    /// `bundles` must stay as they are while the buckets are in use.
+    void operator()(const std::vector<Bundle> &bundles) {
+        order_.clear();
+        for (const Bundle &bundle : bundles)
+            order_.push_back({&bundle, 0});
+        std::stable_sort(order_.begin(), order_.end(),
+                         [](const Entry &a, const Entry &b) { return a.bundle->length > b.bundle->length; });
+        leaders_.clear();
+        for (Entry &entry : order_) {
+            while (entry.bucket < leaders_.size() &&
+                   std::abs(leaders_[entry.bucket]->normal.cross(entry.bundle->normal)) > reliability)
+                ++entry.bucket;
+            if (entry.bucket == leaders_.size())
+                leaders_.push_back(entry.bundle);
+        }
+        std::stable_sort(order_.begin(), order_.end(),
+                         [](const Entry &a, const Entry &b) { return a.bucket < b.bucket; });
+        starts_.assign(leaders_.size() + 1, order_.size());
+        for (std::size_t i = order_.size(); i-- > 0;)
+            starts_[order_[i].bucket] = i;
+        remaining_.assign(leaders_.size() + 1, 0);
+        for (std::size_t b = leaders_.size(); b-- > 0;)
+            remaining_[b] = remaining_[b + 1] + leaders_[b]->length;
+    }
+
+    std::size_t size() const { return leaders_.size(); }
+    /// The bundles of a bucket are number begin(bucket) to begin(bucket + 1), longest first.
+    std::size_t begin(std::size_t bucket) const { return starts_[bucket]; }
+    const Bundle &bundle(std::size_t number) const { return *order_[number].bundle; }
+    /// The most length that this bucket and those after it can give; metres.
+    double remaining(std::size_t bucket) const { return remaining_[bucket]; }
+
+private:
+    struct Entry {
+        const Bundle *bundle;
+        std::size_t bucket;
+    };
+    std::vector<Entry> order_;            // by bucket
+    std::vector<const Bundle *> leaders_; // the longest of every bucket
+    std::vector<std::size_t> starts_;
+    std::vector<double> remaining_;
+};
+
+} // namespace vectorlib

@@ -1,0 +1,241 @@
+#pragma once
+
+#include "vectorlib/correspondence/BundleCombinations.h"
+#include "vectorlib/correspondence/ExpectedViewTest.h"
+#include "vectorlib/correspondence/PairSelection.h"
+#include "vectorlib/correspondence/PotentialPairs.h"
+#include "vectorlib/correspondence/SearchResult.h"
+#include "vectorlib/correspondence/SegmentMap.h"
+
+namespace vectorlib {
+
+/// Defaults: the published experiments (thesis appendices).
+struct SearchSettings {
+    PermittedError permitted;
+    double reliability = 0.10; ///< least of a solution; also what tells directions apart
+    double ambiguity = 0.0025; ///< most energy of a pair; m^2
+    Stiffness stiffness;
+    double discrepancy = 0.2; ///< most of an accepted solution; m^2
+    /// Or this share of the area that both views see: outlines that are seen a ray sooner or later differ by
+    /// areas that grow with the place.
+    double discrepancyShare = 0.03;
+    double sharedView = 0.25;   ///< least share of the seen angle that the expected view must show
+    double matchedShare = 0.30; ///< least share of the dynamic length that must have partners
+    std::size_t maxSolutions = 16;
+    std::size_t maxPairs = 20000;          ///< potential pairs
+    std::uint64_t maxCombinations = 20000; ///< bundles tried
+};
+
+/// Finds which segments of two sets correspond, with no more knowledge than a set of permitted
+/// transformations. Thesis 7.4: potential pairs, unambiguous collinear bundles, their combinations, expected
+/// view test. Keeps its buffers between calls.
+///
+/// Segments that are not finite or have no length are left out. Where there is no solution, the outcome says
+/// why.
+class CorrespondenceSearch {
+public:
+    using Segments = std::vector<LineSegment2D<double>>;
+
+    SearchSettings settings;
+
+    /// Two scans, each in the frame of its sensor; `expected` moves the dynamic set onto the static one.
+    /// Valid until the next call.
+    const SearchResult &operator()(const Segments &fixed, const Segments &moving,
+                                   const Transformation2D &expected = {}) {
+        if (start(moving, expected)) {
+            for (std::size_t i = 0; i < fixed.size(); ++i)
+                fixed_.take(toLocal_ * fixed[i], static_cast<int>(i));
+            search(&toLocal_);
+        }
+        return result_;
+    }
+    /// A scan in a map: only what lies in reach of the scan is looked at. Pairs bear the map's numbers.
+    const SearchResult &operator()(SegmentMap &map, const Segments &moving,
+                                   const Transformation2D &expected = {}) {
+        if (start(moving, expected)) {
+            double reach = 0;
+            for (const LineSegment2D<double> &s : moving_.segments)
+                reach = std::max({reach, s.begin().norm(), s.end().norm()});
+            reach += std::hypot(settings.permitted.dx, settings.permitted.dy);
+            for (int number : map.near(expected.translation(), reach))
+                fixed_.take(toLocal_ * map[number], number);
+            search(nullptr);
+        }
+        return result_;
+    }
+
+private:
+    struct NumberedSegments {
+        Segments segments;
+        std::vector<int> numbers; // of the caller
+
+        void clear() {
+            segments.clear();
+            numbers.clear();
+        }
+        void take(const LineSegment2D<double> &s, int number) {
+            if (s.isFinite() && s.direction().squaredNorm() > 0.5) {
+                segments.push_back(s);
+                numbers.push_back(number);
+            }
+        }
+    };
+
+    bool settingsAreGood() const {
+        const SearchSettings &s = settings;
+        for (double value : {s.permitted.dx, s.permitted.dy, s.permitted.dalpha, s.reliability, s.ambiguity,
+                             s.stiffness.alpha, s.stiffness.xy, s.discrepancy, s.discrepancyShare,
+                             s.sharedView, s.matchedShare})
+            if (!(value >= 0) || !std::isfinite(value))
+                return false;
+        return s.maxSolutions > 0 && s.maxPairs > 0 && s.maxCombinations > 0;
+    }
+    bool start(const Segments &moving, const Transformation2D &expected) {
+        spare_.insert(spare_.end(), std::make_move_iterator(result_.solutions.begin()),
+                      std::make_move_iterator(result_.solutions.end()));
+        result_.solutions.clear();
+        result_.outcome = SearchOutcome::BadSettings;
+        result_.potentialPairs = result_.bundles = result_.buckets = result_.combinations = 0;
+        fixed_.clear();
+        moving_.clear();
+        if (!settingsAreGood() || !expected.isFinite())
+            return false;
+        for (std::size_t i = 0; i < moving.size(); ++i)
+            moving_.take(moving[i], static_cast<int>(i));
+        expected_ = expected;
+        toLocal_ = expected.inverse();
+        return true;
+    }
+
+    // Everything happens in the expected sensor frame, where segments are near the origin (erratum 13).
+    void search(const Transformation2D *seenFrom) {
+        result_.outcome = findCombinations();
+        if (combinations_->empty())
+            return;
+        view_.setFixed(fixed_.segments, seenFrom);
+        view_.setMoving(moving_.segments);
+        for (const Combination &c : *combinations_)
+            judge(select_(pairs_, fixed_.segments, moving_.segments, c.transformation));
+        std::stable_sort(result_.solutions.begin(), result_.solutions.end(),
+                         [](const Solution &a, const Solution &b) {
+                             return a.accepted != b.accepted ? a.accepted : a.score > b.score;
+                         });
+    }
+    SearchOutcome findCombinations() {
+        combinations_ = &none_;
+        if (moving_.segments.empty())
+            return SearchOutcome::NothingMoving;
+        if (fixed_.segments.empty())
+            return SearchOutcome::NothingFixed;
+        collectPairs();
+        if (pairs_.empty())
+            return SearchOutcome::NoPotentialPair;
+        if (pairs_.size() > settings.maxPairs)
+            return SearchOutcome::TooManyPairs;
+        bundle_.reliability = buckets_.reliability = combine_.reliability = settings.reliability;
+        bundle_.ambiguity = combine_.ambiguity = settings.ambiguity;
+        bundle_.stiffness = settings.stiffness;
+        combine_.keep = settings.maxSolutions;
+        combine_.most = settings.maxCombinations;
+        const std::vector<Bundle> &bundles = bundle_(pairs_);
+        buckets_(bundles);
+        combinations_ = &combine_(buckets_);
+        result_.bundles = bundles.size();
+        result_.buckets = buckets_.size();
+        result_.combinations = combine_.tried();
+        return combine_.isCut()          ? SearchOutcome::Cut
+               : !combinations_->empty() ? SearchOutcome::Complete
+               : result_.buckets < 2     ? SearchOutcome::OneDirection
+                                         : SearchOutcome::NoCombination;
+    }
+    void collectPairs() {
+        pairs_.clear();
+        const double cosine = std::cos(std::min(pi, settings.permitted.dalpha)) - 1e-9;
+        for (std::size_t m = 0; m < moving_.segments.size(); ++m)
+            for (std::size_t f = 0; f < fixed_.segments.size() && pairs_.size() <= settings.maxPairs; ++f) {
+                const LineSegment2D<double> &fixed = fixed_.segments[f], &moving = moving_.segments[m];
+                if (fixed.direction().dot(moving.direction()) >= cosine && // most end here
+                    mayCorrespond(fixed, moving, settings.permitted))
+                    pairs_.emplace_back(CorrespondencePair{static_cast<int>(f), static_cast<int>(m)}, fixed,
+                                        moving, settings.stiffness);
+            }
+        result_.potentialPairs = pairs_.size();
+    }
+
+    // Makes a solution of the selected pairs and the transformation that fits them.
+    void judge(const Transformation2D &t) {
+        if (!t.isFinite() || select_.pairs().size() < 2)
+            return;
+        const Transformation2D pose = expected_ * t;
+        for (const Solution &other : result_.solutions)
+            if (combine_.same(other.pose, pose))
+                return;
+        Solution s = emptySolution();
+        s.pose = pose;
+        measure(s, t);
+        s.view = view_(t);
+        const double threshold = std::max(settings.discrepancy, settings.discrepancyShare * s.view.common);
+        s.accepted = s.reliability >= settings.reliability && s.ambiguity <= settings.ambiguity &&
+                     s.matchedShare >= settings.matchedShare && s.view.discrepancy <= threshold &&
+                     s.view.angle > 0 && s.view.angle >= settings.sharedView * view_.observedAngle() &&
+                     isPermitted(t);
+        s.score = s.view.angle > 0 ? s.matchedShare * s.reliability * s.view.common /
+                                         (s.view.common + s.view.discrepancy) /
+                                         (1 + s.ambiguity / std::max(settings.ambiguity, 1e-12))
+                                   : 0;
+        result_.solutions.push_back(std::move(s));
+    }
+    // What the pairs themselves tell.
+    void measure(Solution &s, const Transformation2D &t) {
+        sums_.clear();
+        isMatched_.assign(moving_.segments.size(), 0);
+        for (const CorrespondencePair &p : select_.pairs()) {
+            const auto f = static_cast<std::size_t>(p.fixed), m = static_cast<std::size_t>(p.moving);
+            const LineSegment2D<double> &fixed = fixed_.segments[f], &moving = moving_.segments[m];
+            const double weight = std::min(fixed.length(), moving.length());
+            sums_.add(fixed, moving, weight);
+            s.ambiguity += weight * PairSelection::energy(fixed, t * moving, settings.stiffness);
+            s.pairs.push_back({fixed_.numbers[f], moving_.numbers[m]});
+            isMatched_[m] = 1;
+        }
+        s.ambiguity /= sums_.weight();
+        s.reliability = sums_.reliability();
+        double matched = 0, all = 0;
+        for (std::size_t m = 0; m < isMatched_.size(); ++m) {
+            all += moving_.segments[m].length();
+            matched += isMatched_[m] ? moving_.segments[m].length() : 0;
+        }
+        s.matchedShare = matched / all;
+    }
+    bool isPermitted(const Transformation2D &t) const {
+        return std::abs(t.x()) <= settings.permitted.dx && std::abs(t.y()) <= settings.permitted.dy &&
+               std::abs(t.alpha()) <= settings.permitted.dalpha;
+    }
+    // One of the last call, for the memory of its pairs.
+    Solution emptySolution() {
+        Solution s;
+        if (!spare_.empty()) {
+            s.pairs = std::move(spare_.back().pairs);
+            s.pairs.clear();
+            spare_.pop_back();
+        }
+        return s;
+    }
+
+    Transformation2D expected_, toLocal_;
+    NumberedSegments fixed_, moving_; // in the expected sensor frame
+    std::vector<PotentialPair> pairs_;
+    CollinearBundles bundle_;
+    BundleBuckets buckets_;
+    BundleCombinations combine_;
+    const std::vector<Combination> none_;
+    const std::vector<Combination> *combinations_ = &none_;
+    PairSelection select_;
+    ExpectedViewTest view_;
+    LineSegmentRegistration sums_;
+    std::vector<char> isMatched_;
+    std::vector<Solution> spare_;
+    SearchResult result_;
+};
+
+} // namespace vectorlib

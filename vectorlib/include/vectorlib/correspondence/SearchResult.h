@@ -1,0 +1,71 @@
+#pragma once
+
+#include "vectorlib/correspondence/Match.h"
+#include "vectorlib/observation/Discrepancy.h"
+
+#include <cstdint>
+
+namespace vectorlib {
+
+/// A set of correspondences, its transformation and what speaks for it.
+struct Solution {
+    Transformation2D pose; ///< moves the dynamic set onto the static one
+    std::vector<CorrespondencePair> pairs;
+    double reliability = 0;  ///< in [0, 1], of the pairs' directions
+    double ambiguity = 0;    ///< mean energy (7.44) of a pair, weighted by length; m^2
+    double matchedShare = 0; ///< of the length of the dynamic set that has partners, in [0, 1]
+    ViewComparison view;     ///< of the expected view and the dynamic set
+    double score = 0;        ///< in [0, 1]; solutions are ranked by it
+    bool accepted = false;
+};
+
+/// How a search ended.
+enum class SearchOutcome {
+    Complete,
+    Cut,
+    BadSettings,
+    NothingFixed,
+    NothingMoving,
+    NoPotentialPair,
+    TooManyPairs,
+    OneDirection,
+    NoCombination
+};
+
+inline const char *describe(SearchOutcome outcome) {
+    switch (outcome) {
+    case SearchOutcome::Complete:
+        return "every combination was considered";
+    case SearchOutcome::Cut:
+        return "the bound on combinations ended the search: there may be better solutions";
+    case SearchOutcome::BadSettings:
+        return "the expected transformation, a threshold or a bound is negative, zero where it must not be, "
+               "or "
+               "not finite";
+    case SearchOutcome::NothingFixed:
+        return "no usable segment in the static set within reach";
+    case SearchOutcome::NothingMoving:
+        return "no usable segment in the dynamic set";
+    case SearchOutcome::NoPotentialPair:
+        return "no permitted transformation brings any two segments together";
+    case SearchOutcome::TooManyPairs:
+        return "more potential pairs than the bound on pairs: permit less motion";
+    case SearchOutcome::OneDirection:
+        return "all potential pairs are parallel: the shift along them is not known";
+    case SearchOutcome::NoCombination:
+        return "no two directions agree on a transformation";
+    }
+    return "";
+}
+
+/// The solutions of a search, and the work that it took.
+struct SearchResult {
+    std::vector<Solution> solutions; ///< accepted ones first, then by score
+    SearchOutcome outcome = SearchOutcome::Complete;
+    std::size_t potentialPairs = 0;
+    std::size_t bundles = 0;
+    std::size_t buckets = 0;
+    std::uint64_t combinations = 0; ///< bundles tried
+};
+
+} // namespace vectorlib
