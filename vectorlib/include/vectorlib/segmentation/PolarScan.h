@@ -2,6 +2,8 @@
 
 #include "vectorlib/geometry/Vector2D.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -22,10 +24,10 @@ struct PolarScan {
 
     /// In metres.
     double range(std::size_t i) const { return static_cast<double>(ranges[i]) * scale; }
-    bool isReturn(double metres) const {
-        return metres > 0 && metres >= minRange && metres < maxRange &&
-               metres <= std::numeric_limits<float>::max();
-    }
+    /// A return is at least least() and less than end(), and so positive and small enough for a float.
+    bool isReturn(double metres) const { return metres >= least() && metres < end(); }
+    double least() const { return minRange <= 0 ? std::numeric_limits<double>::denorm_min() : minRange; }
+    double end() const { return std::min(maxRange, static_cast<double>(std::numeric_limits<float>::max())); }
     Vector2D<double> point(std::size_t i) const {
         const double angle = startAngle + step * static_cast<double>(i);
         return Vector2D<double>(std::cos(angle), std::sin(angle)) * range(i);

@@ -1,119 +1,113 @@
 #pragma once
 
-#include "vectorlib/simd/Simd.h"
+#include "vectorlib/segmentation/Comparison.h"
 
-#include <algorithm>
-#include <cstring>
 #include <vector>
 
 namespace vectorlib {
 
 /// Clusters of an ordered scan as unions of runs. A run is a stretch of points of which each is near its
-/// direct predecessor: nearly all points need no further comparison. Only where a run begins, its first K
-/// points are compared with those of earlier runs among their K predecessors, as long as these belong to
-/// another cluster. The clusters are exactly those of comparing every point with all its K predecessors.
-/// Keeps its buffers.
+/// direct predecessor: nearly all points need no further comparison. Two runs are compared only as far as
+/// points of one are among the K predecessors of points of the other, and only while they belong to different
+/// clusters. The clusters are exactly those of comparing every point with all its K predecessors. Keeps its
+/// buffers.
 class RunClusters {
 public:
-    /// `Nearness` has flag() and near(later, earlier). `closed`: the last points precede the first ones.
+    /// Finds the runs; each is a cluster of its own.
     template <typename Nearness>
-    void find(const Nearness &nearness, std::size_t count, std::size_t reach, bool closed,
-              simd::Level level) {
+    void split(const Comparison<Nearness> &points) {
+        count_ = points.count();
         begins_.clear();
-        parent_.clear();
-        count_ = count;
-        if (count == 0)
-            return;
-        flags_.resize(count + 8);
-        flags_[0] = 0;
-        nearness.flag(count, level, flags_.data());
-        std::memset(flags_.data() + count, 1, 8);
-        splitIntoRuns();
-        for (std::size_t r = 1; r + 1 < begins_.size(); ++r)
-            joinBackwards(nearness, r, reach);
-        if (closed)
-            close(nearness, reach);
+        words_.assign(count_ ? (count_ - 1 + NearWord::bits - 1) / NearWord::bits : 0, NearWord());
+        if (count_ > 0) {
+            points.withPredecessors(words_.data());
+            begins_.push_back(0);
+        }
+        for (std::size_t w = 0; w < words_.size(); ++w)
+            for (std::uint64_t apart = ~words_[w].near; apart != 0; apart &= apart - 1) {
+                const std::size_t at = w * NearWord::bits + trailingZeros(apart) + 1;
+                if (at >= count_)
+                    break;
+                begins_.push_back(at);
+            }
+        root_.resize(begins_.size());
+        for (std::size_t r = 0; r < root_.size(); ++r)
+            root_[r] = r;
+        begins_.push_back(count_);
+    }
+    /// Joins the runs that belong together; the last points precede the first ones if `closed`.
+    template <typename Nearness>
+    void join(const Comparison<Nearness> &points, std::size_t reach, bool closed) {
+        for (std::size_t later = 1; later < runs(); ++later)
+            for (std::size_t r = later; r-- > 0 && begins_[r + 1] + reach > begins_[later];)
+                joinIfNear(points, later, r, 0, reach);
+        for (std::size_t later = 0; closed && later < runs() && begins_[later] < reach; ++later)
+            for (std::size_t r = runs(); --r > later && begins_[r + 1] + reach > begins_[later] + count_;)
+                joinIfNear(points, later, r, count_, reach);
+        for (std::size_t &r : root_) // none is later than its run
+            r = root_[r];
     }
 
-    std::size_t runs() const { return parent_.size(); }
+    std::size_t runs() const { return root_.size(); }
     /// Where a run begins; the number of points for run runs().
     std::size_t begin(std::size_t run) const { return begins_[run]; }
     std::size_t length(std::size_t run) const { return begins_[run + 1] - begins_[run]; }
-    /// The first run of the cluster.
-    std::size_t root(std::size_t run) {
-        while (parent_[run] != run)
-            run = parent_[run] = parent_[parent_[run]];
-        return run;
-    }
+    /// The first run of the cluster, after join().
+    std::size_t root(std::size_t run) const { return root_[run]; }
+    /// The widest gap between a point i > 0 and its predecessor is at most this, if both are in one run.
+    double widestNear(std::size_t i) const { return words_[(i - 1) / NearWord::bits].widest; }
 
 private:
-    // Eight flags at a time: nearly always all are set.
-    void splitIntoRuns() {
-        constexpr std::uint64_t all = 0x0101010101010101;
-        for (std::size_t i = 0; i < count_; i += 8) {
-            std::uint64_t eight;
-            std::memcpy(&eight, flags_.data() + i, 8);
-            if (eight != all)
-                for (std::size_t k = i; k < i + 8; ++k)
-                    if (!flags_[k])
-                        begins_.push_back(k);
-        }
-        parent_.resize(begins_.size());
-        for (std::size_t r = 0; r < parent_.size(); ++r)
-            parent_[r] = r;
-        begins_.push_back(count_);
-    }
+    // The points of `later` count as if they came `turn` points later.
     template <typename Nearness>
-    void joinBackwards(const Nearness &nearness, std::size_t run, std::size_t reach) {
-        const std::size_t begin = begins_[run], end = std::min(begins_[run + 1], begin + reach);
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t earliest = i > reach ? i - reach : 0;
-            bool others = false;
-            for (std::size_t r = run; r-- > 0 && begins_[r + 1] > earliest;)
-                if (root(r) != root(run)) {
-                    if (nearAny(nearness, i, std::max(earliest, begins_[r]), begins_[r + 1]))
-                        join(r, run);
-                    else
-                        others = true;
-                }
-            if (!others)
-                return; // later points of the run see no further runs
-        }
+    void joinIfNear(const Comparison<Nearness> &points, std::size_t later, std::size_t earlier,
+                    std::size_t turn, std::size_t reach) {
+        const std::size_t a = findRoot(later), b = findRoot(earlier);
+        if (a != b && anyNear(points, later, earlier, turn, reach))
+            root_[std::max(a, b)] = std::min(a, b); // clusters are numbered by their first points
     }
+    // Point by point of that run of which fewer points matter.
     template <typename Nearness>
-    static bool nearAny(const Nearness &nearness, std::size_t i, std::size_t first, std::size_t end) {
-        for (std::size_t j = end; j-- > first;)
-            if (nearness.near(i, j))
-                return true;
+    bool anyNear(const Comparison<Nearness> &points, std::size_t later, std::size_t earlier, std::size_t turn,
+                 std::size_t reach) const {
+        const std::size_t first = begins_[later], end = begins_[earlier + 1];
+        const auto predecessors = [&](std::size_t i) { // from which one on
+            return std::max(begins_[earlier], i + turn > reach ? i + turn - reach : 0);
+        };
+        const auto successors = [&](std::size_t j) { // up to which one
+            return std::min(begins_[later + 1], j + reach + 1 - turn);
+        };
+        if (successors(end - 1) - first <= end - predecessors(first)) {
+            for (std::size_t i = first; i < successors(end - 1); ++i)
+                if (points.nearEarlier(i, predecessors(i), end))
+                    return true;
+        } else {
+            for (std::size_t j = end; j-- > predecessors(first);)
+                if (points.nearLater(first, successors(j), j))
+                    return true;
+        }
         return false;
     }
-    // The first points are examined again, with the last ones as their predecessors.
-    template <typename Nearness>
-    void close(const Nearness &nearness, std::size_t reach) {
-        std::size_t run = 0;
-        for (std::size_t i = 0; i < std::min(reach, count_); ++i) {
-            run += i == begins_[run + 1];
-            std::size_t other = runs() - 1;
-            for (std::size_t back = i + 1; back <= reach && back < count_; ++back) {
-                const std::size_t j = count_ + i - back;
-                while (begins_[other] > j)
-                    --other;
-                if (root(run) != root(other) && nearness.near(i, j))
-                    join(run, other);
-            }
-        }
+    std::size_t findRoot(std::size_t run) {
+        while (root_[run] != run)
+            run = root_[run] = root_[root_[run]];
+        return run;
     }
-    // The earlier root stays, so that clusters are numbered by their first point.
-    void join(std::size_t a, std::size_t b) {
-        a = root(a);
-        b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
+    static std::size_t trailingZeros(std::uint64_t bits) {
+#if defined(__GNUC__)
+        return static_cast<std::size_t>(__builtin_ctzll(bits));
+#else
+        std::size_t n = 0;
+        while (!(bits >> n & 1))
+            ++n;
+        return n;
+#endif
     }
 
     std::size_t count_ = 0;
-    std::vector<std::uint8_t> flags_; // whether each point is near its predecessor
+    std::vector<NearWord> words_;
     std::vector<std::size_t> begins_;
-    std::vector<std::size_t> parent_;
+    std::vector<std::size_t> root_; // an earlier run of the same cluster, or the run itself
 };
 
 } // namespace vectorlib

@@ -85,46 +85,6 @@ VECTORLIB_AVX2 inline Sums sumAvx2(const float *p, std::size_t eights, float ox,
     s.xy = _mm_cvtss_f32(o);
     return s;
 }
-
-/// near[i] = 1 where point i + 1 lies within its threshold of point i, else 0; i = 0 .. 8 * eights - 1. The
-/// squared threshold is `scale` times the squared distance of point i + 1 from the origin, within the bounds.
-/// Its scalar twin is CartesianNearness::near().
-VECTORLIB_AVX2 inline void nearAvx2(const float *p, std::size_t eights, float scale, float least, float most,
-                                    std::uint8_t *near) {
-    const __m256 k = _mm256_set1_ps(scale), low = _mm256_set1_ps(least), high = _mm256_set1_ps(most);
-    const __m256i order = _mm256_setr_epi32(0, 4, 0, 0, 0, 0, 0, 0);
-    for (std::size_t e = 0; e < eights; ++e, p += 16, near += 8) {
-        const __m256 a = _mm256_loadu_ps(p), b = _mm256_loadu_ps(p + 8);
-        const __m256 c = _mm256_loadu_ps(p + 2), d = _mm256_loadu_ps(p + 10);
-        const __m256 x = _mm256_shuffle_ps(c, d, 0x88), y = _mm256_shuffle_ps(c, d, 0xdd);
-        const __m256 dx = _mm256_sub_ps(x, _mm256_shuffle_ps(a, b, 0x88));
-        const __m256 dy = _mm256_sub_ps(y, _mm256_shuffle_ps(a, b, 0xdd));
-        const __m256 r = _mm256_add_ps(_mm256_mul_ps(x, x), _mm256_mul_ps(y, y));
-        const __m256 limit = _mm256_min_ps(_mm256_max_ps(_mm256_mul_ps(k, r), low), high);
-        const __m256 distance = _mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy));
-        const __m256i is = _mm256_castps_si256(_mm256_cmp_ps(distance, limit, _CMP_LE_OQ));
-        // Lanes 0 1 4 5 | 2 3 6 7 to eight bytes of 0 or 1 in their order.
-        const __m256i words = _mm256_permute4x64_epi64(is, 0xd8); // 0 1 2 3 | 4 5 6 7
-        const __m256i bytes = _mm256_packs_epi16(_mm256_packs_epi32(words, words), _mm256_setzero_si256());
-        const __m256i flags =
-            _mm256_and_si256(_mm256_permutevar8x32_epi32(bytes, order), _mm256_set1_epi8(1));
-        _mm_storel_epi64(reinterpret_cast<__m128i *>(near), _mm256_castsi256_si128(flags));
-    }
-}
-
-/// The largest squared distance of a point from its predecessor, of points 1 .. 8 * eights; none is NaN.
-VECTORLIB_AVX2 inline float widestAvx2(const float *p, std::size_t eights) {
-    __m256 most = _mm256_setzero_ps();
-    for (std::size_t e = 0; e < eights; ++e, p += 16) {
-        const __m256 a = _mm256_sub_ps(_mm256_loadu_ps(p + 2), _mm256_loadu_ps(p));
-        const __m256 b = _mm256_sub_ps(_mm256_loadu_ps(p + 10), _mm256_loadu_ps(p + 8));
-        const __m256 x = _mm256_shuffle_ps(a, b, 0x88), y = _mm256_shuffle_ps(a, b, 0xdd);
-        most = _mm256_max_ps(most, _mm256_add_ps(_mm256_mul_ps(x, x), _mm256_mul_ps(y, y)));
-    }
-    __m128 m = _mm_max_ps(_mm256_castps256_ps128(most), _mm256_extractf128_ps(most, 1));
-    m = _mm_max_ps(m, _mm_movehl_ps(m, m));
-    return _mm_cvtss_f32(_mm_max_ss(m, _mm_shuffle_ps(m, m, 1)));
-}
 #endif
 
 } // namespace vectorlib::simd
