@@ -32,7 +32,12 @@ private Q_SLOTS:
     void mergesRetroactively();
     void thresholdFollowsTheFieldOfView();
     void thresholdBounds();
+    void closingFollowsTheScanner();
+    void polarThreshold();
+    void polarClosesAFullTurn();
+    void polarTakesIntegers();
     void invalidPointsTakeNoPart();
+    void invalidRangesTakeNoPart();
     void emptyAndTiny();
     void edgesAndOutliersPartitionAnObservation();
 };
@@ -122,8 +127,73 @@ void TestEarSegmenter::thresholdBounds() {
     segment.settings.closed = false;
     segment.settings.minPoints = 1;
     segment.settings.nominalPoints = 1000;
-    QCOMPARE(segment(Points{{0.1f, 0.0f}, {0.1f, 0.045f}}).size(), std::size_t(1));  // scaled: 0.006 m
-    QCOMPARE(segment(Points{{50.0f, 0.0f}, {50.0f, 0.25f}}).size(), std::size_t(2)); // scaled: 3.1 m
+    const auto clusters = [&](float range, float across) {
+        return segment(Points{{range, 0}, {range, across}}).size();
+    };
+    QCOMPARE(clusters(0.1f, 0.049f), std::size_t(1)); // scaled: 0.006 m
+    QCOMPARE(clusters(0.1f, 0.051f), std::size_t(2));
+    QCOMPARE(clusters(2, 0.120f), std::size_t(1)); // scaled: 0.126 m
+    QCOMPARE(clusters(2, 0.130f), std::size_t(2));
+    QCOMPARE(clusters(50, 0.199f), std::size_t(1)); // scaled: 3.1 m
+    QCOMPARE(clusters(50, 0.201f), std::size_t(2));
+}
+
+void TestEarSegmenter::closingFollowsTheScanner() {
+    QVERIFY(EarSettings::forScanner(2 * pi, 1440).closed);
+    QVERIFY(!EarSettings::forScanner(1.5 * pi, 1080).closed);
+    QCOMPARE(EarSettings::forScanner(pi, 1000).fieldOfView, double(pi));
+    QCOMPARE(EarSettings::forScanner(pi, 1000).nominalPoints, std::size_t(1000));
+}
+
+// As thresholdFollowsTheFieldOfView and thresholdBounds, for ranges.
+void TestEarSegmenter::polarThreshold() {
+    EarSegmenter<float> segment;
+    segment.settings.closed = false;
+    segment.settings.minPoints = 1;
+    segment.settings.nominalPoints = 1000;
+    const auto clusters = [&](float range, float farther) {
+        const float ranges[] = {range, range + farther};
+        return segment(PolarScan<float>{ranges, 2, 0, 2 * pi / 1000}).size();
+    };
+    QCOMPARE(clusters(0.1f, 0.049f), std::size_t(1));
+    QCOMPARE(clusters(0.1f, 0.051f), std::size_t(2));
+    QCOMPARE(clusters(2, 0.120f), std::size_t(1)); // K 2 pi / N r = 0.13
+    QCOMPARE(clusters(2, 0.145f), std::size_t(2));
+    QCOMPARE(clusters(50, 0.199f), std::size_t(1));
+    QCOMPARE(clusters(50, 0.201f), std::size_t(2));
+    segment.settings.fieldOfView = pi;
+    QCOMPARE(clusters(2, 0.120f), std::size_t(2)); // K pi / N r = 0.067
+    QCOMPARE(clusters(2, 0.060f), std::size_t(1));
+}
+
+void TestEarSegmenter::polarClosesAFullTurn() {
+    std::vector<float> ranges(720, 2.0f);
+    std::fill(ranges.begin() + 100, ranges.begin() + 600, 0.0f);
+    const PolarScan<float> scan{ranges.data(), ranges.size(), 0, 2 * pi / 720};
+    EarSegmenter<float> segment;
+    const Segmentation &s = segment(scan);
+    QCOMPARE(s.size(), std::size_t(1));
+    QCOMPARE(s.order.front(), 600);
+    QCOMPARE(s.order.back(), 99);
+    segment.settings.closed = false;
+    QCOMPARE(segment(scan).size(), std::size_t(2));
+}
+
+void TestEarSegmenter::polarTakesIntegers() {
+    std::vector<std::uint16_t> millimetres(720, 2000);
+    std::fill(millimetres.begin() + 360, millimetres.end(), std::uint16_t(4000));
+    millimetres[100] = 0;     // no return
+    millimetres[101] = 65535; // over range
+    EarSegmenter<float> segment;
+    segment.settings.minThreshold = 0.1;
+    const Segmentation &s = segment(
+        PolarScan<std::uint16_t>{millimetres.data(), millimetres.size(), 0, 2 * pi / 720, 0.001, 0.05, 60});
+    QCOMPARE(s.size(), std::size_t(2));
+    QCOMPARE(s.size(0), std::size_t(358));
+    QCOMPARE(s.labels[100], -1);
+    QCOMPARE(s.labels[101], -1);
+    QCOMPARE(s.labels[102], 0);
+    QCOMPARE(segment(PolarScan<std::uint16_t>()).size(), std::size_t(0));
 }
 
 void TestEarSegmenter::invalidPointsTakeNoPart() {
@@ -138,6 +208,37 @@ void TestEarSegmenter::invalidPointsTakeNoPart() {
     QCOMPARE(s.size(), std::size_t(1));
     QCOMPARE(s.size(0), std::size_t(997));
     QCOMPARE(s.labels[101], -1);
+}
+
+// Even where single points are clusters and every threshold is as large as it can be.
+void TestEarSegmenter::invalidRangesTakeNoPart() {
+    const float infinity = std::numeric_limits<float>::infinity();
+    const float none[] = {0,     -0.0f, -1,   std::numeric_limits<float>::quiet_NaN(), infinity, -infinity,
+                          0.04f, 60,    1e30f};
+    std::vector<float> ranges(400, 2.0f);
+    for (std::size_t i = 0; i < std::size(none); ++i)
+        ranges[20 * i + 7] = ranges[20 * i + 8] = none[i];
+    EarSegmenter<float> segment;
+    segment.settings.minPoints = 1;
+    segment.settings.minThreshold = 1e30;
+    segment.settings.maxThreshold = double(infinity);
+    for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
+        segment.level = level;
+        const Segmentation &s =
+            segment(PolarScan<float>{ranges.data(), ranges.size(), 0, 2 * pi / 400, 1, 0.05, 60});
+        QCOMPARE(s.size(), std::size_t(1));
+        for (std::size_t i = 0; i < ranges.size(); ++i)
+            QCOMPARE(s.labels[i], ranges[i] == 2.0f ? 0 : -1);
+        Points points = arc(0, 2 * pi, 400, 2);
+        points[9] = {infinity, 0};
+        points[10] = {infinity, 0};
+        points[399] = {0, -infinity};
+        const Segmentation &t = segment(points);
+        QCOMPARE(t.size(), std::size_t(1));
+        QCOMPARE(t.size(0), std::size_t(397));
+        QCOMPARE(t.labels[9], -1);
+        QCOMPARE(t.labels[399], -1);
+    }
 }
 
 void TestEarSegmenter::emptyAndTiny() {

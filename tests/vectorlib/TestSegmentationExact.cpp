@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <random>
+#include <type_traits>
 
 using namespace vectorlib;
 
@@ -88,7 +89,7 @@ std::vector<float> randomRanges(std::mt19937 &random, std::size_t count) {
 
 EarSettings randomSettings(std::mt19937 &random, std::size_t count) {
     EarSettings s;
-    s.neighbours = 1 + int(random() % 15);
+    s.neighbours = 1 + int(random() % (random() % 4 ? 15 : 80));
     s.closed = random() % 2;
     s.fieldOfView = s.closed ? 2 * pi : 0.5 + double(random() % 100) / 20;
     s.minPoints = 1 + int(random() % 15);
@@ -96,70 +97,69 @@ EarSettings randomSettings(std::mt19937 &random, std::size_t count) {
     return s;
 }
 
-} // namespace
-
-class TestSegmentationExact : public QObject {
-    Q_OBJECT
-private Q_SLOTS:
-    void cartesianEqualsTheFullAlgorithm_data();
-    void cartesianEqualsTheFullAlgorithm();
-    void polarEqualsTheFullAlgorithm();
-    void polarTakesIntegers();
-    void polarFindsWhatCartesianFinds();
-    void longScanInDoubles();
-};
-
-void TestSegmentationExact::cartesianEqualsTheFullAlgorithm_data() {
+void levels() {
     QTest::addColumn<int>("level");
     QTest::newRow("scalar") << int(simd::Level::Scalar);
     QTest::newRow("best of this processor") << int(simd::bestLevel());
 }
 
-void TestSegmentationExact::cartesianEqualsTheFullAlgorithm() {
-    QFETCH(int, level);
-    EarSegmenter<float> segment;
-    segment.level = simd::Level(level);
-    for (unsigned seed = 1; seed <= 600; ++seed) {
+void compare(const Segmentation &found, const Reference &expected, unsigned seed) {
+    QVERIFY2(found.labels == expected.labels, qPrintable(QString("seed %1").arg(seed)));
+    QVERIFY2(found.order == expected.order, qPrintable(QString("seed %1").arg(seed)));
+}
+
+template <typename Scalar>
+void compareCartesian(simd::Level level) {
+    EarSegmenter<Scalar> segment;
+    segment.level = level;
+    for (unsigned seed = 1; seed <= 600 && !QTest::currentTestFailed(); ++seed) {
         std::mt19937 random(seed);
         const std::size_t count = random() % 400;
         const std::vector<float> ranges = randomRanges(random, count);
         segment.settings = randomSettings(random, count);
         const EarSettings &s = segment.settings;
-        std::vector<Vector2D<float>> points;
+        std::vector<Vector2D<Scalar>> points;
         std::vector<int> valid;
         for (std::size_t i = 0; i < count; ++i) {
             const double a = s.fieldOfView * double(i) / double(count);
-            points.emplace_back(ranges[i] * float(std::cos(a)), ranges[i] * float(std::sin(a)));
+            points.emplace_back(Scalar(ranges[i]) * Scalar(std::cos(a)),
+                                Scalar(ranges[i]) * Scalar(std::sin(a)));
             if (points.back().isFinite())
                 valid.push_back(int(i));
         }
         const double k = count ? s.neighbours * s.fieldOfView / double(count) : 0;
         const auto gap = [&](int i, int j) { return (points[i] - points[j]).squaredNorm(); };
         const auto near = [&](int i, int j) {
-            const float limit =
-                std::clamp(float(k * k) * points[i].squaredNorm(), float(s.minThreshold * s.minThreshold),
-                           float(s.maxThreshold * s.maxThreshold));
+            const Scalar limit =
+                std::clamp(Scalar(k * k) * points[i].squaredNorm(), Scalar(s.minThreshold * s.minThreshold),
+                           Scalar(s.maxThreshold * s.maxThreshold));
             return gap(i, j) <= limit;
         };
-        const Reference expected(count, valid, s, near, gap);
-        const Segmentation &found = segment(points);
-        QVERIFY2(found.labels == expected.labels, qPrintable(QString("seed %1").arg(seed)));
-        QVERIFY2(found.order == expected.order, qPrintable(QString("seed %1").arg(seed)));
+        compare(segment(points), Reference(count, valid, s, near, gap), seed);
     }
 }
 
-void TestSegmentationExact::polarEqualsTheFullAlgorithm() {
+/// `scale`: metres in a unit of the ranges, which are rounded to whole units where these are integers.
+template <typename Range>
+void comparePolar(simd::Level level, double scale) {
     EarSegmenter<float> segment;
-    for (unsigned seed = 1; seed <= 600; ++seed) {
+    segment.level = level;
+    for (unsigned seed = 1; seed <= 600 && !QTest::currentTestFailed(); ++seed) {
         std::mt19937 random(seed);
         const std::size_t count = random() % 400;
-        const std::vector<float> ranges = randomRanges(random, count);
+        std::vector<Range> units;
+        std::vector<float> ranges;
+        for (const float r : randomRanges(random, count)) {
+            const bool none = std::is_integral_v<Range> && !(r > 0 && r < 60);
+            units.push_back(none ? Range(0) : Range(r / scale));
+            ranges.push_back(float(double(units.back()) * scale));
+        }
         segment.settings = randomSettings(random, count);
         const EarSettings &s = segment.settings;
-        const PolarScan<float> scan{ranges.data(), count, 0, s.fieldOfView / double(count + 1), 1, 0.1, 30};
+        const double step = s.fieldOfView / double(count + 1);
         std::vector<int> valid;
         for (std::size_t i = 0; i < count; ++i)
-            if (ranges[i] >= 0.1f && ranges[i] < 30)
+            if (const double metres = double(units[i]) * scale; metres >= 0.1 && metres < 30)
                 valid.push_back(int(i));
         const float k = count ? float(s.neighbours * s.fieldOfView / double(count)) : 0;
         const auto rays = [&](int i, int j) {
@@ -167,35 +167,44 @@ void TestSegmentationExact::polarEqualsTheFullAlgorithm() {
             return s.closed ? std::min(d, int(count) - d) : d;
         };
         const auto gap = [&](int i, int j) {
-            const double dr = ranges[i] - ranges[j], arc = ranges[i] * (rays(i, j) * scan.step);
+            const double dr = ranges[i] - ranges[j], arc = ranges[i] * (rays(i, j) * step);
             return dr * dr + arc * arc;
         };
         const auto near = [&](int i, int j) {
             const float limit = std::clamp(k * ranges[i], float(s.minThreshold), float(s.maxThreshold));
             return rays(i, j) <= s.neighbours && std::abs(ranges[i] - ranges[j]) <= limit;
         };
-        const Reference expected(count, valid, s, near, gap);
-        const Segmentation &found = segment(scan);
-        QVERIFY2(found.labels == expected.labels, qPrintable(QString("seed %1").arg(seed)));
-        QVERIFY2(found.order == expected.order, qPrintable(QString("seed %1").arg(seed)));
+        const PolarScan<Range> scan{units.data(), count, 0, step, scale, 0.1, 30};
+        compare(segment(scan), Reference(count, valid, s, near, gap), seed);
     }
 }
 
-void TestSegmentationExact::polarTakesIntegers() {
-    std::vector<std::uint16_t> millimetres(720, 2000);
-    std::fill(millimetres.begin() + 360, millimetres.end(), std::uint16_t(4000));
-    millimetres[100] = 0;     // no return
-    millimetres[101] = 65535; // over range
-    EarSegmenter<float> segment;
-    segment.settings.minThreshold = 0.1;
-    const Segmentation &s = segment(
-        PolarScan<std::uint16_t>{millimetres.data(), millimetres.size(), 0, 2 * pi / 720, 0.001, 0.05, 60});
-    QCOMPARE(s.size(), std::size_t(2));
-    QCOMPARE(s.size(0), std::size_t(358));
-    QCOMPARE(s.labels[100], -1);
-    QCOMPARE(s.labels[101], -1);
-    QCOMPARE(s.labels[102], 0);
-    QCOMPARE(segment(PolarScan<std::uint16_t>()).size(), std::size_t(0));
+} // namespace
+
+class TestSegmentationExact : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void cartesianEqualsTheFullAlgorithm_data() { levels(); }
+    void cartesianEqualsTheFullAlgorithm();
+    void polarEqualsTheFullAlgorithm_data() { levels(); }
+    void polarEqualsTheFullAlgorithm();
+    void polarFindsWhatCartesianFinds();
+    void longScansAtAllLevels();
+    void manyClustersOverTheEnd();
+};
+
+void TestSegmentationExact::cartesianEqualsTheFullAlgorithm() {
+    QFETCH(int, level);
+    compareCartesian<float>(simd::Level(level));
+    compareCartesian<double>(simd::Level(level));
+}
+
+void TestSegmentationExact::polarEqualsTheFullAlgorithm() {
+    QFETCH(int, level);
+    comparePolar<float>(simd::Level(level), 1);
+    comparePolar<double>(simd::Level(level), 1);
+    comparePolar<std::uint16_t>(simd::Level(level), 0.001);
+    comparePolar<std::uint32_t>(simd::Level(level), 0.0001);
 }
 
 void TestSegmentationExact::polarFindsWhatCartesianFinds() {
@@ -212,13 +221,44 @@ void TestSegmentationExact::polarFindsWhatCartesianFinds() {
     QCOMPARE(polar(scan).size(), std::size_t(2));
 }
 
-void TestSegmentationExact::longScanInDoubles() {
-    std::vector<Vector2D<double>> points;
-    for (int i = 0; i < 50000; ++i)
-        points.emplace_back(3 * std::cos(2 * pi * i / 50000), 3 * std::sin(2 * pi * i / 50000));
-    EarSegmenter<double> segment;
-    QCOMPARE(segment(points).size(), std::size_t(1));
-    QCOMPARE(segment(points).size(0), points.size());
+void TestSegmentationExact::longScansAtAllLevels() {
+    std::mt19937 random(7);
+    const std::size_t count = 50000;
+    const std::vector<float> ranges = randomRanges(random, count);
+    const PolarScan<float> scan{ranges.data(), count, 0, 2 * pi / double(count), 1, 0.1, 30};
+    std::vector<Vector2D<float>> points;
+    for (std::size_t i = 0; i < count; ++i)
+        points.emplace_back(scan.point(i));
+    EarSegmenter<float> plain, best;
+    plain.level = simd::Level::Scalar;
+    QVERIFY(plain(points).size() > 10);
+    QVERIFY(plain(points).labels == best(points).labels);
+    QVERIFY(plain(points).order == best(points).order);
+    QVERIFY(plain(scan).size() > 10);
+    QVERIFY(plain(scan).labels == best(scan).labels);
+    QVERIFY(plain(scan).order == best(scan).order);
+}
+
+// Three walls whose points alternate all around: each cluster runs over the end and has its own widest gap.
+void TestSegmentationExact::manyClustersOverTheEnd() {
+    std::vector<float> ranges;
+    for (int i = 0; i < 999; ++i)
+        ranges.push_back(float(1 + i % 3));
+    for (int i = 600; i < 612; ++i) // a gap in every wall
+        ranges[std::size_t(i)] = 0;
+    const PolarScan<float> scan{ranges.data(), ranges.size(), 0, 2 * pi / 999};
+    EarSegmenter<float> segment;
+    segment.settings.neighbours = 20;
+    for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
+        segment.level = level;
+        const Segmentation &s = segment(scan);
+        QCOMPARE(s.size(), std::size_t(3));
+        for (std::size_t c = 0; c < 3; ++c) {
+            QCOMPARE(s.size(c), std::size_t(329));
+            QCOMPARE(s.order[s.starts[c]], 612 + int(c));
+            QCOMPARE(s.order[s.starts[c + 1] - 1], 597 + int(c));
+        }
+    }
 }
 
 QTEST_APPLESS_MAIN(TestSegmentationExact)

@@ -25,12 +25,17 @@ VECTORLIB_AVX2 inline float largest(__m256 v) {
     return _mm_cvtss_f32(_mm_max_ss(m, _mm_shuffle_ps(m, m, 1)));
 }
 
+/// NearThreshold of eight ranges or of their squares.
+VECTORLIB_AVX2 inline __m256 limitsOf(__m256 ranges, const NearThreshold<float> &t) {
+    const __m256 scaled = _mm256_mul_ps(_mm256_set1_ps(t.scale), ranges);
+    return _mm256_min_ps(_mm256_max_ps(scaled, _mm256_set1_ps(t.least)), _mm256_set1_ps(t.most));
+}
+
 /// Compares points 1 .. 8 * eights with their predecessors. Where all eight distances are under the lower
 /// bound, as in a dense scan, the ranges are not needed.
 VECTORLIB_AVX2 inline void nearPredecessors(const CartesianNearness<float> &n, std::size_t eights,
                                             NearWord *words) {
-    const __m256 scale = _mm256_set1_ps(n.threshold.scale), low = _mm256_set1_ps(n.threshold.least);
-    const __m256 high = _mm256_set1_ps(n.threshold.most), sure = _mm256_min_ps(low, high);
+    const __m256 sure = limitsOf(_mm256_setzero_ps(), n.threshold);
     const float *p = &n.points->x;
     for (; eights > 0; ++words) {
         const std::size_t here = std::min<std::size_t>(eights, 8);
@@ -42,9 +47,8 @@ VECTORLIB_AVX2 inline void nearPredecessors(const CartesianNearness<float> &n, s
                 squaredNorms(_mm256_sub_ps(c, _mm256_loadu_ps(p)), _mm256_sub_ps(d, _mm256_loadu_ps(p + 8)));
             std::uint64_t bits = 0xff;
             if (_mm256_movemask_ps(_mm256_cmp_ps(gap, sure, _CMP_LE_OQ)) != 0xff) {
-                const __m256 scaled = _mm256_mul_ps(scale, squaredNorms(c, d));
-                const __m256 limit = _mm256_min_ps(_mm256_max_ps(scaled, low), high);
-                const __m256 is = _mm256_cmp_ps(gap, limit, _CMP_LE_OQ);
+                const __m256 limits = limitsOf(squaredNorms(c, d), n.threshold);
+                const __m256 is = _mm256_cmp_ps(gap, limits, _CMP_LE_OQ);
                 bits = bitsOf(is);
                 gap = _mm256_and_ps(gap, is);
             }
@@ -56,26 +60,16 @@ VECTORLIB_AVX2 inline void nearPredecessors(const CartesianNearness<float> &n, s
     }
 }
 
-/// Whether one of the points first .. end - 1 lies within the threshold `t` of point `other`. There are at
-/// least eight points; some beyond first .. end - 1 are read.
-VECTORLIB_AVX2 inline bool anyNear(const CartesianNearness<float> &n, std::size_t first, std::size_t end,
-                                   std::size_t other, NearThreshold<float> t) {
-    const __m256 scale = _mm256_set1_ps(t.scale), low = _mm256_set1_ps(t.least);
-    const __m256 high = _mm256_set1_ps(t.most);
+/// Which of the points first .. first + 7 and point `other` are near; `later`: that is the later one.
+VECTORLIB_AVX2 inline unsigned nearBits(const CartesianNearness<float> &n, std::size_t first,
+                                        std::size_t other, bool later) {
+    const float *p = &n.points[first].x;
+    const __m256 a = _mm256_loadu_ps(p), b = _mm256_loadu_ps(p + 8);
     const __m256 origin =
         _mm256_unpacklo_ps(_mm256_set1_ps(n.points[other].x), _mm256_set1_ps(n.points[other].y));
-    for (; first < end; first += 8) {
-        const std::size_t start = std::min(first, n.count - 8);
-        const float *p = &n.points[start].x;
-        const __m256 a = _mm256_loadu_ps(p), b = _mm256_loadu_ps(p + 8);
-        const __m256 scaled = _mm256_mul_ps(scale, squaredNorms(a, b));
-        const __m256 limit = _mm256_min_ps(_mm256_max_ps(scaled, low), high);
-        const __m256 gap = squaredNorms(_mm256_sub_ps(a, origin), _mm256_sub_ps(b, origin));
-        const unsigned wanted = (1u << std::min<std::size_t>(end - start, 8)) - (1u << (first - start));
-        if (bitsOf(_mm256_cmp_ps(gap, limit, _CMP_LE_OQ)) & wanted)
-            return true;
-    }
-    return false;
+    const __m256 gap = squaredNorms(_mm256_sub_ps(a, origin), _mm256_sub_ps(b, origin));
+    const __m256 limits = later ? _mm256_set1_ps(n.limit(other)) : limitsOf(squaredNorms(a, b), n.threshold);
+    return bitsOf(_mm256_cmp_ps(gap, limits, _CMP_LE_OQ));
 }
 #endif
 

@@ -3,6 +3,7 @@
 #include "vectorlib/segmentation/CartesianNearSimd.h"
 #include "vectorlib/segmentation/PolarNearSimd.h"
 
+#include <limits>
 #include <type_traits>
 
 namespace vectorlib {
@@ -16,41 +17,48 @@ struct Comparison {
 
     std::size_t count() const { return nearness.count; }
 
-    /// Compares all points with their direct predecessors; `words` are zero, one for each 64 begun.
+    /// Compares all points with their direct predecessors, 64 in a word.
     void withPredecessors(NearWord *words) const {
-        std::size_t i = 1;
+        std::size_t done = 0;
         if constexpr (inEights)
-            if (level != simd::Level::Scalar && count() > 8) {
-                const std::size_t eights = (count() - 1) / 8;
-                simd::nearPredecessors(nearness, eights, words);
-                i += 8 * eights;
+            if (level != simd::Level::Scalar && count() > NearWord::bits) {
+                done = (count() - 1) / NearWord::bits;
+                simd::nearPredecessors(nearness, done * NearWord::bits / 8, words);
             }
-        for (; i < count(); ++i)
-            if (nearness.near(i, i - 1)) {
-                NearWord &word = words[(i - 1) / NearWord::bits];
-                word.near |= std::uint64_t(1) << (i - 1) % NearWord::bits;
-                word.widest = std::max(word.widest, static_cast<double>(nearness.gap(i, i - 1)));
+        for (std::size_t first = done * NearWord::bits + 1; first < count(); first += NearWord::bits)
+            words[done++] = wordOf(first, std::min(NearWord::bits, count() - first));
+    }
+    /// Whether point `other` is near one of the points first .. end - 1, which all come before it, or all
+    /// after it if not `later`.
+    bool nearAny(std::size_t first, std::size_t end, std::size_t other, bool later) const {
+        bool any = false;
+        eachNear(first, end, other, later, [&](std::size_t) {
+            any = true;
+            return false;
+        });
+        return any;
+    }
+    /// Calls `take` with each of these points that is near, the last one first, until it returns false.
+    template <typename Take>
+    void eachNear(std::size_t first, std::size_t end, std::size_t other, bool later, Take take) const {
+        if constexpr (inEights)
+            if (level != simd::Level::Scalar && count() >= 8 && end - first > 1) {
+                while (first < end) {
+                    const std::size_t start = end - first < 8 ? std::min(first, count() - 8) : end - 8;
+                    const unsigned wanted = first > start ? 0xffu << (first - start) : 0xffu;
+                    const unsigned bits =
+                        simd::nearBits(nearness, start, other, later) & wanted & ((1u << (end - start)) - 1);
+                    for (unsigned k = 8; bits != 0 && k-- > 0;)
+                        if ((bits >> k & 1) && !take(start + k))
+                            return;
+                    end = std::max(first, start);
+                }
+                return;
             }
-    }
-    /// Whether point i is near one of the earlier points first .. end - 1.
-    bool nearEarlier(std::size_t i, std::size_t first, std::size_t end) const {
-        if constexpr (inEights)
-            if (worthEights(first, end))
-                return simd::anyNear(nearness, first, end, i, {0, nearness.limit(i), nearness.limit(i)});
-        for (std::size_t j = end; j-- > first;)
-            if (nearness.near(i, j))
-                return true;
-        return false;
-    }
-    /// Whether one of the later points first .. end - 1 is near point j.
-    bool nearLater(std::size_t first, std::size_t end, std::size_t j) const {
-        if constexpr (inEights)
-            if (worthEights(first, end))
-                return simd::anyNear(nearness, first, end, j, nearness.threshold);
-        for (std::size_t i = first; i < end; ++i)
-            if (nearness.near(i, j))
-                return true;
-        return false;
+        for (std::size_t i = end; i-- > first;)
+            if (later ? nearness.near(other, i) : nearness.near(i, other))
+                if (!take(i))
+                    return;
     }
 
 private:
@@ -61,8 +69,16 @@ private:
     static constexpr bool inEights = false;
 #endif
 
-    bool worthEights(std::size_t first, std::size_t end) const {
-        return level != simd::Level::Scalar && count() >= 8 && end - first > 1;
+    // The scalar twin of simd::nearPredecessors(), without the widest gap, which the search then finds. No
+    // branches, so that compilers can vectorise it.
+    NearWord wordOf(std::size_t first, std::size_t points) const {
+        std::uint8_t flags[NearWord::bits];
+        for (std::size_t k = 0; k < points; ++k)
+            flags[k] = nearness.near(first + k, first + k - 1);
+        std::uint64_t near = 0;
+        for (std::size_t k = 0; k < points; ++k)
+            near |= std::uint64_t(flags[k]) << k;
+        return {near, std::numeric_limits<double>::infinity()};
     }
 };
 

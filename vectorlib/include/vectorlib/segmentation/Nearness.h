@@ -70,7 +70,7 @@ struct NearWord {
     static constexpr std::size_t bits = 64;
 
     std::uint64_t near = 0; ///< which points are near their predecessors
-    double widest = 0;      ///< the largest gap() between those that are
+    double widest = 0;      ///< at least the largest gap() between those that are
 };
 
 } // namespace vectorlib

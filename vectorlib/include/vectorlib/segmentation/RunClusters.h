@@ -18,7 +18,7 @@ public:
     void split(const Comparison<Nearness> &points) {
         count_ = points.count();
         begins_.clear();
-        words_.assign(count_ ? (count_ - 1 + NearWord::bits - 1) / NearWord::bits : 0, NearWord());
+        words_.resize(count_ ? (count_ - 1 + NearWord::bits - 1) / NearWord::bits : 0);
         if (count_ > 0) {
             points.withPredecessors(words_.data());
             begins_.push_back(0);
@@ -39,8 +39,11 @@ public:
     template <typename Nearness>
     void join(const Comparison<Nearness> &points, std::size_t reach, bool closed) {
         for (std::size_t later = 1; later < runs(); ++later)
-            for (std::size_t r = later; r-- > 0 && begins_[r + 1] + reach > begins_[later];)
-                joinIfNear(points, later, r, 0, reach);
+            if (length(later) == 1)
+                joinPoint(points, later, reach);
+            else
+                for (std::size_t r = later; r-- > 0 && begins_[r + 1] + reach > begins_[later];)
+                    joinIfNear(points, later, r, 0, reach);
         for (std::size_t later = 0; closed && later < runs() && begins_[later] < reach; ++later)
             for (std::size_t r = runs(); --r > later && begins_[r + 1] + reach > begins_[later] + count_;)
                 joinIfNear(points, later, r, count_, reach);
@@ -64,7 +67,24 @@ private:
                     std::size_t turn, std::size_t reach) {
         const std::size_t a = findRoot(later), b = findRoot(earlier);
         if (a != b && anyNear(points, later, earlier, turn, reach))
-            root_[std::max(a, b)] = std::min(a, b); // clusters are numbered by their first points
+            unite(a, b);
+    }
+    // A run of one point: all its predecessors at once.
+    template <typename Nearness>
+    void joinPoint(const Comparison<Nearness> &points, std::size_t run, std::size_t reach) {
+        const std::size_t i = begins_[run];
+        std::size_t root = run, other = run;
+        points.eachNear(i > reach ? i - reach : 0, i, i, true, [&](std::size_t j) {
+            while (begins_[other] > j)
+                --other;
+            root = unite(root, findRoot(other));
+            return true;
+        });
+    }
+    // Clusters are numbered by their first points.
+    std::size_t unite(std::size_t a, std::size_t b) {
+        root_[std::max(a, b)] = std::min(a, b);
+        return std::min(a, b);
     }
     // Point by point of that run of which fewer points matter.
     template <typename Nearness>
@@ -79,11 +99,11 @@ private:
         };
         if (successors(end - 1) - first <= end - predecessors(first)) {
             for (std::size_t i = first; i < successors(end - 1); ++i)
-                if (points.nearEarlier(i, predecessors(i), end))
+                if (points.nearAny(predecessors(i), end, i, true))
                     return true;
         } else {
             for (std::size_t j = end; j-- > predecessors(first);)
-                if (points.nearLater(first, successors(j), j))
+                if (points.nearAny(first, successors(j), j, false))
                     return true;
         }
         return false;
