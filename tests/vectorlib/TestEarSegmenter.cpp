@@ -38,6 +38,7 @@ private Q_SLOTS:
     void polarTakesIntegers();
     void invalidPointsTakeNoPart();
     void invalidRangesTakeNoPart();
+    void boundsOfRange();
     void emptyAndTiny();
     void edgesAndOutliersPartitionAnObservation();
 };
@@ -238,6 +239,23 @@ void TestEarSegmenter::invalidRangesTakeNoPart() {
         QCOMPARE(t.size(0), std::size_t(397));
         QCOMPARE(t.labels[9], -1);
         QCOMPARE(t.labels[399], -1);
+    }
+}
+
+void TestEarSegmenter::boundsOfRange() {
+    const float around[] = {std::nextafter(0.5f, 0.0f), 0.5f, std::nextafter(2.0f, 0.0f), 2.0f};
+    std::vector<float> ranges; // each in every place of eight
+    for (int shift = 0; shift < 4; ++shift)
+        for (int i = 0; i < 8; ++i)
+            ranges.push_back(around[(i + shift) % 4]);
+    EarSegmenter<float> segment;
+    segment.settings.minPoints = 1;
+    for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
+        segment.level = level;
+        const Segmentation &s =
+            segment(PolarScan<float>{ranges.data(), ranges.size(), 0, 2 * pi / 32, 1, 0.5, 2});
+        for (std::size_t i = 0; i < ranges.size(); ++i)
+            QCOMPARE(s.labels[i] >= 0, ranges[i] >= 0.5f && ranges[i] < 2);
     }
 }
 

@@ -191,6 +191,7 @@ private Q_SLOTS:
     void polarFindsWhatCartesianFinds();
     void longScansAtAllLevels();
     void manyClustersOverTheEnd();
+    void gapsThatHardlyDiffer();
 };
 
 void TestSegmentationExact::cartesianEqualsTheFullAlgorithm() {
@@ -258,6 +259,20 @@ void TestSegmentationExact::manyClustersOverTheEnd() {
             QCOMPARE(s.order[s.starts[c]], 612 + int(c));
             QCOMPARE(s.order[s.starts[c + 1] - 1], 597 + int(c));
         }
+    }
+}
+
+// The range grows by one part in a million from ray to ray up to ray 500, and falls again.
+void TestSegmentationExact::gapsThatHardlyDiffer() {
+    std::vector<float> ranges;
+    for (int i = 0; i < 1000; ++i)
+        ranges.push_back(float(2 - 2e-6 * std::abs(i - 500)));
+    const PolarScan<float> scan{ranges.data(), ranges.size(), 0, 2 * pi / 1000};
+    EarSegmenter<float> segment;
+    for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
+        segment.level = level;
+        QCOMPARE(segment(scan).order.front(), 500);
+        QCOMPARE(segment(scan).size(0), ranges.size());
     }
 }
 
