@@ -62,7 +62,7 @@ struct Comparison {
     }
 
 private:
-#if defined(VECTORLIB_SIMD_AVX2)
+#if defined(VECTORLIB_SIMD_AVX2) || defined(VECTORLIB_SIMD_NEON)
     static constexpr bool inEights =
         std::is_same_v<Nearness, CartesianNearness<float>> || std::is_same_v<Nearness, PolarNearness>;
 #else
