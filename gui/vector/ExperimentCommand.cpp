@@ -3,6 +3,7 @@
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
 #include "gui/vector/experiment/Gnuplot.h"
+#include "gui/vector/experiment/PairsExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/SegmentationExperiment.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
@@ -25,13 +26,16 @@ const std::map<std::string, std::string> experiments = {
     {"corners", "figure 6.9: one cluster with sharp corners"},
     {"room", "figure 6.10: a furnished room"},
     {"polygons", "closed polygons: error by the number of vertices"},
-    {"log", "the scans of --log: error by the number of vertices"}};
+    {"log", "the scans of --log: error by the number of vertices"},
+    {"pairs", "the motions between scans of --log: error against its corrected poses"}};
 
 struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
     std::string log;
     ExperimentOptions options;
+    PairsOptions pairOptions;
+    std::size_t pictures = 0;
     bool force = false;
 
     void run() {
@@ -41,6 +45,7 @@ struct ExperimentCommand {
             throw Failure(folder + ": cannot be made: " + error.message());
         Progress progress("run");
         options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
+        pairOptions.progress = options.progress;
         OutputSet files(force);
         if (name == "segmentation-room")
             segment(files, furnishedRoom());
@@ -50,6 +55,8 @@ struct ExperimentCommand {
             semicircle(files);
         else if (name == "polygons" || name == "log")
             quality(files);
+        else if (name == "pairs")
+            pairs(files);
         else
             scene(files, name == "edges"     ? solitaryEdges()
                          : name == "corners" ? sharpCorners()
@@ -87,18 +94,29 @@ private:
     void quality(OutputSet &files) const {
         std::ostream &csv = open(files, ".csv");
         const std::vector<QualityRow> rows =
-            name == "polygons" ? polygonExperiment(options) : logExperiment(scans(), options);
+            name == "polygons" ? polygonExperiment(options) : logExperiment(readLog().scans, options);
         writeCsv(csv, rows);
         draw(files, "", plotsOf(rows));
     }
-    std::vector<vectorlib::CarmenScan> scans() const {
+    // The shares go to standard output, too; pictures are of pairs that are not near the reference.
+    void pairs(OutputSet &files) const {
+        const vectorlib::CarmenLog read = readLog();
+        std::ostream &csv = open(files, ".csv"), &json = open(files, ".json");
+        const std::vector<PairResult> results = pairsExperiment(read, pairOptions);
+        writeCsv(csv, results);
+        const std::string summary = summaryOf(results).dump(2) + '\n';
+        json << summary;
+        std::cout << summary;
+        std::size_t drawn = 0;
+        for (const PairResult &pair : results)
+            if (!pair.isWithin(pair.match.pose, 0.10) && drawn++ < pictures)
+                hermes::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair);
+    }
+    vectorlib::CarmenLog readLog() const {
         if (log.empty())
-            throw CLI::ValidationError("--log", "the experiment log needs the name of a CARMEN log");
+            throw CLI::ValidationError("--log", "the experiment " + name + " needs the name of a CARMEN log");
         Input input(log);
-        auto read = vectorlib::readCarmenLog(input.stream(), input.name());
-        if (!read)
-            throw Failure(read.error().message());
-        return std::move(read->scans);
+        return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
     }
     void scene(OutputSet &files, const Scene &scene) const {
         std::ostream &csv = open(files, ".csv");
@@ -138,7 +156,20 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->log, "CARMEN log for the experiment log")->type_name("FILE");
+    sub->add_option("--log", command->log, "CARMEN log for the experiments log and pairs")->type_name("FILE");
+    sub->add_option("--every", command->pairOptions.every,
+                    "pairs: match every N-th scan with the next N-th one")
+        ->check(between(1, 1e9))
+        ->type_name("N")
+        ->capture_default_str();
+    sub->add_option("--first", command->pairOptions.first, "pairs: only the first N pairs")
+        ->check(between(1, 1e9))
+        ->type_name("N");
+    sub->add_option("--draw", command->pictures,
+                    "pairs: draw the first N pairs that are not within 10 cm and 2 degrees")
+        ->check(between(0, 10000))
+        ->type_name("N")
+        ->capture_default_str();
     sub->add_option("--runs", command->options.runs, "Scans for each number of points")
         ->check(between(1, 10000))
         ->type_name("N")

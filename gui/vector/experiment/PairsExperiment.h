@@ -1,0 +1,46 @@
+#pragma once
+
+#include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/mapping/ScanPairMatcher.h"
+
+#include <nlohmann/json.hpp>
+
+#include <functional>
+#include <ostream>
+#include <vector>
+
+namespace hermes {
+
+struct PairsOptions {
+    std::size_t every = 1; ///< match each N-th scan with the next N-th one
+    std::size_t first = 0; ///< only so many pairs; 0: all
+    std::function<void(std::size_t done, std::size_t all)> progress;
+};
+
+/// Two scans of a log, the motion that was found between them and how far it is from the reference.
+struct PairResult {
+    std::size_t from = 0, to = 0;         ///< numbers of the scans
+    vectorlib::Transformation2D expected; ///< by odometry
+    vectorlib::ScanPairMatch match;
+    vectorlib::Transformation2D reference;
+    double microseconds = 0; ///< segmentation and vectorization of both scans and the match
+
+    double errorMetres(const vectorlib::Transformation2D &motion) const;
+    double errorDegrees(const vectorlib::Transformation2D &motion) const;
+    bool isWithin(const vectorlib::Transformation2D &motion, double metres) const; ///< and 2 degrees
+    bool isWrong() const; ///< over 0.5 m or 10 degrees
+};
+
+/// Matches the pairs of a log whose scan poses are a corrected reference, each from the motion that its
+/// odometry tells; nothing of the reference is used but for the errors. A pair without odometry is expected
+/// to stand still, and matched as such a guess deserves.
+std::vector<PairResult> pairsExperiment(const vectorlib::CarmenLog &log, const PairsOptions &options);
+
+/// Shares of all pairs and the median time.
+nlohmann::ordered_json summaryOf(const std::vector<PairResult> &pairs);
+/// A row a pair.
+void writeCsv(std::ostream &out, const std::vector<PairResult> &pairs);
+/// Both scans, laid on each other as found; the second one also as the reference says.
+void draw(std::ostream &svg, const vectorlib::CarmenLog &log, const PairResult &pair);
+
+} // namespace hermes

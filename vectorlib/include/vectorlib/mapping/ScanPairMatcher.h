@@ -1,0 +1,135 @@
+#pragma once
+
+#include "vectorlib/correspondence/CorrespondenceFinder.h"
+#include "vectorlib/mapping/Observation2D.h"
+#include "vectorlib/registration/PointRefinement.h"
+
+namespace vectorlib {
+
+struct ScanPairSettings {
+    double deviationXY = 0.15;    ///< of the expected motion, a standard deviation; metres
+    double deviationAlpha = 0.10; ///< the same; radians
+    CorrespondenceSettings lines; ///< of the first search
+    /// A match with fewer points explained or more contradicted is searched for again, more widely.
+    double enoughExplained = 0.5, fewContradicted = 0.10;
+    CorrespondenceSettings wideLines = CorrespondenceSettings::forPoorExpectation();
+    double wideGate = 0.5;          ///< of points in the wider search; metres
+    double expectationCost = 0.002; ///< in score, of one squared standard deviation from the expected motion
+    /// What a match needs to be accepted; see PointAgreement.
+    double minPoints = 10, minExplained = 0.3, maxContradicted = 0.25, minReliability = 0;
+    /// A match that is farther from the expected motion needs as much as one that is not searched for again;
+    /// standard deviations.
+    double surprising = 4;
+    /// Below this reliability of the paired lines the points decide alone; thesis appendices.
+    double lineReliability = 0.1;
+
+    /// For an expected motion that is hardly more than a guess: without odometry.
+    static ScanPairSettings forPoorExpectation() {
+        ScanPairSettings s;
+        s.deviationXY = 1;
+        s.deviationAlpha = 0.5;
+        s.lines = s.wideLines;
+        s.maxContradicted = 0.10;
+        s.minReliability = 0.6; // nothing else says how far the sensor went along a corridor
+        return s;
+    }
+};
+
+/// The motion between two scans.
+struct ScanPairMatch {
+    Transformation2D pose; ///< of the second scan's sensor in the frame of the first
+    bool accepted = false; ///< false: the best found, not to be trusted
+    PointAgreement agreement;
+    Transformation2D byLines;  ///< the same from the lines alone; the expected motion where they say nothing
+    bool linesSuffice = false; ///< the lines alone fix the motion in all directions
+    bool searchedAgain = false;
+};
+
+/// Finds the motion between two scans: lines first, which reach far, then the points themselves, which also
+/// know round and cluttered places. How well the points of each scan lie on the other one tells whether to
+/// trust the result, to search again more widely, or to refuse. Keeps its buffers between calls.
+class ScanPairMatcher {
+public:
+    ScanPairSettings settings;
+    EdgeExtractor extract; ///< its segmentation is to be set up for the scanner
+    PointRefinement refine;
+
+    /// Both scans in their sensor's frame, counter-clockwise; metres. `expected` is the motion as far as it
+    /// is known, from odometry.
+    const ScanPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving,
+                                    const Transformation2D &expected) {
+        fixedSegments_.clear();
+        for (const EdgeRaw2D &edge : extract(fixed))
+            fixedSegments_.push_back(edge.segment);
+        const std::vector<EdgeRaw2D> &edges = extract(moving);
+        expected_ = {expected, settings.deviationXY, settings.deviationAlpha};
+        refine.start(fixed, moving);
+
+        find_.settings = settings.lines;
+        const Match &lines = find_(fixedSegments_, edges, expected);
+        match_ = ScanPairMatch();
+        match_.linesSuffice = lines.accepted && lines.reliability >= settings.lineReliability;
+        match_.byLines = lines.accepted ? lines.pose : expected;
+        take(refine(match_.byLines, expected_));
+        if (!isGood())
+            searchWidely(edges, lines.pose);
+        match_.accepted = isAcceptable();
+        return match_;
+    }
+
+private:
+    void searchWidely(const std::vector<EdgeRaw2D> &edges, const Transformation2D &byLines) {
+        const double gate = settings.wideGate;
+        match_.searchedAgain = true;
+        consider(refine(byLines, expected_, gate));
+        consider(refine(expected_.pose, expected_, gate));
+        consider(refine(Transformation2D(0, 0, expected_.pose.alpha()), expected_, gate)); // wheels that slip
+        find_.settings = settings.wideLines;
+        const Match &lines = find_(fixedSegments_, edges, expected_.pose);
+        consider(refine(lines.pose,
+                        {expected_.pose, settings.wideLines.expectedDeviationXY,
+                         settings.wideLines.expectedDeviationAlpha},
+                        gate));
+    }
+    void take(const Transformation2D &pose) {
+        match_.pose = pose;
+        match_.agreement = refine.agreement(pose);
+        worth_ = match_.agreement.score() - settings.expectationCost * surprise(pose);
+    }
+    void consider(const Transformation2D &pose) {
+        const double before = worth_;
+        const ScanPairMatch kept = match_;
+        take(pose);
+        if (!(worth_ > before)) {
+            match_ = kept;
+            worth_ = before;
+        }
+    }
+    // How far from the expected motion, in standard deviations, squared.
+    double surprise(const Transformation2D &pose) const {
+        const Transformation2D off = expected_.pose.inverse() * pose;
+        const double xy = off.translation().norm() / expected_.deviationXY;
+        const double alpha = off.alpha() / expected_.deviationAlpha;
+        return xy * xy + alpha * alpha;
+    }
+    bool isGood() const {
+        return match_.agreement.explained() >= settings.enoughExplained &&
+               match_.agreement.contradicted() <= settings.fewContradicted;
+    }
+    bool isAcceptable() const {
+        const double surprising = settings.surprising * settings.surprising;
+        return match_.agreement.explainedPoints() >= settings.minPoints &&
+               match_.agreement.explained() >= settings.minExplained &&
+               match_.agreement.contradicted() <= settings.maxContradicted &&
+               match_.agreement.reliability() >= settings.minReliability &&
+               (isGood() || surprise(match_.pose) <= surprising);
+    }
+
+    CorrespondenceFinder find_;
+    Expectation expected_;
+    std::vector<LineSegment2D<double>> fixedSegments_;
+    ScanPairMatch match_;
+    double worth_ = 0;
+};
+
+} // namespace vectorlib

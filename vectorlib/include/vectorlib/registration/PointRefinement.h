@@ -1,0 +1,133 @@
+#pragma once
+
+#include "vectorlib/correspondence/ScanIndex.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/registration/PointAgreement.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace vectorlib {
+
+/// Where a scan is expected, and how far that may be wrong: standard deviations.
+struct Expectation {
+    Transformation2D pose;
+    double deviationXY = 0.15;    ///< metres
+    double deviationAlpha = 0.10; ///< radians
+};
+
+struct PointRefinementSettings {
+    double gate = 0.15;       ///< points farther apart are no pairs; metres
+    double gateFactor = 0.6;  ///< how fast a wider first gate narrows to it
+    double scale = 0.25;      ///< a residual of this share of the gate weighs a quarter
+    double deviation = 0.14;  ///< of one point; weighs points against the expected pose; metres
+    int sample = 3;           ///< every n-th point takes part until the steps are small
+    double smallStep = 0.01;  ///< from here on all points do; metres, and radians
+    double lastStep = 0.0015; ///< with a smaller one the search ends; metres, and radians
+    int iterations = 15;      ///< most steps
+};
+
+/// Brings the points of a scan onto those of another: Gauss-Newton steps on the distances of the points of
+/// each from the walls through the nearest points of the other, with robust weights. Both ways, so that
+/// neither scan's noisy walls prevail. Where the points say nothing, as along a corridor, the expected pose
+/// decides. Keeps its buffers between calls.
+class PointRefinement {
+public:
+    PointRefinementSettings settings;
+
+    /// Takes two scans, each in its sensor's frame and counter-clockwise; metres.
+    void start(PointSpan<float> fixed, PointSpan<float> moving) {
+        fixed_.build(fixed);
+        moving_.build(moving);
+    }
+    /// The transformation of the moving scan onto the fixed one, from one nearby. A first gate wider than
+    /// that of the settings reaches farther, and costs more.
+    Transformation2D operator()(Transformation2D pose, const Expectation &expected, double firstGate = 0) {
+        int sample = settings.sample;
+        double gate = std::max(firstGate, settings.gate);
+        for (int i = 0; i < settings.iterations; ++i) {
+            const bool narrow = gate <= settings.gate;
+            pairUp(pose, gate, sample);
+            const Transformation2D next = improved(pose, gate, expected);
+            const Transformation2D step = pose.inverse() * next;
+            const double size = std::max(step.translation().norm(), std::abs(step.sin()));
+            pose = next;
+            if (narrow && sample == 1 && size < settings.lastStep)
+                break;
+            if (narrow && size < settings.smallStep)
+                sample = 1;
+            gate = std::max(settings.gate, gate * settings.gateFactor);
+        }
+        return pose;
+    }
+    /// How well the scans agree when the moving one lies at the pose; by a sample of their points.
+    PointAgreement agreement(const Transformation2D &pose) const {
+        PointAgreement a;
+        a.add(moving_, pose, fixed_, settings.gate, settings.sample);
+        a.add(fixed_, pose.inverse(), moving_, settings.gate, settings.sample);
+        return a;
+    }
+
+private:
+    struct Pair {
+        Vector2D<float> moving; // its own frame
+        Vector2D<float> normal; // of the wall, fixed frame
+        float offset;           // of the wall along the normal
+    };
+
+    void pairUp(const Transformation2D &pose, double gate, int sample) {
+        const bool wide = gate > settings.gate;
+        const float squaredGate = float(gate * gate);
+        const auto partner = [&](const ScanIndex &scan, Vector2D<float> p) {
+            return wide ? scan.nearest(p, squaredGate) : scan.nearestAhead(p, squaredGate);
+        };
+        const FloatMotion forth(pose), back(pose.inverse());
+        pairs_.clear();
+        for (int i = 0; i < moving_.size(); i += sample)
+            if (const int k = partner(fixed_, forth * moving_.point(i)); k >= 0)
+                pairs_.push_back({moving_.point(i), fixed_.normal(k), fixed_.normal(k).dot(fixed_.point(k))});
+        for (int i = 0; i < fixed_.size(); i += sample)
+            if (const int k = partner(moving_, back * fixed_.point(i)); k >= 0) {
+                const Vector2D<float> normal = forth.rotate(moving_.normal(k));
+                pairs_.push_back({moving_.point(k), normal, normal.dot(fixed_.point(i))});
+            }
+    }
+    // The pose after one step; the same pose when the equations are singular. The unknowns are the
+    // translation and the rotation about the moving sensor, where both are least correlated.
+    Transformation2D improved(const Transformation2D &pose, double gate, const Expectation &expected) const {
+        const FloatMotion motion(pose);
+        const float inverse = float(1 / (settings.scale * settings.scale * gate * gate));
+        float xx = 0, xy = 0, xa = 0, yy = 0, ya = 0, aa = 0, x = 0, y = 0, a = 0;
+        for (const Pair &pair : pairs_) {
+            const Vector2D<float> n = pair.normal, turned = motion.rotate(pair.moving);
+            const float r = n.dot(turned + motion.translation) - pair.offset, u = turned.cross(n);
+            const float q = 1 / (1 + r * r * inverse), w = q * q; // Geman and McClure
+            xx += w * n.x * n.x;
+            xy += w * n.x * n.y;
+            xa += w * n.x * u;
+            yy += w * n.y * n.y;
+            ya += w * n.y * u;
+            aa += w * u * u;
+            x += w * n.x * r;
+            y += w * n.y * r;
+            a += w * u * r;
+        }
+        const double kXY = std::pow(settings.deviation / expected.deviationXY, 2);
+        const double kAlpha = std::pow(settings.deviation / expected.deviationAlpha, 2);
+        const Vector2D<double> off = pose.translation() - expected.pose.translation();
+        const double turn = (expected.pose.inverse() * pose).alpha();
+        Eigen::Matrix3d h;
+        h << xx + kXY, xy, xa, xy, yy + kXY, ya, xa, ya, aa + kAlpha;
+        const Eigen::Vector3d g(x + kXY * off.x, y + kXY * off.y, a + kAlpha * turn);
+        const Eigen::LDLT<Eigen::Matrix3d> ldlt(h);
+        const Eigen::Vector3d d = ldlt.solve(-g);
+        if (ldlt.info() != Eigen::Success || !d.allFinite())
+            return pose;
+        return {pose.x() + d(0), pose.y() + d(1), pose.alpha() + d(2)};
+    }
+
+    ScanIndex fixed_, moving_;
+    std::vector<Pair> pairs_;
+};
+
+} // namespace vectorlib
