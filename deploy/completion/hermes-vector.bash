@@ -13,23 +13,27 @@ _hermes_vector() {
         esac
     done
     if [ -z "$command" ]; then
-        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register observe map ring --help --version" -- "$word")
+        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register observe map ring experiment report --help --version" -- "$word")
         return
     fi
     case $previous in
     --algorithm) mapfile -t COMPREPLY < <(compgen -W "tls ftls aftls inc dp rw sam" -- "$word") && return ;;
     --rotation) mapfile -t COMPREPLY < <(compgen -W "mitsuta wahba" -- "$word") && return ;;
     --weights) mapfile -t COMPREPLY < <(compgen -W "none length column" -- "$word") && return ;;
+    --format) mapfile -t COMPREPLY < <(compgen -W "json csv svg latex" -- "$word") && return ;;
     --odometry) mapfile -t COMPREPLY < <(compgen -W "use ignore" -- "$word") && return ;;
     --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --scan | \
-        --noise | --fov | --outliers | --seed | --every | --laser | --turn) return ;;
+        --noise | --fov | --outliers | --seed | --every | --laser | --turn | --case | --rays | --max-dx | --max-dy | \
+        --max-dalpha | --reliability | --ambiguity | --discrepancy | --runs | --max-points) return ;;
     esac
     if [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$(hermes-vector "$command" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u)" -- "$word")
         return
     fi
     compopt -o filenames 2>/dev/null
-    mapfile -t COMPREPLY < <(compgen -f -- "$word")
+    local worlds=""
+    [ "$command" = report ] && worlds="pillars quadratic"
+    mapfile -t COMPREPLY < <(compgen -f -W "$worlds" -- "$word")
 }
 
 complete -F _hermes_vector hermes-vector

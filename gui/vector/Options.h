@@ -54,6 +54,7 @@ void addRegisterCommand(CLI::App &app);
 void addObserveCommand(CLI::App &app);
 void addExperimentCommand(CLI::App &app);
 void addMapCommand(CLI::App &app);
+void addReportCommand(CLI::App &app);
 void addRingCommand(CLI::App &app);
 
 } // namespace hermes

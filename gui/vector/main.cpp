@@ -24,6 +24,7 @@ int main(int argc, char **argv) {
     hermes::addMapCommand(app);
     hermes::addRingCommand(app);
     hermes::addExperimentCommand(app);
+    hermes::addReportCommand(app);
     hermes::removeTemporariesOnSignal();
     try {
         app.parse(argc, argv);

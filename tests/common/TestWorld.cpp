@@ -20,6 +20,16 @@ double distance(const World::Edge &e, double x, double y) {
     return std::hypot(x - e.x1 - along * dx, y - e.y1 - along * dy);
 }
 
+/// A world of deploy/worlds.
+std::optional<World> shipped(const QString &name) {
+    std::string error;
+    const QString path = qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/" + name + ".json";
+    const auto world = readWorld(path.toStdString(), error);
+    if (!world)
+        qWarning("%s", error.c_str());
+    return world;
+}
+
 } // namespace
 
 class TestWorld : public QObject {
@@ -31,7 +41,9 @@ private Q_SLOTS:
     void refusesBadFiles();
     void keepsExistingFiles();
     void saysWhichFileIsMissing();
-    void pillarsCanBeDriven();
+    void worldsCanBeDriven_data();
+    void worldsCanBeDriven();
+    void stairsGrowQuadratically();
 };
 
 void TestWorld::readsWhatItWrote() {
@@ -114,13 +126,25 @@ void TestWorld::saysWhichFileIsMissing() {
     QVERIFY(!readWorld("/", error).has_value());
 }
 
-void TestWorld::pillarsCanBeDriven() {
-    std::string error;
-    const std::string source = qEnvironmentVariable("HERMES_SOURCE").toStdString();
-    const auto world = readWorld(source + "/deploy/worlds/pillars.json", error);
-    QVERIFY2(world.has_value(), error.c_str());
-    QCOMPARE(world->edges.size(), std::size_t(4 + 8 * 4));
-    QCOMPARE(world->poses.size(), std::size_t(39));
+void TestWorld::worldsCanBeDriven_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<int>("edges");
+    QTest::addColumn<int>("poses");
+    QTest::addColumn<double>("step");
+    QTest::newRow("pillars") << "pillars" << 4 + 8 * 4 << 39 << 0.67;
+    QTest::newRow("quadratic") << "quadratic" << 3 + 12 + 11 << 25 << 0.56;
+}
+
+void TestWorld::worldsCanBeDriven() {
+    QFETCH(QString, name);
+    QFETCH(int, edges);
+    QFETCH(int, poses);
+    QFETCH(double, step);
+    const auto world = shipped(name);
+    QVERIFY(world.has_value());
+    QCOMPARE(QString::fromStdString(world->name), name);
+    QCOMPARE(int(world->edges.size()), edges);
+    QCOMPARE(int(world->poses.size()), poses);
     for (std::size_t i = 0; i < world->poses.size(); ++i) {
         const World::Pose &pose = world->poses[i];
         for (const World::Edge &edge : world->edges)
@@ -128,13 +152,26 @@ void TestWorld::pillarsCanBeDriven() {
         if (i == 0)
             continue;
         const World::Pose &last = world->poses[i - 1];
-        const double step = std::hypot(pose.x - last.x, pose.y - last.y);
-        QVERIFY(step > 0.6 && step < 0.7);
-        QVERIFY(std::abs(std::remainder(pose.theta - last.theta, 2 * M_PI)) < 0.5);
+        const double moved = std::hypot(pose.x - last.x, pose.y - last.y);
+        QVERIFY(moved > step - 0.07 && moved < step + 0.03);
+        QVERIFY(std::abs(std::remainder(pose.theta - last.theta, 2 * M_PI)) < 0.6);
         const double course = std::atan2(pose.y - last.y, pose.x - last.x);
         QVERIFY(std::abs(std::remainder(pose.theta - course, 2 * M_PI)) <
-                0.3); // the heading follows the path
+                0.35); // the heading follows the path
     }
+}
+
+void TestWorld::stairsGrowQuadratically() {
+    const auto world = shipped("quadratic");
+    QVERIFY(world.has_value());
+    int treads = 0;
+    for (const World::Edge &edge : world->edges)
+        if (edge.x2 < edge.x1) { // with free space below
+            QCOMPARE(edge.y1, edge.y2);
+            QVERIFY(std::abs(edge.y1 - (6 - 0.01 * treads * treads)) < 1e-9);
+            ++treads;
+        }
+    QCOMPARE(treads, 12);
 }
 
 QTEST_APPLESS_MAIN(TestWorld)

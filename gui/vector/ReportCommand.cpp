@@ -1,0 +1,135 @@
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+#include "gui/vector/Options.h"
+#include "gui/vector/Progress.h"
+#include "gui/vector/report/Worlds.h"
+
+namespace hermes {
+
+namespace {
+
+constexpr const char *formats[] = {"json", "csv", "svg", "latex"};
+
+struct ReportCommand {
+    std::string in;
+    std::optional<std::size_t> number;
+    bool overall = false;
+    std::string format;
+    std::optional<int> rays;
+    std::optional<double> noise, sigma, maxDx, maxDy, maxDalpha, reliability, ambiguity, kAlpha, kXy,
+        discrepancy;
+    std::uint64_t seed = 1;
+    OutputOptions output;
+
+    void run() const {
+        if (overall == number.has_value())
+            throw CLI::ValidationError("--case", "expected either --case or --overall");
+        const std::string as = chosenFormat();
+        OutputSet files(output.force);
+        std::ostream &out = files.open(output.out);
+        const ReportWorld world = findWorld(in);
+        const ReportSettings settings = chosenSettings(world.world.name);
+        if (overall) {
+            Progress progress("case");
+            write(out, as, world, settings,
+                  reportOverall(world.world, settings,
+                                [&](std::size_t done, std::size_t all) { progress.update(done, all); }));
+        } else {
+            const std::size_t cases = world.world.poses.size() - 1;
+            if (*number >= cases)
+                throw CLI::ValidationError("--case", "found " + std::to_string(*number) + ", expected 0 to " +
+                                                         std::to_string(cases - 1) + ": the world has " +
+                                                         std::to_string(cases + 1) + " poses");
+            write(out, as, world, settings, reportCase(world.world, *number, settings));
+        }
+        files.commit();
+    }
+
+    std::string chosenFormat() const {
+        if (!format.empty())
+            return format;
+        for (const char *name : formats)
+            if (hasExtension(output.out, std::string(".") + name))
+                return name;
+        return hasExtension(output.out, ".tex") ? "latex" : "json";
+    }
+    ReportSettings chosenSettings(const std::string &name) const {
+        ReportSettings s = settingsFor(name);
+        s.scan.seed = seed;
+        s.scan.rays = rays.value_or(s.scan.rays);
+        s.scan.noise = noise.value_or(s.scan.noise);
+        s.scan.sigma = sigma.value_or(s.scan.sigma);
+        s.search.permitted.dx = maxDx.value_or(s.search.permitted.dx);
+        s.search.permitted.dy = maxDy.value_or(s.search.permitted.dy);
+        s.search.permitted.dalpha = maxDalpha.value_or(s.search.permitted.dalpha);
+        s.search.reliability = reliability.value_or(s.search.reliability);
+        s.search.ambiguity = ambiguity.value_or(s.search.ambiguity);
+        s.search.stiffness.alpha = kAlpha.value_or(s.search.stiffness.alpha);
+        s.search.stiffness.xy = kXy.value_or(s.search.stiffness.xy);
+        s.search.discrepancy = discrepancy.value_or(s.search.discrepancy);
+        return s;
+    }
+    template <typename Report>
+    static void write(std::ostream &out, const std::string &as, const ReportWorld &world,
+                      const ReportSettings &settings, const Report &report) {
+        if (as == "csv")
+            writeCsv(out, report);
+        else if (as == "svg")
+            writeSvg(out, world, settings, report);
+        else if (as == "latex")
+            writeLatex(out, world, settings, report);
+        else
+            writeJson(out, world, settings, report);
+    }
+};
+
+} // namespace
+
+void addReportCommand(CLI::App &app) {
+    auto command = std::make_shared<ReportCommand>();
+    CLI::App *sub = app.add_subcommand(
+        "report", "Register consecutive scans of a world and tell how well that went (thesis appendices)");
+    sub->add_option("WORLD", command->in, "World: JSON with edges and poses, or pillars or quadratic")
+        ->required();
+    sub->add_option("--case", command->number, "Scans N and N + 1 with all solutions")->type_name("N");
+    sub->add_flag("--overall", command->overall, "All consecutive scans with their accepted solutions");
+    sub->add_option("--format", command->format,
+                    "json, csv, svg or latex; else by the extension of --out, else json")
+        ->check(CLI::IsMember({"json", "csv", "svg", "latex"}))
+        ->type_name("KIND");
+    const auto number = [sub](const char *name, std::optional<double> &value, const char *what,
+                              const char *unit, const CLI::Validator &valid, const char *group) {
+        sub->add_option(name, value, what)->check(valid)->type_name(unit)->group(group);
+    };
+    constexpr const char *scans = "Scans", *search = "Search";
+    sub->add_option("--rays", command->rays, "Rays of a scan (2000)")
+        ->check(between(3, 1e6))
+        ->type_name("N")
+        ->group(scans);
+    number("--noise", command->noise, "Standard deviation of the range, metres (0.01)", "M", between(0, 1e3),
+           scans);
+    number("--sigma", command->sigma, "Largest error of the vectorization, metres (0.03)", "M", aboveZero(),
+           scans);
+    sub->add_option("--seed", command->seed, "The same seed gives the same scans")
+        ->type_name("I")
+        ->capture_default_str()
+        ->group(scans);
+    number("--max-dx", command->maxDx, "Permitted motion, metres (1.2)", "M", between(0, 1e6), search);
+    number("--max-dy", command->maxDy, "Permitted motion, metres (1.2)", "M", between(0, 1e6), search);
+    number("--max-dalpha", command->maxDalpha, "Permitted rotation, radians (1.26)", "RAD",
+           between(0, vectorlib::pi), search);
+    number("--reliability", command->reliability, "Least reliability (0.1)", "R", between(0, 1), search);
+    number("--ambiguity", command->ambiguity, "Most ambiguity of a pair, m^2 (0.0025)", "A", between(0, 1e6),
+           search);
+    number("--k-alpha", command->kAlpha, "Weight of the rotation in the ambiguity, m^2/rad^2 (0.1)", "K",
+           between(0, 1e12), search);
+    number("--k-xy", command->kXy, "Weight of the translation in the ambiguity (1)", "K", between(0, 1e12),
+           search);
+    number("--discrepancy", command->discrepancy, "Most discrepancy, m^2 (0.2; quadratic 0.5)", "A",
+           between(0, 1e9), search);
+    command->output.addTo(*sub, false);
+    sub->footer(example("hermes-vector report pillars --case 0 --out case.tex"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes

@@ -1,0 +1,67 @@
+#include "gui/vector/report/Worlds.h"
+
+#include "common/world/WorldFile.h"
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+
+#include <filesystem>
+#include <map>
+
+namespace hermes {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct KnownWorld {
+    std::string description;
+    double discrepancy; ///< threshold of the appendices; m^2
+};
+
+const std::map<std::string, KnownWorld> known = {{"pillars",
+                                                  {"Four walls and eight pillars. The robot drives behind "
+                                                   "the pillars, which hide much of the walls: few edges "
+                                                   "are seen whole, and the pillars look alike.",
+                                                   0.2}},
+                                                 {"quadratic",
+                                                  {"Three walls and a fourth of stairs whose depth grows "
+                                                   "quadratically. The first steps are lower than the noise, "
+                                                   "the last ones are easily told apart.",
+                                                   0.5}}};
+
+/// Where the worlds are that came with this program; empty when that cannot be told.
+fs::path installedWorlds() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    return error ? fs::path() : program.parent_path().parent_path() / "share" / "hermes" / "worlds";
+}
+
+} // namespace
+
+ReportWorld findWorld(const std::string &name) {
+    fs::path path = name;
+    std::error_code error;
+    if (!fs::exists(path, error) && !path.has_parent_path() && name != "-")
+        if (const fs::path installed = installedWorlds() / (name + ".json"); fs::exists(installed, error))
+            path = installed;
+    Input input(path.string());
+    std::string fault;
+    std::optional<World> world = parseWorld(input.readAll(), input.name(), fault);
+    if (!world)
+        throw Failure(fault);
+    if (world->poses.size() < 2)
+        throw Failure(input.name() + ": found " + std::to_string(world->poses.size()) +
+                      " poses, a report needs two or more");
+    const auto found = known.find(world->name);
+    return {std::move(*world),
+            found != known.end() ? found->second.description : "A world of line segments."};
+}
+
+ReportSettings settingsFor(const std::string &name) {
+    ReportSettings settings;
+    if (const auto found = known.find(name); found != known.end())
+        settings.search.discrepancy = found->second.discrepancy;
+    return settings;
+}
+
+} // namespace hermes

@@ -1,0 +1,266 @@
+#include "gui/vector/report/ScanPair.h"
+#include "tests/gui/VectorProgram.h"
+#include "tests/support/RandomRoom.h"
+
+#include <QJsonArray>
+#include <QStandardPaths>
+#include <QXmlStreamReader>
+
+using namespace hermes;
+
+namespace {
+
+QByteArray world(const char *name, const char *poses) {
+    return QByteArray("{\"name\": \"") + name +
+           "\", \"edges\": [[-3,-2,3,-2],[3,-2,3,1],[3,1,2,1],[2,1,2,2],[2,2,-3,2],[-3,2,-3,-2]], \"poses\": "
+           "[" +
+           poses + "]}";
+}
+QJsonObject overall(const char *name, int seed) {
+    const Result r = run({"report", name, "--overall", "--seed", QString::number(seed)});
+    return r.status == 0 ? json(r.out) : QJsonObject();
+}
+
+} // namespace
+
+/// hermes-vector report, and by its means the correspondence search on scans with noise (thesis 7.4.3).
+class TestReport : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void pillarsAreRecognised_data();
+    void pillarsAreRecognised();
+    void quadraticIsRecognised_data();
+    void quadraticIsRecognised();
+    void randomRoomsAreRecognised();
+    void caseShowsItsSolutions();
+    void sameSeedGivesTheSameReport();
+    void tablesHaveTheirRows();
+    void picturesAreWellFormed();
+    void documentsCompile();
+    void formatFollowsTheExtension();
+    void settingsReachTheSearch();
+    void wrongUse_data();
+    void wrongUse();
+    void poseThatSeesNothingIsReported();
+};
+
+void TestReport::pillarsAreRecognised_data() {
+    QTest::addColumn<int>("seed");
+    for (int seed = 1; seed <= 5; ++seed)
+        QTest::addRow("seed %d", seed) << seed;
+}
+
+// Published: 32 of 38, and several wrong ones accepted.
+void TestReport::pillarsAreRecognised() {
+    QFETCH(int, seed);
+    const QJsonObject summary = overall("pillars", seed)["summary"].toObject();
+    QCOMPARE(summary["cases"].toInt(), 38);
+    QVERIFY(summary["true_first"].toInt() >= 37);
+    QVERIFY(summary["true_accepted"].toInt() >= 37);
+    QCOMPARE(summary["wrong_accepted"].toInt(-1), 0);
+}
+
+void TestReport::quadraticIsRecognised_data() {
+    pillarsAreRecognised_data();
+}
+
+// Published: a reasonable transformation in all 24, and 80 false positives of the first-ranked solutions.
+void TestReport::quadraticIsRecognised() {
+    QFETCH(int, seed);
+    const QJsonObject summary = overall("quadratic", seed)["summary"].toObject();
+    QCOMPARE(summary["cases"].toInt(), 24);
+    QCOMPARE(summary["true_first"].toInt(), 24);
+    QCOMPARE(summary["true_accepted"].toInt(), 24);
+    QCOMPARE(summary["wrong_accepted"].toInt(-1), 0);
+    QVERIFY(summary["false_positives_of_first"].toInt() <= 40);
+}
+
+void TestReport::randomRoomsAreRecognised() {
+    const unsigned seed = std::random_device()();
+    qInfo("seeds from %u", seed);
+    vectorlib::CorrespondenceSearch search;
+    int first = 0, wrong = 0;
+    for (unsigned k = 0; k < 200; ++k) {
+        const RandomRoom room(seed + k);
+        QVERIFY(room.edges.size() >= 5 && room.edges.size() <= 30);
+        ScanSettings settings;
+        settings.seed = seed + k;
+        const ScanPair scans = scanPair(room.edges, room.first, room.second, settings);
+        const vectorlib::SearchResult &result = search(scans.fixed.segments, scans.moving.segments);
+        first += !result.solutions.empty() && scans.isTrue(result.solutions[0]);
+        for (const vectorlib::Solution &s : result.solutions)
+            wrong += s.accepted && !scans.isTrue(s);
+    }
+    qInfo("true solution first in %d of 200, wrong ones accepted: %d", first, wrong);
+    QVERIFY(first >= 196);
+    QVERIFY(wrong <= 2);
+}
+
+void TestReport::caseShowsItsSolutions() {
+    const QJsonObject report = json(run({"report", "pillars", "--case", "25"}).out);
+    QCOMPARE(report["environment"].toString(), QString("pillars"));
+    QCOMPARE(report["case"].toInt(), 25);
+    const QJsonArray solutions = report["solutions"].toArray();
+    QVERIFY(solutions.size() > 1);
+    const QJsonObject best = solutions[0].toObject(), truth = report["truth"].toObject();
+    QVERIFY(best["accepted"].toBool() && best["true"].toBool());
+    for (const char *axis : {"x", "y", "alpha"})
+        QVERIFY(std::abs(best["pose"].toObject()[axis].toDouble() - truth[axis].toDouble()) < 0.02);
+    double last = 2;
+    for (const QJsonValue &value : solutions) {
+        const QJsonObject s = value.toObject();
+        const int chosen = s["true_positive"].toInt() + s["false_positive"].toInt();
+        QCOMPARE(chosen, s["pairs"].toArray().size());
+        QCOMPARE(chosen + s["true_negative"].toInt() + s["false_negative"].toInt(),
+                 report["search"].toObject()["potential_pairs"].toInt());
+        QVERIFY(s["score"].toDouble() <= last);
+        last = s["score"].toDouble();
+    }
+}
+
+void TestReport::sameSeedGivesTheSameReport() {
+    const QStringList arguments = {"report", "quadratic", "--case", "3", "--seed", "9"};
+    QCOMPARE(run(arguments).out, run(arguments).out);
+    QVERIFY(run(arguments).out != run({"report", "quadratic", "--case", "3", "--seed", "10"}).out);
+}
+
+void TestReport::tablesHaveTheirRows() {
+    const auto rows = [](const QStringList &what) {
+        return run(QStringList({"report", "pillars", "--format", "csv"}) + what).out.trimmed().split('\n');
+    };
+    const auto oneCase = rows({"--case", "25"}), all = rows({"--overall"});
+    QVERIFY(oneCase[0].startsWith("solution,x,y,alpha,reliability,ambiguity_m2,discrepancy_m2,"));
+    QVERIFY(oneCase.size() > 2);
+    QVERIFY(all[0].startsWith("from,to,solution,x,y,alpha,"));
+    QCOMPARE(all.size(), 39);
+    const auto none = rows({"--overall", "--max-dx", "0.1"}); // the true motion is not permitted
+    QVERIFY(none[1].startsWith("0,1,,"));
+    for (const auto &table : {oneCase, all, none})
+        for (const QByteArray &row : table)
+            QCOMPARE(row.count(','), table[0].count(','));
+}
+
+void TestReport::picturesAreWellFormed() {
+    QTemporaryDir folder;
+    const QString file = folder.filePath("odd.json");
+    write(file, world("a <b> & c", "[0,0,0],[0.3,0.1,0.2]"));
+    for (const QStringList &what :
+         {QStringList{file, "--case", "0"}, QStringList{file, "--overall"},
+          QStringList{"pillars", "--case", "25"}, QStringList{"quadratic", "--overall"}}) {
+        const Result r = run(QStringList{"report", "--format", "svg"} + what);
+        QCOMPARE(r.status, 0);
+        QXmlStreamReader xml(r.out);
+        int paths = 0;
+        while (!xml.atEnd())
+            paths += xml.readNext() == QXmlStreamReader::StartElement && xml.name() == QLatin1String("path");
+        QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
+        QVERIFY(paths > 10);
+        QVERIFY(!r.out.contains("nan") && !r.out.contains("inf"));
+    }
+}
+
+void TestReport::documentsCompile() {
+    QTemporaryDir folder;
+    const QString file = folder.filePath("odd.json");
+    write(file, world("50% of_a {b} #1 & ~^$", "[0,0,0],[0.3,0.1,0.2]"));
+    const QList<QStringList> reports = {
+        {"pillars", "--case", "25"}, {"quadratic", "--overall"}, {file, "--case", "0"}, {file, "--overall"}};
+    const QString latex = QStandardPaths::findExecutable("pdflatex");
+    for (int i = 0; i < reports.size(); ++i) {
+        const QString name = folder.filePath(QString("report%1.tex").arg(i));
+        QCOMPARE(run(QStringList{"report", "--out", name} + reports[i]).status, 0);
+        const QByteArray text = contents(name);
+        QVERIFY(text.startsWith("\\documentclass") && text.trimmed().endsWith("\\end{document}"));
+        QVERIFY(text.contains("tikzpicture") && text.contains("Legend"));
+        if (latex.isEmpty())
+            continue;
+        QProcess process;
+        process.setWorkingDirectory(folder.path());
+        process.start(latex, {"-interaction=nonstopmode", "-halt-on-error", name});
+        QVERIFY(process.waitForFinished(60000));
+        const QByteArray log = process.readAllStandardOutput();
+        QVERIFY2(process.exitCode() == 0, log.right(2000).constData());
+        QVERIFY2(!log.contains("Overfull"), log.mid(log.indexOf("Overfull"), 200).constData());
+    }
+    if (latex.isEmpty())
+        QSKIP("pdflatex is not installed: the documents were not compiled");
+}
+
+void TestReport::formatFollowsTheExtension() {
+    QTemporaryDir folder;
+    const QMap<QString, QByteArray> begins = {
+        {"r.json", "{"}, {"r.csv", "from,"}, {"r.svg", "<svg"}, {"r.tex", "\\doc"}};
+    for (const QString &name : begins.keys()) {
+        const QString path = folder.filePath(name);
+        QCOMPARE(run({"report", "quadratic", "--overall", "--out", path}).status, 0);
+        QVERIFY(contents(path).startsWith(begins[name]));
+        QCOMPARE(run({"report", "quadratic", "--overall", "--out", path}).status,
+                 1); // nothing is overwritten
+    }
+}
+
+void TestReport::settingsReachTheSearch() {
+    const auto settings = [](const QStringList &more) {
+        return json(run(QStringList{"report", "quadratic", "--case", "0"} + more).out);
+    };
+    QCOMPARE(settings({})["settings"].toObject()["discrepancy"].toDouble(), 0.5); // of appendix C
+    const QJsonObject other =
+        settings({"--discrepancy", "0.1", "--rays", "700", "--noise", "0.005", "--k-alpha", "0.2"});
+    QCOMPARE(other["settings"].toObject()["discrepancy"].toDouble(), 0.1);
+    QCOMPARE(other["settings"].toObject()["k_alpha"].toDouble(), 0.2);
+    QCOMPARE(other["rays"].toInt(), 700);
+    QVERIFY(settings({"--max-dalpha", "0.001", "--max-dx", "0.1"})["solutions"].toArray().isEmpty() ||
+            !settings({"--max-dalpha", "0.001", "--max-dx", "0.1"})["solutions"]
+                 .toArray()[0]
+                 .toObject()["accepted"]
+                 .toBool());
+}
+
+void TestReport::wrongUse_data() {
+    QTest::addColumn<QStringList>("arguments");
+    QTest::addColumn<int>("status");
+    QTest::addColumn<QByteArray>("message");
+    QTest::newRow("neither") << QStringList{"pillars"} << 2 << QByteArray("--case");
+    QTest::newRow("both") << QStringList{"pillars", "--overall", "--case", "1"} << 2 << QByteArray("--case");
+    QTest::newRow("beyond the poses")
+        << QStringList{"pillars", "--case", "38"} << 2 << QByteArray("expected 0 to 37");
+    QTest::newRow("negative case") << QStringList{"pillars", "--case", "-1"} << 2 << QByteArray("--case");
+    QTest::newRow("format") << QStringList{"pillars", "--overall", "--format", "doc"} << 2
+                            << QByteArray("--format");
+    QTest::newRow("NaN") << QStringList{"pillars", "--overall", "--noise", "nan"} << 2
+                         << QByteArray("--noise");
+    QTest::newRow("no rays") << QStringList{"pillars", "--overall", "--rays", "0"} << 2
+                             << QByteArray("--rays");
+    QTest::newRow("no world") << QStringList{"nowhere", "--overall"} << 1 << QByteArray("nowhere");
+    QTest::newRow("no path") << QStringList{"../pillars", "--overall"} << 1 << QByteArray("../pillars");
+}
+
+void TestReport::wrongUse() {
+    QFETCH(QStringList, arguments);
+    QFETCH(int, status);
+    QFETCH(QByteArray, message);
+    const Result r = run(QStringList("report") + arguments);
+    QCOMPARE(r.status, status);
+    QVERIFY2(r.err.contains(message), r.err);
+    QVERIFY(r.out.isEmpty());
+}
+
+void TestReport::poseThatSeesNothingIsReported() {
+    QTemporaryDir folder;
+    const QString file = folder.filePath("w.json");
+    write(file, world("w", "[0,0,0],[500,0,0]"));
+    const QJsonObject report = json(run({"report", file, "--case", "0", "--rays", "100"}).out);
+    QVERIFY(report["solutions"].toArray().isEmpty());
+    QVERIFY(report["search"].toObject()["outcome"].toString().startsWith("no usable segment in the "));
+    for (const char *format : {"csv", "svg", "latex"})
+        for (const QStringList &what : {QStringList{"--case", "0"}, QStringList{"--overall"}})
+            QCOMPARE(run(QStringList{"report", file, "--rays", "100", "--format", format} + what).status, 0);
+    write(file, world("w", "[0,0,0]"));
+    const Result r = run({"report", file, "--overall"});
+    QCOMPARE(r.status, 1);
+    QVERIFY2(r.err.contains("w.json: found 1 poses"), r.err);
+}
+
+QTEST_GUILESS_MAIN(TestReport)
+#include "TestReport.moc"
