@@ -1,12 +1,17 @@
+#include "common/world/WorldFile.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
+#include "gui/vector/experiment/CriterionExperiment.h"
 #include "gui/vector/experiment/Gnuplot.h"
 #include "gui/vector/experiment/PairsExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
+#include "gui/vector/experiment/RegistrationExperiment.h"
+#include "gui/vector/experiment/RotationExperiment.h"
 #include "gui/vector/experiment/SegmentationExperiment.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
+#include "gui/vector/experiment/WeightingTables.h"
 #include "vectorlib/io/CarmenLog.h"
 
 #include <filesystem>
@@ -18,68 +23,23 @@ namespace hermes {
 
 namespace {
 
-const std::map<std::string, std::string> experiments = {
-    {"segmentation-room", "figure 5.6: a room, by noise and outliers"},
-    {"segmentation-objects", "figure 5.7: the same with small objects"},
-    {"semicircle", "figure 6.7: time by the number of lines"},
-    {"edges", "figure 6.8: four solitary edges"},
-    {"corners", "figure 6.9: one cluster with sharp corners"},
-    {"room", "figure 6.10: a furnished room"},
-    {"polygons", "closed polygons: error by the number of vertices"},
-    {"log", "the scans of --log: error by the number of vertices"},
-    {"pairs", "the motions between scans of --log: error against its corrected poses"}};
-
 struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
     std::string log;
+    std::string worlds = "deploy/worlds";
     ExperimentOptions options;
     PairsOptions pairOptions;
     std::size_t pictures = 0;
     bool force = false;
 
-    void run() {
-        std::error_code error;
-        std::filesystem::create_directories(folder, error);
-        if (error)
-            throw Failure(folder + ": cannot be made: " + error.message());
-        Progress progress("run");
-        options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
-        pairOptions.progress = options.progress;
-        OutputSet files(force);
-        if (name == "segmentation-room")
-            segment(files, furnishedRoom());
-        else if (name == "segmentation-objects")
-            segment(files, roomWithSmallObjects());
-        else if (name == "semicircle")
-            semicircle(files);
-        else if (name == "polygons" || name == "log")
-            quality(files);
-        else if (name == "pairs")
-            pairs(files);
-        else
-            scene(files, name == "edges"     ? solitaryEdges()
-                         : name == "corners" ? sharpCorners()
-                                             : furnishedRoom());
-        files.commit();
-    }
+    void run();
 
-private:
-    std::ostream &open(OutputSet &files, const std::string &suffix) const {
-        return files.open((std::filesystem::path(folder) / (name + suffix)).string());
+    void segmentationRoom(OutputSet &files, std::ostream &csv) const { segment(files, csv, furnishedRoom()); }
+    void segmentationObjects(OutputSet &files, std::ostream &csv) const {
+        segment(files, csv, roomWithSmallObjects());
     }
-    void segment(OutputSet &files, const Scene &scene) const {
-        std::ostream &csv = open(files, ".csv");
-        const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
-        writeCsv(csv, panels);
-        for (const SegmentationPanel &panel : panels)
-            hermes::draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
-                                         std::to_string(std::lround(100 * panel.outlierShare)) +
-                                         "percent.svg"),
-                         scene, panel);
-    }
-    void semicircle(OutputSet &files) const {
-        std::ostream &csv = open(files, ".csv");
+    void semicircle(OutputSet &files, std::ostream &csv) const {
         const std::vector<ResultRow> rows = semicircleExperiment(options);
         writeCsv(csv, rows);
         std::map<double, std::vector<ResultRow>, std::greater<>> bySigma;
@@ -88,20 +48,23 @@ private:
         for (const auto &[sigma, some] : bySigma) {
             std::ostringstream text;
             text << "-sigma" << sigma;
-            draw(files, text.str(), plotsOf("semicircle, sigma " + text.str().substr(6) + " m", some));
+            draw(files, {plotsOf("semicircle, sigma " + text.str().substr(6) + " m", some), {}, {}},
+                 text.str());
         }
     }
-    void quality(OutputSet &files) const {
-        std::ostream &csv = open(files, ".csv");
-        const std::vector<QualityRow> rows =
-            name == "polygons" ? polygonExperiment(options) : logExperiment(readLog().scans, options);
-        writeCsv(csv, rows);
-        draw(files, "", plotsOf(rows));
+    void edges(OutputSet &files, std::ostream &csv) const { scene(files, csv, solitaryEdges()); }
+    void corners(OutputSet &files, std::ostream &csv) const { scene(files, csv, sharpCorners()); }
+    void room(OutputSet &files, std::ostream &csv) const { scene(files, csv, furnishedRoom()); }
+    void polygons(OutputSet &files, std::ostream &csv) const {
+        quality(files, csv, polygonExperiment(options));
+    }
+    void ofLog(OutputSet &files, std::ostream &csv) const {
+        quality(files, csv, logExperiment(readLog().scans, options));
     }
     // The shares go to standard output, too; pictures are of pairs that are not near the reference.
-    void pairs(OutputSet &files) const {
+    void pairs(OutputSet &files, std::ostream &csv) const {
         const vectorlib::CarmenLog read = readLog();
-        std::ostream &csv = open(files, ".csv"), &json = open(files, ".json");
+        std::ostream &json = open(files, ".json");
         const std::vector<PairResult> results = pairsExperiment(read, pairOptions);
         writeCsv(csv, results);
         const std::string summary = summaryOf(results).dump(2) + '\n';
@@ -112,45 +75,192 @@ private:
             if (!pair.isWithin(pair.match.pose, 0.10) && drawn++ < pictures)
                 hermes::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair);
     }
+    void criterion(OutputSet &files, std::ostream &csv) const {
+        const std::vector<Surface> surfaces = criterionSurfaces();
+        writeCsv(csv, surfaces);
+        draw(files, {{}, surfaces, {}});
+    }
+    void criterionTime(OutputSet &files, std::ostream &csv) const {
+        const std::vector<CriterionTime> times = criterionTimes(options);
+        writeCsv(csv, times);
+        draw(files, {plotsOf(times), {}, {}});
+    }
+    void accuracy(OutputSet &files, std::ostream &csv) const {
+        const auto rows = registrationExperiment(world("cutsquare"), {manyPoints, sigmas, 0}, options);
+        writeCsv(csv, rows);
+        draw(files, {accuracyPlots(rows), {}, {}});
+    }
+    void dispersion(OutputSet &files, std::ostream &csv) const {
+        const World square = world("cutsquare"), pillars = world("pillars");
+        const auto rows = registrationExperiment(square, {{100, 300, 1000}, sigmas, 0}, options);
+        const auto hard = registrationExperiment(pillars, {{300}, {0.05}, 0}, options);
+        std::vector<RegistrationRow> all = rows;
+        all.insert(all.end(), hard.begin(), hard.end());
+        writeCsv(csv, all);
+        constexpr double scale = 5; // of the ellipses
+        Figures figures;
+        for (const auto &[panel, points, sigma] : {std::tuple{"a", 100, 0.1},
+                                                   {"b", 300, 0.1},
+                                                   {"c", 1000, 0.1},
+                                                   {"d", 300, 0.03},
+                                                   {"e", 300, 0.01}})
+            figures.plots.push_back(dispersionPlot(square, select(rows, points, sigma, false), panel, scale));
+        figures.plots.push_back(dispersionPlot(pillars, select(hard, 300, 0.05, false), "f", scale));
+        figures.plots.push_back(dispersionPlot(pillars, select(hard, 300, 0.05, true), "f-weighted", scale));
+        draw(files, figures);
+    }
+    void weighting(OutputSet &files, std::ostream &csv) const {
+        std::vector<RegistrationRow> rows;
+        for (const char *place : {"cutsquare", "oblique", "pillars"}) {
+            const auto some = registrationExperiment(world(place), {manyPoints, sigmas, 0}, options);
+            rows.insert(rows.end(), some.begin(), some.end());
+        }
+        writeCsv(csv, rows);
+        const std::vector<WeightingRow> tables = weightingRows(rows);
+        writeCsv(open(files, "-tables.csv"), tables);
+        draw(files, {weightingPlots(rows), {}, weightingTables(tables)});
+    }
+    void reliability(OutputSet &files, std::ostream &csv) const {
+        // Every pose sees two walls that are longer, but noise may cut one of them below it.
+        constexpr double shortest = 2;
+        const World pillars = world("pillars");
+        const auto rows = registrationExperiment(pillars, {{300}, {0.1}, shortest}, options);
+        writeCsv(csv, rows);
+        draw(files, {{reliabilityPlot(pillars, select(rows, 300, 0.1, true))}, {}, {}});
+    }
+    void rotation(OutputSet &files, std::ostream &csv) const {
+        const std::vector<RotationRow> rows = rotationExperiment(options);
+        writeCsv(csv, rows);
+        draw(files, {{plotOf(rows)}, {}, {}});
+    }
+
+private:
+    // Paper 4: 100 ... 3000 points, noise of 1, 3 and 10 cm.
+    const std::vector<int> manyPoints{100, 200, 300, 500, 1000, 2000, 3000};
+    const std::vector<double> sigmas{0.01, 0.03, 0.1};
+
+    std::ostream &open(OutputSet &files, const std::string &suffix) const {
+        return files.open((std::filesystem::path(folder) / (name + suffix)).string());
+    }
+    World world(const std::string &place) const {
+        std::string error;
+        std::optional<World> found =
+            readWorld((std::filesystem::path(worlds) / (place + ".json")).string(), error);
+        if (!found)
+            throw Failure(error + "; --worlds names the folder of the worlds");
+        found->name = place; // whatever it calls itself: the name goes into scripts and documents
+        return *found;
+    }
+    static std::vector<RegistrationRow> select(const std::vector<RegistrationRow> &rows, int points,
+                                               double sigma, bool weighted) {
+        std::vector<RegistrationRow> some;
+        for (const RegistrationRow &row : rows)
+            if (row.points == points && row.sigma == sigma && row.weighted == weighted)
+                some.push_back(row);
+        return some;
+    }
+    void segment(OutputSet &files, std::ostream &csv, const Scene &scene) const {
+        const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
+        writeCsv(csv, panels);
+        for (const SegmentationPanel &panel : panels)
+            hermes::draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
+                                         std::to_string(std::lround(100 * panel.outlierShare)) +
+                                         "percent.svg"),
+                         scene, panel);
+    }
+    void quality(OutputSet &files, std::ostream &csv, const std::vector<QualityRow> &rows) const {
+        writeCsv(csv, rows);
+        draw(files, {plotsOf(rows), {}, {}});
+    }
     vectorlib::CarmenLog readLog() const {
         if (log.empty())
             throw CLI::ValidationError("--log", "the experiment " + name + " needs the name of a CARMEN log");
         Input input(log);
         return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
     }
-    void scene(OutputSet &files, const Scene &scene) const {
-        std::ostream &csv = open(files, ".csv");
+    void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
         const std::vector<ResultRow> rows = sceneExperiment(scene, options);
         writeCsv(csv, rows);
-        draw(files, "", plotsOf(scene.title, rows));
+        draw(files, {plotsOf(scene.title, rows), {}, {}});
     }
-    void draw(OutputSet &files, const std::string &suffix, const std::vector<Plot> &plots) const {
-        writeLatex(open(files, suffix + ".tex"), name, plots);
-        for (const Plot &plot : plots) {
-            std::ostringstream script;
-            writeGnuplot(script, plot);
-            const std::optional<std::string> svg = runGnuplot(script.str());
-            if (!svg) {
-                std::cerr << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX "
-                             "files\n";
-                return;
-            }
-            open(files, suffix + "-" + plot.name + ".svg") << *svg;
-        }
+    void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "") const {
+        writeLatex(open(files, suffix + ".tex"), name, figures);
+        bool drawn = true;
+        for (const Plot &plot : figures.plots)
+            drawn = drawn && draw(files, suffix, plot);
+        for (const Surface &surface : figures.surfaces)
+            drawn = drawn && draw(files, suffix, surface);
+        if (!drawn)
+            std::cerr
+                << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX files\n";
+    }
+    template <typename Figure>
+    bool draw(OutputSet &files, const std::string &suffix, const Figure &figure) const {
+        std::ostringstream script;
+        writeGnuplot(script, figure);
+        const std::optional<std::string> svg = runGnuplot(script.str());
+        if (svg)
+            open(files, suffix + "-" + figure.name + ".svg") << *svg;
+        return svg.has_value();
     }
 };
+
+struct Experiment {
+    const char *name;
+    const char *what;
+    void (ExperimentCommand::*run)(OutputSet &, std::ostream &csv) const;
+};
+
+constexpr Experiment experiments[] = {
+    {"segmentation-room", "figure 5.6: a room, by noise and outliers", &ExperimentCommand::segmentationRoom},
+    {"segmentation-objects", "figure 5.7: the same with small objects",
+     &ExperimentCommand::segmentationObjects},
+    {"semicircle", "figure 6.7: time by the number of lines", &ExperimentCommand::semicircle},
+    {"edges", "figure 6.8: four solitary edges", &ExperimentCommand::edges},
+    {"corners", "figure 6.9: one cluster with sharp corners", &ExperimentCommand::corners},
+    {"room", "figure 6.10: a furnished room", &ExperimentCommand::room},
+    {"polygons", "closed polygons: error by the number of vertices", &ExperimentCommand::polygons},
+    {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog},
+    {"pairs", "the motions between scans of --log: error against its corrected poses",
+     &ExperimentCommand::pairs},
+    {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion},
+    {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
+     &ExperimentCommand::criterionTime},
+    {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy},
+    {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion},
+    {"weighting", "paper tables 1 and 2: what weights gain, what ambiguity tells",
+     &ExperimentCommand::weighting},
+    {"reliability", "paper figure 9: reliability at every pose", &ExperimentCommand::reliability},
+    {"rotation", "paper figure 10: Mitsuta's and Wahba's mean rotation", &ExperimentCommand::rotation}};
+
+void ExperimentCommand::run() {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error)
+        throw Failure(folder + ": cannot be made: " + error.message());
+    Progress progress("run");
+    options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
+    pairOptions.progress = options.progress;
+    OutputSet files(force);
+    std::ostream &csv = open(files, ".csv"); // first: that it exists is told before the work is done
+    for (const Experiment &experiment : experiments)
+        if (name == experiment.name)
+            (this->*experiment.run)(files, csv);
+    files.commit();
+}
 
 } // namespace
 
 void addExperimentCommand(CLI::App &app) {
     auto command = std::make_shared<ExperimentCommand>();
-    CLI::App *sub =
-        app.add_subcommand("experiment", "Regenerate an experiment of the thesis as CSV, SVG and LaTeX");
+    CLI::App *sub = app.add_subcommand(
+        "experiment",
+        "Regenerate an experiment of the thesis or of the registration paper as CSV, SVG and LaTeX");
     std::string list = "Which one:";
     std::vector<std::string> names;
-    for (const auto &[name, what] : experiments) {
-        names.push_back(name);
-        list += "\n  " + name + ": " + what;
+    for (const Experiment &e : experiments) {
+        names.emplace_back(e.name);
+        list += std::string("\n  ") + e.name + ": " + e.what;
     }
     sub->add_option("NAME", command->name, list)->required()->check(CLI::IsMember(names));
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
@@ -170,7 +280,10 @@ void addExperimentCommand(CLI::App &app) {
         ->check(between(0, 10000))
         ->type_name("N")
         ->capture_default_str();
-    sub->add_option("--runs", command->options.runs, "Scans for each number of points")
+    sub->add_option("--worlds", command->worlds, "Folder of cutsquare.json, oblique.json and pillars.json")
+        ->type_name("FOLDER")
+        ->capture_default_str();
+    sub->add_option("--runs", command->options.runs, "Scans for each number of points (and each pose)")
         ->check(between(1, 10000))
         ->type_name("N")
         ->capture_default_str();

@@ -51,6 +51,7 @@ std::string example(const std::string &text);
 void addSegmentCommand(CLI::App &app);
 void addVectorizeCommand(CLI::App &app);
 void addRegisterCommand(CLI::App &app);
+void addSimilarityCommand(CLI::App &app);
 void addObserveCommand(CLI::App &app);
 void addExperimentCommand(CLI::App &app);
 void addMapCommand(CLI::App &app);

@@ -1,5 +1,6 @@
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
+#include "gui/vector/NearFrames.h"
 #include "gui/vector/Options.h"
 #include "vectorlib/io/CsvPairs.h"
 #include "vectorlib/io/Svg.h"
@@ -13,22 +14,8 @@ namespace hermes {
 
 namespace {
 
-using Point = vectorlib::Vector2D<double>;
 using Segment = vectorlib::LineSegment2D<double>;
 using vectorlib::SegmentPair;
-
-/// The frame in which one of the two sets is registered: its own, or, where the segments lie so far from its
-/// origin that an error of rotation would turn into one of translation (erratum 13), one with the origin amid
-/// them.
-Point originNear(const std::vector<SegmentPair> &pairs, Segment SegmentPair::*set) {
-    Point middle;
-    for (const SegmentPair &p : pairs)
-        middle += (p.*set).middle() / static_cast<double>(pairs.size());
-    double extent = 0;
-    for (const SegmentPair &p : pairs)
-        extent = std::max({extent, ((p.*set).begin() - middle).norm(), ((p.*set).end() - middle).norm()});
-    return middle.norm() > 10 * extent ? middle : Point();
-}
 
 struct RegisterCommand {
     std::string in;
@@ -50,13 +37,14 @@ struct RegisterCommand {
         registration.rotation =
             rotation == "wahba" ? vectorlib::Rotation::Wahba : vectorlib::Rotation::Mitsuta;
         registration.stiffness = stiffness;
-        const Point fixedOrigin = originNear(table.pairs, &SegmentPair::fixed);
-        const Point movingOrigin = originNear(table.pairs, &SegmentPair::moving);
-        for (const SegmentPair &p : table.pairs)
-            registration.add(shifted(p.fixed, fixedOrigin), shifted(p.moving, movingOrigin), weightOf(p));
-        const vectorlib::Transformation2D t =
-            vectorlib::Transformation2D(fixedOrigin.x, fixedOrigin.y, 0) * registration.transformation() *
-            vectorlib::Transformation2D(-movingOrigin.x, -movingOrigin.y, 0);
+        const NearFrames frames(table.pairs);
+        for (SegmentPair p : table.pairs) {
+            p.weight = weightOf(p);
+            if (!registration.add(frames.toNear(p)))
+                throw Failure(input.name() +
+                              ": found segments or weights beyond all measure, expected metres");
+        }
+        const vectorlib::Transformation2D t = frames.fromNear(registration.transformation());
         if (!registration.isSolvable())
             std::cerr
                 << "hermes-vector: all lines are parallel: the shift along them is not known and left at 0\n";
@@ -66,9 +54,6 @@ struct RegisterCommand {
         files.commit();
     }
 
-    static Segment shifted(const Segment &s, Point origin) {
-        return {s.begin() - origin, s.end() - origin, s.direction()};
-    }
     double weightOf(const SegmentPair &p) const {
         return weights == "length"   ? std::min(p.fixed.length(), p.moving.length())
                : weights == "column" ? p.weight

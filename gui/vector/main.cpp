@@ -20,6 +20,7 @@ int main(int argc, char **argv) {
     hermes::addSegmentCommand(app);
     hermes::addVectorizeCommand(app);
     hermes::addRegisterCommand(app);
+    hermes::addSimilarityCommand(app);
     hermes::addObserveCommand(app);
     hermes::addMapCommand(app);
     hermes::addRingCommand(app);

@@ -44,6 +44,8 @@ private Q_SLOTS:
     void worldsCanBeDriven_data();
     void worldsCanBeDriven();
     void stairsGrowQuadratically();
+    void roomsAreClosed_data();
+    void roomsAreClosed();
 };
 
 void TestWorld::readsWhatItWrote() {
@@ -124,6 +126,35 @@ void TestWorld::saysWhichFileIsMissing() {
     QCOMPARE(QByteArray::fromStdString(error),
              QByteArray("/nonexistent/w.json: cannot be read: No such file or directory"));
     QVERIFY(!readWorld("/", error).has_value());
+}
+
+void TestWorld::roomsAreClosed_data() {
+    QTest::addColumn<int>("edges");
+    QTest::newRow("cutsquare") << 5;
+    QTest::newRow("oblique") << 19;
+}
+
+void TestWorld::roomsAreClosed() { // one polygon, free space inside, every pose in it
+    QFETCH(int, edges);
+    const auto world = shipped(QString::fromLatin1(QTest::currentDataTag()));
+    QVERIFY(world.has_value());
+    QCOMPARE(world->edges.size(), std::size_t(edges));
+    QVERIFY(world->poses.size() >= 10);
+    for (std::size_t i = 0; i < world->edges.size(); ++i) {
+        const World::Edge &edge = world->edges[i], &next = world->edges[(i + 1) % world->edges.size()];
+        QVERIFY(edge.x2 == next.x1 && edge.y2 == next.y1);
+    }
+    for (const World::Pose &pose : world->poses) {
+        double turns = 0; // the edges go once around it, counter-clockwise
+        for (const World::Edge &e : world->edges) {
+            QVERIFY(distance(e, pose.x, pose.y) > 0.35);
+            turns += std::remainder(std::atan2(e.y2 - pose.y, e.x2 - pose.x) -
+                                        std::atan2(e.y1 - pose.y, e.x1 - pose.x),
+                                    2 * M_PI) /
+                     (2 * M_PI);
+        }
+        QVERIFY(std::abs(turns - 1) < 1e-9);
+    }
 }
 
 void TestWorld::worldsCanBeDriven_data() {

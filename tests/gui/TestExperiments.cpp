@@ -16,6 +16,14 @@ private Q_SLOTS:
     void sameSeedGivesTheSameLines();
     void segmentationLeavesNinePanels();
     void polygonsAreMeasuredByVertices();
+    void criterionLooksAsInItsFigures();
+    void sumsArePaidBackByManyTransformations();
+    void errorFallsWithPointsAndNoise();
+    void weightingHelpsMostAmongPillars();
+    void weightsNarrowTheScatter();
+    void reliabilityFallsWhereWallsAreHidden();
+    void wahbaIsMildWithLargeErrors();
+    void missingWorldIsNamed();
     void refusesToOverwrite();
     void unknownExperimentIsAUsageError();
 
@@ -31,6 +39,21 @@ private:
     static QList<QByteArray> lines(const QString &path) {
         QFile file(path);
         return file.open(QIODevice::ReadOnly) ? file.readAll().trimmed().split('\n') : QList<QByteArray>();
+    }
+    /// The rows of a CSV file by the names of its columns.
+    static QVector<QMap<QByteArray, QByteArray>> table(const QString &path) {
+        QVector<QMap<QByteArray, QByteArray>> rows;
+        const QList<QByteArray> text = lines(path), names = text.value(0).split(',');
+        for (const QByteArray &line : text.mid(1)) {
+            const QList<QByteArray> fields = line.split(',');
+            rows.resize(rows.size() + 1);
+            for (int i = 0; i < names.size(); ++i)
+                rows.last()[names[i]] = fields.value(i);
+        }
+        return rows;
+    }
+    QStringList withWorlds(const QStringList &arguments) {
+        return arguments + QStringList{"--worlds", qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds"};
     }
     QByteArray error_;
 };
@@ -103,6 +126,124 @@ void TestExperiments::polygonsAreMeasuredByVertices() {
         QVERIFY2(fields[5].toDouble() > 0.9 && fields[6].toDouble() < 0.05, row.constData());
     }
     QCOMPARE(run({"log", "--out", folder.path(), "--force"}), 2);
+}
+
+void TestExperiments::criterionLooksAsInItsFigures() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"criterion", "--out", folder.path()}), 0);
+    QVERIFY(lines(folder.filePath("criterion.tex")).last() == "\\end{document}");
+    QMap<QByteArray, int> rows;
+    QMap<double, double> byTurn, byLength; // the criterion where nothing is shifted
+    for (const auto &row : table(folder.filePath("criterion.csv"))) {
+        const double x = row["x"].toDouble(), y = row["y"].toDouble(), value = row["criterion_m4"].toDouble();
+        ++rows[row["figure"]];
+        if (row["figure"] == "shift-turn" && (y == 0 || std::abs(y - M_PI) < 1e-9))
+            QVERIFY(value < 1e-12); // on the line, however far
+        if (row["figure"] == "shift-turn" && std::abs(y - M_PI / 2) < 1e-9)
+            QVERIFY(std::abs(value - (1 + (1 + 2 * x) * (1 + 2 * x))) < 1e-9);
+        if (row["figure"] == "turn-shift") // a shift along the line changes nothing
+            QVERIFY(std::abs(value - (x == 0 ? byTurn[y] = value : byTurn[y])) < 1e-12);
+        if (row["figure"] == "scale-shift") { // nor here; by the square of the length
+            QVERIFY(std::abs(value - (x == 0 ? byLength[y] = value : byLength[y])) < 1e-12);
+            QVERIFY(std::abs(value - y * y) < 1e-12);
+        }
+    }
+    QCOMPARE(rows.keys(), QList<QByteArray>({"scale-shift", "scale-turn", "shift-turn", "turn-shift"}));
+    QCOMPARE(rows["shift-turn"], 21 * 37);
+}
+
+void TestExperiments::sumsArePaidBackByManyTransformations() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"criterion-time", "--out", folder.path()}), 0);
+    const auto rows = table(folder.filePath("criterion-time.csv"));
+    QCOMPARE(rows.size(), 49);
+    for (const auto &row : rows) {
+        const double speedUp = row["speed_up"].toDouble();
+        QVERIFY(speedUp > 0);
+        if (row["pairs"] == "100" && row["transformations"] == "1000")
+            QVERIFY2(speedUp > 10, row["speed_up"].constData());
+    }
+}
+
+void TestExperiments::errorFallsWithPointsAndNoise() { // paper figure 6
+    QTemporaryDir folder;
+    QCOMPARE(run(withWorlds({"accuracy", "--runs", "10", "--out", folder.path()})), 0);
+    QMap<QByteArray, double> error, ambiguity; // by noise and points, sums over the poses
+    for (const auto &row : table(folder.filePath("accuracy.csv")))
+        if (row["weighted"] == "0") {
+            error[row["sigma"] + ' ' + row["points"]] += row["d_t"].toDouble();
+            ambiguity[row["sigma"] + ' ' + row["points"]] += row["a_t"].toDouble();
+        }
+    for (const auto &sums : {error, ambiguity}) {
+        const double points = sums["0.01 100"] / sums["0.01 1000"],
+                     noise = sums["0.1 300"] / sums["0.01 300"];
+        QVERIFY2(points > 5 && points < 20, qPrintable(QString::number(points))); // linear
+        QVERIFY2(noise > 50 && noise < 200, qPrintable(QString::number(noise)));  // quadratic
+    }
+}
+
+void TestExperiments::weightingHelpsMostAmongPillars() { // paper tables 1 and 2
+    QTemporaryDir folder;
+    QCOMPARE(run(withWorlds({"weighting", "--runs", "10", "--out", folder.path()})), 0);
+    QVERIFY(lines(folder.filePath("weighting.tex")).last() == "\\end{document}");
+    const auto rows = table(folder.filePath("weighting-tables.csv"));
+    QCOMPARE(rows.size(), 3);
+    QCOMPARE(rows[2]["world"], QByteArray("pillars"));
+    for (const char *ratio : {"ratio_a_t", "ratio_a_alpha", "ratio_d_t", "ratio_d_alpha"}) {
+        const double square = rows[0][ratio].toDouble(), oblique = rows[1][ratio].toDouble(),
+                     pillars = rows[2][ratio].toDouble();
+        QVERIFY2(0 < pillars && pillars < oblique && oblique < square && square < 1, ratio);
+    }
+    for (const auto &row : rows)
+        for (const char *correlation : {"corr_t", "corr_t_weighted"})
+            QVERIFY2(row[correlation].toDouble() >= 0.5, row["world"] + ' ' + row[correlation]);
+}
+
+void TestExperiments::weightsNarrowTheScatter() { // paper figure 8 against figure 7f
+    QTemporaryDir folder;
+    QCOMPARE(run(withWorlds({"dispersion", "--runs", "10", "--out", folder.path()})), 0);
+    double plain = 0, weighted = 0;
+    for (const auto &row : table(folder.filePath("dispersion.csv")))
+        if (row["world"] == "pillars")
+            (row["weighted"] == "1" ? weighted : plain) += row["var_x"].toDouble() + row["var_y"].toDouble();
+    QVERIFY2(weighted > 0 && weighted < plain / 2, qPrintable(QString("%1 %2").arg(weighted).arg(plain)));
+    if (!error_.contains("gnuplot is not installed"))
+        QCOMPARE(QDir(folder.path()).entryList({"*.svg"}).size(), 7);
+}
+
+void TestExperiments::reliabilityFallsWhereWallsAreHidden() { // paper figure 9
+    QTemporaryDir folder;
+    QCOMPARE(run(withWorlds({"reliability", "--runs", "20", "--out", folder.path()})), 0);
+    double least = 1, most = 0;
+    for (const auto &row : table(folder.filePath("reliability.csv"))) {
+        least = std::min(least, row["least_reliability"].toDouble());
+        most = std::max(most, row["reliability"].toDouble());
+    }
+    QVERIFY2(least >= 0 && least < 0.9, qPrintable(QString::number(least)));
+    QVERIFY2(most > 0.95 && most <= 1, qPrintable(QString::number(most)));
+}
+
+void TestExperiments::wahbaIsMildWithLargeErrors() { // paper figure 10
+    QTemporaryDir folder;
+    QCOMPARE(run({"rotation", "--runs", "40", "--out", folder.path()}), 0);
+    const auto rows = table(folder.filePath("rotation.csv"));
+    QCOMPARE(rows.size(), 36);
+    for (const auto &row : rows) {
+        const double noise = row["noise_rad"].toDouble(), mitsuta = row["mitsuta_rad"].toDouble(),
+                     wahba = row["wahba_rad"].toDouble();
+        QVERIFY(std::abs(mitsuta / noise * 3 * std::sqrt(3) - 1) < 0.1); // a third of a uniform turn
+        if (noise < 0.5)
+            QVERIFY(std::abs(wahba / mitsuta - 1) < 0.05);
+        if (noise > 2.5)
+            QVERIFY(wahba < 0.95 * mitsuta);
+    }
+}
+
+void TestExperiments::missingWorldIsNamed() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"accuracy", "--worlds", folder.path(), "--out", folder.filePath("new")}), 1);
+    QVERIFY2(error_.contains("cutsquare.json") && error_.contains("--worlds"), error_);
+    QVERIFY(QDir(folder.filePath("new")).entryList(QDir::Files).isEmpty());
 }
 
 void TestExperiments::refusesToOverwrite() {

@@ -32,6 +32,8 @@ private Q_SLOTS:
         row("unknown algorithm", {"vectorize", room, "--algorithm", "magic"}, "--algorithm");
         row("unknown weights", {"register", data("pairs.csv"), "--weights", "heavy"}, "--weights");
         row("no pose", {"observe", world}, "--pose");
+        row("no motion", {"similarity", data("pairs.csv")}, "--pose");
+        row("half a motion", {"similarity", data("pairs.csv"), "--pose", "1,2"}, "--pose");
         row("half a pose", {"observe", world, "--pose", "1,2"}, "--pose");
         row("noise without scan", {"observe", world, "--pose", "0,0,0", "--noise", "1"}, "--noise");
         row("field of view", {"observe", world, "--pose", "0,0,0", "--fov", "400"}, "--fov");
@@ -61,6 +63,16 @@ private Q_SLOTS:
                                     << QByteArray("2 fields");
         QTest::newRow("no pairs") << "register" << QByteArray("1,2,3,4\n") << QByteArray("in:1:")
                                   << QByteArray("dx1");
+        QTest::newRow("empty pairs") << "register" << QByteArray() << QByteArray("in")
+                                     << QByteArray("an empty file");
+        QTest::newRow("pair of no length")
+            << "register" << QByteArray("0,0,1,0,2,2,2,2\n") << QByteArray("in:1:") << QByteArray("distinct");
+        QTest::newRow("weight 0") << "register"
+                                  << QByteArray("sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2,weight\n0,0,1,0,0,0,1,0,0\n")
+                                  << QByteArray("in:2:") << QByteArray("above 0");
+        QTest::newRow("pairs beyond measure")
+            << "register" << QByteArray("0,0,1,0,0,0,1,0\n0,1e160,1,1e160,0,0,1,0\n") << QByteArray("in:")
+            << QByteArray("beyond all measure");
         QTest::newRow("world without edges") << "observe" << QByteArray("{\"name\": \"x\", \"edges\": []}")
                                              << QByteArray("in") << QByteArray("x1");
         QTest::newRow("world that is none")

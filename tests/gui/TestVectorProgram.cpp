@@ -87,6 +87,23 @@ private Q_SLOTS:
     }
     /// Far from the origin an error of rotation must not turn into one of translation (erratum 13): the
     /// middle of the segments stays where it is although the angles do not agree.
+    void similarityOfSeveralMotions() {
+        const Result r = run({"similarity", "--pose", "0,0,0", data("pairs.csv"), "--pose", "1,-2,0.3"});
+        QCOMPARE(r.err, QByteArray());
+        const QList<QByteArray> rows = r.out.trimmed().split('\n');
+        QCOMPARE(rows.size(), 3);
+        QCOMPARE(rows[0], QByteArray("x,y,alpha,criterion"));
+        QVERIFY(rows[1].startsWith("0,0,0,") && rows[1].split(',')[3].toDouble() > 1);
+        QVERIFY(rows[2].startsWith("1,-2,0.3,") && rows[2].split(',')[3].toDouble() < 1e-9);
+    }
+    void similarityFarFromTheOrigin() { // the same pair with its origins 1,000 km away
+        const Result near = run({"similarity", "-", "--pose", "0,0.01,0"}, "0,0,1,0,0,0,1,0\n"),
+                     far = run({"similarity", "-", "--pose", "0,0.01,0"},
+                               "1e6,1e6,1000001,1e6,1e6,1e6,1000001,1e6\n");
+        const auto criterion = [](const Result &r) { return r.out.trimmed().split(',').last().toDouble(); };
+        QVERIFY(std::abs(criterion(near) - 4e-4) < 1e-12); // (2 x 1 m x 1 cm)^2
+        QVERIFY(std::abs(criterion(far) - 4e-4) < 1e-9);
+    }
     void registerFarFromTheOrigin() {
         const Result r = run({"register", "-"},
                              "100000,0,100001,0.01,100000,0,100001,0\n100000,0,100000,1,100000,0,100000,1\n");
@@ -190,7 +207,8 @@ private Q_SLOTS:
 
     void helpAndVersion() {
         QCOMPARE(run({"--version"}).out.left(14), QByteArray("hermes-vector "));
-        for (const char *command : {"segment", "vectorize", "register", "observe", "map", "ring"}) {
+        for (const char *command :
+             {"segment", "vectorize", "register", "similarity", "observe", "map", "ring"}) {
             const Result r = run({command, "--help"});
             QCOMPARE(r.status, 0);
             QVERIFY2(r.out.contains(QByteArray("Example:\n  hermes-vector ") + command), r.out.constData());

@@ -166,6 +166,12 @@ void TestRegistration::reliabilityOfKnownSets() { // erratum 9: 2 sqrt(det E), e
     skew.add(direction(0), direction(0));
     skew.add(direction(30), direction(30));
     QVERIFY(std::abs(skew.reliability() - 0.5) < 1e-12);
+    for (int degrees = 0; degrees < 360; ++degrees) { // never above 1 by rounding
+        LineSegmentRegistration even;
+        even.add(direction(degrees), direction(0), 0.1);
+        even.add(direction(degrees + 90), direction(90), 0.1);
+        QVERIFY(even.reliability() <= 1 && even.reliability() > 1 - 1e-9);
+    }
 }
 
 void TestRegistration::collinearSetsAreReported() {

@@ -1,12 +1,12 @@
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
 #include "gui/vector/experiment/Algorithms.h"
+#include "gui/vector/experiment/Timing.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace hermes {
 
@@ -23,27 +23,6 @@ double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
-}
-
-// Microseconds that a function takes, the best of three measurements of enough repetitions each.
-template <typename Function>
-double timeOf(Function function) {
-    using Clock = std::chrono::steady_clock;
-    double best = 1e300;
-    int repetitions = 1;
-    for (int measurement = 0; measurement < 3;) {
-        const auto begin = Clock::now();
-        for (int i = 0; i < repetitions; ++i)
-            function();
-        const double us = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-        if (us < 200 && repetitions < 10000) {
-            repetitions *= 4;
-            continue;
-        }
-        best = std::min(best, us / repetitions);
-        ++measurement;
-    }
-    return best;
 }
 
 std::vector<Cluster> clustersOf(const std::vector<Point> &scan, std::size_t rays) {

@@ -111,7 +111,9 @@ public:
     }
     /// In [0, 1]; 0 means that the translation is not determined, 1 that directions are spread evenly. Paper
     /// (28), erratum 9.
-    double reliability() const { return isSolvable() ? 2 * std::sqrt(determinant()) / sums_.w : 0; }
+    double reliability() const {
+        return isSolvable() ? std::min(1.0, 2 * std::sqrt(determinant()) / sums_.w) : 0;
+    }
     /// How much compromise the optimum needed; m^2. Paper (17) to (20).
     Ambiguity ambiguity() const { return pairs_ ? ambiguityAt(translation(), meanAngle()) : Ambiguity(); }
     /// The same for any transformation: the full expansion thesis (7.40) with the stiffness coefficients

@@ -1,0 +1,145 @@
+#include "gui/vector/experiment/CriterionExperiment.h"
+
+#include "gui/vector/experiment/Timing.h"
+#include "vectorlib/io/Number.h"
+#include "vectorlib/io/Svg.h"
+#include "vectorlib/similarity/EdgeSetComparator.h"
+
+#include <random>
+
+namespace hermes {
+
+namespace {
+
+using Segment = vectorlib::LineSegment2D<double>;
+using vectorlib::Transformation2D;
+
+const Segment fixedSegment({0, 0}, {1, 0});
+
+std::vector<double> steps(double first, double last, int count) {
+    std::vector<double> values;
+    for (int i = 0; i <= count; ++i)
+        values.push_back(first + (last - first) * i / count);
+    return values;
+}
+
+// The criterion of the fixed segment and moving(x, y) for all x and y of the grid.
+template <typename Moving>
+Surface surface(Surface s, Moving moving) {
+    s.zAxis = "criterion [m^4]";
+    for (const double y : s.y)
+        for (const double x : s.x)
+            s.z.push_back(vectorlib::areaCriterion(fixedSegment, moving(x, y)));
+    return s;
+}
+
+std::vector<vectorlib::SegmentPair> randomPairs(std::size_t count, std::mt19937_64 &random) {
+    std::uniform_real_distribution<double> position(-5, 5);
+    const auto point = [&] { return vectorlib::Vector2D<double>(position(random), position(random)); };
+    std::vector<vectorlib::SegmentPair> pairs;
+    for (std::size_t i = 0; i < count; ++i)
+        pairs.push_back({Segment(point(), point()), Segment(point(), point()), 1});
+    return pairs;
+}
+
+} // namespace
+
+std::vector<Surface> criterionSurfaces() {
+    const std::vector<double> shifts = steps(0, 2, 20), angles = steps(0, 2 * vectorlib::pi, 36),
+                              lengths = steps(0.01, 2, 20);
+    const auto shifted = [](double x) { return Transformation2D(x, 0, 0); };
+    const auto turned = [](double theta) { return Transformation2D(0, 0, theta); };
+    const auto scaled = [](double length) { return Segment({0, 0}, {length, 0}); };
+    const std::string shift = "shift [m]", angle = "angle [rad]", length = "length [m]";
+    return {
+        surface({"shift-turn", "figure 7.3: shifted, then turned", shift, angle, "", shifts, angles, {}},
+                [&](double x, double theta) { return turned(theta) * (shifted(x) * fixedSegment); }),
+        surface({"scale-turn", "figure 7.4: scaled, then turned", length, angle, "", lengths, angles, {}},
+                [&](double l, double theta) { return turned(theta) * scaled(l); }),
+        surface({"turn-shift", "figure 7.5: turned, then shifted", shift, angle, "", shifts, angles, {}},
+                [&](double x, double theta) { return shifted(x) * (turned(theta) * fixedSegment); }),
+        surface({"scale-shift",
+                 "figure 7.6: scaled, turned by 45 degrees, then shifted",
+                 shift,
+                 length,
+                 "",
+                 shifts,
+                 lengths,
+                 {}},
+                [&](double x, double l) { return shifted(x) * (turned(vectorlib::pi / 4) * scaled(l)); })};
+}
+
+std::vector<CriterionTime> criterionTimes(const ExperimentOptions &options) {
+    constexpr std::size_t counts[] = {1, 3, 10, 30, 100, 300, 1000};
+    std::mt19937_64 random(options.seed);
+    std::uniform_real_distribution<double> any(-1, 1);
+    std::vector<CriterionTime> times;
+    for (const std::size_t pairCount : counts) {
+        const std::vector<vectorlib::SegmentPair> pairs = randomPairs(pairCount, random);
+        std::vector<Transformation2D> transformations;
+        for (const std::size_t count : counts) {
+            while (transformations.size() < count)
+                transformations.emplace_back(any(random), any(random), 3 * any(random));
+            CriterionTime time{pairCount, count, 0, 0};
+            volatile double result = 0; // so that nothing is left out
+            time.pairByPair = timeOf([&] {
+                double sum = 0;
+                for (const Transformation2D &t : transformations)
+                    for (const vectorlib::SegmentPair &p : pairs)
+                        sum += vectorlib::areaCriterion(p.fixed, t * p.moving);
+                result = sum;
+            });
+            time.fromSums = timeOf([&] {
+                vectorlib::EdgeSetComparator criterion;
+                criterion.add(pairs);
+                double sum = 0;
+                for (const Transformation2D &t : transformations)
+                    sum += criterion(t);
+                result = sum;
+            });
+            times.push_back(time);
+            if (options.progress)
+                options.progress(times.size(), std::size(counts) * std::size(counts));
+        }
+    }
+    return times;
+}
+
+void writeCsv(std::ostream &out, const std::vector<Surface> &surfaces) {
+    using vectorlib::Number;
+    out << "figure,x,y,criterion_m4\n";
+    for (const Surface &s : surfaces)
+        for (std::size_t i = 0; i < s.z.size(); ++i)
+            out << s.name << ',' << Number(s.x[i % s.x.size()]) << ',' << Number(s.y[i / s.x.size()]) << ','
+                << Number(s.z[i]) << '\n';
+}
+
+void writeCsv(std::ostream &out, const std::vector<CriterionTime> &times) {
+    using vectorlib::Number;
+    out << "pairs,transformations,pair_by_pair_us,from_sums_us,speed_up\n";
+    for (const CriterionTime &t : times)
+        out << t.pairs << ',' << t.transformations << ',' << Number(t.pairByPair) << ',' << Number(t.fromSums)
+            << ',' << Number(t.speedUp()) << '\n';
+}
+
+std::vector<Plot> plotsOf(const std::vector<CriterionTime> &times) {
+    std::vector<Plot> plots;
+    const auto add = [&](const char *name, const char *title, const char *axis, auto quantity) {
+        Plot plot{name, title, "transformations", axis, true, true, {}};
+        for (const CriterionTime &t : times) {
+            const std::string label = std::to_string(t.pairs) + (t.pairs == 1 ? " pair" : " pairs");
+            if (plot.curves.empty() || plot.curves.back().label != label)
+                plot.curves.push_back({label, vectorlib::colour::distinct(plot.curves.size()), {}});
+            plot.curves.back().points.emplace_back(t.transformations, quantity(t));
+        }
+        plots.push_back(std::move(plot));
+    };
+    add("pair-by-pair", "figure 7.7: pair by pair", "time [us]",
+        [](const CriterionTime &t) { return t.pairByPair; });
+    add("from-sums", "figure 7.8: from sums", "time [us]", [](const CriterionTime &t) { return t.fromSums; });
+    add("speed-up", "figure 7.9: speed-up", "times as fast",
+        [](const CriterionTime &t) { return t.speedUp(); });
+    return plots;
+}
+
+} // namespace hermes

@@ -1,0 +1,146 @@
+#include "gui/vector/experiment/RegistrationExperiment.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/io/Number.h"
+#include "vectorlib/io/Svg.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <limits>
+#include <map>
+#include <sstream>
+
+namespace hermes {
+
+namespace {
+
+using Point = vectorlib::Vector2D<double>;
+
+void lineBreak(Curve &curve) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    curve.points.emplace_back(none, none);
+}
+void addPoint(Curve &curve, Point p) {
+    curve.points.emplace_back(p.x, p.y);
+}
+
+Curve wallsOf(const World &world) {
+    Curve curve{"walls", vectorlib::colour::map, {}};
+    for (const World::Edge &e : world.edges) {
+        addPoint(curve, {e.x1, e.y1});
+        addPoint(curve, {e.x2, e.y2});
+        lineBreak(curve);
+    }
+    return curve;
+}
+
+// The closed curve of middle + shape u over all unit vectors u.
+void addEllipse(Curve &curve, Point middle, const Eigen::Matrix2d &shape) {
+    constexpr int corners = 48;
+    for (int i = 0; i <= corners; ++i) {
+        const double angle = 2 * vectorlib::pi * i / corners;
+        const Eigen::Vector2d p = shape * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+        addPoint(curve, middle + Point(p.x(), p.y()));
+    }
+    lineBreak(curve);
+}
+
+std::string number(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+} // namespace
+
+std::vector<Plot> accuracyPlots(const std::vector<RegistrationRow> &rows) {
+    using S = RegistrationStatistics;
+    std::vector<Plot> plots;
+    const auto add = [&](const char *name, const char *axis, const char *ambiguity, double S::*a,
+                         const char *error, double S::*d) {
+        std::map<double, std::map<int, std::pair<double, double>>> sums; // by noise and points, of A and D
+        for (const RegistrationRow &row : rows)
+            if (!row.weighted) {
+                auto &sum = sums[row.sigma][row.points];
+                sum.first += row.result.*a;
+                sum.second += row.result.*d;
+            }
+        double poses = 0;
+        for (const RegistrationRow &row : rows)
+            poses = std::max(poses, static_cast<double>(row.pose + 1));
+        Plot plot{name, "registration without weights", "points", axis, true, true, {}};
+        for (const auto &[sigma, byPoints] : sums) {
+            const std::string noise = ", " + number(100 * sigma) + " cm";
+            Curve green{ambiguity + noise, "#009e73", {}}, grey{error + noise, vectorlib::colour::points, {}};
+            for (const auto &[points, sum] : byPoints) {
+                green.points.emplace_back(points, sum.first / poses);
+                grey.points.emplace_back(points, sum.second / poses);
+            }
+            plot.curves.push_back(std::move(green));
+            plot.curves.push_back(std::move(grey));
+        }
+        plots.push_back(std::move(plot));
+    };
+    add("position", "m^2", "ambiguity", &S::ambiguityXY, "squared error", &S::errorXY);
+    add("heading", "rad^2", "ambiguity", &S::ambiguityAlpha, "squared error", &S::errorAlpha);
+    return plots;
+}
+
+Plot dispersionPlot(const World &world, const std::vector<RegistrationRow> &rows, const std::string &name,
+                    double scale) {
+    constexpr double radius = 0.35; // of a pie; metres
+    const std::string times = " (" + number(scale) + " x)";
+    Curve path{"true poses", vectorlib::colour::points, {}},
+        ellipses{"two sigma of the position" + times, "#009e73", {}},
+        pies{"two sigma of the heading" + times, vectorlib::colour::estimate, {}};
+    for (const RegistrationRow &row : rows) {
+        const RegistrationStatistics &r = row.result;
+        const vectorlib::Transformation2D pose(row.at.x, row.at.y, row.at.theta);
+        const Point middle = pose * (Point(r.mean(0), r.mean(1)) * scale);
+        addPoint(path, {row.at.x, row.at.y});
+        Eigen::Matrix2d turn;
+        turn << pose.cos(), -pose.sin(), pose.sin(), pose.cos();
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(r.spread.topLeftCorner<2, 2>());
+        const Eigen::Matrix2d shape =
+            2 * scale * turn * eigen.eigenvectors() *
+            Eigen::Matrix2d(eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal());
+        addEllipse(ellipses, middle, shape);
+        const double half = std::min(vectorlib::pi, 2 * scale * std::sqrt(std::max(0.0, r.spread(2, 2))));
+        addPoint(pies, middle);
+        for (int i = -4; i <= 4; ++i) {
+            const double angle = row.at.theta + scale * r.mean(2) + half * i / 4;
+            addPoint(pies, middle + Point(std::cos(angle), std::sin(angle)) * radius);
+        }
+        addPoint(pies, middle);
+        lineBreak(pies);
+    }
+    Plot plot{name, world.name, "x [m]", "y [m]", false, false, {wallsOf(world), path, ellipses, pies}, true};
+    if (!rows.empty())
+        plot.title += ": P = " + std::to_string(rows[0].points) + ", sigma = " + number(100 * rows[0].sigma) +
+                      " cm, " + (rows[0].weighted ? "weighted" : "no weights");
+    return plot;
+}
+
+Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &rows) {
+    constexpr double radius = 0.3; // metres
+    Curve whole{"R = 1", vectorlib::colour::points, {}}, mean{"mean R", vectorlib::colour::estimate, {}},
+        least{"least R of one scan", vectorlib::colour::outliers, {}};
+    for (const RegistrationRow &row : rows) {
+        const Point middle(row.at.x, row.at.y);
+        const auto circle = [&](Curve &curve, double reliability) {
+            addEllipse(curve, middle, Eigen::Matrix2d::Identity() * radius * std::sqrt(reliability));
+        };
+        circle(whole, 1);
+        circle(mean, row.result.reliability);
+        circle(least, row.result.leastReliability);
+    }
+    return {"circles",
+            world.name + ": area of the circles by reliability",
+            "x [m]",
+            "y [m]",
+            false,
+            false,
+            {wallsOf(world), whole, mean, least},
+            true};
+}
+
+} // namespace hermes
