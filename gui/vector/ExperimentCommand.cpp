@@ -1,6 +1,7 @@
 #include "common/world/WorldFile.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
+#include "gui/vector/InstalledWorlds.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
 #include "gui/vector/experiment/CriterionExperiment.h"
@@ -27,7 +28,7 @@ struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
     std::string log;
-    std::string worlds = "deploy/worlds";
+    std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
     std::size_t pictures = 0;
@@ -280,9 +281,10 @@ void addExperimentCommand(CLI::App &app) {
         ->check(between(0, 10000))
         ->type_name("N")
         ->capture_default_str();
-    sub->add_option("--worlds", command->worlds, "Folder of cutsquare.json, oblique.json and pillars.json")
-        ->type_name("FOLDER")
-        ->capture_default_str();
+    sub->add_option("--worlds", command->worlds,
+                    "Folder of cutsquare.json, oblique.json and pillars.json instead of those installed with "
+                    "the program")
+        ->type_name("FOLDER");
     sub->add_option("--runs", command->options.runs, "Scans for each number of points (and each pose)")
         ->check(between(1, 10000))
         ->type_name("N")

@@ -52,9 +52,6 @@ private:
         }
         return rows;
     }
-    QStringList withWorlds(const QStringList &arguments) {
-        return arguments + QStringList{"--worlds", qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds"};
-    }
     QByteArray error_;
 };
 
@@ -167,7 +164,7 @@ void TestExperiments::sumsArePaidBackByManyTransformations() {
 
 void TestExperiments::errorFallsWithPointsAndNoise() { // paper figure 6
     QTemporaryDir folder;
-    QCOMPARE(run(withWorlds({"accuracy", "--runs", "10", "--out", folder.path()})), 0);
+    QCOMPARE(run({"accuracy", "--runs", "10", "--out", folder.path()}), 0);
     QMap<QByteArray, double> error, ambiguity; // by noise and points, sums over the poses
     for (const auto &row : table(folder.filePath("accuracy.csv")))
         if (row["weighted"] == "0") {
@@ -184,7 +181,7 @@ void TestExperiments::errorFallsWithPointsAndNoise() { // paper figure 6
 
 void TestExperiments::weightingHelpsMostAmongPillars() { // paper tables 1 and 2
     QTemporaryDir folder;
-    QCOMPARE(run(withWorlds({"weighting", "--runs", "10", "--out", folder.path()})), 0);
+    QCOMPARE(run({"weighting", "--runs", "10", "--out", folder.path()}), 0);
     QVERIFY(lines(folder.filePath("weighting.tex")).last() == "\\end{document}");
     const auto rows = table(folder.filePath("weighting-tables.csv"));
     QCOMPARE(rows.size(), 3);
@@ -201,7 +198,7 @@ void TestExperiments::weightingHelpsMostAmongPillars() { // paper tables 1 and 2
 
 void TestExperiments::weightsNarrowTheScatter() { // paper figure 8 against figure 7f
     QTemporaryDir folder;
-    QCOMPARE(run(withWorlds({"dispersion", "--runs", "10", "--out", folder.path()})), 0);
+    QCOMPARE(run({"dispersion", "--runs", "10", "--out", folder.path()}), 0);
     double plain = 0, weighted = 0;
     for (const auto &row : table(folder.filePath("dispersion.csv")))
         if (row["world"] == "pillars")
@@ -213,7 +210,7 @@ void TestExperiments::weightsNarrowTheScatter() { // paper figure 8 against figu
 
 void TestExperiments::reliabilityFallsWhereWallsAreHidden() { // paper figure 9
     QTemporaryDir folder;
-    QCOMPARE(run(withWorlds({"reliability", "--runs", "20", "--out", folder.path()})), 0);
+    QCOMPARE(run({"reliability", "--runs", "20", "--out", folder.path()}), 0);
     double least = 1, most = 0;
     for (const auto &row : table(folder.filePath("reliability.csv"))) {
         least = std::min(least, row["least_reliability"].toDouble());

@@ -3,6 +3,7 @@
 #include "common/world/WorldFile.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
+#include "gui/vector/InstalledWorlds.h"
 
 #include <filesystem>
 #include <map>
@@ -28,13 +29,6 @@ const std::map<std::string, KnownWorld> known = {{"pillars",
                                                    "quadratically. The first steps are lower than the noise, "
                                                    "the last ones are easily told apart.",
                                                    0.5}}};
-
-/// Where the worlds are that came with this program; empty when that cannot be told.
-fs::path installedWorlds() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    return error ? fs::path() : program.parent_path().parent_path() / "share" / "hermes" / "worlds";
-}
 
 } // namespace
 
