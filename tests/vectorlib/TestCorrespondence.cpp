@@ -1,5 +1,6 @@
 #include "vectorlib/correspondence/CorrespondenceSearch.h"
 
+#include "tests/support/Hall.h"
 #include "tests/support/RandomRoom.h"
 
 #include <QtTest>
@@ -49,26 +50,6 @@ std::vector<PotentialPair> pairsOf(const Segments &fixed, const Segments &moving
             if (mayCorrespond(fixed[f], moving[m], PermittedError()))
                 pairs.emplace_back(CorrespondencePair{int(f), int(m)}, fixed[f], moving[m], Stiffness());
     return pairs;
-}
-/// A map of rooms side by side, with at most so many segments, and the middle of its middle room.
-SegmentMap hall(std::size_t segments, Point &middle) {
-    const int side = static_cast<int>(std::ceil(std::sqrt(double(segments) / 12)));
-    SegmentMap map;
-    const auto addRing = [&](Point at, double half, bool inside) {
-        const std::vector<Point> c = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
-        for (std::size_t i = 0; i < 4 && map.size() < segments; ++i)
-            inside ? map.add(Segment(at + c[i], at + c[(i + 1) % 4]))
-                   : map.add(Segment(at + c[(i + 1) % 4], at + c[i]));
-    };
-    for (int i = 0; i < side; ++i)
-        for (int j = 0; j < side; ++j) {
-            const Point at(15.0 * i, 15.0 * j);
-            addRing(at, 6, true);
-            addRing(at + Point(2.5, 1), 0.4, false);
-            addRing(at + Point(-1, -3), 0.6, false);
-        }
-    middle = Point(15.0 * (side / 2), 15.0 * (side / 2));
-    return map;
 }
 
 } // namespace
@@ -266,52 +247,49 @@ void TestCorrespondence::numbersAreThoseOfTheCaller() {
 }
 
 void TestCorrespondence::searchesAMap() {
-    Point middle;
-    SegmentMap map = hall(2000, middle);
-    Segments all;
-    for (int i = 0; i < static_cast<int>(map.size()); ++i)
-        all.push_back(map[i]);
+    Hall hall(2000);
+    const Point middle = hall.middle;
+    SegmentMap &map = hall.map;
+    const Pose2D pose{middle.x + 0.4, middle.y - 0.3, 0.5};
+    const Segments scan = hall.view(pose);
     map.add(Segment({0, std::numeric_limits<double>::quiet_NaN()}, {1, 1}));
     map.add(Segment(middle + Point(-1e6, 100), middle + Point(1e6, 100)));
-    const Pose2D pose{middle.x + 0.4, middle.y - 0.3, 0.5};
     CorrespondenceSearch search;
-    const auto &result = search(map, seenFrom(all, pose), Transformation2D(middle.x, middle.y, 0.2));
+    const auto &result = search(map, scan, Transformation2D(middle.x, middle.y, 0.2));
     QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
     QVERIFY(distance(result.solutions[0].pose, Transformation2D(pose)) < 1e-6);
     for (const CorrespondencePair &p : result.solutions[0].pairs)
-        QVERIFY(all[std::size_t(p.fixed)].distance(middle) < 9);
-    QVERIFY(search(map, seenFrom(all, pose), Transformation2D(-500, 0, 0)).outcome ==
-                SearchOutcome::NothingFixed ||
-            search(map, seenFrom(all, pose), Transformation2D(-500, 0, 0)).outcome ==
-                SearchOutcome::NoPotentialPair);
-    search.settings.permitted = {1e12, 1e12, 1}; // the whole map is in reach, at once
-    search(map, seenFrom(all, pose), Transformation2D(pose));
+        QVERIFY(map[p.fixed].distance(middle) < 9);
+    search(map, scan, Transformation2D(-500, 0, 0));
+    QVERIFY(result.solutions.empty());
+    QVERIFY(result.outcome == SearchOutcome::NoPotentialPair); // the endless wall alone is looked at
+    search.settings.permitted = {1e12, 1e12, 1};               // the whole map is in reach, at once
+    search.settings.maxPairs = 1000;
+    search(map, scan, Transformation2D(pose));
+    QCOMPARE(describe(result.outcome), describe(SearchOutcome::TooManyPairs));
 }
 
 void TestCorrespondence::mapSearchDoesNotSlowDownWithTheMap() {
-    std::vector<double> medians;
-    for (const std::size_t size : {std::size_t(100), std::size_t(100000)}) {
-        Point middle;
-        SegmentMap map = hall(size, middle);
-        QCOMPARE(map.size(), size);
-        Segments near;
-        for (int number : map.near(middle, 8))
-            near.push_back(map[number]);
-        const Segments scan = seenFrom(near, {middle.x + 0.4, middle.y - 0.3, 0.5});
-        CorrespondenceSearch search;
-        std::vector<double> times;
-        for (int i = 0; i < 101; ++i) {
+    Hall small(100), large(100000);
+    QCOMPARE(small.map.size(), std::size_t(100));
+    QCOMPARE(large.map.size(), std::size_t(100000));
+    CorrespondenceSearch search;
+    std::vector<double> times[2];
+    for (int i = 0; i < 101; ++i)
+        for (int k = 0; k < 2; ++k) {
+            Hall &hall = k == 0 ? small : large;
+            const Point at = hall.middle;
+            const Segments scan = hall.view({at.x + 0.4, at.y - 0.3, 0.5});
             const auto begin = std::chrono::steady_clock::now();
-            const auto &result = search(map, scan, Transformation2D(middle.x, middle.y, 0.2));
-            times.push_back(
-                std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count());
+            const auto &result = search(hall.map, scan, Transformation2D(at.x, at.y, 0.2));
+            const auto end = std::chrono::steady_clock::now();
+            times[k].push_back(std::chrono::duration<double, std::micro>(end - begin).count());
             QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
         }
-        std::nth_element(times.begin(), times.begin() + 50, times.end());
-        medians.push_back(times[50]);
-    }
-    qInfo("100 segments %.1f us, 100,000 segments %.1f us", medians[0], medians[1]);
-    QVERIFY(medians[1] < 2 * medians[0]);
+    for (std::vector<double> &t : times)
+        std::nth_element(t.begin(), t.begin() + 50, t.end());
+    qInfo("100 segments %.1f us, 100,000 segments %.1f us", times[0][50], times[1][50]);
+    QVERIFY(times[1][50] < 2 * times[0][50]);
 }
 
 void TestCorrespondence::saysWhyThereIsNothing_data() {

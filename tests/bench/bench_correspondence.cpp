@@ -1,0 +1,99 @@
+#include "common/world/WorldFile.h"
+#include "gui/vector/report/ScanPair.h"
+#include "tests/support/Hall.h"
+
+#include <benchmark/benchmark.h>
+
+#include <iostream>
+#include <random>
+
+using namespace vectorlib;
+
+namespace {
+
+using Segments = std::vector<LineSegment2D<double>>;
+using Point = Vector2D<double>;
+
+Segments strewn(std::size_t count, double length) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    Segments world;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Point at(20 * unit(random), 20 * unit(random));
+        world.emplace_back(at, at + Point(unit(random), unit(random)) * length);
+    }
+    return world;
+}
+
+Segments foldedWall(std::size_t count) {
+    Segments world;
+    const auto corner = [count](std::size_t i) {
+        const double angle = 2 * pi * double(i) / double(count), radius = i % 2 ? 5.1 : 5;
+        return Point(std::cos(angle), std::sin(angle)) * radius;
+    };
+    for (std::size_t i = 0; i < count; ++i)
+        world.emplace_back(corner(i), corner((i + 1) % count));
+    return world;
+}
+
+void view(benchmark::State &state, const Segments &world) {
+    Observer<double> observe;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(observe(world, {0.1, 0.05, 0.3}).size());
+}
+
+void searchMap(benchmark::State &state) {
+    Hall hall(static_cast<std::size_t>(state.range(0)));
+    const Segments scan = hall.view({hall.middle.x + 0.4, hall.middle.y - 0.3, 0.5});
+    CorrespondenceSearch search;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(
+            search(hall.map, scan, Transformation2D(hall.middle.x, hall.middle.y, 0.2)).solutions.size());
+}
+
+void searchScans(benchmark::State &state, const hermes::ScanPair &scans) {
+    CorrespondenceSearch search;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(search(scans.fixed.segments, scans.moving.segments).solutions.size());
+}
+
+void addViews(const std::string &name, Segments (*make)(std::size_t)) {
+    for (const std::size_t count : {std::size_t(100), std::size_t(1000), std::size_t(10000)})
+        benchmark::RegisterBenchmark(name.c_str(), [make](benchmark::State &state) {
+            view(state, make(static_cast<std::size_t>(state.range(0))));
+        })->Arg(int64_t(count));
+}
+
+bool addPillars() {
+    std::string error;
+    const auto world = hermes::readWorld(BENCH_WORLDS "/pillars.json", error);
+    if (!world) {
+        std::cerr << error << '\n';
+        return false;
+    }
+    const Segments edges = hermes::edgesOf(*world);
+    for (std::size_t i = 0; i + 1 < world->poses.size(); ++i) {
+        const auto pose = [&](std::size_t k) {
+            return Pose2D{world->poses[k].x, world->poses[k].y, world->poses[k].theta};
+        };
+        const hermes::ScanPair scans = hermes::scanPair(edges, pose(i), pose(i + 1), {});
+        benchmark::RegisterBenchmark("search between two scans of pillars", [scans](benchmark::State &state) {
+            searchScans(state, scans);
+        })->Arg(int64_t(i));
+    }
+    return true;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+    addViews("expected view, short edges", [](std::size_t n) { return strewn(n, 0.5); });
+    addViews("expected view, long edges", [](std::size_t n) { return strewn(n, 5); });
+    addViews("expected view, all edges seen", foldedWall);
+    benchmark::RegisterBenchmark("search in a map", searchMap)->Arg(100)->Arg(100000);
+    if (!addPillars())
+        return 1;
+    benchmark::AddCustomContext("compiler", BENCH_COMPILER);
+    benchmark::Initialize(&argc, argv);
+    benchmark::RunSpecifiedBenchmarks();
+}
