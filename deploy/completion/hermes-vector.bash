@@ -32,7 +32,7 @@ _hermes_vector() {
     fi
     compopt -o filenames 2>/dev/null
     local worlds=""
-    [ "$command" = report ] && worlds="pillars quadratic"
+    [ "$command" = report ] && worlds="pillars quadratic cutsquare oblique"
     mapfile -t COMPREPLY < <(compgen -f -W "$worlds" -- "$word")
 }
 

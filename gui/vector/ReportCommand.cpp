@@ -89,7 +89,8 @@ void addReportCommand(CLI::App &app) {
     auto command = std::make_shared<ReportCommand>();
     CLI::App *sub = app.add_subcommand(
         "report", "Register consecutive scans of a world and tell how well that went (thesis appendices)");
-    sub->add_option("WORLD", command->in, "World: JSON with edges and poses, or pillars or quadratic")
+    sub->add_option("WORLD", command->in,
+                    "World: JSON with edges and poses, or pillars, quadratic, cutsquare or oblique")
         ->required();
     sub->add_option("--case", command->number, "Scans N and N + 1 with all solutions")->type_name("N");
     sub->add_flag("--overall", command->overall, "All consecutive scans with their accepted solutions");

@@ -19,16 +19,17 @@ struct KnownWorld {
     double discrepancy; ///< threshold of the appendices; m^2
 };
 
-const std::map<std::string, KnownWorld> known = {{"pillars",
-                                                  {"Four walls and eight pillars. The robot drives behind "
-                                                   "the pillars, which hide much of the walls: few edges "
-                                                   "are seen whole, and the pillars look alike.",
-                                                   0.2}},
-                                                 {"quadratic",
-                                                  {"Three walls and a fourth of stairs whose depth grows "
-                                                   "quadratically. The first steps are lower than the noise, "
-                                                   "the last ones are easily told apart.",
-                                                   0.5}}};
+// clang-format off
+const std::map<std::string, KnownWorld> known = {
+    {"pillars", {"Four walls and eight pillars. The robot drives behind the pillars, which hide much of the walls: few "
+                 "edges are seen whole, and the pillars look alike.", 0.2}},
+    {"quadratic", {"Three walls and a fourth of stairs whose depth grows quadratically. The first steps are lower than "
+                   "the noise, the last ones are easily told apart.", 0.5}},
+    {"cutsquare", {"A square room with one corner cut off: few edges, all of them long. Between some scans the robot "
+                   "turns by more than is permitted.", 0.2}},
+    {"oblique", {"A room whose walls all have directions of their own. Between two scans the robot turns by more than "
+                 "is permitted.", 0.2}}};
+// clang-format on
 
 } // namespace
 
