@@ -19,9 +19,12 @@ void MapRun::take(const MapScan &scan) {
     ScanReport::Outcome outcome = ScanReport::Outcome::Skipped;
     if (!scan.partial) {
         points_ = scan.points;
-        builder.find.settings = isWellExpected(scan, stamp)
-                                    ? vectorlib::CorrespondenceSettings()
-                                    : vectorlib::CorrespondenceSettings::forPoorExpectation();
+        const bool wellExpected = isWellExpected(scan, stamp);
+        builder.find.settings = wellExpected ? vectorlib::CorrespondenceSettings()
+                                             : vectorlib::CorrespondenceSettings::forPoorExpectation();
+        builder.matchPair.settings =
+            wellExpected ? vectorlib::ScanPairSettings() : vectorlib::ScanPairSettings::forPoorExpectation();
+        builder.settings.matchPrevious = true;
         compensateMotion(points_, scan.seconds, middle, motion_.twist());
         const ScanReport &report = builder.process(points_, expected);
         pose = report.pose;

@@ -57,6 +57,7 @@ private Q_SLOTS:
     void finderWithNothingToMatch();
     void corridorKeepsTheExpectedPlaceAlongIt();
     void tracksAroundTheRoom();
+    void theScanBeforeMakesUpForWheelsThatSlip();
     void scanOfNothingIsSkipped();
     void strangePlaceIsLost();
 };
@@ -216,6 +217,25 @@ void TestMapBuilder::tracksAroundTheRoom() {
         motion.update(report.pose, 0.1 * i);
     }
     QVERIFY2(builder.map.size() <= 20, qPrintable(QString("%1 edges").arg(builder.map.size())));
+}
+
+void TestMapBuilder::theScanBeforeMakesUpForWheelsThatSlip() {
+    // The expected pose is always 0.9 m off: farther than the finder searches in the map.
+    for (const bool matchPrevious : {false, true}) {
+        std::mt19937 random(5);
+        MapBuilder builder;
+        builder.settings.matchPrevious = matchPrevious;
+        int found = 0;
+        for (int i = 0; i <= 40; ++i) {
+            const double a = 2 * pi * i / 40;
+            const Pose2D truth{-1 + 1.5 * std::cos(a), -0.8 + 1.2 * std::sin(a), a};
+            Pose2D expected = i == 0 ? truth : builder.report().pose;
+            expected.x += i == 0 ? 0 : 0.9;
+            const ScanReport &report = builder.process(scan(truth, 1000, 0.01, random), expected);
+            found += report.outcome == ScanReport::Outcome::Matched && distance(report.pose, truth) < 0.03;
+        }
+        QVERIFY2(matchPrevious ? found == 41 : found < 20, qPrintable(QString::number(found)));
+    }
 }
 
 void TestMapBuilder::scanOfNothingIsSkipped() {

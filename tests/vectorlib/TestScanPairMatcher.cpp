@@ -119,7 +119,7 @@ void TestScanPairMatcher::nearestIsThatOfAllPoints() {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> at(-5, 5);
     ScanIndex index;
-    index.build(room().scan(Transformation2D(), random));
+    index.build(room().scan(Transformation2D(), random), 500);
     for (int i = 0; i < 2000; ++i) {
         const Vector2D<float> p(at(random), at(random));
         const float gate = 0.5f * 0.5f;

@@ -13,13 +13,14 @@ namespace vectorlib {
 /// scans.
 class ScanIndex {
 public:
-    /// Takes a scan in its sensor's frame, counter-clockwise. Points that are not finite or farther away than
-    /// 1,000 km are left out.
-    void build(PointSpan<float> scan) {
+    /// Takes a scan in its sensor's frame, counter-clockwise; of a scan of more than `most` points only every
+    /// n-th. Points that are not finite or farther away than 1,000 km are left out.
+    void build(PointSpan<float> scan, std::size_t most) {
         x_.assign(window, far);
         y_.assign(window, far);
-        for (const Vector2D<float> &p : scan)
-            if (std::abs(p.x) < 1e6f && std::abs(p.y) < 1e6f) {
+        const std::size_t step = 1 + scan.size() / (std::max<std::size_t>(1, most) + 1);
+        for (std::size_t i = 0; i < scan.size(); i += step)
+            if (const Vector2D<float> &p = scan[i]; std::abs(p.x) < 1e6f && std::abs(p.y) < 1e6f) {
                 x_.push_back(p.x);
                 y_.push_back(p.y);
             }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
-#include "vectorlib/mapping/Observation2D.h"
+#include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/mapping/VectorMap.h"
 
 #include <chrono>
@@ -28,6 +28,10 @@ struct MapBuilderSettings {
         0.10; ///< a matched edge is merged when no farther from its map edge; metres, root mean square
     double newEdgeLength = 0.15; ///< shorter unmatched edges do not enter the map; metres
     int lostBeforeRestart = 3;   ///< after so many lost scans in a row the map goes on from the expected pose
+    /// Match each scan with the one before it first, for a better expectation: worth its time where scans lie
+    /// far apart. Then the deviations of an expected pose from such a match, in metres and radians.
+    bool matchPrevious = false;
+    double previousDeviationXY = 0.01, previousDeviationAlpha = 0.005;
 };
 
 /// Builds a vector map scan by scan: extract edges, predict, match, merge. Reads as the pipeline of thesis
@@ -37,10 +41,11 @@ public:
     MapBuilderSettings settings;
     EdgeExtractor extract;
     CorrespondenceFinder find;
+    ScanPairMatcher matchPair; ///< of the scan before with this one
     VectorMap map;
 
     /// Takes a scan (sensor frame, in order of acquisition) and where the sensor is expected to be (map
-    /// frame).
+    /// frame), by odometry or by its motion so far.
     const ScanReport &process(PointSpan<float> scan, const Pose2D &expected) {
         report_ = ScanReport();
         const auto t0 = Clock::now();
@@ -49,7 +54,11 @@ public:
         const std::vector<EdgeRaw2D> &edges = extract.vectorizeClusters(clusters, scan);
         const auto t2 = Clock::now();
         edges_ = &edges;
-        locate(Transformation2D(expected));
+        const CorrespondenceSettings usual = find.settings;
+        locate(settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected));
+        find.settings = usual;
+        if (settings.matchPrevious)
+            remember(scan);
         const auto t3 = Clock::now();
         updateMap();
         const auto t4 = Clock::now();
@@ -73,6 +82,7 @@ public:
         lost_ = 0;
         match_ = Match();
         numbers_.clear();
+        previousPoints_.clear();
     }
 
 private:
@@ -81,6 +91,26 @@ private:
         return std::chrono::duration<double, std::milli>(to - from).count();
     }
 
+    // The expected pose by the motion since the scan before, found in the scans; else the given one. Tells
+    // the finder how good it is.
+    Transformation2D expectedByPrevious(PointSpan<float> scan, const Pose2D &given) {
+        const Transformation2D expected(given);
+        if (previousPoints_.empty())
+            return expected;
+        const ScanPairMatch &motion =
+            matchPair(previousPoints_, previousEdges_, scan, *edges_, previousPose_.inverse() * expected);
+        if (!motion.accepted)
+            return expected;
+        find.settings = CorrespondenceSettings();
+        find.settings.expectedDeviationXY = settings.previousDeviationXY;
+        find.settings.expectedDeviationAlpha = settings.previousDeviationAlpha;
+        return previousPose_ * motion.pose;
+    }
+    void remember(PointSpan<float> scan) {
+        previousPoints_.assign(scan.begin(), scan.end());
+        previousEdges_ = *edges_;
+        previousPose_ = pose_;
+    }
     void locate(const Transformation2D &expected) {
         pose_ = expected;
         match_ = Match();
@@ -143,6 +173,9 @@ private:
     std::vector<int> numbers_;
     std::vector<int> partner_;
     Transformation2D pose_;
+    std::vector<Vector2D<float>> previousPoints_;
+    std::vector<EdgeRaw2D> previousEdges_;
+    Transformation2D previousPose_;
     Match match_;
     ScanReport report_;
     int lost_ = 0;

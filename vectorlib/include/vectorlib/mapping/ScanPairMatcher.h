@@ -58,21 +58,27 @@ public:
     /// is known, from odometry.
     const ScanPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving,
                                     const Transformation2D &expected) {
+        fixedEdges_ = extract(fixed);
+        return (*this)(fixed, fixedEdges_, moving, extract(moving), expected);
+    }
+    /// The same for scans whose edges are known.
+    const ScanPairMatch &operator()(PointSpan<float> fixed, const std::vector<EdgeRaw2D> &fixedEdges,
+                                    PointSpan<float> moving, const std::vector<EdgeRaw2D> &movingEdges,
+                                    const Transformation2D &expected) {
         fixedSegments_.clear();
-        for (const EdgeRaw2D &edge : extract(fixed))
+        for (const EdgeRaw2D &edge : fixedEdges)
             fixedSegments_.push_back(edge.segment);
-        const std::vector<EdgeRaw2D> &edges = extract(moving);
         expected_ = {expected, settings.deviationXY, settings.deviationAlpha};
         refine.start(fixed, moving);
 
         find_.settings = settings.lines;
-        const Match &lines = find_(fixedSegments_, edges, expected);
+        const Match &lines = find_(fixedSegments_, movingEdges, expected);
         match_ = ScanPairMatch();
         match_.linesSuffice = lines.accepted && lines.reliability >= settings.lineReliability;
         match_.byLines = lines.accepted ? lines.pose : expected;
         take(refine(match_.byLines, expected_));
         if (!isGood())
-            searchWidely(edges, lines.pose);
+            searchWidely(movingEdges, lines.pose);
         match_.accepted = isAcceptable();
         return match_;
     }
@@ -127,6 +133,7 @@ private:
 
     CorrespondenceFinder find_;
     Expectation expected_;
+    std::vector<EdgeRaw2D> fixedEdges_;
     std::vector<LineSegment2D<double>> fixedSegments_;
     ScanPairMatch match_;
     double worth_ = 0;

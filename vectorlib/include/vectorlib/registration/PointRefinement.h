@@ -17,14 +17,15 @@ struct Expectation {
 };
 
 struct PointRefinementSettings {
-    double gate = 0.15;       ///< points farther apart are no pairs; metres
-    double gateFactor = 0.6;  ///< how fast a wider first gate narrows to it
-    double scale = 0.25;      ///< a residual of this share of the gate weighs a quarter
-    double deviation = 0.14;  ///< of one point; weighs points against the expected pose; metres
-    int sample = 3;           ///< every n-th point takes part until the steps are small
-    double smallStep = 0.01;  ///< from here on all points do; metres, and radians
-    double lastStep = 0.0015; ///< with a smaller one the search ends; metres, and radians
-    int iterations = 15;      ///< most steps
+    std::size_t mostPoints = 500; ///< of a scan with more, every n-th takes part
+    double gate = 0.15;           ///< points farther apart are no pairs; metres
+    double gateFactor = 0.6;      ///< how fast a wider first gate narrows to it
+    double scale = 0.25;          ///< a residual of this share of the gate weighs a quarter
+    double deviation = 0.14;      ///< of one point; weighs points against the expected pose; metres
+    int sample = 3;               ///< every n-th point takes part until the steps are small
+    double smallStep = 0.01;      ///< from here on all points do; metres, and radians
+    double lastStep = 0.0015;     ///< with a smaller one the search ends; metres, and radians
+    int iterations = 15;          ///< most steps
 };
 
 /// Brings the points of a scan onto those of another: Gauss-Newton steps on the distances of the points of
@@ -37,13 +38,13 @@ public:
 
     /// Takes two scans, each in its sensor's frame and counter-clockwise; metres.
     void start(PointSpan<float> fixed, PointSpan<float> moving) {
-        fixed_.build(fixed);
-        moving_.build(moving);
+        fixed_.build(fixed, settings.mostPoints);
+        moving_.build(moving, settings.mostPoints);
     }
     /// The transformation of the moving scan onto the fixed one, from one nearby. A first gate wider than
     /// that of the settings reaches farther, and costs more.
     Transformation2D operator()(Transformation2D pose, const Expectation &expected, double firstGate = 0) {
-        int sample = settings.sample;
+        int sample = std::max(1, settings.sample);
         double gate = std::max(firstGate, settings.gate);
         for (int i = 0; i < settings.iterations; ++i) {
             const bool narrow = gate <= settings.gate;
@@ -63,8 +64,9 @@ public:
     /// How well the scans agree when the moving one lies at the pose; by a sample of their points.
     PointAgreement agreement(const Transformation2D &pose) const {
         PointAgreement a;
-        a.add(moving_, pose, fixed_, settings.gate, settings.sample);
-        a.add(fixed_, pose.inverse(), moving_, settings.gate, settings.sample);
+        const int sample = std::max(1, settings.sample);
+        a.add(moving_, pose, fixed_, settings.gate, sample);
+        a.add(fixed_, pose.inverse(), moving_, settings.gate, sample);
         return a;
     }
 
