@@ -24,7 +24,7 @@ _hermes_vector() {
     --odometry) mapfile -t COMPREPLY < <(compgen -W "use ignore" -- "$word") && return ;;
     --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --scan | \
         --noise | --fov | --outliers | --seed | --every | --laser | --turn | --case | --rays | --max-dx | --max-dy | \
-        --max-dalpha | --reliability | --ambiguity | --discrepancy | --runs | --max-points) return ;;
+        --max-dalpha | --reliability | --ambiguity | --discrepancy | --runs | --max-points | --first | --draw) return ;;
     esac
     if [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$(hermes-vector "$command" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u)" -- "$word")
