@@ -6,6 +6,23 @@
 #include <QtTest>
 
 #include <chrono>
+#include <cstdlib>
+#include <new>
+
+// Every allocation of the program is counted.
+static std::size_t allocations = 0;
+void *operator new(std::size_t size) {
+    ++allocations;
+    if (void *memory = std::malloc(size))
+        return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void *memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void *memory, std::size_t) noexcept {
+    std::free(memory);
+}
 
 using namespace vectorlib;
 
@@ -78,6 +95,7 @@ private Q_SLOTS:
     void thresholdsOfZeroAcceptNothing_data();
     void thresholdsOfZeroAcceptNothing();
     void givesTheSameAgain();
+    void allocatesNothingInSteadyState();
 };
 
 void TestCorrespondence::pairsOfOneShiftAreOneBundle() {
@@ -415,6 +433,27 @@ void TestCorrespondence::givesTheSameAgain() {
             QCOMPARE(again.solutions[i].score, once.solutions[i].score);
             QCOMPARE(again.solutions[i].pairs.size(), once.solutions[i].pairs.size());
         }
+    }
+}
+
+void TestCorrespondence::allocatesNothingInSteadyState() {
+    const RandomRoom made(7);
+    const Segments fixed = seenFrom(made.edges, made.first), moving = seenFrom(made.edges, made.second);
+    Hall hall(2000);
+    const Point at = hall.middle;
+    const Segments scan = hall.view({at.x, at.y, 0.2});
+    CorrespondenceSearch search;
+    for (const bool inMap : {false, true}) {
+        std::size_t before = 0, after = 0, solutions = 0;
+        for (int i = 0; i < 5; ++i) {
+            before = allocations; // buffers grow in the first rounds
+            const auto &result =
+                inMap ? search(hall.map, scan, Transformation2D(at.x, at.y, 0.1)) : search(fixed, moving);
+            after = allocations;
+            solutions = result.solutions.size();
+        }
+        QVERIFY(solutions > 0);
+        QCOMPARE(after, before);
     }
 }
 

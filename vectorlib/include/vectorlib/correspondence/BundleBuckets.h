@@ -16,8 +16,7 @@ public:
         order_.clear();
         for (const Bundle &bundle : bundles)
             order_.push_back({&bundle, 0});
-        std::stable_sort(order_.begin(), order_.end(),
-                         [](const Entry &a, const Entry &b) { return a.bundle->length > b.bundle->length; });
+        std::sort(order_.begin(), order_.end()); // all in bucket 0 as yet: longest first
         leaders_.clear();
         for (Entry &entry : order_) {
             while (entry.bucket < leaders_.size() &&
@@ -26,8 +25,7 @@ public:
             if (entry.bucket == leaders_.size())
                 leaders_.push_back(entry.bundle);
         }
-        std::stable_sort(order_.begin(), order_.end(),
-                         [](const Entry &a, const Entry &b) { return a.bucket < b.bucket; });
+        std::sort(order_.begin(), order_.end());
         starts_.assign(leaders_.size() + 1, order_.size());
         for (std::size_t i = order_.size(); i-- > 0;)
             starts_[order_[i].bucket] = i;
@@ -47,6 +45,12 @@ private:
     struct Entry {
         const Bundle *bundle;
         std::size_t bucket;
+
+        bool operator<(const Entry &o) const {
+            return bucket != o.bucket                   ? bucket < o.bucket
+                   : bundle->length != o.bundle->length ? bundle->length > o.bundle->length
+                                                        : bundle < o.bundle;
+        }
     };
     std::vector<Entry> order_;            // by bucket
     std::vector<const Bundle *> leaders_; // the longest of every bucket

@@ -22,7 +22,7 @@ struct SearchSettings {
     double sharedView = 0.25;   ///< least share of the seen angle that the expected view must show
     double matchedShare = 0.30; ///< least share of the dynamic length that must have partners
     std::size_t maxSolutions = 16;
-    std::size_t maxPairs = 20000;          ///< potential pairs
+    std::size_t maxPairs = 5000;           ///< potential pairs
     std::uint64_t maxCombinations = 20000; ///< bundles tried
 };
 
@@ -116,10 +116,10 @@ private:
         view_.setMoving(moving_.segments);
         for (const Combination &c : *combinations_)
             judge(select_(pairs_, fixed_.segments, moving_.segments, c.transformation));
-        std::stable_sort(result_.solutions.begin(), result_.solutions.end(),
-                         [](const Solution &a, const Solution &b) {
-                             return a.accepted != b.accepted ? a.accepted : a.score > b.score;
-                         });
+        std::sort(result_.solutions.begin(), result_.solutions.end(),
+                  [](const Solution &a, const Solution &b) {
+                      return a.accepted != b.accepted ? a.accepted : a.score > b.score;
+                  });
     }
     SearchOutcome findCombinations() {
         combinations_ = &none_;
