@@ -173,6 +173,10 @@ private Q_SLOTS:
         QTest::newRow("huge remissions") << "ROBOTLASER1 0 0 1 0.5 20 0 0 2 1 2 99999 " + pose(0, 0, 0) +
                                                 pose(0, 0, 0) + "0 0 0 0 0 1 h 1\n"
                                          << QByteArray("a.log:1:") << QByteArray("fields of ROBOTLASER1");
+        for (const char *angles : {"1e308 3.0 0.5", "0 3.0 1e308", "-7 3.0 0.5"})
+            QTest::newRow(angles) << QByteArray("ROBOTLASER1 0 ") + angles + " 20 0 0 2 1 2 0 " +
+                                         pose(0, 0, 0) + pose(0, 0, 0) + "0 0 0 0 0 1 h 1\n"
+                                  << QByteArray("a.log:1:") << QByteArray("within a turn");
         QTest::newRow("binary") << QByteArray("FLASER\0\1\2\n", 10) << QByteArray("a.log:1:")
                                 << QByteArray("a line of text");
         QTest::newRow("another file")

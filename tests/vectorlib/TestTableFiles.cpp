@@ -23,6 +23,10 @@ std::pair<int, QByteArray> outcome(const QByteArray &kind, const QByteArray &tex
     const auto size = [](const auto &v) { return v.size(); };
     if (kind == "points")
         return result(readCsvPoints<double>(in, "f"), size);
+    if (kind == "float points")
+        return result(readCsvPoints<float>(in, "f"), size);
+    if (kind == "float pcd")
+        return result(readPcd<float>(in, "f"), size);
     if (kind == "pcd")
         return result(readPcd<double>(in, "f"), size);
     if (kind == "segments")
@@ -116,6 +120,13 @@ private Q_SLOTS:
         row("pcd without y", "pcd", "FIELDS x z\nPOINTS 1\nDATA ascii\n", "f:3", "fields x and y");
         row("pcd with nan", "pcd", pcdHeader + "POINTS 1\nDATA ascii\n9 9 nan 2\n", "f:12",
             "a finite number as x");
+        row("pcd with a field of no numbers", "pcd", "FIELDS y x\nCOUNT 1 0\nPOINTS 1\nDATA ascii\n5\n",
+            "f:2", "a count as COUNT");
+        row("beyond all floats", "float points", "1,2\n1e39,3\n", "f:2", "a coordinate beyond all measure");
+        row("pcd beyond all floats", "float pcd", pcdHeader + "POINTS 1\nDATA ascii\n9 9 1 1e39\n", "f:12",
+            "a coordinate beyond all measure");
+        row("segment beyond all numbers", "segments", "0,0,1,1\n1e308,0,-1e308,0\n", "f:2",
+            "a segment beyond all measure");
         row("pcd cut in the header", "pcd", pcdHeader, "f:9", "a line DATA");
     }
     void badInput() {

@@ -89,8 +89,9 @@ public:
 private:
     using Problem = std::optional<InputError>;
     static constexpr std::size_t maxRays = 100000;
-    static constexpr double farthest = 1000; // metres; no scanner of such logs sees as far
-    static constexpr double widest = 1e7;    // metres; nor does a robot drive as far
+    static constexpr double farthest = 1000;           // metres; no scanner of such logs sees as far
+    static constexpr double largestAngle = 2.001 * pi; // a turn, however it was rounded
+    static constexpr double widest = 1e7;              // metres; nor does a robot drive as far
 
     Problem readLine(std::string_view line) {
         if (line.empty() || line.front() == '#')
@@ -157,6 +158,9 @@ private:
         if (!(scan.angleStep > 0) || !(scan.maxRange > 0))
             return lines_.errorHere(quoted(fields_[scan.angleStep > 0 ? 5 : 4]),
                                     "a resolution and a maximum range above 0");
+        if (std::abs(scan.startAngle) > largestAngle || scan.angleStep > largestAngle)
+            return lines_.errorHere(quoted(fields_[scan.angleStep > largestAngle ? 4 : 2]),
+                                    "a start angle and a resolution within a turn, in radians");
         scan.maxRange = std::min(scan.maxRange, farthest);
         std::size_t at = 8;
         if (const auto problem = readRanges("ROBOTLASER1", at, 15, scan))

@@ -11,8 +11,11 @@ template <typename Scalar = float>
 Expected<std::vector<Vector2D<Scalar>>> readCsvPoints(std::istream &in, std::string name) {
     CsvReader csv(in, std::move(name), {{"x", "y"}, {}});
     std::vector<Vector2D<Scalar>> points;
-    while (const auto *row = csv.next())
+    while (const auto *row = csv.next()) {
         points.emplace_back(static_cast<Scalar>((*row)[0]), static_cast<Scalar>((*row)[1]));
+        if (!points.back().isFinite()) // a double beyond all floats
+            return csv.errorHere("a coordinate beyond all measure", "metres");
+    }
     if (csv.error())
         return *csv.error();
     return points;

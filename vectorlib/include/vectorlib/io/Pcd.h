@@ -35,7 +35,7 @@ inline Expected<PcdHeader> readPcdHeader(LineReader &lines) {
         } else if (keyword == "COUNT" || keyword == "POINTS") {
             for (const std::string_view field : fields) {
                 const auto count = parseCount(field, keyword == "COUNT" ? 10000 : limit);
-                if (!count)
+                if (!count || (keyword == "COUNT" && *count == 0)) // a field of no numbers has no place
                     return lines.errorHere(quoted(field), "a count as " + keyword);
                 if (keyword == "COUNT")
                     counts.push_back(*count);
@@ -98,6 +98,8 @@ Expected<std::vector<Vector2D<Scalar>>> readPcd(std::istream &in, std::string na
             return lines.errorHere(quoted(fields[x ? header->y : header->x]),
                                    std::string("a finite number as ") + (x ? "y" : "x"));
         points.emplace_back(static_cast<Scalar>(*x), static_cast<Scalar>(*y));
+        if (!points.back().isFinite()) // a double beyond all floats
+            return lines.errorHere("a coordinate beyond all measure", "metres");
     }
     if (lines.error())
         return *lines.error();
