@@ -10,6 +10,13 @@
 
 namespace hermes {
 
+namespace {
+
+/// What 32 bits can hold, signed or not: the stamps of classic pcap.
+constexpr std::int64_t earliest_s = -(std::int64_t(1) << 31), latest_s = (std::int64_t(1) << 32) - 1;
+
+} // namespace
+
 PcapReader::PcapReader()
     : pcap_(nullptr, &pcap_close) {}
 
@@ -60,6 +67,14 @@ PcapReader::Next PcapReader::next(Datagram &datagram) {
             error_ = path_ + ": record " + std::to_string(counts_.records + 1) + " at byte " +
                      std::to_string(begin) + " cannot be read, the " + std::to_string(counts_.records) +
                      " before it are whole: " + pcap_geterr(pcap_.get());
+            close();
+            return Next::Failed;
+        }
+        // pcapng has room for stamps that do not fit into nanoseconds.
+        if (header->ts.tv_sec < earliest_s || header->ts.tv_sec > latest_s) {
+            error_ = path_ + ": record " + std::to_string(counts_.records + 1) + " at byte " +
+                     std::to_string(begin) + " has a stamp of " + std::to_string(header->ts.tv_sec) +
+                     " s since 1970, at most " + std::to_string(latest_s) + " expected";
             close();
             return Next::Failed;
         }

@@ -79,6 +79,7 @@ private Q_SLOTS:
     void filesThatAreNoCapture_data();
     void filesThatAreNoCapture();
     void unknownLinkTypeIsRefused();
+    void stampsBeyondNanosecondsAreRefused();
     void tsharkReadsIt();
     void realRecording();
     void realPositionPacketHasAWrongLength();
@@ -291,6 +292,35 @@ void TestCapture::unknownLinkTypeIsRefused() {
     PcapReader reader;
     QVERIFY(!reader.open(path));
     QVERIFY2(reader.error().find("link type 105 (IEEE802_11) is not supported") != std::string::npos,
+             reader.error().c_str());
+}
+
+/// pcapng: a section, an Ethernet interface whose stamps count seconds, and a datagram far in the future.
+void TestCapture::stampsBeyondNanosecondsAreRefused() {
+    const auto words = [](std::initializer_list<quint32> values) {
+        QByteArray bytes;
+        for (const quint32 value : values)
+            bytes += QByteArray(reinterpret_cast<const char *>(&value), 4);
+        return bytes;
+    };
+    const QByteArray frame = frameOf(datagram("ab")); // 44 bytes: nothing to fill up
+    const auto record = [&](quint32 high, quint32 low) {
+        return words({6, 76, 0, high, low, 44, 44}) + frame + words({76});
+    };
+    QTemporaryDir folder;
+    QFile file(folder.filePath("future.pcapng"));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write(words({0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0xFFFFFFFF, 0xFFFFFFFF, 28}));
+    file.write(words({1, 32, 1, 0, 0x00010009, 0, 0, 32})); // option 9: a tick is 10^-0 s
+    file.write(record(0, 1700000000) + record(0x7FFFFFFF, 0));
+    file.close();
+    PcapReader reader;
+    QVERIFY2(reader.open(file.fileName().toStdString()), reader.error().c_str());
+    Datagram d;
+    QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
+    QCOMPARE(qint64(d.stamp_ns), qint64(1700000000) * 1000000000);
+    QCOMPARE(reader.next(d), PcapReader::Next::Failed);
+    QVERIFY2(reader.error().find("record 2 at byte 136 has a stamp of") != std::string::npos,
              reader.error().c_str());
 }
 
