@@ -103,7 +103,7 @@ void TurnAssembler::endTurn(bool partial) {
     if (turn_.firings == 0)
         return;
     turn_.partial = partial;
-    if (!partial)
+    if (!partial && turn_.end_ns > turn_.begin_ns) // packets may overlap in time
         rpm_ = 60.0 * second_ns / double(turn_.end_ns - turn_.begin_ns);
     sink_(turn_);
     ++turn_.number;

@@ -41,6 +41,7 @@ private Q_SLOTS:
     void aLongGapCutsTheTurn();
     void aClockJumpIsNoLoss();
     void aHeadThatStandsStillDoesNotFillTheMemory();
+    void turnsThatEndBeforeTheyBeginHaveNoSpeed();
     void randomBytesDoNoHarm();
 };
 
@@ -311,6 +312,23 @@ void TestVelodyne::aHeadThatStandsStillDoesNotFillTheMemory() {
     for (int i = 0; i < 4000; ++i)
         feed(assembler, sensor, i);
     QCOMPARE(firings, (std::vector<std::uint32_t>{21701, 21701}));
+}
+
+/// Two packets 1 us apart: a turn begins with the last firing of the one and ends with the first of the
+/// other.
+void TestVelodyne::turnsThatEndBeforeTheyBeginHaveNoSpeed() {
+    int turns = 0;
+    TurnAssembler assembler({}, [&turns](const Turn &) { ++turns; });
+    for (int number = 0; number < 2; ++number) {
+        DataPacketWriter writer;
+        const int wrap = number == 0 ? blocksPerPacket - 1 : 1;
+        for (int block = 0; block < blocksPerPacket; ++block)
+            writer.setAzimuth(block, block < wrap ? 35000 : 100);
+        writer.setTail(std::uint32_t(1000 + number));
+        QCOMPARE(assembler.feed(writer.bytes().data(), packetSize, number * 1000), PacketFault::None);
+    }
+    QCOMPARE(turns, 2);
+    QCOMPARE(assembler.rpm(), 0.0);
 }
 
 void TestVelodyne::randomBytesDoNoHarm() {
