@@ -190,6 +190,12 @@ void TestVectorizerProperties::degenerateInput_data() {
         points[index] = p;
         return points;
     };
+    const auto scaled = [&corner](double factor) {
+        QVector<QPointF> points = corner;
+        for (QPointF &p : points)
+            p *= factor;
+        return points;
+    };
     for (const Algorithm &a : algorithms) {
         const auto row = [&a](const char *name, const QVector<QPointF> &points, double sigma, int lines) {
             QTest::newRow(qPrintable(QString("%1: %2").arg(a.name, name))) << a << points << sigma << lines;
@@ -211,6 +217,11 @@ void TestVectorizerProperties::degenerateInput_data() {
         row("second point no number", with(1, {nan, nan}), 0.02, -1);
         row("last point infinite", with(39, {infinite, 2}), 0.02, -1);
         row("squares overflow", with(30, {1e200, -1e200}), 0.02, -1);
+        row("moments beyond all numbers", scaled(1e100), 0.02, -1);
+        row("moments below all numbers", scaled(1e-81), 0.02, -1);
+        row("length beyond all numbers", {{-1e308, 0}, {1e308, 0}}, 0.02, -1);
+        row("points almost at one place", {{0, 0}, {0, 2e-162}}, 0.02, -1);
+        row("a moment beyond all numbers", {{0, -1.8e146}, {-4.8e154, 0}, {0, 0}}, 0, -1);
         row("all no numbers", QVector<QPointF>(20, {nan, nan}), 0.02, -1);
     }
 }
@@ -219,6 +230,7 @@ void TestVectorizerProperties::degenerateInput() {
     QFETCH(Algorithm, algorithm);
     QFETCH(QVector<QPointF>, points);
     QFETCH(double, sigma);
+    const std::size_t least = isOneOf(algorithm, {"dp", "rw"}) ? 1 : 2;
     QFETCH(int, lines);
     Points p;
     for (const QPointF &q : points)
@@ -233,6 +245,9 @@ void TestVectorizerProperties::degenerateInput() {
         for (const VectorizedLine &line : found) {
             QCOMPARE(line.first, next);
             next = line.last + 1;
+            QVERIFY(next >= line.first + least);
+            QVERIFY(!line.line.isValid() || std::abs(line.line.normal().squaredNorm() - 1) < 1e-6);
+            QVERIFY(line.segment.direction().isFinite());
             QVERIFY(std::isfinite(line.line.a) && std::isfinite(line.line.b) && std::isfinite(line.line.c));
             QVERIFY(std::isfinite(line.sigma) && line.segment.isFinite() && isFinite(line.sums));
         }

@@ -5,9 +5,10 @@
 
 namespace vectorlib {
 
-/// A total least squares line and how well it fits.
+/// A total least squares line and how well it fits. The line is invalid when the points have no direction:
+/// fewer than two distinct, or isotropic, or apart by less than 1e-70 m or more than 1e70 m.
 struct TlsLine {
-    Line2D line;         ///< invalid when the points have no direction: fewer than two distinct, or isotropic
+    Line2D line;
     double variance = 0; ///< mean squared distance of the points from the line; m^2. Thesis (6.22)
 };
 
@@ -18,8 +19,9 @@ inline TlsLine fitLine(const TlsSums &s) {
     const double p = -s.xy;       // numerator of (6.16), over N
     const double q = s.xx - s.yy; // its denominator, over N
     const double root = std::sqrt(4 * p * p + q * q);
-    // Below the rounding of the moments themselves a direction would be noise.
-    if (!(root > 1e-14 * (s.xx + s.yy)) || !(s.n >= 2))
+    // Below the rounding of the moments themselves a direction would be noise; and the root of an extreme one
+    // leaves the range of numbers below.
+    if (!(root > 1e-14 * (s.xx + s.yy)) || !(root > 1e-150 && root < 1e150) || !(s.n >= 2))
         return fit;
     // (6.19) without its cancellation: the larger is sqrt(h / root), the smaller |p| / sqrt(h root).
     const double h = 0.5 * (root + std::abs(q)), inverse = 1 / std::sqrt(h * root);

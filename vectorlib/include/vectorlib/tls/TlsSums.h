@@ -26,9 +26,9 @@ struct TlsSums {
         s.n = n;
         const double inverse = 1 / n, mx = sx * inverse, my = sy * inverse;
         s.mean = origin + Vector2D<double>(mx, my);
-        s.xx = std::max(0.0, sxx - sx * mx);
+        s.xx = std::max(sxx - sx * mx, 0.0); // in this order NaN stays NaN
         s.xy = sxy - sx * my;
-        s.yy = std::max(0.0, syy - sy * my);
+        s.yy = std::max(syy - sy * my, 0.0);
         return s;
     }
     /// Of the points first .. last, shifted by the first one while summing (erratum 3).
@@ -73,9 +73,9 @@ struct TlsSums {
         r.n = s.n;
         r.mean = t * s.mean;
         // Points on one line have no moment across it; rounding must not make it negative.
-        r.xx = std::max(0.0, c * c * s.xx - 2 * c * i * s.xy + i * i * s.yy);
+        r.xx = std::max(c * c * s.xx - 2 * c * i * s.xy + i * i * s.yy, 0.0);
         r.xy = c * i * (s.xx - s.yy) + (c * c - i * i) * s.xy;
-        r.yy = std::max(0.0, i * i * s.xx + 2 * c * i * s.xy + c * c * s.yy);
+        r.yy = std::max(i * i * s.xx + 2 * c * i * s.xy + c * c * s.yy, 0.0);
         return r;
     }
 };

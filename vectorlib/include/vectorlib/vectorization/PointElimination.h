@@ -23,7 +23,7 @@ inline Line2D lineThrough(Vector2D<double> from, Vector2D<double> to) {
         normal = -normal;
         c = -c;
     }
-    if (!normal.isFinite() || !std::isfinite(c))
+    if (!(std::abs(normal.squaredNorm() - 1) < 1e-6) || !std::isfinite(c)) // none, or out of range
         return {};
     return {normal.x, normal.y, c};
 }
@@ -42,15 +42,16 @@ void linesThrough(PointSpan<Scalar> points, const std::vector<std::size_t> &kept
         v.last = isLast ? kept[i + 1] : kept[i + 1] - 1;
         const Vector2D<double> from(points[kept[i]]), to(points[kept[i + 1]]);
         v.line = lineThrough(from, to);
-        if (from.isFinite() && to.isFinite())
+        if ((to - from).isFinite() && from.isFinite())
             v.segment = {from, to};
         if (settings.measure) {
             const TlsSums sums = TlsSums::of(points.begin() + v.first, points.begin() + v.last + 1);
-            if (isFinite(sums)) {
+            const double a = v.line.a, b = v.line.b, across = v.line.signedDistance(sums.mean);
+            const double squares = a * a * sums.xx + 2 * a * b * sums.xy + b * b * sums.yy;
+            const double sigma = std::sqrt(std::max(0.0, squares / sums.n) + across * across);
+            if (isFinite(sums) && std::isfinite(sigma)) {
                 v.sums = sums;
-                const double a = v.line.a, b = v.line.b, across = v.line.signedDistance(sums.mean);
-                const double squares = a * a * sums.xx + 2 * a * b * sums.xy + b * b * sums.yy;
-                v.sigma = std::sqrt(std::max(0.0, squares / sums.n) + across * across);
+                v.sigma = sigma;
             }
         }
         lines.push_back(v);
