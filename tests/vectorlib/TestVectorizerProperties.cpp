@@ -196,6 +196,24 @@ void TestVectorizerProperties::degenerateInput_data() {
             p *= factor;
         return points;
     };
+    // Rounding of the sums over all points parts the two that coincide.
+    const QVector<QPointF> coinciding = {{0.769, 0.263},     {2, 0},
+                                         {2, 0.1},           {2, 0.2},
+                                         {2, 0.3},           {2, 0.4},
+                                         {2, 0.5},           {2, 0.6},
+                                         {2, -12.1},         {14.851, 14.906},
+                                         {14.906, 14.906},   {14.906, 14.906},
+                                         {1.85, 8.4},        {-0.001, -0.001},
+                                         {2, 0.2},           {2, 0.463},
+                                         {-0.255, 2},        {1.1, 2},
+                                         {0.257, 1.795},     {-20.735, -32.768},
+                                         {-32.64, 0.257},    {1.539, -12.287},
+                                         {-31.737, -12.285}, {-6.137, -12.285},
+                                         {19.463, -0.001},   {-0.001, -12.284},
+                                         {-20.473, -12.284}, {30.727, -12.283},
+                                         {-9.209, -12.283},  {27.655, -24.569},
+                                         {-12.273, 2},       {0, 2},
+                                         {0.1, 2},           {0, 0}};
     for (const Algorithm &a : algorithms) {
         const auto row = [&a](const char *name, const QVector<QPointF> &points, double sigma, int lines) {
             QTest::newRow(qPrintable(QString("%1: %2").arg(a.name, name))) << a << points << sigma << lines;
@@ -222,6 +240,7 @@ void TestVectorizerProperties::degenerateInput_data() {
         row("length beyond all numbers", {{-1e308, 0}, {1e308, 0}}, 0.02, -1);
         row("points almost at one place", {{0, 0}, {0, 2e-162}}, 0.02, -1);
         row("a moment beyond all numbers", {{0, -1.8e146}, {-4.8e154, 0}, {0, 0}}, 0, -1);
+        row("sigma 0 and points at one place", coinciding, 0, -1);
         row("all no numbers", QVector<QPointF>(20, {nan, nan}), 0.02, -1);
     }
 }

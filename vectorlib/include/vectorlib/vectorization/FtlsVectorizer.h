@@ -49,7 +49,7 @@ private:
     using Position = typename BlockSums<Scalar>::Position;
 
     // The end of the line that begins at `first`: figure 6.5 among the borders of blocks, then point by point
-    // through the block where that lands. Two points always fit, so the search cannot fail.
+    // through the block where that lands. Two points always fit.
     Position longest(const Position &first, double variance) const {
         const std::size_t blocks = sums_.blocks();
         if (sums_.fitBorder(first, blocks, variance))
@@ -59,7 +59,9 @@ private:
             const std::size_t middle = good + (bad - good) / 2;
             (sums_.fitBorder(first, middle, variance) ? good : bad) = middle;
         }
-        return sums_.extend(first, good, variance);
+        const Position end = sums_.extend(first, good, variance);
+        // Where sigma is nearly 0, rounding of the sums can part two points that (nearly) coincide.
+        return end.index < first.index + 2 ? sums_.at(std::min(first.index + 2, sums_.size())) : end;
     }
     void addLine(PointSpan<Scalar> points, const Position &first, const Position &end) {
         lines_.push_back(makeLine(points, first.index, end.index - 1, sums_.between(first, end)));
