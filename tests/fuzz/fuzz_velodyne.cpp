@@ -1,0 +1,66 @@
+#include "tests/fuzz/FuzzInput.h"
+
+#include "protocol/velodyne/TurnAssembler.h"
+
+using namespace hermes::velodyne;
+
+namespace {
+
+/// A packet that is right but for what the input says.
+std::array<std::uint8_t, packetSize> takePacket(FuzzInput &in) {
+    DataPacketWriter writer;
+    const auto azimuth = in.take<std::uint16_t>(), step = in.take<std::uint16_t>(),
+               distance = in.take<std::uint16_t>();
+    for (int block = 0; block < blocksPerPacket; ++block) {
+        writer.setAzimuth(block, std::uint16_t((azimuth + block * step) % azimuthSteps));
+        for (int laser = 0; laser < lasers; ++laser)
+            writer.setReturn(block, laser, std::uint16_t(distance * (laser + block)), 1);
+    }
+    constexpr ReturnMode modes[] = {ReturnMode::Strongest, ReturnMode::Last, ReturnMode::Dual};
+    writer.setTail(in.take<std::uint32_t>() % stampPeriod_us, modes[in.take<std::uint8_t>() % 3]);
+    auto bytes = writer.bytes();
+    for (auto patches = in.take<std::uint8_t>() % 8; patches > 0; --patches) {
+        const auto at = in.take<std::uint16_t>() % packetSize;
+        bytes[at] = in.take<std::uint8_t>();
+    }
+    return bytes;
+}
+
+void requireSound(const Turn &turn) {
+    FUZZ_REQUIRE(turn.firings > 0);
+    FUZZ_REQUIRE(turn.points.size() <= std::size_t(turn.firings) * lasers * 2);
+    for (const Point &p : turn.points) {
+        FUZZ_REQUIRE(p.azimuth >= 0 && p.azimuth < 360 && p.range > 0 && p.laser < lasers);
+        FUZZ_REQUIRE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
+    }
+}
+
+} // namespace
+
+/// Any packets at any time give turns whose points are finite; every packet is counted once.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
+    FuzzInput in(data, size);
+    TurnAssembler::Options options;
+    options.laser = in.take<std::uint8_t>() % (lasers + 1) - 1;
+    options.returns = Returns(in.take<std::uint8_t>() % 3);
+    std::int64_t now_ns = 0;
+    TurnAssembler assembler(options, requireSound);
+    std::uint64_t packets = 0;
+    for (; in.left() > 0 && packets < 200; ++packets) {
+        const auto kind = in.take<std::uint8_t>();
+        if (kind == 0)
+            now_ns = in.take<std::uint32_t>() * std::int64_t(1000000000); // all that PcapReader lets pass
+        else
+            now_ns += kind * packetPeriod_ns / 4;
+        if (kind % 16 == 1) {
+            const std::string raw = in.bytes(in.take<std::uint16_t>());
+            assembler.feed(reinterpret_cast<const std::uint8_t *>(raw.data()), raw.size(), now_ns);
+        } else {
+            const auto packet = takePacket(in);
+            assembler.feed(packet.data(), packet.size(), now_ns);
+        }
+    }
+    assembler.finish();
+    FUZZ_REQUIRE(assembler.counts().packets == packets && assembler.rpm() >= 0 && assembler.rpm() < 1e9);
+    return 0;
+}
