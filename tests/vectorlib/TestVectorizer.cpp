@@ -41,6 +41,11 @@ Points polyline(const std::vector<Vector2D<double>> &corners, int each, double s
     return points;
 }
 
+Vector2D<float> onRay(std::size_t ray, double range) {
+    const double angle = 0.01 * static_cast<double>(ray);
+    return Vector2D<float>(Vector2D<double>(std::cos(angle), std::sin(angle)) * range);
+}
+
 const std::vector<Vector2D<double>> staircase{{2, -2}, {2, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 2}, {-2, 2}};
 
 } // namespace
@@ -54,6 +59,7 @@ private Q_SLOTS:
     void everyLineKeepsSigma();
     void noiseFreeCornersAreExact();
     void badIntersectionIsCorrected();
+    void correctedLinesHaveExactSums();
     void degenerateInput_data();
     void degenerateInput();
     void lastSinglePoint();
@@ -138,6 +144,22 @@ void TestVectorizer::badIntersectionIsCorrected() {
             worst = std::max(worst, nearest);
         }
     QVERIFY2(worst < 0.12, qPrintable(QString::number(worst)));
+}
+
+// Where ranges jump by 100 m within a block, sums in float are good for nothing.
+void TestVectorizer::correctedLinesHaveExactSums() {
+    Points points;
+    const std::vector<int> ranges = {32, 0, 2,  53, 1,  1, 1, 2, 1,  2, 1,  2,  1,  4,  2,  3,  2,  3,
+                                     2,  3, 2,  3,  2,  3, 1, 3, 2,  3, 2,  3,  2,  3,  2,  48, 48, 0,
+                                     0,  0, 48, 48, 48, 3, 2, 0, 50, 0, 53, 50, 53, 10, 13, 13};
+    for (const int range : ranges)
+        points.push_back(onRay(points.size(), 2.0 * range));
+    for (int i = 0; i < 15; ++i)
+        points.push_back(onRay(points.size(), 27.756));
+    points.insert(points.end(), 2, Vector2D<float>());
+    FtlsVectorizer<float> vectorize;
+    for (const VectorizedLine &line : vectorize(points))
+        QVERIFY(line.sums.n < 4 || line.sigma <= 0.02);
 }
 
 void TestVectorizer::degenerateInput_data() {

@@ -62,9 +62,11 @@ private:
         if (!sums.fitWithin(first, cut1, variance) || !sums.fitWithin(cut1, cut2, variance) ||
             !sums.fitWithin(cut2, next.last + 1, variance))
             return false;
-        const VectorizedLine a = makeLine(points, first, cut1 - 1, sums.sums(first, cut1));
-        const VectorizedLine b = makeLine(points, cut1, cut2 - 1, sums.sums(cut1, cut2));
-        const VectorizedLine c = makeLine(points, cut2, next.last, sums.sums(cut2, next.last + 1));
+        // From exact sums: those that fitWithin() judges by.
+        const auto line = [&points](std::size_t from, std::size_t end) {
+            return makeLine(points, from, end - 1, TlsSums::of(points.begin() + from, points.begin() + end));
+        };
+        const VectorizedLine a = line(first, cut1), b = line(cut1, cut2), c = line(cut2, next.last + 1);
         const bool stillMeetsBefore = joined_.size() < 2 ||
                                       join(points, joined_[joined_.size() - 2], a, settings.delta) ||
                                       !join(points, joined_[joined_.size() - 2], previous, settings.delta);
