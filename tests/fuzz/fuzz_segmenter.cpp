@@ -70,10 +70,12 @@ void segmentRanges(const EarSettings &settings, FuzzInput &in) {
         ranges.push_back(in.take<Range>());
     scan.ranges = ranges.data();
     scan.count = ranges.size();
-    EarSegmenter<float> segment;
-    segment.settings = settings;
-    const Segmentation &found = segment(scan);
-    requireSound(found, scan.count, settings, [&](std::size_t i) { return scan.isReturn(scan.range(i)); });
+    EarSegmenter<float> segment, plain;
+    segment.settings = plain.settings = settings;
+    plain.level = simd::Level::Scalar;
+    requireSound(segment(scan), scan.count, settings,
+                 [&](std::size_t i) { return scan.isReturn(scan.range(i)); });
+    FUZZ_REQUIRE(isSame(segment(scan), plain(scan)));
 }
 
 } // namespace

@@ -209,6 +209,12 @@ void TestEarSegmenter::invalidPointsTakeNoPart() {
     QCOMPARE(s.size(), std::size_t(1));
     QCOMPARE(s.size(0), std::size_t(997));
     QCOMPARE(s.labels[101], -1);
+    for (const Points &none : {Points{{nan, 0}}, Points(400, {1, infinity})}) {
+        EarSegmenter<float> fresh; // whose buffers are empty
+        const Segmentation &outliers = fresh(none);
+        QCOMPARE(outliers.size(), std::size_t(0));
+        QCOMPARE(outliers.labels, std::vector<int>(none.size(), -1));
+    }
 }
 
 // Even where single points are clusters and every threshold is as large as it can be.

@@ -40,7 +40,8 @@ public:
                 runs.begin(clusters_[c].lastRun + 1) > points.count() - near)
                 startAfterWidestGap(runs, points.nearness, static_cast<int>(c));
     }
-    /// Writes the result for `count` points, of which those of `taking` take part; null: all.
+    /// Writes the result for `count` points, of which those of `taking` take part; null: all, or none where
+    /// there are no runs.
     void write(const RunClusters &runs, const int *taking, std::size_t count, simd::Level level,
                Segmentation &result) {
         result.starts.assign(1, 0);
@@ -50,7 +51,7 @@ public:
         }
         result.order.resize(result.starts.back());
         result.labels.resize(count);
-        if (taking)
+        if (runs.begin(runs.runs()) < count)
             simd::ramp(result.labels.data(), count, -1, 0, level);
         for (std::size_t run = 0; run < runs.runs(); ++run) {
             std::size_t begin = runs.begin(run);
