@@ -60,6 +60,7 @@ private Q_SLOTS:
     void noiseFreeCornersAreExact();
     void badIntersectionIsCorrected();
     void correctedLinesHaveExactSums();
+    void negativeSigmaCorrectsNoLine();
     void degenerateInput_data();
     void degenerateInput();
     void lastSinglePoint();
@@ -160,6 +161,20 @@ void TestVectorizer::correctedLinesHaveExactSums() {
     FtlsVectorizer<float> vectorize;
     for (const VectorizedLine &line : vectorize(points))
         QVERIFY(line.sums.n < 4 || line.sigma <= 0.02);
+}
+
+// Two parallel walls, which are joined only by lines beyond a sigma of 0.
+void TestVectorizer::negativeSigmaCorrectsNoLine() {
+    Points points;
+    for (int i = 0; i < 64; ++i)
+        points.emplace_back(i < 32 ? 2.0f : 2.03125f, float(i) / 64);
+    FtlsVectorizer<float> vectorize;
+    for (const double sigma : {0.0, -0.02, -1e30}) {
+        vectorize.settings.sigma = sigma;
+        const auto &lines = vectorize(points);
+        QCOMPARE(lines.size(), std::size_t(2));
+        QCOMPARE(lines[0].sigma + lines[1].sigma, 0.0);
+    }
 }
 
 void TestVectorizer::degenerateInput_data() {

@@ -58,7 +58,7 @@ private:
         if (count < 6)
             return false;
         const std::size_t cut1 = first + count / 3, cut2 = first + 2 * count / 3;
-        const double variance = settings.sigma * settings.sigma;
+        const double variance = settings.variance();
         if (!sums.fitWithin(first, cut1, variance) || !sums.fitWithin(cut1, cut2, variance) ||
             !sums.fitWithin(cut2, next.last + 1, variance))
             return false;
