@@ -1,0 +1,51 @@
+#include "daemons/motorcontrol/ControlLease.h"
+
+#include <algorithm>
+
+namespace hermes {
+
+Error ControlLease::heldByAnother() const {
+    return Error(ErrorCode::ControlHeld, QString("%1 holds the control").arg(holder_->name),
+                 QJsonObject{{"holder", holder_->name}});
+}
+
+Result<void> ControlLease::acquire(quint64 client, const QString &name, double timeout_s, double now) {
+    if (holder_ && holder_->client != client)
+        return heldByAnother();
+    holder_ = Holder{client, name, timeout_s, now + timeout_s};
+    return {};
+}
+
+Result<void> ControlLease::renew(quint64 client, double now) {
+    if (!holder_)
+        return Error(ErrorCode::ControlHeld,
+                     "this client does not hold the control; control.acquire gives it",
+                     QJsonObject{{"holder", QJsonValue::Null}});
+    if (holder_->client != client)
+        return heldByAnother();
+    holder_->until = now + holder_->timeout_s;
+    return {};
+}
+
+bool ControlLease::release(quint64 client) {
+    const bool held = isHeldBy(client);
+    if (held)
+        holder_.reset();
+    return held;
+}
+
+std::optional<QString> ControlLease::expire(double now) {
+    if (!holder_ || now < holder_->until)
+        return std::nullopt;
+    const QString name = holder_->name;
+    holder_.reset();
+    return name;
+}
+
+QJsonObject ControlLease::state(double now) const {
+    if (!holder_)
+        return {{"held", false}, {"holder", QJsonValue::Null}, {"remaining_s", 0}};
+    return {{"held", true}, {"holder", holder_->name}, {"remaining_s", std::max(0.0, holder_->until - now)}};
+}
+
+} // namespace hermes

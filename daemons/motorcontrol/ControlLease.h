@@ -1,0 +1,43 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <QJsonObject>
+#include <optional>
+
+namespace hermes {
+
+/// Who may move the robot: one client at a time, until it gives that back, goes away, or sends no motion
+/// command for the time that it asked for. Times are seconds of a clock that never jumps.
+class ControlLease {
+public:
+    /// Gives the control to a client, or renews what it holds. ControlHeld: another one has it.
+    Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now);
+    /// A motion command of that client. ControlHeld, with data.holder, when it may not: null: nobody holds
+    /// it.
+    Result<void> renew(quint64 client, double now);
+    /// True when that client held it.
+    bool release(quint64 client);
+    /// Whoever holds it: for stops.
+    void revoke() { holder_.reset(); }
+    /// Ends a lease that has run out; gives the name of who held it.
+    std::optional<QString> expire(double now);
+
+    bool isHeldBy(quint64 client) const { return holder_ && holder_->client == client; }
+    /// {held, holder, remaining_s}
+    QJsonObject state(double now) const;
+
+private:
+    struct Holder {
+        quint64 client;
+        QString name;
+        double timeout_s;
+        double until;
+    };
+
+    Error heldByAnother() const;
+
+    std::optional<Holder> holder_;
+};
+
+} // namespace hermes

@@ -1,0 +1,166 @@
+#include "daemons/motorcontrol/Drive.h"
+
+#include <QJsonArray>
+#include <algorithm>
+#include <cmath>
+
+namespace hermes {
+namespace {
+
+constexpr double longestStep_s = 0.1; // after a pause the ramp goes on, it does not make up for it
+
+/// One value of a command and how large it may be.
+struct Bounded {
+    const char *name;
+    double value;
+    double limit;
+    const char *unit;
+};
+
+template <typename Values>
+Result<void> checkBounds(const Values &values) {
+    QJsonArray errors;
+    QString text;
+    bool finite = true;
+    for (const Bounded &v : values) {
+        if (std::abs(v.value) <= v.limit)
+            continue;
+        finite = finite && std::isfinite(v.value);
+        const QString expected = QString("a number from %1 to %2 %3").arg(-v.limit).arg(v.limit).arg(v.unit);
+        text += QString("%1%2 is %3, expected %4")
+                    .arg(text.isEmpty() ? "" : "; ", v.name)
+                    .arg(v.value)
+                    .arg(expected);
+        errors.append(QJsonObject{{"path", v.name},
+                                  {"value", std::isfinite(v.value) ? QJsonValue(v.value) : QJsonValue()},
+                                  {"expected", expected}});
+    }
+    if (errors.isEmpty())
+        return {};
+    return Error(finite ? ErrorCode::OverLimit : ErrorCode::InvalidParams, text,
+                 QJsonObject{{"errors", errors}});
+}
+
+} // namespace
+
+void Drive::configure(const Settings &settings) {
+    settings_ = settings;
+    watchdog_.setTimeout(settings.commandTimeout_s);
+}
+
+Result<void> Drive::driveTwist(quint64 client, const Twist &twist, double age_s, double now) {
+    const Twist &most = settings_.limits.velocity;
+    const double sideways = settings_.layout.movesSideways() ? most.vy : 0;
+    const auto bounded = checkBounds(std::array<Bounded, 3>{{{"vx", twist.vx, most.vx, "m/s"},
+                                                             {"vy", twist.vy, sideways, "m/s"},
+                                                             {"omega", twist.omega, most.omega, "rad/s"}}});
+    if (!bounded)
+        return bounded;
+    return accept(client, saturated(settings_.layout.wheelSpeeds(twist), settings_.limits.wheelSpeed), age_s,
+                  now);
+}
+
+Result<void> Drive::driveWheels(quint64 client, const WheelValues &speeds, double age_s, double now) {
+    std::array<Bounded, wheelCount> values{};
+    for (int i = 0; i < wheelCount; ++i)
+        values[i] = {wheelNames[i], speeds[i], settings_.limits.wheelSpeed, "rad/s"};
+    const auto bounded = checkBounds(values);
+    return bounded ? accept(client, speeds, age_s, now) : bounded;
+}
+
+Result<void> Drive::mayMove(double age_s) const {
+    if (latch_.has(emergencyCause))
+        return Error(ErrorCode::NotReady, latch_.text() + "; motor.reset_estop releases it", latch_.toJson());
+    if (latch_.isSet())
+        return Error(ErrorCode::DeviceFault, latch_.text() + "; motor.reset_estop releases it",
+                     latch_.toJson());
+    if (!notReady_.isEmpty())
+        return Error(ErrorCode::DeviceFault, notReady_);
+    if (!(age_s < settings_.commandTimeout_s))
+        return Error(ErrorCode::NotReady, QString("the command is %1 s old, at most %2 s are allowed")
+                                              .arg(age_s)
+                                              .arg(settings_.commandTimeout_s));
+    return {};
+}
+
+Result<void> Drive::accept(quint64 client, const WheelValues &target, double age_s, double now) {
+    const auto may = mayMove(age_s);
+    if (!may)
+        return may;
+    const auto renewed = lease_.renew(client, now);
+    if (!renewed)
+        return renewed;
+    target_ = target;
+    haltReason_.clear();
+    watchdog_.feed(now);
+    return {};
+}
+
+void Drive::halt(const QString &reason) {
+    target_ = setPoint_ = {};
+    watchdog_.rest();
+    haltReason_ = reason;
+}
+
+void Drive::stop(quint64 client, const QString &who) {
+    if (!lease_.isHeldBy(client))
+        lease_.revoke();
+    halt("stopped by " + who);
+}
+
+void Drive::emergencyStop(const QString &who) {
+    latch_.set(emergencyCause, "emergency stop by " + who);
+    lease_.revoke();
+    halt(latch_.reason(emergencyCause));
+}
+
+void Drive::resetEmergencyStop() {
+    latch_.release();
+    lease_.revoke();
+    halt("released, waits for a new lease");
+}
+
+Result<void> Drive::acquire(quint64 client, const QString &name, double timeout_s, double now) {
+    const auto may = mayMove(0);
+    return may ? lease_.acquire(client, name, timeout_s, now) : may;
+}
+
+void Drive::release(quint64 client) {
+    if (lease_.release(client))
+        halt("the control was released");
+}
+
+void Drive::clientGone(quint64 client) {
+    if (lease_.release(client))
+        halt("the client that held the control has gone");
+}
+
+bool Drive::fault(const QString &name, const QString &reason) {
+    if (!latch_.set(name, reason))
+        return false;
+    lease_.revoke();
+    halt(reason);
+    return true;
+}
+
+void Drive::setNotReady(const QString &why) {
+    if (notReady_ == why)
+        return;
+    notReady_ = why;
+    lease_.revoke();
+    halt(why);
+}
+
+const WheelValues &Drive::step(double now) {
+    const double dt = std::clamp(now - lastStep_, 0.0, longestStep_s);
+    lastStep_ = now;
+    if (const auto name = lease_.expire(now))
+        halt(QString("the control of %1 ran out").arg(*name));
+    if (watchdog_.hasExpired(now))
+        halt(QString("no command for %1 s").arg(settings_.commandTimeout_s));
+    if (dt > 0)
+        setPoint_ = ramped(setPoint_, target_, settings_.layout, settings_.limits.acceleration, dt);
+    return setPoint_;
+}
+
+} // namespace hermes

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "common/Result.h"
+#include "daemons/motorcontrol/CommandWatchdog.h"
+#include "daemons/motorcontrol/ControlLease.h"
+#include "daemons/motorcontrol/MotionLimits.h"
+#include "daemons/motorcontrol/StopLatch.h"
+
+namespace hermes {
+
+/// Whether and how fast the wheels turn: who may command, what is within the limits, and every reason to
+/// stop. Knows no devices; times are seconds of a clock that never jumps. Use from one thread.
+///
+/// A halt makes the set-point zero at once, without the limits of acceleration: the controllers brake with
+/// the emergency deceleration.
+class Drive {
+public:
+    struct Settings {
+        WheelLayout layout = WheelLayout::mecanum({});
+        MotionLimits limits;
+        double commandTimeout_s = 0.25; ///< without a command for so long the robot halts
+    };
+
+    void configure(const Settings &settings);
+
+    // Commands. Errors: InvalidParams (not finite), OverLimit (data.errors), NotReady (emergency stop,
+    // controllers not ready, command too old), DeviceFault (a fault is latched), ControlHeld.
+    /// age_s: how old the command is, 0 where unknown; older than the time-out is refused.
+    Result<void> driveTwist(quint64 client, const Twist &twist, double age_s, double now);
+    Result<void> driveWheels(quint64 client, const WheelValues &speeds, double age_s, double now);
+    /// Anyone may stop. Ends the lease unless the client holds it.
+    void stop(quint64 client, const QString &who);
+    void emergencyStop(const QString &who);
+    /// Releases the emergency stop and the faults. What still is wrong latches again.
+    void resetEmergencyStop();
+    Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now);
+    void release(quint64 client);
+    void clientGone(quint64 client);
+
+    // What the devices tell.
+    /// Latches until resetEmergencyStop(). True when it is new.
+    bool fault(const QString &name, const QString &reason);
+    void setReady() { notReady_.clear(); }
+    /// The wheels cannot be commanded; halts, and ends the lease. why is for messages.
+    void setNotReady(const QString &why);
+
+    /// The speeds (rad/s) that the wheels shall have now, once a cycle.
+    const WheelValues &step(double now);
+
+    const WheelValues &setPoint() const { return setPoint_; }
+    const WheelValues &target() const { return target_; }
+    const StopLatch &latch() const { return latch_; }
+    const ControlLease &lease() const { return lease_; }
+    /// Why the robot halted last; empty while it follows commands.
+    const QString &haltReason() const { return haltReason_; }
+
+    static constexpr const char *emergencyCause = "estop";
+
+private:
+    Result<void> mayMove(double age_s) const;
+    Result<void> accept(quint64 client, const WheelValues &target, double age_s, double now);
+    void halt(const QString &reason);
+
+    Settings settings_;
+    CommandWatchdog watchdog_;
+    ControlLease lease_;
+    StopLatch latch_;
+    WheelValues target_{}, setPoint_{};
+    QString notReady_ = "the controllers have not answered yet";
+    QString haltReason_;
+    double lastStep_ = 0;
+};
+
+} // namespace hermes

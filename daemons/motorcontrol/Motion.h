@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+
+namespace hermes {
+
+/// Velocity of the robot in its own frame: x forward, y left (m/s), omega counter-clockwise (rad/s).
+struct Twist {
+    double vx = 0;
+    double vy = 0;
+    double omega = 0;
+};
+
+/// Position (m) and heading (rad, in (-pi, pi]) in the frame of the odometry.
+struct Pose {
+    double x = 0;
+    double y = 0;
+    double theta = 0;
+};
+
+enum class Wheel { FrontLeft, FrontRight, RearLeft, RearRight };
+
+constexpr int wheelCount = 4;
+/// As in settings, commands and topics, in the order of Wheel.
+constexpr std::array<const char *, wheelCount> wheelNames{"front_left", "front_right", "rear_left",
+                                                          "rear_right"};
+
+/// One number a wheel, in the order of Wheel. Positive turns drive the robot forward, on both sides.
+using WheelValues = std::array<double, wheelCount>;
+
+} // namespace hermes

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <QJsonObject>
+#include <QMap>
+#include <QString>
+
+namespace hermes {
+
+/// What keeps the robot from moving until somebody releases it: the emergency stop and the faults, each with
+/// its reason. A cause that is there already keeps its first reason.
+class StopLatch {
+public:
+    /// True when the cause is new.
+    bool set(const QString &cause, const QString &reason) {
+        if (causes_.contains(cause))
+            return false;
+        causes_.insert(cause, reason);
+        return true;
+    }
+    void release() { causes_.clear(); }
+
+    bool isSet() const { return !causes_.isEmpty(); }
+    bool has(const QString &cause) const { return causes_.contains(cause); }
+    QString reason(const QString &cause) const { return causes_.value(cause); }
+    /// All reasons as one sentence.
+    QString text() const { return causes_.values().join("; "); }
+    /// {cause: reason}
+    QJsonObject toJson() const {
+        QJsonObject json;
+        for (auto cause = causes_.cbegin(); cause != causes_.cend(); ++cause)
+            json.insert(cause.key(), cause.value());
+        return json;
+    }
+
+private:
+    QMap<QString, QString> causes_;
+};
+
+} // namespace hermes

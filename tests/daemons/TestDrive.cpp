@@ -1,0 +1,314 @@
+// Who may drive, and every reason to stop: the rules of hermes-motorcontrol without devices.
+#include "daemons/motorcontrol/Drive.h"
+#include "daemons/motorcontrol/EncoderMonitor.h"
+#include "daemons/motorcontrol/Threshold.h"
+
+#include <QJsonArray>
+#include <QtTest>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+Q_DECLARE_METATYPE(std::function<void(hermes::Drive &)>)
+
+using namespace hermes;
+
+namespace {
+
+constexpr quint64 anna = 1, bert = 2;
+const WheelValues still{};
+const double notANumber = std::numeric_limits<double>::quiet_NaN();
+
+using Mismatch = EncoderMonitor::Mismatch;
+
+} // namespace
+
+class TestDrive : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void drivesWithTheLimitsOfAcceleration();
+    void refusesBadCommands_data();
+    void refusesBadCommands();
+    void differentialRefusesSideways();
+    void drivesSingleWheels();
+    void needsTheLease();
+    void leaseRunsOut();
+    void motionRenewsTheLease();
+    void stopsAtOnce_data();
+    void stopsAtOnce();
+    void commandTimeOutStopsButKeepsTheLease();
+    void stopOfAnotherEndsTheLease();
+    void emergencyStopIsLatched();
+    void faultsAreLatchedAndNamed();
+    void notReadyRefusesAndRecovers();
+    void oldCommandsAreRefused();
+    void pauseDoesNotMakeTheRampJump();
+    void thresholdNeedsTime();
+    void encoderMismatch_data();
+    void encoderMismatch();
+    void encoderMismatchNeedsTime();
+
+private:
+    Error refusal(const Result<void> &result);
+    WheelValues run(double from, double to);
+
+    Drive drive_;
+};
+
+void TestDrive::init() {
+    drive_ = Drive();
+    drive_.configure({});
+    drive_.setReady();
+    drive_.step(0);
+}
+
+Error TestDrive::refusal(const Result<void> &result) {
+    return result ? Error(ErrorCode::InternalError, "accepted, though it should not be") : result.error();
+}
+
+// Cycles of 20 ms with a fresh command in each.
+WheelValues TestDrive::run(double from, double to) {
+    for (double now = from; now < to; now += 0.02) {
+        drive_.driveTwist(anna, {0.5, 0, 0}, 0, now);
+        drive_.step(now);
+    }
+    return drive_.setPoint();
+}
+
+void TestDrive::drivesWithTheLimitsOfAcceleration() {
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    QVERIFY(std::abs(run(0.02, 0.25)[0] - 2.4) < 0.01); // 12 cycles at 1 m/s^2, wheels of 0.1 m
+    QVERIFY(std::abs(run(0.26, 0.8)[0] - 5) < 1e-9);
+    QCOMPARE(drive_.haltReason(), QString());
+    QVERIFY(drive_.driveTwist(anna, {}, 0, 0.81).ok()); // an ordered zero is a ramp, too
+    drive_.step(0.82);
+    QVERIFY(drive_.setPoint()[0] > 4.5 && drive_.setPoint()[0] < 5);
+}
+
+void TestDrive::refusesBadCommands_data() {
+    QTest::addColumn<double>("vx");
+    QTest::addColumn<double>("omega");
+    QTest::addColumn<int>("code");
+    QTest::addColumn<QString>("text");
+    const double inf = std::numeric_limits<double>::infinity();
+    QTest::newRow("too fast") << 1.5 << 0.0 << int(ErrorCode::OverLimit)
+                              << "vx is 1.5, expected a number from -1 to 1 m/s";
+    QTest::newRow("too fast back") << -1.5 << 0.0 << int(ErrorCode::OverLimit)
+                                   << "vx is -1.5, expected a number from -1 to 1 m/s";
+    QTest::newRow("both") << 1.5 << 9.0 << int(ErrorCode::OverLimit)
+                          << "vx is 1.5, expected a number from -1 to 1 m/s; omega is 9, expected a number "
+                             "from -1.5 to 1.5 rad/s";
+    QTest::newRow("not a number") << notANumber << 0.0 << int(ErrorCode::InvalidParams)
+                                  << "vx is nan, expected a number from -1 to 1 m/s";
+    QTest::newRow("infinite") << 0.0 << -inf << int(ErrorCode::InvalidParams)
+                              << "omega is -inf, expected a number from -1.5 to 1.5 rad/s";
+}
+
+void TestDrive::refusesBadCommands() {
+    QFETCH(double, vx);
+    QFETCH(double, omega);
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    const Error error = refusal(drive_.driveTwist(anna, {vx, 0, omega}, 0, 0));
+    QTEST(error.code, "code");
+    QTEST(error.message, "text");
+    QVERIFY(error.data["errors"].toArray().size() >= 1);
+    QCOMPARE(drive_.step(0.1), still);
+}
+
+void TestDrive::differentialRefusesSideways() {
+    Drive::Settings settings;
+    settings.layout = WheelLayout::differential({});
+    drive_.configure(settings);
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    QVERIFY(refusal(drive_.driveTwist(anna, {0, 0.1, 0}, 0, 0)).is(ErrorCode::OverLimit));
+    QVERIFY(drive_.driveTwist(anna, {0.1, 0, 0}, 0, 0).ok());
+}
+
+void TestDrive::drivesSingleWheels() {
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    QVERIFY(drive_.driveWheels(anna, {0, 0.3, 0, 0}, 0, 0).ok());
+    QCOMPARE(drive_.step(0.1), (WheelValues{0, 0.3, 0, 0}));
+    const Error error = refusal(drive_.driveWheels(anna, {0, 0, 0, 21}, 0, 0.1));
+    QVERIFY(error.is(ErrorCode::OverLimit));
+    QVERIFY2(error.message.contains("rear_right is 21"), qPrintable(error.message));
+}
+
+void TestDrive::needsTheLease() {
+    Error error = refusal(drive_.driveTwist(anna, {0.1, 0, 0}, 0, 0));
+    QVERIFY(error.is(ErrorCode::ControlHeld));
+    QVERIFY(error.data["holder"].isNull());
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    error = refusal(drive_.driveTwist(bert, {0.1, 0, 0}, 0, 0));
+    QVERIFY(error.is(ErrorCode::ControlHeld));
+    QCOMPARE(error.data["holder"].toString(), QString("anna"));
+    QVERIFY(refusal(drive_.acquire(bert, "bert", 1, 0)).is(ErrorCode::ControlHeld));
+    drive_.release(bert); // not his
+    QVERIFY(drive_.driveTwist(anna, {0.1, 0, 0}, 0, 0).ok());
+    drive_.release(anna);
+    QVERIFY(drive_.acquire(bert, "bert", 1, 0).ok());
+}
+
+void TestDrive::leaseRunsOut() {
+    QVERIFY(drive_.acquire(anna, "anna", 0.1, 0).ok());
+    QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0).ok());
+    QVERIFY(drive_.step(0.09) != still);
+    QCOMPARE(drive_.step(0.1), still);
+    QVERIFY2(drive_.haltReason().contains("anna"), qPrintable(drive_.haltReason()));
+    QVERIFY(drive_.acquire(bert, "bert", 1, 0.1).ok());
+}
+
+void TestDrive::motionRenewsTheLease() {
+    QVERIFY(drive_.acquire(anna, "anna", 0.3, 0).ok());
+    run(0, 2);
+    QVERIFY(drive_.lease().isHeldBy(anna));
+}
+
+void TestDrive::stopsAtOnce_data() {
+    QTest::addColumn<std::function<void(Drive &)>>("event");
+    using Event = std::function<void(Drive &)>;
+    QTest::newRow("motor.stop") << Event([](Drive &d) { d.stop(anna, "anna"); });
+    QTest::newRow("motor.stop of another") << Event([](Drive &d) { d.stop(bert, "bert"); });
+    QTest::newRow("motor.estop") << Event([](Drive &d) { d.emergencyStop("bert"); });
+    QTest::newRow("client gone") << Event([](Drive &d) { d.clientGone(anna); });
+    QTest::newRow("control.release") << Event([](Drive &d) { d.release(anna); });
+    QTest::newRow("fault") << Event([](Drive &d) { d.fault("battery", "low"); });
+    QTest::newRow("controllers lost") << Event([](Drive &d) { d.setNotReady("no answer"); });
+}
+
+void TestDrive::stopsAtOnce() {
+    QFETCH(std::function<void(Drive &)>, event);
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    QVERIFY(run(0, 1)[0] > 4);
+    event(drive_);
+    QCOMPARE(drive_.setPoint(), still);
+    QVERIFY(!drive_.haltReason().isEmpty());
+    for (double now = 1; now < 3; now += 0.02)
+        QCOMPARE(drive_.step(now), still);
+}
+
+void TestDrive::commandTimeOutStopsButKeepsTheLease() {
+    QVERIFY(drive_.acquire(anna, "anna", 10, 0).ok());
+    run(0, 1);
+    const double last = 0.98;
+    QVERIFY(drive_.step(last + 0.24) != still);
+    QCOMPARE(drive_.step(last + 0.27), still);
+    QCOMPARE(drive_.haltReason(), QString("no command for 0.25 s"));
+    QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 2).ok());
+}
+
+void TestDrive::stopOfAnotherEndsTheLease() {
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    drive_.stop(anna, "anna");
+    QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0).ok());
+    drive_.stop(bert, "bert");
+    QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0)).is(ErrorCode::ControlHeld));
+}
+
+void TestDrive::emergencyStopIsLatched() {
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    drive_.emergencyStop("bert");
+    drive_.emergencyStop("carl");
+    const Error error = refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0));
+    QVERIFY(error.is(ErrorCode::NotReady));
+    QCOMPARE(error.message, QString("emergency stop by bert; motor.reset_estop releases it"));
+    QVERIFY(refusal(drive_.acquire(anna, "anna", 1, 0)).is(ErrorCode::NotReady));
+    drive_.resetEmergencyStop();
+    QCOMPARE(drive_.step(0.1), still); // the release moves nothing
+    QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0.1)).is(ErrorCode::ControlHeld));
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0.1).ok());
+    QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0.1).ok());
+}
+
+void TestDrive::faultsAreLatchedAndNamed() {
+    QVERIFY(drive_.fault("battery", "the battery has 18.1 V"));
+    QVERIFY(!drive_.fault("battery", "the battery has 18.0 V"));
+    QVERIFY(drive_.fault("current", "front_left draws 50 A"));
+    const Error error = refusal(drive_.acquire(anna, "anna", 1, 0));
+    QVERIFY(error.is(ErrorCode::DeviceFault));
+    QCOMPARE(error.message,
+             QString("the battery has 18.1 V; front_left draws 50 A; motor.reset_estop releases it"));
+    QCOMPARE(error.data["battery"].toString(), QString("the battery has 18.1 V"));
+    drive_.resetEmergencyStop();
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+}
+
+void TestDrive::notReadyRefusesAndRecovers() {
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    drive_.setNotReady("controller 1 does not answer");
+    const Error error = refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0));
+    QVERIFY(error.is(ErrorCode::DeviceFault));
+    QCOMPARE(error.message, QString("controller 1 does not answer"));
+    drive_.setReady();
+    QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0)).is(ErrorCode::ControlHeld));
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+}
+
+void TestDrive::oldCommandsAreRefused() {
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0.2, 0).ok());
+    QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0.25, 0)).is(ErrorCode::NotReady));
+    QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, notANumber, 0)).is(ErrorCode::NotReady));
+}
+
+void TestDrive::pauseDoesNotMakeTheRampJump() {
+    QVERIFY(drive_.acquire(anna, "anna", 100, 0).ok());
+    QVERIFY(drive_.driveTwist(anna, {1, 0, 0}, 0, 50).ok());
+    QVERIFY(std::abs(drive_.step(50.1)[0] - 1) < 1e-9); // 0.1 s at 10 rad/s^2
+}
+
+void TestDrive::thresholdNeedsTime() {
+    Threshold battery(Threshold::Side::Below);
+    battery.set({23, 22, 1});
+    QVERIFY(battery.judge(24, 0) == Threshold::Level::Good);
+    QVERIFY(battery.judge(22.5, 0) == Threshold::Level::Warning);
+    QVERIFY(battery.judge(21, 1) == Threshold::Level::Warning);
+    QVERIFY(battery.judge(21, 1.99) == Threshold::Level::Warning);
+    QVERIFY(battery.judge(24, 1.995) == Threshold::Level::Good); // a break
+    QVERIFY(battery.judge(21, 2) == Threshold::Level::Warning);
+    QVERIFY(battery.judge(21, 3) == Threshold::Level::Fault);
+    Threshold current(Threshold::Side::Above);
+    current.set({30, 40, 0});
+    QVERIFY(current.judge(29, 0) == Threshold::Level::Good);
+    QVERIFY(current.judge(31, 0) == Threshold::Level::Warning);
+    QVERIFY(current.judge(41, 0) == Threshold::Level::Fault);
+    QVERIFY(current.judge(notANumber, 0) == Threshold::Level::Fault);
+}
+
+void TestDrive::encoderMismatch_data() {
+    QTest::addColumn<double>("commanded");
+    QTest::addColumn<double>("measured");
+    QTest::addColumn<int>("expected");
+    QTest::newRow("follows") << 5.0 << 4.5 << int(Mismatch::None);
+    QTest::newRow("both stand") << 0.0 << 0.0 << int(Mismatch::None);
+    QTest::newRow("commanded but not moving") << 5.0 << 0.1 << int(Mismatch::StandsStill);
+    QTest::newRow("commanded backwards but not moving") << -5.0 << 0.0 << int(Mismatch::StandsStill);
+    QTest::newRow("moving but not commanded") << 0.0 << -0.3 << int(Mismatch::MovesUncommanded);
+    QTest::newRow("runs away") << 2.0 << -6.0 << int(Mismatch::MovesBackwards);
+    QTest::newRow("too slow to judge") << 0.4 << 0.0 << int(Mismatch::None);
+    QTest::newRow("no number") << 0.0 << notANumber << int(Mismatch::MovesUncommanded);
+}
+
+void TestDrive::encoderMismatch() {
+    QFETCH(double, commanded);
+    QFETCH(double, measured);
+    EncoderMonitor monitor;
+    monitor.judge(commanded, measured, 0);
+    QTEST(int(monitor.judge(commanded, measured, 0.5)), "expected");
+}
+
+void TestDrive::encoderMismatchNeedsTime() {
+    EncoderMonitor monitor;
+    for (double now = 0; now < 0.25; now += 0.02)
+        QVERIFY(monitor.judge(0, 10 - 40 * now, now) == Mismatch::None); // brakes
+    QVERIFY(monitor.judge(0, 0, 0.26) == Mismatch::None);
+    QVERIFY(monitor.judge(0, 1, 0.6) == Mismatch::None);
+    QVERIFY(monitor.judge(0, 1, 1) == Mismatch::None);
+    monitor.reset();
+    QVERIFY(monitor.judge(0, 1, 1.2) == Mismatch::None);
+    QVERIFY(monitor.judge(0, 1, 1.71) == Mismatch::MovesUncommanded);
+}
+
+QTEST_GUILESS_MAIN(TestDrive)
+#include "TestDrive.moc"
