@@ -1,0 +1,125 @@
+#include "protocol/roboclaw/Bus.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace hermes::roboclaw {
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::infinity();
+constexpr int longestQuiet = 5; // times the option, when bytes keep coming
+
+} // namespace
+
+bool Bus::submit(const Request &request, Handler handler, Urgency urgency) {
+    if (queue_.size() >= options_.queue)
+        return false;
+    queue_.insert(urgency == Urgency::First ? queue_.begin() : queue_.end(),
+                  {request, std::move(handler), 0});
+    return true;
+}
+
+void Bus::cancel() {
+    repeats_ = false;
+    endAll(Result::Cancelled);
+}
+
+void Bus::setOpen(bool open) {
+    open_ = open;
+    if (open)
+        return;
+    if (std::exchange(awaiting_, false))
+        queue_.push_front(std::move(current_));
+    endAll(Result::LineClosed);
+}
+
+void Bus::endAll(Result result) {
+    const std::deque<Entry> ended = std::exchange(queue_, {}); // handlers may submit
+    for (const Entry &entry : ended)
+        finish(entry, {result, {}, Dialect::Usual, entry.attempts, 0, 0});
+}
+
+void Bus::finish(Entry entry, const Outcome &outcome) {
+    ++(outcome.result == Result::Done ? countsOf(entry).done : countsOf(entry).failed);
+    if (entry.handler)
+        entry.handler(entry.request, outcome);
+}
+
+const Bytes *Bus::poll(double now) {
+    if (!open_) {
+        endAll(Result::LineClosed);
+        return nullptr;
+    }
+    if (awaiting_ && parser_.received() > 0 && now - lastByte_ >= options_.quiet) {
+        lastByte_ = never; // once for each silence
+        attemptEnded(parser_.silence(), now);
+    }
+    if (awaiting_ && now - sent_ >= options_.replyTimeout)
+        attemptFailed(Result::TimedOut, now);
+    if (awaiting_ || queue_.empty() || now < resume_)
+        return nullptr;
+    current_ = std::move(queue_.front());
+    queue_.pop_front();
+    awaiting_ = repeats_ = true;
+    sent_ = now;
+    ++countsOf(current_).sent;
+    countsOf(current_).retries += current_.attempts++ > 0;
+    parser_.begin(current_.request);
+    return &current_.request.bytes;
+}
+
+void Bus::feed(const std::uint8_t *data, std::size_t size, double now) {
+    for (std::size_t i = 0; i < size; ++i) {
+        if (!awaiting_) {
+            ++stray_;
+            if (now >= resume_ && queue_.empty())
+                resumeLimit_ = now + longestQuiet * options_.quiet;
+            resume_ = std::max(resume_, std::min(now + options_.quiet, resumeLimit_));
+            continue;
+        }
+        lastByte_ = now;
+        attemptEnded(parser_.feed(data[i]), now);
+    }
+}
+
+void Bus::attemptEnded(ReplyParser::Result result, double now) {
+    switch (result) {
+    case ReplyParser::Result::Incomplete:
+        return;
+    case ReplyParser::Result::BadCrc:
+        return attemptFailed(Result::BadCrc, now);
+    case ReplyParser::Result::Unexpected:
+        return attemptFailed(Result::Unexpected, now);
+    case ReplyParser::Result::Done:
+        awaiting_ = false;
+        Entry entry = std::move(current_);
+        const Outcome outcome{Result::Done, parser_.reply(), parser_.dialect(), entry.attempts, sent_, now};
+        finish(std::move(entry), outcome);
+    }
+}
+
+void Bus::attemptFailed(Result result, double now) {
+    awaiting_ = false;
+    resume_ = now + options_.quiet;
+    resumeLimit_ = now + longestQuiet * options_.quiet;
+    Counts &counts = countsOf(current_);
+    ++(result == Result::TimedOut ? counts.timeouts
+       : result == Result::BadCrc ? counts.crcErrors
+                                  : counts.unexpected);
+    Entry entry = std::move(current_);
+    if (repeats_ && entry.attempts <= options_.retries)
+        queue_.insert(entry.urgency == Urgency::First ? queue_.begin() : behindUrgent(), std::move(entry));
+    else
+        finish(entry, {result, {}, Dialect::Usual, entry.attempts, sent_, now});
+}
+
+double Bus::deadline() const {
+    if (!awaiting_)
+        return queue_.empty() ? never : resume_;
+    const double timeout = sent_ + options_.replyTimeout;
+    return parser_.received() > 0 ? std::min(timeout, lastByte_ + options_.quiet) : timeout;
+}
+
+} // namespace hermes::roboclaw

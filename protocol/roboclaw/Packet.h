@@ -1,0 +1,98 @@
+#pragma once
+
+#include "protocol/roboclaw/Command.h"
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string_view>
+
+namespace hermes::roboclaw {
+
+/// The bytes of one packet, without allocation.
+class Bytes {
+public:
+    const std::uint8_t *data() const { return data_.data(); }
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    std::uint8_t operator[](std::size_t i) const { return data_[i]; }
+    /// Beyond the capacity it is ignored; no packet is so long.
+    void push(std::uint8_t byte) {
+        if (size_ < data_.size())
+            data_[size_++] = byte;
+    }
+    void push16(std::uint16_t value) {
+        push(std::uint8_t(value >> 8));
+        push(std::uint8_t(value));
+    }
+    void clear() { size_ = 0; }
+
+private:
+    std::array<std::uint8_t, 64> data_{};
+    std::size_t size_ = 0;
+};
+
+/// The numbers of a packet in the order of its fields.
+class Values {
+public:
+    Values() = default;
+    Values(std::initializer_list<std::int64_t> values) {
+        for (const std::int64_t value : values)
+            push(value);
+    }
+    /// Of those beyond the ninth only the count is kept; no command has so many.
+    void push(std::int64_t value) {
+        if (size_ < values_.size())
+            values_[size_] = value;
+        ++size_;
+    }
+    std::size_t size() const { return size_; }
+    std::int64_t operator[](std::size_t i) const { return values_[i]; }
+
+private:
+    std::array<std::int64_t, 9> values_{};
+    std::size_t size_ = 0;
+};
+
+/// A command to one controller.
+struct Request {
+    std::uint8_t address = firstAddress;
+    Command command = Command::ReadStatus;
+    Values values;
+    Bytes bytes; ///< as they go over the wire
+
+    /// Nothing when the address is not 0x80 to 0x87, the command is none, the number of values is not that of
+    /// its fields, or a value does not fit its field.
+    static std::optional<Request> make(std::uint8_t address, Command command, const Values &values = {});
+
+    bool isRead() const { return layoutOf(std::uint8_t(command))->isRead; }
+};
+
+/// What a controller answered to a read; empty for a write that was acknowledged.
+struct Reply {
+    Values values;
+    std::array<char, maxText> text{}; ///< ReadVersion, ended by NUL, without the line feed
+
+    std::int64_t operator[](std::size_t i) const { return values[i]; }
+};
+
+enum class Dialect { Usual, Other }; ///< which fields of a Layout
+
+/// The answer to a read, as a controller sends it. Nothing when the values do not fit the fields.
+std::optional<Bytes> encodeReply(const Request &request, const Values &values,
+                                 Dialect dialect = Dialect::Usual);
+/// The answer to ReadVersion: text, LF, NUL and CRC. Longer text is cut to 46 characters.
+Bytes encodeText(const Request &request, std::string_view text);
+constexpr std::uint8_t acknowledgement = 0xFF;
+
+/// Puts the numbers behind the bytes. False when they are not as many as the fields, or one does not fit.
+bool pack(std::string_view fields, const Values &values, Bytes &bytes);
+/// Takes the numbers from sizeOf(fields) bytes.
+Values unpack(std::string_view fields, const std::uint8_t *data);
+
+/// The speed of commands 18, 19, 30 and 31, whether the firmware sends a signed number or a magnitude beside
+/// the direction (fact sheet, section 5).
+std::int32_t signedSpeed(const Reply &reply);
+
+} // namespace hermes::roboclaw
