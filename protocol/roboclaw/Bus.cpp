@@ -16,9 +16,14 @@ constexpr int longestQuiet = 5; // times the option, when bytes keep coming
 bool Bus::submit(const Request &request, Handler handler, Urgency urgency) {
     if (queue_.size() >= options_.queue)
         return false;
-    queue_.insert(urgency == Urgency::First ? queue_.begin() : queue_.end(),
-                  {request, std::move(handler), 0});
+    const auto place = urgency == Urgency::First ? behindUrgent() : queue_.end();
+    queue_.insert(place, Entry{request, std::move(handler), urgency, 0});
     return true;
+}
+
+std::deque<Bus::Entry>::iterator Bus::behindUrgent() {
+    return std::find_if(queue_.begin(), queue_.end(),
+                        [](const Entry &entry) { return entry.urgency != Urgency::First; });
 }
 
 void Bus::cancel() {
