@@ -1,5 +1,7 @@
 #include "common/interface/InterfaceRegistry.h"
 
+#include "common/interface/PtyInterface.h"
+#include "common/interface/SerialInterface.h"
 #include "common/interface/TcpInterface.h"
 #include "common/interface/TcpServerInterface.h"
 #include "common/interface/UdpInterface.h"
@@ -37,6 +39,8 @@ Listener *makeSinglePeer(const InterfaceUrl &url, QObject *parent) {
 const Kind kinds[] = {
     {"tcp", Reach::Network, make<TcpInterface>, makeServer<TcpServerInterface>},
     {"udp", Reach::Network, make<UdpInterface>, makeSinglePeer<UdpInterface>},
+    {"serial", Reach::Computer, make<SerialInterface>, makeSinglePeer<SerialInterface>},
+    {"pty", Reach::Computer, make<PtyInterface>, makeSinglePeer<PtyInterface>},
 };
 
 const Kind *findKind(const QString &scheme) {

@@ -1,0 +1,101 @@
+#include "common/interface/PtyInterface.h"
+
+#include <QDir>
+#include <QFile>
+#include <QFileInfo>
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <pty.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+namespace hermes {
+namespace {
+
+QString systemError() {
+    return QString::fromLocal8Bit(std::strerror(errno));
+}
+
+} // namespace
+
+PtyInterface::PtyInterface(const InterfaceUrl &address, QObject *parent)
+    : Interface(parent)
+    , url(address) {}
+
+PtyInterface::~PtyInterface() {
+    doClose();
+}
+
+void PtyInterface::doOpen() {
+    QString wrong = makePair();
+    if (wrong.isEmpty())
+        wrong = makeLink();
+    if (!wrong.isEmpty()) {
+        doClose();
+        return nowClosed(QStringLiteral("cannot open %1: %2").arg(name(), wrong), true);
+    }
+    readable = std::make_unique<QSocketNotifier>(farFd, QSocketNotifier::Read);
+    connect(readable.get(), &QSocketNotifier::activated, this, &PtyInterface::readSome);
+    nowOpen();
+}
+
+QString PtyInterface::makePair() {
+    char path[256];
+    termios raw{};
+    cfmakeraw(&raw);
+    cfsetspeed(&raw, B115200);
+    if (openpty(&farFd, &nearFd, path, &raw, nullptr) != 0)
+        return QStringLiteral("no pseudo-terminal: ") + systemError();
+    for (const int fd : {farFd, nearFd})
+        fcntl(fd, F_SETFD, FD_CLOEXEC);
+    fcntl(farFd, F_SETFL, O_NONBLOCK);
+    nearEnd = QString::fromLocal8Bit(path);
+    return {};
+}
+
+QString PtyInterface::makeLink() {
+    if (url.path.isEmpty())
+        return {};
+    const QFileInfo link(url.path);
+    if (link.exists() && !link.isSymLink())
+        return QStringLiteral("a file with this name exists that is not a link");
+    if (!QDir().mkpath(link.absolutePath()))
+        return QStringLiteral("the folder %1 cannot be made").arg(link.absolutePath());
+    QFile::remove(url.path); // of a program that ended without removing it
+    if (symlink(QFile::encodeName(nearEnd).constData(), QFile::encodeName(url.path).constData()) != 0)
+        return QStringLiteral("the link cannot be made: ") + systemError();
+    return {};
+}
+
+void PtyInterface::doClose() {
+    readable.reset();
+    if (!nearEnd.isEmpty() && QFile::symLinkTarget(url.path) == nearEnd)
+        QFile::remove(url.path);
+    nearEnd.clear();
+    for (int *fd : {&farFd, &nearFd}) {
+        if (*fd >= 0)
+            ::close(*fd);
+        *fd = -1;
+    }
+}
+
+bool PtyInterface::doWrite(const QByteArray &bytes) {
+    // Nobody reads: bytes are lost, as on a line that nobody listens to.
+    const ssize_t written = ::write(farFd, bytes.constData(), std::size_t(bytes.size()));
+    return written == bytes.size();
+}
+
+void PtyInterface::readSome() {
+    // A program that opens a serial port claims it alone; one that is killed leaves the claim, which would
+    // end only with the last opener: nearFd.
+    ioctl(nearFd, TIOCNXCL);
+    char buffer[4096];
+    const ssize_t size = ::read(farFd, buffer, sizeof buffer);
+    if (size > 0)
+        nowReceived(QByteArray(buffer, int(size)));
+}
+
+} // namespace hermes

@@ -1,0 +1,112 @@
+#include "common/interface/SerialInterface.h"
+
+#include <QFileInfo>
+
+namespace hermes {
+namespace {
+
+template <typename T>
+struct Choice {
+    const char *text;
+    T value;
+};
+
+constexpr Choice<QSerialPort::DataBits> dataBits[] = {{"5", QSerialPort::Data5},
+                                                      {"6", QSerialPort::Data6},
+                                                      {"7", QSerialPort::Data7},
+                                                      {"8", QSerialPort::Data8}};
+constexpr Choice<QSerialPort::Parity> parities[] = {
+    {"none", QSerialPort::NoParity}, {"even", QSerialPort::EvenParity}, {"odd", QSerialPort::OddParity}};
+constexpr Choice<QSerialPort::StopBits> stopBits[] = {{"1", QSerialPort::OneStop},
+                                                      {"2", QSerialPort::TwoStop}};
+constexpr Choice<QSerialPort::FlowControl> flows[] = {{"none", QSerialPort::NoFlowControl},
+                                                      {"hardware", QSerialPort::HardwareControl},
+                                                      {"software", QSerialPort::SoftwareControl}};
+
+/// Sets target to what the URL's option means; gives what is wrong with it, or an empty text.
+template <typename T, std::size_t N>
+QString choose(const InterfaceUrl &url, const char *option, const char *fallback,
+               const Choice<T> (&choices)[N], T &target) {
+    const QString text = url.option(QLatin1String(option), QLatin1String(fallback));
+    QStringList known;
+    for (const Choice<T> &choice : choices) {
+        if (text == QLatin1String(choice.text)) {
+            target = choice.value;
+            return {};
+        }
+        known.append(QLatin1String(choice.text));
+    }
+    return QStringLiteral("%1 \"%2\" is none of: %3")
+        .arg(QLatin1String(option), text, known.join(QStringLiteral(", ")));
+}
+
+} // namespace
+
+SerialInterface::SerialInterface(const InterfaceUrl &address, QObject *parent)
+    : Interface(parent)
+    , url(address) {
+    connect(&port, &QSerialPort::readyRead, this, [this] { nowReceived(port.readAll()); });
+    connect(&port, &QSerialPort::bytesWritten, this, &Interface::drained);
+    connect(&port, &QSerialPort::errorOccurred, this, &SerialInterface::fail);
+}
+
+QString SerialInterface::configure() {
+    const QString baudText = url.option(QStringLiteral("baud"), QStringLiteral("115200"));
+    const int baud = baudText.toInt();
+    if (baud <= 0)
+        return QStringLiteral("baud \"%1\" is not a number above 0").arg(baudText);
+    QSerialPort::DataBits data = QSerialPort::Data8;
+    QSerialPort::Parity parity = QSerialPort::NoParity;
+    QSerialPort::StopBits stop = QSerialPort::OneStop;
+    QSerialPort::FlowControl flow = QSerialPort::NoFlowControl;
+    for (const QString &wrong :
+         {choose(url, "data_bits", "8", dataBits, data), choose(url, "parity", "none", parities, parity),
+          choose(url, "stop_bits", "1", stopBits, stop), choose(url, "flow", "none", flows, flow)}) {
+        if (!wrong.isEmpty())
+            return wrong;
+    }
+    port.setBaudRate(baud);
+    port.setDataBits(data);
+    port.setParity(parity);
+    port.setStopBits(stop);
+    port.setFlowControl(flow);
+    return {};
+}
+
+void SerialInterface::doOpen() {
+    if (url.path.isEmpty())
+        return nowClosed(
+            QStringLiteral("%1: a device is missing, as in serial:///dev/ttyS1?baud=115200").arg(name()),
+            true);
+    const QString wrong = configure();
+    if (!wrong.isEmpty())
+        return nowClosed(QStringLiteral("%1: %2").arg(name(), wrong), true);
+    const QString device = QFileInfo(url.path).canonicalFilePath();
+    if (device.isEmpty())
+        return nowClosed(QStringLiteral("cannot open %1: there is no such device").arg(name()), true);
+    port.setPortName(device);
+    if (!port.open(QIODevice::ReadWrite)) {
+        const QString reason =
+            port.error() == QSerialPort::PermissionError
+                ? QStringLiteral("in use by another program, or not permitted (%1)").arg(port.errorString())
+                : port.errorString();
+        return nowClosed(QStringLiteral("cannot open %1: %2").arg(name(), reason), true);
+    }
+    port.clear();
+    nowOpen();
+}
+
+void SerialInterface::doClose() {
+    port.flush();
+    port.close();
+}
+
+void SerialInterface::fail(QSerialPort::SerialPortError error) {
+    if (error == QSerialPort::NoError || !isOpen())
+        return; // doOpen() tells what goes wrong there
+    const QString reason = port.errorString();
+    port.close();
+    nowClosed(QStringLiteral("%1: the device is gone or failed: %2").arg(name(), reason), true);
+}
+
+} // namespace hermes

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "common/interface/Interface.h"
+#include "common/interface/InterfaceUrl.h"
+
+#include <QSerialPort>
+
+namespace hermes {
+
+/// A serial line. The URL names the device and its settings: `serial:///dev/ttyS1?baud=115200` with
+/// `data_bits=8` (5 to 8), `parity=none` (even, odd), `stop_bits=1` (or 2), `flow=none` (hardware, software).
+/// A link such as those in /dev/serial/by-path is followed at each opening, so that with reconnecting on a
+/// device that was pulled is found again under its new name. What came before the opening is dropped.
+class SerialInterface : public Interface {
+    Q_OBJECT
+public:
+    SerialInterface(const InterfaceUrl &address, QObject *parent);
+
+    QString name() const override { return url.toString(); }
+    void flush() override { port.flush(); }
+    qint64 bytesToWrite() const override { return port.bytesToWrite(); }
+
+protected:
+    void doOpen() override;
+    void doClose() override;
+    bool doWrite(const QByteArray &bytes) override { return port.write(bytes) == bytes.size(); }
+
+private:
+    /// Takes the settings from the URL; gives what is wrong with them, or an empty text.
+    QString configure();
+    void fail(QSerialPort::SerialPortError error);
+
+    InterfaceUrl url;
+    QSerialPort port;
+};
+
+} // namespace hermes
