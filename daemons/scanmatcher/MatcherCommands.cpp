@@ -82,7 +82,7 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     const Pose2D expected = poseOf(call.value("expected").toObject());
     worker->post([reference = *reference, current = *current, expected, reply](Tracker &) {
         vectorlib::MapBuilder pair;
-        pair.find.settings = vectorlib::CorrespondenceSettings::forPoorExpectation();
+        pair.track.settings = vectorlib::TrackingSettings::forPoorExpectation();
         pair.extract.segment.settings =
             vectorlib::EarSettings::forScanner(2 * vectorlib::pi, reference.points.size());
         pair.process(reference.points, {});

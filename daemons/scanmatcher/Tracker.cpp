@@ -7,11 +7,11 @@ using vectorlib::ScanReport;
 void Tracker::apply(const TrackerSettings &settings) {
     configured = settings;
     builder.extract.vectorize.settings.sigma = settings.sigma;
-    vectorlib::CorrespondenceSettings &find = builder.find.settings;
-    find.permitted = {settings.permittedXY, settings.permittedXY, settings.permittedAlpha};
-    find.expectedDeviationXY = settings.expectedDeviationXY;
-    find.expectedDeviationAlpha = settings.expectedDeviationAlpha;
-    find.minMatchedShare = settings.minMatchedShare;
+    vectorlib::TrackingSettings &track = builder.track.settings;
+    track.permitted = {settings.permittedXY, settings.permittedXY, settings.permittedAlpha};
+    track.expectedDeviationXY = settings.expectedDeviationXY;
+    track.expectedDeviationAlpha = settings.expectedDeviationAlpha;
+    track.minMatchedShare = settings.minMatchedShare;
 }
 
 const ScanReport &Tracker::process(Scan &scan) {

@@ -20,8 +20,8 @@ void MapRun::take(const MapScan &scan) {
     if (!scan.partial) {
         points_ = scan.points;
         const bool wellExpected = isWellExpected(scan, stamp);
-        builder.find.settings = wellExpected ? vectorlib::CorrespondenceSettings()
-                                             : vectorlib::CorrespondenceSettings::forPoorExpectation();
+        builder.track.settings =
+            wellExpected ? vectorlib::TrackingSettings() : vectorlib::TrackingSettings::forPoorExpectation();
         builder.matchPair.settings =
             wellExpected ? vectorlib::ScanPairSettings() : vectorlib::ScanPairSettings::forPoorExpectation();
         builder.settings.matchPrevious = true;

@@ -45,16 +45,16 @@ void view(benchmark::State &state, const Segments &world) {
 void searchMap(benchmark::State &state) {
     Hall hall(static_cast<std::size_t>(state.range(0)));
     const Segments scan = hall.view({hall.middle.x + 0.4, hall.middle.y - 0.3, 0.5});
-    CorrespondenceSearch search;
+    CorrespondenceFinder find;
     for (auto _ : state)
         benchmark::DoNotOptimize(
-            search(hall.map, scan, Transformation2D(hall.middle.x, hall.middle.y, 0.2)).solutions.size());
+            find(hall.map, scan, Transformation2D(hall.middle.x, hall.middle.y, 0.2)).solutions.size());
 }
 
 void searchScans(benchmark::State &state, const hermes::ScanPair &scans) {
-    CorrespondenceSearch search;
+    CorrespondenceFinder find;
     for (auto _ : state)
-        benchmark::DoNotOptimize(search(scans.fixed.segments, scans.moving.segments).solutions.size());
+        benchmark::DoNotOptimize(find(scans.fixed.segments, scans.moving.segments).solutions.size());
 }
 
 void addViews(const std::string &name, Segments (*make)(std::size_t)) {

@@ -79,7 +79,7 @@ void TestReport::quadraticIsRecognised() {
 void TestReport::randomRoomsAreRecognised() {
     const unsigned seed = std::random_device()();
     qInfo("seeds from %u", seed);
-    vectorlib::CorrespondenceSearch search;
+    vectorlib::CorrespondenceFinder find;
     int first = 0, wrong = 0;
     for (unsigned k = 0; k < 200; ++k) {
         const RandomRoom room(seed + k);
@@ -87,7 +87,7 @@ void TestReport::randomRoomsAreRecognised() {
         ScanSettings settings;
         settings.seed = seed + k;
         const ScanPair scans = scanPair(room.edges, room.first, room.second, settings);
-        const vectorlib::SearchResult &result = search(scans.fixed.segments, scans.moving.segments);
+        const vectorlib::SearchResult &result = find(scans.fixed.segments, scans.moving.segments);
         first += !result.solutions.empty() && scans.isTrue(result.solutions[0]);
         for (const vectorlib::Solution &s : result.solutions)
             wrong += s.accepted && !scans.isTrue(s);

@@ -1,4 +1,4 @@
-#include "vectorlib/correspondence/CorrespondenceSearch.h"
+#include "vectorlib/correspondence/CorrespondenceFinder.h"
 
 #include "tests/support/Hall.h"
 #include "tests/support/RandomRoom.h"
@@ -172,24 +172,24 @@ void TestCorrespondence::combinationsAreThoseOfExhaustiveSearch() {
 
 void TestCorrespondence::boundOnCombinationsIsReported() {
     const RandomRoom made(4);
-    CorrespondenceSearch search;
-    search.settings.maxCombinations = 3;
-    const auto &result = search(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second));
+    CorrespondenceFinder find;
+    find.settings.maxCombinations = 3;
+    const auto &result = find(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second));
     QVERIFY(result.outcome == SearchOutcome::Cut);
     QCOMPARE(result.combinations, std::uint64_t(3));
     QVERIFY(QByteArray(describe(result.outcome)).contains("bound"));
-    search.settings.maxCombinations = 100000;
-    QVERIFY(search(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second)).outcome ==
+    find.settings.maxCombinations = 100000;
+    QVERIFY(find(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second)).outcome ==
             SearchOutcome::Complete);
 }
 
 void TestCorrespondence::findsThePoseOfRandomRooms() {
     const unsigned seed = std::random_device()();
     qInfo("seed %u", seed);
-    CorrespondenceSearch search;
+    CorrespondenceFinder find;
     for (unsigned k = 0; k < 200; ++k) {
         const RandomRoom made(seed + k);
-        const auto &result = search(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second));
+        const auto &result = find(seenFrom(made.edges, made.first), seenFrom(made.edges, made.second));
         const QByteArray which = "room " + QByteArray::number(seed + k);
         QVERIFY2(!result.solutions.empty() && result.solutions[0].accepted, which);
         QVERIFY2(distance(result.solutions[0].pose, between(made.first, made.second)) < 1e-6, which);
@@ -198,18 +198,18 @@ void TestCorrespondence::findsThePoseOfRandomRooms() {
 
 void TestCorrespondence::expectedTransformationMovesTheSearch() {
     const Pose2D first{-1, 0.2, 0.3}, second{1.4, -0.5, 2.5}; // farther than the permitted set reaches
-    CorrespondenceSearch search;
+    CorrespondenceFinder find;
     const Transformation2D truth = between(first, second);
     const auto &result =
-        search(seenFrom(room(), first), seenFrom(room(), second), truth * Transformation2D(0.3, -0.4, 0.2));
+        find(seenFrom(room(), first), seenFrom(room(), second), truth * Transformation2D(0.3, -0.4, 0.2));
     QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
     QVERIFY(distance(result.solutions[0].pose, truth) < 1e-6);
 }
 
 void TestCorrespondence::otherDirectionsAreOutOfThePermittedSet() {
-    CorrespondenceSearch search;
-    search.settings.permitted = {0.3, 0.3, 0.1};
-    for (const Solution &s : search(seenFrom(room(), {0, 0, 0}), seenFrom(room(), {1, 0, 0})).solutions)
+    CorrespondenceFinder find;
+    find.settings.permitted = {0.3, 0.3, 0.1};
+    for (const Solution &s : find(seenFrom(room(), {0, 0, 0}), seenFrom(room(), {1, 0, 0})).solutions)
         QVERIFY(!s.accepted);
 }
 
@@ -218,10 +218,10 @@ void TestCorrespondence::everySymmetryIsASolution() {
     const std::vector<Point> c = {{-2, -2}, {2, -2}, {2, 2}, {-2, 2}};
     for (std::size_t i = 0; i < 4; ++i)
         square.emplace_back(c[i], c[(i + 1) % 4]);
-    CorrespondenceSearch search;
-    search.settings.permitted.dalpha = 3.2;
+    CorrespondenceFinder find;
+    find.settings.permitted.dalpha = 3.2;
     int accepted = 0;
-    for (const Solution &s : search(square, square).solutions)
+    for (const Solution &s : find(square, square).solutions)
         accepted += s.accepted;
     QCOMPARE(accepted, 4);
 }
@@ -235,15 +235,15 @@ void TestCorrespondence::viewThatSeesNothingIsNoEvidence() {
     test.setMoving(corner);
     QVERIFY(test(Transformation2D()).angle == 0);
     QVERIFY(test(Transformation2D()).discrepancy == 0);
-    CorrespondenceSearch search;
-    search.settings.permitted = {9, 9, 1};
+    CorrespondenceFinder find;
+    find.settings.permitted = {9, 9, 1};
     for (const Solution &s :
-         search(moved({5, 5, 0}, {corner[0].reversed(), corner[1].reversed()}), corner).solutions)
+         find(moved({5, 5, 0}, {corner[0].reversed(), corner[1].reversed()}), corner).solutions)
         QVERIFY(!s.accepted || s.view.angle > 0);
-    search.settings.sharedView = search.settings.matchedShare = 0;
-    search.settings.permitted = {9, 9, 3.2};
+    find.settings.sharedView = find.settings.matchedShare = 0;
+    find.settings.permitted = {9, 9, 3.2};
     for (const Solution &s :
-         search(moved({-1, -1, pi}, {corner[0].reversed(), corner[1].reversed()}), corner).solutions)
+         find(moved({-1, -1, pi}, {corner[0].reversed(), corner[1].reversed()}), corner).solutions)
         QVERIFY(s.view.angle > 0 || (!s.accepted && s.score == 0));
 }
 
@@ -256,8 +256,8 @@ void TestCorrespondence::numbersAreThoseOfTheCaller() {
         moving.push_back(Transformation2D(-0.2, 0.1, 0.1) * s);
     }
     fixed.erase(fixed.begin());
-    CorrespondenceSearch search;
-    const auto &result = search(fixed, moving);
+    CorrespondenceFinder find;
+    const auto &result = find(fixed, moving);
     QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
     QCOMPARE(result.solutions[0].pairs.size(), room().size());
     for (const CorrespondencePair &p : result.solutions[0].pairs)
@@ -272,18 +272,18 @@ void TestCorrespondence::searchesAMap() {
     const Segments scan = hall.view(pose);
     map.add(Segment({0, std::numeric_limits<double>::quiet_NaN()}, {1, 1}));
     map.add(Segment(middle + Point(-1e6, 100), middle + Point(1e6, 100)));
-    CorrespondenceSearch search;
-    const auto &result = search(map, scan, Transformation2D(middle.x, middle.y, 0.2));
+    CorrespondenceFinder find;
+    const auto &result = find(map, scan, Transformation2D(middle.x, middle.y, 0.2));
     QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
     QVERIFY(distance(result.solutions[0].pose, Transformation2D(pose)) < 1e-6);
     for (const CorrespondencePair &p : result.solutions[0].pairs)
         QVERIFY(map[p.fixed].distance(middle) < 9);
-    search(map, scan, Transformation2D(-500, 0, 0));
+    find(map, scan, Transformation2D(-500, 0, 0));
     QVERIFY(result.solutions.empty());
     QVERIFY(result.outcome == SearchOutcome::NoPotentialPair); // the endless wall alone is looked at
-    search.settings.permitted = {1e12, 1e12, 1};               // the whole map is in reach, at once
-    search.settings.maxPairs = 1000;
-    search(map, scan, Transformation2D(pose));
+    find.settings.permitted = {1e12, 1e12, 1};                 // the whole map is in reach, at once
+    find.settings.maxPairs = 1000;
+    find(map, scan, Transformation2D(pose));
     QCOMPARE(describe(result.outcome), describe(SearchOutcome::TooManyPairs));
 }
 
@@ -291,7 +291,7 @@ void TestCorrespondence::mapSearchDoesNotSlowDownWithTheMap() {
     Hall small(100), large(100000);
     QCOMPARE(small.map.size(), std::size_t(100));
     QCOMPARE(large.map.size(), std::size_t(100000));
-    CorrespondenceSearch search;
+    CorrespondenceFinder find;
     std::vector<double> times[2];
     for (int i = 0; i < 101; ++i)
         for (int k = 0; k < 2; ++k) {
@@ -299,7 +299,7 @@ void TestCorrespondence::mapSearchDoesNotSlowDownWithTheMap() {
             const Point at = hall.middle;
             const Segments scan = hall.view({at.x + 0.4, at.y - 0.3, 0.5});
             const auto begin = std::chrono::steady_clock::now();
-            const auto &result = search(hall.map, scan, Transformation2D(at.x, at.y, 0.2));
+            const auto &result = find(hall.map, scan, Transformation2D(at.x, at.y, 0.2));
             const auto end = std::chrono::steady_clock::now();
             times[k].push_back(std::chrono::duration<double, std::micro>(end - begin).count());
             QVERIFY(!result.solutions.empty() && result.solutions[0].accepted);
@@ -340,7 +340,7 @@ void TestCorrespondence::saysWhyThereIsNothing() {
     QFETCH(int, which);
     QFETCH(int, outcome);
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    CorrespondenceSearch search;
+    CorrespondenceFinder find;
     Segments fixed = room(), moving = room();
     Transformation2D expected;
     switch (which) {
@@ -368,25 +368,25 @@ void TestCorrespondence::saysWhyThereIsNothing() {
         moving = {Segment({2, -1}, {2, 1}), Segment({1.5, 1}, {-1.5, 3})};
         break;
     case 7:
-        search.settings.ambiguity = nan;
+        find.settings.ambiguity = nan;
         break;
     case 8:
-        search.settings.permitted.dx = -1;
+        find.settings.permitted.dx = -1;
         break;
     case 9:
-        search.settings.maxSolutions = 0;
+        find.settings.maxSolutions = 0;
         break;
     case 10:
-        search.settings.permitted.dy = noHit;
+        find.settings.permitted.dy = noHit;
         break;
     case 11:
         expected = Transformation2D(nan, 0, 0);
         break;
     case 12:
-        search.settings.maxPairs = 3;
+        find.settings.maxPairs = 3;
         break;
     }
-    const auto &result = search(fixed, moving, expected);
+    const auto &result = find(fixed, moving, expected);
     QCOMPARE(QByteArray(describe(result.outcome)), QByteArray(describe(SearchOutcome(outcome))));
     QVERIFY(result.solutions.empty());
 }
@@ -399,8 +399,8 @@ void TestCorrespondence::thresholdsOfZeroAcceptNothing_data() {
 
 void TestCorrespondence::thresholdsOfZeroAcceptNothing() {
     QFETCH(int, which);
-    CorrespondenceSearch search;
-    SearchSettings &s = search.settings;
+    CorrespondenceFinder find;
+    SearchSettings &s = find.settings;
     double *thresholds[] = {&s.permitted.dx, &s.permitted.dalpha, &s.reliability,
                             &s.ambiguity,    &s.discrepancy,      &s.stiffness.alpha};
     *thresholds[which] = 0;
@@ -414,7 +414,7 @@ void TestCorrespondence::thresholdsOfZeroAcceptNothing() {
                             there.end() + Point(noise(random), noise(random)));
     }
     const bool mayAccept = thresholds[which] == &s.reliability || thresholds[which] == &s.stiffness.alpha;
-    for (const Solution &solution : search(room(), moving).solutions) {
+    for (const Solution &solution : find(room(), moving).solutions) {
         QVERIFY(mayAccept || !solution.accepted);
         QVERIFY(solution.pose.isFinite() && solution.score >= 0 && solution.score <= 1);
     }
@@ -422,12 +422,12 @@ void TestCorrespondence::thresholdsOfZeroAcceptNothing() {
 
 void TestCorrespondence::givesTheSameAgain() {
     const RandomRoom made(11), other(12);
-    CorrespondenceSearch search, fresh;
+    CorrespondenceFinder find, fresh;
     const Segments fixed = seenFrom(made.edges, made.first), moving = seenFrom(made.edges, made.second);
-    const SearchResult once = search(fixed, moving);
-    search(seenFrom(other.edges, other.first), seenFrom(other.edges, other.second));
-    search({}, {});
-    for (const SearchResult &again : {search(fixed, moving), fresh(fixed, moving)}) {
+    const SearchResult once = find(fixed, moving);
+    find(seenFrom(other.edges, other.first), seenFrom(other.edges, other.second));
+    find({}, {});
+    for (const SearchResult &again : {find(fixed, moving), fresh(fixed, moving)}) {
         QCOMPARE(again.solutions.size(), once.solutions.size());
         for (std::size_t i = 0; i < once.solutions.size(); ++i) {
             QCOMPARE(again.solutions[i].score, once.solutions[i].score);
@@ -442,13 +442,13 @@ void TestCorrespondence::allocatesNothingInSteadyState() {
     Hall hall(2000);
     const Point at = hall.middle;
     const Segments scan = hall.view({at.x, at.y, 0.2});
-    CorrespondenceSearch search;
+    CorrespondenceFinder find;
     for (const bool inMap : {false, true}) {
         std::size_t before = 0, after = 0, solutions = 0;
         for (int i = 0; i < 5; ++i) {
             before = allocations; // buffers grow in the first rounds
             const auto &result =
-                inMap ? search(hall.map, scan, Transformation2D(at.x, at.y, 0.1)) : search(fixed, moving);
+                inMap ? find(hall.map, scan, Transformation2D(at.x, at.y, 0.1)) : find(fixed, moving);
             after = allocations;
             solutions = result.solutions.size();
         }

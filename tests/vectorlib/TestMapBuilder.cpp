@@ -52,9 +52,9 @@ private Q_SLOTS:
     void parallelWallsStayApart();
     void mergeRefusesWhatIsNoLine();
     void gridFindsWhatTouchesTheBox();
-    void finderRecoversTheDisplacement_data();
-    void finderRecoversTheDisplacement();
-    void finderWithNothingToMatch();
+    void trackerRecoversTheDisplacement_data();
+    void trackerRecoversTheDisplacement();
+    void trackerWithNothingToMatch();
     void corridorKeepsTheExpectedPlaceAlongIt();
     void tracksAroundTheRoom();
     void theScanBeforeMakesUpForWheelsThatSlip();
@@ -147,7 +147,7 @@ void TestMapBuilder::gridFindsWhatTouchesTheBox() {
     }
 }
 
-void TestMapBuilder::finderRecoversTheDisplacement_data() {
+void TestMapBuilder::trackerRecoversTheDisplacement_data() {
     QTest::addColumn<double>("dx");
     QTest::addColumn<double>("dy");
     QTest::addColumn<double>("dalpha");
@@ -157,7 +157,7 @@ void TestMapBuilder::finderRecoversTheDisplacement_data() {
     QTest::newRow("turned") << 0.1 << 0.1 << 0.35;
 }
 
-void TestMapBuilder::finderRecoversTheDisplacement() {
+void TestMapBuilder::trackerRecoversTheDisplacement() {
     QFETCH(double, dx);
     QFETCH(double, dy);
     QFETCH(double, dalpha);
@@ -165,11 +165,11 @@ void TestMapBuilder::finderRecoversTheDisplacement() {
     for (int i = 0; i < 20; ++i) {
         const Pose2D truth{-1.5 + 0.1 * i, -1.0 + 0.05 * i, 0.3 * i};
         EdgeExtractor extract;
-        CorrespondenceFinder find;
-        find.settings.expectedDeviationXY = find.settings.expectedDeviationAlpha = 0.3;
+        CorrespondenceTracker track;
+        track.settings.expectedDeviationXY = track.settings.expectedDeviationAlpha = 0.3;
         const Transformation2D pose(truth);
         const Match &match =
-            find(room, extract(scan(truth, 1000, 0.01, random)), pose * Transformation2D(dx, dy, dalpha));
+            track(room, extract(scan(truth, 1000, 0.01, random)), pose * Transformation2D(dx, dy, dalpha));
         QVERIFY(match.accepted);
         QVERIFY2(distance(match.pose.pose(), truth) < 0.02,
                  qPrintable(QString("pose %1: %2 m off, %3 pairs")
@@ -181,21 +181,21 @@ void TestMapBuilder::finderRecoversTheDisplacement() {
     }
 }
 
-void TestMapBuilder::finderWithNothingToMatch() {
-    CorrespondenceFinder find;
+void TestMapBuilder::trackerWithNothingToMatch() {
+    CorrespondenceTracker track;
     EdgeExtractor extract;
     std::mt19937 random(4);
     const auto edges = extract(scan({}, 1000, 0.01, random));
-    QVERIFY(!find({}, edges, Transformation2D()).accepted);
-    QVERIFY(!find(room, {}, Transformation2D()).accepted);
-    QVERIFY(find(room, {}, Transformation2D(1, 2, 3)).pose.isFinite());
+    QVERIFY(!track({}, edges, Transformation2D()).accepted);
+    QVERIFY(!track(room, {}, Transformation2D()).accepted);
+    QVERIFY(track(room, {}, Transformation2D(1, 2, 3)).pose.isFinite());
 }
 
 void TestMapBuilder::corridorKeepsTheExpectedPlaceAlongIt() {
     const std::vector<Segment> corridor{{{-20, -1}, {20, -1}}, {{20, 1}, {-20, 1}}};
     std::vector<EdgeRaw2D> seen{straight({-3, -1.05}, {3, -1.05}), straight({3, 0.95}, {-3, 0.95})};
-    CorrespondenceFinder find;
-    const Match &match = find(corridor, seen, Transformation2D(5, 0, 0));
+    CorrespondenceTracker track;
+    const Match &match = track(corridor, seen, Transformation2D(5, 0, 0));
     QVERIFY(match.accepted);
     QVERIFY(match.reliability < 0.01);
     QVERIFY(std::abs(match.pose.x() - 5) < 1e-6);
@@ -220,7 +220,7 @@ void TestMapBuilder::tracksAroundTheRoom() {
 }
 
 void TestMapBuilder::theScanBeforeMakesUpForWheelsThatSlip() {
-    // The expected pose is always 0.9 m off: farther than the finder searches in the map.
+    // The expected pose is always 0.9 m off: farther than the tracker searches in the map.
     for (const bool matchPrevious : {false, true}) {
         std::mt19937 random(5);
         MapBuilder builder;

@@ -52,9 +52,9 @@ CaseReport reportCase(const World &world, std::size_t number, const ReportSettin
         scanPair(edgesOf(world), poseOf(world.poses.at(number)), poseOf(world.poses.at(number + 1)), scan),
         {},
         {}};
-    vectorlib::CorrespondenceSearch search;
-    search.settings = settings.search;
-    report.result = search(report.scans.fixed.segments, report.scans.moving.segments);
+    vectorlib::CorrespondenceFinder find;
+    find.settings = settings.search;
+    report.result = find(report.scans.fixed.segments, report.scans.moving.segments);
     for (const vectorlib::Solution &solution : report.result.solutions)
         report.counts.push_back(report.scans.count(solution, settings.search.permitted));
     return report;

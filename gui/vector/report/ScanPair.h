@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/world/World.h"
-#include "vectorlib/correspondence/CorrespondenceSearch.h"
+#include "vectorlib/correspondence/CorrespondenceFinder.h"
 
 #include <cstdint>
 

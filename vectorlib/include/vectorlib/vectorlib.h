@@ -1,7 +1,7 @@
 #pragma once
 
 // Everything that scan processing needs, in one include.
-#include "vectorlib/correspondence/CorrespondenceSearch.h"
+#include "vectorlib/correspondence/CorrespondenceFinder.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/registration/RegistrationCovariance.h"

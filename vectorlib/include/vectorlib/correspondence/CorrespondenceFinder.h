@@ -1,222 +1,241 @@
 #pragma once
 
-#include "vectorlib/correspondence/Match.h"
+#include "vectorlib/correspondence/BundleCombinations.h"
+#include "vectorlib/correspondence/ExpectedViewTest.h"
+#include "vectorlib/correspondence/PairSelection.h"
 #include "vectorlib/correspondence/PotentialPairs.h"
-#include "vectorlib/correspondence/RotationVotes.h"
-#include "vectorlib/mapping/Edge2D.h"
-#include "vectorlib/registration/LineSegmentRegistration.h"
-#include "vectorlib/registration/PointToLineRefinement.h"
-
-#include <vector>
+#include "vectorlib/correspondence/SearchResult.h"
+#include "vectorlib/correspondence/SegmentMap.h"
 
 namespace vectorlib {
 
-struct CorrespondenceSettings {
-    PermittedError permitted = {0.5, 0.5, 0.4};
-    double finalDistance =
-        0.10;                 ///< root mean square distance from the line beyond which a pair is none; metres
-    double finalAngle = 0.17; ///< the same for the angle between the segments; radians
-    double minOverlap = 0.2;  ///< share of the shorter segment that must lie over the other
-    /// How far the expected pose may be wrong, standard deviations; decides where the lines leave a direction
-    /// open.
-    double expectedDeviationXY = 0.05;    ///< metres
-    double expectedDeviationAlpha = 0.10; ///< radians
-    /// Of one point from its static line, the line's own error included; weighs points against the expected
-    /// pose.
-    double pointDeviation = 0.15;   ///< metres
-    std::size_t minPairs = 2;       ///< fewer pairs are no match
-    double minMatchedShare = 0.15;  ///< of the length of all dynamic edges; with less there is no match
-    int rotations = 3;              ///< how many likely rotations are tried beside the expected one
-    int iterations = 12;            ///< most refinement steps for each
-    double gateFactor = 0.6;        ///< how fast the gates narrow from the permitted error to the final ones
-    double expectationScore = 0.05; ///< metres of matched length that one squared standard deviation costs
-
-    /// For an expected pose that is hardly more than a guess: scans far apart, without odometry.
-    static CorrespondenceSettings forPoorExpectation() {
-        CorrespondenceSettings s;
-        s.permitted = {2, 2, 1.26};
-        s.expectedDeviationXY = 1;
-        s.expectedDeviationAlpha = 0.5;
-        s.minMatchedShare = 0.3;
-        return s;
-    }
+/// Defaults: the published experiments (thesis appendices).
+struct SearchSettings {
+    PermittedError permitted;
+    double reliability = 0.10; ///< least of a solution; also what tells directions apart
+    double ambiguity = 0.0025; ///< most energy of a pair; m^2
+    Stiffness stiffness;
+    double discrepancy = 0.2; ///< most of an accepted solution; m^2
+    /// Or this share of the area that both views see: outlines that are seen a ray sooner or later differ by
+    /// areas that grow with the place.
+    double discrepancyShare = 0.03;
+    double sharedView = 0.25;   ///< least share of the seen angle that the expected view must show
+    double matchedShare = 0.30; ///< least share of the dynamic length that must have partners
+    std::size_t maxSolutions = 16;
+    std::size_t maxPairs = 5000;           ///< potential pairs
+    std::uint64_t maxCombinations = 20000; ///< bundles tried
 };
 
-/// Finds which edges of a scan correspond to which of the map, tracking from an expected pose.
+/// Finds which segments of two sets correspond, with no more knowledge than a set of permitted
+/// transformations. Thesis 7.4: potential pairs, unambiguous collinear bundles, their combinations, expected
+/// view test. Keeps its buffers between calls.
 ///
-/// Potential pairs come from the permitted set of transformations (thesis 7.4.1). From the expected pose, and
-/// from the rotations that most pairs ask for, every dynamic edge takes its nearest potential partner while
-/// the gate narrows; the pose follows from the points of all pairs by their sums. The start that explains the
-/// most length wins. Reliability and ambiguity are those of the one-step registration of its pairs. Keeps its
-/// buffers between calls.
+/// Segments that are not finite or have no length are left out. Where there is no solution, the outcome says
+/// why.
 class CorrespondenceFinder {
 public:
-    CorrespondenceSettings settings;
+    using Segments = std::vector<LineSegment2D<double>>;
 
-    /// `fixed` in the map's frame, `moving` in the sensor's; `expected` moves the second onto the first.
-    const Match &operator()(const std::vector<LineSegment2D<double>> &fixed,
-                            const std::vector<EdgeRaw2D> &moving, const Transformation2D &expected) {
-        // Everything happens in the expected sensor frame, where segments are near the origin (erratum 13).
-        const Transformation2D toLocal = expected.inverse();
-        fixed_.clear();
-        for (const LineSegment2D<double> &segment : fixed)
-            fixed_.push_back(toLocal * segment);
-        moving_ = &moving;
-        collectCandidates();
+    SearchSettings settings;
 
-        Transformation2D best = track(Transformation2D());
-        double bestScore = score(best);
-        bestPairs_ = pairs_;
-        for (double alpha : votes_.peaks(settings.rotations)) {
-            const Transformation2D other = track(Transformation2D(0, 0, alpha));
-            const double otherScore = score(other);
-            if (otherScore > bestScore) {
-                bestScore = otherScore;
-                best = other;
-                bestPairs_ = pairs_;
-            }
+    /// Two scans, each in the frame of its sensor; `expected` moves the dynamic set onto the static one.
+    /// Valid until the next call.
+    const SearchResult &operator()(const Segments &fixed, const Segments &moving,
+                                   const Transformation2D &expected = {}) {
+        if (start(moving, expected)) {
+            for (std::size_t i = 0; i < fixed.size(); ++i)
+                fixed_.take(toLocal_ * fixed[i], static_cast<int>(i));
+            search(&toLocal_);
         }
-        conclude(expected, best);
-        return match_;
+        return result_;
+    }
+    /// A scan in a map: only what lies in reach of the scan is looked at. Pairs bear the map's numbers.
+    const SearchResult &operator()(SegmentMap &map, const Segments &moving,
+                                   const Transformation2D &expected = {}) {
+        if (start(moving, expected)) {
+            double reach = 0;
+            for (const LineSegment2D<double> &s : moving_.segments)
+                reach = std::max({reach, s.begin().norm(), s.end().norm()});
+            reach += std::hypot(settings.permitted.dx, settings.permitted.dy);
+            for (int number : map.near(expected.translation(), reach))
+                fixed_.take(toLocal_ * map[number], number);
+            search(nullptr);
+        }
+        return result_;
     }
 
 private:
-    const LineSegment2D<double> &fixedOf(const CorrespondencePair &p) const {
-        return fixed_[static_cast<std::size_t>(p.fixed)];
+    struct NumberedSegments {
+        Segments segments;
+        std::vector<int> numbers; // of the caller
+
+        void clear() {
+            segments.clear();
+            numbers.clear();
+        }
+        void take(const LineSegment2D<double> &s, int number) {
+            if (s.isFinite() && s.direction().squaredNorm() > 0.5) {
+                segments.push_back(s);
+                numbers.push_back(number);
+            }
+        }
+    };
+
+    bool settingsAreGood() const {
+        const SearchSettings &s = settings;
+        for (double value : {s.permitted.dx, s.permitted.dy, s.permitted.dalpha, s.reliability, s.ambiguity,
+                             s.stiffness.alpha, s.stiffness.xy, s.discrepancy, s.discrepancyShare,
+                             s.sharedView, s.matchedShare})
+            if (!(value >= 0) || !std::isfinite(value))
+                return false;
+        return s.maxSolutions > 0 && s.maxPairs > 0 && s.maxCombinations > 0;
     }
-    const EdgeRaw2D &movingOf(const CorrespondencePair &p) const {
-        return (*moving_)[static_cast<std::size_t>(p.moving)];
-    }
-    static double angleBetween(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving) {
-        return std::atan2(moving.direction().cross(fixed.direction()),
-                          moving.direction().dot(fixed.direction()));
-    }
-    // Mean squared distance of a segment's points from the line.
-    static double squaredDistance(const LineSegment2D<double> &line, const LineSegment2D<double> &segment) {
-        const double a = line.across(segment.begin()), b = line.across(segment.end());
-        return (a * a + a * b + b * b) / 3;
+    bool start(const Segments &moving, const Transformation2D &expected) {
+        spare_.insert(spare_.end(), std::make_move_iterator(result_.solutions.begin()),
+                      std::make_move_iterator(result_.solutions.end()));
+        result_.solutions.clear();
+        result_.outcome = SearchOutcome::BadSettings;
+        result_.potentialPairs = result_.bundles = result_.buckets = result_.combinations = 0;
+        fixed_.clear();
+        moving_.clear();
+        if (!settingsAreGood() || !expected.isFinite())
+            return false;
+        for (std::size_t i = 0; i < moving.size(); ++i)
+            moving_.take(moving[i], static_cast<int>(i));
+        expected_ = expected;
+        toLocal_ = expected.inverse();
+        return true;
     }
 
-    void collectCandidates() {
-        candidates_.clear();
-        votes_.start(settings.permitted.dalpha);
-        const double cosine = std::cos(std::min(pi, settings.permitted.dalpha)) - 1e-9;
-        for (std::size_t d = 0; d < moving_->size(); ++d)
-            for (std::size_t s = 0; s < fixed_.size(); ++s) {
-                const LineSegment2D<double> &moving = (*moving_)[d].segment, &fixed = fixed_[s];
-                if (fixed.direction().dot(moving.direction()) < cosine || // most end here
-                    !mayCorrespond(fixed, moving, settings.permitted))
-                    continue;
-                candidates_.push_back({static_cast<int>(s), static_cast<int>(d)});
-                votes_.add(angleBetween(fixed, moving), std::min(fixed.length(), moving.length()));
-            }
+    // Everything happens in the expected sensor frame, where segments are near the origin (erratum 13).
+    void search(const Transformation2D *seenFrom) {
+        result_.outcome = findCombinations();
+        if (combinations_->empty())
+            return;
+        view_.setFixed(fixed_.segments, seenFrom);
+        view_.setMoving(moving_.segments);
+        for (const Combination &c : *combinations_)
+            judge(select_(pairs_, fixed_.segments, moving_.segments, c.transformation));
+        std::sort(result_.solutions.begin(), result_.solutions.end(),
+                  [](const Solution &a, const Solution &b) {
+                      return a.accepted != b.accepted ? a.accepted : a.score > b.score;
+                  });
     }
-    // Follows the nearest pairs from a start to where they agree; leaves the final pairs in pairs_.
-    Transformation2D track(Transformation2D correction) {
-        double gate = std::max(settings.permitted.dx, settings.permitted.dy),
-               angle = settings.permitted.dalpha;
-        for (int i = 0; i < settings.iterations; ++i) {
-            choosePairs(correction, gate, angle);
-            const Transformation2D step = refine(correction);
-            correction = step * correction;
-            const bool narrow = gate <= settings.finalDistance && angle <= settings.finalAngle;
-            if (narrow && step.translation().norm() < 1e-5 && std::abs(step.sin()) < 1e-6)
-                break;
-            gate = std::max(settings.finalDistance, gate * settings.gateFactor);
-            angle = std::max(settings.finalAngle, angle * settings.gateFactor);
-        }
-        choosePairs(correction, settings.finalDistance, settings.finalAngle);
-        return correction;
+    SearchOutcome findCombinations() {
+        combinations_ = &none_;
+        if (moving_.segments.empty())
+            return SearchOutcome::NothingMoving;
+        if (fixed_.segments.empty())
+            return SearchOutcome::NothingFixed;
+        collectPairs();
+        if (pairs_.empty())
+            return SearchOutcome::NoPotentialPair;
+        if (pairs_.size() > settings.maxPairs)
+            return SearchOutcome::TooManyPairs;
+        bundle_.reliability = buckets_.reliability = combine_.reliability = settings.reliability;
+        bundle_.ambiguity = combine_.ambiguity = settings.ambiguity;
+        bundle_.stiffness = settings.stiffness;
+        combine_.keep = settings.maxSolutions;
+        combine_.most = settings.maxCombinations;
+        const std::vector<Bundle> &bundles = bundle_(pairs_);
+        buckets_(bundles);
+        combinations_ = &combine_(buckets_);
+        result_.bundles = bundles.size();
+        result_.buckets = buckets_.size();
+        result_.combinations = combine_.tried();
+        return combine_.isCut()          ? SearchOutcome::Cut
+               : !combinations_->empty() ? SearchOutcome::Complete
+               : result_.buckets < 2     ? SearchOutcome::OneDirection
+                                         : SearchOutcome::NoCombination;
     }
-    // For every dynamic edge its nearest potential partner within the gates.
-    void choosePairs(const Transformation2D &correction, double gate, double angle) {
+    void collectPairs() {
         pairs_.clear();
-        const double cosine = std::cos(angle);
-        int current = -1;
-        double nearest = 0;
-        LineSegment2D<double> moved;
-        for (const CorrespondencePair &c : candidates_) { // sorted by dynamic edge
-            if (c.moving != current) {
-                current = c.moving;
-                moved = correction * movingOf(c).segment;
-                nearest = gate * gate;
+        const double cosine = std::cos(std::min(pi, settings.permitted.dalpha)) - 1e-9;
+        for (std::size_t m = 0; m < moving_.segments.size(); ++m)
+            for (std::size_t f = 0; f < fixed_.segments.size() && pairs_.size() <= settings.maxPairs; ++f) {
+                const LineSegment2D<double> &fixed = fixed_.segments[f], &moving = moving_.segments[m];
+                if (fixed.direction().dot(moving.direction()) >= cosine && // most end here
+                    mayCorrespond(fixed, moving, settings.permitted))
+                    pairs_.emplace_back(CorrespondencePair{static_cast<int>(f), static_cast<int>(m)}, fixed,
+                                        moving, settings.stiffness);
             }
-            const LineSegment2D<double> &fixed = fixedOf(c);
-            if (fixed.direction().dot(moved.direction()) < cosine)
-                continue;
-            const double distance = squaredDistance(fixed, moved);
-            if (distance > nearest ||
-                fixed.overlap(moved) < settings.minOverlap * std::min(fixed.length(), moved.length()))
-                continue;
-            nearest = distance;
-            if (!pairs_.empty() && pairs_.back().moving == c.moving)
-                pairs_.back().fixed = c.fixed;
-            else
-                pairs_.push_back(c);
-        }
-    }
-    Transformation2D refine(const Transformation2D &correction) {
-        const double xy = settings.pointDeviation / settings.expectedDeviationXY;
-        const double alpha = settings.pointDeviation / settings.expectedDeviationAlpha;
-        refinement_.start(xy * xy, alpha * alpha);
-        for (const CorrespondencePair &p : pairs_)
-            refinement_.add(fixedOf(p), correction * movingOf(p).sums, 1.0);
-        return refinement_.step();
-    }
-    // Matched length, less the more the pairs lie apart and the farther the pose is from the expected one.
-    double score(const Transformation2D &correction) const {
-        double sum = 0;
-        for (const CorrespondencePair &p : pairs_) {
-            const LineSegment2D<double> moved = correction * movingOf(p).segment;
-            const double distance = squaredDistance(fixedOf(p), moved);
-            sum += fixedOf(p).overlap(moved) *
-                   (1 - distance / (settings.finalDistance * settings.finalDistance));
-        }
-        const double xy = correction.translation().norm() / settings.expectedDeviationXY;
-        const double alpha = correction.alpha() / settings.expectedDeviationAlpha;
-        return sum - settings.expectationScore * (xy * xy + alpha * alpha);
-    }
-    void conclude(const Transformation2D &expected, const Transformation2D &correction) {
-        Match &m = match_;
-        m.pose = expected * correction;
-        m.pairs = bestPairs_;
-        m.matchedLength = m.visibleLength = 0;
-        for (const EdgeRaw2D &edge : *moving_)
-            m.visibleLength += edge.segment.length();
-        registration_.clear();
-        refinement_.start(0, 0);
-        double squares = 0, points = 0;
-        for (const CorrespondencePair &p : m.pairs) {
-            const LineSegment2D<double> &fixed = fixedOf(p), &moving = movingOf(p).segment;
-            m.matchedLength += moving.length();
-            registration_.add(fixed, moving, std::min(fixed.length(), moving.length()));
-            const EdgeRaw2D moved = correction * movingOf(p);
-            squares += moved.sums.n * squaredDistance(fixed, moved.segment);
-            points += moved.sums.n;
-            refinement_.add(fixed, moved.sums, 1 / (settings.pointDeviation * settings.pointDeviation));
-        }
-        m.rms = points > 0 ? std::sqrt(squares / points) : 0;
-        m.reliability = registration_.reliability();
-        m.ambiguity = registration_.ambiguity(correction).total();
-        m.accepted = m.pairs.size() >= settings.minPairs &&
-                     m.matchedLength >= settings.minMatchedShare * m.visibleLength &&
-                     std::abs(correction.x()) <= settings.permitted.dx &&
-                     std::abs(correction.y()) <= settings.permitted.dy &&
-                     std::abs(correction.alpha()) <= settings.permitted.dalpha;
-        Eigen::Matrix3d toMap = Eigen::Matrix3d::Identity();
-        toMap.topLeftCorner<2, 2>() << expected.cos(), -expected.sin(), expected.sin(), expected.cos();
-        m.information = toMap * refinement_.information() * toMap.transpose();
+        result_.potentialPairs = pairs_.size();
     }
 
-    std::vector<LineSegment2D<double>> fixed_; // in the expected sensor frame
-    const std::vector<EdgeRaw2D> *moving_ = nullptr;
-    std::vector<CorrespondencePair> candidates_; // sorted by moving edge
-    std::vector<CorrespondencePair> pairs_;
-    std::vector<CorrespondencePair> bestPairs_;
-    RotationVotes votes_;
-    LineSegmentRegistration registration_;
-    PointToLineRefinement refinement_;
-    Match match_;
+    // Makes a solution of the selected pairs and the transformation that fits them.
+    void judge(const Transformation2D &t) {
+        if (!t.isFinite() || select_.pairs().size() < 2)
+            return;
+        const Transformation2D pose = expected_ * t;
+        for (const Solution &other : result_.solutions)
+            if (combine_.same(other.pose, pose))
+                return;
+        Solution s = emptySolution();
+        s.pose = pose;
+        measure(s, t);
+        s.view = view_(t);
+        const double threshold = std::max(settings.discrepancy, settings.discrepancyShare * s.view.common);
+        s.accepted = s.reliability >= settings.reliability && s.ambiguity <= settings.ambiguity &&
+                     s.matchedShare >= settings.matchedShare && s.view.discrepancy <= threshold &&
+                     s.view.angle > 0 && s.view.angle >= settings.sharedView * view_.observedAngle() &&
+                     isPermitted(t);
+        s.score = s.view.angle > 0 ? s.matchedShare * s.reliability * s.view.common /
+                                         (s.view.common + s.view.discrepancy) /
+                                         (1 + s.ambiguity / std::max(settings.ambiguity, 1e-12))
+                                   : 0;
+        result_.solutions.push_back(std::move(s));
+    }
+    // What the pairs themselves tell.
+    void measure(Solution &s, const Transformation2D &t) {
+        sums_.clear();
+        isMatched_.assign(moving_.segments.size(), 0);
+        for (const CorrespondencePair &p : select_.pairs()) {
+            const auto f = static_cast<std::size_t>(p.fixed), m = static_cast<std::size_t>(p.moving);
+            const LineSegment2D<double> &fixed = fixed_.segments[f], &moving = moving_.segments[m];
+            const double weight = std::min(fixed.length(), moving.length());
+            sums_.add(fixed, moving, weight);
+            s.ambiguity += weight * PairSelection::energy(fixed, t * moving, settings.stiffness);
+            s.pairs.push_back({fixed_.numbers[f], moving_.numbers[m]});
+            isMatched_[m] = 1;
+        }
+        s.ambiguity /= sums_.weight();
+        s.reliability = sums_.reliability();
+        double matched = 0, all = 0;
+        for (std::size_t m = 0; m < isMatched_.size(); ++m) {
+            all += moving_.segments[m].length();
+            matched += isMatched_[m] ? moving_.segments[m].length() : 0;
+        }
+        s.matchedShare = matched / all;
+    }
+    bool isPermitted(const Transformation2D &t) const {
+        return std::abs(t.x()) <= settings.permitted.dx && std::abs(t.y()) <= settings.permitted.dy &&
+               std::abs(t.alpha()) <= settings.permitted.dalpha;
+    }
+    // One of the last call, for the memory of its pairs.
+    Solution emptySolution() {
+        Solution s;
+        if (!spare_.empty()) {
+            s.pairs = std::move(spare_.back().pairs);
+            s.pairs.clear();
+            spare_.pop_back();
+        }
+        return s;
+    }
+
+    Transformation2D expected_, toLocal_;
+    NumberedSegments fixed_, moving_; // in the expected sensor frame
+    std::vector<PotentialPair> pairs_;
+    CollinearBundles bundle_;
+    BundleBuckets buckets_;
+    BundleCombinations combine_;
+    const std::vector<Combination> none_;
+    const std::vector<Combination> *combinations_ = &none_;
+    PairSelection select_;
+    ExpectedViewTest view_;
+    LineSegmentRegistration sums_;
+    std::vector<char> isMatched_;
+    std::vector<Solution> spare_;
+    SearchResult result_;
 };
 
 } // namespace vectorlib

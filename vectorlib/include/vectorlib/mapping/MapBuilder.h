@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/correspondence/CorrespondenceFinder.h"
+#include "vectorlib/correspondence/CorrespondenceTracker.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/mapping/VectorMap.h"
 
@@ -40,7 +40,7 @@ class MapBuilder {
 public:
     MapBuilderSettings settings;
     EdgeExtractor extract;
-    CorrespondenceFinder find;
+    CorrespondenceTracker track;
     ScanPairMatcher matchPair; ///< of the scan before with this one
     VectorMap map;
 
@@ -54,9 +54,9 @@ public:
         const std::vector<EdgeRaw2D> &edges = extract.vectorizeClusters(clusters, scan);
         const auto t2 = Clock::now();
         edges_ = &edges;
-        const CorrespondenceSettings usual = find.settings;
+        const TrackingSettings usual = track.settings;
         locate(settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected));
-        find.settings = usual;
+        track.settings = usual;
         if (settings.matchPrevious)
             remember(scan);
         const auto t3 = Clock::now();
@@ -92,7 +92,7 @@ private:
     }
 
     // The expected pose by the motion since the scan before, found in the scans; else the given one. Tells
-    // the finder how good it is.
+    // the tracker how good it is.
     Transformation2D expectedByPrevious(PointSpan<float> scan, const Pose2D &given) {
         const Transformation2D expected(given);
         if (previousPoints_.empty())
@@ -101,9 +101,9 @@ private:
             matchPair(previousPoints_, previousEdges_, scan, *edges_, previousPose_.inverse() * expected);
         if (!motion.accepted)
             return expected;
-        find.settings = CorrespondenceSettings();
-        find.settings.expectedDeviationXY = settings.previousDeviationXY;
-        find.settings.expectedDeviationAlpha = settings.previousDeviationAlpha;
+        track.settings = TrackingSettings();
+        track.settings.expectedDeviationXY = settings.previousDeviationXY;
+        track.settings.expectedDeviationAlpha = settings.previousDeviationAlpha;
         return previousPose_ * motion.pose;
     }
     void remember(PointSpan<float> scan) {
@@ -121,7 +121,7 @@ private:
             report_.outcome = settings.grow ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
         else {
             collectVisible(expected);
-            match_ = find(static_, *edges_, expected);
+            match_ = track(static_, *edges_, expected);
             report_.outcome = match_.accepted ? ScanReport::Outcome::Matched : ScanReport::Outcome::Lost;
             if (match_.accepted)
                 pose_ = match_.pose;
@@ -134,7 +134,7 @@ private:
         double reach = 0;
         for (const EdgeRaw2D &e : *edges_)
             reach = std::max({reach, e.segment.begin().squaredNorm(), e.segment.end().squaredNorm()});
-        reach = std::sqrt(reach) + std::max(find.settings.permitted.dx, find.settings.permitted.dy);
+        reach = std::sqrt(reach) + std::max(track.settings.permitted.dx, track.settings.permitted.dy);
         const Vector2D<double> centre = expected.translation(), half(reach, reach);
         static_.clear();
         for (int number : map.near(centre - half, centre + half)) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/correspondence/CorrespondenceFinder.h"
+#include "vectorlib/correspondence/CorrespondenceTracker.h"
 #include "vectorlib/mapping/Observation2D.h"
 #include "vectorlib/registration/PointRefinement.h"
 
@@ -9,10 +9,10 @@ namespace vectorlib {
 struct ScanPairSettings {
     double deviationXY = 0.15;    ///< of the expected motion, a standard deviation; metres
     double deviationAlpha = 0.10; ///< the same; radians
-    CorrespondenceSettings lines; ///< of the first search
+    TrackingSettings lines;       ///< of the first search
     /// A match with fewer points explained or more contradicted is searched for again, more widely.
     double enoughExplained = 0.5, fewContradicted = 0.10;
-    CorrespondenceSettings wideLines = CorrespondenceSettings::forPoorExpectation();
+    TrackingSettings wideLines = TrackingSettings::forPoorExpectation();
     double wideGate = 0.5;          ///< of points in the wider search; metres
     double expectationCost = 0.002; ///< in score, of one squared standard deviation from the expected motion
     /// What a match needs to be accepted; see PointAgreement.
@@ -71,8 +71,8 @@ public:
         expected_ = {expected, settings.deviationXY, settings.deviationAlpha};
         refine.start(fixed, moving);
 
-        find_.settings = settings.lines;
-        const Match &lines = find_(fixedSegments_, movingEdges, expected);
+        track_.settings = settings.lines;
+        const Match &lines = track_(fixedSegments_, movingEdges, expected);
         match_ = ScanPairMatch();
         match_.linesSuffice = lines.accepted && lines.reliability >= settings.lineReliability;
         match_.byLines = lines.accepted ? lines.pose : expected;
@@ -90,8 +90,8 @@ private:
         consider(refine(byLines, expected_, gate));
         consider(refine(expected_.pose, expected_, gate));
         consider(refine(Transformation2D(0, 0, expected_.pose.alpha()), expected_, gate)); // wheels that slip
-        find_.settings = settings.wideLines;
-        const Match &lines = find_(fixedSegments_, edges, expected_.pose);
+        track_.settings = settings.wideLines;
+        const Match &lines = track_(fixedSegments_, edges, expected_.pose);
         consider(refine(lines.pose,
                         {expected_.pose, settings.wideLines.expectedDeviationXY,
                          settings.wideLines.expectedDeviationAlpha},
@@ -131,7 +131,7 @@ private:
                (isGood() || surprise(match_.pose) <= surprising);
     }
 
-    CorrespondenceFinder find_;
+    CorrespondenceTracker track_;
     Expectation expected_;
     std::vector<EdgeRaw2D> fixedEdges_;
     std::vector<LineSegment2D<double>> fixedSegments_;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vectorlib/correspondence/ScanIndex.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/registration/ScanIndex.h"
 
 namespace vectorlib {
 

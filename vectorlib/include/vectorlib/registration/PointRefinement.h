@@ -1,8 +1,8 @@
 #pragma once
 
-#include "vectorlib/correspondence/ScanIndex.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/registration/PointAgreement.h"
+#include "vectorlib/registration/ScanIndex.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
