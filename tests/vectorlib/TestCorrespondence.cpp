@@ -92,6 +92,7 @@ private Q_SLOTS:
     void mapSearchDoesNotSlowDownWithTheMap();
     void saysWhyThereIsNothing_data();
     void saysWhyThereIsNothing();
+    void tellsTheFaultOfASolution();
     void thresholdsOfZeroAcceptNothing_data();
     void thresholdsOfZeroAcceptNothing();
     void givesTheSameAgain();
@@ -389,6 +390,23 @@ void TestCorrespondence::saysWhyThereIsNothing() {
     const auto &result = find(fixed, moving, expected);
     QCOMPARE(QByteArray(describe(result.outcome)), QByteArray(describe(SearchOutcome(outcome))));
     QVERIFY(result.solutions.empty());
+}
+
+void TestCorrespondence::tellsTheFaultOfASolution() {
+    Segments moving = room();
+    moving[0] = Segment(moving[0].begin() + Point(0, 0.02), moving[0].end()); // as noise does
+    const auto fault = [&](auto change) {
+        CorrespondenceFinder find;
+        change(find.settings);
+        const auto &solutions = find(room(), moving).solutions;
+        if (solutions.empty() || solutions[0].accepted != (solutions[0].fault == Fault::None))
+            qFatal("no solution, or one that is accepted and has a fault");
+        return solutions[0].fault;
+    };
+    QVERIFY(fault([](SearchSettings &) {}) == Fault::None);
+    QVERIFY(fault([](SearchSettings &s) { s.matchedShare = 1.1; }) == Fault::MatchedShare);
+    QVERIFY(fault([](SearchSettings &s) { s.sharedView = 2; }) == Fault::NoEvidence);
+    QVERIFY(fault([](SearchSettings &s) { s.discrepancy = s.discrepancyShare = 0; }) == Fault::Discrepancy);
 }
 
 void TestCorrespondence::thresholdsOfZeroAcceptNothing_data() {

@@ -2,6 +2,7 @@
 
 // Everything that scan processing needs, in one include.
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
+#include "vectorlib/correspondence/SolutionCovariance.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/registration/RegistrationCovariance.h"

@@ -174,16 +174,27 @@ private:
         s.pose = pose;
         measure(s, t);
         s.view = view_(t);
-        const double threshold = std::max(settings.discrepancy, settings.discrepancyShare * s.view.common);
-        s.accepted = s.reliability >= settings.reliability && s.ambiguity <= settings.ambiguity &&
-                     s.matchedShare >= settings.matchedShare && s.view.discrepancy <= threshold &&
-                     s.view.angle > 0 && s.view.angle >= settings.sharedView * view_.observedAngle() &&
-                     isPermitted(t);
+        s.fault = faultOf(s, t);
+        s.accepted = s.fault == Fault::None;
         s.score = s.view.angle > 0 ? s.matchedShare * s.reliability * s.view.common /
                                          (s.view.common + s.view.discrepancy) /
                                          (1 + s.ambiguity / std::max(settings.ambiguity, 1e-12))
                                    : 0;
         result_.solutions.push_back(std::move(s));
+    }
+    Fault faultOf(const Solution &s, const Transformation2D &t) const {
+        if (!(s.reliability >= settings.reliability))
+            return Fault::Reliability;
+        if (!(s.ambiguity <= settings.ambiguity))
+            return Fault::Ambiguity;
+        if (!(s.matchedShare >= settings.matchedShare))
+            return Fault::MatchedShare;
+        if (!(s.view.angle > 0 && s.view.angle >= settings.sharedView * view_.observedAngle()))
+            return Fault::NoEvidence;
+        if (!(s.view.discrepancy <=
+              std::max(settings.discrepancy, settings.discrepancyShare * s.view.common)))
+            return Fault::Discrepancy;
+        return isPermitted(t) ? Fault::None : Fault::NotPermitted;
     }
     // What the pairs themselves tell.
     void measure(Solution &s, const Transformation2D &t) {

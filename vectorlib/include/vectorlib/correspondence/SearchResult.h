@@ -7,6 +7,29 @@
 
 namespace vectorlib {
 
+/// Why a solution is not accepted; the first of its faults in this order.
+enum class Fault { None, Reliability, Ambiguity, MatchedShare, NoEvidence, Discrepancy, NotPermitted };
+
+inline const char *describe(Fault fault) {
+    switch (fault) {
+    case Fault::None:
+        return "accepted";
+    case Fault::Reliability:
+        return "the directions of its pairs are too much alike to fix the place";
+    case Fault::Ambiguity:
+        return "its pairs contradict each other";
+    case Fault::MatchedShare:
+        return "too little of the dynamic set has partners";
+    case Fault::NoEvidence:
+        return "too little of the static set would be seen from there";
+    case Fault::Discrepancy:
+        return "what would be seen from there differs from what was seen";
+    case Fault::NotPermitted:
+        return "its transformation is not in the permitted set";
+    }
+    return "";
+}
+
 /// A set of correspondences, its transformation and what speaks for it.
 struct Solution {
     Transformation2D pose; ///< moves the dynamic set onto the static one
@@ -17,6 +40,7 @@ struct Solution {
     ViewComparison view;     ///< of the expected view and the dynamic set
     double score = 0;        ///< in [0, 1]; solutions are ranked by it
     bool accepted = false;
+    Fault fault = Fault::None; ///< None exactly when accepted
 };
 
 /// How a search ended.

@@ -34,8 +34,8 @@ public:
         byFixed << n.x * lever, n.x, n.y * lever, n.y, 1, 0;
         byMoving << 0, -n.x, 0, -n.y, -1, 0;
         const double square = pair.weight * pair.weight;
-        spread_ += square * byFixed * oriented(fixed, pair.fixed) * byFixed.transpose();
-        spread_ += square * byMoving * oriented(moving, pair.moving) * byMoving.transpose();
+        spread_ += square * byFixed * fixed.ofSegment(pair.fixed) * byFixed.transpose();
+        spread_ += square * byMoving * moving.ofSegment(pair.moving) * byMoving.transpose();
         const Eigen::Vector2d normal(n.x, n.y);
         sums_.topLeftCorner<2, 2>() += pair.weight * normal * normal.transpose();
         sums_(2, 2) += pair.weight;
@@ -53,15 +53,6 @@ public:
     }
 
 private:
-    /// About the segment's own normal: the offset c of ax + by + c = 0 is -p there, and p where the line's
-    /// normal is the other one.
-    static Eigen::Matrix2d oriented(const LineCovariance &line, const LineSegment2D<double> &segment) {
-        Eigen::Matrix2d m = line.matrix;
-        if (line.normal.dot(segment.normal()) > 0)
-            m(0, 1) = m(1, 0) = -m(0, 1);
-        return m;
-    }
-
     Vector2D<double> translation_;
     bool solvable_;
     Eigen::Matrix3d spread_ = Eigen::Matrix3d::Zero();

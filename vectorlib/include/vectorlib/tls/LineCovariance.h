@@ -21,6 +21,14 @@ struct LineCovariance {
         c.valid = true;
         return c;
     }
+    /// Of the angle and of p = B.n, for a segment on the line and its own normal n: the offset c of the line
+    /// is -p where both normals agree, else p.
+    Eigen::Matrix2d ofSegment(const LineSegment2D<double> &segment) const {
+        Eigen::Matrix2d m = matrix;
+        if (normal.dot(segment.normal()) > 0)
+            m(0, 1) = m(1, 0) = -m(0, 1);
+        return m;
+    }
 };
 
 /// The covariance of fitLine(sums), when each coordinate of a point has the standard deviation `noise`

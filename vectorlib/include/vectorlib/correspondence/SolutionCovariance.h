@@ -1,0 +1,88 @@
+#pragma once
+
+#include "vectorlib/correspondence/SearchResult.h"
+#include "vectorlib/tls/LineCovariance.h"
+
+#include <Eigen/LU>
+
+#include <optional>
+
+namespace vectorlib {
+
+/// Segments and how sure their lines are, one covariance a segment, in one frame.
+struct MeasuredSegments {
+    std::vector<LineSegment2D<double>> segments;
+    std::vector<LineCovariance> lines;
+};
+
+/// How sure the pose of a solution is, from how sure its lines are: first order, for lines whose errors are
+/// independent and small. The pose is where the points of the dynamic segments lie on the static lines best
+/// (PairSelection); it is this estimate that is differentiated, where RegistrationCovariance does the same
+/// for the one-step registration.
+class SolutionCovariance {
+public:
+    /// Rows and columns x, y (metres), alpha (radians), in the static frame. Nothing where all lines are
+    /// parallel, where a covariance is not valid, and for pairs that are not among the segments.
+    std::optional<Eigen::Matrix3d> operator()(const Solution &solution, const MeasuredSegments &fixed,
+                                              const MeasuredSegments &moving) const {
+        if (!(solution.reliability > 0))
+            return std::nullopt;
+        std::vector<Effect> effects;
+        Eigen::Matrix3d sums = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero();
+        for (const CorrespondencePair &p : solution.pairs) {
+            if (!isKnown(p.fixed, fixed) || !isKnown(p.moving, moving))
+                return std::nullopt;
+            effects.push_back(
+                effectOf(at(fixed.segments, p.fixed), at(moving.segments, p.moving), solution.pose, sums));
+        }
+        // A line in two pairs errs in both alike.
+        for (std::size_t a = 0; a < effects.size(); ++a)
+            for (std::size_t b = 0; b < effects.size(); ++b) {
+                const CorrespondencePair &p = solution.pairs[a], &q = solution.pairs[b];
+                if (p.fixed == q.fixed)
+                    spread += effects[a].byFixed *
+                              at(fixed.lines, p.fixed).ofSegment(at(fixed.segments, p.fixed)) *
+                              effects[b].byFixed.transpose();
+                if (p.moving == q.moving)
+                    spread += effects[a].byMoving *
+                              at(moving.lines, p.moving).ofSegment(at(moving.segments, p.moving)) *
+                              effects[b].byMoving.transpose();
+            }
+        const Eigen::Matrix3d inverse = sums.inverse(), covariance = inverse * spread * inverse;
+        return covariance.allFinite() ? std::optional<Eigen::Matrix3d>(covariance) : std::nullopt;
+    }
+
+private:
+    /// What the angle and the offset p of the lines of a pair add to the right side of the normal equations.
+    struct Effect {
+        Eigen::Matrix<double, 3, 2> byFixed, byMoving;
+    };
+
+    template <typename T>
+    static const T &at(const std::vector<T> &list, int i) {
+        return list[static_cast<std::size_t>(i)];
+    }
+    static bool isKnown(int i, const MeasuredSegments &set) {
+        return i >= 0 && static_cast<std::size_t>(i) < std::min(set.segments.size(), set.lines.size()) &&
+               at(set.lines, i).valid;
+    }
+
+    // Over the points of the dynamic segment, s metres from its middle, the residual across the static line
+    // changes with the pose by j + s k, and with a line's angle and offset by u + s and 1, where u is the
+    // place of the middle along the line. The integrals of 1, s, s^2 are L, 0, L^3 / 12.
+    static Effect effectOf(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving,
+                           const Transformation2D &pose, Eigen::Matrix3d &sums) {
+        const double length = moving.length(), square = length * length * length / 12;
+        const Vector2D<double> n = fixed.normal(), v = fixed.direction(), middle = pose * moving.middle();
+        const Eigen::Vector3d j(n.x, n.y, v.dot(middle - pose.translation())), k(0, 0, 1);
+        sums += length * j * j.transpose() + square * k * k.transpose();
+        const auto effect = [&](double u) {
+            Eigen::Matrix<double, 3, 2> by;
+            by << u * length * j + square * k, length * j;
+            return by;
+        };
+        return {effect(v.dot(middle)), effect(moving.direction().dot(moving.middle()))};
+    }
+};
+
+} // namespace vectorlib
