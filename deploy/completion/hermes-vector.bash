@@ -13,7 +13,7 @@ _hermes_vector() {
         esac
     done
     if [ -z "$command" ]; then
-        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity observe map ring experiment report --help --version" -- "$word")
+        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity match observe map ring experiment report --help --version" -- "$word")
         return
     fi
     case $previous in
@@ -22,7 +22,7 @@ _hermes_vector() {
     --weights) mapfile -t COMPREPLY < <(compgen -W "none length column" -- "$word") && return ;;
     --format) mapfile -t COMPREPLY < <(compgen -W "json csv svg latex" -- "$word") && return ;;
     --odometry) mapfile -t COMPREPLY < <(compgen -W "use ignore" -- "$word") && return ;;
-    --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --scan | \
+    --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --expected | --scan | \
         --noise | --fov | --outliers | --seed | --every | --laser | --turn | --case | --rays | --max-dx | --max-dy | \
         --max-dalpha | --reliability | --ambiguity | --discrepancy | --runs | --max-points | --first | --draw) return ;;
     esac

@@ -2,6 +2,7 @@
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
+#include "gui/vector/SearchOptions.h"
 #include "gui/vector/report/Worlds.h"
 
 namespace hermes {
@@ -16,8 +17,8 @@ struct ReportCommand {
     bool overall = false;
     std::string format;
     std::optional<int> rays;
-    std::optional<double> noise, sigma, maxDx, maxDy, maxDalpha, reliability, ambiguity, kAlpha, kXy,
-        discrepancy;
+    std::optional<double> noise, sigma;
+    SearchOptions search;
     std::uint64_t seed = 1;
     OutputOptions output;
 
@@ -59,14 +60,7 @@ struct ReportCommand {
         s.scan.rays = rays.value_or(s.scan.rays);
         s.scan.noise = noise.value_or(s.scan.noise);
         s.scan.sigma = sigma.value_or(s.scan.sigma);
-        s.search.permitted.dx = maxDx.value_or(s.search.permitted.dx);
-        s.search.permitted.dy = maxDy.value_or(s.search.permitted.dy);
-        s.search.permitted.dalpha = maxDalpha.value_or(s.search.permitted.dalpha);
-        s.search.reliability = reliability.value_or(s.search.reliability);
-        s.search.ambiguity = ambiguity.value_or(s.search.ambiguity);
-        s.search.stiffness.alpha = kAlpha.value_or(s.search.stiffness.alpha);
-        s.search.stiffness.xy = kXy.value_or(s.search.stiffness.xy);
-        s.search.discrepancy = discrepancy.value_or(s.search.discrepancy);
+        s.search = search.over(s.search);
         return s;
     }
     template <typename Report>
@@ -98,36 +92,24 @@ void addReportCommand(CLI::App &app) {
                     "json, csv, svg or latex; else by the extension of --out, else json")
         ->check(CLI::IsMember({"json", "csv", "svg", "latex"}))
         ->type_name("KIND");
-    const auto number = [sub](const char *name, std::optional<double> &value, const char *what,
-                              const char *unit, const CLI::Validator &valid, const char *group) {
-        sub->add_option(name, value, what)->check(valid)->type_name(unit)->group(group);
-    };
-    constexpr const char *scans = "Scans", *search = "Search";
+    constexpr const char *scans = "Scans";
     sub->add_option("--rays", command->rays, "Rays of a scan (2000)")
         ->check(between(3, 1e6))
         ->type_name("N")
         ->group(scans);
-    number("--noise", command->noise, "Standard deviation of the range, metres (0.01)", "M", between(0, 1e3),
-           scans);
-    number("--sigma", command->sigma, "Largest error of the vectorization, metres (0.03)", "M", aboveZero(),
-           scans);
+    sub->add_option("--noise", command->noise, "Standard deviation of the range, metres (0.01)")
+        ->check(between(0, 1e3))
+        ->type_name("M")
+        ->group(scans);
+    sub->add_option("--sigma", command->sigma, "Largest error of the vectorization, metres (0.03)")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->group(scans);
     sub->add_option("--seed", command->seed, "The same seed gives the same scans")
         ->type_name("I")
         ->capture_default_str()
         ->group(scans);
-    number("--max-dx", command->maxDx, "Permitted motion, metres (1.2)", "M", between(0, 1e6), search);
-    number("--max-dy", command->maxDy, "Permitted motion, metres (1.2)", "M", between(0, 1e6), search);
-    number("--max-dalpha", command->maxDalpha, "Permitted rotation, radians (1.26)", "RAD",
-           between(0, vectorlib::pi), search);
-    number("--reliability", command->reliability, "Least reliability (0.1)", "R", between(0, 1), search);
-    number("--ambiguity", command->ambiguity, "Most ambiguity of a pair, m^2 (0.0025)", "A", between(0, 1e6),
-           search);
-    number("--k-alpha", command->kAlpha, "Weight of the rotation in the ambiguity, m^2/rad^2 (0.1)", "K",
-           between(0, 1e12), search);
-    number("--k-xy", command->kXy, "Weight of the translation in the ambiguity (1)", "K", between(0, 1e12),
-           search);
-    number("--discrepancy", command->discrepancy, "Most discrepancy, m^2 (0.2; quadratic 0.5)", "A",
-           between(0, 1e9), search);
+    command->search.addTo(*sub, "0.2; quadratic 0.5");
     command->output.addTo(*sub, false);
     sub->footer(example("hermes-vector report pillars --case 0 --out case.tex"));
     sub->callback([command] { command->run(); });

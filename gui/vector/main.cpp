@@ -21,6 +21,7 @@ int main(int argc, char **argv) {
     hermes::addVectorizeCommand(app);
     hermes::addRegisterCommand(app);
     hermes::addSimilarityCommand(app);
+    hermes::addMatchCommand(app);
     hermes::addObserveCommand(app);
     hermes::addMapCommand(app);
     hermes::addRingCommand(app);

@@ -207,8 +207,8 @@ private Q_SLOTS:
 
     void helpAndVersion() {
         QCOMPARE(run({"--version"}).out.left(14), QByteArray("hermes-vector "));
-        for (const char *command :
-             {"segment", "vectorize", "register", "similarity", "observe", "map", "ring"}) {
+        for (const char *command : {"segment", "vectorize", "register", "similarity", "match", "observe",
+                                    "map", "ring", "experiment", "report"}) {
             const Result r = run({command, "--help"});
             QCOMPARE(r.status, 0);
             QVERIFY2(r.out.contains(QByteArray("Example:\n  hermes-vector ") + command), r.out.constData());

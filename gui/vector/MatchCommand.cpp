@@ -1,0 +1,184 @@
+#include "gui/vector/Options.h"
+#include "gui/vector/SearchOptions.h"
+#include "gui/vector/SegmentSet.h"
+#include "vectorlib/io/Svg.h"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace hermes {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Segments = std::vector<vectorlib::LineSegment2D<double>>;
+using vectorlib::SearchResult;
+using vectorlib::Solution;
+using vectorlib::Transformation2D;
+
+Json jsonOf(const Segments &segments) {
+    Json list = Json::array();
+    for (const vectorlib::LineSegment2D<double> &s : segments)
+        list.push_back({s.begin().x, s.begin().y, s.end().x, s.end().y});
+    return list;
+}
+
+Json jsonOf(const std::optional<Eigen::Matrix3d> &matrix) {
+    if (!matrix)
+        return nullptr;
+    Json rows = Json::array();
+    for (int r = 0; r < 3; ++r)
+        rows.push_back({(*matrix)(r, 0), (*matrix)(r, 1), (*matrix)(r, 2)});
+    return rows;
+}
+
+struct MatchCommand {
+    std::string fixedPath, movingPath, expected;
+    bool isMap = false;
+    double noise = 0, sigma = 0.03;
+    SegmentOptions segment;
+    SearchOptions search;
+    OutputOptions output;
+
+    void run() const {
+        SegmentSetSettings reading;
+        reading.segmentation = [this](std::size_t points) {
+            return segment.over(vectorlib::EarSettings::forScanner(2 * vectorlib::pi, points));
+        };
+        reading.sigma = sigma;
+        reading.noise = noise;
+        OutputSet files(output.force);
+        std::ostream &out = files.open(output.out);
+        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const SegmentSet fixed = loadSegmentSet(fixedPath, reading),
+                         moving = loadSegmentSet(movingPath, reading);
+        if (isMap && fixed.kind == SegmentSet::Kind::Points)
+            throw CLI::ValidationError("--map", "found points in " + fixedPath + ", expected segments");
+
+        const Transformation2D around =
+            expected.empty() ? Transformation2D() : Transformation2D(parsePose(expected));
+        vectorlib::CorrespondenceFinder find;
+        find.settings = search.over({});
+        vectorlib::SegmentMap map;
+        const bool inMap = isMap || fixed.kind == SegmentSet::Kind::Map;
+        for (std::size_t i = 0; inMap && i < fixed.segments().size(); ++i)
+            map.add(fixed.segments()[i]);
+        const SearchResult &result =
+            inMap ? find(map, moving.segments(), around) : find(fixed.segments(), moving.segments(), around);
+        write(out, result, fixed, moving);
+        if (result.solutions.empty())
+            std::cerr << "hermes-vector: no solution: " << describe(result.outcome) << '\n';
+        if (svg)
+            draw(*svg, result, fixed, moving, around);
+        files.commit();
+    }
+
+    static void write(std::ostream &out, const SearchResult &result, const SegmentSet &fixed,
+                      const SegmentSet &moving) {
+        Json json = {{"outcome", describe(result.outcome)},
+                     {"potential_pairs", result.potentialPairs},
+                     {"combinations", result.combinations},
+                     {"solutions", Json::array()}};
+        for (const Solution &s : result.solutions) {
+            Json pairs = Json::array();
+            for (const vectorlib::CorrespondencePair &p : s.pairs)
+                pairs.push_back({p.fixed, p.moving});
+            json["solutions"].push_back(
+                {{"pose", {{"x", s.pose.x()}, {"y", s.pose.y()}, {"alpha", s.pose.alpha()}}},
+                 {"covariance", jsonOf(vectorlib::SolutionCovariance()(s, fixed.measured, moving.measured))},
+                 {"accepted", s.accepted},
+                 {"verdict", describe(s.fault)},
+                 {"reliability", s.reliability},
+                 {"ambiguity", s.ambiguity},
+                 {"discrepancy", s.view.discrepancy},
+                 {"common_area", s.view.common},
+                 {"shared_angle", s.view.angle},
+                 {"matched_share", s.matchedShare},
+                 {"score", s.score},
+                 {"pairs", pairs}});
+        }
+        if (fixed.kind == SegmentSet::Kind::Points)
+            json["static"] = jsonOf(fixed.segments());
+        if (moving.kind == SegmentSet::Kind::Points)
+            json["dynamic"] = jsonOf(moving.segments());
+        out << json.dump(2) << '\n';
+    }
+
+    static void draw(std::ostream &svg, const SearchResult &result, const SegmentSet &fixed,
+                     const SegmentSet &moving, const Transformation2D &around) {
+        const Solution *best = result.solutions.empty() ? nullptr : &result.solutions[0];
+        const Transformation2D pose = best ? best->pose : around;
+        std::vector<vectorlib::Vector2D<double>> points;
+        for (const vectorlib::Vector2D<float> &p : moving.points)
+            points.push_back(pose * vectorlib::Vector2D<double>(p));
+        Segments before, after, links;
+        for (const vectorlib::LineSegment2D<double> &s : moving.segments()) {
+            before.push_back(around * s);
+            after.push_back(pose * s);
+        }
+        vectorlib::SvgPicture picture(best ? std::string("Match: ") + describe(best->fault)
+                                           : std::string("No match: ") + describe(result.outcome));
+        picture.segments({vectorlib::colour::map, 4, "static set"}, near(fixed.segments(), moving, pose));
+        picture.segments({vectorlib::colour::before, 1.5, "dynamic set where expected", true}, before);
+        if (best) {
+            for (const vectorlib::CorrespondencePair &p : best->pairs)
+                links.emplace_back(fixed.segments()[std::size_t(p.fixed)].middle(),
+                                   before[std::size_t(p.moving)].middle());
+            picture.points({vectorlib::colour::points, 2, "its points"}, points);
+            picture.segments({vectorlib::colour::estimate, 1.5, "dynamic set moved onto the static one"},
+                             after);
+            picture.segments({vectorlib::colour::reference, 1, "correspondences"}, links);
+        }
+        picture.pose({vectorlib::colour::estimate, 2, "sensor"}, pose.translation(), pose.alpha());
+        picture.write(svg);
+    }
+    // Of a large map what lies about the sensor and its scan.
+    static Segments near(const Segments &fixed, const SegmentSet &moving, const Transformation2D &pose) {
+        double reach = 10; // metres
+        for (const vectorlib::LineSegment2D<double> &s : moving.segments())
+            reach = std::max({reach, 1.5 * s.begin().norm(), 1.5 * s.end().norm()});
+        vectorlib::SegmentMap map;
+        for (const vectorlib::LineSegment2D<double> &s : fixed)
+            map.add(s);
+        Segments result;
+        for (int number : map.near(pose.translation(), reach))
+            result.push_back(map[number]);
+        return result;
+    }
+};
+
+} // namespace
+
+void addMatchCommand(CLI::App &app) {
+    auto command = std::make_shared<MatchCommand>();
+    CLI::App *sub = app.add_subcommand(
+        "match", "Find the motion between two scans, or the place of a scan in a map, without known partners "
+                 "(JSON)");
+    const std::string kinds = "points (CSV x,y or ascii PCD), segments (CSV x1,y1,x2,y2)";
+    sub->add_option("STATIC", command->fixedPath, "A scan: " + kinds + "; or a map by hermes-vector map")
+        ->required();
+    sub->add_option("DYNAMIC", command->movingPath, "A scan: " + kinds)->required();
+    sub->add_option("--expected", command->expected,
+                    "Where the dynamic scan is expected in the static one's frame; metres, radians (0,0,0)")
+        ->check(poseText())
+        ->type_name("X,Y,ALPHA");
+    sub->add_flag("--map", command->isMap,
+                  "The static segments were seen from many places: what they do not show hides nothing");
+    sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->capture_default_str();
+    sub->add_option("--noise", command->noise,
+                    "For the covariance: standard deviation of points, or of the ends of segments, metres "
+                    "(points: as they scatter; segments: 0.01)")
+        ->check(aboveZero())
+        ->type_name("M");
+    command->search.addTo(*sub, "0.2");
+    command->segment.addTo(*sub, "defaults by the number of points");
+    command->output.addTo(*sub, true);
+    sub->footer(example("hermes-vector match first.csv second.csv --expected 0.5,0,0.1 --svg match.svg"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes

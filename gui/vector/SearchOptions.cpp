@@ -1,0 +1,34 @@
+#include "gui/vector/SearchOptions.h"
+
+#include "gui/vector/Options.h"
+
+namespace hermes {
+
+void SearchOptions::addTo(CLI::App &command, const std::string &discrepancy) {
+    const auto number = [&command](const char *name, std::optional<double> &value, const std::string &what,
+                                   const char *unit, double low, double high) {
+        command.add_option(name, value, what)->check(between(low, high))->type_name(unit)->group("Search");
+    };
+    number("--max-dx", maxDx_, "Permitted motion, metres (1.2)", "M", 0, 1e6);
+    number("--max-dy", maxDy_, "Permitted motion, metres (1.2)", "M", 0, 1e6);
+    number("--max-dalpha", maxDalpha_, "Permitted rotation, radians (1.26)", "RAD", 0, vectorlib::pi);
+    number("--reliability", reliability_, "Least reliability (0.1)", "R", 0, 1);
+    number("--ambiguity", ambiguity_, "Most ambiguity of a pair, m^2 (0.0025)", "A", 0, 1e6);
+    number("--k-alpha", kAlpha_, "Weight of the rotation in the ambiguity, m^2/rad^2 (0.1)", "K", 0, 1e12);
+    number("--k-xy", kXy_, "Weight of the translation in the ambiguity (1)", "K", 0, 1e12);
+    number("--discrepancy", discrepancy_, "Most discrepancy, m^2 (" + discrepancy + ")", "A", 0, 1e12);
+}
+
+vectorlib::SearchSettings SearchOptions::over(vectorlib::SearchSettings s) const {
+    s.permitted.dx = maxDx_.value_or(s.permitted.dx);
+    s.permitted.dy = maxDy_.value_or(s.permitted.dy);
+    s.permitted.dalpha = maxDalpha_.value_or(s.permitted.dalpha);
+    s.reliability = reliability_.value_or(s.reliability);
+    s.ambiguity = ambiguity_.value_or(s.ambiguity);
+    s.stiffness.alpha = kAlpha_.value_or(s.stiffness.alpha);
+    s.stiffness.xy = kXy_.value_or(s.stiffness.xy);
+    s.discrepancy = discrepancy_.value_or(s.discrepancy);
+    return s;
+}
+
+} // namespace hermes

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "vectorlib/correspondence/SolutionCovariance.h"
+#include "vectorlib/segmentation/EarSegmenter.h"
+
+#include <functional>
+#include <string>
+
+namespace hermes {
+
+/// How segments are made of points, and how sure segments are.
+struct SegmentSetSettings {
+    std::function<vectorlib::EarSettings(std::size_t points)> segmentation;
+    double sigma = 0.03; ///< largest standard deviation of points from their line; metres
+    /// Standard deviation of the points, or of the ends of segments, metres. 0: of points their scatter about
+    /// each line, of segments 1 cm.
+    double noise = 0;
+};
+
+/// The segments of a file, told by its columns: a scan of points (x,y, or PCD by extension), segments
+/// (x1,y1,x2,y2), or a vector map as `hermes-vector map` writes it.
+struct SegmentSet {
+    enum class Kind { Points, Segments, Map };
+    Kind kind = Kind::Segments;
+    std::vector<vectorlib::Vector2D<float>> points; ///< of a scan; metres
+    vectorlib::MeasuredSegments measured;
+
+    const std::vector<vectorlib::LineSegment2D<double>> &segments() const { return measured.segments; }
+};
+
+/// Throws Failure.
+SegmentSet loadSegmentSet(const std::string &path, const SegmentSetSettings &settings);
+
+} // namespace hermes

@@ -1,0 +1,211 @@
+#include "tests/gui/VectorProgram.h"
+
+#include <QJsonArray>
+#include <QXmlStreamReader>
+
+/// hermes-vector match: scans of a room from two places, as points, as segments and against a map.
+class TestMatch : public QObject {
+    Q_OBJECT
+
+    TestFolder folder_;
+
+    QString path(const char *name) const { return folder_.path(name); }
+    /// What a sensor at the pose sees: a scan of points, or exact segments.
+    QString seen(const char *name, const char *pose, bool points) const {
+        QStringList arguments{"observe", data("world.json"), QStringLiteral("--pose=") + QLatin1String(pose),
+                              "--out", path(name)};
+        if (points) // noise that differs with the name
+            arguments += {"--scan", "1000", "--noise", "0.01", "--seed", QString::number(name[0])};
+        const Result r = run(arguments);
+        if (r.status != 0)
+            qFatal("%s", r.err.constData());
+        return path(name);
+    }
+
+private Q_SLOTS:
+    void initTestCase() { QVERIFY(folder_.isValid()); }
+    void init() { folder_.empty(); }
+    void findsTheMotion_data();
+    void findsTheMotion();
+    void mapHidesNothing();
+    void mapFileIsAMap();
+    void expectedPoseMovesTheSearch();
+    void tellsWhyNothingIsAccepted();
+    void covarianceFollowsTheNoise();
+    void pictureIsWellFormed();
+    void wrongUse_data();
+    void wrongUse();
+    void badInput_data();
+    void badInput();
+};
+
+void TestMatch::findsTheMotion_data() {
+    QTest::addColumn<bool>("staticPoints");
+    QTest::addColumn<bool>("dynamicPoints");
+    QTest::addColumn<double>("most");
+    QTest::newRow("points") << true << true << 0.02;
+    QTest::newRow("segments") << false << false << 1e-9;
+    QTest::newRow("points on segments") << false << true << 0.02;
+    QTest::newRow("segments on points") << true << false << 0.02;
+}
+
+void TestMatch::findsTheMotion() {
+    QFETCH(bool, staticPoints);
+    QFETCH(bool, dynamicPoints);
+    QFETCH(double, most);
+    const Result r =
+        run({"match", seen("a.csv", "0,0,0", staticPoints), seen("b.csv", "0.7,-0.3,0.5", dynamicPoints)});
+    QCOMPARE(r.status, 0);
+    QCOMPARE(r.err, QByteArray());
+    const QJsonObject result = json(r.out), best = result["solutions"].toArray()[0].toObject();
+    QCOMPARE(result["outcome"].toString(), QString("every combination was considered"));
+    QVERIFY(best["accepted"].toBool());
+    QCOMPARE(best["verdict"].toString(), QString("accepted"));
+    const QJsonObject pose = best["pose"].toObject();
+    QVERIFY(std::abs(pose["x"].toDouble() - 0.7) < most);
+    QVERIFY(std::abs(pose["y"].toDouble() + 0.3) < most);
+    QVERIFY(std::abs(pose["alpha"].toDouble() - 0.5) < most);
+    QVERIFY(best["reliability"].toDouble() > 0.5);
+    QVERIFY(best["matched_share"].toDouble() > 0.9);
+    QVERIFY(best["discrepancy"].toDouble() < 0.2);
+    QVERIFY(best["ambiguity"].toDouble() < 0.0025);
+    const QJsonArray rows = best["covariance"].toArray();
+    QCOMPARE(rows.size(), 3);
+    for (int i = 0; i < 3; ++i) {
+        const double sigma = std::sqrt(rows[i].toArray()[i].toDouble());
+        QVERIFY(sigma > 1e-5 && sigma < 0.01);
+    }
+    // Segments made of points are told, since the pairs refer to them.
+    QCOMPARE(result.contains("static"), staticPoints);
+    QCOMPARE(result.contains("dynamic"), dynamicPoints);
+    for (const QJsonValue &pair : best["pairs"].toArray())
+        if (staticPoints)
+            QVERIFY(pair.toArray()[0].toInt() < result["static"].toArray().size());
+}
+
+// The second sensor stands where the first one has not looked: two walls of the room are all that it saw.
+void TestMatch::mapHidesNothing() {
+    write(path("part.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n4,-1.5,4,1\n");
+    seen("b.csv", "0.3,0.2,0.1", false);
+    const auto best = [&](const QStringList &more) {
+        const Result r = run(QStringList{"match", path("part.csv"), path("b.csv")} + more);
+        return json(r.out)["solutions"].toArray()[0].toObject();
+    };
+    QCOMPARE(best({})["accepted"].toBool(), false);
+    QVERIFY(best({})["verdict"].toString().startsWith("too little of the static set would be seen"));
+    QCOMPARE(best({"--map"})["accepted"].toBool(), true);
+}
+
+void TestMatch::mapFileIsAMap() {
+    QCOMPARE(run({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv")}).status, 0);
+    seen("b.csv", "0.4,0.1,0.2", true); // the log is of the same room, from (0, 0) on
+    const Result r = run({"match", path("m.csv"), path("b.csv"), "--expected", "0.5,0,0"});
+    QCOMPARE(r.status, 0);
+    const QJsonObject best = json(r.out)["solutions"].toArray()[0].toObject();
+    QVERIFY2(best["accepted"].toBool(), r.out.constData());
+    QVERIFY(!best["covariance"].toArray().isEmpty());
+    QVERIFY(!json(r.out).contains("static"));
+}
+
+void TestMatch::expectedPoseMovesTheSearch() {
+    const QString a = seen("a.csv", "-1,0,0", false), b = seen("b.csv", "1.5,0.3,1.5", false);
+    const auto accepted = [&](const QStringList &more) {
+        const QJsonArray solutions = json(run(QStringList{"match", a, b} + more).out)["solutions"].toArray();
+        return !solutions.isEmpty() && solutions[0].toObject()["accepted"].toBool();
+    };
+    QVERIFY(!accepted({}));
+    QVERIFY(accepted({"--expected", "2.2,0.5,1.3"}));
+    QVERIFY(accepted({"--max-dx", "3", "--max-dalpha", "1.6"}));
+}
+
+void TestMatch::tellsWhyNothingIsAccepted() {
+    const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
+    const Result strict = run({"match", a, b, "--ambiguity", "0.00000001"});
+    QCOMPARE(strict.status, 0);
+    for (const QJsonValue &s : json(strict.out)["solutions"].toArray()) {
+        QVERIFY(!s.toObject()["accepted"].toBool());
+        QVERIFY(s.toObject()["verdict"].toString() != QLatin1String("accepted"));
+    }
+    write(path("wall.csv"), "1,-2,1,2\n");
+    const Result corridor = run({"match", path("wall.csv"), path("wall.csv")});
+    QCOMPARE(corridor.status, 0);
+    QVERIFY(json(corridor.out)["solutions"].toArray().isEmpty());
+    QVERIFY(json(corridor.out)["outcome"].toString().contains("parallel"));
+    QVERIFY2(corridor.err.contains("parallel"), corridor.err.constData());
+    write(path("dots.csv"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
+    QVERIFY(json(run({"match", path("dots.csv"), b}).out)["outcome"].toString().contains("static set"));
+}
+
+void TestMatch::covarianceFollowsTheNoise() {
+    const QString a = seen("a.csv", "0,0,0", false), b = seen("b.csv", "0.2,0.1,0.1", false);
+    const auto variance = [&](const char *noise) {
+        const QJsonObject r = json(run({"match", a, b, "--noise", noise}).out);
+        return r["solutions"].toArray()[0].toObject()["covariance"].toArray()[0].toArray()[0].toDouble();
+    };
+    const double one = variance("0.01"), two = variance("0.02");
+    QVERIFY(one > 0 && std::abs(two / one - 4) < 1e-6);
+}
+
+void TestMatch::pictureIsWellFormed() {
+    const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
+    write(path("wall.csv"), "1,-2,1,2\n");
+    for (const QString &fixed : {a, path("wall.csv")}) {
+        QCOMPARE(run({"match", fixed, b, "--svg", path("m.svg"), "--out", path("m.json"), "--force"}).status,
+                 0);
+        QXmlStreamReader xml(contents(path("m.svg")));
+        while (!xml.atEnd())
+            xml.readNext();
+        QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
+        QVERIFY(contents(path("m.svg")).contains("static set"));
+        QVERIFY(!contents(path("m.svg")).contains("nan"));
+    }
+}
+
+void TestMatch::wrongUse_data() {
+    QTest::addColumn<QStringList>("arguments");
+    QTest::addColumn<QByteArray>("named");
+    const QString room = data("room.csv");
+    QTest::newRow("nothing") << QStringList{} << QByteArray("STATIC");
+    QTest::newRow("one scan") << QStringList{room} << QByteArray("DYNAMIC");
+    QTest::newRow("half a pose") << QStringList{room, room, "--expected", "1,2"} << QByteArray("--expected");
+    QTest::newRow("NaN") << QStringList{room, room, "--max-dx", "nan"} << QByteArray("--max-dx");
+    QTest::newRow("no noise") << QStringList{room, room, "--noise", "0"} << QByteArray("--noise");
+    QTest::newRow("points are no map") << QStringList{room, room, "--map"} << QByteArray("--map");
+}
+
+void TestMatch::wrongUse() {
+    QFETCH(QStringList, arguments);
+    QFETCH(QByteArray, named);
+    const Result r = run(QStringList{"match"} + arguments);
+    QCOMPARE(r.status, 2);
+    QVERIFY2(r.err.contains(named), r.err.constData());
+    QCOMPARE(r.out, QByteArray());
+}
+
+void TestMatch::badInput_data() {
+    QTest::addColumn<QByteArray>("text");
+    QTest::addColumn<QByteArray>("message");
+    QTest::newRow("empty") << QByteArray() << QByteArray("in.csv: found an empty file");
+    QTest::newRow("NaN point") << QByteArray("x,y\n1,nan\n") << QByteArray("in.csv:2:");
+    QTest::newRow("NaN segment") << QByteArray("1,2,3,nan\n") << QByteArray("in.csv:1:");
+    QTest::newRow("three columns") << QByteArray("1,2,3\n") << QByteArray("in.csv:1:");
+    QTest::newRow("map without sums")
+        << QByteArray("id,x1,y1,x2,y2,mean_x\n0,1,2,3,4,5\n") << QByteArray("in.csv:1:");
+    QTest::newRow("cut short") << QByteArray("x1,y1,x2,y2\n1,2,3,4\n1,2,3") << QByteArray("in.csv:3:");
+}
+
+void TestMatch::badInput() {
+    QFETCH(QByteArray, text);
+    QFETCH(QByteArray, message);
+    write(path("in.csv"), text);
+    for (const QStringList &files :
+         {QStringList{path("in.csv"), data("room.csv")}, QStringList{data("room.csv"), path("in.csv")}}) {
+        const Result r = run(QStringList{"match", "--out", path("out")} + files);
+        QCOMPARE(r.status, 1);
+        QVERIFY2(r.err.contains(message), r.err.constData());
+        QCOMPARE(folder_.files(), QStringList{"in.csv"});
+    }
+}
+
+QTEST_GUILESS_MAIN(TestMatch)
+#include "TestMatch.moc"
