@@ -1,0 +1,76 @@
+#include "daemons/simulator/Drivetrain.h"
+
+#include "vectorlib/geometry/Angle.h"
+
+#include <cmath>
+
+namespace hermes {
+
+namespace {
+
+constexpr double electronics = 0.3; // A that are always drawn
+
+} // namespace
+
+std::array<RoboClawEmulator::Options, Drivetrain::controllers> Drivetrain::twoAddresses() {
+    std::array<RoboClawEmulator::Options, controllers> options;
+    options[1].address = std::uint8_t(options[0].address + 1);
+    return options;
+}
+
+Drivetrain::Drivetrain(const Options &options)
+    : options_(options)
+    , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
+    , battery_(options.battery) {}
+
+std::vector<RoboClawEmulator::Answer> Drivetrain::receive(int line, const std::uint8_t *data,
+                                                          std::size_t size, double now) {
+    std::vector<RoboClawEmulator::Answer> answers;
+    for (std::size_t i = 0; i < size; ++i) {
+        for (int number = 0; number < controllers; ++number) {
+            if (line != (options_.ownLines ? number : 0))
+                continue;
+            if (const auto answer = controller(number).receive(data[i], now))
+                answers.push_back(*answer);
+        }
+    }
+    return answers;
+}
+
+Twist Drivetrain::advance(double seconds) {
+    double current = electronics;
+    for (RoboClawEmulator &controller : controllers_) {
+        controller.advance(seconds, battery_.voltage());
+        for (const int motor : {0, 1}) // the bridge takes from the battery what the duty lets through
+            current += controller.channel(motor).current() * std::abs(controller.channel(motor).duty());
+    }
+    battery_.draw(current, seconds);
+    Twist twist = options_.base.twistOf(wheelSpeeds());
+    const double grip = 1 - options_.slip;
+    return {twist.vx * grip, twist.vy * grip, twist.omega * grip};
+}
+
+MotorChannel &Drivetrain::wheel(int number) {
+    const Mount &mount = options_.wheels[std::size_t(number)];
+    return controller(mount.controller).channel(mount.motor);
+}
+
+std::array<double, 4> Drivetrain::wheelSpeeds() const {
+    std::array<double, 4> speeds;
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+        const Mount &mount = options_.wheels[i];
+        const double counts = controller(mount.controller).channel(mount.motor).speed();
+        speeds[i] = (mount.reversed ? -1 : 1) * counts * 2 * vectorlib::pi / options_.countsPerTurn;
+    }
+    return speeds;
+}
+
+bool Drivetrain::isMoving() const {
+    for (const double speed : wheelSpeeds()) {
+        if (speed != 0)
+            return true;
+    }
+    return false;
+}
+
+} // namespace hermes

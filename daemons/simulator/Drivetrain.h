@@ -1,0 +1,59 @@
+#pragma once
+
+#include "daemons/simulator/Battery.h"
+#include "daemons/simulator/RoboClawEmulator.h"
+#include "daemons/simulator/RobotBody.h"
+
+namespace hermes {
+
+/// What drives the robot: two RoboClaws with two motors each, four wheels, a battery. Time comes from
+/// outside.
+class Drivetrain {
+public:
+    static constexpr int controllers = 2;
+    /// Which motor turns a wheel.
+    struct Mount {
+        int controller = 0;
+        int motor = 0;
+        bool reversed = false; ///< positive counts drive the robot backward
+    };
+    struct Options {
+        WheelBase base;
+        std::array<Mount, 4> wheels{{{0, 0}, {0, 1}, {1, 0}, {1, 1}}}; ///< as in WheelBase
+        double countsPerTurn = 38000;
+        double slip = 0;       ///< share of the wheels' way that the robot does not make
+        bool ownLines = false; ///< each controller has a line of its own; else both share line 0
+        std::array<RoboClawEmulator::Options, controllers> controller = twoAddresses();
+        Battery::Options battery;
+    };
+
+    Drivetrain()
+        : Drivetrain(Options()) {}
+    explicit Drivetrain(const Options &options);
+
+    /// Bytes from a line (0 or 1), now: seconds of any clock; gives what is answered, in order.
+    std::vector<RoboClawEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,
+                                                  double now);
+    /// Lets time pass; gives how the wheels move the robot.
+    Twist advance(double seconds);
+
+    RoboClawEmulator &controller(int number) { return controllers_[std::size_t(number)]; }
+    const RoboClawEmulator &controller(int number) const { return controllers_[std::size_t(number)]; }
+    /// The motor of a wheel.
+    MotorChannel &wheel(int number);
+    Battery &battery() { return battery_; }
+    const Battery &battery() const { return battery_; }
+    void setSlip(double share) { options_.slip = share; }
+    /// rad/s, positive forward.
+    std::array<double, 4> wheelSpeeds() const;
+    bool isMoving() const;
+
+private:
+    static std::array<RoboClawEmulator::Options, controllers> twoAddresses();
+
+    Options options_;
+    std::array<RoboClawEmulator, controllers> controllers_;
+    Battery battery_;
+};
+
+} // namespace hermes
