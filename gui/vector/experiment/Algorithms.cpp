@@ -17,6 +17,7 @@ template <template <typename> class Vectorizer>
 Algorithm make(const char *name, const char *label, const char *colour, double sigma, bool polyline) {
     const auto vectorizer = std::make_shared<Vectorizer<float>>();
     vectorizer->settings.sigma = sigma;
+    vectorizer->settings.delta = 5 * sigma; // as by default
     vectorizer->settings.polyline = polyline;
     return {
         name, label, colour,
@@ -34,6 +35,13 @@ std::vector<Algorithm> comparedAlgorithms(double sigma, bool polyline) {
             make<vectorlib::DouglasPeuckerVectorizer>("dp", "DP", "#000000", sigma, polyline),
             make<vectorlib::ReumannWitkamVectorizer>("rw", "RW", "#9a9a9a", sigma, polyline),
             make<vectorlib::SplitAndMergeVectorizer>("sam", "SAM", "#0072b2", sigma, polyline)};
+}
+
+std::vector<Algorithm> polylineExtractors(double sigma) {
+    std::vector<Algorithm> all = comparedAlgorithms(sigma, true);
+    all.back().label = "SAM+";
+    all.push_back(make<vectorlib::SplitAndMergeVectorizer>("sam", "SAM", "#56b4e9", sigma, false));
+    return all;
 }
 
 } // namespace hermes

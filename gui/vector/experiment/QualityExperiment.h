@@ -1,27 +1,28 @@
 #pragma once
 
 #include "gui/vector/experiment/Plot.h"
+#include "gui/vector/experiment/QualityScan.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
-#include "vectorlib/io/CarmenScan.h"
 
 namespace hermes {
 
-/// How well polylines stand for the rays of a scan, against the number of their vertices: the measures of
-/// Schaefer et al., 2018. Means over scans.
+/// How well an extractor does with so many vertices: the measures of Schaefer et al., 2018 at equal J. Means
+/// over the scans for which every extractor has a polyline of at most J vertices.
 struct QualityRow {
-    int verticesTrue = 0;  ///< of the polygon; 0 for real scans
-    std::string algorithm; ///< label
-    double sigma = 0;      ///< permitted standard deviation of points from a line; metres
-    double vertices = 0;   ///< J
-    double rmse = 0;       ///< of the measured ranges from the polylines, rays that hit; metres
-    double hitShare = 0;   ///< f, of the rays
-    double areaError = 0; ///< a, area between true and extracted polygon over the true area; 0 for real scans
+    int verticesTrue = 0;   ///< of the polygon; 0 for real scans
+    std::size_t budget = 0; ///< J: of each scan the extraction with the most vertices up to this counts
+    std::string algorithm;  ///< label
+    int scans = 0;
+    double sigma = 0;    ///< that the extraction took; metres
+    double vertices = 0; ///< that it used
+    double rmse = 0;     ///< see QualityMeasures
+    double hitShare = 0;
+    double areaError = 0;
 };
 
-/// Random closed polygons of 6 to 180 vertices around the scanner, 360 rays, noise 2 cm; every extractor at
-/// several sigma.
+/// Random closed polygons of 6 to 180 vertices around the scanner.
 std::vector<QualityRow> polygonExperiment(const ExperimentOptions &options);
-/// The same for the scans of a log.
+/// The scans of a log, ten times as many as there are runs, spread over the log.
 std::vector<QualityRow> logExperiment(const std::vector<vectorlib::CarmenScan> &scans,
                                       const ExperimentOptions &options);
 

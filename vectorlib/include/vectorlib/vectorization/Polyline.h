@@ -2,16 +2,22 @@
 
 #include "vectorlib/vectorization/PrefixSums.h"
 #include "vectorlib/vectorization/VectorizedLine.h"
+#include "vectorlib/vectorization/VertexRelaxation.h"
 
 #include <vector>
 
 namespace vectorlib {
 
-/// Joins the consecutive lines of one cluster into a polyline: thesis 6.3.3, figure 6.6. Corners are the
-/// intersections of neighbouring lines. Where an intersection lies farther than delta from the middle between
-/// the two points at which one line changes to the next, the points of both lines are divided among three
-/// lines; where that does not help either, both lines keep their own ends and the polyline is interrupted
-/// there.
+/// Joins the consecutive lines of one cluster into a polyline: thesis 6.3.3, figure 6.6. Where one line
+/// changes to the next, the first of these that holds decides:
+/// 1. their intersection lies within delta of the middle between the two points there: it is the vertex;
+/// 2. the lines pass that middle within delta / 2 of each other: the vertex lies between them, and all
+/// vertices
+///    of the polyline are moved to where the points lie nearest to its edges (VertexRelaxation), so that the
+///    edges may leave their lines a little;
+/// 3. three lines, each a third of the points of both, keep sigma and meet: they take their place;
+/// 4. the polyline is interrupted there, and both lines keep their own ends.
+/// Only the segments change, but for 3.
 class PolylineJoiner {
 public:
     /// `sums` are those of the points: PrefixSums or BlockSums.
@@ -19,75 +25,105 @@ public:
     void operator()(PointSpan<Scalar> points, const Sums &sums, const VectorizerSettings &settings,
                     std::vector<VectorizedLine> &lines) {
         joined_.clear();
+        joints_.clear();
         for (const VectorizedLine &next : lines) {
-            if (!joined_.empty() && !join(points, joined_.back(), next, settings.delta)) {
-                if (bridge(points, sums, next, settings))
+            if (!joined_.empty()) {
+                const Joint joint = meet(points, joined_.back(), next, settings.delta);
+                if (!joint.holds() && bridge(points, sums, next, settings))
                     continue;
+                joints_.push_back(joint);
             }
             joined_.push_back(next);
         }
-        cutAtCorners(points, settings.delta);
+        placeVertices();
         lines.swap(joined_);
     }
 
 private:
+    // How a line meets the next one.
+    struct Joint {
+        enum { Interrupted, Corner, Between } kind = Interrupted;
+        Vector2D<double> vertex;
+
+        bool holds() const { return kind != Interrupted; }
+    };
+
     template <typename Scalar>
-    static Vector2D<double> breakPoint(PointSpan<Scalar> points, const VectorizedLine &l,
-                                       const VectorizedLine &m) {
-        return (Vector2D<double>(points[l.last]) + Vector2D<double>(points[m.first])) * 0.5;
-    }
-    template <typename Scalar>
-    static bool corner(PointSpan<Scalar> points, const VectorizedLine &l, const VectorizedLine &m,
-                       double delta, Vector2D<double> &point) {
-        return l.line.isValid() && m.line.isValid() && intersect(l.line, m.line, point) &&
-               (point - breakPoint(points, l, m)).squaredNorm() <= delta * delta;
-    }
-    template <typename Scalar>
-    static bool join(PointSpan<Scalar> points, const VectorizedLine &l, const VectorizedLine &m,
-                     double delta) {
-        Vector2D<double> point;
-        return corner(points, l, m, delta, point);
+    static Joint meet(PointSpan<Scalar> points, const VectorizedLine &l, const VectorizedLine &m,
+                      double delta) {
+        Joint joint;
+        if (!l.line.isValid() || !m.line.isValid())
+            return joint;
+        const Vector2D<double> change =
+            (Vector2D<double>(points[l.last]) + Vector2D<double>(points[m.first])) * 0.5;
+        if (intersect(l.line, m.line, joint.vertex) &&
+            (joint.vertex - change).squaredNorm() <= delta * delta) {
+            joint.kind = Joint::Corner;
+            return joint;
+        }
+        const Vector2D<double> a = l.line.project(change), b = m.line.project(change);
+        if (4 * (a - b).squaredNorm() <= delta * delta) {
+            joint.kind = Joint::Between;
+            joint.vertex = (a + b) * 0.5;
+        }
+        return joint;
     }
     // Replaces the last joined line and `next` by three lines when these fit and meet; the correction of
     // figure 6.6b.
     template <typename Scalar, typename Sums>
     bool bridge(PointSpan<Scalar> points, const Sums &sums, const VectorizedLine &next,
                 const VectorizerSettings &settings) {
-        const VectorizedLine previous = joined_.back();
-        const std::size_t first = previous.first, count = next.last - first + 1;
+        const std::size_t first = joined_.back().first, end = next.last + 1, count = end - first;
         if (count < 6)
             return false;
-        const std::size_t cut1 = first + count / 3, cut2 = first + 2 * count / 3;
-        const double variance = settings.variance();
-        if (!sums.fitWithin(first, cut1, variance) || !sums.fitWithin(cut1, cut2, variance) ||
-            !sums.fitWithin(cut2, next.last + 1, variance))
-            return false;
-        // From exact sums: those that fitWithin() judges by.
-        const auto line = [&points](std::size_t from, std::size_t end) {
-            return makeLine(points, from, end - 1, TlsSums::of(points.begin() + from, points.begin() + end));
-        };
-        const VectorizedLine a = line(first, cut1), b = line(cut1, cut2), c = line(cut2, next.last + 1);
-        const bool stillMeetsBefore = joined_.size() < 2 ||
-                                      join(points, joined_[joined_.size() - 2], a, settings.delta) ||
-                                      !join(points, joined_[joined_.size() - 2], previous, settings.delta);
-        if (!stillMeetsBefore || !join(points, a, b, settings.delta) || !join(points, b, c, settings.delta))
-            return false;
-        joined_.back() = a;
-        joined_.push_back(b);
-        joined_.push_back(c);
+        const std::size_t cuts[] = {first, first + count / 3, first + 2 * count / 3, end};
+        VectorizedLine thirds[3];
+        Joint joints[3]; // with the line before, between the thirds
+        const bool isJoined = !joints_.empty() && joints_.back().holds();
+        for (int i = 0; i < 3; ++i) {
+            // Few points are added up sooner than looked up.
+            if (cuts[i + 1] - cuts[i] > 32 && !sums.fitWithin(cuts[i], cuts[i + 1], settings.variance()))
+                return false;
+            thirds[i] = makeLine(points, cuts[i], cuts[i + 1] - 1,
+                                 TlsSums::of(points.begin() + cuts[i], points.begin() + cuts[i + 1]));
+            if (!(thirds[i].sigma * thirds[i].sigma <= settings.variance()))
+                return false;
+            if (i > 0 || isJoined) {
+                const VectorizedLine &before = i > 0 ? thirds[i - 1] : joined_[joined_.size() - 2];
+                joints[i] = meet(points, before, thirds[i], settings.delta);
+                if (!joints[i].holds())
+                    return false;
+            }
+        }
+        if (isJoined)
+            joints_.back() = joints[0];
+        joints_.insert(joints_.end(), joints + 1, joints + 3);
+        joined_.back() = thirds[0];
+        joined_.insert(joined_.end(), thirds + 1, thirds + 3);
         return true;
     }
-    template <typename Scalar>
-    void cutAtCorners(PointSpan<Scalar> points, double delta) {
-        Vector2D<double> point;
-        for (std::size_t i = 0; i + 1 < joined_.size(); ++i)
-            if (corner(points, joined_[i], joined_[i + 1], delta, point)) {
-                joined_[i].segment = {joined_[i].segment.begin(), point};
-                joined_[i + 1].segment = {point, joined_[i + 1].segment.end()};
+    void placeVertices() {
+        for (std::size_t first = 0, last; first < joined_.size(); first = last + 1) {
+            bool isExact = true;
+            vertices_.assign(1, joined_[first].segment.begin());
+            for (last = first; last < joints_.size() && joints_[last].holds(); ++last) {
+                vertices_.push_back(joints_[last].vertex);
+                isExact = isExact && joints_[last].kind == Joint::Corner;
             }
+            if (last == first)
+                continue;
+            vertices_.push_back(joined_[last].segment.end());
+            if (!isExact)
+                relax_(&joined_[first], vertices_);
+            for (std::size_t i = first; i <= last; ++i)
+                joined_[i].segment = {vertices_[i - first], vertices_[i - first + 1]};
+        }
     }
 
     std::vector<VectorizedLine> joined_;
+    std::vector<Joint> joints_; // one less than lines
+    std::vector<Vector2D<double>> vertices_;
+    VertexRelaxation relax_;
 };
 
 } // namespace vectorlib

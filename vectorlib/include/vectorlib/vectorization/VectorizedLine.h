@@ -8,12 +8,12 @@ namespace vectorlib {
 
 /// One line that a vectorizer found, with the points it stands for.
 struct VectorizedLine {
-    std::size_t first = 0; ///< index of its first point
-    std::size_t last = 0;  ///< index of its last point, inclusive
-    TlsSums sums;          ///< of these points
-    Line2D line;           ///< total least squares; invalid when the points have no direction
-    double sigma = 0;      ///< standard deviation of the points from the line; metres
-    LineSegment2D<double> segment;
+    std::size_t first = 0;         ///< index of its first point
+    std::size_t last = 0;          ///< index of its last point, inclusive
+    TlsSums sums;                  ///< of these points
+    Line2D line;                   ///< total least squares; invalid when the points have no direction
+    double sigma = 0;              ///< standard deviation of the points from the line; metres
+    LineSegment2D<double> segment; ///< the part of the line, or an edge of the polyline, see Polyline.h
 };
 
 /// Fits the line of points first .. last (sums given) and cuts it at their projections. Where one of the
@@ -47,8 +47,9 @@ VectorizedLine makeLine(PointSpan<Scalar> points, std::size_t first, std::size_t
 /// Settings that all vectorizers share.
 struct VectorizerSettings {
     double sigma = 0.02; ///< largest standard deviation of points from their line; metres
-    double delta =
-        0.10; ///< largest distance of a polyline's corner from the break point, see Polyline.h; metres
+    /// Largest distance of a polyline's corner from the break point, see Polyline.h; metres. About five times
+    /// sigma: less interrupts polylines, more draws corners away from the points.
+    double delta = 0.10;
     bool polyline =
         true; ///< join consecutive lines at their intersections (thesis 6.3.3); else cut at end points
 
