@@ -60,6 +60,7 @@ class TestPolyline : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void cornersAreIntersections();
+    void overrunCornersAreFound();
     void stepKeepsItsEnds();
     void smallStepIsBridged();
     void inflectionTakesThreeLines();
@@ -77,6 +78,21 @@ void TestPolyline::cornersAreIntersections() {
     QVERIFY((lines[0].segment.end() - Vector2D<double>(1, 0)).norm() < 1e-9);
     QVERIFY(lines[0].segment.begin() == apart[0].segment.begin());
     QVERIFY(lines[1].segment.end() == apart[1].segment.end());
+}
+
+// The first line ends 16 cm after the corner, the second begins 16 cm before it in reverse: farther than
+// delta.
+void TestPolyline::overrunCornersAreFound() {
+    Points points;
+    for (int i = 0; i <= 200; ++i)
+        points.emplace_back(i < 100 ? Vector2D<double>(2, 0.02 * i)
+                                    : Vector2D<double>(2 - 0.02 * (i - 100), 2));
+    for (const std::size_t change : {108, 93}) {
+        const Lines lines = joined(points, linesOf(points, {0, change, 201}));
+        QCOMPARE(lines.size(), std::size_t(2));
+        QCOMPARE(interruptions(lines), 0);
+        QVERIFY((lines[0].segment.end() - Vector2D<double>(2, 2)).norm() < 0.05);
+    }
 }
 
 void TestPolyline::stepKeepsItsEnds() {

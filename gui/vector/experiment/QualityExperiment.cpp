@@ -3,15 +3,17 @@
 #include "gui/vector/experiment/Algorithms.h"
 #include "vectorlib/io/Number.h"
 
+#include <algorithm>
 #include <map>
-#include <optional>
 
 namespace hermes {
 
 namespace {
 
-constexpr std::size_t budgets[] = {10, 20, 30, 40, 50, 100, 180};
 constexpr int polygonVertices[] = {6, 12, 36, 90, 180};
+// J: those of the paper, and for polygons more, up to one for two rays.
+const std::vector<std::size_t> polygonBudgets = {10, 20, 30, 40, 50, 100, 180};
+const std::vector<std::size_t> logBudgets = {10, 20, 30, 40, 50};
 
 // From 1 mm to 2 m in steps of a tenth.
 std::vector<double> sweptSigmas() {
@@ -43,7 +45,8 @@ Extraction extract(const Algorithm &algorithm, double sigma, const QualityScan &
 /// Compares the algorithms at equal J over scans.
 class EqualVertices {
 public:
-    EqualVertices() {
+    explicit EqualVertices(std::vector<std::size_t> budgets)
+        : budgets_(std::move(budgets)) {
         for (const double sigma : sigmas_)
             algorithms_.push_back(polylineExtractors(sigma));
     }
@@ -52,7 +55,7 @@ public:
         std::vector<std::vector<Extraction>> best; // by algorithm and budget
         for (std::size_t a = 0; a < algorithms; ++a)
             best.push_back(extractions(a, scan));
-        for (std::size_t j = 0; j < std::size(budgets); ++j) {
+        for (std::size_t j = 0; j < budgets_.size(); ++j) {
             bool comparable = true;
             for (const auto &b : best)
                 comparable = comparable && b[j].vertices > 0;
@@ -64,7 +67,7 @@ public:
         for (const auto &[key, sum] : rows_) {
             QualityRow row = sum;
             row.verticesTrue = verticesTrue;
-            row.budget = budgets[key.first];
+            row.budget = budgets_[key.first];
             row.algorithm = algorithms_.front()[key.second].label;
             for (double *mean : {&row.sigma, &row.vertices, &row.rmse, &row.hitShare, &row.areaError})
                 *mean /= row.scans;
@@ -75,11 +78,11 @@ public:
 private:
     // Of all sigmas the one that gives the most vertices up to each budget; of several the smallest.
     std::vector<Extraction> extractions(std::size_t algorithm, const QualityScan &scan) const {
-        std::vector<Extraction> best(std::size(budgets));
+        std::vector<Extraction> best(budgets_.size());
         for (std::size_t s = 0; s < sigmas_.size(); ++s) {
             const Extraction extraction = extract(algorithms_[s][algorithm], sigmas_[s], scan);
             for (std::size_t j = 0; j < best.size(); ++j)
-                if (extraction.vertices <= budgets[j] && extraction.vertices > best[j].vertices)
+                if (extraction.vertices <= budgets_[j] && extraction.vertices > best[j].vertices)
                     best[j] = extraction;
         }
         return best;
@@ -96,10 +99,35 @@ private:
         row.areaError += measures.areaError();
     }
 
-    std::vector<double> sigmas_ = sweptSigmas();
+    const std::vector<std::size_t> budgets_;
+    const std::vector<double> sigmas_ = sweptSigmas();
     std::vector<std::vector<Algorithm>> algorithms_;                 // by sigma
     std::map<std::pair<std::size_t, std::size_t>, QualityRow> rows_; // by budget and algorithm; sums
 };
+
+// Means over all kinds of polygons, by J and algorithm.
+std::vector<QualityRow> together(const std::vector<QualityRow> &rows) {
+    std::vector<QualityRow> all;
+    for (const QualityRow &row : rows) {
+        auto found = std::find_if(all.begin(), all.end(), [&row](const QualityRow &a) {
+            return a.budget == row.budget && a.algorithm == row.algorithm;
+        });
+        if (found == all.end()) {
+            found = all.insert(all.end(), QualityRow());
+            found->budget = row.budget;
+            found->algorithm = row.algorithm;
+        }
+        found->scans += row.scans;
+        const double share = static_cast<double>(row.scans) / found->scans;
+        const auto average = [share](double &mean, double value) { mean += share * (value - mean); };
+        average(found->sigma, row.sigma);
+        average(found->vertices, row.vertices);
+        average(found->rmse, row.rmse);
+        average(found->hitShare, row.hitShare);
+        average(found->areaError, row.areaError);
+    }
+    return all;
+}
 
 } // namespace
 
@@ -108,7 +136,7 @@ std::vector<QualityRow> polygonExperiment(const ExperimentOptions &options) {
     std::mt19937_64 random(options.seed);
     std::size_t done = 0;
     for (const int vertices : polygonVertices) {
-        EqualVertices compare;
+        EqualVertices compare(polygonBudgets);
         for (int run = 0; run < options.runs; ++run) {
             compare.take(polygonScan(vertices, random));
             if (options.progress)
@@ -116,12 +144,14 @@ std::vector<QualityRow> polygonExperiment(const ExperimentOptions &options) {
         }
         compare.append(rows, vertices);
     }
+    const std::vector<QualityRow> all = together(rows);
+    rows.insert(rows.end(), all.begin(), all.end());
     return rows;
 }
 
 std::vector<QualityRow> logExperiment(const std::vector<vectorlib::CarmenScan> &scans,
                                       const ExperimentOptions &options) {
-    EqualVertices compare;
+    EqualVertices compare(logBudgets);
     const std::size_t step =
         std::max<std::size_t>(1, scans.size() / static_cast<std::size_t>(10 * options.runs));
     for (std::size_t i = 0; i < scans.size(); i += step) {
@@ -143,16 +173,17 @@ void writeCsv(std::ostream &out, const std::vector<QualityRow> &rows) {
             << Number(r.hitShare) << ',' << Number(r.areaError) << '\n';
 }
 
-std::vector<Plot> plotsOf(const std::vector<QualityRow> &rows) {
+std::vector<Plot> plotsOf(const std::string &title, const std::vector<QualityRow> &rows) {
     std::map<int, std::vector<QualityRow>> byPolygon;
     for (const QualityRow &row : rows)
         byPolygon[row.verticesTrue].push_back(row);
     std::vector<Plot> plots;
     for (const auto &[vertices, some] : byPolygon) {
-        const std::string title = vertices ? "polygons of " + std::to_string(vertices) + " vertices" : "log";
+        const std::string what = vertices ? "polygons of " + std::to_string(vertices) + " vertices" : title;
         const std::string prefix = vertices ? std::to_string(vertices) + "-" : "";
-        const auto add = [&, &some = some](const char *name, const char *axis, double QualityRow::*measure) {
-            Plot plot{prefix + name, title, "vertices J", axis, true, false, {}};
+        const auto add = [&, &some = some](const char *name, const char *axis, bool logarithmic,
+                                           double QualityRow::*measure) {
+            Plot plot{prefix + name, what, "vertices J", axis, true, logarithmic, {}};
             for (const Algorithm &algorithm : polylineExtractors(1)) {
                 Curve curve{algorithm.label, algorithm.colour, {}};
                 for (const QualityRow &row : some)
@@ -162,10 +193,10 @@ std::vector<Plot> plotsOf(const std::vector<QualityRow> &rows) {
             }
             plots.push_back(std::move(plot));
         };
-        add("rmse", "RMSE [m]", &QualityRow::rmse);
-        add("hits", "share of rays that hit", &QualityRow::hitShare);
-        if (vertices)
-            add("area", "relative area error", &QualityRow::areaError);
+        add("rmse", "RMSE [m]", true, &QualityRow::rmse);
+        add("hits", "share of rays that hit", false, &QualityRow::hitShare);
+        if (some.front().areaError > 0)
+            add("area", "relative area error", true, &QualityRow::areaError);
     }
     return plots;
 }

@@ -10,13 +10,18 @@ namespace vectorlib {
 
 /// Joins the consecutive lines of one cluster into a polyline: thesis 6.3.3, figure 6.6. Where one line
 /// changes to the next, the first of these that holds decides:
-/// 1. their intersection lies within delta of the middle between the two points there: it is the vertex;
-/// 2. the lines pass that middle within delta / 2 of each other: the vertex lies between them, and all
-/// vertices
-///    of the polyline are moved to where the points lie nearest to its edges (VertexRelaxation), so that the
-///    edges may leave their lines a little;
-/// 3. three lines, each a third of the points of both, keep sigma and meet: they take their place;
-/// 4. the polyline is interrupted there, and both lines keep their own ends.
+///
+/// 1. Their intersection is the vertex if it lies within delta of the middle between the two points there, or
+/// of where points begin to be nearer to the other line: the search for the longest line overruns corners.
+///
+/// 2. The vertex lies between the lines if they pass that middle within delta / 2 of each other. All vertices
+/// of the polyline are then moved to where the points lie nearest to its edges (VertexRelaxation), so that
+/// the edges may leave their lines a little.
+///
+/// 3. Three lines, each a third of the points of both, take their place if they keep sigma and meet.
+///
+/// 4. Else the polyline is interrupted there, and both lines keep their own ends.
+///
 /// Only the segments change, but for 3.
 class PolylineJoiner {
 public:
@@ -54,19 +59,42 @@ private:
         Joint joint;
         if (!l.line.isValid() || !m.line.isValid())
             return joint;
-        const Vector2D<double> change =
-            (Vector2D<double>(points[l.last]) + Vector2D<double>(points[m.first])) * 0.5;
+        const double limit = delta * delta;
+        const Vector2D<double> change = placeBefore(points, m.first);
         if (intersect(l.line, m.line, joint.vertex) &&
-            (joint.vertex - change).squaredNorm() <= delta * delta) {
+            ((joint.vertex - change).squaredNorm() <= limit ||
+             (joint.vertex - placeBefore(points, nearerChange(points, l, m))).squaredNorm() <= limit)) {
             joint.kind = Joint::Corner;
             return joint;
         }
         const Vector2D<double> a = l.line.project(change), b = m.line.project(change);
-        if (4 * (a - b).squaredNorm() <= delta * delta) {
+        if (4 * (a - b).squaredNorm() <= limit) {
             joint.kind = Joint::Between;
             joint.vertex = (a + b) * 0.5;
         }
         return joint;
+    }
+    // The middle between a point and the one before.
+    template <typename Scalar>
+    static Vector2D<double> placeBefore(PointSpan<Scalar> points, std::size_t i) {
+        return (Vector2D<double>(points[i - 1]) + Vector2D<double>(points[i])) * 0.5;
+    }
+    // The first point of the second line, if the points next to it belonged to the line that they are nearer
+    // to.
+    template <typename Scalar>
+    static std::size_t nearerChange(PointSpan<Scalar> points, const VectorizedLine &l,
+                                    const VectorizedLine &m) {
+        const auto isNearer = [points](std::size_t i, const Line2D &line, const Line2D &than) {
+            const Vector2D<double> p(points[i]);
+            return std::abs(line.signedDistance(p)) < std::abs(than.signedDistance(p));
+        };
+        std::size_t first = m.first;
+        while (first > l.first + 1 && isNearer(first - 1, m.line, l.line))
+            --first;
+        if (first == m.first)
+            while (first < m.last && isNearer(first, l.line, m.line))
+                ++first;
+        return first;
     }
     // Replaces the last joined line and `next` by three lines when these fit and meet; the correction of
     // figure 6.6b.
