@@ -8,6 +8,7 @@
 #include "gui/vector/experiment/Gnuplot.h"
 #include "gui/vector/experiment/PairsExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
+#include "gui/vector/experiment/RealScanExperiment.h"
 #include "gui/vector/experiment/RegistrationExperiment.h"
 #include "gui/vector/experiment/RotationExperiment.h"
 #include "gui/vector/experiment/SegmentationExperiment.h"
@@ -56,11 +57,18 @@ struct ExperimentCommand {
     void edges(OutputSet &files, std::ostream &csv) const { scene(files, csv, solitaryEdges()); }
     void corners(OutputSet &files, std::ostream &csv) const { scene(files, csv, sharpCorners()); }
     void room(OutputSet &files, std::ostream &csv) const { scene(files, csv, furnishedRoom()); }
+    void emptyRoom(OutputSet &files, std::ostream &csv) const {
+        realScan(files, csv, RealScanKind::EmptyRoom);
+    }
+    void corridor(OutputSet &files, std::ostream &csv) const { realScan(files, csv, RealScanKind::Corridor); }
+    void laboratory(OutputSet &files, std::ostream &csv) const {
+        realScan(files, csv, RealScanKind::Laboratory);
+    }
     void polygons(OutputSet &files, std::ostream &csv) const {
-        quality(files, csv, polygonExperiment(options));
+        quality(files, csv, "all polygons", polygonExperiment(options));
     }
     void ofLog(OutputSet &files, std::ostream &csv) const {
-        quality(files, csv, logExperiment(readLog().scans, options));
+        quality(files, csv, "log", logExperiment(readLog().scans, options));
     }
     // The shares go to standard output, too; pictures are of pairs that are not near the reference.
     void pairs(OutputSet &files, std::ostream &csv) const {
@@ -169,9 +177,18 @@ private:
                                          "percent.svg"),
                          scene, panel);
     }
-    void quality(OutputSet &files, std::ostream &csv, const std::vector<QualityRow> &rows) const {
+    void quality(OutputSet &files, std::ostream &csv, const std::string &title,
+                 const std::vector<QualityRow> &rows) const {
         writeCsv(csv, rows);
-        draw(files, {plotsOf(rows), {}, {}});
+        draw(files, {plotsOf(title, rows), {}, {}});
+    }
+    void realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const {
+        const RealScanResult result = realScanExperiment(readLog().scans, kind);
+        if (result.points == 0)
+            throw Failure(log + ": no scan has returns on half of its rays");
+        writeCsv(csv, result);
+        writeLatex(open(files, ".tex"), name, result);
+        hermes::draw(open(files, ".svg"), name, result);
     }
     vectorlib::CarmenLog readLog() const {
         if (log.empty())
@@ -220,6 +237,11 @@ constexpr Experiment experiments[] = {
     {"edges", "figure 6.8: four solitary edges", &ExperimentCommand::edges},
     {"corners", "figure 6.9: one cluster with sharp corners", &ExperimentCommand::corners},
     {"room", "figure 6.10: a furnished room", &ExperimentCommand::room},
+    {"empty-room", "figure 6.11: the scan of --log with long lines all around",
+     &ExperimentCommand::emptyRoom},
+    {"corridor", "figure 6.12: the scan of --log with long lines in one direction",
+     &ExperimentCommand::corridor},
+    {"laboratory", "figure 6.13: the scan of --log with the most lines", &ExperimentCommand::laboratory},
     {"polygons", "closed polygons: error by the number of vertices", &ExperimentCommand::polygons},
     {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog},
     {"pairs", "the motions between scans of --log: error against its corrected poses",
@@ -267,7 +289,8 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->log, "CARMEN log for the experiments log and pairs")->type_name("FILE");
+    sub->add_option("--log", command->log, "CARMEN log for log, pairs, empty-room, corridor and laboratory")
+        ->type_name("FILE");
     sub->add_option("--every", command->pairOptions.every,
                     "pairs: match every N-th scan with the next N-th one")
         ->check(between(1, 1e9))

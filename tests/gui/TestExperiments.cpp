@@ -1,6 +1,7 @@
 #include "gui/vector/experiment/Scene.h"
 
 #include <QProcess>
+#include <QStandardPaths>
 #include <QTemporaryDir>
 #include <QtTest>
 
@@ -24,6 +25,8 @@ private Q_SLOTS:
     void reliabilityFallsWhereWallsAreHidden();
     void wahbaIsMildWithLargeErrors();
     void missingWorldIsNamed();
+    void realScansAreShown();
+    void latexCompiles();
     void refusesToOverwrite();
     void unknownExperimentIsAUsageError();
 
@@ -242,6 +245,46 @@ void TestExperiments::missingWorldIsNamed() {
     QCOMPARE(run({"accuracy", "--worlds", folder.path(), "--out", folder.filePath("new")}), 1);
     QVERIFY2(error_.contains("cutsquare.json") && error_.contains("--worlds"), error_);
     QVERIFY(QDir(folder.filePath("new")).entryList(QDir::Files).isEmpty());
+}
+
+void TestExperiments::realScansAreShown() {
+    QTemporaryDir folder;
+    const QString log = QStringLiteral(TEST_DATA_DIR "/vector/corrected.log");
+    for (const char *name : {"empty-room", "corridor", "laboratory"}) {
+        QVERIFY2(run({name, "--log", log, "--out", folder.path()}) == 0, error_);
+        const auto rows = lines(folder.filePath(QString("%1.csv").arg(name)));
+        QCOMPARE(rows.value(0), QByteArray("scan,points,clusters,algorithm,lines,time_us"));
+        QCOMPARE(rows.size(), 7); // algorithms
+        for (const QByteArray &row : rows.mid(1))
+            QVERIFY2(row.split(',')[4].toInt() > 0, row);
+        QVERIFY(lines(folder.filePath(QString("%1.svg").arg(name))).last() == "</svg>");
+        QCOMPARE(run({name, "--out", folder.path(), "--force"}), 2);
+    }
+    QFile empty(folder.filePath("empty.log"));
+    QVERIFY(empty.open(QIODevice::WriteOnly));
+    empty.close();
+    QCOMPARE(run({"corridor", "--log", empty.fileName(), "--out", folder.filePath("none")}), 1);
+}
+
+void TestExperiments::latexCompiles() {
+    if (QStandardPaths::findExecutable("pdflatex").isEmpty())
+        QSKIP("pdflatex is not installed");
+    QTemporaryDir folder;
+    const QString log = QStringLiteral(TEST_DATA_DIR "/vector/corrected.log");
+    QCOMPARE(run({"corners", "--runs", "1", "--max-points", "500", "--out", folder.path()}), 0);
+    QCOMPARE(run({"semicircle", "--max-points", "100", "--out", folder.path()}), 0);
+    QCOMPARE(run({"polygons", "--runs", "1", "--out", folder.path()}), 0);
+    QCOMPARE(run({"log", "--runs", "1", "--log", log, "--out", folder.path()}), 0);
+    QCOMPARE(run({"laboratory", "--log", log, "--out", folder.path()}), 0);
+    const QStringList documents = QDir(folder.path()).entryList({"*.tex"});
+    QCOMPARE(documents.size(), 7); // semicircle has three
+    for (const QString &document : documents) {
+        QProcess latex;
+        latex.setWorkingDirectory(folder.path());
+        latex.start("pdflatex", {"-interaction=nonstopmode", "-halt-on-error", document});
+        QVERIFY(latex.waitForFinished(60000));
+        QVERIFY2(latex.exitCode() == 0, document.toUtf8() + latex.readAllStandardOutput().right(1000));
+    }
 }
 
 void TestExperiments::refusesToOverwrite() {

@@ -10,7 +10,7 @@
 using namespace hermes;
 
 /// AFTLS with post-processing beside Douglas-Peucker and split-and-merge as published, by the measures of
-/// Schaefer et al., 2018, at equal numbers of vertices J. Long.
+/// Schaefer et al., 2018, at equal numbers of vertices J.
 class TestQuality : public QObject {
     Q_OBJECT
 private Q_SLOTS:

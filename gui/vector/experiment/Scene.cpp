@@ -75,6 +75,7 @@ Scene roomWithSmallObjects() {
 double errorArea(const std::vector<Segment> &truth, const std::vector<Segment> &extracted) {
     constexpr int rays = 36000;
     constexpr double step = 2 * vectorlib::pi / rays;
+    constexpr double sameEdge = 0.5; // metres
     const auto range = [](const std::vector<Segment> &segments, vectorlib::Vector2D<double> direction) {
         double nearest = vectorlib::noHit;
         for (const Segment &s : segments)
@@ -87,7 +88,7 @@ double errorArea(const std::vector<Segment> &truth, const std::vector<Segment> &
     for (int i = 0; i < rays; ++i) {
         const vectorlib::Vector2D<double> direction(std::cos((i + 0.5) * step), std::sin((i + 0.5) * step));
         const double a = range(truth, direction), b = range(extracted, direction);
-        if (a < vectorlib::noHit && b < vectorlib::noHit)
+        if (a < vectorlib::noHit && std::abs(a - b) <= sameEdge)
             area += 0.5 * step * std::abs(a * a - b * b);
     }
     return area;

@@ -27,7 +27,9 @@ Scene furnishedRoom();
 Scene roomWithSmallObjects();
 
 /// The area between what is true and what was extracted, over all directions in which both are seen; m^2. By
-/// rays at steps of 0.01 degree from the scanner at the origin.
+/// rays at steps of 0.01 degree from the scanner at the origin. Where they are more than half a metre apart,
+/// an end lies a little off and the ray meets another edge beyond it: that says nothing of how well edges
+/// lie, and is left out.
 double errorArea(const std::vector<vectorlib::LineSegment2D<float>> &truth,
                  const std::vector<vectorlib::LineSegment2D<float>> &extracted);
 
