@@ -45,6 +45,9 @@ private Q_SLOTS:
     // The others go through the points from one end: where lines change depends on which.
     void sameLinesInReverse_data() { algorithmRows({"aftls by Nelder-Mead", "ftls", "inc", "rw", "sam"}); }
     void sameLinesInReverse();
+    // A strip along the first two points says nothing of one along the last two.
+    void asGoodInReverse_data() { algorithmRows({"rw"}); }
+    void asGoodInReverse();
     // One line whatever sigma is, and a strip that is not the line.
     void obeysSigma_data() { algorithmRows({"tls", "rw"}); }
     void obeysSigma();
@@ -133,6 +136,27 @@ void TestVectorizerProperties::sameLinesInReverse() {
     // FTLS, where AFTLS starts, may need a line more from the one end than from the other; and where noise
     // makes two places for a break point equally good, each end leads to its own.
     QVERIFY2(same >= 95, qPrintable(QString("%1 of 100").arg(same)));
+}
+
+// Longest lines from one end are not those from the other, but as many, and as near to the points.
+void TestVectorizerProperties::asGoodInReverse() {
+    QFETCH(Algorithm, algorithm);
+    double sum = 0, reversedSum = 0;
+    int near = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        const Points points = roomScan(seed, 1000), reversed(points.rbegin(), points.rend());
+        const auto lines = algorithm.run(points, settingsOf(false));
+        const auto reversedLines = algorithm.run(reversed, settingsOf(false));
+        const int more = int(reversedLines.size()) - int(lines.size());
+        QVERIFY2(more >= -1 && more <= 1, at(seed));
+        const double e = errorOf(lines), reversedE = errorOf(reversedLines);
+        near += std::abs(e - reversedE) < 0.05 * e;
+        sum += e;
+        reversedSum += reversedE;
+    }
+    QVERIFY2(std::abs(sum / reversedSum - 1) < 0.01, qPrintable(QString::number(sum / reversedSum)));
+    if (isOneOf(algorithm, {"tls", "aftls"}))
+        QVERIFY2(near >= 296, qPrintable(QString("%1 of 300").arg(near)));
 }
 
 void TestVectorizerProperties::obeysSigma() {
