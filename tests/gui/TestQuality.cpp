@@ -10,7 +10,7 @@
 using namespace hermes;
 
 /// AFTLS with post-processing beside Douglas-Peucker and split-and-merge as published, by the measures of
-/// Schaefer et al., 2018, at equal numbers of vertices J.
+/// Schaefer et al., 2018, at equal numbers of vertices J up to 50, as there.
 class TestQuality : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -21,6 +21,7 @@ private Q_SLOTS:
     void realScans();
 
 private:
+    static constexpr std::size_t largestBudget = 50; // with more, noise is what is drawn
     using ByAlgorithm = std::map<std::string, QualityRow>;
     // By number of true vertices and J.
     static std::map<std::pair<int, std::size_t>, ByAlgorithm> sorted(const std::vector<QualityRow> &rows) {
@@ -67,9 +68,9 @@ void TestQuality::measuresOfAKnownShift() {
     QVERIFY(std::abs(measures.rmse() - 0.1) < 1e-12);
     QVERIFY(std::abs(measures.hitShare() - 21.0 / 22) < 1e-12);
     QVERIFY(measures.areaError() < 1e-12);
-    QualityMeasures shifted; // the wall at 2.2 m encloses 21 % more, but for the one ray
+    QualityMeasures shifted; // the wall at 2.2 m encloses 21 % more
     shifted.take(cluster, {{{2.2, -3}, {2.2, 3}}});
-    QVERIFY(shifted.areaError() > 0.19 && shifted.areaError() < 0.21);
+    QVERIFY(std::abs(shifted.areaError() - 0.21) < 1e-12);
 }
 
 void TestQuality::verticesOfBrokenPolylines() {
@@ -84,14 +85,14 @@ void TestQuality::polygons() {
     for (const auto &[key, row] : sorted(polygonExperiment(options))) {
         const auto [vertices, budget] = key;
         const QualityRow &aftls = row.at("AFTLS"), &dp = row.at("DP"), &sam = row.at("SAM");
-        if (budget > 50) // every second ray a vertex and the like: here noise is what is drawn
+        if (budget > largestBudget)
             continue;
         QVERIFY2(aftls.rmse < dp.rmse && aftls.areaError < dp.areaError, qPrintable(told(aftls, dp)));
         // With more vertices than the polygon has, both draw the noise, and neither is much better.
         if (vertices == 0 || vertices > 12 || budget <= std::size_t(vertices))
             QVERIFY2(aftls.rmse < sam.rmse && aftls.areaError < sam.areaError, qPrintable(told(aftls, sam)));
         else
-            QVERIFY2(aftls.rmse < 1.05 * sam.rmse && aftls.areaError < 1.2 * sam.areaError,
+            QVERIFY2(aftls.rmse < 1.05 * sam.rmse && aftls.areaError < 1.1 * sam.areaError,
                      qPrintable(told(aftls, sam)));
         QVERIFY2(aftls.hitShare > 0.95, qPrintable(told(aftls, dp)));
     }
@@ -112,7 +113,7 @@ void TestQuality::realScans() {
     QVERIFY(!rows.empty());
     for (const auto &[key, row] : rows) {
         const QualityRow &aftls = row.at("AFTLS"), &dp = row.at("DP"), &sam = row.at("SAM");
-        if (aftls.scans < 30) // few scans are so plain
+        if (key.second > largestBudget || aftls.scans < 30) // few scans are so plain
             continue;
         QVERIFY2(aftls.rmse < dp.rmse, qPrintable(told(aftls, dp)));
         QVERIFY2(aftls.rmse < sam.rmse, qPrintable(told(aftls, sam)));

@@ -11,9 +11,8 @@ namespace hermes {
 namespace {
 
 constexpr int polygonVertices[] = {6, 12, 36, 90, 180};
-// J: those of the paper, and for polygons more, up to one for two rays.
-const std::vector<std::size_t> polygonBudgets = {10, 20, 30, 40, 50, 100, 180};
-const std::vector<std::size_t> logBudgets = {10, 20, 30, 40, 50};
+// J: the paper has them up to 50; with one vertex for every second ray polylines show the noise.
+constexpr std::size_t budgets[] = {10, 20, 30, 40, 50, 100, 180};
 
 // From 1 mm to 2 m in steps of a tenth.
 std::vector<double> sweptSigmas() {
@@ -45,8 +44,7 @@ Extraction extract(const Algorithm &algorithm, double sigma, const QualityScan &
 /// Compares the algorithms at equal J over scans.
 class EqualVertices {
 public:
-    explicit EqualVertices(std::vector<std::size_t> budgets)
-        : budgets_(std::move(budgets)) {
+    EqualVertices() {
         for (const double sigma : sigmas_)
             algorithms_.push_back(polylineExtractors(sigma));
     }
@@ -55,7 +53,7 @@ public:
         std::vector<std::vector<Extraction>> best; // by algorithm and budget
         for (std::size_t a = 0; a < algorithms; ++a)
             best.push_back(extractions(a, scan));
-        for (std::size_t j = 0; j < budgets_.size(); ++j) {
+        for (std::size_t j = 0; j < std::size(budgets); ++j) {
             bool comparable = true;
             for (const auto &b : best)
                 comparable = comparable && b[j].vertices > 0;
@@ -67,7 +65,7 @@ public:
         for (const auto &[key, sum] : rows_) {
             QualityRow row = sum;
             row.verticesTrue = verticesTrue;
-            row.budget = budgets_[key.first];
+            row.budget = budgets[key.first];
             row.algorithm = algorithms_.front()[key.second].label;
             for (double *mean : {&row.sigma, &row.vertices, &row.rmse, &row.hitShare, &row.areaError})
                 *mean /= row.scans;
@@ -78,11 +76,11 @@ public:
 private:
     // Of all sigmas the one that gives the most vertices up to each budget; of several the smallest.
     std::vector<Extraction> extractions(std::size_t algorithm, const QualityScan &scan) const {
-        std::vector<Extraction> best(budgets_.size());
+        std::vector<Extraction> best(std::size(budgets));
         for (std::size_t s = 0; s < sigmas_.size(); ++s) {
             const Extraction extraction = extract(algorithms_[s][algorithm], sigmas_[s], scan);
             for (std::size_t j = 0; j < best.size(); ++j)
-                if (extraction.vertices <= budgets_[j] && extraction.vertices > best[j].vertices)
+                if (extraction.vertices <= budgets[j] && extraction.vertices > best[j].vertices)
                     best[j] = extraction;
         }
         return best;
@@ -99,7 +97,6 @@ private:
         row.areaError += measures.areaError();
     }
 
-    const std::vector<std::size_t> budgets_;
     const std::vector<double> sigmas_ = sweptSigmas();
     std::vector<std::vector<Algorithm>> algorithms_;                 // by sigma
     std::map<std::pair<std::size_t, std::size_t>, QualityRow> rows_; // by budget and algorithm; sums
@@ -136,7 +133,7 @@ std::vector<QualityRow> polygonExperiment(const ExperimentOptions &options) {
     std::mt19937_64 random(options.seed);
     std::size_t done = 0;
     for (const int vertices : polygonVertices) {
-        EqualVertices compare(polygonBudgets);
+        EqualVertices compare;
         for (int run = 0; run < options.runs; ++run) {
             compare.take(polygonScan(vertices, random));
             if (options.progress)
@@ -151,7 +148,7 @@ std::vector<QualityRow> polygonExperiment(const ExperimentOptions &options) {
 
 std::vector<QualityRow> logExperiment(const std::vector<vectorlib::CarmenScan> &scans,
                                       const ExperimentOptions &options) {
-    EqualVertices compare(logBudgets);
+    EqualVertices compare;
     const std::size_t step =
         std::max<std::size_t>(1, scans.size() / static_cast<std::size_t>(10 * options.runs));
     for (std::size_t i = 0; i < scans.size(); i += step) {

@@ -77,11 +77,11 @@ void QualityMeasures::take(const QualityCluster &cluster, const Edges &polyline)
     for (const QualityCluster::Ray &ray : cluster.rays) {
         const double range = nearestHit(polyline, ray.direction);
         ++rays_;
-        area_ += ray.truth * ray.truth;
         if (range >= vectorlib::noHit)
             continue;
         ++hits_;
         squares_ += (range - ray.measured) * (range - ray.measured);
+        area_ += ray.truth * ray.truth;
         if (ray.truth > 0)
             areaBetween_ += std::abs(range * range - ray.truth * ray.truth);
     }

@@ -46,7 +46,8 @@ public:
     double rmse() const { return hits_ > 0 ? std::sqrt(squares_ / hits_) : 0; }
     /// f: rays that hit, of all.
     double hitShare() const { return rays_ > 0 ? hits_ / rays_ : 0; }
-    /// a: area between true and extracted polygon over the true area; 0 where the truth is not known.
+    /// a: area between true and extracted polygon over the true area, rays that hit; 0 where the truth is not
+    /// known.
     double areaError() const { return area_ > 0 ? areaBetween_ / area_ : 0; }
 
 private:
