@@ -7,6 +7,7 @@ namespace hermes {
 namespace {
 
 constexpr double firingPeriod = velodyne::firingPeriod_ns * 1e-9; // seconds
+constexpr double packetPeriod = firingPeriod * velodyne::blocksPerPacket;
 
 std::vector<vectorlib::LineSegment2D<double>> wallsOf(const World &world) {
     std::vector<vectorlib::LineSegment2D<double>> walls;
@@ -19,6 +20,8 @@ std::vector<vectorlib::LineSegment2D<double>> wallsOf(const World &world) {
 
 Simulation::Simulation(const World &world, const Options &options, std::int64_t start_ns)
     : follower_(PosePath(world.poses, options.speed, options.turnRate), options.acceleration / options.speed)
+    , drivetrain_(options.drivetrain)
+    , body_(wallsOf(world), options.radius)
     , lidar_(wallsOf(world), options.lidar, options.seed)
     , gap_(options.rpm / 60 * 360 * firingPeriod)
     , start_ns_(start_ns) {}
@@ -42,21 +45,42 @@ void Simulation::place(const vectorlib::Pose2D &pose) {
     place_ = pose;
 }
 
+void Simulation::advanceWheels() {
+    rolling_ = drivetrain_.advance(packetPeriod);
+    const bool following = follower_.isDriving() || follower_.rate() > 0;
+    if (placed_ || following || !drivetrain_.isMoving())
+        return;
+    place_ = follower_.pose();
+    placed_ = true;
+}
+
+void Simulation::advancePose(double seconds) {
+    const bool rolls = rolling_.vx != 0 || rolling_.vy != 0 || rolling_.omega != 0;
+    if (!placed_)
+        follower_.advance(seconds);
+    else if (rolls) // one that stands is where it was put, be it in a wall
+        place_ = body_.move(place_, rolling_, seconds);
+}
+
 const std::array<std::uint8_t, velodyne::packetSize> &Simulation::nextPacket() {
+    advanceWheels();
     packet_.setTail(std::uint32_t(now_ns() / 1000 % velodyne::stampPeriod_us));
     for (int block = 0; block < velodyne::blocksPerPacket; ++block) {
         const double azimuth = std::fmod(double(firings_) * gap_, 360.0);
         packet_.setAzimuth(block, std::uint16_t(std::lround(azimuth * 100) % velodyne::azimuthSteps));
         lidar_.fire(pose(), azimuth, gap_, packet_, block);
-        follower_.advance(firingPeriod);
+        advancePose(firingPeriod);
         ++firings_;
     }
     return packet_.bytes();
 }
 
 void Simulation::skip(std::uint64_t packets) {
-    for (std::uint64_t i = 0; i < packets * velodyne::blocksPerPacket; ++i)
-        follower_.advance(firingPeriod);
+    for (std::uint64_t i = 0; i < packets; ++i) {
+        advanceWheels();
+        for (int block = 0; block < velodyne::blocksPerPacket; ++block)
+            advancePose(firingPeriod);
+    }
     firings_ += packets * velodyne::blocksPerPacket;
 }
 
@@ -65,10 +89,11 @@ Simulation::Truth Simulation::truth() const {
     Truth truth;
     truth.stamp_ns = now_ns();
     truth.pose = pose();
-    truth.twist = placed_ ? Twist() : follower_.twist();
+    truth.twist = placed_ ? rolling_ : follower_.twist();
     truth.progress = !placed_ && length > 0 ? follower_.progress() / length : 0;
     truth.driving = follower_.isDriving() || follower_.rate() > 0;
     truth.finished = !placed_ && length > 0 && follower_.isFinished();
+    truth.touching = placed_ && body_.isTouching();
     return truth;
 }
 

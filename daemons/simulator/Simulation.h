@@ -1,12 +1,14 @@
 #pragma once
 
+#include "daemons/simulator/Drivetrain.h"
 #include "daemons/simulator/LidarModel.h"
 #include "daemons/simulator/PathFollower.h"
 
 namespace hermes {
 
-/// The robot in its world and the packets its sensor sends, firing after firing. Knows no clock: time
-/// advances with the packets. Not for several threads at once.
+/// The robot in its world and the packets its sensor sends, firing after firing. It follows the path of the
+/// world, or goes where its wheels drive it. Knows no clock: time advances with the packets. Not for several
+/// threads at once.
 class Simulation {
 public:
     struct Options {
@@ -14,7 +16,9 @@ public:
         double acceleration = 0.8; ///< m/s^2
         double turnRate = 1.0;     ///< rad/s
         double rpm = 600;          ///< turns of the sensor's head a minute
+        double radius = 0.3;       ///< of the robot's outline; metres
         LidarModel::Options lidar;
+        Drivetrain::Options drivetrain;
         std::uint64_t seed = 1;
     };
     /// Where the robot truly is.
@@ -25,6 +29,7 @@ public:
         double progress = 0; ///< share of the path, 0 to 1
         bool driving = false;
         bool finished = false;
+        bool touching = false; ///< a wall holds it
     };
 
     Simulation() = default;
@@ -36,7 +41,7 @@ public:
     void halt() { follower_.halt(); }
     /// Back to the first pose of the path, standing.
     void restart();
-    /// Puts the robot anywhere, standing; restart() brings it back to its path.
+    /// Puts the robot anywhere, off its path; restart() brings it back.
     void place(const vectorlib::Pose2D &pose);
     void setSigma(double sigma) { lidar_.setSigma(sigma); }
 
@@ -45,6 +50,8 @@ public:
     /// Time passes without packets being made.
     void skip(std::uint64_t packets);
 
+    /// The wheels take the robot off its path unless it is following it just now.
+    Drivetrain &drivetrain() { return drivetrain_; }
     Truth truth() const;
     double sigma() const { return lidar_.options().sigma; }
     bool isPlaced() const { return placed_; }
@@ -52,9 +59,14 @@ public:
     std::int64_t now_ns() const { return start_ns_ + std::int64_t(firings_) * velodyne::firingPeriod_ns; }
 
 private:
+    void advanceWheels();
+    void advancePose(double seconds);
     vectorlib::Pose2D pose() const { return placed_ ? place_ : follower_.pose(); }
 
     PathFollower follower_;
+    Drivetrain drivetrain_;
+    RobotBody body_;
+    Twist rolling_; ///< how the wheels move the robot
     LidarModel lidar_;
     velodyne::DataPacketWriter packet_;
     double gap_ = 0; ///< degrees a firing

@@ -2,6 +2,7 @@
 
 #include "common/Log.h"
 #include "common/world/WorldFile.h"
+#include "daemons/simulator/FaultNames.h"
 #include "vectorlib/geometry/Angle.h"
 
 namespace hermes {
@@ -20,7 +21,8 @@ QJsonObject toJson(const Simulation::Truth &truth) {
             {"omega", truth.twist.omega},
             {"progress", truth.progress},
             {"driving", truth.driving},
-            {"finished", truth.finished}};
+            {"finished", truth.finished},
+            {"touching", truth.touching}};
 }
 
 QString toText(LidarFault::Kind kind) {
@@ -38,11 +40,22 @@ QString toText(LidarFault::Kind kind) {
 } // namespace
 
 Simulator::Simulator()
-    : Daemon({"simulator", "Simulator",
-              "A robot in a made-up world, with an HDL-32E that sends true packets over UDP"})
+    : Daemon(
+          {"simulator", "Simulator",
+           "A robot in a made-up world, with an HDL-32E that sends true packets over UDP, and two RoboClaws "
+           "on pseudo-terminals that drive it"})
     , pump_([this](const Simulation::Truth &truth) {
         QMetaObject::invokeMethod(
             this, [this, truth] { publishTruth(truth); }, Qt::QueuedConnection);
+    })
+    , lines_([this](int line, const QByteArray &bytes, double now) {
+        std::vector<RoboClawEmulator::Answer> answers;
+        pump_.with([&](Simulation &simulation) {
+            answers = simulation.drivetrain().receive(
+                line, reinterpret_cast<const std::uint8_t *>(bytes.constData()), std::size_t(bytes.size()),
+                now);
+        });
+        return answers;
     }) {
     declareSettings();
     declareTopics();
@@ -55,7 +68,7 @@ void Simulator::declareTopics() {
         Topic("truth",
               "Where the robot truly is, 50 times a second on the clock of the lidar's stamps: stamp (s), "
               "x, y (m), theta (rad), vx, vy (m/s, the robot's frame), omega (rad/s), progress along the "
-              "path (0 to 1), driving, finished")
+              "path (0 to 1), driving, finished, touching a wall")
             .schema({{"type", "object"}}));
 }
 
@@ -99,17 +112,30 @@ void Simulator::declareCommands() {
                    .handler([this](const Call &call) { return setNoise(call); }));
     addCommand(
         Command("sim.fault",
-                "Makes a device fail: silence sends no packets, loss leaves out a share of them, none "
-                "ends the fault")
-            .param(Field::text("device", "Which device").choices({"lidar"}))
-            .param(Field::text("kind", "What it does wrong").choices({"none", "silence", "loss"}))
-            .param(Field::number("share", "Of the packets that a loss leaves out").range(0, 1).byDefault(0.1))
+                "Makes a device fail; none ends its faults. docs/simulator.md tells what each does")
+            .param(Field::text("device", "Which device").choices(faultDevices()))
+            .param(Field::text("kind", "What it does wrong").choices(faultKinds()))
+            .param(Field::number("share",
+                                 "Of the packets or answers that a loss leaves out or that are corrupt; "
+                                 "of the way that slip loses; of the charge that is left")
+                       .range(0, 1)
+                       .byDefault(0.1))
+            .param(Field::number("delay_s", "By which slow answers are late")
+                       .unit("s")
+                       .range(0, 10)
+                       .byDefault(0.05))
             .returnsNull()
             .example({{"device", "lidar"}, {"kind", "loss"}, {"share", 0.05}}, QJsonValue())
             .handler([this](const Call &call) { return setFault(call); }));
 }
 
 Result<void> Simulator::start() {
+    QStringList links{settings().text("motors.link")};
+    if (!settings().text("motors.link2").isEmpty())
+        links.append(settings().text("motors.link2"));
+    const Result<void> opened = lines_.open(links);
+    if (!opened)
+        return opened;
     const QString world = settings().text("world");
     if (world.isEmpty()) {
         setState(DaemonState::Ready);
@@ -119,6 +145,11 @@ Result<void> Simulator::start() {
     if (loaded && settings().flag("robot.autostart"))
         drive(false);
     return loaded;
+}
+
+void Simulator::stop() {
+    lines_.close();
+    pump_.stop();
 }
 
 void Simulator::settingsChanged(const QStringList &paths) {
@@ -185,6 +216,10 @@ Result<QJsonValue> Simulator::setNoise(const Call &call) {
 }
 
 Result<QJsonValue> Simulator::setFault(const Call &call) {
+    if (const QString wrong = faultMismatch(call.text("device"), call.text("kind")); !wrong.isEmpty())
+        return Error(ErrorCode::InvalidParams, wrong);
+    if (call.text("device") != "lidar")
+        return setMotorFault(call);
     LidarFault fault;
     const QString kind = call.text("kind");
     if (kind == "silence")
@@ -200,11 +235,14 @@ QJsonObject Simulator::state() {
     Simulation::Truth truth;
     double sigma = 0;
     bool placed = false;
+    QJsonObject motors;
     pump_.with([&](Simulation &simulation) {
         truth = simulation.truth();
         sigma = simulation.sigma();
         placed = simulation.isPlaced();
+        motors = motorState(simulation.drivetrain());
     });
+    motors["lines"] = lines_.toJson();
     const PacketPump::Counts counts = pump_.counts();
     const LidarFault fault = pump_.fault();
     return {
@@ -216,6 +254,8 @@ QJsonObject Simulator::state() {
         {"driving", truth.driving},
         {"finished", truth.finished},
         {"placed", placed},
+        {"touching", truth.touching},
+        {"motors", motors},
         {"sigma_m", sigma},
         {"fault", QJsonObject{{"kind", toText(fault.kind)}, {"share", fault.share}}},
         {"packets", double(counts.sent)},

@@ -1,37 +1,44 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "daemons/simulator/MotorLines.h"
 #include "daemons/simulator/PacketPump.h"
 
 namespace hermes {
 
-/// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP.
+/// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP, and two
+/// RoboClaws on pseudo-terminals that drive it.
 class Simulator : public Daemon {
 public:
     Simulator();
 
 protected:
     Result<void> start() override;
-    void stop() override { pump_.stop(); }
+    void stop() override;
     void settingsChanged(const QStringList &paths) override;
 
 private:
     void declareSettings();
+    void declareMotorSettings();
     void declareTopics();
     void declareCommands();
 
     Simulation::Options options();
+    Drivetrain::Options drivetrainOptions();
     /// Puts the robot at the first pose of a world file and begins to send.
     Result<void> load(const QString &path);
     Result<QJsonValue> drive(bool restart);
     Result<QJsonValue> place(const Call &call);
     Result<QJsonValue> setNoise(const Call &call);
     Result<QJsonValue> setFault(const Call &call);
+    Result<QJsonValue> setMotorFault(const Call &call);
+    QJsonObject motorState(Drivetrain &drivetrain) const;
     QJsonObject state();
     void publishTruth(const Simulation::Truth &truth);
     void updateHealth();
 
     PacketPump pump_;
+    MotorLines lines_;
     World world_;
     QString worldPath_;
 };

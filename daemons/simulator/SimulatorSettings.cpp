@@ -31,6 +31,7 @@ void Simulator::declareSettings() {
     robot("robot.speed_mps", "Largest speed along the path", "m/s", 0.01, 20, 0.8);
     robot("robot.acceleration_mps2", "When speeding up and slowing down", "m/s^2", 0.01, 50, 0.8);
     robot("robot.turn_rate_rps", "Largest turn rate", "rad/s", 0.01, 20, 1.0);
+    robot("robot.radius_m", "Of its outline, which walls stop", "m", 0.01, 5, 0.3);
     addSetting(Field::boolean("robot.autostart", "Follow the path at once, without sim.drive")
                    .byDefault(false)
                    .appliesOnRestart()
@@ -62,6 +63,7 @@ void Simulator::declareSettings() {
                    .range(0, 1)
                    .byDefault(0.01)
                    .group("Lidar"));
+    declareMotorSettings();
 }
 
 Simulation::Options Simulator::options() {
@@ -76,6 +78,8 @@ Simulation::Options Simulator::options() {
     options.lidar.wallHeight = values.number("wall_height_m");
     options.lidar.minRange = values.number("lidar.min_range_m");
     options.lidar.maxRange = values.number("lidar.max_range_m");
+    options.radius = values.number("robot.radius_m");
+    options.drivetrain = drivetrainOptions();
     options.seed = std::uint64_t(values.number("seed"));
     return options;
 }

@@ -1,0 +1,65 @@
+#include "daemons/simulator/MotorLines.h"
+
+#include "common/Time.h"
+
+#include <QJsonObject>
+#include <QTimer>
+#include <cmath>
+
+namespace hermes {
+
+Result<void> MotorLines::open(const QStringList &links) {
+    close();
+    for (const QString &link : links) {
+        InterfaceUrl url;
+        url.scheme = "pty";
+        url.path = link;
+        auto pty = std::make_unique<PtyInterface>(url, nullptr);
+        QString failure;
+        const auto watch =
+            connect(pty.get(), &Interface::closed, this, [&failure](const QString &why) { failure = why; });
+        pty->open();
+        disconnect(watch);
+        if (!pty->isOpen()) {
+            close();
+            return Error(ErrorCode::InputOutput, failure);
+        }
+        const int number = count();
+        connect(pty.get(), &Interface::received, this,
+                [this, number](const QByteArray &bytes) { receive(number, bytes); });
+        lines_.push_back({link, std::move(pty)});
+    }
+    return {};
+}
+
+void MotorLines::close() {
+    lines_.clear();
+}
+
+void MotorLines::setPulled(int line, bool pulled) {
+    if (pulled)
+        lines_[std::size_t(line)].pty->close();
+    else
+        lines_[std::size_t(line)].pty->open();
+}
+
+QJsonArray MotorLines::toJson() const {
+    QJsonArray lines;
+    for (const Line &line : lines_)
+        lines.append(QJsonObject{{"link", line.link}, {"device", line.pty->device()}});
+    return lines;
+}
+
+void MotorLines::receive(int line, const QByteArray &bytes) {
+    PtyInterface *pty = lines_[std::size_t(line)].pty.get();
+    for (const RoboClawEmulator::Answer &answer : device_(line, bytes, monotonicNow())) {
+        const QByteArray out(reinterpret_cast<const char *>(answer.bytes.data()), int(answer.bytes.size()));
+        if (answer.delay > 0)
+            QTimer::singleShot(int(std::ceil(answer.delay * 1000)), Qt::PreciseTimer, pty,
+                               [pty, out] { pty->write(out); });
+        else
+            pty->write(out);
+    }
+}
+
+} // namespace hermes

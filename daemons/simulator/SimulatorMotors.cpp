@@ -1,0 +1,164 @@
+#include "common/Log.h"
+#include "daemons/simulator/FaultNames.h"
+#include "daemons/simulator/Simulator.h"
+
+namespace hermes {
+
+namespace {
+
+void applyFault(RoboClawEmulator::Faults &faults, const Call &call) {
+    const QString kind = call.text("kind");
+    if (kind == "none")
+        faults = {};
+    else if (kind == "silence")
+        faults.silent = true;
+    else if (kind == "loss")
+        faults.drop = call.number("share");
+    else if (kind == "corrupt")
+        faults.corrupt = call.number("share");
+    else if (kind == "slow")
+        faults.delay = call.number("delay_s");
+    else if (kind == "emergency_stop")
+        faults.status |= roboclaw::EmergencyStop;
+    else if (kind == "over_temperature")
+        faults.status |= roboclaw::TemperatureError;
+    else if (kind == "over_current")
+        faults.status |= roboclaw::OverCurrentWarningM1 | roboclaw::OverCurrentWarningM2;
+    else if (kind == "driver")
+        faults.status |= roboclaw::DriverFaultM1;
+}
+
+void applyFault(MotorChannel &motor, const QString &kind) {
+    motor.setBlocked(kind == "blocked");
+    motor.setEncoderBroken(kind == "encoder");
+}
+
+} // namespace
+
+void Simulator::declareMotorSettings() {
+    const auto number = [this](const char *name, const char *text, const char *unit, double least,
+                               double most, double value, const char *group) {
+        addSetting(Field::number(name, text)
+                       .unit(unit)
+                       .range(least, most)
+                       .byDefault(value)
+                       .appliesOnRestart()
+                       .group(group));
+    };
+    addSetting(Field::text("motors.link",
+                           "Link to the pseudo-terminal of the motor controllers; none: sim.state "
+                           "tells its name")
+                   .byDefault("")
+                   .appliesOnRestart()
+                   .group("Motors"));
+    addSetting(
+        Field::text("motors.link2", "Link to one of its own for the second controller; none: both share one")
+            .byDefault("")
+            .appliesOnRestart()
+            .group("Motors"));
+    for (const int controller : {1, 2}) {
+        addSetting(
+            Field::integer(QString("motors.address%1").arg(controller), "Of this controller on its line")
+                .range(roboclaw::firstAddress, roboclaw::lastAddress)
+                .byDefault(roboclaw::firstAddress + controller - 1)
+                .appliesOnRestart()
+                .group("Motors"));
+    }
+    addSetting(
+        Field::integer("motors.status_bits", "Width of the status that the controllers' firmware tells")
+            .with("enum", QJsonArray{16, 32})
+            .byDefault(32)
+            .appliesOnRestart()
+            .group("Motors"));
+    number("motors.full_speed", "Encoder counts a second at full duty and 24 V", "1/s", 100, 2e7, 160000,
+           "Motors");
+    number("motors.lag_s", "Time constant with which a wheel follows", "s", 0.001, 10, 0.02, "Motors");
+    number("battery.capacity_ah", "Charge of the battery", "Ah", 0.001, 10000, 20, "Motors");
+    number("battery.full_v", "Its voltage when full", "V", 0, 34, 25.2, "Motors");
+    number("battery.empty_v", "Its voltage when empty", "V", 0, 34, 20, "Motors");
+    addSetting(Field::text("frame.layout", "How the wheels move the robot")
+                   .choices({"mecanum", "differential"})
+                   .byDefault("mecanum")
+                   .appliesOnRestart()
+                   .group("Wheels"));
+    number("frame.wheel_radius_m", "Radius of a wheel", "m", 0.01, 1, 0.1, "Wheels");
+    number("frame.half_base_m", "From the centre to an axle", "m", 0.01, 5, 0.25, "Wheels");
+    number("frame.half_track_m", "From the centre to the middle of a wheel", "m", 0.01, 5, 0.25, "Wheels");
+    number("frame.counts_per_turn", "Encoder counts in one turn of a wheel", "", 1, 1e7, 38000, "Wheels");
+    number("frame.slip", "Share of the wheels' way that the robot does not make", "", 0, 1, 0, "Wheels");
+}
+
+Drivetrain::Options Simulator::drivetrainOptions() {
+    const Settings &values = settings();
+    Drivetrain::Options options;
+    const bool mecanum = values.text("frame.layout") == "mecanum";
+    options.base.kind = mecanum ? WheelBase::Kind::Mecanum : WheelBase::Kind::Differential;
+    options.base.radius = values.number("frame.wheel_radius_m");
+    options.base.halfBase = values.number("frame.half_base_m");
+    options.base.halfTrack = values.number("frame.half_track_m");
+    options.countsPerTurn = values.number("frame.counts_per_turn");
+    options.slip = values.number("frame.slip");
+    options.ownLines = lines_.count() > 1;
+    options.battery.capacity_Ah = values.number("battery.capacity_ah");
+    options.battery.full = values.number("battery.full_v");
+    options.battery.empty = values.number("battery.empty_v");
+    for (std::size_t i = 0; i < options.controller.size(); ++i) {
+        RoboClawEmulator::Options &controller = options.controller[i];
+        controller.address = std::uint8_t(values.integer(QString("motors.address%1").arg(i + 1)));
+        controller.status =
+            values.integer("motors.status_bits") == 16 ? roboclaw::Dialect::Other : roboclaw::Dialect::Usual;
+        controller.motor.fullSpeed = values.number("motors.full_speed");
+        controller.motor.lag = values.number("motors.lag_s");
+        controller.seed = std::uint64_t(values.number("seed")) + i;
+    }
+    return options;
+}
+
+Result<QJsonValue> Simulator::setMotorFault(const Call &call) {
+    const QString device = call.text("device"), kind = call.text("kind");
+    const bool second = device.endsWith('2');
+    if (device.startsWith("line")) {
+        if (second && lines_.count() < 2)
+            return Error(ErrorCode::NotReady,
+                         "both controllers share line1; motors.link2 makes a second one");
+        lines_.setPulled(second, kind == "pulled");
+    } else if (worldPath_.isEmpty()) {
+        return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
+    }
+    pump_.with([&](Simulation &simulation) {
+        Drivetrain &drivetrain = simulation.drivetrain();
+        if (device.startsWith("controller"))
+            applyFault(drivetrain.controller(second).faults(), call);
+        else if (device == "battery")
+            drivetrain.battery().setCharge(kind == "none" ? 1 : call.number("share"));
+        else if (device == "wheels")
+            drivetrain.setSlip(kind == "none" ? settings().number("frame.slip") : call.number("share"));
+        else if (const int wheel = wheelNumber(device); wheel >= 0)
+            applyFault(drivetrain.wheel(wheel), kind);
+    });
+    logInfo("simulator", QString("fault of %1: %2").arg(device, kind));
+    return QJsonValue();
+}
+
+QJsonObject Simulator::motorState(Drivetrain &drivetrain) const {
+    QJsonArray wheels, controllers;
+    for (const double speed : drivetrain.wheelSpeeds())
+        wheels.append(speed);
+    for (int i = 0; i < Drivetrain::controllers; ++i) {
+        const RoboClawEmulator &controller = drivetrain.controller(i);
+        const RoboClawEmulator::Counts &counts = controller.counts();
+        controllers.append(QJsonObject{{"status", double(controller.status())},
+                                       {"temperature_c", controller.temperature()},
+                                       {"serial_timeout_s", controller.serialTimeout()},
+                                       {"requests", double(counts.requests)},
+                                       {"crc_errors", double(counts.crcErrors)},
+                                       {"unknown", double(counts.unknown)},
+                                       {"timeouts", double(counts.timeouts)}});
+    }
+    return {{"wheels_rps", wheels},
+            {"controllers", controllers},
+            {"battery_v", drivetrain.battery().voltage()},
+            {"battery_charge", drivetrain.battery().charge()}};
+}
+
+} // namespace hermes

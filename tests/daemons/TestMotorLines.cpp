@@ -1,0 +1,224 @@
+#include "common/Time.h"
+#include "common/interface/SerialInterface.h"
+#include "daemons/simulator/MotorLines.h"
+#include "daemons/simulator/Simulation.h"
+#include "protocol/roboclaw/Bus.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <cmath>
+
+using namespace hermes;
+using namespace hermes::roboclaw;
+
+namespace {
+
+/// The host's and the device's end of a serial line, with true bytes between them.
+struct Robot {
+    Drivetrain drivetrain;
+    MotorLines lines{[this](int line, const QByteArray &bytes, double now) {
+        return drivetrain.receive(line, reinterpret_cast<const std::uint8_t *>(bytes.constData()),
+                                  std::size_t(bytes.size()), now);
+    }};
+    Bus bus;
+    std::unique_ptr<SerialInterface> serial;
+    QTimer timer;
+
+    void connectTo(const QString &device) {
+        serial = std::make_unique<SerialInterface>(*InterfaceUrl::parse("serial://" + device), nullptr);
+        serial->setReconnecting(true);
+        QObject::connect(serial.get(), &Interface::opened, [this] { bus.setOpen(true); });
+        QObject::connect(serial.get(), &Interface::closed, [this] { bus.setOpen(false); });
+        QObject::connect(serial.get(), &Interface::received, [this](const QByteArray &bytes) {
+            bus.feed(reinterpret_cast<const std::uint8_t *>(bytes.constData()), std::size_t(bytes.size()),
+                     monotonicNow());
+            pump();
+        });
+        timer.setTimerType(Qt::PreciseTimer);
+        QObject::connect(&timer, &QTimer::timeout, [this] { pump(); });
+        timer.start(1);
+        serial->open();
+    }
+    void pump() {
+        while (const Bytes *bytes = bus.poll(monotonicNow()))
+            serial->write(QByteArray(reinterpret_cast<const char *>(bytes->data()), int(bytes->size())));
+    }
+    Bus::Outcome ask(std::uint8_t address, Command command, const Values &values = {}) {
+        Bus::Outcome result;
+        bool ended = false;
+        bus.submit(*Request::make(address, command, values),
+                   [&](const Request &, const Bus::Outcome &outcome) {
+                       result = outcome;
+                       ended = true;
+                   });
+        pump();
+        while (!ended)
+            QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
+        return result;
+    }
+};
+
+World room() {
+    return {"room", {{-5, -5, 5, -5}, {5, -5, 5, 5}, {5, 5, -5, 5}, {-5, 5, -5, -5}}, {{0, 0, 0}, {2, 0, 0}}};
+}
+
+/// Drives all wheels of a simulation with this speed, counts/s, as a host does.
+void driveWheels(Simulation &simulation, const std::array<std::int64_t, 4> &speeds,
+                 std::int64_t acceleration) {
+    static double now = 0;
+    const auto send = [&](std::uint8_t address, Command command, const Values &values) {
+        const auto request = Request::make(address, command, values);
+        now += 1;
+        QCOMPARE(simulation.drivetrain().receive(0, request->bytes.data(), request->bytes.size(), now).size(),
+                 std::size_t(1));
+    };
+    for (const std::uint8_t address : {0x80, 0x81}) {
+        for (const Command command : {Command::SetVelocityPidM1, Command::SetVelocityPidM2})
+            send(address, command, {0x4000, 0x10000, 0x8000, 150000});
+    }
+    send(0x80, Command::SpeedAccel, {acceleration, speeds[0], speeds[1]});
+    send(0x81, Command::SpeedAccel, {acceleration, speeds[2], speeds[3]});
+}
+
+void pass(Simulation &simulation, double seconds) {
+    const auto end = simulation.now_ns() + std::int64_t(seconds * 1e9);
+    while (simulation.now_ns() < end)
+        simulation.nextPacket();
+}
+
+} // namespace
+
+class TestMotorLines : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void answersOnThePseudoTerminal();
+    void slowAnswersAreRepeated();
+    void damagedAnswersAreRepeated();
+    void pulledLineIsFoundAgain();
+    void badLinkIsNamed();
+    void wheelsDriveTheSimulation();
+    void followingIgnoresTheWheels();
+    void wallStopsTheSimulation();
+};
+
+void TestMotorLines::answersOnThePseudoTerminal() {
+    QTemporaryDir folder;
+    Robot robot;
+    QVERIFY(robot.lines.open({folder.filePath("motors")}));
+    robot.connectTo(folder.filePath("motors"));
+    QVERIFY(robot.serial->isOpen());
+    const auto version = robot.ask(0x80, Command::ReadVersion);
+    QCOMPARE(version.result, Bus::Result::Done);
+    QCOMPARE(QByteArray(version.reply.text.data()), QByteArray("RoboClaw 2x45A v4.2.8"));
+    std::vector<double> waits;
+    for (int i = 0; i < 200; ++i) {
+        const std::uint8_t address = i % 2 ? 0x80 : 0x81;
+        const auto done = robot.ask(address, i % 4 < 2 ? Command::Speed : Command::ReadEncoders,
+                                    i % 4 < 2 ? Values{100, 100} : Values{});
+        QCOMPARE(done.result, Bus::Result::Done);
+        waits.push_back(done.received - done.sent);
+    }
+    std::sort(waits.begin(), waits.end());
+    QVERIFY2(waits[100] < 0.01, qPrintable(QString::number(waits[100])));
+    QCOMPARE(robot.ask(0x82, Command::ReadEncoders).result, Bus::Result::TimedOut);
+}
+
+void TestMotorLines::slowAnswersAreRepeated() {
+    QTemporaryDir folder;
+    Robot robot;
+    QVERIFY(robot.lines.open({folder.filePath("motors")}));
+    robot.connectTo(folder.filePath("motors"));
+    robot.drivetrain.controller(0).faults().delay = 0.2;
+    QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::TimedOut);
+    robot.drivetrain.controller(0).faults().delay = 0;
+    QTest::qWait(300); // the late answers come, and are nobody's
+    QVERIFY(robot.bus.strayBytes() > 0);
+    QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::Done);
+}
+
+void TestMotorLines::damagedAnswersAreRepeated() {
+    QTemporaryDir folder;
+    Robot robot;
+    QVERIFY(robot.lines.open({folder.filePath("motors")}));
+    robot.connectTo(folder.filePath("motors"));
+    robot.drivetrain.controller(0).faults().corrupt = 0.2;
+    int done = 0;
+    for (int i = 0; i < 50; ++i)
+        done += robot.ask(0x80, Command::ReadEncoders).result == Bus::Result::Done;
+    QVERIFY(done >= 45); // each has three attempts
+    QVERIFY(robot.bus.counts(0x80).crcErrors > 0 && robot.bus.counts(0x80).retries > 0);
+}
+
+void TestMotorLines::pulledLineIsFoundAgain() {
+    QTemporaryDir folder;
+    Robot robot;
+    QVERIFY(robot.lines.open({folder.filePath("motors")}));
+    robot.connectTo(folder.filePath("motors"));
+    QCOMPARE(robot.ask(0x80, Command::SetEncoderM1, {1234}).result, Bus::Result::Done);
+    robot.lines.setPulled(0, true);
+    QCOMPARE(robot.ask(0x80, Command::ReadEncoders).result, Bus::Result::LineClosed);
+    QVERIFY(robot.lines.toJson()[0].toObject()["device"].toString().isEmpty());
+    robot.lines.setPulled(0, false);
+    QTRY_VERIFY(robot.serial->isOpen());
+    const auto counts = robot.ask(0x80, Command::ReadEncoders);
+    QCOMPARE(counts.result, Bus::Result::Done);
+    QCOMPARE(counts.reply[0], std::int64_t(1234));
+}
+
+void TestMotorLines::badLinkIsNamed() {
+    Robot robot;
+    const auto opened = robot.lines.open({"/proc/none/motors"});
+    QVERIFY(!opened);
+    QVERIFY2(opened.error().message.contains("/proc/none"), qPrintable(opened.error().message));
+    QCOMPARE(robot.lines.count(), 0);
+}
+
+void TestMotorLines::wheelsDriveTheSimulation() {
+    Simulation simulation(room(), {}, 0);
+    const std::int64_t speed = 30240; // 0.5 m/s
+    driveWheels(simulation, {-speed, speed, speed, -speed}, 120000);
+    pass(simulation, 2);
+    const auto truth = simulation.truth();
+    QVERIFY2(std::abs(truth.pose.y - 0.9375) < 0.03, qPrintable(QString::number(truth.pose.y)));
+    QVERIFY(std::abs(truth.pose.x) < 0.01 && std::abs(truth.pose.theta) < 0.01);
+    QVERIFY(std::abs(truth.twist.vy - 0.5) < 0.01 && simulation.isPlaced());
+    driveWheels(simulation, {0, 0, 0, 0}, 240000);
+    pass(simulation, 1);
+    const auto standing = simulation.truth();
+    pass(simulation, 1);
+    QCOMPARE(simulation.truth().pose.y, standing.pose.y);
+    // What the wheels' encoders counted is the way that the robot made.
+    const double way = double(simulation.drivetrain().wheel(1).count()) / 38000 * 2 * M_PI * 0.1;
+    QVERIFY2(std::abs(standing.pose.y - way) < 0.001,
+             qPrintable(QString("%1 %2").arg(standing.pose.y).arg(way)));
+}
+
+void TestMotorLines::followingIgnoresTheWheels() {
+    Simulation simulation(room(), {}, 0);
+    QVERIFY(simulation.drive());
+    driveWheels(simulation, {30000, 30000, 30000, 30000}, 120000);
+    pass(simulation, 1);
+    QVERIFY(!simulation.isPlaced());
+    driveWheels(simulation, {0, 0, 0, 0}, 240000);
+    pass(simulation, 5);
+    QVERIFY(simulation.truth().finished);
+    QCOMPARE(simulation.truth().pose.x, 2.0);
+    driveWheels(simulation, {-30000, -30000, -30000, -30000}, 120000);
+    pass(simulation, 1);
+    QVERIFY(simulation.isPlaced() && simulation.truth().pose.x < 1.8); // on from where it was
+}
+
+void TestMotorLines::wallStopsTheSimulation() {
+    Simulation simulation(room(), {}, 0);
+    simulation.place({4.5, 0, 0});
+    driveWheels(simulation, {30000, 30000, 30000, 30000}, 120000);
+    pass(simulation, 2);
+    const auto truth = simulation.truth();
+    QVERIFY2(std::abs(truth.pose.x - 4.7) < 1e-6, qPrintable(QString::number(truth.pose.x, 'g', 10)));
+    QVERIFY(truth.touching);
+    QVERIFY(simulation.drivetrain().wheel(0).count() > 40000); // the wheels slip
+}
+
+QTEST_GUILESS_MAIN(TestMotorLines)
+#include "TestMotorLines.moc"
