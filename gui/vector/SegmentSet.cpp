@@ -8,6 +8,7 @@
 #include "vectorlib/io/Pcd.h"
 #include "vectorlib/mapping/Observation2D.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace hermes {
@@ -43,6 +44,18 @@ void take(SegmentSet &set, const vectorlib::EdgeRaw2D &edge, double noise) {
     set.measured.lines.push_back(vectorlib::lineCovariance(edge.sums, noise));
 }
 
+/// Counter-clockwise, so that free space lies on the left of segments: some scanners, the HDL-32E among them,
+/// turn the other way.
+void turnCounterClockwise(std::vector<vectorlib::Vector2D<float>> &points) {
+    long left = 0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const float turn = points[i - 1].cross(points[i]);
+        left += turn > 0 ? 1 : turn < 0 ? -1 : 0;
+    }
+    if (left < 0)
+        std::reverse(points.begin(), points.end());
+}
+
 void vectorize(SegmentSet &set, const SegmentSetSettings &settings) {
     vectorlib::EdgeExtractor extract;
     extract.segment.settings = settings.segmentation(set.points.size());
@@ -64,6 +77,7 @@ SegmentSet loadSegmentSet(const std::string &path, const SegmentSetSettings &set
     case Kind::Points:
         set.points = valueOrFail(isPcd ? vectorlib::readPcd<float>(in, input.name())
                                        : vectorlib::readCsvPoints<float>(in, input.name()));
+        turnCounterClockwise(set.points);
         vectorize(set, settings);
         break;
     case Kind::Segments:

@@ -27,6 +27,7 @@ private Q_SLOTS:
     void init() { folder_.empty(); }
     void findsTheMotion_data();
     void findsTheMotion();
+    void scannersMayTurnEitherWay();
     void mapHidesNothing();
     void mapFileIsAMap();
     void expectedPoseMovesTheSearch();
@@ -81,6 +82,15 @@ void TestMatch::findsTheMotion() {
     for (const QJsonValue &pair : best["pairs"].toArray())
         if (staticPoints)
             QVERIFY(pair.toArray()[0].toInt() < result["static"].toArray().size());
+}
+
+void TestMatch::scannersMayTurnEitherWay() {
+    const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
+    QList<QByteArray> rows = contents(a).trimmed().split('\n').mid(1);
+    std::reverse(rows.begin(), rows.end());
+    write(path("clockwise.csv"), rows.join('\n') + '\n');
+    const Result r = run({"match", path("clockwise.csv"), b});
+    QVERIFY2(json(r.out)["solutions"].toArray()[0].toObject()["accepted"].toBool(), r.out.constData());
 }
 
 // The second sensor stands where the first one has not looked: two walls of the room are all that it saw.
