@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""The simulated motor controllers as a program sees them that knows nothing but packet serial: a client of a few lines on the
+pseudo-terminal drives the robot of a running simulator; faults, a pulled line and the controllers' own time-out do what they
+should."""
+import binascii
+import json
+import math
+import os
+import select
+import struct
+import sys
+import tempfile
+import time
+import tty
+
+sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
+from processes import Process, free_port  # noqa: E402
+from hermes import DaemonError  # noqa: E402
+import socket  # noqa: E402
+
+SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
+
+
+class RoboClaw:
+    """A client of its own: packet serial as the manual of the controllers describes it."""
+
+    def __init__(self, path):
+        self.port = os.open(path, os.O_RDWR | os.O_NOCTTY)
+        tty.setraw(self.port)
+
+    def close(self):
+        os.close(self.port)
+
+    def exchange(self, packet, size, limit_s=0.5):
+        os.write(self.port, packet)
+        answer = b""
+        deadline = time.monotonic() + limit_s
+        while len(answer) < size and select.select([self.port], [], [], max(0.0, deadline - time.monotonic()))[0]:
+            answer += os.read(self.port, size - len(answer))
+        return answer
+
+    def write(self, address, command, fmt="", *values):
+        packet = bytes([address, command]) + struct.pack(">" + fmt, *values)
+        return self.exchange(packet + struct.pack(">H", binascii.crc_hqx(packet, 0)), 1) == b"\xff"
+
+    def read(self, address, command, fmt, limit_s=0.5):
+        asked = bytes([address, command])
+        answer = self.exchange(asked, struct.calcsize(">" + fmt) + 2, limit_s)
+        if len(answer) < struct.calcsize(">" + fmt) + 2:
+            return None
+        assert binascii.crc_hqx(asked + answer, 0) == 0, f"wrong CRC: {answer.hex()}"
+        return struct.unpack(">" + fmt, answer[:-2])
+
+    def drive(self, speed, acceleration=120000):
+        for address in (0x80, 0x81):
+            assert self.write(address, 40, "Iii", acceleration, speed, speed)
+
+
+def wait_for(what, condition, limit_s=10):
+    deadline = time.monotonic() + limit_s
+    while not condition():
+        assert time.monotonic() < deadline, f"{what} did not happen within {limit_s} s"
+        time.sleep(0.02)
+
+
+def speed_of(simulator):
+    twist = simulator.call("sim.state")["twist"]
+    return math.hypot(twist["vx"], twist["vy"])
+
+
+def refused(simulator, expected, **params):
+    try:
+        simulator.call("sim.fault", **params)
+    except DaemonError as error:
+        assert expected in str(error), f"{error} does not say: {expected}"
+        return
+    raise AssertionError(f"{params} was accepted")
+
+
+def check_drive(simulator, client):
+    for address in (0x80, 0x81):
+        assert client.write(address, 14, "B", 2)  # they stop after 0.2 s of silence
+        for command in (28, 29):
+            assert client.write(address, command, "IIII", 0x4000, 0x10000, 0x8000, 150000)
+    before = simulator.call("sim.state")["pose"]
+    client.drive(30240)  # 0.5 m/s
+    end = time.monotonic() + 2
+    while time.monotonic() < end:
+        assert client.read(0x80, 78, "II") and client.read(0x81, 24, "H")
+        time.sleep(0.02)
+    assert abs(speed_of(simulator) - 0.5) < 0.02, speed_of(simulator)
+    wait_for("stopping of the silent controllers", lambda: speed_of(simulator) == 0, 1.5)
+    state = simulator.call("sim.state")
+    assert all(controller["timeouts"] == 1 for controller in state["motors"]["controllers"]), state
+    way = math.hypot(state["pose"]["x"] - before["x"], state["pose"]["y"] - before["y"])
+    counted = client.read(0x80, 78, "ii")[0] / 38000 * 2 * math.pi * 0.1
+    assert abs(way - counted) < 0.002 and way > 0.7, (way, counted)
+    assert state["placed"]
+
+
+def check_faults(simulator, client, link):
+    def fault(device, kind, **params):
+        simulator.call("sim.fault", device=device, kind=kind, **params)
+
+    fault("controller1", "silence")
+    assert client.read(0x80, 24, "H", 0.1) is None and client.read(0x81, 24, "H")
+    fault("controller1", "none")
+    fault("controller2", "emergency_stop")
+    assert client.read(0x81, 90, "I")[0] & 1 and not client.read(0x80, 90, "I")[0]
+    fault("controller2", "none")
+    fault("controller1", "slow", delay_s=0.2)
+    began = time.monotonic()
+    assert client.read(0x80, 24, "H") and time.monotonic() - began > 0.19
+    fault("controller1", "none")
+    fault("battery", "charge", share=0)
+    wait_for("an empty battery", lambda: client.read(0x80, 24, "H")[0] <= 200)
+    fault("battery", "none")
+    for kind in ("blocked", "encoder", "none"):
+        fault("rear_left", kind)
+    refused(simulator, "lidar has no fault blocked; it has: none, silence, loss", device="lidar", kind="blocked")
+    refused(simulator, "share line1", device="line2", kind="pulled")
+
+    fault("line1", "pulled")
+    wait_for("vanishing of the link", lambda: not os.path.lexists(link))
+    fault("line1", "none")
+    again = RoboClaw(link)
+    assert again.read(0x80, 55, "IIII") == (0x10000, 0x8000, 0x4000, 150000), "the controllers were not switched off"
+    again.close()
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        link, world = os.path.join(folder, "devices", "motors"), os.path.join(folder, "hall.json")
+        with open(world, "w", encoding="utf-8") as file:
+            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
+                       "poses": [[0, 0, 0.5]]}, file)
+        settings = {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)}
+        process = Process(BINARIES, "simulator", free_port(0), folder, settings)
+        try:
+            simulator = process.connect()
+            lines = simulator.call("sim.state")["motors"]["lines"]
+            assert lines == [{"link": link, "device": os.path.realpath(link)}], lines
+            client = RoboClaw(link)
+            check_drive(simulator, client)
+            check_faults(simulator, client, link)
+        finally:
+            status = process.stop()
+        assert status == 0, f"status {status}: {process.last_words()}"
+        assert not os.path.lexists(link), "the link was left behind"
+    print("driven, stopped, failed and recovered")
+
+
+if __name__ == "__main__":
+    main()
