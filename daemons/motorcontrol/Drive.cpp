@@ -46,6 +46,7 @@ Result<void> checkBounds(const Values &values) {
 void Drive::configure(const Settings &settings) {
     settings_ = settings;
     watchdog_.setTimeout(settings.commandTimeout_s);
+    halt("the settings were changed");
 }
 
 Result<void> Drive::driveTwist(quint64 client, const Twist &twist, double age_s, double now) {
@@ -76,7 +77,7 @@ Result<void> Drive::mayMove(double age_s) const {
                      latch_.toJson());
     if (!notReady_.isEmpty())
         return Error(ErrorCode::DeviceFault, notReady_);
-    if (!(age_s < settings_.commandTimeout_s))
+    if (!(std::abs(age_s) < settings_.commandTimeout_s))
         return Error(ErrorCode::NotReady, QString("the command is %1 s old, at most %2 s are allowed")
                                               .arg(age_s)
                                               .arg(settings_.commandTimeout_s));

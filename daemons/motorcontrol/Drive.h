@@ -16,16 +16,18 @@ namespace hermes {
 class Drive {
 public:
     struct Settings {
-        WheelLayout layout = WheelLayout::mecanum({});
+        WheelLayout layout = WheelLayout::mecanum(WheelGeometry());
         MotionLimits limits;
         double commandTimeout_s = 0.25; ///< without a command for so long the robot halts
     };
 
+    /// Halts.
     void configure(const Settings &settings);
 
     // Commands. Errors: InvalidParams (not finite), OverLimit (data.errors), NotReady (emergency stop,
     // controllers not ready, command too old), DeviceFault (a fault is latched), ControlHeld.
-    /// age_s: how old the command is, 0 where unknown; older than the time-out is refused.
+    /// age_s: how old the command is, 0 where unknown; older than the time-out is refused,
+    /// and so is one that comes from a future as far away.
     Result<void> driveTwist(quint64 client, const Twist &twist, double age_s, double now);
     Result<void> driveWheels(quint64 client, const WheelValues &speeds, double age_s, double now);
     /// Anyone may stop. Ends the lease unless the client holds it.

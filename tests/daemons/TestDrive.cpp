@@ -249,6 +249,7 @@ void TestDrive::oldCommandsAreRefused() {
     QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
     QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0.2, 0).ok());
     QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0.25, 0)).is(ErrorCode::NotReady));
+    QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, -0.25, 0)).is(ErrorCode::NotReady));
     QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, notANumber, 0)).is(ErrorCode::NotReady));
 }
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "daemons/motorcontrol/Drive.h"
+#include "daemons/motorcontrol/MotorSettings.h"
+#include "daemons/motorcontrol/Telemetry.h"
+
+namespace hermes {
+
+/// Judges what the controllers measure and how the wheels obey; what is wrong latches in the drive.
+class FaultWatch {
+public:
+    void configure(const MotorSettings &settings);
+
+    /// Battery, currents, temperature and status bits of the controllers that have told all of them. Once a
+    /// cycle; levels are for people.
+    void judgeControllers(Telemetry &telemetry, Drive &drive, double now);
+    /// setPoint: what the wheels were told when these speeds were measured.
+    void judgeWheels(const WheelValues &setPoint, const WheelValues &speeds, Drive &drive, double now);
+    /// The wheels were not watched for a while.
+    void forgetWheels();
+
+private:
+    struct Controller {
+        Threshold battery{Threshold::Side::Below};
+        std::array<Threshold, 2> current{Threshold(Threshold::Side::Above),
+                                         Threshold(Threshold::Side::Above)};
+        Threshold temperature{Threshold::Side::Above};
+    };
+
+    std::array<Controller, controllerCount> controllers_;
+    std::array<EncoderMonitor, wheelCount> encoders_;
+};
+
+} // namespace hermes

@@ -1,0 +1,141 @@
+#include "common/Time.h"
+#include "daemons/motorcontrol/MotorControl.h"
+#include "daemons/motorcontrol/MotorJson.h"
+
+namespace hermes {
+namespace {
+
+const QJsonObject object{{"type", "object"}};
+
+Field stampField() {
+    return Field::number("stamp", "When the command was made, seconds since the epoch; one older than "
+                                  "safety.command_timeout_s is refused")
+        .unit("s")
+        .optional();
+}
+
+double ageOf(const Call &call) {
+    return call.has("stamp") ? stampNow() - call.number("stamp") : 0;
+}
+
+Result<QJsonValue> nullOr(const Result<void> &result) {
+    if (!result)
+        return result.error();
+    return QJsonValue();
+}
+
+} // namespace
+
+Command MotorControl::loopCommand(const QString &name, const QString &summary,
+                                  const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work) {
+    return Command(name, summary)
+        .returnsNull()
+        .asyncHandler([this, work](const Call &call, const Reply &reply) {
+            inLoop([call, work](DriveLoop &loop) { return work(call, loop); }, reply);
+        });
+}
+
+void MotorControl::declareMotorCommands() {
+    addCommand(
+        loopCommand("motor.drive",
+                    "Drives with this velocity, in the robot's frame, until the next command; to be sent at "
+                    "10 Hz or more. Wheels that would be too fast slow all down alike",
+                    [](const Call &call, DriveLoop &loop) {
+                        const Twist twist{call.number("vx"), call.number("vy"), call.number("omega")};
+                        return nullOr(
+                            loop.drive().driveTwist(call.client, twist, ageOf(call), monotonicNow()));
+                    })
+            .param(Field::number("vx", "Forward").unit("m/s").byDefault(0))
+            .param(Field::number("vy", "To the left").unit("m/s").byDefault(0))
+            .param(Field::number("omega", "Counter-clockwise").unit("rad/s").byDefault(0))
+            .param(stampField())
+            .with("x-needs-lease", true)
+            .example({{"vx", 0.3}, {"vy", 0}, {"omega", 0.1}}, QJsonValue()));
+    Command wheels = loopCommand(
+        "motor.wheels",
+        "Turns each wheel with its own speed, until the next command: for tests with the "
+        "robot jacked up",
+        [](const Call &call, DriveLoop &loop) {
+            WheelValues speeds{};
+            for (int i = 0; i < wheelCount; ++i)
+                speeds[i] = call.number(wheelNames[i]);
+            return nullOr(loop.drive().driveWheels(call.client, speeds, ageOf(call), monotonicNow()));
+        });
+    for (const char *name : wheelNames)
+        wheels.param(
+            Field::number(name, "Positive turns drive the robot forward").unit("rad/s").byDefault(0));
+    addCommand(
+        wheels.param(stampField()).with("x-needs-lease", true).example({{"front_left", 1}}, QJsonValue()));
+    addCommand(loopCommand(
+        "motor.stop",
+        "Stops with the emergency deceleration; anyone may. When another client holds the control "
+        "it loses it",
+        [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+            loop.drive().stop(call.client, call.clientName);
+            return QJsonValue();
+        }));
+    addCommand(loopCommand(
+        "motor.estop",
+        "Stops with the emergency deceleration, and stays stopped until motor.reset_estop; anyone "
+        "may. No substitute for a hard-wired device",
+        [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+            loop.drive().emergencyStop(call.clientName);
+            return QJsonValue();
+        }));
+    addCommand(
+        loopCommand("motor.reset_estop",
+                    "Releases the emergency stop and latched faults; the robot stays where it is until a "
+                    "client acquires the control and drives",
+                    [](const Call &, DriveLoop &loop) -> Result<QJsonValue> {
+                        loop.drive().resetEmergencyStop();
+                        return QJsonValue();
+                    }));
+    addCommand(Command("motor.state",
+                       "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
+                   .returns(object)
+                   .handler([this](const Call &) -> Result<QJsonValue> { return state(); }));
+    addCommand(
+        loopCommand("odometry.reset", "The pose is this from now on, certain",
+                    [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+                        loop.odometry().reset({call.number("x"), call.number("y"), call.number("theta")});
+                        return QJsonValue();
+                    })
+            .param(Field::number("x", "Position").unit("m").byDefault(0))
+            .param(Field::number("y", "Position").unit("m").byDefault(0))
+            .param(Field::number("theta", "Heading").unit("rad").byDefault(0)));
+}
+
+void MotorControl::declareControlCommands() {
+    addCommand(
+        loopCommand("control.acquire",
+                    "Gives this client the control: only it may move the robot, as long as it sends motion "
+                    "commands at least every timeout_s and stays connected",
+                    [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+                        const QString name =
+                            call.text("client").isEmpty() ? call.clientName : call.text("client");
+                        const double now = monotonicNow();
+                        const auto acquired =
+                            loop.drive().acquire(call.client, name, call.number("timeout_s"), now);
+                        if (!acquired)
+                            return acquired.error();
+                        return loop.drive().lease().state(now);
+                    })
+            .param(Field::text("client", "Name of the client, for others").byDefault(""))
+            .param(Field::number("timeout_s", "Without a motion command for so long the control ends")
+                       .unit("s")
+                       .range(0.1, 60)
+                       .byDefault(1))
+            .returns(object)
+            .example({{"client", "joystick"}, {"timeout_s", 1}},
+                     QJsonObject{{"held", true}, {"holder", "joystick"}, {"remaining_s", 1}}));
+    addCommand(loopCommand("control.release", "Gives the control back; the robot stops",
+                           [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+                               loop.drive().release(call.client);
+                               return QJsonValue();
+                           }));
+    addCommand(Command("control.state", "Who holds the control, and for how long without a further command")
+                   .returns(object)
+                   .handler([this](const Call &) -> Result<QJsonValue> { return told_.lease; }));
+}
+
+} // namespace hermes

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "common/daemon/Daemon.h"
+#include "daemons/motorcontrol/DriveLoop.h"
+
+#include <QThread>
+
+namespace hermes {
+
+/// The daemon hermes-motorcontrol: drives four wheels through two RoboClaw controllers. Receives and answers
+/// in the main thread; a DriveLoop in its own thread does the rest.
+class MotorControl : public Daemon {
+    Q_OBJECT
+public:
+    MotorControl();
+    ~MotorControl() override;
+
+protected:
+    Result<void> start() override;
+    void stop() override;
+    void settingsChanged(const QStringList &paths) override;
+
+private:
+    using Work = std::function<Result<QJsonValue>(DriveLoop &)>;
+
+    void declareTopics();
+    void declareMotorCommands();
+    void declareControlCommands();
+
+    /// Runs in the loop's thread, sends what follows from it at once, and gives the reply.
+    void inLoop(const Work &work, const Reply &reply);
+    /// A command that acts upon the loop.
+    Command loopCommand(const QString &name, const QString &summary,
+                        const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work);
+
+    void show(const Telemetry &telemetry);
+    void updateHealth();
+    QJsonObject state() const;
+
+    QThread thread_;
+    DriveLoop *loop_ = nullptr; // lives in thread_
+    MotorSettings active_;      // what the loop works with
+    Telemetry told_;
+    quint64 cycles_ = 0;
+};
+
+} // namespace hermes

@@ -1,0 +1,97 @@
+// What the motor control tells about itself: health items, state, motor.state.
+#include "daemons/motorcontrol/MotorControl.h"
+#include "daemons/motorcontrol/MotorJson.h"
+
+#include <QJsonArray>
+#include <algorithm>
+
+namespace hermes {
+namespace {
+
+constexpr double period_s = std::chrono::duration<double>(DriveLoop::period).count();
+constexpr double lateness_s = 0.005; // more of it is worth a look
+
+HealthLevel toHealth(Threshold::Level level) {
+    switch (level) {
+    case Threshold::Level::Good:
+        return HealthLevel::Ok;
+    case Threshold::Level::Warning:
+        return HealthLevel::Warn;
+    case Threshold::Level::Fault:
+        break;
+    }
+    return HealthLevel::Failed;
+}
+
+} // namespace
+
+void MotorControl::updateHealth() {
+    for (int i = 0; i < controllerCount; ++i) {
+        const Telemetry::Controller &c = told_.controllers[i];
+        health().set(QString("controller_%1").arg(i + 1), c.ready ? HealthLevel::Ok : HealthLevel::Failed,
+                     c.name + ": " + (c.ready ? c.version : c.error), controllerJson(c));
+    }
+    double battery = 1e9, current = 0, temperature = -1e9;
+    bool known = false;
+    for (const Telemetry::Controller &c : told_.controllers) {
+        if (!c.ready || !c.readings.complete)
+            continue;
+        known = true;
+        battery = std::min(battery, c.readings.battery_v);
+        temperature = std::max(temperature, c.readings.temperature_c);
+        for (double a : c.readings.current_a)
+            current = std::max(current, std::abs(a));
+    }
+    const auto measured = [&](int item, const char *name, double value, const char *key, const char *unit,
+                              const Threshold::Settings &limits) {
+        if (!known)
+            return health().set(name, HealthLevel::Stale, "no controller has told it");
+        health().set(name, toHealth(told_.levels[item]), QString("%1 %2").arg(value).arg(unit),
+                     {{key, value}, {"warning", limits.warning}, {"fault", limits.fault}});
+    };
+    measured(0, "battery", battery, "battery_v", "V", active_.battery);
+    measured(1, "current", current, "current_a", "A", active_.current);
+    measured(2, "temperature", temperature, "temperature_c", "degrees Celsius", active_.temperature);
+
+    const CycleStatistics &cycle = told_.cycle;
+    const bool late = cycle.worstLateness_s > lateness_s;
+    health().set("cycle", late ? HealthLevel::Warn : HealthLevel::Ok,
+                 QString("50 Hz, at worst %1 ms late in the last second, %2 cycles missed")
+                     .arg(1000 * cycle.worstLateness_s, 0, 'f', 2)
+                     .arg(cycle.missed),
+                 cycleJson(cycle, period_s));
+
+    const bool latched = !told_.latch.isEmpty();
+    QStringList reasons;
+    for (const QJsonValue &reason : told_.latch)
+        reasons.append(reason.toString());
+    health().set("stop", latched ? HealthLevel::Failed : HealthLevel::Ok,
+                 latched ? reasons.join("; ") : QString("not latched"), told_.latch);
+    const bool fault = told_.latch.size() > int(told_.latch.contains(Drive::emergencyCause));
+    const bool ready = std::all_of(told_.controllers.begin(), told_.controllers.end(),
+                                   [](const Telemetry::Controller &c) { return c.ready; });
+    setState(fault ? DaemonState::Fault : ready && !latched ? DaemonState::Running : DaemonState::Ready);
+}
+
+QJsonObject MotorControl::state() const {
+    QJsonArray controllers;
+    for (const Telemetry::Controller &controller : told_.controllers)
+        controllers.append(controllerJson(controller));
+    const bool ready = std::all_of(told_.controllers.begin(), told_.controllers.end(),
+                                   [](const Telemetry::Controller &c) { return c.ready; });
+    return {{"ready", ready},
+            {"estop", told_.latch.contains(Drive::emergencyCause)},
+            {"latched", told_.latch},
+            {"halted", told_.haltReason},
+            {"control", told_.lease},
+            {"pose", toJson(told_.pose)},
+            {"twist", toJson(told_.twist)},
+            {"target", toJson(active_.drive.layout.twist(told_.target))},
+            {"set_point", toJson(active_.drive.layout.twist(told_.setPoint))},
+            {"wheels", wheelsJson(told_)},
+            {"counter_jumps", double(told_.counterJumps)},
+            {"controllers", controllers},
+            {"cycle", cycleJson(told_.cycle, period_s)}};
+}
+
+} // namespace hermes

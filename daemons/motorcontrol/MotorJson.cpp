@@ -1,0 +1,76 @@
+#include "daemons/motorcontrol/MotorJson.h"
+
+#include "protocol/roboclaw/Status.h"
+
+#include <QJsonArray>
+
+namespace hermes {
+
+QJsonObject toJson(const Pose &pose) {
+    return {{"x", pose.x}, {"y", pose.y}, {"theta", pose.theta}};
+}
+
+QJsonObject toJson(const Twist &twist) {
+    return {{"vx", twist.vx}, {"vy", twist.vy}, {"omega", twist.omega}};
+}
+
+QJsonObject odometryJson(const Telemetry &t) {
+    QJsonArray covariance;
+    for (double value : t.covariance)
+        covariance.append(value);
+    return {
+        {"pose", toJson(t.pose)}, {"twist", toJson(t.twist)}, {"covariance", covariance}, {"mono", t.mono}};
+}
+
+QJsonObject wheelsJson(const Telemetry &t) {
+    QJsonObject json{{"slip", t.slip}};
+    for (int i = 0; i < wheelCount; ++i)
+        json.insert(wheelNames[i], QJsonObject{{"target", t.target[i]},
+                                               {"set_point", t.setPoint[i]},
+                                               {"speed", t.speeds[i]},
+                                               {"angle", t.turns[i]}});
+    return json;
+}
+
+QJsonObject powerJson(const Telemetry &t) {
+    QJsonArray controllers;
+    for (const Telemetry::Controller &controller : t.controllers) {
+        const ControllerReadings &r = controller.readings;
+        QJsonArray meanings;
+        for (quint32 bit = 1; bit != 0; bit <<= 1) {
+            if (r.status & bit)
+                meanings.append(roboclaw::statusText(bit));
+        }
+        controllers.append(QJsonObject{{"ready", controller.ready && r.complete},
+                                       {"battery_v", r.battery_v},
+                                       {"logic_v", r.logic_v},
+                                       {"current_a", QJsonArray{r.current_a[0], r.current_a[1]}},
+                                       {"temperature_c", r.temperature_c},
+                                       {"status", qint64(r.status)},
+                                       {"status_texts", meanings}});
+    }
+    return {{"controllers", controllers}};
+}
+
+QJsonObject controllerJson(const Telemetry::Controller &c) {
+    return {{"name", c.name},
+            {"ready", c.ready},
+            {"error", c.error},
+            {"version", c.version},
+            {"requests", double(c.counts.sent)},
+            {"answers", double(c.counts.done)},
+            {"timeouts", double(c.counts.timeouts)},
+            {"crc_errors", double(c.counts.crcErrors)},
+            {"unexpected", double(c.counts.unexpected)},
+            {"overruns", double(c.overruns)}};
+}
+
+QJsonObject cycleJson(const CycleStatistics &cycle, double period_s) {
+    return {{"period_s", period_s},
+            {"cycles", double(cycle.cycles)},
+            {"missed", double(cycle.missed)},
+            {"mean_lateness_s", cycle.meanLateness_s},
+            {"worst_lateness_s", cycle.worstLateness_s}};
+}
+
+} // namespace hermes

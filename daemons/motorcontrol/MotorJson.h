@@ -1,0 +1,20 @@
+#pragma once
+
+#include "daemons/motorcontrol/Telemetry.h"
+
+namespace hermes {
+
+/// The data of the topic odometry: pose, twist, covariance, mono.
+QJsonObject odometryJson(const Telemetry &telemetry);
+/// The data of the topic wheels: {front_left: {target, set_point, speed, angle}, ..., slip}.
+QJsonObject wheelsJson(const Telemetry &telemetry);
+/// The data of the topic power: {controllers: [...]}.
+QJsonObject powerJson(const Telemetry &telemetry);
+/// Readings, health and traffic of one controller.
+QJsonObject controllerJson(const Telemetry::Controller &controller);
+/// {period_s, cycles, missed, mean_lateness_s, worst_lateness_s}
+QJsonObject cycleJson(const CycleStatistics &cycle, double period_s);
+QJsonObject toJson(const Pose &pose);
+QJsonObject toJson(const Twist &twist);
+
+} // namespace hermes

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "common/settings/Settings.h"
+#include "daemons/motorcontrol/Drive.h"
+#include "daemons/motorcontrol/EncoderMonitor.h"
+#include "daemons/motorcontrol/Odometry.h"
+#include "daemons/motorcontrol/Threshold.h"
+
+namespace hermes {
+
+constexpr int controllerCount = 2;
+
+/// Where one motor controller is.
+struct ControllerAddress {
+    QString url; ///< of its serial line; controllers with the same one share it
+    int address = 128;
+};
+
+/// Which motor turns a wheel.
+struct WheelMount {
+    int controller = 0; ///< 0 or 1
+    int motor = 0;      ///< 0: M1, 1: M2
+    double sign = 1;    ///< -1 where positive counts drive the robot backward
+};
+
+/// Velocity control of a controller; the same for every motor.
+struct VelocityPid {
+    double p = 1, i = 0.5, d = 0.25;
+    int qpps = 44000; ///< counts/s at full duty
+
+    bool operator==(const VelocityPid &o) const { return p == o.p && i == o.i && d == o.d && qpps == o.qpps; }
+};
+
+/// The settings of hermes-motorcontrol as its parts use them.
+struct MotorSettings {
+    Drive::Settings drive;
+    OdometryNoise odometry;
+    std::array<ControllerAddress, controllerCount> controllers;
+    std::array<WheelMount, wheelCount> wheels;
+    double countsPerTurn = 38000; ///< of a wheel
+    double wheelRadius = 0.1;
+    VelocityPid pid;
+    double serialTimeout_s = 0.2;     ///< after which the controllers stop by themselves
+    double emergencyDeceleration = 4; ///< m/s^2 at the rim
+    Threshold::Settings battery, current, temperature;
+    EncoderMonitor::Settings encoder;
+
+    /// From settings that declareMotorSettings() has declared.
+    static MotorSettings from(const Settings &settings);
+};
+
+/// Calls declare for each setting, in the order in which people should see them.
+void declareMotorSettings(const std::function<void(const Field &)> &declare);
+/// What the settings demand of one another.
+std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings);
+
+} // namespace hermes

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "daemons/motorcontrol/CycleTimer.h"
+#include "daemons/motorcontrol/MotorController.h"
+
+namespace hermes {
+
+/// What the drive loop tells about one cycle. Stamps are seconds since the epoch.
+struct Telemetry {
+    struct Controller {
+        QString name, error, version, interface;
+        bool ready = false;
+        ControllerReadings readings;
+        roboclaw::Bus::Counts counts;
+        quint64 overruns = 0;
+    };
+
+    double stamp = 0, mono = 0; ///< of the readings behind pose and speeds
+    bool moved = false;         ///< whether there are new readings in this cycle
+    Pose pose;
+    Twist twist;
+    Odometry::Covariance covariance{};
+    WheelValues target{}, setPoint{}, speeds{}, turns{}; ///< rad/s; turns: rad since the start
+    double slip = 0;                                     ///< m/s
+    quint64 counterJumps = 0;                            ///< motions that were no motions and were left out
+    std::array<Controller, controllerCount> controllers;
+    CycleStatistics cycle;
+    QString haltReason;
+    QJsonObject latch, lease;
+    std::array<Threshold::Level, 3> levels{}; ///< battery, current, temperature: the worst
+};
+
+} // namespace hermes

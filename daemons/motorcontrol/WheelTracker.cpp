@@ -1,0 +1,71 @@
+#include "daemons/motorcontrol/WheelTracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hermes {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double silence_s = MotorController::lostAfter_s;
+// After a silence wheels may have gone on at their speed for so long, then the controllers stopped them; and
+// somebody may have pushed the robot a little.
+constexpr double longestRun_s = 0.5, pushed_rad_s = 2;
+
+// Both counters begin again.
+bool wasReset(const std::array<quint32, 2> &before, const std::array<quint32, 2> &now) {
+    const auto isSmall = [](quint32 count) { return std::abs(qint64(qint32(count))) < 16; };
+    return isSmall(now[0]) && isSmall(now[1]) && !(isSmall(before[0]) && isSmall(before[1]));
+}
+
+} // namespace
+
+void WheelTracker::configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn,
+                             double mostSpeed) {
+    wheels_ = wheels;
+    radiansPerCount_ = 2 * pi / countsPerTurn;
+    mostSpeed_ = mostSpeed;
+}
+
+bool WheelTracker::isPlausible(int wheel, double turn, double gap) const {
+    if (gap > silence_s)
+        return std::abs(turn) <= longestRun_s * (std::abs(speeds_[wheel]) + pushed_rad_s);
+    return std::abs(turn) <= mostSpeed_ * std::max(gap, 0.1);
+}
+
+std::optional<WheelMotion>
+WheelTracker::update(const std::array<const ControllerReadings *, controllerCount> &readings) {
+    for (int i = 0; i < controllerCount; ++i) {
+        if (readings[i]->countsTime <= times_[i])
+            return std::nullopt;
+    }
+    const auto countsBefore = counts_;
+    const auto timesBefore = times_;
+    for (int i = 0; i < controllerCount; ++i) {
+        counts_[i] = readings[i]->counts;
+        times_[i] = readings[i]->countsTime;
+    }
+    if (std::find(timesBefore.begin(), timesBefore.end(), 0.0) != timesBefore.end())
+        return std::nullopt;
+    WheelMotion motion;
+    motion.time = (times_[0] + times_[1]) / 2;
+    motion.gap_s = motion.time - (timesBefore[0] + timesBefore[1]) / 2;
+    for (int i = 0; i < wheelCount; ++i) {
+        const WheelMount &wheel = wheels_[i];
+        // The counters wrap modulo 2^32: the difference as a signed number is right.
+        const auto counts =
+            qint32(counts_[wheel.controller][wheel.motor] - countsBefore[wheel.controller][wheel.motor]);
+        const double gap = times_[wheel.controller] - timesBefore[wheel.controller];
+        motion.turns[i] = wheel.sign * counts * radiansPerCount_;
+        motion.speeds[i] = motion.turns[i] / gap;
+        const bool reset =
+            gap > silence_s && wasReset(countsBefore[wheel.controller], counts_[wheel.controller]);
+        motion.plausible = motion.plausible && !reset && isPlausible(i, motion.turns[i], gap);
+    }
+    if (!motion.plausible)
+        motion.turns = motion.speeds = {};
+    speeds_ = motion.speeds;
+    return motion;
+}
+
+} // namespace hermes

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "daemons/motorcontrol/MotorController.h"
+
+#include <optional>
+
+namespace hermes {
+
+/// What the wheels have done since the controllers were read before.
+struct WheelMotion {
+    WheelValues turns{};   ///< rad
+    WheelValues speeds{};  ///< rad/s
+    double time = 0;       ///< monotonic, of the readings
+    double gap_s = 0;      ///< since the ones before
+    bool plausible = true; ///< false: counters were reset or lost; turns are zero
+};
+
+/// Turns the counters of both controllers into motions of the wheels. While a line is silent the counters go
+/// on, and what the wheels did is known afterwards. A controller that has lost its power begins at zero
+/// again: that is found by its counters, or by a motion that no wheel can do.
+class WheelTracker {
+public:
+    /// mostSpeed: rad/s that no wheel exceeds.
+    void configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn, double mostSpeed);
+
+    /// Nothing until every controller has been read again, or at the first reading.
+    std::optional<WheelMotion>
+    update(const std::array<const ControllerReadings *, controllerCount> &readings);
+
+private:
+    bool isPlausible(int wheel, double turn, double gap) const;
+
+    std::array<WheelMount, wheelCount> wheels_;
+    double radiansPerCount_ = 0;
+    double mostSpeed_ = 0;
+    std::array<std::array<quint32, 2>, controllerCount> counts_{};
+    std::array<double, controllerCount> times_{}; // 0: not read yet
+    WheelValues speeds_{};
+};
+
+} // namespace hermes
