@@ -1,0 +1,96 @@
+#pragma once
+
+#include "RoboClawRig.h"
+#include "common/client/Client.h"
+#include "daemons/motorcontrol/MotorControl.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+/// A motor control in this process, two emulated controllers on one line, and a client.
+class MotorFixture {
+protected:
+    static constexpr double countsPerTurn = 38000, radius = 0.1; // m
+
+    static hermes::RoboClawEmulator::Options controllerAt(int address) {
+        hermes::RoboClawEmulator::Options options;
+        options.address = std::uint8_t(address);
+        return options;
+    }
+    /// m/s at the rim, or m
+    static double atRim(double counts) { return counts / countsPerTurn * 2 * std::acos(-1.0) * radius; }
+
+    QString url(const QString &link = "line") const { return "serial://" + folder_->filePath(link); }
+    QString address() const { return daemon_->server().addresses().value(0); }
+    QJsonObject state() { return call("motor.state"); }
+
+    void setUp() {
+        folder_ = std::make_unique<QTemporaryDir>();
+        plug({controllerAt(0x80), controllerAt(0x81)});
+    }
+    void plug(const std::vector<hermes::RoboClawEmulator::Options> &controllers) {
+        rig_.reset();
+        rig_ = std::make_unique<RoboClawRig>(folder_->filePath("line"), controllers);
+    }
+    void tearDown() {
+        client_.reset();
+        if (daemon_)
+            daemon_->shutDown();
+        daemon_.reset();
+        rig_.reset();
+    }
+
+    void launch(const QStringList &settings = {}) {
+        client_ = std::make_unique<hermes::Client>();
+        daemon_ = std::make_unique<hermes::MotorControl>();
+        QStringList arguments{"motorcontrol",
+                              "--listen",
+                              "tcp://127.0.0.1:0",
+                              "--set",
+                              "controllers.1.url=" + url(),
+                              "--set",
+                              "controllers.2.url=" + url()};
+        for (const QString &setting : settings)
+            arguments += {"--set", setting};
+        QVERIFY(!daemon_->prepare(arguments));
+        const auto launched = daemon_->launch();
+        QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
+        QVERIFY(client_->connectTo(address()).ok());
+        QVERIFY(client_->waitConnected().ok());
+    }
+
+    QJsonObject call(const QString &method, const QJsonObject &params = {}) {
+        const auto result = client_->callAndWait(method, params);
+        if (!result)
+            qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
+        return result ? result->toObject() : QJsonObject{{"failed", result.error().message}};
+    }
+
+    hermes::Error failure(const QString &method, const QJsonObject &params = {}) {
+        const auto result = client_->callAndWait(method, params);
+        return result ? hermes::Error(hermes::ErrorCode::InternalError, "succeeded, though it should not")
+                      : result.error();
+    }
+
+    QJsonObject healthItem(const QString &name) {
+        for (const QJsonValue &item : call("daemon.status")["health"].toArray())
+            if (item.toObject()["name"] == name)
+                return item.toObject();
+        return {};
+    }
+
+    /// Sends drive commands at 20 Hz for so long.
+    void drive(const QJsonObject &twist, double seconds) {
+        const double end = RoboClawRig::now() + seconds;
+        while (RoboClawRig::now() < end) {
+            const QJsonObject reply = call("motor.drive", twist);
+            QVERIFY2(!reply.contains("failed"), qPrintable(reply["failed"].toString()));
+            QTest::qWait(50);
+        }
+    }
+
+    std::unique_ptr<QTemporaryDir> folder_;
+    std::unique_ptr<RoboClawRig> rig_;
+    std::unique_ptr<hermes::MotorControl> daemon_;
+    std::unique_ptr<hermes::Client> client_;
+};

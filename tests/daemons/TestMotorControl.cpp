@@ -1,0 +1,284 @@
+// hermes-motorcontrol as its clients see it, with emulated controllers on a pseudo-terminal.
+#include "MotorFixture.h"
+#include "common/settings/DottedPath.h"
+
+using namespace hermes;
+
+namespace {
+
+const double pi = std::acos(-1.0);
+
+} // namespace
+
+class TestMotorControl : public QObject, MotorFixture {
+    Q_OBJECT
+private Q_SLOTS:
+    void init() { setUp(); }
+    void cleanup() { tearDown(); }
+    void setsTheControllersUp();
+    void drivesAndTellsWhere();
+    void topicsCome();
+    void refusals_data();
+    void refusals();
+    void leaseIsExclusiveAndRunsOut();
+    void emergencyStopLatches();
+    void stopsBrakeWithTheEmergencyDeceleration();
+    void silentClientIsStopped();
+    void clientThatGoesIsStopped();
+    void newPidIsWrittenAndReadBack();
+    void twoLines();
+    void shutdownStops();
+    void settingsAreCheckedAgainstEachOther_data();
+    void settingsAreCheckedAgainstEachOther();
+};
+
+void TestMotorControl::setsTheControllersUp() {
+    launch({"pid.p=2", "pid.i=0.25", "pid.d=0", "pid.qpps=140000"});
+    QTRY_VERIFY(state()["ready"].toBool());
+    rig_->with([](std::vector<RoboClawEmulator> &all) {
+        for (RoboClawEmulator &controller : all) {
+            for (int motor : {0, 1}) {
+                QCOMPARE(controller.channel(motor).pid().p, 2.0);
+                QCOMPARE(controller.channel(motor).pid().i, 0.25);
+                QCOMPARE(controller.channel(motor).pid().d, 0.0);
+                QCOMPARE(controller.channel(motor).pid().qpps, 140000.0);
+            }
+            QCOMPARE(controller.serialTimeout(), 0.2);
+        }
+    });
+    QTRY_COMPARE(healthItem("controller_1")["values"].toObject()["version"].toString(),
+                 QString("RoboClaw 2x45A v4.2.8"));
+    QTRY_COMPARE(call("daemon.status")["state"].toString(), QString("running"));
+    QTRY_COMPARE(healthItem("battery")["values"].toObject()["battery_v"].toDouble(), 25.0);
+    QTRY_VERIFY(healthItem("cycle")["values"].toObject()["mean_lateness_s"].toDouble() > 0);
+    QCOMPARE(rig_->strange(), 0);
+}
+
+void TestMotorControl::drivesAndTellsWhere() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("odometry.reset", {{"x", 1}, {"y", 2}, {"theta", pi / 2}});
+    call("control.acquire", {{"client", "test"}});
+    drive({{"vx", 0.4}, {"vy", 0.2}}, 1);
+    const std::vector<double> speeds = rig_->speeds(); // front left and right, rear left and right
+    for (int i = 0; i < 4; ++i)
+        QVERIFY2(std::abs(atRim(speeds[i]) - (i == 0 || i == 3 ? 0.2 : 0.6)) < 0.03,
+                 qPrintable(QString("%1: %2").arg(i).arg(atRim(speeds[i]))));
+    const QJsonObject twist = state()["twist"].toObject();
+    QVERIFY(std::abs(twist["vx"].toDouble() - 0.4) < 0.03 && std::abs(twist["vy"].toDouble() - 0.2) < 0.03);
+    call("motor.stop");
+    QTRY_VERIFY(rig_->fastest() < 10);
+    QTRY_VERIFY(std::abs(state()["twist"].toObject()["vx"].toDouble()) < 1e-3);
+    // The wheels' turns of the emulator, moved along the heading that the odometry began with.
+    double ahead = 0, left = 0;
+    rig_->with([&](std::vector<RoboClawEmulator> &all) {
+        const double metres = 2 * pi * radius / countsPerTurn;
+        const auto turned = [&](int controller, int motor) {
+            return double(all[controller].channel(motor).count()) * metres;
+        };
+        ahead = (turned(0, 0) + turned(0, 1) + turned(1, 0) + turned(1, 1)) / 4;
+        left = (-turned(0, 0) + turned(0, 1) + turned(1, 0) - turned(1, 1)) / 4;
+    });
+    const QJsonObject pose = state()["pose"].toObject();
+    QVERIFY(ahead > 0.2);
+    QVERIFY(std::abs(pose["y"].toDouble() - (2 + ahead)) < 2e-3);
+    QVERIFY(std::abs(pose["x"].toDouble() - (1 - left)) < 2e-3);
+}
+
+void TestMotorControl::topicsCome() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    int odometry = 0;
+    QJsonObject first, wheels, power;
+    client_->subscribe("odometry", {{"queue", 100}}, [&](const TopicUpdate &update) {
+        first = update.data.toObject();
+        ++odometry;
+    });
+    client_->subscribe("wheels", {}, [&](const TopicUpdate &update) { wheels = update.data.toObject(); });
+    client_->subscribe("power", {}, [&](const TopicUpdate &update) { power = update.data.toObject(); });
+    QTRY_VERIFY(odometry > 0 && !wheels.isEmpty() && !power.isEmpty());
+    const int before = odometry;
+    const double from = RoboClawRig::now();
+    QTest::qWait(1000);
+    const double rate = (odometry - before) / (RoboClawRig::now() - from);
+    QVERIFY2(rate > 40 && rate < 51, qPrintable(QString::number(rate)));
+    QCOMPARE(first["covariance"].toArray().size(), 9);
+    QVERIFY(first["pose"].toObject().contains("theta") && first["twist"].toObject().contains("omega"));
+    QVERIFY(wheels["rear_right"].toObject().contains("speed") && wheels.contains("slip"));
+    QCOMPARE(power["controllers"].toArray().size(), 2);
+}
+
+void TestMotorControl::refusals_data() {
+    QTest::addColumn<QString>("method");
+    QTest::addColumn<QJsonObject>("params");
+    QTest::addColumn<int>("code");
+    QTest::addColumn<QString>("names");
+    const auto row = [](const char *name, const char *method, const QJsonObject &params, ErrorCode code,
+                        const char *names) { QTest::newRow(name) << method << params << int(code) << names; };
+    row("too fast", "motor.drive", {{"vx", 3}}, ErrorCode::OverLimit,
+        "vx is 3, expected a number from -1 to 1 m/s");
+    row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, ErrorCode::OverLimit, "rear_left is 1e+06");
+    row("unknown parameter", "motor.drive", {{"vz", 1}}, ErrorCode::InvalidParams, "vz");
+    row("not a number", "motor.drive", {{"vx", "fast"}}, ErrorCode::InvalidParams, "vx");
+    row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, ErrorCode::NotReady, "at most 0.25 s");
+    row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, ErrorCode::InvalidParams, "timeout_s");
+}
+
+void TestMotorControl::refusals() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).code, int(ErrorCode::ControlHeld)); // no lease
+    call("control.acquire", {{"timeout_s", 10}});
+    QFETCH(QString, method);
+    QFETCH(QJsonObject, params);
+    QFETCH(QString, names);
+    const Error error = failure(method, params);
+    QTEST(error.code, "code");
+    const QString all = error.message + QJsonDocument(error.data.toObject()).toJson();
+    QVERIFY2(all.contains(names), qPrintable(all));
+    QTest::qWait(100);
+    QCOMPARE(rig_->fastest(), 0.0);
+}
+
+void TestMotorControl::leaseIsExclusiveAndRunsOut() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    Client other;
+    QVERIFY(other.connectTo(address()).ok());
+    QVERIFY(other.waitConnected().ok());
+    QCOMPARE(call("control.acquire", {{"client", "anna"}, {"timeout_s", 0.3}})["holder"].toString(),
+             QString("anna"));
+    const auto refused = other.callAndWait("motor.drive", QJsonObject{{"vx", 0.1}});
+    QVERIFY(!refused.ok() && refused.error().is(ErrorCode::ControlHeld));
+    QCOMPARE(refused.error().data["holder"].toString(), QString("anna"));
+    QTRY_VERIFY(other.callAndWait("control.acquire", QJsonObject{{"client", "bert"}}).ok());
+    QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).data["holder"].toString(), QString("bert"));
+    QCOMPARE(call("control.state")["holder"].toString(), QString("bert"));
+}
+
+void TestMotorControl::emergencyStopLatches() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire");
+    drive({{"vx", 0.5}}, 0.6);
+    QVERIFY(rig_->fastest() > 1000);
+    call("motor.estop");
+    QVERIFY(state()["estop"].toBool());
+    QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::NotReady));
+    QCOMPARE(failure("control.acquire").code, int(ErrorCode::NotReady));
+    QTRY_VERIFY(rig_->fastest() < 10);
+    QTRY_COMPARE(call("daemon.status")["state"].toString(), QString("degraded"));
+    call("motor.reset_estop");
+    QTest::qWait(100);
+    QVERIFY(rig_->fastest() < 10);
+    QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::ControlHeld));
+    call("control.acquire");
+    drive({{"vx", 0.5}}, 0.3);
+    QVERIFY(rig_->fastest() > 1000);
+}
+
+void TestMotorControl::stopsBrakeWithTheEmergencyDeceleration() {
+    launch({"safety.deceleration=2", "faults.encoder_hold_s=2"});
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire");
+    drive({{"vx", 0.6}}, 0.9);
+    call("motor.stop");
+    QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
+    const double since = rig_->zeroSince();
+    // 2 m/s^2 in counts
+    QCOMPARE(rig_->heard().back().acceleration, quint32(std::llround(2 / radius * countsPerTurn / (2 * pi))));
+    QTRY_VERIFY_WITH_TIMEOUT(atRim(rig_->fastest()) < 0.02, 2000);
+    const double took = RoboClawRig::now() - since;
+    QVERIFY2(took > 0.2 && took < 0.6, qPrintable(QString::number(took))); // 0.3 s, and the lag
+}
+
+void TestMotorControl::silentClientIsStopped() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire", {{"timeout_s", 10}});
+    drive({{"vx", 0.5}}, 0.5);
+    QTRY_VERIFY_WITH_TIMEOUT(rig_->zeroSince() < RoboClawRig::now(), 1000);
+    QCOMPARE(state()["halted"].toString(), QString("no command for 0.25 s"));
+    drive({{"vx", 0.5}}, 0.2); // the control was kept
+}
+
+void TestMotorControl::clientThatGoesIsStopped() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire", {{"timeout_s", 10}});
+    drive({{"vx", 0.5}}, 0.5);
+    const QString where = address();
+    client_ = std::make_unique<Client>();
+    QTRY_VERIFY_WITH_TIMEOUT(rig_->zeroSince() < RoboClawRig::now(), 200);
+    QVERIFY(client_->connectTo(where).ok());
+    QVERIFY(client_->waitConnected().ok());
+    QCOMPARE(state()["halted"].toString(), QString("the client that held the control has gone"));
+    call("control.acquire");
+}
+
+void TestMotorControl::newPidIsWrittenAndReadBack() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("settings.set", {{"values", QJsonObject{{"pid", QJsonObject{{"p", 3}}}}}});
+    QTRY_COMPARE(rig_->with([](auto &all) { return all[1].channel(1).pid().p; }), 3.0);
+    QTRY_VERIFY(state()["ready"].toBool());
+}
+
+void TestMotorControl::twoLines() {
+    rig_.reset();
+    RoboClawRig front(folder_->filePath("front"), {controllerAt(0x80)});
+    RoboClawRig rear(folder_->filePath("rear"), {controllerAt(0x80)});
+    launch({"controllers.1.url=" + url("front"), "controllers.2.url=" + url("rear"),
+            "controllers.2.address=128", "wheels.rear_left.reversed=true"});
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire");
+    drive({{"omega", 1}}, 0.8);
+    const auto f = front.speeds(), r = rear.speeds(); // rear_left is mounted the other way round
+    QVERIFY(f[0] < -1000 && f[1] > 1000 && r[0] > 1000 && r[1] > 1000);
+    QVERIFY(std::abs(state()["twist"].toObject()["omega"].toDouble() - 1) < 0.1);
+    client_.reset();
+    daemon_->shutDown();
+    daemon_.reset();
+}
+
+void TestMotorControl::shutdownStops() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire");
+    drive({{"vx", 0.5}}, 0.5);
+    client_.reset();
+    daemon_->shutDown();
+    QVERIFY(rig_->zeroSince() < RoboClawRig::now());
+    daemon_.reset();
+}
+
+void TestMotorControl::settingsAreCheckedAgainstEachOther_data() {
+    QTest::addColumn<QStringList>("settings");
+    QTest::addColumn<QString>("path");
+    QTest::newRow("one address twice") << QStringList{"controllers.2.address=128"} << "controllers.2.address";
+    QTest::newRow("one motor twice") << QStringList{"wheels.rear_left.controller=1"}
+                                     << "wheels.rear_left.motor";
+    QTest::newRow("thresholds crossed") << QStringList{"faults.battery_v=24"} << "faults.battery_v";
+    QTest::newRow("encoder fault while braking")
+        << QStringList{"safety.deceleration=1"} << "faults.encoder_hold_s";
+}
+
+void TestMotorControl::settingsAreCheckedAgainstEachOther() {
+    QFETCH(QStringList, settings);
+    QFETCH(QString, path);
+    MotorControl daemon;
+    const auto result = daemon.settings().set([&] {
+        QJsonObject values;
+        for (const QString &text : settings) {
+            const auto assignment = parseAssignment(text);
+            values = withValueAt(values, assignment->first, assignment->second);
+        }
+        return values;
+    }());
+    QVERIFY(!result.ok());
+    QVERIFY(result.error().is(ErrorCode::InvalidSetting));
+    QCOMPARE(result.error().data["errors"].toArray().first().toObject()["path"].toString(), path);
+}
+
+QTEST_GUILESS_MAIN(TestMotorControl)
+#include "TestMotorControl.moc"

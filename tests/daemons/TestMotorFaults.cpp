@@ -1,0 +1,189 @@
+// What breaks under hermes-motorcontrol: lines, controllers, wheels, batteries.
+#include "MotorFixture.h"
+
+Q_DECLARE_METATYPE(std::function<void(RoboClawRig &)>)
+
+using namespace hermes;
+
+class TestMotorFaults : public QObject, MotorFixture {
+    Q_OBJECT
+private Q_SLOTS:
+    void init() { setUp(); }
+    void cleanup() { tearDown(); }
+    void pulledLineRecoversWithoutAJump();
+    void controllerThatLostItsCountsMakesNoJump();
+    void faultsStopAndLatch_data();
+    void faultsStopAndLatch();
+    void turningUncommandedIsAFault();
+    void deafControllerIsNamed();
+    void wrongFirmwareIsNamed();
+    void damagedAnswersAreCountedAndSurvived();
+};
+
+void TestMotorFaults::pulledLineRecoversWithoutAJump() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire");
+    drive({{"vx", 0.5}}, 0.8);
+    rig_->pull();
+    QTRY_VERIFY_WITH_TIMEOUT(!state()["ready"].toBool(), 500);
+    QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::DeviceFault));
+    const double before = state()["pose"].toObject()["x"].toDouble();
+    QTRY_VERIFY_WITH_TIMEOUT(rig_->fastest() < 10, 1000); // by the controllers' own time-out
+    rig_->plugIn();
+    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 7000);
+    QTest::qWait(100);
+    const double rolled = state()["pose"].toObject()["x"].toDouble() - before;
+    QVERIFY2(rolled >= 0 && rolled < 0.2, qPrintable(QString::number(rolled))); // what the wheels really did
+    QCOMPARE(state()["counter_jumps"].toInt(), 0);
+    const double counts = rig_->with([](auto &all) { return double(all[0].channel(0).count()); });
+    QVERIFY(std::abs(state()["pose"].toObject()["x"].toDouble() - atRim(counts)) < 0.005);
+    QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::ControlHeld));
+    call("control.acquire");
+    drive({{"vx", 0.5}}, 0.3);
+    QVERIFY(rig_->fastest() > 1000);
+}
+
+void TestMotorFaults::controllerThatLostItsCountsMakesNoJump() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire");
+    drive({{"vx", 0.5}}, 0.8);
+    call("motor.stop");
+    QTRY_VERIFY(rig_->fastest() < 10);
+    QTest::qWait(100);
+    const double before = state()["pose"].toObject()["x"].toDouble();
+    QVERIFY(before > 0.05);
+    rig_->pull();
+    rig_->with([](auto &all) {
+        for (int motor : {0, 1})
+            all[1].channel(motor).setCount(0);
+    });
+    QTest::qWait(400);
+    rig_->plugIn();
+    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 7000);
+    QTest::qWait(100);
+    QVERIFY(std::abs(state()["pose"].toObject()["x"].toDouble() - before) < 1e-3);
+    QCOMPARE(state()["counter_jumps"].toInt(), 1);
+}
+
+void TestMotorFaults::faultsStopAndLatch_data() {
+    using Break = std::function<void(RoboClawRig &)>;
+    QTest::addColumn<Break>("breakIt");
+    QTest::addColumn<QString>("setting");
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<QString>("says");
+    QTest::newRow("low battery") << Break([](RoboClawRig &rig) { rig.setVoltage(20); })
+                                 << "faults.battery_v=21"
+                                 << "battery"
+                                 << "the battery has 20 V, at least 21 V are needed";
+    QTest::newRow("over-current") << Break([](RoboClawRig &rig) {
+        rig.with([](auto &all) { all[1].channel(0).setBlocked(true); });
+    }) << R"(faults={"current_a": 8, "current_warning_a": 5})"
+                                  << "current"
+                                  << "controller 2";
+    QTest::newRow("over-temperature")
+        << Break([](RoboClawRig &) {}) << R"(faults={"temperature_c": 20, "temperature_warning_c": 10})"
+        << "temperature"
+        << "at most 20 are allowed";
+    QTest::newRow("commanded but not moving") << Break([](RoboClawRig &rig) {
+        rig.with([](auto &all) { all[0].channel(1).setEncoderBroken(true); });
+    }) << "faults.current_a=150"
+                                              << "encoder"
+                                              << "wheel front_right was told to turn and stands still";
+    QTest::newRow("status bit") << Break([](RoboClawRig &rig) {
+        rig.with([](auto &all) { all[1].faults().status = roboclaw::DriverFaultM1; });
+    }) << "faults.current_a=150"
+                                << "controller_2"
+                                << "controller 2";
+    QTest::newRow("hard-wired emergency stop") << Break([](RoboClawRig &rig) {
+        rig.with([](auto &all) { all[0].faults().status = roboclaw::EmergencyStop; });
+    }) << "faults.current_a=150"
+                                               << "controller_1"
+                                               << "controller 1";
+}
+
+void TestMotorFaults::faultsStopAndLatch() {
+    QFETCH(std::function<void(RoboClawRig &)>, breakIt);
+    QFETCH(QString, setting);
+    QFETCH(QString, name);
+    QFETCH(QString, says);
+    launch({setting, "faults.hold_s=0.1"});
+    QTRY_VERIFY(state()["ready"].toBool());
+    if (client_->callAndWait("control.acquire", QJsonObject()).ok()) {
+        for (int i = 0; i < 10; ++i) {
+            client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.4}});
+            QTest::qWait(40);
+        }
+    }
+    breakIt(*rig_);
+    for (int i = 0; i < 60 && !state()["latched"].toObject().contains(name); ++i) {
+        client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.4}});
+        QTest::qWait(40);
+    }
+    const QString reason = state()["latched"].toObject()[name].toString();
+    QVERIFY2(reason.contains(says), qPrintable(QJsonDocument(state()["latched"].toObject()).toJson()));
+    QCOMPARE(failure("motor.drive", {{"vx", 0.4}}).code, int(ErrorCode::DeviceFault));
+    QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
+    QTRY_VERIFY(rig_->fastest() < 10);
+    QTRY_COMPARE(call("daemon.status")["state"].toString(), QString("fault"));
+    QTRY_COMPARE(healthItem("stop")["level"].toString(), QString("error"));
+}
+
+void TestMotorFaults::deafControllerIsNamed() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire");
+    drive({{"vx", 0.4}}, 0.5);
+    rig_->with([](auto &all) { all[1].faults().silent = true; });
+    QTRY_VERIFY_WITH_TIMEOUT(!state()["ready"].toBool(), 1000);
+    const Error error = failure("motor.drive", {{"vx", 0.4}});
+    QCOMPARE(error.code, int(ErrorCode::DeviceFault));
+    QVERIFY2(error.message.startsWith("controller 2 (0x81 on") && error.message.endsWith("does not answer"),
+             qPrintable(error.message));
+    QTRY_VERIFY(rig_->fastest() < 10); // the other one, too
+    rig_->with([](auto &all) { all[1].faults().silent = false; });
+    QTRY_VERIFY(state()["ready"].toBool());
+}
+
+void TestMotorFaults::wrongFirmwareIsNamed() {
+    auto other = controllerAt(0x81);
+    other.version = "Sabertooth 2x60";
+    rig_.reset();
+    rig_ = std::make_unique<RoboClawRig>(folder_->filePath("line"), std::vector{controllerAt(0x80), other});
+    launch();
+    const QString says = "tells its version as \"Sabertooth 2x60\", expected that of a RoboClaw";
+    QTRY_VERIFY2(healthItem("controller_2")["message"].toString().contains(says),
+                 qPrintable(healthItem("controller_2")["message"].toString()));
+    QVERIFY(failure("control.acquire").message.contains(says));
+    QCOMPARE(call("daemon.status")["state"].toString(), QString("degraded"));
+}
+
+void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    rig_->with([](auto &all) {
+        for (RoboClawEmulator &controller : all)
+            controller.faults().corrupt = 0.03;
+    });
+    call("control.acquire");
+    drive({{"vx", 0.4}}, 2);
+    QCOMPARE(state()["halted"].toString(), QString());
+    QVERIFY(std::abs(state()["twist"].toObject()["vx"].toDouble() - 0.4) < 0.05);
+    const QJsonObject values = healthItem("controller_1")["values"].toObject();
+    QVERIFY(values["crc_errors"].toInt() + values["unexpected"].toInt() > 0);
+}
+
+void TestMotorFaults::turningUncommandedIsAFault() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    for (int i = 0; i < 100 && state()["latched"].toObject().isEmpty(); ++i) {
+        rig_->with([](auto &all) { all[1].channel(0).setCount(all[1].channel(0).count() + 200); });
+        QTest::qWait(10);
+    }
+    const QString reason = state()["latched"].toObject()["encoder"].toString();
+    QVERIFY2(reason.contains("wheel rear_left turns and was told to stand"), qPrintable(reason));
+}
+
+QTEST_GUILESS_MAIN(TestMotorFaults)
+#include "TestMotorFaults.moc"
