@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <pthread.h>
 
 namespace hermes {
 namespace {
@@ -18,6 +19,13 @@ constexpr double shutdown_s = 0.15; // for the last set-point
 
 const QString source = "drive";
 
+// Before all ordinary threads; needs a privilege (CAP_SYS_NICE or a limit RTPRIO).
+bool becomeRealtime() {
+    sched_param parameter{};
+    parameter.sched_priority = 20;
+    return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter) == 0;
+}
+
 } // namespace
 
 DriveLoop::DriveLoop(Listener listener)
@@ -26,6 +34,7 @@ DriveLoop::DriveLoop(Listener listener)
 
 Result<void> DriveLoop::start(const MotorSettings &settings) {
     settings_ = settings;
+    telemetry_.realtime = becomeRealtime();
     for (int i = 0; i < controllerCount; ++i)
         controllers_.push_back(std::make_unique<MotorController>(i + 1, settings.controllers[i]));
     configure(settings);

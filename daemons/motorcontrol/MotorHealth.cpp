@@ -59,7 +59,7 @@ void MotorControl::updateHealth() {
                  QString("50 Hz, at worst %1 ms late in the last second, %2 cycles missed")
                      .arg(1000 * cycle.worstLateness_s, 0, 'f', 2)
                      .arg(cycle.missed),
-                 cycleJson(cycle, period_s));
+                 cycleJson(told_, period_s));
 
     const bool latched = !told_.latch.isEmpty();
     QStringList reasons;
@@ -91,7 +91,7 @@ QJsonObject MotorControl::state() const {
             {"wheels", wheelsJson(told_)},
             {"counter_jumps", double(told_.counterJumps)},
             {"controllers", controllers},
-            {"cycle", cycleJson(told_.cycle, period_s)}};
+            {"cycle", cycleJson(told_, period_s)}};
 }
 
 } // namespace hermes

@@ -65,12 +65,14 @@ QJsonObject controllerJson(const Telemetry::Controller &c) {
             {"overruns", double(c.overruns)}};
 }
 
-QJsonObject cycleJson(const CycleStatistics &cycle, double period_s) {
+QJsonObject cycleJson(const Telemetry &telemetry, double period_s) {
+    const CycleStatistics &cycle = telemetry.cycle;
     return {{"period_s", period_s},
             {"cycles", double(cycle.cycles)},
             {"missed", double(cycle.missed)},
             {"mean_lateness_s", cycle.meanLateness_s},
-            {"worst_lateness_s", cycle.worstLateness_s}};
+            {"worst_lateness_s", cycle.worstLateness_s},
+            {"realtime", telemetry.realtime}};
 }
 
 } // namespace hermes

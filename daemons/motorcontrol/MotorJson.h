@@ -12,8 +12,8 @@ QJsonObject wheelsJson(const Telemetry &telemetry);
 QJsonObject powerJson(const Telemetry &telemetry);
 /// Readings, health and traffic of one controller.
 QJsonObject controllerJson(const Telemetry::Controller &controller);
-/// {period_s, cycles, missed, mean_lateness_s, worst_lateness_s}
-QJsonObject cycleJson(const CycleStatistics &cycle, double period_s);
+/// {period_s, cycles, missed, mean_lateness_s, worst_lateness_s, realtime}
+QJsonObject cycleJson(const Telemetry &telemetry, double period_s);
 QJsonObject toJson(const Pose &pose);
 QJsonObject toJson(const Twist &twist);
 

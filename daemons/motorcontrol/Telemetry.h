@@ -25,6 +25,7 @@ struct Telemetry {
     quint64 counterJumps = 0;                            ///< motions that were no motions and were left out
     std::array<Controller, controllerCount> controllers;
     CycleStatistics cycle;
+    bool realtime = false; ///< the cycle goes before all ordinary threads
     QString haltReason;
     QJsonObject latch, lease;
     std::array<Threshold::Level, 3> levels{}; ///< battery, current, temperature: the worst

@@ -182,7 +182,7 @@ void TestMotorStops::signalToTheClient() {
         QVERIFY(driver_->state() == QProcess::NotRunning || driver_->waitForFinished());
     }
     report(QTest::currentDataTag(), times, 0.35, 1);
-    report("from there to a stand", standing, 0.5,
+    report("from there to a stand", standing, 0.3,
            1); // 0.125 s, and what motor and PID lag behind
 }
 
