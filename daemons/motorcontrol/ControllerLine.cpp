@@ -47,17 +47,24 @@ ControllerLine::ControllerLine(Interface *interface, std::vector<MotorController
 }
 
 void ControllerLine::submitNext(double now) {
-    for (int task = 0; task < MotorController::taskCount; ++task) {
-        for (MotorController *controller : controllers_) {
-            const auto request = controller->next(Task(task), now);
-            if (!request)
-                continue;
-            bus_.submit(*request, [controller, task](const roboclaw::Request &, const Bus::Outcome &outcome) {
-                controller->finished(Task(task), outcome, monotonicNow());
-            });
-            return;
+    // One that does not answer waits until the others have what they need: each failure takes 40 ms.
+    for (const bool failing : {false, true}) {
+        for (int task = 0; task < MotorController::taskCount; ++task) {
+            for (MotorController *controller : controllers_) {
+                if (controller->isFailing() == failing && submit(*controller, Task(task), now))
+                    return;
+            }
         }
     }
+}
+
+bool ControllerLine::submit(MotorController &controller, Task task, double now) {
+    const auto request = controller.next(task, now);
+    if (request)
+        bus_.submit(*request, [&controller, task](const roboclaw::Request &, const Bus::Outcome &outcome) {
+            controller.finished(task, outcome, monotonicNow());
+        });
+    return request.has_value();
 }
 
 void ControllerLine::wake() {

@@ -29,6 +29,7 @@ Q_SIGNALS:
 
 private:
     void submitNext(double now);
+    bool submit(MotorController &controller, MotorController::Task task, double now);
     void receive(const QByteArray &bytes);
 
     Interface *interface_;

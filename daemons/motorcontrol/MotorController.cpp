@@ -213,6 +213,7 @@ void MotorController::finished(Task task, const Bus::Outcome &outcome, double no
     awaits_ = false;
     if (outcome.result == Bus::Result::Cancelled)
         return; // never sent
+    failing_ = outcome.result != Bus::Result::Done;
     if (!isReady())
         return takeSetup(outcome, now);
     if (outcome.result != Bus::Result::Done) {

@@ -44,6 +44,8 @@ public:
 
     /// Set up, and answers.
     bool isReady() const { return step_ == setupSteps; }
+    /// Its last request was not answered as it should.
+    bool isFailing() const { return failing_; }
     /// The last command was acknowledged.
     bool hasObeyed() const { return isReady() && obeyed_ == commanded_; }
     /// "controller 1 (0x80 on serial:///dev/ttyS1)"
@@ -82,6 +84,7 @@ private:
     QString error_ = "has not answered yet";
     QString version_;
 
+    bool failing_ = false;
     bool awaits_ = false; // the answer to a request that is still wanted
     bool wantsEncoders_ = false, wantsSlow_ = false;
     quint64 commanded_ = 0, sent_ = 0, obeyed_ = 0; // set-points, counted

@@ -14,6 +14,7 @@
 #include <limits>
 #include <mutex>
 #include <poll.h>
+#include <pthread.h>
 #include <pty.h>
 #include <sys/ioctl.h>
 #include <termios.h>
@@ -195,6 +196,11 @@ private:
         }
     }
     void run() {
+        // A controller keeps its time however busy the machine is; without the privilege it is an ordinary
+        // thread.
+        sched_param realtime{};
+        realtime.sched_priority = 30;
+        ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &realtime);
         double before = now();
         while (!ends_) {
             pollfd line{-1, POLLIN, 0};
