@@ -151,6 +151,8 @@ void TestRoboClawNoise::trafficNeedsNoMoreMemory() {
     NoisyDrive drive(1e-3);
     drive.run(60, false);
     const std::size_t before = mallinfo2().uordblks;
+    if (before == 0)
+        QSKIP("a sanitizer has a heap of its own");
     drive.run(hours * 3600, false);
     const std::size_t after = mallinfo2().uordblks;
     qInfo("%.1f h, %llu bytes on the line: heap %zu bytes before, %zu after", hours, drive.bytes + 0ULL,
