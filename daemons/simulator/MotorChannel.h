@@ -29,7 +29,8 @@ public:
         double acceleration;
         double distance; ///< counts, not negative
     };
-    static constexpr double atOnce = std::numeric_limits<double>::infinity();
+    static constexpr double unlimited = std::numeric_limits<double>::infinity();
+    static constexpr double atOnce = unlimited; ///< as a slope
     static constexpr std::size_t longestQueue = 64;
 
     MotorChannel() = default;
@@ -94,7 +95,7 @@ private:
     double speed_ = 0;
     double count_ = 0;
     double current_ = 0;
-    double currentLimit_ = atOnce;
+    double currentLimit_ = unlimited;
     bool limited_ = false;
     bool blocked_ = false;
     bool encoderBroken_ = false;

@@ -241,6 +241,11 @@ void TestRoboClawEmulator::settingsAreKept() {
     QVERIFY(client.write(0x80, 93, Client::number(0x20, 1)));
     QCOMPARE(client.read(0x80, 91), Client::number(0x0020, 2));
     QVERIFY(!client.write(0x80, 94, Client::number(1, 4))); // not the key
+    QVERIFY(client.write(0x80, 95));
+    QCOMPARE(client.read(0x80, 55), pid);
+    QVERIFY(client.write(0x80, 80));
+    QCOMPARE(client.read(0x80, 55), client.read(0x80, 56));
+    QCOMPARE(client.read(0x80, 15), Client::number(0, 1));
 }
 
 void TestRoboClawEmulator::speedFollowsTheRamp() {
