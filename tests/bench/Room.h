@@ -38,7 +38,7 @@ inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays, const Corners 
             const Point begin = corners[c], edge = corners[(c + 1) % corners.size()] - begin;
             const double across = direction.cross(edge);
             const double distance = begin.cross(edge) / across, along = begin.cross(direction) / across;
-            if (distance > 0 && along >= 0 && along <= 1)
+            if (distance > 0 && along > -1e-9 && along < 1 + 1e-9)
                 range = std::min(range, distance);
         }
         points.emplace_back(direction * (range + noise(random)));

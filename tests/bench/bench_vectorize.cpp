@@ -3,7 +3,7 @@
 #include "tests/bench/Room.h"
 
 #include <vectorlib/segmentation/EarSegmenter.h>
-#include <vectorlib/vectorization/FtlsVectorizer.h>
+#include <vectorlib/vectorization/AftlsVectorizer.h>
 
 #include <benchmark/benchmark.h>
 
@@ -38,6 +38,12 @@ private:
     FtlsVectorizer<float> vectorize_;
 };
 
+struct Aftls {
+    Aftls() { vectorize.settings.polyline = false; }
+    std::size_t operator()(PointSpan<float> points) { return vectorize(points).size(); }
+    AftlsVectorizer<float> vectorize;
+};
+
 struct Segment {
     std::size_t operator()(PointSpan<float> points) { return segment(points).size(); }
     EarSegmenter<float> segment;
@@ -55,6 +61,7 @@ void add(const char *name) {
 int main(int argc, char **argv) {
     add<Ftls<false>>("FTLS");
     add<Ftls<true>>("FTLS, polyline");
+    add<Aftls>("AFTLS");
     add<rivals::PlainSums>("five prefix sums");
     add<rivals::DouglasPeucker<rivals::farthestPlain>>("Douglas-Peucker");
     add<rivals::DouglasPeucker<rivals::farthestAvx2>>("Douglas-Peucker, SIMD");

@@ -73,7 +73,7 @@ void eliminate(const std::vector<Vector2D<Scalar>> &points, const PointEliminati
 template <typename Scalar>
 void runFtls(const std::vector<Vector2D<Scalar>> &points, const VectorizerSettings &settings) {
     FtlsVectorizer<Scalar> ftls, plain;
-    plain.level(simd::Level::Scalar);
+    plain.level = simd::Level::Scalar;
     const Lines lines = run(ftls, points, settings);
     FUZZ_REQUIRE(isSame(lines, run(plain, points, settings)));
     for (const Vector2D<Scalar> &p : points)

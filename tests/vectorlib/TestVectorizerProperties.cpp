@@ -43,7 +43,7 @@ private Q_SLOTS:
     void keepsItsVarianceFarFromTheOrigin_data() { algorithmRows(); }
     void keepsItsVarianceFarFromTheOrigin();
     // The others go through the points from one end: where lines change depends on which.
-    void sameLinesInReverse_data() { algorithmRows({"aftls by Nelder-Mead", "ftls", "inc", "rw", "sam"}); }
+    void sameLinesInReverse_data() { algorithmRows({"aftls by Nelder-Mead", "inc", "rw", "sam"}); }
     void sameLinesInReverse();
     // A strip along the first two points says nothing of one along the last two.
     void asGoodInReverse_data() { algorithmRows({"rw"}); }
@@ -129,16 +129,16 @@ void TestVectorizerProperties::sameLinesInReverse() {
         for (std::size_t i = 0; agree && i < lines.size(); ++i)
             for (const Vector2D<double> end : {expected[i].segment.begin(), expected[i].segment.end()})
                 agree = agree && std::abs(lines[i].line.signedDistance(end)) < 0.005;
-        if (algorithm.name != QString("aftls"))
+        if (!isOneOf(algorithm, {"ftls", "aftls"}))
             QVERIFY2(agree, at(seed));
         same += agree;
     }
-    // FTLS, where AFTLS starts, may need a line more from the one end than from the other; and where noise
-    // makes two places for a break point equally good, each end leads to its own.
-    QVERIFY2(same >= 95, qPrintable(QString("%1 of 100").arg(same)));
+    // FTLS, where AFTLS starts, meets half way; where noise makes two places for a break point equally good,
+    // each end leads to its own.
+    QVERIFY2(same >= 99, qPrintable(QString("%1 of 100").arg(same)));
 }
 
-// Longest lines from one end are not those from the other, but as many, and as near to the points.
+// Lines that grow from one end are not those from the other, but as many, and as near to the points.
 void TestVectorizerProperties::asGoodInReverse() {
     QFETCH(Algorithm, algorithm);
     double sum = 0, reversedSum = 0;

@@ -21,52 +21,54 @@ public:
     enum class Search { Descent, NelderMead };
 
     VectorizerSettings settings;
+    simd::Level level = simd::bestLevel(); ///< the instruction set to use
     Search search = Search::Descent;
     BreakPointDescent descent;
     BreakPointSimplex simplex;
 
     const std::vector<VectorizedLine> &operator()(PointSpan<Scalar> points) {
-        ftls_.settings = settings;
-        ftls_.settings.sigma = std::max(0.0, settings.sigma);
-        ftls_.settings.polyline = false;
-        lines_ = ftls_(points); // into the same memory
-        if (lines_.size() > 1 && areFinite()) {
+        if (points.size() < 2) {
+            lines_.clear();
+            return lines_;
+        }
+        intervals_.search.level = level;
+        cuts_ = intervals_(points, settings.variance()); // into the same memory
+        if (cuts_.size() > 2) {
             if (search == Search::Descent)
-                descent(points, lines_);
+                descent(points, intervals_.search.sums(), level, cuts_);
             else
                 runSimplex(points);
-            for (VectorizedLine &line : lines_)
-                line = makeLine(points, line.first, line.last, line.sums);
         }
+        makeLines(points, intervals_.search.sums(), cuts_, level, lines_);
         if (settings.polyline)
-            join_(points, ftls_.sums(), settings, lines_);
+            join_(points, intervals_.search.sums(), settings, lines_);
         return lines_;
     }
 
 private:
-    bool areFinite() const {
-        for (const VectorizedLine &line : lines_)
-            if (line.sums.n == 0)
-                return false;
-        return true;
-    }
     void runSimplex(PointSpan<Scalar> points) {
         prefix_.assign(points);
-        cuts_.assign(1, 0);
-        for (const VectorizedLine &line : lines_)
-            cuts_.push_back(line.last + 1);
-        simplex(prefix_, cuts_);
-        for (std::size_t i = 0; i < lines_.size(); ++i) {
-            lines_[i].first = cuts_[i];
-            lines_[i].last = cuts_[i + 1] - 1;
-            lines_[i].sums = prefix_.sums(cuts_[i], cuts_[i + 1]);
-        }
+        places_.clear();
+        for (const Cut &cut : cuts_)
+            places_.push_back(cut.index);
+        const double before = squares(places_);
+        simplex(prefix_, places_);
+        if (squares(places_) < before)
+            for (std::size_t i = 0; i < cuts_.size(); ++i)
+                cuts_[i] = {places_[i], prefix_.row(places_[i])};
+    }
+    double squares(const std::vector<std::size_t> &places) const {
+        double sum = 0;
+        for (std::size_t i = 0; i + 1 < places.size(); ++i)
+            sum += sumOfSquares(prefix_.sums(places[i], places[i + 1]));
+        return sum;
     }
 
-    FtlsVectorizer<Scalar> ftls_;
+    FtlsIntervals<Scalar> intervals_;
+    std::vector<Cut> cuts_;
     std::vector<VectorizedLine> lines_;
     PrefixSums prefix_; // for the simplex only
-    std::vector<std::size_t> cuts_;
+    std::vector<std::size_t> places_;
     PolylineJoiner join_;
 };
 

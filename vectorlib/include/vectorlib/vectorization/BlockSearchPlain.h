@@ -1,0 +1,118 @@
+#pragma once
+
+#include "vectorlib/simd/Bits.h"
+#include "vectorlib/vectorization/BlockSums.h"
+#include "vectorlib/vectorization/Cut.h"
+
+#include <algorithm>
+
+/// The steps of BlockSearch; BlockSearchAvx2.h has the twins of those that test.
+namespace vectorlib::blocks {
+
+using Index = std::ptrdiff_t; // of points and rows: those in front of the first are negative
+
+/// The threshold test (see ThresholdTest) without a bound of the rounding. The signs of n and of the sums may
+/// all be changed: the interval may lie on either side of a cut.
+inline bool fits(double n, const SumRow &s, double variance) {
+    const double limit = n * variance;
+    const double a = n * (s.xx - limit) - s.x * s.x, b = n * (s.yy - limit) - s.y * s.y;
+    const double c = n * s.xy - s.x * s.y;
+    return !((b > 0) & (a * b > c * c));
+}
+
+/// The farthest bit that is set, or `none`.
+template <bool back>
+Index farthestBit(unsigned bits, Index none) {
+    return bits == 0 ? none : static_cast<Index>(back ? simd::lowestBit(bits) : simd::highestBit(bits));
+}
+/// Whether the search along the rows ends after these eight.
+template <std::size_t stride, bool back>
+bool isEnd(unsigned bits) {
+    return stride == 1 ? bits == 0 : !(bits & (back ? 1u : 0x80u));
+}
+/// How many points of a block that begins at `begin` fit anyway (ahead), or from which on (back): two always
+/// do.
+template <bool back>
+Index sureIn(Index begin, Index from) {
+    return std::clamp<Index>(back ? from - 2 - begin : from + 2 - begin, 0, BlockSums::block);
+}
+
+/// Bit i: whether the interval between a cut and row k + i of the table fits.
+template <std::size_t stride>
+unsigned fittingRows(const BlockSums &sums, Index k, const Cut &from, double variance) {
+    unsigned bits = 0;
+    for (Index i = 0; i < 8; ++i) {
+        const Index index = std::clamp<Index>((k + i) * Index(stride), 0, Index(sums.size()));
+        const double n = static_cast<double>(index - Index(from.index));
+        bits |= static_cast<unsigned>(fits(n, sums.table().row(k + i) - from.row, variance)) << i;
+    }
+    return bits;
+}
+
+/// Which of the points 0, 4, .., 28 of a block comes just before the end (ahead) or the begin (back) of an
+/// interval: by four, and bit i tells of point 4 i + 4. Ahead the whole block does not fit, back it does.
+template <bool back>
+Index chooseFour(unsigned bits, Index count, Index sure) {
+    if (back)
+        return std::min(farthestBit<true>(bits & 0x7f, 7), sure / 4);
+    return std::max(farthestBit<false>(bits & ((1u << ((count - 1) / 4)) - 1), -1) + 1, sure / 4);
+}
+/// How many points behind that: bit i tells of the (i + 1)-th.
+template <bool back>
+Index choosePoint(unsigned bits, Index four, Index count, Index sure) {
+    if (back)
+        return std::min(farthestBit<true>(bits & 7, 3) + 1, sure - 4 * four);
+    return std::max(
+        farthestBit<false>(bits & 7 & ((1u << std::min<Index>(count - 1 - 4 * four, 3)) - 1), -1) + 1,
+        sure - 4 * four);
+}
+
+/// From the border of block b into the block: ahead from its begin, or back from its end, which fits where
+/// the other end does not. Tests every fourth point, and then three between.
+template <bool back>
+Cut intoBlock(const BlockSums &sums, Index b, const Cut &from, double variance) {
+    const Index begin = b * Index(BlockSums::block), sure = sureIn<back>(begin, Index(from.index));
+    const Index count = std::min<Index>(Index(sums.size()) - begin, BlockSums::block);
+    SumRow rows[BlockSums::block + 1];
+    rows[0] = sums.table().row(b);
+    for (Index i = 0; i < Index(BlockSums::block); ++i) {
+        rows[i + 1] = rows[i];
+        if (i < count)
+            sums.addTo(rows[i + 1], static_cast<std::size_t>(begin + i));
+    }
+    const auto fitting = [&](Index first, Index step, int bits) {
+        unsigned result = 0;
+        for (int i = 0; i < bits; ++i) {
+            const Index in = first + i * step;
+            const double n = double(begin + in) - double(from.index);
+            result |= static_cast<unsigned>(fits(n, rows[in] - from.row, variance)) << i;
+        }
+        return result;
+    };
+    const Index four = chooseFour<back>(fitting(4, 4, 8), count, sure);
+    const Index in = 4 * four + choosePoint<back>(fitting(4 * four + 1, 1, 4), four, count, sure);
+    return {static_cast<std::size_t>(begin + in), rows[in]};
+}
+
+/// See BlockSearch.
+template <std::size_t stride, bool back>
+Cut farthest(const BlockSums &sums, const Cut &from, double variance) {
+    const Index at = Index(from.index), size = Index(stride), last = sums.lastRow();
+    const Index start = back ? (at + size - 1) / size : at / size;
+    Index good = stride > 1 ? start : start + (back ? -2 : 2);
+    for (Index k = back ? start - 8 : start + 1; back ? good > 0 && k > -8 : good < last && k <= last;
+         k += back ? -8 : 8) {
+        const unsigned bits = fittingRows<stride>(sums, k, from, variance);
+        const Index row = k + farthestBit<back>(bits, good - k);
+        good = back ? std::min(good, row) : std::max(good, row);
+        if (isEnd<stride, back>(bits))
+            break;
+    }
+    if (back ? good <= 0 : good >= last)
+        return back ? Cut{0, SumRow{}} : Cut{sums.size(), sums.table().row(last)};
+    if (stride > 1)
+        return intoBlock<back>(sums, back ? good - 1 : good, from, variance);
+    return {static_cast<std::size_t>(good), sums.table().row(good)};
+}
+
+} // namespace vectorlib::blocks

@@ -1,0 +1,122 @@
+#pragma once
+
+#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/vectorization/BreakPointErrors.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace vectorlib {
+
+/// Cuts a cluster of points into the longest intervals within a variance of their line; thesis 6.3.2. From
+/// both ends at once: the search for the next interval from the begin and that for the next from the end do
+/// not wait for each other, and reversed points give reversed intervals. No cut into intervals that fit needs
+/// fewer of them, as long as parts of what fits fit too. Every interval has two points, and fits, unless
+/// three points that do not fit are left. `Search` is PrefixSearch or BlockSearch.
+template <typename Search>
+class LongestIntervals {
+public:
+    Search search;
+
+    /// The cuts between the intervals, the begin and the end included. At least two points.
+    template <typename Scalar>
+    const std::vector<Cut> &operator()(PointSpan<Scalar> points, double variance) {
+        search.assign(points, variance);
+        cuts_.assign(1, search.at(0));
+        tail_.assign(1, search.at(points.size()));
+        for (;;) {
+            const Cut first = cuts_.back(), end = tail_.back();
+            const Cut ahead = search.ahead(first);
+            if (ahead.index >= end.index) {
+                if (search.fits(first, end))
+                    break; // one interval is left
+                cuts_.push_back(shorter(first, end));
+                continue;
+            }
+            const Cut back = search.back(end);
+            if (back.index > ahead.index) {
+                cuts_.push_back(ahead);
+                tail_.push_back(back);
+            } else if (cutBetween(first, back, ahead, end)) {
+                break;
+            } else if (back.index <= first.index || ahead.index - first.index >= end.index - back.index) {
+                cuts_.push_back(ahead);
+            } else {
+                tail_.push_back(back);
+            }
+        }
+        if (tail_.back().index - cuts_.back().index == 1)
+            giveSinglePoint();
+        cuts_.insert(cuts_.end(), tail_.rbegin(), tail_.rend());
+        return cuts_;
+    }
+
+private:
+    // Two intervals are left, which may meet anywhere from `back` to `ahead`: half way, where both fit. False
+    // when they do not: a part of an interval need not fit.
+    bool cutBetween(const Cut &first, const Cut &back, const Cut &ahead, const Cut &end) {
+        if (end.index - first.index < 4)
+            return true; // one interval
+        const std::size_t low = std::max(back.index, first.index + 2),
+                          high = std::min(ahead.index, end.index - 2);
+        const Cut half = better(first, search.at((low + high) / 2), search.at((low + high + 1) / 2), end);
+        const Cut edge = better(first, search.at(low), search.at(high), end);
+        for (const Cut &cut : {half, edge})
+            if (search.fits(first, cut) && search.fits(cut, end)) {
+                cuts_.push_back(cut);
+                return true;
+            }
+        return false;
+    }
+    // The end of an interval from `first` that fits, before `end`.
+    Cut shorter(const Cut &first, const Cut &end) const {
+        std::size_t index = end.index - 1;
+        while (index > first.index + 2 && !search.fits(first, search.at(index)))
+            --index;
+        return search.at(index);
+    }
+    // A single point between the intervals from both ends has no line: it takes a point from a neighbour that
+    // still fits, or joins it.
+    void giveSinglePoint() {
+        const Cut first = cuts_.back(), end = tail_.back();
+        const bool hasLeft = cuts_.size() > 1, hasRight = tail_.size() > 1;
+        const Cut left = hasLeft ? cuts_[cuts_.size() - 2] : first,
+                  right = hasRight ? tail_[tail_.size() - 2] : end;
+        const bool leftGives = first.index - left.index > 2, rightGives = right.index - end.index > 2;
+        const Cut less = leftGives ? search.at(first.index - 1) : first;
+        const Cut more = rightGives ? search.at(end.index + 1) : end;
+        const bool leftFits = leftGives && search.fits(left, less),
+                   rightFits = rightGives && search.fits(more, right);
+        // The neighbour that scatters more.
+        const bool leftIsWorse = leftGives && (!rightGives || squares(left, first) > squares(end, right));
+        if (leftFits && (leftIsWorse || !rightFits))
+            cuts_.back() = less;
+        else if (rightFits)
+            tail_.back() = more;
+        else if (hasLeft) {
+            cuts_.pop_back();
+            cutIntoPairs(left.index, end.index);
+        } else if (hasRight) {
+            tail_.pop_back();
+            cutIntoPairs(first.index, right.index);
+        }
+    }
+    // Pairs always fit; the last one is three points where the count is odd.
+    void cutIntoPairs(std::size_t first, std::size_t end) {
+        for (std::size_t i = first + 2; i + 2 <= end; i += 2)
+            cuts_.push_back(search.at(i));
+    }
+    static double squares(const Cut &first, const Cut &end) {
+        return sumOfSquares(double(end.index - first.index), end.row - first.row);
+    }
+    // Which of two places leaves less error.
+    static const Cut &better(const Cut &first, const Cut &a, const Cut &b, const Cut &end) {
+        if (a.index == b.index)
+            return a;
+        return squares(first, a) + squares(a, end) <= squares(first, b) + squares(b, end) ? a : b;
+    }
+
+    std::vector<Cut> cuts_, tail_;
+};
+
+} // namespace vectorlib
