@@ -83,6 +83,15 @@ void runFtls(const std::vector<Vector2D<Scalar>> &points, const VectorizerSettin
         FUZZ_REQUIRE(line.sums.n < 4 || line.sigma <= std::sqrt(settings.variance()) * (1 + 1e-6) + 1e-4);
 }
 
+/// As many as large clusters have, which are summed up by blocks.
+template <typename Scalar>
+std::vector<Vector2D<Scalar>> repeated(const std::vector<Vector2D<Scalar>> &points) {
+    std::vector<Vector2D<Scalar>> many;
+    while (!points.empty() && many.size() < 600)
+        many.insert(many.end(), points.begin(), points.end());
+    return many;
+}
+
 template <typename Scalar>
 void runAll(FuzzInput &in) {
     PointEliminationSettings settings;
@@ -99,8 +108,10 @@ void runAll(FuzzInput &in) {
         runOne<TlsVectorizer<Scalar>>(points, settings);
     } else if (algorithm == 1) {
         runFtls(points, settings);
+        runOne<FtlsVectorizer<Scalar>>(repeated(points), settings);
     } else if (algorithm == 2) {
         runOne<AftlsVectorizer<Scalar>>(points, settings);
+        runOne<AftlsVectorizer<Scalar>>(repeated(points), settings);
     } else if (algorithm == 3) {
         AftlsVectorizer<Scalar> aftls;
         aftls.search = AftlsVectorizer<Scalar>::Search::NelderMead;

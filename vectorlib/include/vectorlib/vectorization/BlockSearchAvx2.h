@@ -107,7 +107,7 @@ VECTORLIB_AVX2 VECTORLIB_INLINE Cut intoBlockAvx2(const BlockSums &sums, Index b
     };
     const unsigned fours = fittingAvx2(four(1), variance) | fittingAvx2(four(5), variance) << 4;
     const Index count = std::min<Index>(Index(sums.size()) - begin, BlockSums::block);
-    const Index sure = sureIn<back>(begin, Index(from.index));
+    const Index sure = sureIn<back>(begin, count, Index(from.index));
     const Index g = chooseFour<back>(fours, count, sure);
     // The four points from there on, one after the other.
     const __m128 i = _mm_loadu_ps(p + 8 * g), j = _mm_loadu_ps(p + 8 * g + 4);
@@ -150,7 +150,8 @@ VECTORLIB_AVX2 Cut farthestAvx2(const BlockSums &sums, const Cut &from, double v
     if (back ? good <= 0 : good >= last)
         return back ? Cut{0, SumRow{}} : Cut{sums.size(), sums.table().row(last)};
     if (stride > 1)
-        return intoBlockAvx2<back>(sums, back ? good - 1 : good, from, variance);
+        return atLeastTwo<back>(sums, from,
+                                intoBlockAvx2<back>(sums, back ? good - 1 : good, from, variance));
     return {static_cast<std::size_t>(good), sums.table().row(good)};
 }
 

@@ -30,11 +30,20 @@ template <std::size_t stride, bool back>
 bool isEnd(unsigned bits) {
     return stride == 1 ? bits == 0 : !(bits & (back ? 1u : 0x80u));
 }
-/// How many points of a block that begins at `begin` fit anyway (ahead), or from which on (back): two always
-/// do.
+/// How many of the `count` points of a block that begins at `begin` fit anyway (ahead), or from which on
+/// (back): two always do.
 template <bool back>
-Index sureIn(Index begin, Index from) {
-    return std::clamp<Index>(back ? from - 2 - begin : from + 2 - begin, 0, BlockSums::block);
+Index sureIn(Index begin, Index count, Index from) {
+    return back ? std::clamp<Index>(from - 2 - begin, 0, count)
+                : std::clamp<Index>(from + 2 - begin, 0, count - 1);
+}
+/// The end that was found, or two points where there are numbers so large that no test tells.
+template <bool back>
+Cut atLeastTwo(const BlockSums &sums, const Cut &from, const Cut &found) {
+    const std::size_t two =
+        back ? from.index - std::min<std::size_t>(from.index, 2) : std::min(from.index + 2, sums.size());
+    const bool enough = back ? found.index <= two : found.index >= two;
+    return enough ? found : Cut{two, sums.row(two)};
 }
 
 /// Bit i: whether the interval between a cut and row k + i of the table fits.
@@ -71,8 +80,9 @@ Index choosePoint(unsigned bits, Index four, Index count, Index sure) {
 /// the other end does not. Tests every fourth point, and then three between.
 template <bool back>
 Cut intoBlock(const BlockSums &sums, Index b, const Cut &from, double variance) {
-    const Index begin = b * Index(BlockSums::block), sure = sureIn<back>(begin, Index(from.index));
+    const Index begin = b * Index(BlockSums::block);
     const Index count = std::min<Index>(Index(sums.size()) - begin, BlockSums::block);
+    const Index sure = sureIn<back>(begin, count, Index(from.index));
     SumRow rows[BlockSums::block + 1];
     rows[0] = sums.table().row(b);
     for (Index i = 0; i < Index(BlockSums::block); ++i) {
@@ -111,7 +121,7 @@ Cut farthest(const BlockSums &sums, const Cut &from, double variance) {
     if (back ? good <= 0 : good >= last)
         return back ? Cut{0, SumRow{}} : Cut{sums.size(), sums.table().row(last)};
     if (stride > 1)
-        return intoBlock<back>(sums, back ? good - 1 : good, from, variance);
+        return atLeastTwo<back>(sums, from, intoBlock<back>(sums, back ? good - 1 : good, from, variance));
     return {static_cast<std::size_t>(good), sums.table().row(good)};
 }
 
