@@ -93,7 +93,7 @@ Result<void> Drive::accept(quint64 client, const WheelValues &target, double age
         return renewed;
     target_ = target;
     haltReason_.clear();
-    watchdog_.feed(now);
+    watchdog_.feed(now - std::max(0.0, age_s)); // time on the way counts
     return {};
 }
 

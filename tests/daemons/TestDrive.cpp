@@ -248,6 +248,8 @@ void TestDrive::notReadyRefusesAndRecovers() {
 void TestDrive::oldCommandsAreRefused() {
     QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
     QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0.2, 0).ok());
+    QVERIFY(drive_.step(0.04) != still);
+    QCOMPARE(drive_.step(0.06), still); // 0.26 s after it was made
     QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0.25, 0)).is(ErrorCode::NotReady));
     QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, -0.25, 0)).is(ErrorCode::NotReady));
     QVERIFY(refusal(drive_.driveTwist(anna, {0.5, 0, 0}, notANumber, 0)).is(ErrorCode::NotReady));

@@ -28,7 +28,7 @@ def call(method, **params):
 call("control.acquire", timeout_s=10)
 while True:
     print(time.monotonic(), flush=True)
-    call("motor.drive", vx=0.5)
+    call("motor.drive", vx=0.5, stamp=time.time())
     time.sleep(0.05)
 )";
 
