@@ -1,15 +1,10 @@
 #pragma once
 
+#include "common/Twist.h"
+
 #include <array>
 
 namespace hermes {
-
-/// Velocity of the robot in its own frame: x forward, y left (m/s), omega counter-clockwise (rad/s).
-struct Twist {
-    double vx = 0;
-    double vy = 0;
-    double omega = 0;
-};
 
 /// Position (m) and heading (rad, in (-pi, pi]) in the frame of the odometry.
 struct Pose {

@@ -1,18 +1,12 @@
 #pragma once
 
+#include "common/Twist.h"
 #include "common/world/World.h"
 #include "vectorlib/geometry/Pose2D.h"
 
 #include <vector>
 
 namespace hermes {
-
-/// Speeds in the robot's own frame; m/s and rad/s.
-struct Twist {
-    double vx = 0;
-    double vy = 0;
-    double omega = 0;
-};
 
 /// A smooth path through poses: Catmull-Rom curves of position and of heading. Progress along it counts
 /// seconds at full speed, so that moving one second a second keeps to the limits of speed and turn rate

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "daemons/simulator/PosePath.h"
+#include "common/Twist.h"
 #include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Pose2D.h"
 
 #include <array>
 #include <vector>
