@@ -1,0 +1,225 @@
+// What emulated controllers do with their motors, wheels and battery.
+#include "RoboClawClient.h"
+
+using namespace hermes;
+
+class TestEmulatedMotors : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void speedFollowsTheRamp();
+    void emergencyDecelerationStopsInTime();
+    void dutyTurnsTheMotor();
+    void distancesAreDriven();
+    void silenceStopsTheMotors();
+    void encodersWrap();
+    void batteryDrains();
+    void lowBatteryCutsTheMotors();
+    void blockedWheelDrawsCurrent();
+    void brokenEncoderStandsStill();
+    void emergencyStopHolds();
+    void slipShortensTheWay();
+};
+
+void TestEmulatedMotors::speedFollowsTheRamp() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    QVERIFY(client.speeds(0x80, 40000, -20000, 40000));
+    pass(drivetrain, 0.5);
+    const double half = drivetrain.controller(0).channel(0).speed();
+    QVERIFY2(std::abs(half - 20000) < 1500, qPrintable(QString::number(half)));
+    pass(drivetrain, 1.5);
+    QVERIFY(std::abs(drivetrain.controller(0).channel(0).speed() - 40000) < 400);
+    QVERIFY(std::abs(drivetrain.controller(0).channel(1).speed() + 20000) < 200);
+    const QByteArray speed = client.read(0x80, 19);
+    QVERIFY(std::abs(RoboClawClient::integer(speed, 0, 4) + 20000) < 200);
+    QCOMPARE(int(speed[4]), 1);
+    QVERIFY(std::abs(client.count(0x80, 0) - 60000) < 3000); // 0.5 v t + v t
+    QVERIFY(client.write(0x80, 37, RoboClawClient::number(500000, 4) + RoboClawClient::number(0, 4)));
+    pass(drivetrain, 1);
+    QVERIFY(drivetrain.controller(0).channel(0).speed() < 151000); // QPPS
+    QCOMPARE(drivetrain.controller(0).channel(1).speed(), 0.0);
+}
+
+void TestEmulatedMotors::emergencyDecelerationStopsInTime() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    const int fast = 60479, slowing = 241916; // 1 m/s and 4 m/s^2 with wheels of 0.1 m
+    QVERIFY(client.speeds(0x80, fast, fast, slowing));
+    QVERIFY(client.speeds(0x81, fast, fast, slowing));
+    pass(drivetrain, 2);
+    QVERIFY(client.speeds(0x80, 0, 0, slowing));
+    QVERIFY(client.speeds(0x81, 0, 0, slowing));
+    double standing = 0;
+    for (; drivetrain.isMoving() && standing < 1; standing += 0.001)
+        drivetrain.advance(0.001);
+    QVERIFY2(standing > 0.24 && standing < 0.25 + 0.05, qPrintable(QString::number(standing)));
+}
+
+void TestEmulatedMotors::dutyTurnsTheMotor() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    QVERIFY(client.write(0x80, 34, RoboClawClient::number(16384, 2) + RoboClawClient::number(-16384, 2)));
+    pass(drivetrain, 0.5);
+    const double expected = 80000 * drivetrain.battery().voltage() / 24;
+    QVERIFY(std::abs(drivetrain.controller(0).channel(0).speed() - expected) < 100);
+    QVERIFY(std::abs(drivetrain.controller(0).channel(1).speed() + expected) < 100);
+    QCOMPARE(client.read(0x80, 48), RoboClawClient::number(16384, 2) + RoboClawClient::number(-16384, 2));
+    QVERIFY(client.write(0x80, 6, RoboClawClient::number(64, 1)));
+    QVERIFY(client.write(0x80, 4, RoboClawClient::number(0, 1)));
+    pass(drivetrain, 0.5);
+    QVERIFY(!drivetrain.isMoving());
+}
+
+void TestEmulatedMotors::distancesAreDriven() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    const auto move = [&](int speed, int distance, int buffer) {
+        return client.write(0x80, 41,
+                            RoboClawClient::number(speed, 4) + RoboClawClient::number(distance, 4) +
+                                RoboClawClient::number(buffer, 1));
+    };
+    QVERIFY(move(20000, 10000, 0));
+    QVERIFY(move(-10000, 5000, 0));
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("0180"));
+    pass(drivetrain, 0.7);
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("0080"));
+    pass(drivetrain, 1);
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("8080"));
+    QVERIFY(std::abs(client.count(0x80, 0) - 5000) < 1500);
+    QVERIFY(!drivetrain.isMoving());
+    for (int i = 0; i < 100; ++i)
+        QVERIFY(move(1000, 100000, 0));
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("4080")); // 64 at most
+    QVERIFY(move(0, 0, 1));
+    pass(drivetrain, 0.5);
+    QVERIFY(!drivetrain.isMoving());
+}
+
+void TestEmulatedMotors::silenceStopsTheMotors() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    QVERIFY(client.write(0x80, 14, RoboClawClient::number(2, 1)));
+    QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
+    for (int i = 0; i < 10; ++i) {
+        pass(drivetrain, 0.1);
+        client.read(0x80, 24); // any byte keeps it going
+    }
+    QVERIFY(drivetrain.controller(0).channel(0).speed() > 29000);
+    pass(drivetrain, 0.19);
+    QVERIFY(drivetrain.controller(0).channel(0).speed() > 29000);
+    QCOMPARE(drivetrain.controller(0).counts().timeouts, std::uint64_t(0));
+    pass(drivetrain, 0.2);
+    QVERIFY(!drivetrain.isMoving());
+    QCOMPARE(drivetrain.controller(0).counts().timeouts, std::uint64_t(1));
+    client.read(0x80, 24);
+    pass(drivetrain, 0.1);
+    QVERIFY(!drivetrain.isMoving()); // it does not go on by itself
+}
+
+void TestEmulatedMotors::encodersWrap() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    QVERIFY(client.write(0x80, 22, RoboClawClient::number(-5, 4)));
+    QCOMPARE(client.read(0x80, 16).left(4).toHex(), QByteArray("fffffffb"));
+    setQpps(client, 150000);
+    QVERIFY(client.speeds(0x80, 10000, 0, 1000000));
+    pass(drivetrain, 0.1);
+    QVERIFY(client.count(0x80, 0) > 0);
+    QVERIFY(client.write(0x80, 20));
+    QVERIFY(client.count(0x80, 0) == 0 && client.count(0x80, 1) == 0);
+}
+
+void TestEmulatedMotors::batteryDrains() {
+    Drivetrain::Options options;
+    options.battery.capacity_Ah = 0.01;
+    Drivetrain drivetrain(options);
+    RoboClawClient client(drivetrain);
+    pass(drivetrain, 1);
+    const auto before = RoboClawClient::integer(client.read(0x80, 24), 0, 2);
+    QVERIFY(client.write(0x80, 34, RoboClawClient::number(20000, 2) + RoboClawClient::number(20000, 2)));
+    pass(drivetrain, 20);
+    const auto after = RoboClawClient::integer(client.read(0x80, 24), 0, 2);
+    QVERIFY2(after < before - 10, qPrintable(QString("%1 %2").arg(before).arg(after)));
+    QVERIFY(drivetrain.battery().charge() < 0.7);
+}
+
+void TestEmulatedMotors::lowBatteryCutsTheMotors() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    QVERIFY(client.write(0x80, 57, RoboClawClient::number(210, 2) + RoboClawClient::number(340, 2)));
+    QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
+    pass(drivetrain, 0.5);
+    drivetrain.battery().setCharge(0);
+    pass(drivetrain, 5);
+    QVERIFY(RoboClawClient::integer(client.read(0x80, 90), 0, 4) & 0x4000);
+    QVERIFY(drivetrain.controller(0).channel(0).speed() < 1000); // rolled out
+    QCOMPARE(drivetrain.controller(0).channel(0).current(), 0.0);
+}
+
+void TestEmulatedMotors::blockedWheelDrawsCurrent() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    QVERIFY(client.speeds(0x80, 60000, 60000, 300000));
+    pass(drivetrain, 1);
+    const double free = drivetrain.controller(0).channel(0).current();
+    drivetrain.controller(0).channel(0).setBlocked(true);
+    pass(drivetrain, 1);
+    QCOMPARE(drivetrain.controller(0).channel(0).speed(), 0.0);
+    const QByteArray currents = client.read(0x80, 49);
+    QVERIFY(RoboClawClient::integer(currents, 0, 2) > 1500 && free < 2);
+    QVERIFY(RoboClawClient::integer(currents, 2, 2) < 200);
+    QVERIFY(client.write(0x80, 133, RoboClawClient::number(1000, 4) + RoboClawClient::number(0, 4)));
+    pass(drivetrain, 0.1);
+    QCOMPARE(RoboClawClient::integer(client.read(0x80, 49), 0, 2), std::int64_t(1000));
+    QVERIFY(RoboClawClient::integer(client.read(0x80, 90), 0, 4) & 0x10000);
+    pass(drivetrain, 30);
+    QVERIFY(RoboClawClient::integer(client.read(0x80, 82), 0, 2) > 255);
+}
+
+void TestEmulatedMotors::brokenEncoderStandsStill() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    drivetrain.wheel(0).setEncoderBroken(true);
+    QVERIFY(client.speeds(0x80, 10000, 10000, 300000));
+    pass(drivetrain, 1);
+    QCOMPARE(client.count(0x80, 0), std::int64_t(0));
+    QVERIFY(client.count(0x80, 1) > 8000);
+    QVERIFY(drivetrain.controller(0).channel(0).speed() > 15000); // the control sees no motion and pushes
+}
+
+void TestEmulatedMotors::emergencyStopHolds() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    QVERIFY(client.speeds(0x80, 10000, 10000, 300000));
+    pass(drivetrain, 0.5);
+    drivetrain.controller(0).faults().status = roboclaw::EmergencyStop;
+    pass(drivetrain, 0.3);
+    QVERIFY(!drivetrain.isMoving());
+    QVERIFY(client.speeds(0x80, 10000, 10000, 300000)); // acknowledged, not obeyed
+    pass(drivetrain, 0.3);
+    QVERIFY(!drivetrain.isMoving());
+}
+
+void TestEmulatedMotors::slipShortensTheWay() {
+    Drivetrain::Options options;
+    options.slip = 0.2;
+    Drivetrain drivetrain(options);
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    QVERIFY(client.speeds(0x80, 30000, 30000, 300000));
+    QVERIFY(client.speeds(0x81, 30000, 30000, 300000));
+    pass(drivetrain, 2);
+    const double rim = 30000 / 38000.0 * 2 * M_PI * 0.1;
+    QVERIFY(std::abs(drivetrain.advance(0.001).vx - 0.8 * rim) < 0.01 * rim);
+}
+
+QTEST_GUILESS_MAIN(TestEmulatedMotors)
+#include "TestEmulatedMotors.moc"
