@@ -79,13 +79,20 @@ protected:
         return {};
     }
 
+    /// Waits until the drive loop went round so many times more: what was asked has then had its effect.
+    void passCycles(int count) {
+        const auto cycles = [this] { return state()["cycle"].toObject()["cycles"].toInt(); };
+        const int end = cycles() + count;
+        QTRY_VERIFY(cycles() >= end);
+    }
+
     /// Sends drive commands at 20 Hz for so long.
     void drive(const QJsonObject &twist, double seconds) {
         const double end = RoboClawRig::now() + seconds;
         while (RoboClawRig::now() < end) {
             const QJsonObject reply = call("motor.drive", twist);
             QVERIFY2(!reply.contains("failed"), qPrintable(reply["failed"].toString()));
-            QTest::qWait(50);
+            QTest::qWait(50); // the pace of a client
         }
     }
 

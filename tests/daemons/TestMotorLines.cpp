@@ -16,6 +16,7 @@ namespace {
 
 /// The host's and the device's end of a serial line, with true bytes between them.
 struct Robot {
+    QTemporaryDir folder;
     Drivetrain drivetrain;
     MotorLines lines{[this](int line, const QByteArray &bytes, double now) {
         return drivetrain.receive(line, reinterpret_cast<const std::uint8_t *>(bytes.constData()),
@@ -25,7 +26,11 @@ struct Robot {
     std::unique_ptr<SerialInterface> serial;
     QTimer timer;
 
-    void connectTo(const QString &device) {
+    /// Opens both ends; false when one fails.
+    bool connectEnds() {
+        const QString device = folder.filePath("motors");
+        if (!lines.open({device}))
+            return false;
         serial = std::make_unique<SerialInterface>(*InterfaceUrl::parse("serial://" + device), nullptr);
         serial->setReconnecting(true);
         QObject::connect(serial.get(), &Interface::opened, [this] { bus.setOpen(true); });
@@ -39,6 +44,7 @@ struct Robot {
         QObject::connect(&timer, &QTimer::timeout, [this] { pump(); });
         timer.start(1);
         serial->open();
+        return serial->isOpen();
     }
     void pump() {
         while (const Bytes *bytes = bus.poll(monotonicNow()))
@@ -103,11 +109,8 @@ private Q_SLOTS:
 };
 
 void TestMotorLines::answersOnThePseudoTerminal() {
-    QTemporaryDir folder;
     Robot robot;
-    QVERIFY(robot.lines.open({folder.filePath("motors")}));
-    robot.connectTo(folder.filePath("motors"));
-    QVERIFY(robot.serial->isOpen());
+    QVERIFY(robot.connectEnds());
     const auto version = robot.ask(0x80, Command::ReadVersion);
     QCOMPARE(version.result, Bus::Result::Done);
     QCOMPARE(QByteArray(version.reply.text.data()), QByteArray("RoboClaw 2x45A v4.2.8"));
@@ -125,23 +128,18 @@ void TestMotorLines::answersOnThePseudoTerminal() {
 }
 
 void TestMotorLines::slowAnswersAreRepeated() {
-    QTemporaryDir folder;
     Robot robot;
-    QVERIFY(robot.lines.open({folder.filePath("motors")}));
-    robot.connectTo(folder.filePath("motors"));
+    QVERIFY(robot.connectEnds());
     robot.drivetrain.controller(0).faults().delay = 0.2;
     QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::TimedOut);
     robot.drivetrain.controller(0).faults().delay = 0;
-    QTest::qWait(300); // the late answers come, and are nobody's
-    QVERIFY(robot.bus.strayBytes() > 0);
+    QTRY_COMPARE(int(robot.bus.strayBytes()), 3 * 4); // the late answers come, and are nobody's
     QCOMPARE(robot.ask(0x80, Command::ReadMainBattery).result, Bus::Result::Done);
 }
 
 void TestMotorLines::damagedAnswersAreRepeated() {
-    QTemporaryDir folder;
     Robot robot;
-    QVERIFY(robot.lines.open({folder.filePath("motors")}));
-    robot.connectTo(folder.filePath("motors"));
+    QVERIFY(robot.connectEnds());
     robot.drivetrain.controller(0).faults().corrupt = 0.2;
     int done = 0;
     for (int i = 0; i < 50; ++i)
@@ -151,10 +149,8 @@ void TestMotorLines::damagedAnswersAreRepeated() {
 }
 
 void TestMotorLines::pulledLineIsFoundAgain() {
-    QTemporaryDir folder;
     Robot robot;
-    QVERIFY(robot.lines.open({folder.filePath("motors")}));
-    robot.connectTo(folder.filePath("motors"));
+    QVERIFY(robot.connectEnds());
     QCOMPARE(robot.ask(0x80, Command::SetEncoderM1, {1234}).result, Bus::Result::Done);
     robot.lines.setPulled(0, true);
     QCOMPARE(robot.ask(0x80, Command::ReadEncoders).result, Bus::Result::LineClosed);
