@@ -78,9 +78,12 @@ Result<void> Drive::mayMove(double age_s) const {
     if (!notReady_.isEmpty())
         return Error(ErrorCode::DeviceFault, notReady_);
     if (!(std::abs(age_s) < settings_.commandTimeout_s))
-        return Error(ErrorCode::NotReady, QString("the command is %1 s old, at most %2 s are allowed")
-                                              .arg(age_s)
-                                              .arg(settings_.commandTimeout_s));
+        return Error(ErrorCode::NotReady,
+                     QString("the command was made %1 s %2, expected less than %3 s from now: it "
+                             "is late, or the clocks disagree")
+                         .arg(std::abs(age_s))
+                         .arg(age_s < 0 ? "from now" : "ago")
+                         .arg(settings_.commandTimeout_s));
     return {};
 }
 

@@ -278,7 +278,8 @@ void Simulator::updateHealth() {
                              {"skipped", double(counts.skipped)},
                              {"send_errors", double(counts.sendErrors)}};
     if (worldPath_.isEmpty())
-        health().set(healthItem, HealthLevel::Ok, "no world is loaded; nothing is sent", values);
+        health().set(healthItem, HealthLevel::Ok,
+                     "no world is loaded; nothing is sent, and the motors are without power", values);
     else if (counts.sendErrors > 0 || counts.skipped > 0)
         health().set(healthItem, HealthLevel::Warn, "packets could not be sent, or not in time", values);
     else if (fault.kind != LidarFault::Kind::None)
