@@ -8,11 +8,10 @@
 
 namespace vectorlib {
 
-/// Cuts a cluster of points into the longest intervals within a variance of their line; thesis 6.3.2. From
-/// both ends at once: the search for the next interval from the begin and that for the next from the end do
-/// not wait for each other, and reversed points give reversed intervals. No cut into intervals that fit needs
-/// fewer of them, as long as parts of what fits fit too. Every interval has two points, and fits, unless
-/// three points that do not fit are left. `Search` is PrefixSearch or BlockSearch.
+/// Cuts a cluster of points into the longest intervals within a variance of their line (thesis 6.3.2), from
+/// both ends, so that reversed points give reversed intervals. No cut into intervals that fit needs fewer of
+/// them, as long as parts of what fits fit too. Every interval has two points, and fits, unless three points
+/// that do not fit are left. `Search` is PrefixSearch or BlockSearch.
 template <typename Search>
 class LongestIntervals {
 public:

@@ -37,16 +37,10 @@ public:
                                   b.xy - a.xy, b.yy - a.yy, origin_);
     }
 
-    /// Whether points first .. end - 1 lie within sigma of their line; like fitsWithin(), but multiplied
-    /// through by the count, so that the search makes no division.
+    /// Whether points first .. end - 1 lie within the root of `variance` of their line.
     bool fitWithin(std::size_t first, std::size_t end, double variance) const {
-        const SumRow &a = rows_[first], &b = rows_[end];
-        const double n = static_cast<double>(end - first), x = b.x - a.x, y = b.y - a.y;
-        const double limit = n * n * variance;
-        const double xx = n * (b.xx - a.xx) - x * x - limit;
-        const double yy = n * (b.yy - a.yy) - y * y - limit;
-        const double xy = n * (b.xy - a.xy) - x * y;
-        return !(xx > 0 && yy > 0 && xx * yy > xy * xy);
+        return ThresholdTest(static_cast<double>(end - first), rows_[end] - rows_[first], variance, 0, 0)
+            .fits();
     }
 
 private:
