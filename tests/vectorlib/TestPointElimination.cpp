@@ -1,22 +1,6 @@
 #include "Vectorizers.h"
 
-#include <cstdlib>
-#include <new>
-
-// Every allocation of the program is counted.
-static std::size_t allocations = 0;
-void *operator new(std::size_t size) {
-    ++allocations;
-    if (void *memory = std::malloc(size))
-        return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void *memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void *memory, std::size_t) noexcept {
-    std::free(memory);
-}
+#include "tests/support/AllocationCounter.h"
 
 using namespace vectorlib;
 using Points = Algorithm::Points;

@@ -1,28 +1,13 @@
 #include <vectorlib/mapping/ScanPairMatcher.h>
 
+#include "tests/support/AllocationCounter.h"
+
 #include <QtTest>
 
-#include <cstdlib>
-#include <new>
 #include <random>
 
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;
-
-static std::size_t allocations = 0;
-
-void *operator new(std::size_t size) {
-    ++allocations;
-    if (void *memory = std::malloc(size))
-        return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void *memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void *memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 namespace {
 

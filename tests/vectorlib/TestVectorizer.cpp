@@ -1,26 +1,11 @@
 #include <vectorlib/vectorization/FtlsVectorizer.h>
 #include <vectorlib/vectorization/TlsVectorizer.h>
 
+#include "tests/support/AllocationCounter.h"
+
 #include <QtTest>
 
-#include <cstdlib>
-#include <new>
 #include <random>
-
-// Every allocation of the program is counted.
-static std::size_t allocations = 0;
-void *operator new(std::size_t size) {
-    ++allocations;
-    if (void *memory = std::malloc(size))
-        return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void *memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void *memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 using namespace vectorlib;
 using Points = std::vector<Vector2D<float>>;

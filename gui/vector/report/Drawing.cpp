@@ -1,6 +1,6 @@
 #include "gui/vector/report/Drawing.h"
 
-#include "vectorlib/io/Number.h"
+#include "vectorlib/io/Svg.h"
 
 #include <algorithm>
 
@@ -158,8 +158,8 @@ void writeSvgLegend(std::ostream &out, const std::vector<const Ink *> &inks, dou
                 << (ink->dashed ? " stroke-dasharray=\"4 3\"" : "") << " d=\"M" << Fixed{x, 1} << ' '
                 << Fixed{y - 4, 1} << (ink->kind == Ink::Kind::Dots ? "h0m8 0h0m8 0h0m8 0h0" : "h26")
                 << "\"/>";
-        out << "<text x=\"" << Fixed{x + 34, 1} << "\" y=\"" << Fixed{y, 1} << "\">" << xmlText(ink->label)
-            << "</text>\n";
+        out << "<text x=\"" << Fixed{x + 34, 1} << "\" y=\"" << Fixed{y, 1} << "\">"
+            << vectorlib::xmlText(ink->label) << "</text>\n";
         x += 60 + 6.2 * static_cast<double>(ink->label.size());
     }
 }
@@ -177,20 +177,6 @@ std::string latexText(const std::string &text) {
             result += ' ';
         else
             result += c;
-    return result;
-}
-
-std::string xmlText(const std::string &text) {
-    std::string result;
-    for (const char c : text)
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '>')
-            result += "&gt;";
-        else
-            result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
     return result;
 }
 

@@ -57,8 +57,7 @@ void defineColours(std::ostream &out, const std::vector<const Ink *> &inks);
 void writeTikzLegend(std::ostream &out, const std::vector<const Ink *> &inks);
 void writeSvgLegend(std::ostream &out, const std::vector<const Ink *> &inks, double x, double y);
 
-/// Text as it must be written in LaTeX and in XML.
+/// Text as it must be written in LaTeX.
 std::string latexText(const std::string &text);
-std::string xmlText(const std::string &text);
 
 } // namespace hermes

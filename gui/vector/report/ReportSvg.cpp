@@ -1,10 +1,11 @@
 #include "gui/vector/report/Report.h"
 
-#include "vectorlib/io/Number.h"
+#include "vectorlib/io/Svg.h"
 
 namespace hermes {
 
 using vectorlib::Fixed;
+using vectorlib::xmlText;
 
 namespace {
 

@@ -25,6 +25,21 @@ inline const char *distinct(std::size_t i) {
 }
 } // namespace colour
 
+/// Text as it must be written between the tags of XML.
+inline std::string xmlText(const std::string &text) {
+    std::string result;
+    for (const char c : text)
+        if (c == '&')
+            result += "&amp;";
+        else if (c == '<')
+            result += "&lt;";
+        else if (c == '>')
+            result += "&gt;";
+        else
+            result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    return result;
+}
+
 /// A picture of things in the plane: layers over a grid in metres, with scale bar and legend. The y axis
 /// points up. Things that are not finite are left out.
 class SvgPicture {
@@ -196,7 +211,7 @@ private:
         return rows;
     }
     void writeLegend(std::ostream &out) const {
-        out << "<text x=\"" << left << "\" y=\"22\" font-size=\"15\" font-weight=\"bold\">" << escaped(title_)
+        out << "<text x=\"" << left << "\" y=\"22\" font-size=\"15\" font-weight=\"bold\">" << xmlText(title_)
             << "</text>\n";
         double y = 40;
         for (const Layer &layer : layers_) {
@@ -211,22 +226,9 @@ private:
                     << Fixed{y - 4, 1} << (layer.kind == Kind::Points ? "h0m8 0h0m8 0h0m8 0h0" : "h26")
                     << "\"/>";
             out << "<text x=\"" << left + 36 << "\" y=\"" << Fixed{y, 1} << "\">"
-                << escaped(layer.style.label) << "</text>\n";
+                << xmlText(layer.style.label) << "</text>\n";
             y += rowHeight;
         }
-    }
-    static std::string escaped(const std::string &text) {
-        std::string result;
-        for (const char c : text)
-            if (c == '&')
-                result += "&amp;";
-            else if (c == '<')
-                result += "&lt;";
-            else if (c == '>')
-                result += "&gt;";
-            else
-                result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-        return result;
     }
 
     std::string title_;
