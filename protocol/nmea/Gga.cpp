@@ -1,0 +1,58 @@
+#include "protocol/nmea/Gga.h"
+
+namespace hermes::nmea {
+
+namespace {
+
+constexpr double mostMetres = 1e6;
+constexpr double mostHdop = 9999;
+constexpr double mostAge_s = 1e6;
+constexpr int mostSatellites = 999;
+constexpr int mostStation = 9999;
+constexpr int leastFields = 9; // up to the altitude
+
+std::optional<int> wholeNumber(FieldReader &read, int field, int most, const char *expected) {
+    const std::optional<double> value = read.number(field, 0, most, expected);
+    if (!value)
+        return std::nullopt;
+    if (*value != int(*value))
+        read.fail(field, expected);
+    return int(*value);
+}
+
+} // namespace
+
+FieldFault decode(const Sentence &sentence, Gga &gga) {
+    if (sentence.type() != "GGA" || sentence.fieldCount() < leastFields)
+        return {0, "GGA with 9 fields or more"};
+    FieldReader read(sentence);
+    gga = Gga();
+    gga.time = read.time(1);
+    gga.position = read.position(2);
+    gga.quality = wholeNumber(read, 6, 9, "the quality, 0 to 9").value_or(0);
+    gga.satellites = wholeNumber(read, 7, mostSatellites, "a number of satellites");
+    gga.hdop = read.number(8, 0, mostHdop, "an HDOP from 0 to 9999");
+    gga.altitude = read.number(9, -mostMetres, mostMetres, "an altitude in metres");
+    gga.separation = read.number(11, -mostMetres, mostMetres, "a geoid separation in metres");
+    gga.age_s = read.number(13, 0, mostAge_s, "an age in seconds");
+    gga.station = wholeNumber(read, 14, mostStation, "a station, 0 to 9999");
+    return read.fault();
+}
+
+std::optional<SentenceText> encode(const Gga &gga, std::string_view talker, const Decimals &decimals) {
+    FieldWriter write(talker, "GGA");
+    write.time(gga.time, decimals.seconds);
+    write.position(gga.position, decimals.minutes);
+    write.number(gga.quality, 1, 0, 0, 9);
+    write.number(gga.satellites, 2, 0, 0, mostSatellites);
+    write.number(gga.hdop, 0, 1, 0, mostHdop);
+    write.number(gga.altitude, 0, 1, -mostMetres, mostMetres);
+    write.letter('M');
+    write.number(gga.separation, 0, 1, -mostMetres, mostMetres);
+    write.letter('M');
+    write.number(gga.age_s, 0, 1, 0, mostAge_s);
+    write.number(gga.station, 4, 0, 0, mostStation);
+    return write.finish();
+}
+
+} // namespace hermes::nmea

@@ -1,0 +1,410 @@
+#include "protocol/nmea/Gga.h"
+#include "protocol/nmea/Rmc.h"
+#include "protocol/nmea/SentenceParser.h"
+#include "tests/support/AllocationCounter.h"
+
+#include <QtTest>
+#include <cmath>
+#include <limits>
+
+using namespace hermes::nmea;
+
+namespace {
+
+const QByteArray realRmc("$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*05\r\n");
+const QByteArray usualGga("$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n");
+
+QByteArray toBytes(std::string_view text) {
+    return QByteArray(text.data(), int(text.size()));
+}
+
+/// The sentence with its checksum put right.
+QByteArray summed(const QByteArray &body) {
+    const auto sum = checksum({body.constData(), std::size_t(body.size())});
+    return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0') + "\r\n";
+}
+
+/// The bodies of the sentences in the bytes.
+QList<QByteArray> sentencesOf(SentenceParser &parser, const QByteArray &bytes) {
+    QList<QByteArray> bodies;
+    for (const char byte : bytes) {
+        if (parser.feed(byte) == SentenceParser::Result::Done)
+            bodies.append(toBytes(parser.sentence().body()));
+    }
+    return bodies;
+}
+
+template <typename Message>
+FieldFault decodeText(const QByteArray &text, Message &message) {
+    SentenceParser parser;
+    for (const char byte : text) {
+        if (parser.feed(byte) == SentenceParser::Result::Done)
+            return decode(parser.sentence(), message);
+    }
+    return {-1, "a sentence"};
+}
+
+template <typename Message>
+QByteArray encoded(const Message &message, const Decimals &decimals = {}) {
+    const auto text = encode(message, "GP", decimals);
+    return text ? toBytes(text->view()) : QByteArray();
+}
+
+} // namespace
+
+/// The worked sentences are those of the published field lists; the first RMC comes from a real receiver.
+class TestNmea : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void findsSentences_data();
+    void findsSentences();
+    void countsWhatItDrops();
+    void isInStepWhereverItBegins();
+    void withoutChecksumOnlyWhenLenient();
+    void splitsFields();
+    void workedRmcIsReadAndWritten_data();
+    void workedRmcIsReadAndWritten();
+    void workedGgaIsReadAndWritten();
+    void emptyFieldsAreUnknown();
+    void wrongFieldsAreNamed_data();
+    void wrongFieldsAreNamed();
+    void anyTalkerIsRead();
+    void roundingStaysInTheField();
+    void doesNotWriteWhatDoesNotFit();
+    void stampsOfDates_data();
+    void stampsOfDates();
+    void stampsAndDatesAreInverse();
+    void neverAllocates();
+};
+
+void TestNmea::findsSentences_data() {
+    QTest::addColumn<QByteArray>("bytes");
+    QTest::addColumn<QList<QByteArray>>("bodies");
+    const QList<QByteArray> one{"GPTXT,A"};
+    QTest::newRow("usual") << QByteArray("$GPTXT,A*22\r\n") << one;
+    QTest::newRow("lower case") << QByteArray("$GPTXT,o*0c\n") << QList<QByteArray>{"GPTXT,o"};
+    QTest::newRow("only LF") << QByteArray("$GPTXT,A*22\n") << one;
+    QTest::newRow("only CR") << QByteArray("$GPTXT,A*22\r") << one;
+    QTest::newRow("noise before") << QByteArray("xx\xff,4*1\r\n$GPTXT,A*22\r\n") << one;
+    QTest::newRow("cut short") << QByteArray("$GPTXT,$GPTXT,A*22\r\n") << one;
+    QTest::newRow("damaged") << QByteArray("$GPTXT,B*22\r\n$GPTXT,A*22\r\n") << one;
+    QTest::newRow("no end yet") << QByteArray("$GPTXT,A*22") << QList<QByteArray>();
+    QTest::newRow("one digit") << QByteArray("$GPTXT,A*2\r\n") << QList<QByteArray>();
+    QTest::newRow("three digits") << QByteArray("$GPTXT,A*220\r\n") << QList<QByteArray>();
+    QTest::newRow("no digits") << QByteArray("$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n")
+                               << QList<QByteArray>();
+    QTest::newRow("NUL inside") << QByteArray("$GPTXT,\0A*22\r\n", 14) << QList<QByteArray>();
+    QTest::newRow("encapsulated") << QByteArray("!AIVDM,A*3A\r\n") << QList<QByteArray>{"AIVDM,A"};
+    QTest::newRow("empty") << QByteArray("$*00\r\n$\r\n\r\n") << QList<QByteArray>{""};
+}
+
+void TestNmea::findsSentences() {
+    QFETCH(QByteArray, bytes);
+    QFETCH(QList<QByteArray>, bodies);
+    SentenceParser parser;
+    QCOMPARE(sentencesOf(parser, bytes), bodies);
+    QCOMPARE(parser.counts().sentences, quint64(bodies.size()));
+}
+
+void TestNmea::countsWhatItDrops() {
+    SentenceParser parser;
+    const QByteArray endless = '$' + QByteArray(int(maxSentence) * 3, 'A');
+    QCOMPARE(sentencesOf(parser, endless + "\n$GPT\x80XT\n$GPT$GPTXT,A*23\n$GPTXT,A\n").size(), 0);
+    const SentenceParser::Counts &counts = parser.counts();
+    QCOMPARE(counts.tooLong, quint64(1));
+    QCOMPARE(counts.badByte, quint64(1));
+    QCOMPARE(counts.cutShort, quint64(1));
+    QCOMPARE(counts.badChecksum, quint64(1));
+    QCOMPARE(counts.noChecksum, quint64(1));
+    // The endless one is dropped with the byte that is too much; behind it and behind 0x80 all is noise.
+    QCOMPARE(counts.skippedBytes, quint64(endless.size()) - maxSentence - 1 + 2);
+    QCOMPARE(sentencesOf(parser, realRmc).size(), 1);
+}
+
+void TestNmea::isInStepWhereverItBegins() {
+    const QByteArray two = realRmc + usualGga;
+    for (int begin = 1; begin < realRmc.size(); ++begin) {
+        SentenceParser parser;
+        const auto bodies = sentencesOf(parser, two.mid(begin));
+        QCOMPARE(bodies.size(), 1);
+        QVERIFY(bodies[0].startsWith("GPGGA,"));
+    }
+    // Any single bit that is wrong costs that sentence at most, and never passes unseen.
+    for (int bit = 0; bit < realRmc.size() * 8; ++bit) {
+        QByteArray damaged = two;
+        damaged[bit / 8] = char(damaged[bit / 8] ^ (1 << bit % 8));
+        SentenceParser parser;
+        for (const QByteArray &body : sentencesOf(parser, damaged))
+            QVERIFY2(two.contains('$' + body + '*') || body.isEmpty(), body.constData());
+    }
+}
+
+void TestNmea::withoutChecksumOnlyWhenLenient() {
+    SentenceParser strict, lenient(ChecksumRule::Lenient);
+    const QByteArray bytes("$GPTXT,A\r\n$GPTXT,B*22\r\n");
+    QCOMPARE(sentencesOf(strict, bytes).size(), 0);
+    QCOMPARE(sentencesOf(lenient, bytes), QList<QByteArray>{"GPTXT,A"});
+    QCOMPARE(strict.counts().noChecksum, quint64(1));
+    QCOMPARE(lenient.counts().badChecksum, quint64(1)); // a wrong one is refused all the same
+}
+
+void TestNmea::splitsFields() {
+    const Sentence sentence("GNGSA,A,,3,");
+    QCOMPARE(toBytes(sentence.address()), QByteArray("GNGSA"));
+    QCOMPARE(toBytes(sentence.type()), QByteArray("GSA"));
+    QCOMPARE(sentence.fieldCount(), 4);
+    QCOMPARE(toBytes(sentence.field(1)), QByteArray("A"));
+    QCOMPARE(toBytes(sentence.field(3)), QByteArray("3"));
+    for (const int empty : {2, 4, 5, 100})
+        QVERIFY(sentence.field(empty).empty());
+    QVERIFY(Sentence("PMTK001,1").type().empty());
+    QVERIFY(Sentence("PGRME").type().empty());
+}
+
+void TestNmea::workedRmcIsReadAndWritten_data() {
+    QTest::addColumn<QByteArray>("text");
+    QTest::addColumn<int>("minuteDecimals");
+    QTest::addColumn<double>("latitude");
+    QTest::addColumn<double>("longitude");
+    QTest::addColumn<double>("speed");
+    QTest::addColumn<double>("course");
+    QTest::addColumn<double>("variation");
+    QTest::addColumn<double>("stamp");
+    QTest::newRow("real") << realRmc << 4 << 37 + 7.8178 / 60 << -121 - 39.269 / 60 << 10.3 * 0.514444
+                          << 188.2 << 13.8 << 1437687666.0;
+    QTest::newRow("south of London")
+        << QByteArray("$GPRMC,220516,A,5133.82,N,00042.24,W,173.8,231.8,130694,004.2,W*70\r\n") << 2
+        << 51 + 33.82 / 60 << -42.24 / 60 << 173.8 * 0.514444 << 231.8 << -4.2 << 771545116.0;
+    QTest::newRow("Munich") << QByteArray(
+                                   "$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n")
+                            << 3 << 48 + 7.038 / 60 << 11 + 31.0 / 60 << 22.4 * 0.514444 << 84.4 << -3.1
+                            << 764426119.0;
+}
+
+void TestNmea::workedRmcIsReadAndWritten() {
+    QFETCH(QByteArray, text);
+    QFETCH(int, minuteDecimals);
+    QFETCH(double, latitude);
+    QFETCH(double, longitude);
+    QFETCH(double, speed);
+    QFETCH(double, course);
+    QFETCH(double, variation);
+    QFETCH(double, stamp);
+    Rmc rmc;
+    const FieldFault fault = decodeText(text, rmc);
+    QVERIFY2(!fault, fault.expected);
+    QVERIFY(rmc.valid && rmc.position && rmc.speed && rmc.course_deg && rmc.variation_deg);
+    QCOMPARE(rmc.position->latitude_deg, latitude);
+    QCOMPARE(rmc.position->longitude_deg, longitude);
+    QVERIFY(std::abs(*rmc.speed - speed) < 1e-4);
+    QCOMPARE(*rmc.course_deg, course);
+    QCOMPARE(*rmc.variation_deg, variation);
+    QCOMPARE(toStamp(*rmc.date, *rmc.time).value(), stamp);
+    QCOMPARE(encoded(rmc, {minuteDecimals, 0}), text);
+}
+
+void TestNmea::workedGgaIsReadAndWritten() {
+    Gga gga;
+    const FieldFault fault = decodeText(usualGga, gga);
+    QVERIFY2(!fault, fault.expected);
+    QCOMPARE(gga.time->hour, 12);
+    QCOMPARE(gga.time->minute, 35);
+    QCOMPARE(gga.time->second, 19.0);
+    QCOMPARE(gga.position->latitude_deg, 48 + 7.038 / 60);
+    QCOMPARE(gga.position->longitude_deg, 11 + 31.0 / 60);
+    QCOMPARE(gga.quality, 1);
+    QCOMPARE(gga.satellites.value(), 8);
+    QCOMPARE(gga.hdop.value(), 0.9);
+    QCOMPARE(gga.altitude.value(), 545.4);
+    QCOMPARE(gga.separation.value(), 46.9);
+    QVERIFY(!gga.age_s && !gga.station);
+    QCOMPARE(encoded(gga, {3, 0}), usualGga);
+    gga.position->longitude_deg = -gga.position->longitude_deg;
+    gga.altitude = -12.5;
+    gga.age_s = 3.5;
+    gga.station = 17;
+    gga.time->second = 19.25;
+    Gga again;
+    QVERIFY(!decodeText(encoded(gga, {7, 2}), again));
+    QVERIFY(std::abs(again.position->longitude_deg - gga.position->longitude_deg) < 1e-9);
+    QCOMPARE(again.altitude.value(), -12.5);
+    QCOMPARE(again.age_s.value(), 3.5);
+    QCOMPARE(again.station.value(), 17);
+    QCOMPARE(again.time->second, 19.25);
+}
+
+void TestNmea::emptyFieldsAreUnknown() {
+    Rmc rmc;
+    QVERIFY(!decodeText(summed("GPRMC,,V,,,,,,,,,,N"), rmc));
+    QVERIFY(!rmc.valid && !rmc.time && !rmc.date && !rmc.position && !rmc.speed && !rmc.course_deg);
+    QCOMPARE(rmc.mode.value(), 'N');
+    QCOMPARE(encoded(rmc), summed("GPRMC,,V,,,,,,,,,,N").toUpper());
+    Gga gga;
+    QVERIFY(!decodeText(summed("GPGGA,,,,,,0,,,,M,,M,,"), gga));
+    QVERIFY(!gga.position && !gga.satellites && !gga.hdop && !gga.altitude);
+    QCOMPARE(encoded(gga), summed("GPGGA,,,,,,0,,,,M,,M,,").toUpper());
+    // Of an old receiver: no mode, no variation.
+    QVERIFY(!decodeText(summed("GPRMC,101112.50,A,4807.,N,01131,E,,,010203"), rmc));
+    QCOMPARE(rmc.time->second, 12.5);
+    QCOMPARE(rmc.date->year, 2003);
+    QVERIFY(rmc.valid && rmc.position && !rmc.speed && !rmc.mode);
+}
+
+void TestNmea::wrongFieldsAreNamed_data() {
+    QTest::addColumn<QByteArray>("body");
+    QTest::addColumn<int>("field");
+    const auto rmc = [](const char *name, int field, const char *value) {
+        QList<QByteArray> fields =
+            QByteArray("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D").split(',');
+        fields[field] = value;
+        QTest::newRow(name) << fields.join(',') << field;
+    };
+    for (const char *time : {"24", "240000", "126000", "120061", "12000", "1200000", "1200.0", "12000x",
+                             "-10000", "120000.-5", "120000.5.5", "nan", " 20000"})
+        rmc(QByteArray("time ").append(time).constData(), 1, time);
+    rmc("status", 2, "X");
+    rmc("no status", 2, "");
+    for (const char *latitude : {"9000.001", "3760.0", "-707.8", "37", "037.8178", "3707.81e1", "inf"})
+        rmc(QByteArray("latitude ").append(latitude).constData(), 3, latitude);
+    rmc("no latitude", 3, "");
+    rmc("longitude", 5, "18000.1");
+    rmc("negative speed", 7, "-1");
+    rmc("speed in hexadecimal", 7, "0x10");
+    rmc("speed with exponent", 7, "1e3");
+    rmc("speed with sign", 7, "+1");
+    rmc("no number", 7, "nan");
+    rmc("point", 7, ".");
+    rmc("course", 8, "360.1");
+    rmc("February", 9, "290215");
+    rmc("day 0", 9, "000715");
+    rmc("month 13", 9, "011315");
+    rmc("short date", 9, "23071");
+    rmc("variation", 10, "181");
+    rmc("side", 11, "N");
+    rmc("no side", 11, "");
+    rmc("mode", 12, "d");
+    QTest::newRow("too few fields") << QByteArray("GPRMC,214106,A") << 0;
+    QTest::newRow("another type") << QByteArray("GPGGA,,,,,,0,,,,M,,M,,") << 0;
+}
+
+void TestNmea::wrongFieldsAreNamed() {
+    QFETCH(QByteArray, body);
+    QFETCH(int, field);
+    Rmc rmc;
+    const FieldFault fault = decode(Sentence({body.constData(), std::size_t(body.size())}), rmc);
+    QVERIFY(fault);
+    QCOMPARE(fault.field, field);
+    QVERIFY(std::string_view(fault.expected).size() > 3);
+}
+
+void TestNmea::anyTalkerIsRead() {
+    for (const char *talker : {"GP", "GN", "GL", "GA", "GB", "BD"}) {
+        Rmc rmc;
+        QVERIFY(
+            !decodeText(summed(QByteArray(talker) + "RMC,214106,A,3707.8178,N,12139.2690,W,,,230715"), rmc));
+        QVERIFY(rmc.valid);
+        const auto text = encode(rmc, talker);
+        QVERIFY(text && toBytes(text->view()).startsWith(QByteArray("$") + talker + "RMC,214106,A,"));
+    }
+}
+
+void TestNmea::roundingStaysInTheField() {
+    Rmc rmc;
+    rmc.time = UtcTime{23, 59, 59.9999};
+    rmc.position = Position{47.99999999999, -179.99999999999};
+    rmc.course_deg = 359.99;
+    rmc.valid = true;
+    QVERIFY(encoded(rmc).startsWith("$GPRMC,235959,A,4800.0000,N,18000.0000,W,,000.0,"));
+    QVERIFY(encoded(rmc, {0, 3}).startsWith("$GPRMC,235959.999,A,4800,N,18000,W,"));
+    rmc.time = UtcTime{23, 59, 60.7}; // a leap second
+    QVERIFY(encoded(rmc).startsWith("$GPRMC,235960,"));
+    rmc.time = UtcTime{1, 2, 3.1};
+    QVERIFY(encoded(rmc, {4, 2}).startsWith("$GPRMC,010203.10,"));
+}
+
+void TestNmea::doesNotWriteWhatDoesNotFit() {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Rmc good;
+    QVERIFY(!decodeText(realRmc, good));
+    QVERIFY(!encoded(good).isEmpty());
+    const auto refuses = [&good](auto change) {
+        Rmc rmc = good;
+        change(rmc);
+        return encoded(rmc).isEmpty();
+    };
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.position = Position{nan, 0}; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.position = Position{90.001, 0}; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.position = Position{0, -180.001}; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.speed = nan; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.speed = -0.1; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.course_deg = 361; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.time = UtcTime{24, 0, 0}; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.time = UtcTime{0, 0, nan}; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.date = Date{1979, 1, 1}; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.date = Date{2015, 2, 29}; }));
+    QVERIFY(refuses([&](Rmc &rmc) { rmc.mode = ','; }));
+    QVERIFY(encoded(good, {10, 0}).isEmpty() && encoded(good, {4, -1}).isEmpty());
+    for (const char *talker : {"", "G", "GPS", "PG", "G,", "gp"})
+        QVERIFY(!encode(good, talker));
+    Gga gga;
+    gga.quality = 10;
+    QVERIFY(encoded(gga).isEmpty());
+    gga.quality = 1;
+    gga.hdop = std::numeric_limits<double>::infinity();
+    QVERIFY(encoded(gga).isEmpty());
+    SentenceText endless("GPTXT");
+    for (int i = 0; i < 300; ++i)
+        endless.addField("x");
+    QVERIFY(!endless.finish() && endless.view().empty());
+}
+
+void TestNmea::stampsOfDates_data() {
+    QTest::addColumn<int>("year");
+    QTest::addColumn<int>("month");
+    QTest::addColumn<int>("day");
+    for (const int year : {1970, 1972, 1999, 2000, 2001, 2024, 2026, 2079, 2100, 2400, 9999}) {
+        for (const auto &[month, day] : {std::pair(1, 1), {2, 28}, {3, 1}, {12, 31}})
+            QTest::addRow("%d-%d-%d", year, month, day) << year << month << day;
+    }
+    QTest::newRow("leap day") << 2000 << 2 << 29;
+}
+
+void TestNmea::stampsOfDates() {
+    QFETCH(int, year);
+    QFETCH(int, month);
+    QFETCH(int, day);
+    const double expected =
+        double(QDateTime(QDate(year, month, day), QTime(1, 2, 3), Qt::UTC).toSecsSinceEpoch());
+    const double stamp = toStamp({year, month, day}, {1, 2, 3.5}).value();
+    QCOMPARE(stamp, expected + 0.5);
+    const Date date = dateOf(stamp).value();
+    QCOMPARE(date.year, year);
+    QCOMPARE(date.month, month);
+    QCOMPARE(date.day, day);
+}
+
+void TestNmea::stampsAndDatesAreInverse() {
+    for (double stamp = 0.25; stamp < 4e9; stamp += 86399.5 * 7)
+        QCOMPARE(toStamp(dateOf(stamp).value(), timeOf(stamp).value()).value(), stamp);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double wrong : {-1.0, nan, 1e300, 253402300800.0})
+        QVERIFY(!dateOf(wrong) && !timeOf(wrong));
+    QVERIFY(!toStamp({2015, 2, 29}, {0, 0, 0}) && !toStamp({2015, 2, 28}, {0, 0, nan}));
+}
+
+void TestNmea::neverAllocates() {
+    SentenceParser parser;
+    Rmc rmc;
+    const std::size_t before = allocations;
+    for (const char byte : realRmc) {
+        if (parser.feed(byte) == SentenceParser::Result::Done)
+            decode(parser.sentence(), rmc);
+    }
+    const auto text = encode(rmc);
+    const std::size_t after = allocations;
+    QCOMPARE(after, before);
+    QVERIFY(text && rmc.valid);
+}
+
+QTEST_APPLESS_MAIN(TestNmea)
+#include "TestNmea.moc"
