@@ -1,0 +1,191 @@
+#include "common/recording/Recording.h"
+
+#include "common/Log.h"
+#include "common/Time.h"
+#include "common/recording/DiskError.h"
+
+#include <QDir>
+
+namespace hermes {
+
+namespace {
+
+constexpr int activePeriod_ms = 200; // at 25 MB/s the disk fills by 5 MB meanwhile
+constexpr int idlePeriod_ms = 5000;
+constexpr int refreshEvery = 5; // checks: the sidecar is at most a second old
+
+} // namespace
+
+Recording::Recording(const QString &logger, Settings &settings, Health &health, RecordingWriter &writer)
+    : logger_(logger)
+    , settings_(settings)
+    , health_(health)
+    , writer_(writer)
+    , session_(writer) {
+    disk_.setMaxThreadCount(1);
+    connect(&timer_, &QTimer::timeout, this, &Recording::check);
+}
+
+Recording::~Recording() {
+    close();
+}
+
+RecordingSession::Options Recording::options() const {
+    RecordingSession::Options options;
+    options.logger = logger_;
+    options.root = QDir(settings_.text("record.folder")).absolutePath();
+    options.fileBytes = settings_.number("record.file_bytes");
+    options.fileSeconds = settings_.number("record.file_s");
+    options.floorBytes = settings_.number("record.free_floor_bytes");
+    options.settings = settings_.values();
+    return options;
+}
+
+void Recording::run(std::function<Done()> job) {
+    disk_.start(QRunnable::create([this, job = std::move(job)] {
+        const Done done = job();
+        const auto unlessClosed = [this, done] {
+            if (!closed_)
+                done();
+        };
+        QMetaObject::invokeMethod(this, unlessClosed, Qt::QueuedConnection);
+    }));
+}
+
+void Recording::open() {
+    closed_ = false;
+    timer_.start(idlePeriod_ms);
+    run([this, options = options()]() -> Done {
+        const RecordingSession::Completed completed = RecordingSession::completeAll(options, writer_);
+        return [this, completed] {
+            for (const QString &line : completed.done)
+                logWarning("recording", line);
+            for (const QString &line : completed.failed)
+                logError("recording", line);
+            unrepaired_ = completed.failed;
+            updateHealth();
+        };
+    });
+    check();
+    updateHealth();
+}
+
+void Recording::close() {
+    if (closed_)
+        return;
+    closed_ = true;
+    timer_.stop();
+    disk_.clear();
+    disk_.waitForDone();
+    if (session_.isOpen()) {
+        const Result<void> result = session_.finish(RecordingEnd::Stopped, {});
+        if (!result)
+            logError("recording", result.error().message);
+    }
+    phase_ = Phase::Idle;
+    for (const Reply &reply : stopping_)
+        reply.error(Error(ErrorCode::NotReady, "the logger ends, and the recording with it"));
+    stopping_.clear();
+}
+
+void Recording::start(const Call &call, const Reply &reply) {
+    const SessionName name{call.text("name"), call.has("session") ? call.text("session") : QString()};
+    Result<void> fine = checkName("name", name.name);
+    if (fine && call.has("session"))
+        fine = checkName("session", name.session);
+    if (fine && phase_ != Phase::Idle)
+        fine = Error(ErrorCode::NotReady,
+                     QString("\"%1\" is being recorded; record.stop ends it").arg(name_.name));
+    if (!fine)
+        return reply.error(fine.error());
+    phase_ = Phase::Starting;
+    run([this, name, reply, options = options()]() -> Done {
+        const Result<void> begun = session_.begin(options, name);
+        return [this, name, reply, begun] {
+            phase_ = begun ? Phase::Recording : Phase::Idle;
+            if (!begun)
+                return reply.error(begun.error());
+            name_ = {name.name, session_.session()};
+            folder_ = session_.folder();
+            start_ = stampNow();
+            error_.reset();
+            refreshError_.reset();
+            timer_.start(activePeriod_ms);
+            logInfo("recording", "recording to " + folder_);
+            updateHealth();
+            reply.result(status());
+            Q_EMIT changed();
+        };
+    });
+}
+
+void Recording::stop(const Reply &reply) {
+    if (phase_ == Phase::Idle || phase_ == Phase::Starting)
+        return reply.error(
+            error_ ? *error_ : Error(ErrorCode::NotReady, "nothing is being recorded; record.start begins"));
+    stopping_.push_back(reply);
+    if (phase_ == Phase::Recording)
+        end(RecordingEnd::Stopped, {});
+}
+
+void Recording::end(RecordingEnd reason, const std::optional<Error> &error) {
+    phase_ = Phase::Ending;
+    run([this, reason, error]() -> Done {
+        const Result<void> result = session_.finish(reason, error);
+        return [this, result] { ended(result); };
+    });
+}
+
+void Recording::ended(const Result<void> &result) {
+    phase_ = Phase::Idle;
+    timer_.start(idlePeriod_ms);
+    if (result) {
+        error_.reset();
+        logInfo("recording", folder_ + ": the recording is complete");
+    } else {
+        error_ = result.error();
+        logError("recording", error_->message);
+    }
+    for (const Reply &reply : stopping_)
+        reply.give(result ? Result<QJsonValue>(status()) : Result<QJsonValue>(result.error()));
+    stopping_.clear();
+    updateHealth();
+    Q_EMIT changed();
+}
+
+void Recording::check() {
+    if (checking_ || phase_ == Phase::Starting || phase_ == Phase::Ending)
+        return;
+    checking_ = true;
+    const bool active = phase_ == Phase::Recording;
+    const bool refresh = active && ++checks_ % refreshEvery == 0;
+    run([this, refresh, path = active ? folder_ : options().root]() -> Done {
+        const Result<void> refreshed = refresh && session_.isOpen() ? session_.refresh() : Result<void>();
+        const Result<double> room = freeBytes(path);
+        return [this, room, refreshed] {
+            checking_ = false;
+            checked(room, refreshed);
+        };
+    });
+}
+
+void Recording::checked(const Result<double> &room, const Result<void> &refreshed) {
+    free_ = room ? std::optional<double>(*room) : std::nullopt;
+    refreshError_ = refreshed ? std::nullopt : std::optional<Error>(refreshed.error());
+    const double floor = settings_.number("record.free_floor_bytes");
+    const std::optional<Error> failure = writer_.state().error;
+    if (phase_ == Phase::Recording && failure)
+        end(RecordingEnd::Failed, failure);
+    else if (phase_ == Phase::Recording && free_ && *free_ <= floor)
+        end(RecordingEnd::FreeSpace,
+            diskError(
+                QString("%1: the recording was ended at %2 MB of free space (record.free_floor_bytes is %3 "
+                        "MB); what was written is whole")
+                    .arg(folder_)
+                    .arg(*free_ * 1e-6, 0, 'f', 1)
+                    .arg(floor * 1e-6, 0, 'f', 1),
+                folder_));
+    updateHealth();
+}
+
+} // namespace hermes

@@ -1,0 +1,81 @@
+#pragma once
+
+#include "common/daemon/Command.h"
+#include "common/daemon/Health.h"
+#include "common/recording/RecordingSession.h"
+#include "common/settings/Settings.h"
+
+#include <QThreadPool>
+#include <QTimer>
+#include <vector>
+
+namespace hermes {
+
+/// What every logger shares: the commands record.*, their settings, the session folder with its sidecar, the
+/// guard of the disk, health items "recording" and "disk", and the completion of recordings that were cut
+/// off. The logger adds settingFields() and commands() to its own, calls open() and close() with its start
+/// and stop, and writes as a RecordingWriter. Never waits for the disk in the main thread, but in close().
+class Recording : public QObject {
+    Q_OBJECT
+public:
+    /// logger: the daemon's name, and that of sidecar and files.
+    Recording(const QString &logger, Settings &settings, Health &health, RecordingWriter &writer);
+    ~Recording() override;
+
+    static std::vector<Field> settingFields();
+    /// The free space to warn at lies above that to stop at.
+    static std::vector<SchemaViolation> checkSettings(const QJsonObject &settings);
+    std::vector<Command> commands();
+
+    void open();
+    void close();
+
+    bool isActive() const { return phase_ != Phase::Idle; }
+    /// {recording, name, session, folder, path, start, bytes, files, counts, losses, free_bytes, error?} of
+    /// the recording under way or the last.
+    QJsonObject status() const;
+
+Q_SIGNALS:
+    /// One began or ended.
+    void changed();
+
+private:
+    enum class Phase { Idle, Starting, Recording, Ending };
+    using Done = std::function<void()>;
+
+    void start(const Call &call, const Reply &reply);
+    void stop(const Reply &reply);
+    void list(const Reply &reply);
+    void end(RecordingEnd reason, const std::optional<Error> &error);
+    void ended(const Result<void> &result);
+    void check();
+    void checked(const Result<double> &room, const Result<void> &refreshed);
+    void updateHealth();
+    void updateDiskHealth();
+    RecordingSession::Options options() const;
+    /// Runs the job in the thread of the disk, and what it gives in the main thread.
+    void run(std::function<Done()> job);
+
+    const QString logger_;
+    Settings &settings_;
+    Health &health_;
+    RecordingWriter &writer_;
+    RecordingSession session_; ///< of the thread while a job runs
+    QThreadPool disk_;         ///< one thread: jobs run one after another
+    QTimer timer_;
+    bool closed_ = true;
+    bool checking_ = false;
+    int checks_ = 0;
+
+    Phase phase_ = Phase::Idle;
+    SessionName name_; ///< of this recording or the last
+    QString folder_;
+    double start_ = 0;
+    std::optional<Error> error_; ///< that ended it
+    std::optional<Error> refreshError_;
+    std::vector<Reply> stopping_; ///< who waits for the end
+    std::optional<double> free_;  ///< bytes
+    QStringList unrepaired_;      ///< why recordings that were cut off could not be completed
+};
+
+} // namespace hermes

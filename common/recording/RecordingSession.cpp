@@ -1,0 +1,191 @@
+#include "common/recording/RecordingSession.h"
+
+#include "common/Time.h"
+#include "common/recording/DiskError.h"
+#include "common/recording/Sidecar.h"
+
+#include <QDateTime>
+#include <QDir>
+#include <QSysInfo>
+#include <QUuid>
+
+#include <fcntl.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+namespace hermes {
+
+namespace {
+
+constexpr off_t reserveBytes = 256 * 1024; // for the last version of the sidecar, should the disk be full
+
+QString toText(RecordingEnd end) {
+    switch (end) {
+    case RecordingEnd::Stopped:
+        return "stopped";
+    case RecordingEnd::FreeSpace:
+        return "free space";
+    case RecordingEnd::Failed:
+        return "failed";
+    case RecordingEnd::CutOff:
+        return "cut off";
+    }
+    return {};
+}
+
+QString toUtc(double stamp) {
+    return QDateTime::fromMSecsSinceEpoch(qint64(stamp * 1e3), Qt::UTC).toString(Qt::ISODateWithMs);
+}
+
+/// Room that stays taken until the recording ends. Not every file system can; then there is none.
+void reserve(const QString &path) {
+    const int file = ::open(QFile::encodeName(path).constData(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+    if (file < 0)
+        return;
+    if (::posix_fallocate(file, 0, reserveBytes) != 0)
+        ::unlink(QFile::encodeName(path).constData());
+    ::close(file);
+}
+
+} // namespace
+
+Result<double> freeBytes(const QString &path) {
+    struct statvfs space;
+    if (!QFileInfo::exists(path) && QFileInfo(path).path() != path) // made when the first recording begins
+        return freeBytes(QFileInfo(path).path());
+    if (::statvfs(QFile::encodeName(path).constData(), &space) != 0)
+        return diskError(path + ": its free space is not told: " + qt_error_string(), path);
+    return double(space.f_bavail) * double(space.f_frsize);
+}
+
+QString RecordingSession::sidecarPath() const {
+    return Sidecar::path(plan_.folder, options_.logger);
+}
+
+Result<void> RecordingSession::begin(const Options &options, const SessionName &session) {
+    options_ = options;
+    const Result<QString> folder = enterSessionFolder(options.root, session, options.logger);
+    if (!folder)
+        return folder.error();
+    plan_ = {*folder, options.logger, options.fileBytes, options.fileSeconds};
+    session_ =
+        session.session.isEmpty() ? QUuid::createUuid().toString(QUuid::WithoutBraces) : session.session;
+    const double stamp = stampNow();
+    head_ = {{"format", Sidecar::format},
+             {"logger", options.logger},
+             {"name", session.name},
+             {"session", session_},
+             {"host", QSysInfo::machineHostName()},
+             {"start", stamp},
+             {"start_utc", toUtc(stamp)},
+             {"start_mono", monotonicNow()},
+             {"settings", options.settings}};
+    const auto refused = [&](const Error &error) {
+        abandon();
+        return error;
+    };
+    const Result<double> room = freeBytes(*folder);
+    if (!room)
+        return refused(room.error());
+    if (*room <= options.floorBytes)
+        return refused(diskError(QString("%1: %2 MB are free, more than %3 MB are needed to record "
+                                         "(record.free_floor_bytes)")
+                                     .arg(*folder)
+                                     .arg(*room * 1e-6, 0, 'f', 1)
+                                     .arg(options.floorBytes * 1e-6, 0, 'f', 1),
+                                 *folder));
+    Result<void> result = lock_.take(options.root, options.logger);
+    if (!result)
+        return refused(result.error());
+    reserve(reservePath());
+    result = writer_.begin(plan_);
+    if (result)
+        result = refresh();
+    if (result)
+        return {};
+    writer_.end();
+    for (const QString &file : QDir(*folder).entryList({options.logger + "-*"}, QDir::Files))
+        QFile::remove(*folder + '/' + file); // of this moment: the folder had none before
+    return refused(result.error());
+}
+
+void RecordingSession::abandon() {
+    QFile::remove(reservePath());
+    lock_.release();
+    QDir().rmdir(plan_.folder); // only when nothing else is in it
+}
+
+QJsonObject RecordingSession::describe() const {
+    const RecordingState state = writer_.state();
+    QJsonObject content = head_;
+    content.insert("end", QJsonValue());
+    content.insert("ended", QJsonValue());
+    content.insert("complete", false);
+    content.insert("bytes", state.bytes);
+    content.insert("counts", state.counts);
+    content.insert("losses", state.losses);
+    content.insert("gps", state.gps);
+    content.insert("files", state.files);
+    return content;
+}
+
+Result<void> RecordingSession::refresh() {
+    return Sidecar::write(sidecarPath(), describe(), false);
+}
+
+Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Error> &error) {
+    writer_.end();
+    const std::optional<Error> failure = error ? error : writer_.state().error;
+    const double stamp = stampNow();
+    QJsonObject content = describe();
+    content.insert("end", stamp);
+    content.insert("end_utc", toUtc(stamp));
+    content.insert("end_mono", monotonicNow());
+    content.insert("ended", toText(writer_.state().error ? RecordingEnd::Failed : end));
+    content.insert("complete", !writer_.state().error);
+    if (failure)
+        content.insert("error", failure->message);
+    QFile::remove(reservePath());
+    const Result<void> written = Sidecar::write(sidecarPath(), content, true);
+    lock_.release();
+    return failure ? Result<void>(*failure) : written;
+}
+
+RecordingSession::Completed RecordingSession::completeAll(const Options &options, RecordingWriter &writer) {
+    Completed completed;
+    FolderLock lock;
+    const QDir root(options.root);
+    if (!root.exists())
+        return completed;
+    if (const Result<void> taken = lock.take(options.root, options.logger); !taken) {
+        completed.failed << taken.error().message;
+        return completed;
+    }
+    for (const QFileInfo &entry : root.entryInfoList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name)) {
+        const QString folder = entry.absoluteFilePath();
+        const QString path = Sidecar::path(folder, options.logger);
+        if (!QFile::exists(path))
+            continue;
+        const Result<QJsonObject> read = Sidecar::read(path);
+        if (read && !read->value("ended").isNull())
+            continue;
+        QJsonObject content = read ? *read : QJsonObject();
+        Result<void> result = read ? Result<void>() : read.error();
+        if (result) {
+            QFile::remove(folder + "/." + options.logger + ".reserve");
+            content.insert("end", content.value("start")); // until the writer knows better
+            result = writer.repair({folder, options.logger, 0, 0}, content);
+        }
+        content.insert("end_utc", toUtc(content.value("end").toDouble()));
+        content.insert("ended", toText(RecordingEnd::CutOff));
+        if (result)
+            result = Sidecar::write(path, content, true);
+        if (result)
+            completed.done << QString("%1: was cut off; its sidecar is complete now").arg(path);
+        else
+            completed.failed << result.error().message;
+    }
+    return completed;
+}
+
+} // namespace hermes

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <QJsonArray>
+#include <QJsonObject>
+#include <QString>
+#include <optional>
+
+namespace hermes {
+
+/// Where and how a logger writes a recording.
+struct RecordingPlan {
+    QString folder;         ///< of the session, absolute; it exists
+    QString prefix;         ///< files are named PREFIX-0001.SUFFIX and on
+    double fileBytes = 1e9; ///< a new file begins where the next record would make this one longer
+    double fileSeconds = 3600;
+};
+
+/// What a logger tells of the recording under way, or of the last one.
+struct RecordingState {
+    QString path;               ///< of the file being written
+    QJsonArray files;           ///< {name, bytes, ...} of each, in order; bytes end with a whole record
+    double bytes = 0;           ///< of all files
+    QJsonObject counts;         ///< what was recorded, by kind
+    QJsonObject losses;         ///< what was not, by reason; all zero where nothing is missing
+    QJsonObject gps;            ///< what is known of position and time
+    std::optional<Error> error; ///< writing has ended by it
+};
+
+/// What a logger does to have its recordings managed by Recording: writes files, and repairs those of a
+/// recording that was cut off. begin(), end() and repair() may block; they are called in a thread of
+/// Recording's, one at a time.
+class RecordingWriter {
+public:
+    virtual ~RecordingWriter() = default;
+
+    virtual Result<void> begin(const RecordingPlan &plan) = 0;
+    /// Everything taken so far is on the disk when it returns; state() says if that failed.
+    virtual void end() = 0;
+    /// Any thread, and quick.
+    virtual RecordingState state() const = 0;
+    /// Cuts the files of a recording that was cut off back to whole records, and brings `files`, `counts`
+    /// and `end` of the sidecar up to what is in them.
+    virtual Result<void> repair(const RecordingPlan &plan, QJsonObject &sidecar) = 0;
+};
+
+} // namespace hermes

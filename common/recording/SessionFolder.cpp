@@ -1,0 +1,94 @@
+#include "common/recording/SessionFolder.h"
+
+#include "common/recording/DiskError.h"
+#include "common/recording/Sidecar.h"
+
+#include <QDir>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace hermes {
+
+namespace {
+
+constexpr int longestName = 100; // bytes; file systems allow 255, and files add to it
+
+bool isNameCharacter(QChar c) {
+    return c.category() != QChar::Other_Control && c != '/';
+}
+
+/// Whether the sidecars in the folder are all of this session.
+Result<void> checkSession(const QString &folder, const QString &session) {
+    for (const QFileInfo &file : QDir(folder).entryInfoList({"*.json"}, QDir::Files)) {
+        const Result<QJsonObject> sidecar = Sidecar::read(file.absoluteFilePath());
+        if (sidecar && sidecar->value("session").toString() != session)
+            return diskError(QString("%1: a recording of another session is there (\"%2\", not \"%3\"); "
+                                     "recordings are not mixed")
+                                 .arg(folder, sidecar->value("session").toString(), session),
+                             folder);
+    }
+    return {};
+}
+
+} // namespace
+
+Result<void> checkName(const QString &what, const QString &name) {
+    const bool fine = !name.isEmpty() && !name.startsWith('.') && name.toUtf8().size() <= longestName &&
+                      std::all_of(name.begin(), name.end(), isNameCharacter);
+    if (fine)
+        return {};
+    const QString expected =
+        QString("1 to %1 bytes without '/' and control characters, not beginning with a dot")
+            .arg(longestName);
+    return Error(ErrorCode::InvalidParams,
+                 QString("%1: found \"%2\", expected %3").arg(what, name.left(longestName), expected),
+                 QJsonObject{{what, expected}});
+}
+
+Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger) {
+    const QDir base(root);
+    if (!base.mkpath("."))
+        return diskError(root + ": the folder for recordings cannot be made", root);
+    const QString folder = base.absoluteFilePath(session.name);
+    if (base.mkdir(session.name))
+        return folder;
+    if (!QFileInfo(folder).isDir())
+        return diskError(folder + ": the folder of the recording cannot be made", folder);
+    const bool fresh = QDir(folder).entryList({logger + ".json", logger + "-*"}, QDir::Files).isEmpty();
+    const bool empty = QDir(folder).isEmpty(QDir::AllEntries | QDir::Hidden | QDir::NoDotAndDotDot);
+    if (!fresh || (session.session.isEmpty() && !empty))
+        return diskError(folder + ": it exists already; recordings are not overwritten", folder);
+    const Result<void> same = checkSession(folder, session.session);
+    if (!same)
+        return same.error();
+    return folder;
+}
+
+Result<void> FolderLock::take(const QString &root, const QString &logger) {
+    release();
+    const QString path = QDir(root).absoluteFilePath('.' + logger + ".lock");
+    const int file = ::open(QFile::encodeName(path).constData(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (file < 0)
+        return diskError(path + ": cannot be made: " + qt_error_string(), path);
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0) {
+        const bool busy = errno == EWOULDBLOCK;
+        const QString why = qt_error_string();
+        ::close(file);
+        return busy ? Error(ErrorCode::NotReady,
+                            QString("another %1 records below %2; give this one a record.folder of its own")
+                                .arg(logger, root))
+                    : diskError(path + ": cannot be locked: " + why, path);
+    }
+    file_ = file;
+    return {};
+}
+
+void FolderLock::release() {
+    if (file_ >= 0)
+        ::close(file_); // the file stays: removed, two could hold it
+    file_ = -1;
+}
+
+} // namespace hermes

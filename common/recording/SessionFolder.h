@@ -1,0 +1,42 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <QString>
+
+namespace hermes {
+
+/// Which recording it is: what loggers that record together have in common.
+struct SessionName {
+    QString name;    ///< of its folder
+    QString session; ///< its id; loggers given the same one share the folder
+};
+
+/// Names may have 1 to 100 bytes of UTF-8, no '/', no control characters and no dot at the beginning
+/// (InvalidParams otherwise). what: the parameter, for the message.
+Result<void> checkName(const QString &what, const QString &name);
+
+/// Makes ROOT/NAME, or joins it where a logger of the same session has made it; gives its absolute path.
+/// Whatever was recorded stays: a folder of another session, or one in which this logger has recorded, is
+/// refused (InputOutput, data.path).
+Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger);
+
+/// Held while a logger writes below a folder or repairs what is there, so that two of a kind do not disturb
+/// each other. The system takes it from a process that dies.
+class FolderLock {
+public:
+    FolderLock() = default;
+    ~FolderLock() { release(); }
+    FolderLock(const FolderLock &) = delete;
+    FolderLock &operator=(const FolderLock &) = delete;
+
+    /// NotReady when another process has it, InputOutput when the folder cannot be written.
+    Result<void> take(const QString &root, const QString &logger);
+    void release();
+    bool isHeld() const { return file_ >= 0; }
+
+private:
+    int file_ = -1;
+};
+
+} // namespace hermes

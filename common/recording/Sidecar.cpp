@@ -1,0 +1,73 @@
+#include "common/recording/Sidecar.h"
+
+#include "common/recording/DiskError.h"
+
+#include <QFile>
+#include <QFileInfo>
+#include <QJsonDocument>
+
+#include <cstdio>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace hermes {
+
+namespace {
+
+constexpr qint64 largest = 16 * 1024 * 1024; // a recording of a year has tens of thousands of files
+
+/// Always the same, so that a crash leaves one at most.
+QString draftPath(const QString &path) {
+    const QFileInfo file(path);
+    return file.path() + "/." + file.fileName() + ".new";
+}
+
+/// A rename lasts once the folder is on the disk.
+void syncFolder(const QString &path) {
+    const int folder = ::open(QFile::encodeName(QFileInfo(path).path()).constData(), O_RDONLY | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    ::fsync(folder); // not every file system can; the content is safe by then
+    ::close(folder);
+}
+
+} // namespace
+
+Result<QJsonObject> Sidecar::read(const QString &path) {
+    QFile file(path);
+    if (!file.open(QIODevice::ReadOnly))
+        return diskError(path + ": cannot be read: " + file.errorString(), path);
+    if (file.size() > largest)
+        return diskError(path + QString(": %1 bytes, a sidecar has at most %2").arg(file.size()).arg(largest),
+                         path);
+    QJsonParseError problem;
+    const QJsonObject content = QJsonDocument::fromJson(file.readAll(), &problem).object();
+    if (problem.error != QJsonParseError::NoError)
+        return diskError(
+            QString("%1: at byte %2: %3").arg(path).arg(problem.offset).arg(problem.errorString()), path);
+    if (content.value("format").toString() != format)
+        return diskError(path + ": \"format\": \"" + format + "\" expected, as of a sidecar", path);
+    return content;
+}
+
+Result<void> Sidecar::write(const QString &path, const QJsonObject &content, bool durable) {
+    const QByteArray bytes = QJsonDocument(content).toJson();
+    const QString draft = draftPath(path);
+    QFile file(draft);
+    const auto failed = [&](const QString &why) {
+        QFile::remove(draft);
+        return diskError(path + ": cannot be written: " + why, path);
+    };
+    if (!file.open(QIODevice::WriteOnly | QIODevice::Truncate))
+        return failed(file.errorString());
+    if (file.write(bytes) != bytes.size() || !file.flush() || (durable && ::fsync(file.handle()) != 0))
+        return failed(file.errorString());
+    file.close();
+    if (std::rename(QFile::encodeName(draft).constData(), QFile::encodeName(path).constData()) != 0)
+        return failed(qt_error_string());
+    if (durable)
+        syncFolder(path);
+    return {};
+}
+
+} // namespace hermes

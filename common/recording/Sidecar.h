@@ -1,0 +1,26 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <QJsonObject>
+#include <QString>
+
+namespace hermes {
+
+/// The JSON file beside the files of a recording that says what they are. It is always whole: a new version
+/// takes the place of the old one at once.
+class Sidecar {
+public:
+    /// What distinguishes it from any other JSON file: its member "format".
+    static constexpr const char *format = "hermes recording 1";
+
+    static QString path(const QString &folder, const QString &logger) {
+        return folder + '/' + logger + ".json";
+    }
+    /// Refuses what is no sidecar; the message names the file and what is wrong.
+    static Result<QJsonObject> read(const QString &path);
+    /// durable: on the disk when it returns.
+    static Result<void> write(const QString &path, const QJsonObject &content, bool durable);
+};
+
+} // namespace hermes
