@@ -118,7 +118,8 @@ void TestMotorControl::refusals_data() {
     row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, ErrorCode::OverLimit, "rear_left is 1e+06");
     row("unknown parameter", "motor.drive", {{"vz", 1}}, ErrorCode::InvalidParams, "vz");
     row("not a number", "motor.drive", {{"vx", "fast"}}, ErrorCode::InvalidParams, "vx");
-    row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, ErrorCode::NotReady, "at most 0.25 s");
+    row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, ErrorCode::NotReady,
+        "less than 0.25 s from now");
     row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, ErrorCode::InvalidParams, "timeout_s");
 }
 

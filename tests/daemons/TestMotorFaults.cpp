@@ -59,7 +59,7 @@ void TestMotorFaults::controllerThatLostItsCountsMakesNoJump() {
         for (int motor : {0, 1})
             all[1].channel(motor).setCount(0);
     });
-    QTRY_VERIFY(!state()["ready"].toBool());
+    QTest::qWait(400); // no power cycle is shorter
     rig_->plugIn();
     QTRY_VERIFY_WITH_TIMEOUT(state()["counter_jumps"].toInt() > 0, 7000);
     passCycles(5); // with readings
