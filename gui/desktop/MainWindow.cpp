@@ -1,0 +1,89 @@
+#include "gui/desktop/MainWindow.h"
+
+#include "gui/desktop/TopBar.h"
+#include "gui/desktop/panels/CommandsPanel.h"
+#include "gui/desktop/panels/DaemonsPanel.h"
+#include "gui/desktop/panels/LogPanel.h"
+#include "gui/desktop/panels/SettingsPanel.h"
+
+#include <QAction>
+#include <QCloseEvent>
+#include <QDir>
+#include <QDockWidget>
+#include <QFileInfo>
+#include <QSettings>
+#include <QToolBar>
+
+namespace hermes {
+
+MainWindow::MainWindow(Fleet &fleet, const QString &layoutFile, QWidget *parent)
+    : QMainWindow(parent)
+    , fleet_(fleet)
+    , layoutFile_(layoutFile)
+    , topBar_(new TopBar(fleet)) {
+    setWindowTitle(tr("Hermes"));
+    setDockNestingEnabled(true);
+    setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
+    setCorner(Qt::BottomRightCorner, Qt::BottomDockWidgetArea);
+
+    auto *const bar = addToolBar(tr("Robot"));
+    bar->setObjectName("topBar");
+    bar->setMovable(false);
+    bar->setContextMenuPolicy(Qt::PreventContextMenu);
+    bar->addWidget(topBar_);
+
+    addPanel(Qt::LeftDockWidgetArea, new DaemonsPanel(fleet), tr("Daemons"), "daemons");
+    addPanel(Qt::BottomDockWidgetArea, new SettingsPanel(fleet), tr("Settings"), "settings");
+    addPanel(Qt::BottomDockWidgetArea, new CommandsPanel(fleet), tr("Commands"), "commands", lastDock());
+    addPanel(Qt::BottomDockWidgetArea, new LogPanel(fleet), tr("Log"), "log", lastDock());
+    restoreLayout();
+}
+
+MainWindow::~MainWindow() = default;
+
+void MainWindow::addPanel(Qt::DockWidgetArea area, QWidget *panel, const QString &title, const QString &name,
+                          QDockWidget *tabbedWith) {
+    auto *const dock = new QDockWidget(title, this);
+    dock->setObjectName(name);
+    dock->setWidget(panel);
+    addDockWidget(area, dock);
+    if (tabbedWith)
+        tabifyDockWidget(tabbedWith, dock);
+    docks_.push_back(dock);
+
+    auto *const show = new QAction(title, this);
+    show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size())));
+    connect(show, &QAction::triggered, dock, [dock] {
+        dock->show();
+        dock->raise();
+        dock->widget()->setFocus();
+    });
+    addAction(show);
+    dock->toggleViewAction()->setToolTip(tr("%1 (%2)").arg(title, show->shortcut().toString()));
+}
+
+void MainWindow::restoreLayout() {
+    resize(1280, 720);
+    docks_[1]->raise();
+    if (layoutFile_.isEmpty())
+        return;
+    const QSettings layout(layoutFile_, QSettings::IniFormat);
+    restoreGeometry(layout.value("window/geometry").toByteArray());
+    restoreState(layout.value("window/state").toByteArray());
+}
+
+void MainWindow::saveLayout() const {
+    if (layoutFile_.isEmpty())
+        return;
+    QDir().mkpath(QFileInfo(layoutFile_).path());
+    QSettings layout(layoutFile_, QSettings::IniFormat);
+    layout.setValue("window/geometry", saveGeometry());
+    layout.setValue("window/state", saveState());
+}
+
+void MainWindow::closeEvent(QCloseEvent *event) {
+    saveLayout();
+    event->accept();
+}
+
+} // namespace hermes

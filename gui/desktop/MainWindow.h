@@ -1,0 +1,38 @@
+#pragma once
+
+#include "gui/desktop/model/Fleet.h"
+
+#include <QMainWindow>
+
+class QDockWidget;
+
+namespace hermes {
+
+class TopBar;
+
+/// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
+/// bring the docks to the front.
+class MainWindow : public QMainWindow {
+    Q_OBJECT
+public:
+    /// layoutFile: where the layout is kept between runs; empty: nowhere.
+    MainWindow(Fleet &fleet, const QString &layoutFile, QWidget *parent = nullptr);
+    ~MainWindow() override;
+
+protected:
+    void closeEvent(QCloseEvent *event) override;
+
+private:
+    void addPanel(Qt::DockWidgetArea area, QWidget *panel, const QString &title, const QString &name,
+                  QDockWidget *tabbedWith = nullptr);
+    QDockWidget *lastDock() const { return docks_.back(); }
+    void restoreLayout();
+    void saveLayout() const;
+
+    Fleet &fleet_;
+    const QString layoutFile_;
+    TopBar *topBar_;
+    std::vector<QDockWidget *> docks_;
+};
+
+} // namespace hermes

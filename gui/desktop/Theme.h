@@ -1,0 +1,26 @@
+#pragma once
+
+#include "gui/desktop/model/DaemonLink.h"
+
+#include <QColor>
+#include <QIcon>
+#include <QPalette>
+
+namespace hermes {
+
+/// Colours and icons of the operator's program. Each colour has one meaning, and never stands alone.
+namespace theme {
+
+/// Light or dark: as the desktop's own palette is, unless the environment's HERMES_THEME says "light" or
+/// "dark".
+void apply();
+bool isDark();
+
+QColor colour(Condition condition);
+/// An icon of its own shape for each condition, in its colour.
+QIcon icon(Condition condition);
+/// An icon of icons.qrc in the colour of the text.
+QIcon icon(const QString &name);
+
+} // namespace theme
+} // namespace hermes

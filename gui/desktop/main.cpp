@@ -1,0 +1,52 @@
+#include "common/Project.h"
+#include "gui/desktop/MainWindow.h"
+#include "gui/desktop/Theme.h"
+
+#include <QApplication>
+#include <QCommandLineParser>
+#include <QStandardPaths>
+#include <cstdio>
+
+using namespace hermes;
+
+int main(int argc, char **argv) {
+    QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
+    QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
+    QApplication application(argc, argv);
+    QApplication::setApplicationName("hermes-gui");
+    QApplication::setApplicationVersion(projectVersion());
+    theme::apply();
+
+    QCommandLineParser parser;
+    parser.setApplicationDescription("The operator's window: sees, drives and manages robots.");
+    parser.addHelpOption();
+    parser.addVersionOption();
+    parser.addOption(
+        {"connect", "A robot to connect to, or one of its daemons; repeatable (127.0.0.1).", "HOST[:PORT]"});
+    parser.addOption({"layout", "Where the layout of the window is kept.", "FILE",
+                      QStandardPaths::writableLocation(QStandardPaths::ConfigLocation) + "/hermes/gui.ini"});
+    if (!parser.parse(QApplication::arguments()) || !parser.positionalArguments().isEmpty()) {
+        const QString wrong = parser.errorText().isEmpty()
+                                  ? "unexpected argument '" + parser.positionalArguments().value(0) + "'"
+                                  : parser.errorText();
+        std::fprintf(stderr, "hermes-gui: %s\nhermes-gui --help tells what there is\n", qPrintable(wrong));
+        return 2;
+    }
+    if (parser.isSet("help"))
+        parser.showHelp();
+    if (parser.isSet("version"))
+        parser.showVersion();
+
+    Fleet fleet;
+    QStringList addresses = parser.values("connect");
+    if (addresses.isEmpty())
+        addresses.append("127.0.0.1");
+    for (const QString &address : qAsConst(addresses))
+        if (const auto added = fleet.add(address); !added) {
+            std::fprintf(stderr, "hermes-gui: --connect: %s\n", qPrintable(added.error().message));
+            return 2;
+        }
+    MainWindow window(fleet, parser.value("layout"));
+    window.show();
+    return QApplication::exec();
+}

@@ -1,0 +1,51 @@
+#include "gui/desktop/model/Fleet.h"
+
+#include "common/interface/InterfaceUrl.h"
+
+namespace hermes {
+
+Result<void> Fleet::add(const QString &address) {
+    const bool hasPort = address.contains(':') && !address.endsWith(']');
+    const auto url = InterfaceUrl::parse(hasPort ? address : address + ":1");
+    if (!url)
+        return url.error();
+    Robot &robot = robotAt(url->host);
+    if (hasPort)
+        robot.add(url->port, true);
+    else
+        robot.search();
+    if (!robot_)
+        choose(&robot);
+    return {};
+}
+
+Robot &Fleet::robotAt(const QString &host) {
+    for (const auto &robot : robots_)
+        if (robot->host() == host)
+            return *robot;
+    robots_.push_back(std::make_unique<Robot>(host));
+    Robot *const robot = robots_.back().get();
+    connect(robot, &Robot::changed, this, &Fleet::changed);
+    Q_EMIT changed();
+    return *robot;
+}
+
+void Fleet::choose(Robot *robot) {
+    if (robot_ == robot)
+        return;
+    robot_ = robot;
+    Q_EMIT robotChosen(robot);
+}
+
+void Fleet::choose(DaemonLink *daemon) {
+    if (daemon_ == daemon)
+        return;
+    daemon_ = daemon;
+    for (const auto &robot : robots_)
+        for (const DaemonLink *link : robot->daemons())
+            if (link == daemon)
+                choose(robot.get());
+    Q_EMIT daemonChosen(daemon);
+}
+
+} // namespace hermes

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "common/Result.h"
+#include "gui/desktop/model/DaemonLink.h"
+
+#include <QPointer>
+#include <memory>
+#include <vector>
+
+namespace hermes {
+
+/// One robot: the daemons of one host. They are found through its supervisor, at their usual ports, or by
+/// address.
+class Robot : public QObject {
+    Q_OBJECT
+public:
+    explicit Robot(const QString &host, QObject *parent = nullptr);
+
+    const QString &host() const { return host_; }
+    /// What the supervisor calls it, or the host.
+    QString name() const;
+
+    /// All daemons that have answered, were added by address or are named by the supervisor, in the order of
+    /// their ports.
+    std::vector<DaemonLink *> daemons() const;
+    /// The first connected daemon that has the method or the topic; null: none.
+    DaemonLink *withMethod(const QString &method) const;
+    DaemonLink *withTopic(const QString &topic) const;
+    DaemonLink *withName(const QString &name) const;
+    /// The entry of the supervisor for a daemon: {name, state, pid, cpu, memory_bytes, ...}; empty: none.
+    QJsonObject process(const DaemonLink &daemon) const;
+    /// All processes that the supervisor has.
+    const QJsonArray &processes() const { return processes_; }
+    DaemonLink *supervisor() const;
+
+    /// Looks for daemons at all usual ports.
+    void search();
+    /// A daemon at a port of this host; `isExpected`: show it although it does not answer yet.
+    DaemonLink *add(quint16 port, bool isExpected);
+    void remove(DaemonLink *daemon);
+
+Q_SIGNALS:
+    /// A daemon came or went, or its condition changed.
+    void changed();
+    /// A daemon can be looked up by what it can do: it was described, came back, or went.
+    void capabilitiesChanged();
+
+private:
+    struct Entry {
+        std::unique_ptr<DaemonLink> link;
+        bool isExpected;
+    };
+
+    void followSupervisor(DaemonLink *link);
+
+    const QString host_;
+    std::map<quint16, Entry> entries_;
+    QJsonArray processes_;
+    QPointer<DaemonLink> followed_;
+};
+
+/// All robots, and which robot and daemon the operator has chosen.
+class Fleet : public QObject {
+    Q_OBJECT
+public:
+    explicit Fleet(QObject *parent = nullptr)
+        : QObject(parent) {}
+
+    /// "HOST": every daemon found there; "HOST:PORT": that one, and all others when it is a supervisor.
+    /// Error: it is no address.
+    Result<void> add(const QString &address);
+    const std::vector<std::unique_ptr<Robot>> &robots() const { return robots_; }
+
+    Robot *robot() const { return robot_; }
+    DaemonLink *daemon() const { return daemon_; }
+    void choose(Robot *robot);
+    void choose(DaemonLink *daemon);
+
+Q_SIGNALS:
+    /// Robots or daemons came or went, or the condition of one changed.
+    void changed();
+    void robotChosen(hermes::Robot *robot);
+    void daemonChosen(hermes::DaemonLink *daemon);
+
+private:
+    Robot &robotAt(const QString &host);
+
+    std::vector<std::unique_ptr<Robot>> robots_;
+    Robot *robot_ = nullptr;
+    QPointer<DaemonLink> daemon_;
+};
+
+} // namespace hermes

@@ -1,0 +1,113 @@
+#include "common/Project.h"
+#include "gui/desktop/model/Fleet.h"
+
+#include <QJsonArray>
+
+namespace hermes {
+
+Robot::Robot(const QString &host, QObject *parent)
+    : QObject(parent)
+    , host_(host) {}
+
+QString Robot::name() const {
+    const DaemonLink *const link = supervisor();
+    const QString robot = link ? link->info()["robot"].toString() : QString();
+    return robot.isEmpty() ? host_ : robot;
+}
+
+std::vector<DaemonLink *> Robot::daemons() const {
+    std::vector<DaemonLink *> shown;
+    for (const auto &[port, entry] : entries_)
+        if (entry.isExpected || entry.link->isKnown())
+            shown.push_back(entry.link.get());
+    return shown;
+}
+
+DaemonLink *Robot::withMethod(const QString &method) const {
+    for (const auto &[port, entry] : entries_)
+        if (entry.link->isConnected() && entry.link->hasMethod(method))
+            return entry.link.get();
+    return nullptr;
+}
+
+DaemonLink *Robot::withTopic(const QString &topic) const {
+    for (const auto &[port, entry] : entries_)
+        if (entry.link->isConnected() && entry.link->hasTopic(topic))
+            return entry.link.get();
+    return nullptr;
+}
+
+DaemonLink *Robot::withName(const QString &name) const {
+    for (const auto &[port, entry] : entries_)
+        if (entry.link->isKnown() && entry.link->name() == name)
+            return entry.link.get();
+    return nullptr;
+}
+
+DaemonLink *Robot::supervisor() const {
+    return withMethod("process.list");
+}
+
+QJsonObject Robot::process(const DaemonLink &daemon) const {
+    for (const QJsonValue &process : processes_)
+        if (process["port"].toInt() == daemon.address().section(':', -1).toInt())
+            return process.toObject();
+    return {};
+}
+
+void Robot::search() {
+    for (const QString &name : daemonNames())
+        add(defaultPort(name), false);
+}
+
+DaemonLink *Robot::add(quint16 port, bool isExpected) {
+    const auto known = entries_.find(port);
+    if (known != entries_.end()) {
+        known->second.isExpected = known->second.isExpected || isExpected;
+        return known->second.link.get();
+    }
+    const QString address = (host_.contains(':') ? "[%1]:%2" : QString("%1:%2")).arg(host_).arg(port);
+    Entry &entry = entries_[port];
+    entry = {std::make_unique<DaemonLink>(address), isExpected};
+    DaemonLink *const link = entry.link.get();
+    connect(link, &DaemonLink::changed, this, &Robot::changed);
+    connect(link, &DaemonLink::ready, this, [this, link] {
+        followSupervisor(link);
+        Q_EMIT changed();
+        Q_EMIT capabilitiesChanged();
+    });
+    connect(&link->client(), &Client::disconnected, this, [this, link] {
+        if (link->isKnown())
+            Q_EMIT capabilitiesChanged();
+    });
+    Q_EMIT changed();
+    return link;
+}
+
+void Robot::remove(DaemonLink *daemon) {
+    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+        if (entry->second.link.get() != daemon)
+            continue;
+        entry->second.link.release()->deleteLater();
+        entries_.erase(entry);
+        Q_EMIT changed();
+        Q_EMIT capabilitiesChanged();
+        return;
+    }
+}
+
+void Robot::followSupervisor(DaemonLink *link) {
+    if (followed_ == link || !link->hasMethod("process.list"))
+        return;
+    followed_ = link;
+    search();
+    link->client().subscribe("processes", {}, [this](const TopicUpdate &update) {
+        processes_ = update.data["processes"].toArray();
+        for (const QJsonValue &process : qAsConst(processes_))
+            if (const int port = process["port"].toInt(); port > 0 && port < 65536)
+                add(quint16(port), true);
+        Q_EMIT changed();
+    });
+}
+
+} // namespace hermes

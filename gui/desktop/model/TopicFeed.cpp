@@ -1,0 +1,50 @@
+#include "gui/desktop/model/TopicFeed.h"
+
+namespace hermes {
+
+TopicFeed::TopicFeed(Fleet &fleet, const QString &topic, const QJsonObject &options,
+                     const Client::TopicCallback &callback, QObject *parent)
+    : QObject(parent)
+    , fleet_(fleet)
+    , topic_(topic)
+    , options_(options)
+    , callback_(callback) {
+    connect(&fleet, &Fleet::robotChosen, this, &TopicFeed::follow);
+    follow(fleet.robot());
+}
+
+TopicFeed::~TopicFeed() {
+    if (source_)
+        source_->client().unsubscribe(handle_);
+}
+
+void TopicFeed::setEnabled(bool isEnabled) {
+    isEnabled_ = isEnabled;
+    update();
+}
+
+void TopicFeed::follow(Robot *robot) {
+    if (robot_)
+        robot_->disconnect(this);
+    robot_ = robot;
+    if (robot)
+        connect(robot, &Robot::capabilitiesChanged, this, &TopicFeed::update);
+    update();
+}
+
+void TopicFeed::update() {
+    DaemonLink *const found = robot_ && isEnabled_ ? robot_->withTopic(topic_) : nullptr;
+    // A source that is away for a moment is kept: its client subscribes again by itself.
+    const bool isAway =
+        isEnabled_ && !found && source_ && robot_ && robot_->withName(source_->name()) == source_;
+    if (found == source_ || isAway)
+        return;
+    if (source_)
+        source_->client().unsubscribe(handle_);
+    source_ = found;
+    if (found)
+        handle_ = found->client().subscribe(topic_, options_, callback_);
+    Q_EMIT sourceChanged();
+}
+
+} // namespace hermes

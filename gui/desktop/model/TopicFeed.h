@@ -1,0 +1,40 @@
+#pragma once
+
+#include "gui/desktop/model/Fleet.h"
+
+namespace hermes {
+
+/// A topic of the chosen robot, from whichever of its daemons has it: subscribes when one appears, moves on
+/// when the robot or its daemons change.
+class TopicFeed : public QObject {
+    Q_OBJECT
+public:
+    /// options: as topics.subscribe takes them.
+    TopicFeed(Fleet &fleet, const QString &topic, const QJsonObject &options,
+              const Client::TopicCallback &callback, QObject *parent);
+    ~TopicFeed() override;
+
+    /// The daemon that the messages come from; null: nobody has the topic.
+    DaemonLink *source() const { return source_; }
+    /// Switched off it costs nothing on the link.
+    void setEnabled(bool isEnabled);
+
+Q_SIGNALS:
+    /// Another daemon, or none: what came before belongs to the old one.
+    void sourceChanged();
+
+private:
+    void follow(Robot *robot);
+    void update();
+
+    Fleet &fleet_;
+    const QString topic_;
+    const QJsonObject options_;
+    const Client::TopicCallback callback_;
+    QPointer<Robot> robot_;
+    QPointer<DaemonLink> source_;
+    int handle_ = 0;
+    bool isEnabled_ = true;
+};
+
+} // namespace hermes

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "gui/desktop/model/Fleet.h"
+
+#include <QPointer>
+#include <QWidget>
+
+class QLabel;
+class QLineEdit;
+class QListWidget;
+class QPlainTextEdit;
+class QPushButton;
+
+namespace hermes {
+
+class SchemaForm;
+
+/// Any method of the chosen daemon: a form for its parameters, a call, the answer.
+class CommandsPanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit CommandsPanel(Fleet &fleet, QWidget *parent = nullptr);
+
+private:
+    void follow(DaemonLink *daemon);
+    void listMethods();
+    void showMethod(const QString &name);
+    void call();
+    void update();
+    QWidget *makeMethods();
+    QWidget *makeCall();
+
+    QPointer<DaemonLink> daemon_;
+    QLabel *title_, *summary_;
+    QLineEdit *filter_;
+    QListWidget *methods_;
+    SchemaForm *form_;
+    QPushButton *call_;
+    QPlainTextEdit *answer_;
+    QString method_;
+};
+
+} // namespace hermes

@@ -1,0 +1,221 @@
+#include "gui/desktop/panels/DaemonsPanel.h"
+
+#include "gui/desktop/Theme.h"
+
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QJsonArray>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <QtMath>
+
+namespace hermes {
+namespace {
+
+enum Column { NameColumn, StateColumn };
+
+Condition conditionOf(const QString &level) {
+    return level == "ok" ? Condition::Ready : level == "error" ? Condition::Fault : Condition::Warning;
+}
+
+void setText(QTreeWidgetItem &item, const QString &name, const QString &state, Condition condition,
+             const QString &toolTip) {
+    item.setText(NameColumn, name);
+    item.setText(StateColumn, state);
+    item.setIcon(StateColumn, theme::icon(condition));
+    item.setForeground(StateColumn, theme::colour(condition));
+    item.setToolTip(NameColumn, toolTip);
+    item.setToolTip(StateColumn, toolTip);
+}
+
+/// What the supervisor says of a process: share of a core, memory, restarts.
+QString usage(const QJsonObject &process) {
+    if (process["pid"].toInt() == 0)
+        return {};
+    return DaemonsPanel::tr("%1 % of a core, %2 MB, %3 restarts")
+        .arg(100 * process["cpu"].toDouble(), 0, 'f', 1)
+        .arg(process["memory_bytes"].toDouble() / 1e6, 0, 'f', 1)
+        .arg(process["restarts"].toInt());
+}
+
+} // namespace
+
+DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
+    : QWidget(parent)
+    , fleet_(fleet)
+    , address_(new QLineEdit)
+    , tree_(new QTreeWidget)
+    , hint_(new QLabel(tr("No daemon found yet. Add one by its address, for example 192.168.1.20 or "
+                          "127.0.0.1:7450, or start the simulator with ./demo.")))
+    , message_(new QLabel) {
+    tree_->setObjectName("tree");
+    tree_->setColumnCount(2);
+    tree_->setHeaderLabels({tr("Daemon"), tr("State")});
+    tree_->header()->setSectionResizeMode(NameColumn, QHeaderView::Stretch);
+    tree_->header()->setSectionResizeMode(StateColumn, QHeaderView::ResizeToContents);
+    tree_->header()->setStretchLastSection(false);
+    tree_->setUniformRowHeights(true);
+    hint_->setWordWrap(true);
+    message_->setObjectName("message");
+    message_->setWordWrap(true);
+    message_->hide();
+
+    address_->setObjectName("address");
+    address_->setPlaceholderText(tr("HOST or HOST:PORT"));
+    auto *const add = new QPushButton(theme::icon("add"), tr("&Add"));
+    add->setObjectName("add");
+    auto *const adding = new QHBoxLayout;
+    adding->addWidget(address_);
+    adding->addWidget(add);
+
+    auto *const layout = new QVBoxLayout(this);
+    layout->addLayout(adding);
+    layout->addWidget(hint_);
+    layout->addWidget(tree_, 1);
+    layout->addWidget(message_);
+    layout->addWidget(makeButtons());
+
+    connect(add, &QPushButton::clicked, this, &DaemonsPanel::addAddress);
+    connect(address_, &QLineEdit::returnPressed, this, &DaemonsPanel::addAddress);
+    connect(tree_, &QTreeWidget::currentItemChanged, this, &DaemonsPanel::showChosen);
+    connect(&fleet, &Fleet::changed, this, &DaemonsPanel::updateTree);
+    connect(&fleet, &Fleet::daemonChosen, this, &DaemonsPanel::updateButtons);
+    updateTree();
+}
+
+QWidget *DaemonsPanel::makeButtons() {
+    auto *const row = new QWidget;
+    auto *const layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    const auto button = [&](const QString &icon, const QString &text, const QString &method) {
+        auto *const made = new QPushButton(theme::icon(icon), text);
+        made->setObjectName(method);
+        connect(made, &QPushButton::clicked, this, [this, method] { ask(method); });
+        layout->addWidget(made);
+        return made;
+    };
+    start_ = button("start", tr("S&tart"), "process.start");
+    stop_ = button("stop", tr("St&op"), "process.stop");
+    restart_ = button("restart", tr("R&estart"), "process.restart");
+    return row;
+}
+
+void DaemonsPanel::updateTree() {
+    isUpdating_ = true;
+    QHash<const void *, QTreeWidgetItem *> present;
+    int robotRow = 0;
+    for (const auto &robot : fleet_.robots()) {
+        QTreeWidgetItem *item = items_.take(robot.get());
+        if (!item) {
+            item = new QTreeWidgetItem;
+            item->setIcon(NameColumn, theme::icon("robot"));
+            tree_->insertTopLevelItem(robotRow, item);
+            item->setExpanded(true);
+            item->setFirstColumnSpanned(true);
+        }
+        ++robotRow;
+        item->setText(NameColumn, robot->name());
+        present.insert(robot.get(), item);
+        int row = 0;
+        for (DaemonLink *daemon : robot->daemons()) {
+            QTreeWidgetItem *child = items_.take(daemon);
+            if (!child) {
+                child = new QTreeWidgetItem;
+                child->setData(NameColumn, Qt::UserRole, QVariant::fromValue<QObject *>(daemon));
+                item->insertChild(row, child);
+            }
+            ++row;
+            showDaemon(*child, *robot, *daemon);
+            present.insert(daemon, child);
+        }
+    }
+    for (auto gone = items_.begin(); gone != items_.end(); ++gone)
+        if (gone.value()->parent())
+            delete gone.value();
+    items_ = present;
+    hint_->setVisible(present.size() <= int(fleet_.robots().size()));
+    isUpdating_ = false;
+    updateButtons();
+}
+
+void DaemonsPanel::showDaemon(QTreeWidgetItem &item, const Robot &robot, const DaemonLink &daemon) {
+    const QJsonObject process = robot.process(daemon);
+    const QString processState = process["state"].toString();
+    const bool isStopped = !daemon.isConnected() && !processState.isEmpty() && processState != "running";
+    QStringList toolTip{daemon.title() + ", " + daemon.address(), daemon.reason(), usage(process)};
+    toolTip.removeAll(QString());
+    setText(item, daemon.name(), isStopped ? processState : daemon.conditionWord(), daemon.condition(),
+            toolTip.join('\n'));
+
+    const QJsonArray health = daemon.isConnected() ? daemon.status()["health"].toArray() : QJsonArray();
+    while (item.childCount() > health.size())
+        delete item.takeChild(item.childCount() - 1);
+    while (item.childCount() < health.size())
+        item.addChild(new QTreeWidgetItem);
+    for (int i = 0; i < health.size(); ++i) {
+        const QString level = health[i]["level"].toString();
+        setText(*item.child(i), health[i]["name"].toString(), level, conditionOf(level),
+                health[i]["message"].toString());
+    }
+}
+
+void DaemonsPanel::showChosen() {
+    if (isUpdating_)
+        return;
+    QTreeWidgetItem *item = tree_->currentItem();
+    while (item && item->parent() && item->parent()->parent())
+        item = item->parent(); // a health item stands for its daemon
+    if (!item)
+        return;
+    message_->hide();
+    if (item->parent())
+        return fleet_.choose(
+            qobject_cast<DaemonLink *>(item->data(NameColumn, Qt::UserRole).value<QObject *>()));
+    const int row = tree_->indexOfTopLevelItem(item);
+    fleet_.choose(fleet_.robots().at(size_t(row)).get());
+}
+
+void DaemonsPanel::updateButtons() {
+    const DaemonLink *const daemon = fleet_.daemon();
+    const Robot *const robot = fleet_.robot();
+    const QJsonObject process = daemon && robot ? robot->process(*daemon) : QJsonObject();
+    const bool isRunning = process["pid"].toInt() > 0;
+    const bool isManaged = !process.isEmpty() && robot->supervisor();
+    start_->setEnabled(isManaged && !isRunning);
+    stop_->setEnabled(isManaged && isRunning);
+    restart_->setEnabled(isManaged && isRunning);
+    const QString why = isManaged ? QString() : tr("Only for daemons that the robot's supervisor runs");
+    for (QPushButton *button : {start_, stop_, restart_})
+        button->setToolTip(why);
+}
+
+void DaemonsPanel::addAddress() {
+    const auto added = fleet_.add(address_->text().trimmed());
+    if (!added)
+        return tell(added.error().message);
+    address_->clear();
+    message_->hide();
+}
+
+void DaemonsPanel::ask(const QString &method) {
+    DaemonLink *const supervisor = fleet_.robot() ? fleet_.robot()->supervisor() : nullptr;
+    if (!supervisor || !fleet_.daemon())
+        return;
+    const QString name = fleet_.robot()->process(*fleet_.daemon())["name"].toString();
+    supervisor->call(method, {{"name", name}}, this, [this](const Result<QJsonValue> &done) {
+        if (done)
+            message_->hide();
+        else
+            tell(done.error().message);
+    });
+}
+
+void DaemonsPanel::tell(const QString &text) {
+    message_->setText(text);
+    message_->show();
+}
+
+} // namespace hermes

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "gui/desktop/model/Fleet.h"
+
+#include <QHash>
+#include <QWidget>
+
+class QLabel;
+class QLineEdit;
+class QPushButton;
+class QTreeWidget;
+class QTreeWidgetItem;
+
+namespace hermes {
+
+/// The tree of robots, their daemons and what these say of their health. Adds daemons by address; starts,
+/// stops and restarts those that a supervisor runs.
+class DaemonsPanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit DaemonsPanel(Fleet &fleet, QWidget *parent = nullptr);
+
+private:
+    void updateTree();
+    void showDaemon(QTreeWidgetItem &item, const Robot &robot, const DaemonLink &daemon);
+    void showChosen();
+    void updateButtons();
+    void addAddress();
+    /// process.start, process.stop or process.restart of the chosen daemon.
+    void ask(const QString &method);
+    void tell(const QString &text);
+    QWidget *makeButtons();
+
+    Fleet &fleet_;
+    QLineEdit *address_;
+    QTreeWidget *tree_;
+    QLabel *hint_;
+    QLabel *message_;
+    QPushButton *start_, *stop_, *restart_;
+    QHash<const void *, QTreeWidgetItem *> items_; // by Robot or DaemonLink
+    bool isUpdating_ = false;
+};
+
+} // namespace hermes

@@ -1,0 +1,167 @@
+#include "gui/desktop/panels/SettingsPanel.h"
+
+#include "common/settings/DottedPath.h"
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/SchemaForm.h"
+
+#include <QHBoxLayout>
+#include <QJsonArray>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QVBoxLayout>
+
+namespace hermes {
+
+SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
+    : QWidget(parent)
+    , title_(new QLabel)
+    , message_(new QLabel)
+    , filter_(new QLineEdit)
+    , form_(new SchemaForm) {
+    title_->setObjectName("title");
+    message_->setObjectName("message");
+    message_->setWordWrap(true);
+    filter_->setObjectName("filter");
+    filter_->setPlaceholderText(tr("Find a setting"));
+    filter_->setClearButtonEnabled(true);
+    auto *const scroll = new QScrollArea;
+    scroll->setWidget(form_);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+
+    auto *const top = new QHBoxLayout;
+    top->addWidget(title_);
+    top->addWidget(filter_, 1);
+    top->addWidget(makeButtons());
+    auto *const layout = new QVBoxLayout(this);
+    layout->addLayout(top);
+    layout->addWidget(message_);
+    layout->addWidget(scroll, 1);
+
+    connect(filter_, &QLineEdit::textChanged, form_, &SchemaForm::setFilter);
+    connect(form_, &SchemaForm::edited, this, [this] {
+        message_->hide();
+        update();
+    });
+    connect(&fleet, &Fleet::daemonChosen, this, &SettingsPanel::follow);
+    follow(fleet.daemon());
+}
+
+QWidget *SettingsPanel::makeButtons() {
+    auto *const row = new QWidget;
+    auto *const layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    const auto button = [&](const char *icon, const QString &text, const char *name, const QString &toolTip) {
+        auto *const made = new QPushButton(theme::icon(QString(icon)), text);
+        made->setObjectName(name);
+        made->setToolTip(toolTip);
+        layout->addWidget(made);
+        return made;
+    };
+    apply_ = button("apply", tr("A&pply"), "apply",
+                    tr("Sends the changes: all of them, or none when one is refused"));
+    revert_ = button("revert", tr("Re&vert"), "revert", tr("Forgets the changes that were not applied"));
+    defaults_ =
+        button("restart", tr("De&faults"), "defaults", tr("Shows the defaults; Apply makes them true"));
+    save_ = button("save", tr("Sa&ve"), "save", tr("The daemon keeps its settings for its next start"));
+    connect(apply_, &QPushButton::clicked, this, &SettingsPanel::apply);
+    connect(revert_, &QPushButton::clicked, this, [this] {
+        form_->revert();
+        update();
+    });
+    connect(defaults_, &QPushButton::clicked, form_, &SchemaForm::setDefaults);
+    connect(save_, &QPushButton::clicked, this, &SettingsPanel::save);
+    return row;
+}
+
+void SettingsPanel::follow(DaemonLink *daemon) {
+    if (daemon_) {
+        daemon_->disconnect(this);
+        daemon_->client().unsubscribe(handle_);
+    }
+    daemon_ = daemon;
+    form_->setSchema({}, {});
+    message_->hide();
+    if (daemon) {
+        connect(daemon, &DaemonLink::ready, this, &SettingsPanel::load);
+        connect(daemon, &DaemonLink::changed, this, &SettingsPanel::update);
+        handle_ = daemon->client().subscribe("settings", {}, [this](const TopicUpdate &update) {
+            form_->setBaseline(update.data.toObject());
+            this->update();
+        });
+        if (daemon->isConnected())
+            load();
+    }
+    update();
+}
+
+void SettingsPanel::load() {
+    DaemonLink *const daemon = daemon_;
+    daemon->call("settings.schema", {}, this, [this, daemon](const Result<QJsonValue> &schema) {
+        if (daemon != daemon_ || !schema)
+            return;
+        const QJsonObject found = schema->toObject();
+        daemon->call("settings.get", {}, this, [this, daemon, found](const Result<QJsonValue> &values) {
+            if (daemon != daemon_ || !values)
+                return;
+            form_->setSchema(found, values->toObject());
+            form_->setFilter(filter_->text());
+            update();
+        });
+    });
+}
+
+void SettingsPanel::apply() {
+    const QJsonObject changes = form_->changes();
+    DaemonLink *const daemon = daemon_;
+    daemon->call("settings.set", {{"values", changes}}, this, [this, daemon](const Result<QJsonValue> &done) {
+        if (daemon != daemon_)
+            return;
+        if (!done) {
+            form_->showErrors(done.error().data.toObject()["errors"].toArray());
+            return tell(done.error().message, true);
+        }
+        QStringList restart;
+        for (const QJsonValue &path : (*done)["restart"].toArray())
+            restart.append(path.toString());
+        tell(restart.isEmpty() ? tr("Applied.")
+                               : tr("Applied. Needs a restart of the daemon: %1").arg(restart.join(", ")),
+             false);
+        load();
+    });
+}
+
+void SettingsPanel::save() {
+    daemon_->call("settings.save", {}, this, [this](const Result<QJsonValue> &done) {
+        if (done)
+            tell(tr("Saved: the daemon begins with these settings the next time."), false);
+        else
+            tell(done.error().message, true);
+    });
+}
+
+void SettingsPanel::update() {
+    const bool isThere = daemon_ && daemon_->isConnected();
+    title_->setText(daemon_ ? "<b>" + daemon_->name().toHtmlEscaped() + "</b>"
+                            : tr("Choose a daemon to see its settings."));
+    const int changed = leafPaths(form_->changes()).size();
+    apply_->setText(changed == 0 ? tr("A&pply") : tr("A&pply %n change(s)", nullptr, changed));
+    apply_->setEnabled(isThere && changed > 0 && form_->isValid());
+    revert_->setEnabled(changed > 0 || !form_->isValid());
+    defaults_->setEnabled(isThere);
+    save_->setEnabled(isThere);
+    form_->setEnabled(isThere);
+}
+
+void SettingsPanel::tell(const QString &text, bool isError) {
+    QPalette palette;
+    if (isError)
+        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
+    message_->setPalette(palette);
+    message_->setText(text);
+    message_->show();
+}
+
+} // namespace hermes

@@ -1,0 +1,228 @@
+#include "gui/desktop/widgets/SchemaForm.h"
+
+#include "common/schema/SchemaText.h"
+#include "common/settings/DottedPath.h"
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/ValueEditor.h"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QRegularExpression>
+#include <QSet>
+#include <algorithm>
+
+namespace hermes {
+namespace {
+
+enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn };
+
+/// The title, or words made of the path: "safety.command_timeout_s" in "s" reads "command timeout".
+QString titleOf(const QString &path, const QJsonObject &schema) {
+    const QString title = schema["title"].toString();
+    if (!title.isEmpty())
+        return title;
+    QStringList words = path.section('.', path.contains('.') ? 1 : 0).split(QRegularExpression("[._]"));
+    static const QSet<QString> units{"s", "m", "v", "a", "c", "b", "mps", "rps", "hz", "deg", "bytes"};
+    if (schema.contains("unit") && words.size() > 1 && units.contains(words.back()))
+        words.removeLast();
+    return words.join(' ');
+}
+
+QString limitsOf(const QJsonObject &schema) {
+    const QJsonValue least = schema["minimum"], most = schema["maximum"];
+    if (least.isDouble() && most.isDouble())
+        return SchemaForm::tr("%1 to %2").arg(least.toDouble()).arg(most.toDouble());
+    if (least.isDouble())
+        return SchemaForm::tr("at least %1").arg(least.toDouble());
+    return most.isDouble() ? SchemaForm::tr("at most %1").arg(most.toDouble()) : QString();
+}
+
+QString toolTipOf(const QString &path, const QJsonObject &schema) {
+    QStringList lines{schema["description"].toString(), path + ": " + expectation(schema)};
+    if (schema.contains("default"))
+        lines.append(SchemaForm::tr("default %1").arg(shown(schema["default"])));
+    if (schema["x-applies"].toString() == "restart")
+        lines.append(SchemaForm::tr("has effect after a restart"));
+    return lines.join('\n');
+}
+
+} // namespace
+
+SchemaForm::SchemaForm(QWidget *parent)
+    : QWidget(parent) {
+    auto *const grid = new QGridLayout(this);
+    grid->setColumnStretch(EditorColumn, 2);
+    grid->setColumnStretch(NoteColumn, 3);
+    grid->setVerticalSpacing(4);
+}
+
+void SchemaForm::setSchema(const QJsonObject &schema, const QJsonObject &values) {
+    for (auto &[path, row] : rows_)
+        for (QWidget *widget : row.widgets)
+            delete widget;
+    qDeleteAll(headings_);
+    rows_.clear();
+    order_.clear();
+    headings_.clear();
+    errors_.clear();
+    schema_ = schema;
+    baseline_ = values;
+    validator_.emplace(schema);
+    addRows(schema, {});
+    arrange();
+    revert();
+}
+
+void SchemaForm::addRows(const QJsonObject &schema, const QString &prefix) {
+    const QJsonObject properties = schema["properties"].toObject();
+    for (auto property = properties.begin(); property != properties.end(); ++property) {
+        const QString path = prefix.isEmpty() ? property.key() : prefix + "." + property.key();
+        const QJsonObject inner = property.value().toObject();
+        if (inner.contains("properties"))
+            addRows(inner, path);
+        else
+            addRow(path, inner);
+    }
+}
+
+void SchemaForm::addRow(const QString &path, const QJsonObject &schema) {
+    Row row;
+    row.schema = schema;
+    row.group = schema["group"].toString();
+    if (row.group.isEmpty())
+        row.group = path.contains('.') ? path.section('.', 0, 0) : QString();
+    row.title = new QLabel(titleOf(path, schema));
+    row.editor = new ValueEditor(schema);
+    row.editor->setObjectName(path);
+    row.title->setBuddy(row.editor);
+    row.note = new QLabel;
+    row.note->setObjectName(path + "/note");
+    row.widgets = {row.title, row.editor, new QLabel(schema["unit"].toString()), row.note};
+    for (QWidget *widget : row.widgets)
+        widget->setToolTip(toolTipOf(path, schema));
+    connect(row.editor, &ValueEditor::edited, this, [this, path] {
+        errors_.erase(path);
+        check();
+        Q_EMIT edited();
+    });
+    rows_.emplace(path, row);
+    order_.push_back(path);
+}
+
+// Groups in the order of their first row, rows within as the schema has them.
+void SchemaForm::arrange() {
+    std::vector<QString> groups;
+    for (const QString &path : order_)
+        if (const QString &group = rows_.at(path).group;
+            std::find(groups.begin(), groups.end(), group) == groups.end())
+            groups.push_back(group);
+    auto *const grid = static_cast<QGridLayout *>(layout());
+    int line = 0;
+    for (const QString &group : groups) {
+        auto *const heading = new QLabel("<b>" + group.toHtmlEscaped() + "</b>");
+        headings_.push_back(heading);
+        grid->addWidget(heading, line++, 0, 1, 4);
+        heading->setVisible(!group.isEmpty());
+        for (const QString &path : order_)
+            if (const Row &row = rows_.at(path); row.group == group) {
+                for (int column = 0; column < int(row.widgets.size()); ++column)
+                    grid->addWidget(row.widgets[size_t(column)], line, column);
+                ++line;
+            }
+    }
+    for (int i = 0; i < grid->rowCount(); ++i)
+        grid->setRowStretch(i, i == line ? 1 : 0);
+    QWidget *before = nullptr;
+    for (const QString &path : order_) {
+        if (before)
+            setTabOrder(before, rows_.at(path).editor);
+        before = rows_.at(path).editor;
+    }
+}
+
+void SchemaForm::setBaseline(const QJsonObject &values) {
+    const QJsonObject before = std::exchange(baseline_, values);
+    for (auto &[path, row] : rows_)
+        if (row.editor->value() == valueAt(before, path))
+            row.editor->setValue(valueAt(values, path));
+    check();
+}
+
+void SchemaForm::setDefaults() {
+    for (auto &[path, row] : rows_)
+        row.editor->setValue(row.schema["default"]);
+    errors_.clear();
+    check();
+    Q_EMIT edited();
+}
+
+void SchemaForm::revert() {
+    for (auto &[path, row] : rows_)
+        if (const QJsonValue value = valueAt(baseline_, path); !value.isUndefined())
+            row.editor->setValue(value);
+    errors_.clear();
+    check();
+}
+
+QJsonObject SchemaForm::values() const {
+    QJsonObject result;
+    for (const auto &[path, row] : rows_)
+        if (const QJsonValue value = row.editor->value(); !value.isUndefined())
+            result = withValueAt(result, path, value);
+    return result;
+}
+
+QJsonObject SchemaForm::changes() const {
+    return difference(values(), baseline_);
+}
+
+void SchemaForm::showErrors(const QJsonArray &errors) {
+    for (const QJsonValue &error : errors)
+        errors_[error["path"].toString()] = error["expected"].toString();
+    for (auto &[path, row] : rows_)
+        mark(path, row);
+}
+
+void SchemaForm::check() {
+    errors_.clear();
+    for (const SchemaViolation &violation : validator_->check(values()))
+        errors_[violation.path] = violation.expected;
+    for (auto &[path, row] : rows_)
+        mark(path, row);
+}
+
+void SchemaForm::mark(const QString &path, Row &row) {
+    // An array's element that is wrong is a mistake of the array.
+    const auto error = std::find_if(errors_.begin(), errors_.end(), [&](const auto &entry) {
+        return entry.first == path || entry.first.startsWith(path + ".") ||
+               entry.first.startsWith(path + "[");
+    });
+    const bool isWrong = error != errors_.end();
+    const QJsonValue before = valueAt(baseline_, path);
+    const bool isChanged = row.editor->value() != (before.isUndefined() ? row.schema["default"] : before);
+    const bool needsRestart = row.schema["x-applies"].toString() == "restart";
+    row.editor->setWrong(isWrong);
+    QString note = isWrong                     ? tr("expected %1").arg(error->second)
+                   : isChanged && needsRestart ? tr("changed, needs a restart")
+                   : isChanged                 ? tr("changed")
+                                               : limitsOf(row.schema);
+    row.note->setText(note);
+    QPalette palette;
+    if (isWrong || isChanged)
+        palette.setColor(QPalette::WindowText, theme::colour(isWrong ? Condition::Fault : Condition::Busy));
+    row.note->setPalette(palette);
+}
+
+void SchemaForm::setFilter(const QString &text) {
+    for (auto &[path, row] : rows_) {
+        const bool isShown = text.isEmpty() || path.contains(text, Qt::CaseInsensitive) ||
+                             row.title->text().contains(text, Qt::CaseInsensitive) ||
+                             row.schema["description"].toString().contains(text, Qt::CaseInsensitive);
+        for (QWidget *widget : row.widgets)
+            widget->setVisible(isShown);
+    }
+    for (QLabel *heading : headings_)
+        heading->setVisible(text.isEmpty() && heading->text() != "<b></b>");
+}
+
+} // namespace hermes

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "common/schema/SchemaValidator.h"
+
+#include <QWidget>
+#include <map>
+#include <optional>
+
+class QLabel;
+
+namespace hermes {
+
+class ValueEditor;
+
+/// A form for an object, made from its JSON Schema: one row a value with its title, input, unit and limits,
+/// under the heading of its group. Every edit is checked against the schema at once; what is wrong stands
+/// beside its input.
+class SchemaForm : public QWidget {
+    Q_OBJECT
+public:
+    explicit SchemaForm(QWidget *parent = nullptr);
+
+    /// Builds the rows anew. values are what the rows show and what counts as unchanged;
+    /// the defaults where there are none.
+    void setSchema(const QJsonObject &schema, const QJsonObject &values);
+    /// New unchanged values: rows that the operator has not touched show them.
+    void setBaseline(const QJsonObject &values);
+    /// All rows show what the schema has as default.
+    void setDefaults();
+    /// Back to the unchanged values.
+    void revert();
+
+    /// What stands in the rows, as nested objects; rows left empty are absent.
+    QJsonObject values() const;
+    /// Only what differs from the unchanged values.
+    QJsonObject changes() const;
+    bool isValid() const { return errors_.empty(); }
+    /// Errors that came back from the daemon: [{path, value, expected}].
+    void showErrors(const QJsonArray &errors);
+    /// Only rows with this text in path, title or description.
+    void setFilter(const QString &text);
+
+Q_SIGNALS:
+    void edited();
+
+private:
+    struct Row {
+        QJsonObject schema;
+        QLabel *title, *note;
+        ValueEditor *editor;
+        std::vector<QWidget *> widgets;
+        QString group;
+    };
+
+    void addRows(const QJsonObject &schema, const QString &prefix);
+    void addRow(const QString &path, const QJsonObject &schema);
+    void arrange();
+    void check();
+    void mark(const QString &path, Row &row);
+
+    QJsonObject schema_, baseline_;
+    std::optional<SchemaValidator> validator_;
+    std::map<QString, Row> rows_; // by dotted path
+    std::vector<QString> order_;
+    std::vector<QLabel *> headings_;
+    std::map<QString, QString> errors_; // expected, by dotted path
+};
+
+} // namespace hermes

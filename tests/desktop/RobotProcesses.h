@@ -1,0 +1,90 @@
+#pragma once
+
+#include "gui/desktop/model/Fleet.h"
+
+#include <QProcess>
+#include <QTcpServer>
+#include <QTemporaryDir>
+#include <QtTest>
+#include <map>
+
+namespace hermes {
+
+/// Daemons as processes of their own on free ports, for the operator's program to connect to. They end with
+/// this object.
+class RobotProcesses {
+public:
+    ~RobotProcesses() {
+        for (auto &[name, daemon] : daemons_)
+            daemon.process->terminate();
+        for (auto &[name, daemon] : daemons_)
+            if (!daemon.process->waitForFinished(5000))
+                daemon.process->kill();
+    }
+
+    /// Starts hermes-NAME with settings as `path=value`; gives its port.
+    quint16 start(const QString &name, const QStringList &settings = {}) {
+        Daemon &daemon = daemons_[name];
+        if (daemon.port == 0)
+            daemon.port = freePort();
+        QStringList arguments{"--listen", QString("tcp://127.0.0.1:%1?protocol=json").arg(daemon.port)};
+        for (const QString &setting : settings)
+            arguments << "--set" << setting;
+        daemon.process = std::make_unique<QProcess>();
+        daemon.process->setStandardOutputFile(QProcess::nullDevice());
+        daemon.process->setStandardErrorFile(folder_.filePath(name + ".log"), QIODevice::Append);
+        daemon.process->start(qEnvironmentVariable("HERMES_BIN") + "/hermes-" + name, arguments);
+        return daemon.port;
+    }
+    /// Simulator, motor control, lidar logger and scan matcher in a world of deploy/worlds, wired as on a
+    /// robot.
+    void startAll(const QString &world = "pillars.json") {
+        const QString link = folder_.filePath("motors");
+        const quint16 lidar = freePort();
+        const quint16 logger = start("velodynelogger", {QString("source.port=%1").arg(lidar),
+                                                        "record.folder=" + folder_.filePath("recordings")});
+        start("scanmatcher",
+              {QString("source.address=127.0.0.1:%1").arg(logger), "map.folder=" + folder_.filePath("maps")});
+        start("simulator", {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/" + world,
+                            QString("lidar.port=%1").arg(lidar), "motors.link=" + link});
+        const QString url = "serial://" + link + "?baud=115200";
+        start("motorcontrol", {"controllers.1.url=" + url, "controllers.2.url=" + url});
+    }
+    /// As SIGKILL does.
+    void kill(const QString &name) {
+        daemons_.at(name).process->kill();
+        daemons_.at(name).process->waitForFinished();
+    }
+
+    /// Adds all of them to the fleet, chooses their robot and waits until each can be spoken to.
+    void connectTo(Fleet &fleet) {
+        for (const auto &[name, daemon] : daemons_)
+            QVERIFY(fleet.add(QString("127.0.0.1:%1").arg(daemon.port)).ok());
+        QTRY_VERIFY_WITH_TIMEOUT(areAllReady(*fleet.robots().front()), 20000);
+    }
+    quint16 port(const QString &name) const { return daemons_.at(name).port; }
+    QString path(const QString &name) const { return folder_.filePath(name); }
+
+private:
+    struct Daemon {
+        quint16 port = 0;
+        std::unique_ptr<QProcess> process;
+    };
+
+    static quint16 freePort() {
+        QTcpServer probe;
+        probe.listen(QHostAddress::LocalHost);
+        return probe.serverPort();
+    }
+    bool areAllReady(const Robot &robot) const {
+        for (const auto &[name, daemon] : daemons_)
+            if (!robot.withName(name) || !robot.withName(name)->hasTopic("status"))
+                return false;
+        return true;
+    }
+
+    QTemporaryDir folder_;
+    std::map<QString, Daemon> daemons_;
+};
+
+} // namespace hermes
