@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+"""Simulator and motor control as processes, joined by a pseudo-terminal: a client drives squares by the odometry alone. Both
+the odometry and the simulator's truth must then be back where they began. Without slip; HERMES_SIDE is the side in metres."""
+import json
+import math
+import os
+import socket
+import sys
+import tempfile
+import threading
+import time
+
+sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
+from processes import Process, free_port  # noqa: E402
+
+BINARIES = os.environ["HERMES_BIN"]
+SIDE = float(os.environ.get("HERMES_SIDE", "1"))
+SPEED, TURN_RATE = 2.0, 2.5  # m/s, rad/s
+SLOWING, TURN_SLOWING = 1.0, 3.0  # m/s^2, rad/s^2: half of what the robot can
+CLOSE, CLOSE_ANGLE = 0.01, math.radians(0.2)
+
+
+def towards(left, most, slowing):
+    """The speed that comes to a stand after this way."""
+    return math.copysign(min(most, math.sqrt(2 * slowing * abs(left)), 5 * abs(left)), left)
+
+
+class Robot:
+    """The processes of one robot, and what a client needs to drive it."""
+
+    def __init__(self, folder, layout):
+        self.layout = layout
+        os.mkdir(folder)
+        link, world = os.path.join(folder, "motors"), os.path.join(folder, "field.json")
+        with open(world, "w", encoding="utf-8") as file:
+            json.dump({"name": "field", "edges": [[-40, -40, 40, -40]], "poses": [[0, 0, 0]]}, file)
+        url = f"serial://{link}?baud=115200"
+        self.processes = []
+        try:
+            self.processes.append(Process(BINARIES, "simulator", free_port(0), folder, {
+                "motors.link": link, "world": world, "frame.layout": layout,
+                "lidar.port": free_port(0, socket.SOCK_DGRAM)}))
+            self.simulator = self.processes[0].connect()
+            self.processes.append(Process(BINARIES, "motorcontrol", free_port(0), folder, {
+                "controllers.1.url": url, "controllers.2.url": url, "frame.layout": layout, "motion.vx": SPEED,
+                "motion.vy": SPEED, "motion.omega": 2 * TURN_RATE, "motion.ax": 2 * SLOWING, "motion.ay": 2 * SLOWING, "motion.alpha": 2 * TURN_SLOWING}))
+            self.motors = self.processes[1].connect()
+        except BaseException:
+            self.stop()
+            raise
+
+    def stop(self):
+        return [process.stop() for process in reversed(self.processes)]
+
+    def left(self, x, y, theta):
+        """What is left to this pose, as the robot sees it: ahead, to its left, turn."""
+        pose = self.motors.call("motor.state")["pose"]
+        c, s = math.cos(pose["theta"]), math.sin(pose["theta"])
+        dx, dy = x - pose["x"], y - pose["y"]
+        return c * dx + s * dy, c * dy - s * dx, math.remainder(theta - pose["theta"], 2 * math.pi)
+
+    def drive_to(self, goal, near, near_angle):
+        deadline = time.monotonic() + 60 + 4 * SIDE
+        while True:
+            ahead, left, turn = self.left(*goal)
+            if self.layout == "differential":  # across it only steers, while it has way to go
+                distance, command = abs(ahead), {"vx": towards(ahead, SPEED, SLOWING)}
+            else:
+                distance = math.hypot(ahead, left)
+                share = towards(distance, SPEED, SLOWING) / distance if distance > 0 else 0
+                command = {"vx": share * ahead, "vy": share * left}
+            if distance < near and abs(turn) < near_angle:
+                return
+            assert time.monotonic() < deadline, f"{self.layout}: {distance} m and {turn} rad are left to {goal}"
+            command["omega"] = towards(turn, TURN_RATE, TURN_SLOWING)
+            if self.layout == "differential":
+                command["omega"] += math.copysign(left, left * command["vx"])
+            self.motors.call("motor.drive", **command)
+            time.sleep(0.03)
+
+    def stand(self):
+        self.motors.call("motor.stop")
+        deadline = time.monotonic() + 10
+        while any(self.simulator.call("sim.state")["motors"]["wheels_rps"]):
+            assert time.monotonic() < deadline, f"{self.layout}: the robot does not come to a stand"
+            time.sleep(0.02)
+        cycles = self.motors.call("motor.state")["cycle"]["cycles"]
+        while self.motors.call("motor.state")["cycle"]["cycles"] < cycles + 3:  # the last counts are read
+            time.sleep(0.02)
+
+    def square(self):
+        while not self.motors.call("motor.state")["ready"]:
+            time.sleep(0.02)
+        self.motors.call("control.acquire", client="square", timeout_s=5)
+        corners = [(SIDE, 0), (SIDE, SIDE), (0, SIDE), (0, 0)]
+        for number, (x, y) in enumerate(corners):
+            if self.layout == "differential":
+                self.drive_to((x, y, number * math.pi / 2), 0.002, 0.002)
+            last = number == len(corners) - 1  # mecanum: turns on its way
+            self.drive_to((x, y, (number + 1) * math.pi / 2), 0.001 if last else 0.005, 0.0005 if last else 0.002)
+        self.stand()
+        state = self.motors.call("motor.state")
+        return state["pose"], self.simulator.call("sim.state")["pose"]
+
+
+def check(robot, result):
+    for name, pose in zip(("odometry", "truth"), result):
+        distance, angle = math.hypot(pose["x"], pose["y"]), abs(math.remainder(pose["theta"], 2 * math.pi))
+        print(f"{robot.layout}, square of {SIDE:g} m: the {name} closes within {1000 * distance:.2f} mm and "
+              f"{math.degrees(angle):.4f} degrees")
+        assert distance < CLOSE and angle < CLOSE_ANGLE, (robot.layout, name, pose)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        robots, results = [], {}
+        try:
+            robots = [Robot(os.path.join(folder, layout), layout) for layout in ("mecanum", "differential")]
+
+            def run(robot):
+                try:
+                    results[robot] = robot.square()
+                except BaseException as error:  # told by the main thread
+                    results[robot] = error
+
+            drivers = [threading.Thread(target=run, args=(robot,)) for robot in robots]
+            for driver in drivers:
+                driver.start()
+            for driver in drivers:
+                driver.join()
+        finally:
+            for robot in robots:
+                robot.stop()
+        for robot in robots:
+            if isinstance(results[robot], BaseException):
+                raise results[robot]
+            check(robot, results[robot])
+
+
+if __name__ == "__main__":
+    main()
