@@ -16,6 +16,15 @@ Result<void> ControlLease::acquire(quint64 client, const QString &name, double t
     return {};
 }
 
+std::optional<QString> ControlLease::takeOver(quint64 client, const QString &name, double timeout_s,
+                                              double now) {
+    std::optional<QString> loser;
+    if (holder_ && holder_->client != client)
+        loser = holder_->name;
+    holder_ = Holder{client, name, timeout_s, now + timeout_s};
+    return loser;
+}
+
 Result<void> ControlLease::renew(quint64 client, double now) {
     if (!holder_)
         return Error(ErrorCode::ControlHeld,

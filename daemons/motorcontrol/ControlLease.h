@@ -13,6 +13,8 @@ class ControlLease {
 public:
     /// Gives the control to a client, or renews what it holds. ControlHeld: another one has it.
     Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now);
+    /// The same, from whoever holds it; gives the name of the client that loses it.
+    std::optional<QString> takeOver(quint64 client, const QString &name, double timeout_s, double now);
     /// A motion command of that client. ControlHeld, with data.holder, when it may not: null: nobody holds
     /// it.
     Result<void> renew(quint64 client, double now);

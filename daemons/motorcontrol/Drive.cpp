@@ -129,6 +129,15 @@ Result<void> Drive::acquire(quint64 client, const QString &name, double timeout_
     return may ? lease_.acquire(client, name, timeout_s, now) : may;
 }
 
+Result<void> Drive::takeOver(quint64 client, const QString &name, double timeout_s, double now) {
+    const auto may = mayMove(0);
+    if (!may)
+        return may;
+    if (const auto loser = lease_.takeOver(client, name, timeout_s, now))
+        halt(QString("%1 took the control over from %2").arg(name, *loser));
+    return {};
+}
+
 void Drive::release(quint64 client) {
     if (lease_.release(client))
         halt("the control was released");

@@ -36,6 +36,8 @@ public:
     /// Releases the emergency stop and the faults. What still is wrong latches again.
     void resetEmergencyStop();
     Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now);
+    /// Takes the control from whoever holds it, and halts when that is another client.
+    Result<void> takeOver(quint64 client, const QString &name, double timeout_s, double now);
     void release(quint64 client);
     void clientGone(quint64 client);
 

@@ -114,8 +114,10 @@ void MotorControl::declareControlCommands() {
                         const QString name =
                             call.text("client").isEmpty() ? call.clientName : call.text("client");
                         const double now = monotonicNow();
-                        const auto acquired =
-                            loop.drive().acquire(call.client, name, call.number("timeout_s"), now);
+                        const double timeout_s = call.number("timeout_s");
+                        const auto acquired = call.flag("take_over")
+                                                  ? loop.drive().takeOver(call.client, name, timeout_s, now)
+                                                  : loop.drive().acquire(call.client, name, timeout_s, now);
                         if (!acquired)
                             return acquired.error();
                         return loop.drive().lease().state(now);
@@ -125,6 +127,9 @@ void MotorControl::declareControlCommands() {
                        .unit("s")
                        .range(0.1, 60)
                        .byDefault(1))
+            .param(Field::boolean("take_over", "Take it from another client that holds it: the robot stops, "
+                                               "and the other one is refused from then on")
+                       .byDefault(false))
             .returns(object)
             .example({{"client", "joystick"}, {"timeout_s", 1}},
                      QJsonObject{{"held", true}, {"holder", "joystick"}, {"remaining_s", 1}}));

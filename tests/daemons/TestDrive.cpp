@@ -34,6 +34,7 @@ private Q_SLOTS:
     void differentialRefusesSideways();
     void drivesSingleWheels();
     void needsTheLease();
+    void takingOverIsAskedFor();
     void leaseRunsOut();
     void motionRenewsTheLease();
     void stopsAtOnce_data();
@@ -148,6 +149,26 @@ void TestDrive::needsTheLease() {
     QVERIFY(drive_.driveTwist(anna, {0.1, 0, 0}, 0, 0).ok());
     drive_.release(anna);
     QVERIFY(drive_.acquire(bert, "bert", 1, 0).ok());
+}
+
+void TestDrive::takingOverIsAskedFor() {
+    QVERIFY(drive_.acquire(anna, "anna", 1, 0).ok());
+    QVERIFY(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0).ok());
+    QVERIFY(drive_.step(0.1) != still);
+    QVERIFY(drive_.takeOver(anna, "anna", 1, 0.1).ok()); // one's own: it drives on
+    QVERIFY(drive_.step(0.12) != still);
+    QVERIFY(refusal(drive_.acquire(bert, "bert", 1, 0.12)).is(ErrorCode::ControlHeld));
+    QVERIFY(drive_.takeOver(bert, "bert", 1, 0.12).ok());
+    QCOMPARE(drive_.haltReason(), QString("bert took the control over from anna"));
+    QCOMPARE(drive_.step(0.14), still); // at once, and until bert drives
+    const Error error = refusal(drive_.driveTwist(anna, {0.5, 0, 0}, 0, 0.14));
+    QVERIFY(error.is(ErrorCode::ControlHeld));
+    QCOMPARE(error.data["holder"].toString(), QString("bert"));
+    drive_.clientGone(anna); // is of no account any more
+    QVERIFY(drive_.driveTwist(bert, {0.5, 0, 0}, 0, 0.2).ok());
+    QVERIFY(drive_.step(0.3) != still);
+    drive_.emergencyStop("anna");
+    QVERIFY(refusal(drive_.takeOver(anna, "anna", 1, 0.3)).is(ErrorCode::NotReady));
 }
 
 void TestDrive::leaseRunsOut() {

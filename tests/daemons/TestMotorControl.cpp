@@ -21,6 +21,7 @@ private Q_SLOTS:
     void refusals_data();
     void refusals();
     void leaseIsExclusiveAndRunsOut();
+    void takingOverStopsTheRobot();
     void emergencyStopLatches();
     void stopsBrakeWithTheEmergencyDeceleration();
     void silentClientIsStopped();
@@ -154,6 +155,30 @@ void TestMotorControl::leaseIsExclusiveAndRunsOut() {
     QTRY_VERIFY(other.callAndWait("control.acquire", QJsonObject{{"client", "bert"}}).ok());
     QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).data["holder"].toString(), QString("bert"));
     QCOMPARE(call("control.state")["holder"].toString(), QString("bert"));
+}
+
+void TestMotorControl::takingOverStopsTheRobot() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    Client other;
+    QVERIFY(other.connectTo(address()).ok());
+    QVERIFY(other.waitConnected().ok());
+    call("control.acquire", {{"client", "anna"}, {"timeout_s", 10}});
+    drive({{"vx", 0.5}}, 0.5);
+    QVERIFY(rig_->fastest() > 1000);
+    const QJsonObject ask{{"client", "bert"}, {"timeout_s", 10}};
+    QVERIFY(other.callAndWait("control.acquire", ask).error().is(ErrorCode::ControlHeld));
+    QJsonObject takeOver = ask;
+    takeOver["take_over"] = true;
+    const auto taken = other.callAndWait("control.acquire", takeOver);
+    QVERIFY(taken.ok());
+    QCOMPARE(taken->toObject()["holder"].toString(), QString("bert"));
+    const Error told = failure("motor.drive", {{"vx", 0.5}});
+    QCOMPARE(told.code, int(ErrorCode::ControlHeld));
+    QCOMPARE(told.data["holder"].toString(), QString("bert"));
+    QTRY_VERIFY(rig_->fastest() < 10);
+    QCOMPARE(state()["halted"].toString(), QString("bert took the control over from anna"));
+    QVERIFY(other.callAndWait("motor.drive", QJsonObject{{"vx", 0.5}}).ok());
 }
 
 void TestMotorControl::emergencyStopLatches() {
