@@ -9,6 +9,8 @@ namespace {
 
 constexpr double controlPeriod = 1.0 / 300; // seconds: the controller measures speed 300 times a second
 constexpr double integralRate = 100;
+constexpr double approach = 10;    // 1/s: the last bit of the way to a position
+constexpr double arrived = 1;      // count
 constexpr double standing = 0.004; // of the full speed; below it friction holds a motor that is not driven
 
 } // namespace
@@ -47,18 +49,20 @@ bool MotorChannel::addMove(const Move &move, bool now) {
 }
 
 void MotorChannel::beginMove() {
-    const Move move = moves_.front();
+    move_ = moves_.front();
     moves_.pop_front();
     moving_ = true;
-    moveLeft_ = move.distance;
-    take(Mode::Speed, std::clamp(move.speed, -pid_.qpps, pid_.qpps), move.acceleration);
+    moveLeft_ = move_.distance;
+    take(Mode::Speed, std::clamp(move_.speed, -pid_.qpps, pid_.qpps), move_.acceleration);
+    if (move_.position)
+        steerToPosition();
 }
 
 void MotorChannel::followMove(double travelled) {
     if (!moving_)
         return;
     moveLeft_ -= std::abs(travelled);
-    if (moveLeft_ > 0)
+    if (move_.position ? std::abs(*move_.position - count_) >= arrived : moveLeft_ > 0)
         return;
     if (!moves_.empty())
         return beginMove();
@@ -66,9 +70,20 @@ void MotorChannel::followMove(double travelled) {
     take(Mode::Speed, 0, slope_);
 }
 
+void MotorChannel::steerToPosition() {
+    const double left = *move_.position - count_;
+    const double braking = std::sqrt(2 * move_.deceleration * std::abs(left));
+    const double fastest = std::min(std::abs(move_.speed), pid_.qpps);
+    target_ = std::copysign(std::min({fastest, braking, approach * std::abs(left)}), left);
+    const bool slows = std::abs(target_) < std::abs(setpoint_);
+    slope_ = slows ? 2 * move_.deceleration : move_.acceleration; // what brakes is the way that is left
+}
+
 void MotorChannel::advance(double seconds, double voltage, bool powered) {
     if (!(seconds > 0))
         return;
+    if (moving_ && move_.position)
+        steerToPosition();
     ramp(seconds);
     controlDue_ += seconds;
     while (controlDue_ >= controlPeriod) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <optional>
 
 namespace hermes {
 
@@ -10,6 +11,10 @@ namespace hermes {
 /// motor that follows with a lag. Speeds are in counts/s. Time comes from outside.
 class MotorChannel {
 public:
+    static constexpr double unlimited = std::numeric_limits<double>::infinity();
+    static constexpr double atOnce = unlimited; ///< as a slope
+    static constexpr std::size_t longestQueue = 64;
+
     struct Motor {
         double fullSpeed = 160000; ///< counts/s at full duty and nominal voltage
         double nominal = 24;       ///< V
@@ -23,16 +28,14 @@ public:
         double p = 1, i = 0.5, d = 0.25;
         double qpps = 44000; ///< counts/s that the control takes for full duty
     };
-    /// A stretch at a speed.
+    /// A stretch at a speed, or the way to a position.
     struct Move {
-        double speed; ///< signed
+        double speed; ///< signed; to a position its amount counts
         double acceleration;
-        double distance; ///< counts, not negative
+        double distance;                               ///< counts, not negative
+        double deceleration = atOnce;                  ///< before a position
+        std::optional<double> position = std::nullopt; ///< counts; instead of a distance
     };
-    static constexpr double unlimited = std::numeric_limits<double>::infinity();
-    static constexpr double atOnce = unlimited; ///< as a slope
-    static constexpr std::size_t longestQueue = 64;
-
     MotorChannel() = default;
     explicit MotorChannel(const Motor &motor)
         : motor_(motor) {}
@@ -75,6 +78,7 @@ private:
     void take(Mode mode, double target, double slope);
     void beginMove();
     void followMove(double travelled);
+    void steerToPosition();
     void ramp(double seconds);
     void control();
     void turn(double seconds, double voltage, bool powered);
@@ -86,6 +90,7 @@ private:
     double setpoint_ = 0; ///< on its way to target
     double slope_ = atOnce;
     std::deque<Move> moves_;
+    Move move_{}; ///< while moving_
     double moveLeft_ = 0;
     bool moving_ = false;
     double integral_ = 0;

@@ -95,7 +95,10 @@ std::uint32_t RoboClawEmulator::status() const {
 
 std::optional<Bytes> RoboClawEmulator::execute(const Request &request) {
     if (!request.isRead()) {
-        if (!drive(request) && !driveDistance(request) && !store(request))
+        const bool drives = drive(request) || driveDistance(request) || drivePosition(request);
+        if (drives)
+            mixedDrive_ = mixedTurn_ = std::nullopt;
+        if (!drives && !driveMixed(request) && !store(request))
             return {};
         Bytes answer;
         answer.push(acknowledgement);

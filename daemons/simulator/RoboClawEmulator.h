@@ -11,9 +11,8 @@
 
 namespace hermes {
 
-/// A RoboClaw with two motors as it looks from its serial line: bytes in, answers out. Commands that it does
-/// not simulate (mixed drive 8 to 13, positions 65 to 67) are acknowledged by no one: it is silent, as for
-/// unknown ones. Knows no line and no clock.
+/// A RoboClaw with two motors as it looks from its serial line: bytes in, answers out. It is silent
+/// when a command is unknown. Knows no line and no clock.
 class RoboClawEmulator {
 public:
     struct Options {
@@ -67,6 +66,9 @@ private:
     std::optional<roboclaw::Bytes> execute(const Request &request);
     bool drive(const Request &request);
     bool driveDistance(const Request &request);
+    bool drivePosition(const Request &request);
+    /// A drive and a turn value must have come before the motors turn.
+    bool driveMixed(const Request &request);
     bool store(const Request &request);
     std::optional<roboclaw::Values> read(Command command);
     std::optional<roboclaw::Values> readStored(Command command, const roboclaw::Values &asked) const;
@@ -77,6 +79,7 @@ private:
     Options options_;
     roboclaw::RequestParser parser_;
     std::array<MotorChannel, 2> channels_;
+    std::optional<double> mixedDrive_, mixedTurn_;     ///< -1 to 1
     std::map<std::uint32_t, roboclaw::Values> stored_; ///< by command, for the EEPROM by command and address
     Faults faults_;
     Counts counts_;

@@ -89,4 +89,55 @@ bool RoboClawEmulator::driveDistance(const Request &request) {
     }
 }
 
+bool RoboClawEmulator::drivePosition(const Request &request) {
+    const Values &v = request.values;
+    const auto move = [&](int motor, std::size_t first) {
+        const MotorChannel::Move way{double(v[first + 1]), double(v[first]), 0, double(v[first + 2]),
+                                     double(std::int32_t(v[first + 3]))};
+        channel(motor).addMove(way, v[v.size() - 1] == 1);
+    };
+    switch (request.command) {
+    case Command::PositionM1:
+        return move(0, 0), true;
+    case Command::PositionM2:
+        return move(1, 0), true;
+    case Command::Position:
+        return move(0, 0), move(1, 4), true;
+    default:
+        return false;
+    }
+}
+
+bool RoboClawEmulator::driveMixed(const Request &request) {
+    const double value = double(request.values.size() == 0 ? 0 : request.values[0]);
+    const double share = value / 127, around64 = (value - 64) / (value < 64 ? 64 : 63);
+    switch (request.command) {
+    case Command::MixedForward:
+        mixedDrive_ = share;
+        break;
+    case Command::MixedBackward:
+        mixedDrive_ = -share;
+        break;
+    case Command::MixedRight:
+        mixedTurn_ = share;
+        break;
+    case Command::MixedLeft:
+        mixedTurn_ = -share;
+        break;
+    case Command::MixedDrive:
+        mixedDrive_ = around64;
+        break;
+    case Command::MixedTurn:
+        mixedTurn_ = around64;
+        break;
+    default:
+        return false;
+    }
+    if (mixedDrive_ && mixedTurn_) { // the first motor is on the left
+        channels_[0].driveDuty(*mixedDrive_ + *mixedTurn_);
+        channels_[1].driveDuty(*mixedDrive_ - *mixedTurn_);
+    }
+    return true;
+}
+
 } // namespace hermes

@@ -98,16 +98,6 @@ bool RoboClawEmulator::store(const Request &request) {
     case Command::SetMaxCurrentM2:
         m2.setCurrentLimit(double(v[0]) / centiampere);
         break;
-    case Command::MixedForward:
-    case Command::MixedBackward:
-    case Command::MixedRight:
-    case Command::MixedLeft:
-    case Command::MixedDrive:
-    case Command::MixedTurn:
-    case Command::PositionM1:
-    case Command::PositionM2:
-    case Command::Position:
-        return false;
     default:
         break;
     }

@@ -9,6 +9,9 @@ private Q_SLOTS:
     void speedFollowsTheRamp();
     void emergencyDecelerationStopsInTime();
     void dutyTurnsTheMotor();
+    void mixedDriveNeedsBothValues();
+    void positionsAreReached();
+    void positionsWaitInTheQueue();
     void distancesAreDriven();
     void silenceStopsTheMotors();
     void encodersWrap();
@@ -96,6 +99,102 @@ void TestEmulatedMotors::distancesAreDriven() {
     QVERIFY(move(0, 0, 1));
     pass(drivetrain, 0.5);
     QVERIFY(!drivetrain.isMoving());
+}
+
+void TestEmulatedMotors::mixedDriveNeedsBothValues() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    const auto duties = [&] {
+        pass(drivetrain, 0.01);
+        const QByteArray pwm = client.read(0x80, 48);
+        return QPair<int, int>(int(std::lround(RoboClawClient::integer(pwm, 0, 2) / 327.67)),
+                               int(std::lround(RoboClawClient::integer(pwm, 2, 2) / 327.67)));
+    };
+    const auto set = [&](int command, int value) {
+        return client.write(0x80, command, RoboClawClient::number(value, 1));
+    };
+    QVERIFY(set(8, 127)); // forward, and no turn yet
+    QCOMPARE(duties(), qMakePair(0, 0));
+    QVERIFY(set(10, 0));
+    QCOMPARE(duties(), qMakePair(100, 100));
+    QVERIFY(set(9, 64)); // backward
+    QCOMPARE(duties(), qMakePair(-50, -50));
+    QVERIFY(set(12, 64)); // stands
+    QVERIFY(set(11, 32)); // turns to the left
+    QCOMPARE(duties(), qMakePair(-25, 25));
+    QVERIFY(set(13, 127)); // full turn to the right
+    QCOMPARE(duties(), qMakePair(100, -100));
+    QVERIFY(set(12, 0)); // and full backward: no duty goes beyond what there is
+    QCOMPARE(duties(), qMakePair(0, -100));
+    QVERIFY(client.write(0x80, 34, RoboClawClient::number(0, 4)));
+    QVERIFY(set(13, 64)); // after another command both must come again
+    QCOMPARE(duties(), qMakePair(0, 0));
+    QVERIFY(set(12, 127));
+    QCOMPARE(duties(), qMakePair(100, 100));
+}
+
+void TestEmulatedMotors::positionsAreReached() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    QVERIFY(client.write(0x80, 22, RoboClawClient::number(5000, 4)));
+    const auto way = [](int acceleration, int speed, int deceleration, int position) {
+        return RoboClawClient::number(acceleration, 4) + RoboClawClient::number(speed, 4) +
+               RoboClawClient::number(deceleration, 4) + RoboClawClient::number(position, 4);
+    };
+    // Forward and back from where the counts are, whatever the sign of the speed.
+    QVERIFY(client.write(0x80, 67,
+                         way(40000, 20000, 20000, 45000) + way(40000, 20000, 20000, -30000) +
+                             RoboClawClient::number(1, 1)));
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("0000"));
+    pass(drivetrain, 1);
+    QVERIFY(std::abs(drivetrain.controller(0).channel(0).speed() - 20000) < 300);
+    QVERIFY(std::abs(drivetrain.controller(0).channel(1).speed() + 20000) < 300);
+    std::int64_t farthest = 0;
+    double slowsSince = 0, seconds = 1;
+    while (client.read(0x80, 47) != RoboClawClient::number(0x8080, 2) && seconds < 6) {
+        pass(drivetrain, 0.01);
+        seconds += 0.01;
+        farthest = std::max(farthest, client.count(0x80, 0));
+        if (drivetrain.controller(0).channel(0).speed() > 19500)
+            slowsSince = seconds;
+    }
+    // 0.5 s to speed up over 5000 counts, 1 s to slow down over 10000, 25000 between: 2.75 s and the
+    // approach.
+    QVERIFY2(seconds > 2.7 && seconds < 3.7, qPrintable(QString::number(seconds)));
+    QVERIFY2(std::abs(slowsSince - 1.75) < 0.15, qPrintable(QString::number(slowsSince)));
+    pass(drivetrain, 1);
+    QVERIFY(!drivetrain.isMoving());
+    QVERIFY(std::abs(client.count(0x80, 0) - 45000) <= 30 && farthest < 45030);
+    QVERIFY(std::abs(client.count(0x80, 1) + 30000) <= 30);
+}
+
+void TestEmulatedMotors::positionsWaitInTheQueue() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    const auto go = [&](int command, int position, int buffer) {
+        return client.write(0x80, command,
+                            RoboClawClient::number(100000, 4) + RoboClawClient::number(20000, 4) +
+                                RoboClawClient::number(100000, 4) + RoboClawClient::number(position, 4) +
+                                RoboClawClient::number(buffer, 1));
+    };
+    QVERIFY(go(65, 5000, 0) && go(65, -1000, 0) && go(66, 300, 0));
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("0100"));
+    std::int64_t most = 0;
+    for (int i = 0; i < 300; ++i) {
+        pass(drivetrain, 0.01);
+        most = std::max(most, client.count(0x80, 0));
+    }
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("8080"));
+    QVERIFY(std::abs(most - 5000) <= 30 && std::abs(client.count(0x80, 0) + 1000) <= 30);
+    QVERIFY(std::abs(client.count(0x80, 1) - 300) <= 30);
+    QVERIFY(go(65, 50000, 0) && go(65, 60000, 0));
+    pass(drivetrain, 0.2);
+    QVERIFY(go(65, 0, 1)); // at once, and the others are dropped
+    QCOMPARE(client.read(0x80, 47).toHex(), QByteArray("0080"));
+    pass(drivetrain, 3);
+    QVERIFY(std::abs(client.count(0x80, 0)) <= 30 && !drivetrain.isMoving());
 }
 
 void TestEmulatedMotors::silenceStopsTheMotors() {

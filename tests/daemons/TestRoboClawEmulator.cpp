@@ -12,6 +12,7 @@ private Q_SLOTS:
     void linesOfTheirOwn();
     void gapsAndDamageAreSilent();
     void everyReadAnswers();
+    void everyWriteIsAcknowledged();
     void settingsAreKept();
     void faultsOfTheLine();
     void statusBitsOfBothWidths();
@@ -113,6 +114,32 @@ void TestRoboClawEmulator::everyReadAnswers() {
                  qPrintable(QString("command %1: %2").arg(entry.key()).arg(QString(data))));
     }
     QCOMPARE(client.read(0x80, 21), QByteArray("RoboClaw 2x45A v4.2.8\n\0", 23));
+}
+
+// The writes of the published table and the bytes of their data.
+void TestRoboClawEmulator::everyWriteIsAcknowledged() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    QMap<int, int> sizes{
+        {14, 1},  {20, 0},  {22, 4},  {23, 4},  {28, 16}, {29, 16}, {32, 2},  {33, 2},  {34, 4},  {35, 4},
+        {36, 4},  {37, 8},  {38, 8},  {39, 8},  {40, 12}, {41, 9},  {42, 9},  {43, 17}, {44, 13}, {45, 13},
+        {46, 21}, {50, 16}, {51, 25}, {52, 6},  {53, 6},  {54, 12}, {57, 4},  {58, 4},  {61, 28}, {62, 28},
+        {65, 17}, {66, 17}, {67, 33}, {68, 4},  {69, 4},  {70, 2},  {71, 2},  {74, 3},  {80, 0},  {92, 1},
+        {93, 1},  {95, 0},  {98, 2},  {109, 8}, {112, 8}, {133, 8}, {134, 8}, {148, 1}, {253, 3}};
+    for (int command = 0; command <= 13; ++command)
+        sizes[command] = 1;
+    sizes[26] = sizes[27] = 1;
+    std::uint64_t requests = 0;
+    for (auto entry = sizes.begin(); entry != sizes.end(); ++entry) {
+        const QByteArray name = "command " + QByteArray::number(entry.key());
+        QVERIFY2(client.write(0x80, entry.key(), QByteArray(entry.value(), '\0')), name.constData());
+        QCOMPARE(drivetrain.controller(0).counts().requests, ++requests);
+        if (entry.value() == 0)
+            continue;
+        QVERIFY2(!client.write(0x80, entry.key(), QByteArray(entry.value() - 1, '\0')), name.constData());
+        QCOMPARE(drivetrain.controller(0).counts().requests, requests);
+    }
+    QVERIFY(client.write(0x80, 94, RoboClawClient::number(0xE22EAB7A, 4)));
 }
 
 void TestRoboClawEmulator::settingsAreKept() {
