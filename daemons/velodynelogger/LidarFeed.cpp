@@ -40,6 +40,7 @@ void LidarFeed::begin(const Options &options) {
     options_ = options;
     velodyne::TurnAssembler::Options ring;
     ring.laser = options.laser;
+    ring.model = options.model;
     ring.returns = options.returns;
     ring.stampOffset_ns = options.stampOffset_ns;
     assembler_ = std::make_unique<velodyne::TurnAssembler>(
@@ -122,6 +123,7 @@ void LidarFeed::captureCloud(std::function<void(const velodyne::Turn &)> functio
     velodyne::TurnAssembler::Options all;
     all.laser = velodyne::PacketDecoder::allLasers;
     all.returns = options_.returns;
+    all.model = options_.model;
     all.stampOffset_ns = options_.stampOffset_ns;
     cloudAssembler_ = std::make_unique<velodyne::TurnAssembler>(all, [this](const velodyne::Turn &turn) {
         if (turn.partial || !cloudSink_)

@@ -14,7 +14,8 @@ namespace hermes {
 class LidarFeed {
 public:
     struct Options {
-        int laser = velodyne::horizonLaser;
+        int laser = velodyne::PacketDecoder::levelLaser;
+        velodyne::Model model = velodyne::Model::Blank; ///< Blank: as the packets say
         velodyne::Returns returns = velodyne::Returns::Strongest;
         std::int64_t stampOffset_ns = 0;
         std::uint16_t dataPort =

@@ -32,9 +32,16 @@ void VelodyneLogger::declareSettings() {
             .byDefault(1)
             .appliesOnRestart()
             .group("Source"));
-    addSetting(Field::integer("decode.laser", "Laser whose ring is published; 15 looks along the horizon")
-                   .range(0, velodyne::lasers - 1)
-                   .byDefault(velodyne::horizonLaser)
+    addSetting(Field::integer("decode.laser",
+                              "Laser whose ring is published; -1: the one nearest to the horizon, "
+                              "15 of an HDL-32E, 1 of a VLP-16")
+                   .range(-1, velodyne::lasers - 1)
+                   .byDefault(-1)
+                   .appliesOnRestart()
+                   .group("Decoding"));
+    addSetting(Field::text("decode.model", "The sensor; auto: as its packets say (hdl32e where they do not)")
+                   .choices({"auto", "hdl32e", "vlp16"})
+                   .byDefault("auto")
                    .appliesOnRestart()
                    .group("Decoding"));
     addSetting(Field::text("decode.returns", "Which returns of a sensor in dual return mode are taken")

@@ -22,7 +22,7 @@ QByteArray toSeconds(std::int64_t stamp_ns) {
 
 } // namespace
 
-QJsonObject toScanMessage(const velodyne::Turn &turn, int laser) {
+QJsonObject toScanMessage(const velodyne::Turn &turn) {
     QJsonArray x, y, t, intensity;
     for (auto point = turn.points.rbegin(); point != turn.points.rend(); ++point) {
         x.append(rounded(point->x, 1e5));
@@ -36,7 +36,7 @@ QJsonObject toScanMessage(const velodyne::Turn &turn, int laser) {
             {"partial", turn.partial},
             {"lost_packets", double(turn.lostPackets)},
             {"frame", "lidar"},
-            {"laser", laser},
+            {"laser", turn.laser},
             {"x", x},
             {"y", y},
             {"t", t},

@@ -10,7 +10,7 @@ namespace hermes {
 /// The data of a `scan2d` message: the points of one laser in one turn, COUNTER-CLOCKWISE, the reverse of the
 /// order in which the sensor measured them, as the vector library wants them. Lengths are rounded to 10 um,
 /// times to 1 us.
-QJsonObject toScanMessage(const velodyne::Turn &turn, int laser);
+QJsonObject toScanMessage(const velodyne::Turn &turn);
 
 /// A turn as CSV, in the order of measuring: one line a point with turn, stamp, laser, azimuth, range,
 /// intensity, x, y, z; seconds since the Unix epoch, degrees clockwise, metres.

@@ -51,11 +51,10 @@ void VelodyneLogger::stop() {
 
 LidarFeed::Options VelodyneLogger::options() {
     LidarFeed::Options options;
-    options.laser = settings().integer("decode.laser");
-    const QString returns = settings().text("decode.returns");
-    options.returns = returns == "last"   ? velodyne::Returns::Last
-                      : returns == "both" ? velodyne::Returns::Both
-                                          : velodyne::Returns::Strongest;
+    const int laser = settings().integer("decode.laser");
+    options.laser = laser < 0 ? velodyne::PacketDecoder::levelLaser : laser;
+    options.model = velodyne::modelFromText(settings().text("decode.model").toStdString());
+    options.returns = velodyne::returnsFromText(settings().text("decode.returns").toStdString());
     options.stampOffset_ns = std::int64_t(settings().number("decode.stamp_offset_s") * 1e9);
     options.dataPort = quint16(settings().integer("source.port"));
     return options;
@@ -166,7 +165,6 @@ void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
 }
 
 void VelodyneLogger::publishTurns() {
-    const int laser = settings().integer("decode.laser");
     // A replay without loss waits for readers who are behind, but not for one that reads no more.
     const bool patient = source_ == Source::Replay && speed_ == 0;
     for (;;) {
@@ -179,7 +177,7 @@ void VelodyneLogger::publishTurns() {
             break;
         sincePublished_.start();
         if (hasSubscribers("scan2d"))
-            publish("scan2d", toScanMessage(*turn, laser), double(turn->begin_ns) * 1e-9);
+            publish("scan2d", toScanMessage(*turn), double(turn->begin_ns) * 1e-9);
     }
     if (replayEnd_)
         replayEnded(*replayEnd_);

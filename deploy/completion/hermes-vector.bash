@@ -21,6 +21,8 @@ _hermes_vector() {
     --rotation) mapfile -t COMPREPLY < <(compgen -W "mitsuta wahba" -- "$word") && return ;;
     --weights) mapfile -t COMPREPLY < <(compgen -W "none length column" -- "$word") && return ;;
     --format) mapfile -t COMPREPLY < <(compgen -W "json csv svg latex" -- "$word") && return ;;
+    --model) mapfile -t COMPREPLY < <(compgen -W "auto hdl32e vlp16" -- "$word") && return ;;
+    --returns) mapfile -t COMPREPLY < <(compgen -W "strongest last both" -- "$word") && return ;;
     --odometry) mapfile -t COMPREPLY < <(compgen -W "use ignore" -- "$word") && return ;;
     --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --expected | --scan | \
         --noise | --fov | --outliers | --seed | --every | --laser | --turn | --case | --rays | --max-dx | --max-dy | \

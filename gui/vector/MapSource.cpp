@@ -82,9 +82,8 @@ MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &
         throw Failure(file.inWordsOfOriginal(reader.error()));
     assembler.finish();
     if (turns == 0)
-        throw Failure(
-            options.path +
-            ": found no data packet of an HDL-32E, expected UDP datagrams of 1206 bytes to port 2368");
+        throw Failure(options.path + ": found no data packet of an HDL-32E or VLP-16, expected UDP datagrams "
+                                     "of 1206 bytes to port 2368");
     return {};
 }
 

@@ -42,9 +42,9 @@ struct MapSourceReport {
 /// Takes a scan, how many were delivered before it and how many there are in all (0 when not known).
 using MapScanSink = std::function<void(const MapScan &, std::size_t number, std::size_t total)>;
 
-/// Delivers the scans of a CARMEN log, a capture of an HDL-32E (its horizontal ring, a turn a scan) or a
-/// folder of points files in the order of their names. Throws Failure on damaged input, after delivering what
-/// came before it.
+/// Delivers the scans of a CARMEN log, a capture of an HDL-32E or VLP-16 (its horizontal ring, a turn a scan)
+/// or a folder of points files in the order of their names. Throws Failure on damaged input, after delivering
+/// what came before it.
 MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink &sink);
 
 } // namespace hermes

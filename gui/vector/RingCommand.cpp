@@ -25,8 +25,10 @@ void writeSeconds(std::ostream &out, std::int64_t ns) {
 
 struct RingCommand {
     std::string in;
-    int laser = velodyne::horizonLaser;
+    int laser = velodyne::PacketDecoder::levelLaser;
+    std::string model = "auto";
     std::int64_t turn = -1; ///< -1: every turn
+    std::string returns = "strongest";
     bool all = false;
     OutputOptions output;
 
@@ -39,6 +41,8 @@ struct RingCommand {
             throw Failure(file.inWordsOfOriginal(reader.error()));
         velodyne::TurnAssembler::Options options;
         options.laser = all ? velodyne::PacketDecoder::allLasers : laser;
+        options.model = velodyne::modelFromText(model);
+        options.returns = velodyne::returnsFromText(returns);
         std::uint64_t turns = 0;
         velodyne::TurnAssembler assembler(options, [&](const velodyne::Turn &t) {
             ++turns;
@@ -50,7 +54,7 @@ struct RingCommand {
         if (!readAll(reader, assembler))
             throw Failure(file.inWordsOfOriginal(reader.error()));
         assembler.finish();
-        report(assembler.counts(), turns);
+        report(assembler, turns);
         files.commit();
     }
 
@@ -66,12 +70,17 @@ struct RingCommand {
         return next == PcapReader::Next::End;
     }
 
-    void report(const velodyne::PacketCounts &counts, std::uint64_t turns) const {
+    void report(const velodyne::TurnAssembler &assembler, std::uint64_t turns) const {
+        const velodyne::PacketCounts &counts = assembler.counts();
         if (counts.packets == 0 || turns == 0)
             throw Failure(
                 in + ": found " +
                 (counts.otherModel > 0 ? "only packets of another sensor or return mode" : "no data packet") +
-                ", expected data packets of an HDL-32E (UDP, 1206 bytes, port 2368)");
+                ", expected data packets of an HDL-32E or VLP-16 (UDP, 1206 bytes, port 2368)");
+        if (laser >= assembler.model()->lasers)
+            throw Failure(in + ": found a " + assembler.model()->name + ", expected a laser from 0 to " +
+                          std::to_string(assembler.model()->lasers - 1) + " for --laser, not " +
+                          std::to_string(laser));
         if (turn >= 0 && std::uint64_t(turn) >= turns)
             throw Failure(in + ": found " + std::to_string(turns) + " turns, expected a turn " +
                           std::to_string(turn) + " (they count from 0)");
@@ -103,13 +112,24 @@ struct RingCommand {
 void addRingCommand(CLI::App &app) {
     auto command = std::make_shared<RingCommand>();
     CLI::App *sub =
-        app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an HDL-32E (CSV "
-                                   "turn,stamp,azimuth,range,intensity,x,y)");
+        app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an HDL-32E or VLP-16 "
+                                   "(CSV turn,stamp,azimuth,range,intensity,x,y)");
     sub->add_option("PCAP", command->in, "Capture, pcap or pcapng")->required();
-    CLI::Option *laser = sub->add_option("--laser", command->laser, "Which laser; 15 looks along the horizon")
+    CLI::Option *laser = sub->add_option("--laser", command->laser,
+                                         "Which laser, else the one that looks nearest to the horizon: "
+                                         "15 of an HDL-32E, 1 of a VLP-16")
                              ->check(between(0, velodyne::lasers - 1))
-                             ->type_name("ID")
-                             ->capture_default_str();
+                             ->type_name("ID");
+    sub->add_option("--model", command->model,
+                    "The sensor: hdl32e, vlp16, or auto, as the packets say (hdl32e where they do not)")
+        ->check(CLI::IsMember({"auto", "hdl32e", "vlp16"}))
+        ->type_name("MODEL")
+        ->capture_default_str();
+    sub->add_option("--returns", command->returns,
+                    "Of a sensor in dual return mode: strongest, last, or both where they differ")
+        ->check(CLI::IsMember({"strongest", "last", "both"}))
+        ->type_name("RETURNS")
+        ->capture_default_str();
     sub->add_option("--turn", command->turn, "This turn only, from 0; the first and the last may be partial")
         ->check(between(0, 1e15))
         ->type_name("N");

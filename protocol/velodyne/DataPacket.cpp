@@ -9,7 +9,7 @@ namespace {
 bool isDecoded(ReturnMode mode, Model model) {
     const bool blank = mode == ReturnMode::Blank && model == Model::Blank;
     const bool known = mode == ReturnMode::Strongest || mode == ReturnMode::Last || mode == ReturnMode::Dual;
-    return blank || (known && model == Model::Hdl32e);
+    return blank || (known && model != Model::Blank && findSensorModel(model));
 }
 
 } // namespace
@@ -25,8 +25,8 @@ const char *describe(PacketFault fault) {
     case PacketFault::Value:
         return "an azimuth of 360 degrees or more, or a stamp beyond the hour";
     case PacketFault::Model:
-        return "a sensor or return mode that is not decoded: HDL-32E (21 hex) in mode 37, 38 or 39 hex "
-               "expected";
+        return "a sensor or return mode that is not decoded: an HDL-32E (21 hex) or VLP-16 (22 hex), one of "
+               "them a stream, in mode 37, 38 or 39 hex expected";
     }
     return "unknown fault";
 }
@@ -57,8 +57,8 @@ void DataPacketWriter::setAzimuth(int block, std::uint16_t azimuth) {
     setWord(block * blockSize + 2, azimuth);
 }
 
-void DataPacketWriter::setReturn(int block, int laser, std::uint16_t distance, std::uint8_t intensity) {
-    const std::size_t offset = block * blockSize + 4 + 3 * laser;
+void DataPacketWriter::setReturn(int block, int slot, std::uint16_t distance, std::uint8_t intensity) {
+    const std::size_t offset = block * blockSize + 4 + 3 * slot;
     setWord(offset, distance);
     bytes_[offset + 2] = intensity;
 }
@@ -72,8 +72,8 @@ void DataPacketWriter::setTail(std::uint32_t stamp_us, ReturnMode mode, Model mo
 
 void DataPacketWriter::clear() {
     for (int block = 0; block < blocksPerPacket; ++block) {
-        for (int laser = 0; laser < lasers; ++laser)
-            setReturn(block, laser, 0, 0);
+        for (int slot = 0; slot < slotsPerBlock; ++slot)
+            setReturn(block, slot, 0, 0);
     }
 }
 
@@ -83,7 +83,7 @@ void DataPacketWriter::setWord(std::size_t offset, std::uint16_t value) {
 }
 
 std::uint16_t toDistanceCounts(double range) {
-    const double counts = std::round(range / distanceUnit);
+    const double counts = std::round(range * distanceCounts);
     return counts >= 1 && counts <= 65535 ? std::uint16_t(counts) : 0;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/velodyne/Hdl32e.h"
+#include "protocol/velodyne/SensorModel.h"
 
 namespace hermes::velodyne {
 
@@ -10,13 +10,15 @@ enum class PacketFault {
     Size,  ///< not 1206 bytes
     Flag,  ///< a block does not begin with FF EE
     Value, ///< an azimuth of 360 degrees or more, or a stamp beyond the hour
-    Model, ///< a sensor or return mode that is not decoded here, such as a VLP-16
+    Model, ///< a sensor or return mode that is not decoded here, or not the sensor that is expected
 };
 
 /// A short phrase for people: what the fault is and what was expected.
 const char *describe(PacketFault fault);
 
-/// The fields of a data packet, read from bytes that somebody else keeps. Block and laser count from 0.
+/// The fields of a data packet, read from bytes that somebody else keeps. Block and slot count from 0. A slot
+/// holds the return of one laser; those of the second firing in a block of a VLP-16 follow those of the
+/// first.
 class DataPacket {
 public:
     /// Checks length, flags, azimuths, stamp, mode and model. Only bytes without fault may be read by a
@@ -29,18 +31,19 @@ public:
     /// Hundredths of a degree, clockwise seen from above, 0 to 35999: where the head was as the block began.
     std::uint16_t azimuth(int block) const { return word(block * blockSize + 2); }
     /// Counts of 2 mm; 0 means no return.
-    std::uint16_t distance(int block, int laser) const { return word(returnOffset(block, laser)); }
-    std::uint8_t intensity(int block, int laser) const { return bytes_[returnOffset(block, laser) + 2]; }
+    std::uint16_t distance(int block, int slot) const { return word(returnOffset(block, slot)); }
+    std::uint8_t intensity(int block, int slot) const { return bytes_[returnOffset(block, slot) + 2]; }
     /// Microseconds since the top of the hour, when the first laser of the packet fired.
     std::uint32_t stamp_us() const { return word(1200) | std::uint32_t(word(1202)) << 16; }
     ReturnMode returnMode() const { return ReturnMode(bytes_[1204]); }
     Model model() const { return Model(bytes_[1205]); }
-    /// Blocks that hold the same firing: 2 in dual return mode, else 1.
+    /// Blocks that hold the same firings: 2 in dual return mode, else 1.
     int returns() const { return returnMode() == ReturnMode::Dual ? 2 : 1; }
-    int firings() const { return blocksPerPacket / returns(); }
+    /// Groups of such blocks; the first block of group g is g * returns().
+    int groups() const { return blocksPerPacket / returns(); }
 
 private:
-    static std::size_t returnOffset(int block, int laser) { return block * blockSize + 4 + 3 * laser; }
+    static std::size_t returnOffset(int block, int slot) { return block * blockSize + 4 + 3 * slot; }
     std::uint16_t word(std::size_t offset) const {
         return std::uint16_t(bytes_[offset] | bytes_[offset + 1] << 8);
     }
@@ -56,7 +59,7 @@ public:
     /// azimuth: hundredths of a degree, below 36000.
     void setAzimuth(int block, std::uint16_t azimuth);
     /// distance: counts of 2 mm, 0 for no return.
-    void setReturn(int block, int laser, std::uint16_t distance, std::uint8_t intensity);
+    void setReturn(int block, int slot, std::uint16_t distance, std::uint8_t intensity);
     /// stamp_us: microseconds since the top of the hour.
     void setTail(std::uint32_t stamp_us, ReturnMode mode = ReturnMode::Strongest,
                  Model model = Model::Hdl32e);

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 /// The Velodyne HDL-32E as its manual (63-9113) gives it: what a packet holds, when and where each laser
-/// fires.
+/// fires. Packets of a VLP-16 look the same; SensorModel.h has what differs.
 namespace hermes::velodyne {
 
 constexpr std::uint16_t dataPort = 2368;     ///< UDP destination port of data packets
@@ -15,10 +15,11 @@ constexpr std::size_t packetSize = 1206; ///< bytes: 12 blocks of 100, stamp of 
 constexpr std::size_t positionPacketSize = 512;
 constexpr int blocksPerPacket = 12;
 constexpr std::size_t blockSize = 100; ///< bytes: flag 2, azimuth 2, 32 returns of 3
+constexpr int slotsPerBlock = 32;      ///< returns in a block
 constexpr int lasers = 32;
 constexpr std::uint16_t blockFlag = 0xEEFF;          ///< little endian: FF EE on the wire
 constexpr std::uint16_t azimuthSteps = 36000;        ///< a turn, in hundredths of a degree
-constexpr double distanceUnit = 0.002;               ///< metres a count; 0 counts mean no return
+constexpr double distanceCounts = 500;               ///< a metre; 0 counts mean no return
 constexpr std::uint32_t stampPeriod_us = 3600000000; ///< the stamp counts microseconds of the hour
 
 /// Time between two lasers of a firing: 1.152 us. Manual, appendix on packet timing.

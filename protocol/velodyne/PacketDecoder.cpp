@@ -1,5 +1,6 @@
 #include "protocol/velodyne/PacketDecoder.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hermes::velodyne {
@@ -10,48 +11,57 @@ constexpr double degree = 3.14159265358979323846 / 180;
 
 } // namespace
 
-PacketDecoder::PacketDecoder(int laser, Returns returns)
-    : firstLaser_(laser == allLasers ? 0 : laser)
-    , lastLaser_(laser == allLasers ? lasers - 1 : laser)
+Returns returnsFromText(std::string_view text) {
+    return text == "last" ? Returns::Last : text == "both" ? Returns::Both : Returns::Strongest;
+}
+
+PacketDecoder::PacketDecoder(const SensorModel &model, int laser, Returns returns)
+    : model_(&model)
+    , laser_(laser == levelLaser ? model.horizonLaser : laser)
     , returns_(returns) {
-    for (int i = 0; i < lasers; ++i) {
-        cosElevation_[i] = std::cos(elevation_deg[i] * degree);
-        sinElevation_[i] = std::sin(elevation_deg[i] * degree);
+    for (int i = 0; i < model.lasers; ++i) {
+        cosElevation_[i] = std::cos(model.elevation_deg[i] * degree);
+        sinElevation_[i] = std::sin(model.elevation_deg[i] * degree);
     }
 }
 
-void PacketDecoder::decode(const DataPacket &packet, int firing, std::int64_t packetStamp_ns,
+void PacketDecoder::decode(const DataPacket &packet, int group, int firing, std::int64_t packetStamp_ns,
                            std::vector<Point> &points) const {
     // In a dual-return packet the even block holds the last return and the odd one the strongest.
     const int returns = packet.returns();
-    const int firstBlock = firing * returns + (returns == 2 && returns_ == Returns::Strongest ? 1 : 0);
-    const int lastBlock = firing * returns + (returns == 2 && returns_ != Returns::Last ? 1 : 0);
-    const double gap = azimuthGap(packet, firing);
-    for (int laser = firstLaser_; laser <= lastLaser_; ++laser) {
-        for (int block = firstBlock; block <= lastBlock; ++block) {
-            const std::uint16_t counts = packet.distance(block, laser);
-            const bool repeated = block > firstBlock && counts == packet.distance(firstBlock, laser);
+    const int first = group * returns + (returns == 2 && returns_ == Returns::Strongest ? 1 : 0);
+    const int last = group * returns + (returns == 2 && returns_ != Returns::Last ? 1 : 0);
+    const std::int64_t gap = azimuthGap(packet, group);
+    const std::int64_t period_ns = model_->blockPeriod_ns();
+    const int firstLaser = laser_ == allLasers ? 0 : laser_;
+    const int lastLaser = laser_ == allLasers ? model_->lasers - 1 : std::min(laser_, model_->lasers - 1);
+    for (int laser = firstLaser; laser <= lastLaser; ++laser) {
+        const int slot = firing * model_->lasers + laser;
+        const std::int64_t after_ns = firing * model_->firingPeriod_ns + laser * model_->laserPeriod_ns;
+        for (int block = first; block <= last; ++block) {
+            const std::uint16_t counts = packet.distance(block, slot);
+            const bool repeated = block > first && counts == packet.distance(first, slot);
             if (counts == 0 || repeated)
                 continue;
-            double azimuth = packet.azimuth(firing * returns) + gap * laserGap * laser;
-            azimuth = (azimuth >= azimuthSteps ? azimuth - azimuthSteps : azimuth) * 0.01;
             Point point;
-            point.stamp_ns = packetStamp_ns + firing * firingPeriod_ns + laser * laserPeriod_ns;
-            point.azimuth = azimuth;
-            point.range = counts * distanceUnit;
+            point.stamp_ns = packetStamp_ns + group * period_ns + after_ns;
+            // Hundredths of a degree times the period: whole numbers, rounded once by the division.
+            const std::int64_t azimuth = packet.azimuth(group * returns) * period_ns + gap * after_ns;
+            point.azimuth = double(azimuth % (azimuthSteps * period_ns)) / double(100 * period_ns);
+            point.range = counts / distanceCounts;
             const double horizontal = point.range * cosElevation_[laser];
-            point.x = horizontal * std::cos(azimuth * degree);
-            point.y = -horizontal * std::sin(azimuth * degree); // the sensor counts clockwise
+            point.x = horizontal * std::cos(point.azimuth * degree);
+            point.y = -horizontal * std::sin(point.azimuth * degree); // the sensor counts clockwise
             point.z = point.range * sinElevation_[laser];
             point.laser = std::uint8_t(laser);
-            point.intensity = packet.intensity(block, laser);
+            point.intensity = packet.intensity(block, slot);
             points.push_back(point);
         }
     }
 }
 
-int azimuthGap(const DataPacket &packet, int firing) {
-    const int from = firing < packet.firings() - 1 ? firing : firing - 1;
+int azimuthGap(const DataPacket &packet, int group) {
+    const int from = group < packet.groups() - 1 ? group : group - 1;
     const int azimuth = packet.azimuth(from * packet.returns());
     const int next = packet.azimuth((from + 1) * packet.returns());
     const int gap = (next - azimuth + azimuthSteps) % azimuthSteps;

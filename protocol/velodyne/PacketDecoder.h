@@ -21,34 +21,47 @@ struct Point {
 /// Which returns of a dual-return packet are taken; single-return packets have only the one.
 enum class Returns { Strongest, Last, Both };
 
+/// Of "last" and "both"; Strongest for all else.
+Returns returnsFromText(std::string_view text);
+
 /// Turns the firings of one packet into points, each at the azimuth and time at which its own laser fired.
+/// Azimuth and range are the doubles nearest to the exact values, so that independent decoders agree to the
+/// last bit.
 class PacketDecoder {
 public:
     static constexpr int allLasers = -1;
+    /// The laser of the sensor that looks nearest to the horizon.
+    static constexpr int levelLaser = -2;
 
-    /// laser: 0 to 31, or allLasers.
-    explicit PacketDecoder(int laser = horizonLaser, Returns returns = Returns::Strongest);
+    /// laser: a number, allLasers or levelLaser. A number that the sensor has not gives no points.
+    explicit PacketDecoder(const SensorModel &model, int laser = levelLaser,
+                           Returns returns = Returns::Strongest);
 
-    /// Appends the points of a firing (0 to packet.firings() - 1) in the order in which the lasers fired.
-    /// Points without return are left out. packetStamp_ns: when the first laser of the packet fired, since
-    /// the Unix epoch.
-    void decode(const DataPacket &packet, int firing, std::int64_t packetStamp_ns,
+    /// Appends the points of a firing of a group of blocks (0 to packet.groups() - 1, each with
+    /// model.firingsPerBlock firings) in the order in which the lasers fired. Points without return are left
+    /// out. packetStamp_ns: when the first laser of the packet fired, since the Unix epoch.
+    void decode(const DataPacket &packet, int group, int firing, std::int64_t packetStamp_ns,
                 std::vector<Point> &points) const;
 
+    const SensorModel &model() const { return *model_; }
+    /// The number of the laser, or allLasers.
+    int laser() const { return laser_; }
+
 private:
-    int firstLaser_;
-    int lastLaser_;
+    const SensorModel *model_;
+    int laser_;
     Returns returns_;
-    std::array<double, lasers> cosElevation_;
-    std::array<double, lasers> sinElevation_;
+    std::array<double, lasers> cosElevation_{};
+    std::array<double, lasers> sinElevation_{};
 };
 
-/// How far the head turned during a firing: to the next block's azimuth; for the last firing of a packet as
-/// far as for the one before. Hundredths of a degree; 0 where azimuths stand still or jump by more than
-/// maximumGap.
-int azimuthGap(const DataPacket &packet, int firing);
+/// How far the head turned during a group of blocks: to the next block's azimuth; for the last group of a
+/// packet as far as for the one before. Hundredths of a degree; 0 where azimuths stand still or jump by more
+/// than maximumGap.
+int azimuthGap(const DataPacket &packet, int group);
 
-/// Hundredths of a degree: beyond it two blocks do not follow each other (20 turns a second make 33).
+/// Hundredths of a degree: beyond it two blocks do not follow each other (20 turns a second of a VLP-16 make
+/// 80).
 constexpr int maximumGap = 300;
 
 } // namespace hermes::velodyne

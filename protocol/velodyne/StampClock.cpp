@@ -9,9 +9,10 @@ constexpr std::int64_t hour_ns = 3600 * second_ns;
 /// A clock set anew, or a sensor started anew, shows as a jump of the offset beyond this.
 constexpr std::int64_t jump_ns = 60 * second_ns;
 
-/// Of all times with these nanoseconds of the hour the one nearest to the reference.
-std::int64_t nearest(std::int64_t ofHour_ns, std::int64_t reference_ns) {
-    std::int64_t ahead = (ofHour_ns - reference_ns) % hour_ns;
+} // namespace
+
+std::int64_t nearestHour(std::uint32_t stamp_us, std::int64_t reference_ns) {
+    std::int64_t ahead = (std::int64_t(stamp_us) * 1000 - reference_ns) % hour_ns;
     if (ahead > hour_ns / 2)
         ahead -= hour_ns;
     if (ahead < -hour_ns / 2)
@@ -19,18 +20,25 @@ std::int64_t nearest(std::int64_t ofHour_ns, std::int64_t reference_ns) {
     return reference_ns + ahead;
 }
 
-} // namespace
-
 std::int64_t StampClock::absolute(std::uint32_t stamp_us, std::int64_t receive_ns) {
-    const std::int64_t ofHour_ns = std::int64_t(stamp_us) * 1000;
-    const std::int64_t expected_ns = receive_ns + (started_ ? offset_ns_ : 0);
-    std::int64_t stamp_ns = nearest(ofHour_ns, expected_ns);
+    const std::int64_t expected_ns = following_ ? last_ns_ : receive_ns + (started_ ? offset_ns_ : 0);
+    std::int64_t stamp_ns = nearestHour(stamp_us, expected_ns);
     const std::int64_t off_ns = stamp_ns - expected_ns;
-    if (off_ns > jump_ns || off_ns < -jump_ns)
-        stamp_ns = nearest(ofHour_ns, receive_ns);
+    if (!following_ && (off_ns > jump_ns || off_ns < -jump_ns))
+        stamp_ns = nearestHour(stamp_us, receive_ns);
+    last_ns_ = stamp_ns;
     offset_ns_ = stamp_ns - receive_ns;
     started_ = true;
     return stamp_ns;
+}
+
+void StampClock::follow(std::int64_t utc_ns) {
+    following_ = true;
+    last_ns_ = utc_ns;
+}
+
+void StampClock::reset() {
+    *this = StampClock();
 }
 
 } // namespace hermes::velodyne

@@ -9,10 +9,6 @@ namespace {
 constexpr std::int64_t second_ns = 1000000000;
 /// Half a turn at the highest speed of 20 turns a second: a longer gap may hide the beginning of a turn.
 constexpr std::int64_t longGap_ns = second_ns / 40;
-/// Firings in a second. A turn that lasts longer is cut, so that a head that stands still does not fill the
-/// memory.
-constexpr std::uint32_t maximumFirings = std::uint32_t(second_ns / firingPeriod_ns);
-
 void count(PacketCounts &counts, PacketFault fault) {
     ++counts.packets;
     counts.wrongSize += fault == PacketFault::Size;
@@ -25,11 +21,12 @@ void count(PacketCounts &counts, PacketFault fault) {
 
 TurnAssembler::TurnAssembler(const Options &options, Sink sink)
     : options_(options)
-    , sink_(std::move(sink))
-    , decoder_(options.laser, options.returns) {}
+    , sink_(std::move(sink)) {}
 
 PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns) {
-    const PacketFault fault = DataPacket::check(bytes, size);
+    PacketFault fault = DataPacket::check(bytes, size);
+    if (fault == PacketFault::None && !isOfModel(DataPacket(bytes), receive_ns))
+        fault = PacketFault::Model;
     count(counts_, fault);
     if (fault != PacketFault::None)
         return fault;
@@ -37,25 +34,49 @@ PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std
     const std::int64_t stamp_ns = clock_.absolute(packet.stamp_us(), receive_ns) + options_.stampOffset_ns;
     if (!isInOrder(packet, stamp_ns, receive_ns))
         return PacketFault::None;
-
-    for (int firing = 0; firing < packet.firings(); ++firing) {
-        const int azimuth = packet.azimuth(firing * packet.returns());
-        const bool wraps = turn_.firings > 0 && lastAzimuth_ - azimuth > azimuthSteps / 2;
-        if (wraps || turn_.firings >= maximumFirings) {
-            endTurn(turn_.partial || !wraps);
-            beginTurn(!wraps);
-        }
-        if (turn_.firings == 0)
-            turn_.begin_ns = stamp_ns + firing * firingPeriod_ns;
-        decoder_.decode(packet, firing, stamp_ns, turn_.points);
-        ++turn_.firings;
-        turn_.end_ns = stamp_ns + (firing + 1) * firingPeriod_ns;
-        lastAzimuth_ = azimuth;
-    }
+    for (int group = 0; group < packet.groups(); ++group)
+        addGroup(packet, group, stamp_ns);
     lastStamp_ns_ = stamp_ns;
     lastReceive_ns_ = receive_ns;
-    nextStamp_ns_ = stamp_ns + packet.firings() * firingPeriod_ns;
+    nextStamp_ns_ = stamp_ns + packet.groups() * decoder_->model().blockPeriod_ns();
     return PacketFault::None;
+}
+
+bool TurnAssembler::isOfModel(const DataPacket &packet, std::int64_t receive_ns) {
+    const bool named = packet.model() != Model::Blank;
+    if (options_.model != Model::Blank && named && packet.model() != options_.model)
+        return false;
+    const SensorModel *model = findSensorModel(named ? packet.model() : options_.model);
+    if (decoder_ && model == &decoder_->model())
+        return true;
+    // Of two sensors on one port the first is decoded, until it has been silent for a second.
+    if (decoder_ && started_ && std::abs(receive_ns - lastReceive_ns_) < second_ns)
+        return false;
+    jump();
+    decoder_.emplace(*model, options_.laser, options_.returns);
+    turn_.model = model;
+    turn_.laser = decoder_->laser();
+    return true;
+}
+
+void TurnAssembler::addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns) {
+    const SensorModel &model = decoder_->model();
+    const int azimuth = packet.azimuth(group * packet.returns());
+    const bool wraps = turn_.firings > 0 && lastAzimuth_ - azimuth > azimuthSteps / 2;
+    // A turn that lasts longer than a second is cut, so that a head that stands still does not fill the
+    // memory.
+    if (wraps || turn_.firings >= model.firingRate()) {
+        endTurn(turn_.partial || !wraps);
+        beginTurn(!wraps);
+    }
+    if (turn_.firings == 0)
+        turn_.begin_ns = stamp_ns + group * model.blockPeriod_ns();
+    for (int firing = 0; firing < model.firingsPerBlock; ++firing, ++turn_.firings) {
+        if (turn_.firings % options_.firingStep == 0)
+            decoder_->decode(packet, group, firing, stamp_ns, turn_.points);
+    }
+    turn_.end_ns = stamp_ns + (group + 1) * model.blockPeriod_ns();
+    lastAzimuth_ = azimuth;
 }
 
 bool TurnAssembler::isInOrder(const DataPacket &packet, std::int64_t stamp_ns, std::int64_t receive_ns) {
@@ -75,7 +96,7 @@ bool TurnAssembler::isInOrder(const DataPacket &packet, std::int64_t stamp_ns, s
         ++counts_.outOfOrder;
         return false;
     }
-    noteGap(stamp_ns - nextStamp_ns_, packet.firings() * firingPeriod_ns);
+    noteGap(stamp_ns - nextStamp_ns_, packet.groups() * decoder_->model().blockPeriod_ns());
     return true;
 }
 
@@ -109,9 +130,22 @@ void TurnAssembler::endTurn(bool partial) {
     ++turn_.number;
 }
 
+void TurnAssembler::follow(std::optional<std::int64_t> utc_ns) {
+    if (utc_ns)
+        clock_.follow(*utc_ns);
+    else
+        clock_.release();
+}
+
 void TurnAssembler::finish() {
     endTurn(true);
     beginTurn(true);
+}
+
+void TurnAssembler::jump() {
+    finish();
+    clock_.reset();
+    started_ = false;
 }
 
 void TurnAssembler::reset() {
@@ -119,6 +153,7 @@ void TurnAssembler::reset() {
     beginTurn(true);
     clock_.reset();
     counts_ = PacketCounts();
+    decoder_.reset();
     started_ = false;
     rpm_ = 0;
 }

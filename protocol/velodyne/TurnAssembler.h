@@ -4,6 +4,7 @@
 #include "protocol/velodyne/StampClock.h"
 
 #include <functional>
+#include <optional>
 
 namespace hermes::velodyne {
 
@@ -13,7 +14,7 @@ struct PacketCounts {
     std::uint64_t wrongSize = 0;
     std::uint64_t wrongFlag = 0;
     std::uint64_t wrongValue = 0; ///< an azimuth or stamp out of its range
-    std::uint64_t otherModel = 0; ///< a sensor or return mode that is not decoded
+    std::uint64_t otherModel = 0; ///< a sensor or return mode that is not decoded, or a second sensor
     std::uint64_t outOfOrder = 0; ///< older than its predecessor, or the same again: not decoded
     std::uint64_t lost = 0;       ///< estimated from gaps between stamps
     std::uint64_t gaps = 0;       ///< places where packets were lost
@@ -26,8 +27,10 @@ struct Turn {
     bool partial = false;          ///< the first, the last, or cut by a long gap
     std::int64_t begin_ns = 0;     ///< when its first firing began, since the Unix epoch
     std::int64_t end_ns = 0;       ///< when its last firing ended
-    std::uint32_t firings = 0;     ///< with or without return
+    std::uint32_t firings = 0;     ///< with or without return, decoded or not
     std::uint32_t lostPackets = 0; ///< estimated, within this turn
+    const SensorModel *model = nullptr;
+    int laser = PacketDecoder::allLasers; ///< the one decoded, or allLasers
     std::vector<Point> points;
 };
 
@@ -36,9 +39,11 @@ struct Turn {
 class TurnAssembler {
 public:
     struct Options {
-        int laser = horizonLaser; ///< 0 to 31, or PacketDecoder::allLasers
+        int laser = PacketDecoder::levelLaser; ///< a number, levelLaser or allLasers
         Returns returns = Returns::Strongest;
         std::int64_t stampOffset_ns = 0; ///< added to every stamp
+        Model model = Model::Blank;      ///< the sensor; Blank: as the packets say
+        std::uint32_t firingStep = 1;    ///< of each turn every n-th firing is decoded
     };
     using Sink = std::function<void(const Turn &)>;
 
@@ -47,16 +52,24 @@ public:
 
     /// Takes the payload of a data packet and the time at which it came in, nanoseconds since the Unix epoch.
     PacketFault feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns);
+    /// A GPS tells the time, or nothing more: the hour of the stamps that follow.
+    void follow(std::optional<std::int64_t> utc_ns);
     /// Delivers what has been collected of the current turn, as a partial one.
     void finish();
+    /// The packets that follow are of another time, as after a seek. Counts and numbers go on.
+    void jump();
     /// For a new source: forgets the current turn, the clock and the counts.
     void reset();
 
     const PacketCounts &counts() const { return counts_; }
     /// Turns of the head a minute, from the last complete turn; 0 at first.
     double rpm() const { return rpm_; }
+    /// The sensor that is decoded; null before the first packet.
+    const SensorModel *model() const { return decoder_ ? &decoder_->model() : nullptr; }
 
 private:
+    bool isOfModel(const DataPacket &packet, std::int64_t receive_ns);
+    void addGroup(const DataPacket &packet, int group, std::int64_t stamp_ns);
     bool isInOrder(const DataPacket &packet, std::int64_t stamp_ns, std::int64_t receive_ns);
     void noteGap(std::int64_t gap_ns, std::int64_t period_ns);
     void beginTurn(bool partial);
@@ -64,7 +77,7 @@ private:
 
     Options options_;
     Sink sink_;
-    PacketDecoder decoder_;
+    std::optional<PacketDecoder> decoder_; ///< of the sensor that the packets named
     StampClock clock_;
     PacketCounts counts_;
     Turn turn_;

@@ -13,11 +13,13 @@ std::array<std::uint8_t, packetSize> takePacket(FuzzInput &in) {
                distance = in.take<std::uint16_t>();
     for (int block = 0; block < blocksPerPacket; ++block) {
         writer.setAzimuth(block, std::uint16_t((azimuth + block * step) % azimuthSteps));
-        for (int laser = 0; laser < lasers; ++laser)
-            writer.setReturn(block, laser, std::uint16_t(distance * (laser + block)), 1);
+        for (int slot = 0; slot < slotsPerBlock; ++slot)
+            writer.setReturn(block, slot, std::uint16_t(distance * (slot + block)), 1);
     }
     constexpr ReturnMode modes[] = {ReturnMode::Strongest, ReturnMode::Last, ReturnMode::Dual};
-    writer.setTail(in.take<std::uint32_t>() % stampPeriod_us, modes[in.take<std::uint8_t>() % 3]);
+    constexpr Model models[] = {Model::Hdl32e, Model::Vlp16};
+    const auto kind = in.take<std::uint8_t>();
+    writer.setTail(in.take<std::uint32_t>() % stampPeriod_us, modes[kind % 3], models[kind / 3 % 2]);
     auto bytes = writer.bytes();
     for (auto patches = in.take<std::uint8_t>() % 8; patches > 0; --patches) {
         const auto at = in.take<std::uint16_t>() % packetSize;
@@ -41,8 +43,11 @@ void requireSound(const Turn &turn) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     FuzzInput in(data, size);
     TurnAssembler::Options options;
-    options.laser = in.take<std::uint8_t>() % (lasers + 1) - 1;
+    options.laser = in.take<std::uint8_t>() % (lasers + 2) + PacketDecoder::levelLaser;
     options.returns = Returns(in.take<std::uint8_t>() % 3);
+    options.firingStep = in.take<std::uint8_t>() + 1u;
+    constexpr Model models[] = {Model::Blank, Model::Hdl32e, Model::Vlp16};
+    options.model = models[in.take<std::uint8_t>() % 3];
     std::int64_t now_ns = 0;
     TurnAssembler assembler(options, requireSound);
     std::uint64_t packets = 0;

@@ -238,7 +238,19 @@ private Q_SLOTS:
         const Result r = run({"ring", capture});
         QCOMPARE(r.status, 0);
         QVERIFY(r.out.count('\n') > 2000);
-        QCOMPARE(run({"ring", realData(QStringLiteral("vlp16-single-packet.pcap"))}).status, 1);
+    }
+
+    void realPacketOfAVlp16() {
+        const QString capture = realData(QStringLiteral("vlp16-single-packet.pcap"));
+        if (capture.isEmpty())
+            QSKIP("the real packet is not here");
+        const Result all = run({"ring", capture, "--all"});
+        QCOMPARE(all.status, 0);
+        QCOMPARE(all.out.count('\n'), 261);
+        const Result wrong = run({"ring", capture, "--laser", "16"});
+        QCOMPARE(wrong.status, 1);
+        QVERIFY2(wrong.err.contains("found a VLP-16, expected a laser from 0 to 15"), wrong.err.constData());
+        QCOMPARE(run({"ring", capture, "--model", "hdl32e"}).status, 1);
     }
 };
 

@@ -30,12 +30,20 @@ private Q_SLOTS:
     void faultsAreNamed();
     void pointsLieWhereTheFactSheetSays();
     void azimuthsAreInterpolated();
+    void aBlockOfAVlp16HoldsTwoFirings();
+    void ringsCountFromTheLowest();
     void dualReturns_data();
     void dualReturns();
     void stampsTakeTheHourOfTheReceiveTime_data();
     void stampsTakeTheHourOfTheReceiveTime();
     void stampsOfAFreeRunningSensorDoNotJump();
+    void aGpsTellsTheHour();
     void turnsBeginWhereTheAzimuthWraps();
+    void turnsOfAVlp16();
+    void theFirstOfTwoSensorsIsDecoded();
+    void aSettingNamesTheSensor();
+    void everyNthFiringOnly();
+    void aJumpIsNoLoss();
     void lossesAreCounted();
     void latePacketsAreCountedAndLeftOut();
     void aLongGapCutsTheTurn();
@@ -102,7 +110,9 @@ void TestVelodyne::faultsAreNamed_data() {
     QTest::newRow("last flag") << 1206 << 1101 << 0 << int(PacketFault::Flag);
     QTest::newRow("azimuth") << 1206 << 3 << 0x8D << int(PacketFault::Value);
     QTest::newRow("stamp") << 1206 << 1203 << 0xFF << int(PacketFault::Value);
-    QTest::newRow("VLP-16") << 1206 << 1205 << 0x22 << int(PacketFault::Model);
+    QTest::newRow("VLP-16") << 1206 << 1205 << 0x22 << int(PacketFault::None);
+    QTest::newRow("VLP-32C") << 1206 << 1205 << 0x28 << int(PacketFault::Model);
+    QTest::newRow("model without mode") << 1206 << 1204 << 0 << int(PacketFault::Model);
     QTest::newRow("unknown mode") << 1206 << 1204 << 0x40 << int(PacketFault::Model);
     QTest::newRow("dual") << 1206 << 1204 << 0x39 << int(PacketFault::None);
 }
@@ -124,7 +134,7 @@ void TestVelodyne::pointsLieWhereTheFactSheetSays() {
     auto bytes = sensor.packet(0);
     bytes[2] = bytes[3] = bytes[102] = bytes[103] = 0; // no gap: every laser at azimuth 0
     std::vector<Point> points;
-    PacketDecoder(PacketDecoder::allLasers).decode(DataPacket(bytes.data()), 0, 0, points);
+    PacketDecoder(hdl32e(), PacketDecoder::allLasers).decode(DataPacket(bytes.data()), 0, 0, 0, points);
     QCOMPARE(points.size(), std::size_t(lasers));
     QVERIFY(std::abs(points[0].x - 4.3008) < 5e-4 && points[0].y == 0 &&
             std::abs(points[0].z + 2.5505) < 5e-4);
@@ -135,7 +145,7 @@ void TestVelodyne::pointsLieWhereTheFactSheetSays() {
     bytes[2] = bytes[102] = 9000 & 0xFF;
     bytes[3] = bytes[103] = 9000 >> 8;
     points.clear();
-    PacketDecoder(horizonLaser).decode(DataPacket(bytes.data()), 0, 0, points);
+    PacketDecoder(hdl32e()).decode(DataPacket(bytes.data()), 0, 0, 0, points);
     QVERIFY(std::abs(points[0].x) < 1e-9 && std::abs(points[0].y + 5) < 1e-9);
 }
 
@@ -147,8 +157,8 @@ void TestVelodyne::azimuthsAreInterpolated() {
     }
     std::vector<Point> points;
     const DataPacket packet(writer.bytes().data());
-    for (int firing = 0; firing < blocksPerPacket; ++firing)
-        PacketDecoder().decode(packet, firing, 1000, points);
+    for (int group = 0; group < blocksPerPacket; ++group)
+        PacketDecoder(hdl32e()).decode(packet, group, 0, 1000, points);
     QCOMPARE(points.size(), std::size_t(12));
     QVERIFY(std::abs(points[0].azimuth - (359.90 + 0.16 * 0.375)) < 1e-9);
     QVERIFY(std::abs(points[1].azimuth - (0.06 + 0.16 * 0.375)) < 1e-9);
@@ -156,6 +166,42 @@ void TestVelodyne::azimuthsAreInterpolated() {
     QCOMPARE(points[11].stamp_ns, std::int64_t(1000 + 11 * 46080 + 15 * 1152));
     writer.setAzimuth(1, 5000); // a jump is no gap
     QCOMPARE(azimuthGap(packet, 0), 0);
+}
+
+void TestVelodyne::aBlockOfAVlp16HoldsTwoFirings() {
+    DataPacketWriter writer;
+    for (int block = 0; block < blocksPerPacket; ++block)
+        writer.setAzimuth(block, std::uint16_t((35970 + 40 * block) % azimuthSteps));
+    writer.setReturn(0, 3, 1000, 1);   // laser 3 of the first firing
+    writer.setReturn(0, 19, 2000, 2);  // and of the second
+    writer.setReturn(11, 31, 3000, 3); // the last of all
+    writer.setTail(0, ReturnMode::Last, Model::Vlp16);
+    std::vector<Point> points;
+    const DataPacket packet(writer.bytes().data());
+    const PacketDecoder decoder(vlp16(), PacketDecoder::allLasers);
+    for (int group = 0; group < blocksPerPacket; ++group)
+        for (int firing = 0; firing < 2; ++firing)
+            decoder.decode(packet, group, firing, 500, points);
+    QCOMPARE(points.size(), std::size_t(3));
+    QCOMPARE(int(points[0].laser), 3);
+    QCOMPARE(points[0].stamp_ns, std::int64_t(500 + 3 * 2304));
+    QCOMPARE(points[0].azimuth, 359.725); // 359.70 + 0.40 * 3 / 48
+    QCOMPARE(points[0].z, 2 * std::sin(3 * 3.14159265358979323846 / 180));
+    QCOMPARE(int(points[1].laser), 3);
+    QCOMPARE(points[1].stamp_ns, std::int64_t(500 + 55296 + 3 * 2304));
+    QCOMPARE(points[1].azimuth, 359.925);
+    QCOMPARE(int(points[2].laser), 15);
+    QCOMPARE(points[2].stamp_ns, std::int64_t(500 + 11 * 110592 + 55296 + 15 * 2304));
+    QCOMPARE(points[2].azimuth, 4.425); // 4.10 + 0.40 * (1 / 2 + 15 / 48)
+}
+
+void TestVelodyne::ringsCountFromTheLowest() {
+    QCOMPARE(hdl32e().ring(0), 0);
+    QCOMPARE(hdl32e().ring(15), 23);
+    QCOMPARE(hdl32e().ring(31), 31);
+    QCOMPARE(vlp16().ring(0), 0);
+    QCOMPARE(vlp16().ring(1), 8);
+    QCOMPARE(vlp16().ring(15), 15);
 }
 
 void TestVelodyne::dualReturns_data() {
@@ -176,16 +222,16 @@ void TestVelodyne::dualReturns() {
     sensor.dual = true;
     auto bytes = sensor.packet(0);
     const DataPacket packet(bytes.data());
-    QCOMPARE(packet.firings(), 6);
+    QCOMPARE(packet.groups(), 6);
     if (same)
         std::copy(bytes.begin() + 104, bytes.begin() + 200, bytes.begin() + 4);
     std::vector<Point> points;
-    PacketDecoder(horizonLaser, Returns(returns)).decode(packet, 0, 0, points);
+    PacketDecoder(hdl32e(), horizonLaser, Returns(returns)).decode(packet, 0, 0, 0, points);
     QCOMPARE(int(points.size()), ranges.size());
     for (int i = 0; i < ranges.size(); ++i)
         QVERIFY(std::abs(points[std::size_t(i)].range - ranges[i]) < 1e-9);
     points.clear();
-    PacketDecoder(horizonLaser).decode(packet, 5, 0, points);
+    PacketDecoder(hdl32e()).decode(packet, 5, 0, 0, points);
     QCOMPARE(points[0].stamp_ns, std::int64_t(5 * 46080 + 15 * 1152));
 }
 
@@ -222,6 +268,19 @@ void TestVelodyne::stampsOfAFreeRunningSensorDoNotJump() {
     }
 }
 
+/// The receiver's clock is 5 hours slow, or steps: the hour of the GPS counts, until it is released.
+void TestVelodyne::aGpsTellsTheHour() {
+    StampClock clock;
+    const std::int64_t utc = 400000 * hour_ns + 3599 * second_ns, host = utc - 5 * hour_ns;
+    QCOMPARE(clock.absolute(3599000000u, host), utc - 5 * hour_ns);
+    clock.follow(utc);
+    QCOMPARE(clock.absolute(3599000100u, host), utc + 100000);
+    QCOMPARE(clock.absolute(100u, host + second_ns), utc + second_ns + 100000); // the hour begins anew
+    QCOMPARE(clock.absolute(200u, host + 9 * hour_ns), utc + second_ns + 200000);
+    clock.release(); // goes on in the same hour
+    QCOMPARE(clock.absolute(300u, host + 9 * hour_ns + 100000), utc + second_ns + 300000);
+}
+
 void TestVelodyne::turnsBeginWhereTheAzimuthWraps() {
     Sensor sensor;
     std::vector<Turn> turns;
@@ -246,6 +305,91 @@ void TestVelodyne::turnsBeginWhereTheAzimuthWraps() {
     QVERIFY(std::abs(assembler.rpm() - 614.8) < 1);
     QCOMPARE(assembler.counts().lost, std::uint64_t(0));
     QCOMPARE(assembler.counts().packets, std::uint64_t(500));
+}
+
+void TestVelodyne::turnsOfAVlp16() {
+    Sensor sensor;
+    sensor.model = &vlp16();
+    sensor.azimuthStep = 40;
+    for (const bool dual : {false, true}) {
+        sensor.dual = dual;
+        std::vector<Turn> turns;
+        TurnAssembler assembler({}, [&](const Turn &turn) { turns.push_back(turn); });
+        for (int i = 0; i < (dual ? 400 : 200); ++i)
+            QCOMPARE(feed(assembler, sensor, i), PacketFault::None);
+        assembler.finish();
+        QCOMPARE(assembler.model(), &vlp16());
+        QCOMPARE(turns.size(), std::size_t(4)); // 25 blocks, 900, 900 and the rest of 2400
+        QCOMPARE(turns[0].firings, 50u);
+        QCOMPARE(turns[1].firings, 1800u);
+        QVERIFY(!turns[1].partial && !turns[2].partial && turns[3].partial);
+        QCOMPARE(turns[1].points.size(), std::size_t(1800)); // of laser 1
+        QVERIFY(turns[1].points[7].laser == 1 && turns[1].model == &vlp16());
+        QVERIFY(std::abs(assembler.rpm() - 602.8) < 0.1);
+        QCOMPARE(assembler.counts().lost, std::uint64_t(0));
+    }
+}
+
+void TestVelodyne::theFirstOfTwoSensorsIsDecoded() {
+    Sensor hdl, vlp;
+    vlp.model = &vlp16();
+    std::vector<const SensorModel *> models;
+    TurnAssembler assembler({}, [&](const Turn &turn) { models.push_back(turn.model); });
+    for (int i = 0; i < 10; ++i) {
+        QCOMPARE(feed(assembler, hdl, i), PacketFault::None);
+        QCOMPARE(feed(assembler, vlp, i), PacketFault::Model);
+    }
+    QCOMPARE(assembler.counts().otherModel, std::uint64_t(10));
+    vlp.start_ns += 2 * second_ns; // the first is switched off, the second stays
+    for (int i = 0; i < 10; ++i)
+        QCOMPARE(feed(assembler, vlp, i), PacketFault::None);
+    assembler.finish();
+    QVERIFY(models == (std::vector<const SensorModel *>{&hdl32e(), &hdl32e(), &vlp16(), &vlp16()}));
+}
+
+void TestVelodyne::aSettingNamesTheSensor() {
+    Sensor sensor;
+    TurnAssembler::Options options;
+    options.model = Model::Vlp16;
+    TurnAssembler assembler(options, [](const Turn &) {});
+    QCOMPARE(feed(assembler, sensor, 0), PacketFault::Model);
+    auto blank = sensor.packet(1); // old firmware names neither mode nor model
+    blank[1204] = blank[1205] = 0;
+    QCOMPARE(assembler.feed(blank.data(), blank.size(), sensor.stamp(1)), PacketFault::None);
+    QCOMPARE(assembler.model(), &vlp16());
+}
+
+void TestVelodyne::everyNthFiringOnly() {
+    Sensor sensor;
+    TurnAssembler::Options options;
+    options.laser = PacketDecoder::allLasers;
+    options.firingStep = 8;
+    std::vector<Turn> turns;
+    TurnAssembler assembler(options, [&](const Turn &turn) { turns.push_back(turn); });
+    for (int i = 0; i < 300; ++i)
+        feed(assembler, sensor, i);
+    QCOMPARE(turns.at(1).firings, 2118u);
+    QCOMPARE(turns.at(1).points.size(), std::size_t(32 * 265)); // 0, 8, ... 2112
+    const std::int64_t step_ns = turns[1].points[32].stamp_ns - turns[1].points[0].stamp_ns;
+    QVERIFY(std::abs(step_ns - 8 * firingPeriod_ns) < 1000); // stamps are whole microseconds
+}
+
+void TestVelodyne::aJumpIsNoLoss() {
+    Sensor sensor;
+    std::vector<std::uint64_t> numbers;
+    TurnAssembler assembler({}, [&](const Turn &turn) {
+        QVERIFY(turn.partial);
+        numbers.push_back(turn.number);
+    });
+    feed(assembler, sensor, 0);
+    assembler.jump();
+    feed(assembler, sensor, 1000);
+    assembler.jump();
+    feed(assembler, sensor, 0);
+    assembler.finish();
+    QCOMPARE(numbers, (std::vector<std::uint64_t>{0, 1, 2}));
+    const PacketCounts &counts = assembler.counts();
+    QCOMPARE(counts.lost + counts.outOfOrder + counts.clockJumps, std::uint64_t(0));
 }
 
 void TestVelodyne::lossesAreCounted() {
@@ -355,7 +499,7 @@ void TestVelodyne::randomBytesDoNoHarm() {
             }
             bytes[1203] %= 0xD6;
             bytes[1204] = std::uint8_t(0x37 + random() % 3);
-            bytes[1205] = 0x21;
+            bytes[1205] = std::uint8_t(0x21 + random() % 2);
         }
         assembler.feed(bytes.data(), bytes.size(), std::int64_t(random()) * 1000000000);
     }

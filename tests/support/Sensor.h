@@ -3,30 +3,32 @@
 #include "common/capture/Datagram.h"
 #include "protocol/velodyne/DataPacket.h"
 
-/// Packets of a sensor that turns evenly, 0.17 degrees a firing, and sees a wall 5 m away all around.
+/// Packets of a sensor that turns evenly, 0.17 degrees a block, and sees a wall 5 m away all around.
 class Sensor {
 public:
     std::int64_t start_ns = 1700000000000000000;
     int azimuthStep = 17; ///< hundredths of a degree
     bool dual = false;
+    const hermes::velodyne::SensorModel *model = &hermes::velodyne::hdl32e();
 
     std::array<std::uint8_t, hermes::velodyne::packetSize> packet(int number) const {
         using namespace hermes::velodyne;
         DataPacketWriter writer;
         const int returns = dual ? 2 : 1;
         for (int block = 0; block < blocksPerPacket; ++block) {
-            const int firing = number * blocksPerPacket / returns + block / returns;
-            writer.setAzimuth(block, std::uint16_t((35000 + firing * azimuthStep) % azimuthSteps));
+            const int group = number * blocksPerPacket / returns + block / returns;
+            writer.setAzimuth(block, std::uint16_t((35000 + group * azimuthStep) % azimuthSteps));
             const int distance = dual && block % 2 == 0 ? 2600 : 2500;
-            for (int laser = 0; laser < lasers; ++laser)
-                writer.setReturn(block, laser, std::uint16_t(distance), std::uint8_t(laser));
+            for (int slot = 0; slot < slotsPerBlock; ++slot)
+                writer.setReturn(block, slot, std::uint16_t(distance), std::uint8_t(slot));
         }
         writer.setTail(std::uint32_t(stamp(number) / 1000 % stampPeriod_us),
-                       dual ? ReturnMode::Dual : ReturnMode::Strongest);
+                       dual ? ReturnMode::Dual : ReturnMode::Strongest, model->model);
         return writer.bytes();
     }
     std::int64_t stamp(int number) const {
-        return start_ns + number * hermes::velodyne::packetPeriod_ns / (dual ? 2 : 1);
+        return start_ns +
+               number * hermes::velodyne::blocksPerPacket * model->blockPeriod_ns() / (dual ? 2 : 1);
     }
 };
 

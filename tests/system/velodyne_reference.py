@@ -1,12 +1,18 @@
-"""An HDL-32E decoder of its own, from the manual's numbers alone, to compare the project's programs with."""
+"""A decoder of HDL-32E and VLP-16 of its own, from the manuals' numbers alone, to compare the project's programs with: to the
+last bit, since azimuths and ranges are the nearest doubles to exact quotients and the rest is the formula as it stands."""
 import collections
 import math
 import struct
 
-Point = collections.namedtuple("Point", "stamp_ns azimuth range intensity x y")
-LASER = 15  # looks along the horizon
-FIRING_NS = 46080
-LASER_NS = 1152
+Point = collections.namedtuple("Point", "stamp_ns laser azimuth range intensity x y z")
+# lasers, ns between two of them, ns of a firing, firings a block, the laser nearest to the horizon, elevations in degrees
+Model = collections.namedtuple("Model", "lasers laser_ns firing_ns firings level elevations")
+HDL32E = Model(32, 1152, 46080, 1, 15, [
+    -30.67, -9.33, -29.33, -8.00, -28.00, -6.67, -26.67, -5.33, -25.33, -4.00, -24.00, -2.67, -22.67, -1.33, -21.33, 0.00,
+    -20.00, 1.33, -18.67, 2.67, -17.33, 4.00, -16.00, 5.33, -14.67, 6.67, -13.33, 8.00, -12.00, 9.33, -10.67, 10.67])
+VLP16 = Model(16, 2304, 55296, 2, 1, [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15])
+MODELS = {0x00: HDL32E, 0x21: HDL32E, 0x22: VLP16}
+DUAL = 0x39
 
 
 def datagrams(path):
@@ -32,25 +38,49 @@ def absolute(microseconds, receive_ns):
     return min((stamp - hour, stamp, stamp + hour), key=lambda s: abs(s - receive_ns))
 
 
-def turns(path):
-    """The points of the horizontal ring, turn by turn, in the order of measuring; the first and the last may be partial."""
+def groups(payload, returns):
+    """Of each group of blocks that share an azimuth: azimuth, gap to the next group, and the blocks that are asked for."""
+    size = 2 if payload[1204] == DUAL else 1
+    chosen = {1: (0,), 2: {"last": (0,), "strongest": (1,), "both": (0, 1)}[returns]}[size]
+    starts = range(0, 12, size)
+    azimuths = [struct.unpack_from("<H", payload, 100 * block + 2)[0] for block in starts]
+    gaps = [(after - before) % 36000 for before, after in zip(azimuths, azimuths[1:])]
+    for start, azimuth, gap in zip(starts, azimuths, gaps + gaps[-1:]):
+        yield azimuth, gap, [start + block for block in chosen]
+
+
+def turns(path, lasers="level", returns="strongest"):
+    """The points, turn by turn, in the order of measuring; the first and the last turn may be partial. lasers: "level", "all" or
+    a number."""
     result, last_azimuth = [[]], None
     for receive_ns, payload in datagrams(path):
         if len(payload) != 1206:
             continue
-        azimuths = [struct.unpack_from("<H", payload, 100 * block + 2)[0] for block in range(12)]
+        model = MODELS[payload[1205]]
+        wanted = {"level": [model.level], "all": range(model.lasers)}.get(lasers, [lasers])
         base = absolute(struct.unpack_from("<I", payload, 1200)[0], receive_ns)
-        for block, azimuth in enumerate(azimuths):
+        for azimuth, gap, blocks in groups(payload, returns):
             if last_azimuth is not None and last_azimuth - azimuth > 18000:
                 result.append([])
             last_azimuth = azimuth
-            before, after = (block, block + 1) if block < 11 else (10, 11)
-            gap = (azimuths[after] - azimuths[before]) % 36000
-            distance, intensity = struct.unpack_from("<HB", payload, 100 * block + 4 + 3 * LASER)
-            if distance == 0:
-                continue
-            degrees = (azimuth + gap * LASER * LASER_NS / FIRING_NS) % 36000 / 100
-            metres = distance * 0.002
-            result[-1].append(Point(base + block * FIRING_NS + LASER * LASER_NS, degrees, metres, intensity,
-                                    metres * math.cos(math.radians(degrees)), -metres * math.sin(math.radians(degrees))))
+            for firing in range(model.firings):
+                for laser in wanted:
+                    result[-1] += returned(payload, model, base, (azimuth, gap), blocks, firing, laser)
+            base += model.firings * model.firing_ns
     return result
+
+
+def returned(payload, model, base, azimuth_gap, blocks, firing, laser):
+    """The points of one laser in one firing: none without return, two where a dual return differs."""
+    azimuth, gap = azimuth_gap
+    block_ns, after_ns = model.firings * model.firing_ns, firing * model.firing_ns + laser * model.laser_ns
+    degrees = (azimuth * block_ns + gap * after_ns) % (36000 * block_ns) / (100 * block_ns)
+    points, seen = [], {0}
+    for block in blocks:
+        distance, intensity = struct.unpack_from("<HB", payload, 100 * block + 4 + 3 * (firing * model.lasers + laser))
+        if distance not in seen:
+            seen.add(distance)
+            metres, az, el = distance / 500, math.radians(degrees), math.radians(model.elevations[laser])
+            points.append(Point(base + after_ns, laser, degrees, metres, intensity, metres * math.cos(el) * math.cos(az),
+                                -metres * math.cos(el) * math.sin(az), metres * math.sin(el)))
+    return points

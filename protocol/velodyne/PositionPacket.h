@@ -1,0 +1,44 @@
+#pragma once
+
+#include "protocol/velodyne/Hdl32e.h"
+
+#include <string>
+
+namespace hermes::velodyne {
+
+/// Whether the sensor's clock follows the pulse per second of a GPS. Byte 0x0CA of a position packet.
+enum class Pps : std::uint8_t { Absent = 0, Synchronizing = 1, Locked = 2, Error = 3 };
+
+/// "absent", "synchronizing", "locked" or "error".
+const char *toText(Pps pps);
+
+/// One of the three chips that measure motion: what its words mean by the manual, their axes as it draws
+/// them.
+struct MotionChip {
+    double gyro_dps = 0;      ///< degrees a second, in steps of 0.09766
+    double temperature_c = 0; ///< in steps of 0.1453 around 25
+    double accelX_g = 0;      ///< in steps of 0.001221
+    double accelY_g = 0;
+};
+
+/// What a position packet (512 bytes on UDP port 8308) tells. Sources: HDL-32E manual; VLP-16 manual for PPS.
+struct PositionPacket {
+    std::array<MotionChip, 3> chips;
+    std::uint32_t stamp_us = 0; ///< since the top of the hour
+    Pps pps = Pps::Absent;
+    std::string nmea; ///< the sentence as the sensor got it, without CR LF; empty without GPS
+};
+
+/// Longest sentence that a packet has room for, CR LF included.
+constexpr std::size_t maximumNmea = 128;
+
+enum class PositionFault {
+    None,
+    Size,  ///< not 512 bytes
+    Value, ///< a stamp beyond the hour, or a state of the PPS that does not exist
+};
+
+/// Reads the bytes; packet is changed only without fault. The text is not judged here: it may be anything.
+PositionFault decodePosition(const std::uint8_t *bytes, std::size_t size, PositionPacket &packet);
+
+} // namespace hermes::velodyne
