@@ -4,6 +4,7 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/DaemonsPanel.h"
 #include "gui/desktop/panels/LogPanel.h"
+#include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 
 #include <QAction>
@@ -32,6 +33,7 @@ MainWindow::MainWindow(Fleet &fleet, const QString &layoutFile, QWidget *parent)
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
     bar->addWidget(topBar_);
 
+    setCentralWidget(new MapPanel(fleet));
     addPanel(Qt::LeftDockWidgetArea, new DaemonsPanel(fleet), tr("Daemons"), "daemons");
     addPanel(Qt::BottomDockWidgetArea, new SettingsPanel(fleet), tr("Settings"), "settings");
     addPanel(Qt::BottomDockWidgetArea, new CommandsPanel(fleet), tr("Commands"), "commands", lastDock());
@@ -64,6 +66,8 @@ void MainWindow::addPanel(Qt::DockWidgetArea area, QWidget *panel, const QString
 
 void MainWindow::restoreLayout() {
     resize(1280, 720);
+    resizeDocks({docks_[0]}, {300}, Qt::Horizontal);
+    resizeDocks({docks_[1]}, {220}, Qt::Vertical);
     docks_[1]->raise();
     if (layoutFile_.isEmpty())
         return;

@@ -4,6 +4,7 @@
 
 #include <QComboBox>
 #include <QDateTime>
+#include <QFontDatabase>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
@@ -37,6 +38,7 @@ LogPanel::LogPanel(Fleet &fleet, QWidget *parent)
     filter_->setClearButtonEnabled(true);
     view_->setObjectName("records");
     view_->setReadOnly(true);
+    view_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
     view_->setLineWrapMode(QPlainTextEdit::NoWrap);
     view_->setMaximumBlockCount(int(maxRecords));
     view_->setPlaceholderText(tr("What the daemons log appears here."));

@@ -1,7 +1,7 @@
 // Makes the pictures of the operator's window for the documentation: screenshots FOLDER.
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/Theme.h"
-#include "tests/desktop/RobotProcesses.h"
+#include "tests/gui/desktop/RobotProcesses.h"
 
 #include <QApplication>
 #include <QDir>
@@ -29,6 +29,8 @@ void Screenshots::all() {
     window.resize(1280, 720);
     window.show();
     fleet.choose(fleet.robot()->withName("motorcontrol"));
+    fleet.robot()->withName("simulator")->client().callAndWait("sim.drive");
+    QTest::qWait(12000); // so that there is a map to see
     for (auto *const dock : window.findChildren<QDockWidget *>()) {
         dock->raise();
         QTest::qWait(400);

@@ -1,0 +1,171 @@
+#include "gui/desktop/panels/MapPanel.h"
+
+#include "gui/desktop/Theme.h"
+
+#include <QFileDialog>
+#include <QLabel>
+#include <QMenu>
+#include <QPainter>
+#include <QSvgGenerator>
+#include <QToolBar>
+#include <QToolButton>
+#include <QVBoxLayout>
+#include <QtMath>
+
+namespace hermes {
+
+MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
+    : QWidget(parent)
+    , model_(fleet)
+    , view_(new MapView(model_))
+    , message_(new QLabel) {
+    auto *const bar = new QToolBar;
+    bar->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    bar->setIconSize({16, 16});
+    addTools(*bar);
+    addLayers(*bar);
+    bar->addAction(theme::icon("export"), tr("Export"), this, &MapPanel::askFile)->setObjectName("export");
+    view_->setObjectName("map");
+    message_->setObjectName("message");
+    message_->setMargin(4);
+    auto *const layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(0);
+    layout->addWidget(bar);
+    layout->addWidget(view_, 1);
+    layout->addWidget(message_);
+    message_->hide();
+    setFocusProxy(view_);
+
+    connect(&fleet, &Fleet::changed, this, &MapPanel::updateTools);
+    connect(view_, &MapView::followingChanged, follow_, &QAction::setChecked);
+    connect(view_, &MapView::toolChanged, this, &MapPanel::updateTools);
+    connect(view_, &MapView::measured, this,
+            [this](double distance) { tell(tr("%1 m").arg(distance, 0, 'f', 3)); });
+    connect(view_, &MapView::placed, this, [this](const MapPose &pose) {
+        ask("pose.set", {{"x", pose.x}, {"y", pose.y}, {"theta", pose.theta}},
+            tr("Placed at %1 m, %2 m, %3°")
+                .arg(pose.x, 0, 'f', 2)
+                .arg(pose.y, 0, 'f', 2)
+                .arg(qRadiansToDegrees(pose.theta), 0, 'f', 0));
+    });
+    updateTools();
+}
+
+void MapPanel::addTools(QToolBar &bar) {
+    const auto add = [&](const char *icon, const QString &text, const QString &toolTip, bool isCheckable) {
+        QAction *const action = bar.addAction(theme::icon(QString(icon)), text);
+        action->setObjectName(icon);
+        action->setToolTip(toolTip);
+        action->setCheckable(isCheckable);
+        return action;
+    };
+    follow_ = add("follow", tr("Follow"), tr("Keeps the robot in the middle (F)"), true);
+    follow_->setChecked(view_->isFollowing());
+    connect(follow_, &QAction::toggled, view_, &MapView::setFollowing);
+    connect(add("fit", tr("Fit"), tr("Shows the whole map (0)"), false), &QAction::triggered, view_,
+            &MapView::fit);
+    measure_ = add("measure", tr("Measure"), tr("Drag from one point to another"), true);
+    place_ = add("place", tr("Place"), tr("Press where the robot is and drag to where it looks"), true);
+    const auto choose = [this](MapView::Tool tool) {
+        return [this, tool](bool isOn) { view_->setTool(isOn ? tool : MapView::Tool::Pan); };
+    };
+    connect(measure_, &QAction::triggered, this, choose(MapView::Tool::Measure));
+    connect(place_, &QAction::triggered, this, choose(MapView::Tool::Place));
+    relocalize_ = add("relocalize", tr("Relocalize"), tr("Finds the robot in the whole map"), false);
+    connect(relocalize_, &QAction::triggered, this,
+            [this] { ask("pose.relocalize", {}, tr("Found the robot in the map")); });
+}
+
+void MapPanel::addLayers(QToolBar &bar) {
+    auto *const menu = new QMenu(this);
+    const auto add = [&](const QString &name, bool MapLayers::*layer) {
+        QAction *const action = menu->addAction(name);
+        action->setCheckable(true);
+        action->setChecked(view_->layers().*layer);
+        connect(action, &QAction::toggled, this, [this, layer](bool isOn) {
+            view_->layers().*layer = isOn;
+            view_->update();
+        });
+    };
+    add(tr("Grid"), &MapLayers::grid);
+    add(tr("Map"), &MapLayers::map);
+    add(tr("Scan points"), &MapLayers::scan);
+    add(tr("Segments of the scan"), &MapLayers::segments);
+    add(tr("Correspondences"), &MapLayers::correspondences);
+    add(tr("Paths (matched solid, odometry dashed, truth dotted)"), &MapLayers::paths);
+    add(tr("Robot, with its uncertainty ten times enlarged"), &MapLayers::robot);
+    menu->addSeparator();
+    menu->addAction(tr("Clear paths"), &model_, &MapModel::clearPaths);
+    auto *const button = new QToolButton;
+    button->setText(tr("Layers"));
+    button->setIcon(theme::icon("layers"));
+    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    button->setMenu(menu);
+    button->setPopupMode(QToolButton::InstantPopup);
+    bar.addWidget(button);
+}
+
+void MapPanel::askFile() {
+    auto *const dialog =
+        new QFileDialog(this, tr("Export the view"), "map.svg", tr("Pictures (*.svg *.png)"));
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setAcceptMode(QFileDialog::AcceptSave);
+    connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
+        const auto done = exportTo(file);
+        tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
+    });
+    dialog->open(); // not modal for the rest of the program: STOP stays in reach
+}
+
+Result<void> MapPanel::exportTo(const QString &file) {
+    if (file.endsWith(".svg", Qt::CaseInsensitive)) {
+        QSvgGenerator svg;
+        svg.setFileName(file);
+        svg.setSize(view_->size());
+        svg.setViewBox(view_->rect());
+        svg.setTitle(tr("Hermes map"));
+        QPainter painter;
+        if (!painter.begin(&svg))
+            return Error(ErrorCode::InputOutput, tr("%1 cannot be written").arg(file));
+        view_->render(painter);
+        return {};
+    }
+    QImage picture(view_->size(), QImage::Format_RGB32);
+    QPainter painter(&picture);
+    view_->render(painter);
+    painter.end();
+    if (!picture.save(file))
+        return Error(ErrorCode::InputOutput, tr("%1 cannot be written").arg(file));
+    return {};
+}
+
+void MapPanel::ask(const QString &method, const QJsonObject &params, const QString &done) {
+    DaemonLink *const matcher = model_.matcher();
+    if (!matcher)
+        return tell(tr("No scan matcher is connected."), true);
+    tell(tr("%1 ...").arg(method));
+    matcher->call(method, params, this, [this, done](const Result<QJsonValue> &result) {
+        tell(result ? done : result.error().message, !result);
+    });
+}
+
+void MapPanel::updateTools() {
+    const DaemonLink *const matcher = model_.matcher();
+    const bool isThere = matcher && matcher->isConnected();
+    measure_->setChecked(view_->tool() == MapView::Tool::Measure);
+    place_->setChecked(view_->tool() == MapView::Tool::Place);
+    place_->setEnabled(isThere && matcher->hasMethod("pose.set"));
+    relocalize_->setEnabled(isThere && matcher->hasMethod("pose.relocalize"));
+}
+
+void MapPanel::tell(const QString &text, bool isError) {
+    QPalette palette;
+    if (isError)
+        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
+    message_->setPalette(palette);
+    message_->setText(text);
+    message_->show();
+}
+
+} // namespace hermes

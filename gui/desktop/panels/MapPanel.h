@@ -1,0 +1,37 @@
+#pragma once
+
+#include "gui/desktop/view/MapView.h"
+
+class QAction;
+class QLabel;
+class QToolBar;
+
+namespace hermes {
+
+/// The map view with its tools: follow, fit, measure, place, relocalize, layers, export.
+class MapPanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit MapPanel(Fleet &fleet, QWidget *parent = nullptr);
+
+    MapView &view() { return *view_; }
+    const MapModel &model() const { return model_; }
+    /// Writes what the view shows; .svg by its name, else a picture. Error: the file cannot be written.
+    Result<void> exportTo(const QString &file);
+
+private:
+    void addTools(QToolBar &bar);
+    void addLayers(QToolBar &bar);
+    void askFile();
+    /// A command of the matcher; tells how it ended.
+    void ask(const QString &method, const QJsonObject &params, const QString &done);
+    void updateTools();
+    void tell(const QString &text, bool isError = false);
+
+    MapModel model_;
+    MapView *view_;
+    QLabel *message_;
+    QAction *follow_, *measure_, *place_, *relocalize_;
+};
+
+} // namespace hermes

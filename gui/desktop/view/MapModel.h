@@ -1,0 +1,95 @@
+#pragma once
+
+#include "gui/desktop/model/TopicFeed.h"
+
+#include <QLineF>
+#include <QPolygonF>
+#include <QVector>
+#include <array>
+#include <optional>
+
+namespace hermes {
+
+/// Where something stands in the map: metres, radians counter-clockwise.
+struct MapPose {
+    double x = 0, y = 0, theta = 0;
+
+    QPointF operator*(QPointF p) const; ///< a point of this frame in the map
+    MapPose operator*(const MapPose &inner) const;
+    MapPose inverse() const;
+};
+
+/// Everything that the map view shows of the chosen robot, in the map's frame and in metres, as it comes from
+/// the topics map, pose, match, segments, scan2d, odometry and truth of whichever daemons have them.
+class MapModel : public QObject {
+    Q_OBJECT
+public:
+    explicit MapModel(Fleet &fleet, QObject *parent = nullptr);
+
+    /// The edges of the map, free space on their left.
+    const QVector<QLineF> &edges() const { return edges_; }
+    /// The last scan's segments and points; the segments' partners in the map.
+    const QVector<QLineF> &segments() const { return segments_; }
+    const QPolygonF &scan() const { return scan_; }
+    const QVector<QLineF> &correspondences() const { return correspondences_; }
+
+    /// The sensor's pose as matched; absent before the first scan.
+    const std::optional<MapPose> &pose() const { return pose_; }
+    /// Of x, y and theta, row by row; absent when the last scan was lost.
+    const std::optional<std::array<double, 9>> &covariance() const { return covariance_; }
+    /// "matched", "lost" or "skipped".
+    const QString &outcome() const { return outcome_; }
+    /// 0 to 1, and m^2, of the last match.
+    double reliability() const { return reliability_; }
+    double ambiguity() const { return ambiguity_; }
+
+    /// Ways so far, thinned to steps of 2 cm. Odometry and truth have frames of their own: they are laid so
+    /// that they begin where the matched path was at that time.
+    const QPolygonF &matchedPath() const { return matched_.way; }
+    const QPolygonF &odometryPath() const { return odometry_.way; }
+    const QPolygonF &truthPath() const { return truth_.way; }
+    /// Forgets the paths.
+    void clearPaths();
+
+    /// All edges; null rectangle without any.
+    QRectF bounds() const;
+    /// Who has the topics pose and map; null: nobody.
+    DaemonLink *matcher() const { return poses_.source(); }
+
+Q_SIGNALS:
+    void changed();
+
+private:
+    /// A path and the frame it comes in.
+    struct Path {
+        QPolygonF way;
+        std::optional<MapPose> frame; // of the source, in the map
+
+        void add(const MapPose &pose);
+    };
+
+    void onMap(const QJsonValue &data);
+    void onPose(const QJsonValue &data);
+    void onMatch(const QJsonValue &data);
+    void onSegments(const QJsonValue &data);
+    void onScan(const QJsonValue &data);
+    void follow(Path &path, const QJsonValue &pose);
+    void placeScan();
+
+    QVector<QLineF> edges_, segments_, correspondences_;
+    QHash<qint64, int> rows_; // of an edge in edges_, by its id
+    QVector<qint64> ids_;     // of each row
+    QJsonValue rawScan_;      // waits for its pose
+    QPolygonF scan_;
+    MapPose twist_;        // metres and radians a second, in the frame of the sensor
+    double poseScan_ = -1; // the number of the scan that the pose belongs to
+    std::optional<MapPose> pose_;
+    std::optional<std::array<double, 9>> covariance_;
+    QString outcome_;
+    QVector<QPair<qint64, int>> pairs_; // edge, segment
+    double reliability_ = 0, ambiguity_ = 0;
+    Path matched_, odometry_, truth_;
+    TopicFeed maps_, poses_, matches_, segmentFeed_, scans_, odometryFeed_, truthFeed_;
+};
+
+} // namespace hermes

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "gui/desktop/view/MapModel.h"
+
+#include <QColor>
+#include <QTransform>
+
+class QPainter;
+
+namespace hermes {
+
+/// What of the map is drawn.
+struct MapLayers {
+    bool grid = true, map = true, scan = true, segments = true, correspondences = true, paths = true,
+         robot = true;
+};
+
+/// Draws a map model. World to screen is `transform` (metres to pixels, y up).
+class MapPainter {
+public:
+    MapPainter(const MapModel &model, const MapLayers &layers, const QTransform &transform, const QSize &size,
+               double robotRadius_m)
+        : model_(model)
+        , layers_(layers)
+        , transform_(transform)
+        , size_(size)
+        , robotRadius_m_(robotRadius_m) {}
+
+    void paint(QPainter &painter) const;
+
+private:
+    double scale() const { return transform_.m11(); } // pixels a metre
+    void paintGrid(QPainter &painter) const;
+    void paintLines(QPainter &painter, const QVector<QLineF> &lines, const QColor &colour,
+                    double width) const;
+    void paintScan(QPainter &painter) const;
+    void paintCorrespondences(QPainter &painter) const;
+    void paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour, Qt::PenStyle style) const;
+    void paintUncertainty(QPainter &painter) const;
+    void paintRobot(QPainter &painter) const;
+    void paintScaleBar(QPainter &painter, double step_m) const;
+    void paintMatch(QPainter &painter) const;
+
+    const MapModel &model_;
+    const MapLayers layers_;
+    const QTransform transform_;
+    const QSize size_;
+    const double robotRadius_m_;
+};
+
+/// The distance between lines of the grid at so many pixels a metre: 1, 2 or 5 times a power of ten, some
+/// 80 pixels.
+double gridStep_m(double pixelsPerMetre);
+
+} // namespace hermes

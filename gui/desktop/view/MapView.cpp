@@ -1,0 +1,177 @@
+#include "gui/desktop/view/MapView.h"
+
+#include "gui/desktop/Theme.h"
+
+#include <QMouseEvent>
+#include <QPainter>
+#include <QWheelEvent>
+#include <QtMath>
+
+namespace hermes {
+
+MapView::MapView(const MapModel &model, QWidget *parent)
+    : QWidget(parent)
+    , model_(model) {
+    setFocusPolicy(Qt::StrongFocus);
+    setMouseTracking(true);
+    setMinimumSize(200, 150);
+    setAttribute(Qt::WA_OpaquePaintEvent);
+    connect(&model, &MapModel::changed, this, &MapView::refresh);
+}
+
+QTransform MapView::transform() const {
+    QTransform t;
+    t.translate(width() / 2.0, height() / 2.0);
+    t.scale(pixelsPerMetre_, -pixelsPerMetre_);
+    t.translate(-centre_.x(), -centre_.y());
+    return t;
+}
+
+void MapView::refresh() {
+    if (!wasFitted_ && !model_.edges().isEmpty()) {
+        wasFitted_ = true;
+        const bool follows = isFollowing_;
+        fit();
+        isFollowing_ = follows;
+    }
+    if (isFollowing_ && model_.pose())
+        centre_ = QPointF(model_.pose()->x, model_.pose()->y);
+    update();
+}
+
+void MapView::setTool(Tool tool) {
+    tool_ = tool;
+    pressed_.reset();
+    setCursor(tool == Tool::Pan ? Qt::ArrowCursor : Qt::CrossCursor);
+    Q_EMIT toolChanged();
+    update();
+}
+
+void MapView::setFollowing(bool isFollowing) {
+    if (isFollowing_ == isFollowing)
+        return;
+    isFollowing_ = isFollowing;
+    Q_EMIT followingChanged(isFollowing);
+    refresh();
+}
+
+void MapView::fit() {
+    const QRectF all = model_.bounds();
+    if (all.isNull())
+        return;
+    setFollowing(false);
+    constexpr double margin = 1.15;
+    pixelsPerMetre_ = qBound(
+        0.5, qMin(width() / qMax(1.0, margin * all.width()), height() / qMax(1.0, margin * all.height())),
+        5000.0);
+    centre_ = all.center();
+    update();
+}
+
+void MapView::zoom(double factor) {
+    zoomAt(rect().center(), factor);
+}
+
+void MapView::zoomAt(QPointF pixel, double factor) {
+    const QPointF fixed = toWorld(pixel);
+    pixelsPerMetre_ = qBound(0.5, pixelsPerMetre_ * factor, 5000.0);
+    if (!isFollowing_)
+        centre_ += fixed - toWorld(pixel);
+    update();
+}
+
+void MapView::render(QPainter &painter) const {
+    MapPainter(model_, layers_, transform(), size(), robotRadius_m_).paint(painter);
+}
+
+void MapView::paintEvent(QPaintEvent *) {
+    QPainter painter(this);
+    render(painter);
+    paintTool(painter);
+    if (model_.edges().isEmpty() && !model_.pose() && model_.scan().isEmpty()) {
+        painter.setPen(palette().color(QPalette::PlaceholderText));
+        painter.drawText(rect().adjusted(40, 40, -40, -40), Qt::AlignCenter | Qt::TextWordWrap,
+                         tr("No map yet. It grows as soon as a scan matcher of this robot gets scans."));
+    }
+}
+
+void MapView::paintTool(QPainter &painter) const {
+    if (!pressed_ || tool_ == Tool::Pan)
+        return;
+    const QLineF line(*pressed_, dragged_);
+    const QLineF shown = transform().map(line);
+    painter.setRenderHint(QPainter::Antialiasing, true);
+    painter.setPen(QPen(theme::colour(Condition::Fault), 2));
+    painter.drawLine(shown);
+    const double degrees = qRadiansToDegrees(std::atan2(line.dy(), line.dx()));
+    const QString text = tool_ == Tool::Measure ? tr("%1 m").arg(line.length(), 0, 'f', 3)
+                                                : tr("%1 m, %2 m, %3°")
+                                                      .arg(line.x1(), 0, 'f', 2)
+                                                      .arg(line.y1(), 0, 'f', 2)
+                                                      .arg(degrees, 0, 'f', 0);
+    painter.drawText(shown.p2() + QPointF(10, -10), text);
+}
+
+void MapView::wheelEvent(QWheelEvent *event) {
+    zoomAt(event->position(), std::pow(1.2, event->angleDelta().y() / 120.0));
+}
+
+void MapView::mousePressEvent(QMouseEvent *event) {
+    if (event->button() != Qt::LeftButton)
+        return;
+    pressed_ = tool_ == Tool::Pan ? event->localPos() : toWorld(event->localPos());
+    dragged_ = toWorld(event->localPos());
+}
+
+void MapView::mouseMoveEvent(QMouseEvent *event) {
+    if (!pressed_ || !(event->buttons() & Qt::LeftButton))
+        return;
+    if (tool_ == Tool::Pan) {
+        const QPointF way = event->localPos() - *pressed_;
+        if (isFollowing_ && way.manhattanLength() < 4)
+            return; // a click is no wish to look elsewhere
+        setFollowing(false);
+        centre_ -= QPointF(way.x(), -way.y()) / pixelsPerMetre_;
+        pressed_ = event->localPos();
+    } else {
+        dragged_ = toWorld(event->localPos());
+        if (tool_ == Tool::Measure)
+            Q_EMIT measured(QLineF(*pressed_, dragged_).length());
+    }
+    update();
+}
+
+void MapView::mouseReleaseEvent(QMouseEvent *event) {
+    if (event->button() != Qt::LeftButton || !pressed_)
+        return;
+    const QLineF way(*pressed_, toWorld(event->localPos()));
+    if (tool_ == Tool::Place) {
+        const double now = model_.pose() ? model_.pose()->theta : 0;
+        const bool isDragged = way.length() * pixelsPerMetre_ > 8;
+        Q_EMIT placed({way.x1(), way.y1(), isDragged ? std::atan2(way.dy(), way.dx()) : now});
+        setTool(Tool::Pan);
+    } else if (tool_ == Tool::Pan) {
+        pressed_.reset();
+    } else {
+        dragged_ = way.p2(); // the distance stays until the next press
+    }
+    update();
+}
+
+void MapView::keyPressEvent(QKeyEvent *event) {
+    switch (event->key()) {
+    case Qt::Key_F:
+        return setFollowing(!isFollowing_);
+    case Qt::Key_0:
+        return fit();
+    case Qt::Key_Plus:
+    case Qt::Key_Equal:
+        return zoom(1.2);
+    case Qt::Key_Minus:
+        return zoom(1 / 1.2);
+    default:
+        QWidget::keyPressEvent(event);
+    }
+}
+
+} // namespace hermes

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "gui/desktop/view/MapPainter.h"
+
+#include <QWidget>
+#include <functional>
+
+namespace hermes {
+
+/// The map: pan with the mouse, zoom with the wheel or + and -, F follows the robot, 0 shows everything.
+class MapView : public QWidget {
+    Q_OBJECT
+public:
+    /// What a click means.
+    enum class Tool {
+        Pan,
+        Measure, ///< from press to release: a distance
+        Place,   ///< press where the robot is, drag to where it looks
+    };
+
+    MapView(const MapModel &model, QWidget *parent = nullptr);
+
+    MapLayers &layers() { return layers_; }
+    void setTool(Tool tool);
+    Tool tool() const { return tool_; }
+    bool isFollowing() const { return isFollowing_; }
+    void setFollowing(bool isFollowing);
+    /// Shows all of the map.
+    void fit();
+    void zoom(double factor);
+    void setRobotRadius(double radius_m) { robotRadius_m_ = radius_m; }
+    /// World to screen: metres to pixels, y up.
+    QTransform transform() const;
+    /// Draws what the view shows, without the tools.
+    void render(QPainter &painter) const;
+    QSize sizeHint() const override { return {640, 480}; }
+
+Q_SIGNALS:
+    void followingChanged(bool isFollowing);
+    void toolChanged();
+    /// The operator has put the robot here; metres and radians in the map's frame.
+    void placed(const hermes::MapPose &pose);
+    /// Metres; while measuring.
+    void measured(double distance_m);
+
+protected:
+    void paintEvent(QPaintEvent *event) override;
+    void wheelEvent(QWheelEvent *event) override;
+    void mousePressEvent(QMouseEvent *event) override;
+    void mouseMoveEvent(QMouseEvent *event) override;
+    void mouseReleaseEvent(QMouseEvent *event) override;
+    void keyPressEvent(QKeyEvent *event) override;
+
+private:
+    void zoomAt(QPointF pixel, double factor);
+    void refresh();
+    QPointF toWorld(QPointF pixel) const { return transform().inverted().map(pixel); }
+    void paintTool(QPainter &painter) const;
+
+    const MapModel &model_;
+    MapLayers layers_;
+    Tool tool_ = Tool::Pan;
+    bool isFollowing_ = true;
+    bool wasFitted_ = false;
+    double robotRadius_m_ = 0.3;
+    double pixelsPerMetre_ = 40;
+    QPointF centre_;                 // metres
+    std::optional<QPointF> pressed_; // metres; pixels while panning
+    QPointF dragged_;                // metres
+};
+
+} // namespace hermes
