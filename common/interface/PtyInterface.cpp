@@ -82,16 +82,33 @@ void PtyInterface::doClose() {
     }
 }
 
+qint64 PtyInterface::unread() const {
+    int size = 0;
+    return nearFd >= 0 && ioctl(nearFd, FIONREAD, &size) == 0 ? size : 0;
+}
+
+qint64 PtyInterface::discardUnread() {
+    const qint64 size = unread();
+    if (size > 0)
+        tcflush(nearFd, TCIFLUSH);
+    return size;
+}
+
 bool PtyInterface::doWrite(const QByteArray &bytes) {
+    dropClaim();
     // Nobody reads: bytes are lost, as on a line that nobody listens to.
     const ssize_t written = ::write(farFd, bytes.constData(), std::size_t(bytes.size()));
     return written == bytes.size();
 }
 
-void PtyInterface::readSome() {
-    // A program that opens a serial port claims it alone; one that is killed leaves the claim, which would
-    // end only with the last opener: nearFd.
+// A program that opens a serial port claims it alone; one that is killed leaves the claim, which would end
+// only with the last opener: nearFd.
+void PtyInterface::dropClaim() {
     ioctl(nearFd, TIOCNXCL);
+}
+
+void PtyInterface::readSome() {
+    dropClaim();
     char buffer[4096];
     const ssize_t size = ::read(farFd, buffer, sizeof buffer);
     if (size > 0)

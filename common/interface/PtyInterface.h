@@ -23,6 +23,10 @@ public:
     /// The near end, e.g. "/dev/pts/3", while open.
     QString device() const { return nearEnd; }
     qint64 bytesToWrite() const override { return 0; }
+    /// Bytes that were written and that no program has read yet; 0 while closed.
+    qint64 unread() const;
+    /// Loses them; gives their number.
+    qint64 discardUnread();
 
 protected:
     void doOpen() override;
@@ -33,6 +37,7 @@ private:
     QString makePair();
     QString makeLink();
     void readSome();
+    void dropClaim();
 
     InterfaceUrl url;
     QString nearEnd;

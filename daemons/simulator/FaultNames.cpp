@@ -15,6 +15,7 @@ struct Device {
     QStringList kinds;
 };
 const QList<Device> devices{{"lidar", {"silence", "loss"}},
+                            {"gps", {"silence", "no_fix", "corrupt", "pulled"}},
                             {"line1", {"pulled"}},
                             {"line2", {"pulled"}},
                             {"controller1", ofController},

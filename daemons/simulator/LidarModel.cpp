@@ -68,6 +68,10 @@ double LidarModel::wallDistance(Vector direction) const {
     return distance;
 }
 
+bool LidarModel::chance(double share) {
+    return share > 0 && std::uniform_real_distribution<double>()(random_) < share;
+}
+
 void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block) {
     const Beam &beam = beams[laser];
     double horizontal = wallDistance;
@@ -81,7 +85,10 @@ void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWri
     double range = horizontal / beam.cosine;
     if (range <= options_.maxRange)
         range += options_.sigma * normal_(random_);
-    const bool returns = range >= options_.minRange && range <= options_.maxRange;
+    if (chance(options_.outliers))
+        range *= std::uniform_real_distribution<double>(0, 2)(random_);
+    const bool returns =
+        range >= options_.minRange && range <= options_.maxRange && !chance(options_.dropouts);
     packet.setReturn(block, laser, returns ? velodyne::toDistanceCounts(range) : 0, returns ? intensity : 0);
 }
 

@@ -19,6 +19,8 @@ public:
         double wallHeight = 2.5;   ///< beams above it return nothing; metres
         double minRange = 0.05;    ///< metres. Manual: data range 5 cm to 100 m
         double maxRange = 100;     ///< metres
+        double dropouts = 0;       ///< share of the returns that do not come
+        double outliers = 0;       ///< share that comes from anywhere up to twice as far
     };
 
     LidarModel() = default;
@@ -26,6 +28,8 @@ public:
                std::uint64_t seed);
 
     void setSigma(double sigma) { options_.sigma = sigma; }
+    void setDropouts(double share) { options_.dropouts = share; }
+    void setOutliers(double share) { options_.outliers = share; }
     const Options &options() const { return options_; }
 
     /// Measures with all lasers and fills a block. azimuth: of the first laser, degrees clockwise from the
@@ -42,6 +46,7 @@ private:
 
     void selectWalls(Vector position, Vector left, Vector right);
     double wallDistance(Vector direction) const;
+    bool chance(double share);
     void measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block);
 
     std::vector<vectorlib::LineSegment2D<double>> walls_;

@@ -11,23 +11,15 @@ namespace hermes {
 Result<void> MotorLines::open(const QStringList &links) {
     close();
     for (const QString &link : links) {
-        InterfaceUrl url;
-        url.scheme = "pty";
-        url.path = link;
-        auto pty = std::make_unique<PtyInterface>(url, nullptr);
-        QString failure;
-        const auto watch =
-            connect(pty.get(), &Interface::closed, this, [&failure](const QString &why) { failure = why; });
-        pty->open();
-        disconnect(watch);
-        if (!pty->isOpen()) {
+        const auto opened = openDeviceLine(link);
+        if (!opened) {
             close();
-            return Error(ErrorCode::InputOutput, failure);
+            return opened.error();
         }
         const int number = count();
-        connect(pty.get(), &Interface::received, this,
+        connect(opened->get(), &Interface::received, this,
                 [this, number](const QByteArray &bytes) { receive(number, bytes); });
-        lines_.push_back({link, std::move(pty)});
+        lines_.push_back({link, *opened});
     }
     return {};
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "common/Result.h"
-#include "common/interface/PtyInterface.h"
+#include "daemons/simulator/DeviceLine.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 
 #include <QJsonArray>
@@ -34,7 +33,7 @@ public:
 private:
     struct Line {
         QString link;
-        std::unique_ptr<PtyInterface> pty;
+        std::shared_ptr<PtyInterface> pty;
     };
 
     void receive(int line, const QByteArray &bytes);

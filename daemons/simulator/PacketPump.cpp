@@ -1,12 +1,6 @@
 #include "daemons/simulator/PacketPump.h"
 
-#include <arpa/inet.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <chrono>
-#include <cstring>
 
 namespace hermes {
 
@@ -27,39 +21,27 @@ std::int64_t utcNow_ns() {
 
 } // namespace
 
-PacketPump::PacketPump(TruthSink truth)
-    : truth_(std::move(truth)) {}
+PacketPump::PacketPump(TruthSink truth, SentenceSink gps)
+    : truth_(std::move(truth))
+    , gps_(std::move(gps)) {}
 
 PacketPump::~PacketPump() {
     stop();
 }
 
 std::string PacketPump::start(const World &world, const Simulation::Options &options, const std::string &host,
-                              std::uint16_t port) {
+                              std::uint16_t port, std::uint16_t positionPort) {
     stop();
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port);
-    if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1)
-        return host + ": an IPv4 address such as 127.0.0.1 expected";
-    socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (socket_ < 0)
-        return std::string("no UDP socket: ") + std::strerror(errno);
-    const int on = 1;
-    ::setsockopt(socket_, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
-    // Connected, so that the address is not looked up for each packet. A receiver that is not there shows as
-    // ECONNREFUSED of a later packet, which step() knows.
-    if (::connect(socket_, reinterpret_cast<const sockaddr *>(&address), sizeof address) != 0) {
-        const std::string error =
-            host + ":" + std::to_string(port) + " cannot be sent to: " + std::strerror(errno);
-        ::close(socket_);
-        socket_ = -1;
+    std::string error = data_.open(host, port);
+    if (error.empty() && positionPort > 0)
+        error = position_.open(host, positionPort);
+    if (!error.empty())
         return error;
-    }
     simulation_ = Simulation(world, options, utcNow_ns());
     random_.seed(std::minstd_rand::result_type(options.seed));
     counts_ = Counts();
     nextTruth_ns_ = simulation_.now_ns();
+    sincePosition_ = 0;
     running_ = true;
     thread_ = std::thread([this] { run(); });
     return {};
@@ -69,9 +51,8 @@ void PacketPump::stop() {
     running_ = false;
     if (thread_.joinable())
         thread_.join();
-    if (socket_ >= 0)
-        ::close(socket_);
-    socket_ = -1;
+    data_.close();
+    position_.close();
 }
 
 void PacketPump::run() {
@@ -106,16 +87,24 @@ void PacketPump::step() {
         if (nextTruth_ns_ <= simulation_.now_ns()) // after a stall
             nextTruth_ns_ = simulation_.now_ns() + truthPeriod_ns;
     }
+    if (const std::string_view sentences = simulation_.sentences(); !sentences.empty())
+        gps_(std::string(sentences));
     const auto &packet = simulation_.nextPacket();
-    if (fault_.swallows(random_)) {
-        ++counts_.swallowed;
+    send(data_, packet.data(), packet.size(), counts_.sent);
+    if (++sincePosition_ < packetsPerPosition)
         return;
+    sincePosition_ = 0;
+    if (position_.isOpen()) {
+        const auto position = simulation_.positionPacket();
+        send(position_, position.data(), position.size(), counts_.positions);
     }
-    ssize_t size = ::send(socket_, packet.data(), packet.size(), 0);
-    if (size < 0 && errno == ECONNREFUSED) // told of an earlier packet: nobody listens, as with a real sensor
-        size = ::send(socket_, packet.data(), packet.size(), 0);
-    if (size == ssize_t(packet.size()) || errno == ECONNREFUSED)
-        ++counts_.sent;
+}
+
+void PacketPump::send(UdpSender &sender, const std::uint8_t *bytes, std::size_t size, std::uint64_t &sent) {
+    if (fault_.swallows(random_))
+        ++counts_.swallowed;
+    else if (sender.send(bytes, size))
+        ++sent;
     else
         ++counts_.sendErrors;
 }

@@ -2,6 +2,7 @@
 
 #include "daemons/simulator/LidarFault.h"
 #include "daemons/simulator/Simulation.h"
+#include "daemons/simulator/UdpSender.h"
 
 #include <atomic>
 #include <functional>
@@ -11,13 +12,15 @@
 
 namespace hermes {
 
-/// Runs a simulation in real time in a thread of its own and sends its packets over UDP, each when it is due.
+/// Runs a simulation in real time in a thread of its own and sends its packets over UDP, each when it is due,
+/// and one with the position after every 14th.
 /// A thread that was held up catches up a few packets at a time, so that receivers see no burst; after a
 /// stall of seconds the missed packets are left out and counted.
 class PacketPump {
 public:
     struct Counts {
         std::uint64_t sent = 0;
+        std::uint64_t positions = 0;  ///< position packets sent
         std::uint64_t swallowed = 0;  ///< by a fault that was asked for
         std::uint64_t skipped = 0;    ///< not made, because the machine stalled
         std::uint64_t sendErrors = 0; ///< the system refused to send
@@ -25,13 +28,21 @@ public:
     };
     using TruthSink = std::function<void(const Simulation::Truth &)>;
 
-    /// truth is called in the pump's thread, each 20 ms of simulated time.
-    explicit PacketPump(TruthSink truth);
+    using SentenceSink = std::function<void(const std::string &)>;
+
+    /// Both are called in the pump's thread: truth each 20 ms of simulated time, gps with what the GPS
+    /// receiver sends.
+    explicit PacketPump(
+        TruthSink truth, SentenceSink gps = [](const std::string &) {});
     ~PacketPump();
 
-    /// Opens the socket and starts. host is an IPv4 address; an empty string on success, else what failed.
+    /// As of the VLP-16 and VLS-128; the manual of the HDL-32E does not tell.
+    static constexpr int packetsPerPosition = 14;
+
+    /// Opens the sockets and starts. host is an IPv4 address; positionPort 0: no position packets. An empty
+    /// string on success, else what failed.
     std::string start(const World &world, const Simulation::Options &options, const std::string &host,
-                      std::uint16_t port);
+                      std::uint16_t port, std::uint16_t positionPort = 0);
     void stop();
 
     /// Runs the function between two packets. Does nothing unless the pump is running.
@@ -43,9 +54,11 @@ public:
 private:
     void run();
     void step();
+    void send(UdpSender &sender, const std::uint8_t *bytes, std::size_t size, std::uint64_t &sent);
 
     TruthSink truth_;
-    int socket_ = -1;
+    SentenceSink gps_;
+    UdpSender data_, position_;
     std::thread thread_;
     std::atomic<bool> running_{false};
 
@@ -55,6 +68,7 @@ private:
     std::minstd_rand random_;
     Counts counts_;
     std::int64_t nextTruth_ns_ = 0;
+    int sincePosition_ = 0; ///< packets
 };
 
 } // namespace hermes

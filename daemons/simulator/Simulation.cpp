@@ -23,8 +23,12 @@ Simulation::Simulation(const World &world, const Options &options, std::int64_t 
     , drivetrain_(options.drivetrain)
     , body_(wallsOf(world), options.radius)
     , lidar_(wallsOf(world), options.lidar, options.seed)
+    , gps_(options.gps)
     , gap_(options.rpm / 60 * 360 * firingPeriod)
-    , start_ns_(start_ns) {}
+    , start_ns_(start_ns) {
+    for (velodyne::MotionChip &chip : position_.chips)
+        chip.temperature_c = 25; // they stand still: how their axes lie is not published
+}
 
 bool Simulation::drive() {
     if (placed_ || follower_.path().length() <= 0 || follower_.isFinished())
@@ -73,6 +77,19 @@ const std::array<std::uint8_t, velodyne::packetSize> &Simulation::nextPacket() {
         ++firings_;
     }
     return packet_.bytes();
+}
+
+std::array<std::uint8_t, velodyne::positionPacketSize> Simulation::positionPacket() {
+    position_.stamp_us = std::uint32_t(now_ns() / 1000 % velodyne::stampPeriod_us);
+    position_.pps = gps_.pps();
+    position_.nmea = gps_.lidarSentence();
+    return encodePosition(position_);
+}
+
+std::string_view Simulation::sentences() {
+    if (!gps_.isDue(now_ns()))
+        return {};
+    return gps_.take(now_ns(), pose(), placed_ ? rolling_ : follower_.twist());
 }
 
 void Simulation::skip(std::uint64_t packets) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemons/simulator/Drivetrain.h"
+#include "daemons/simulator/GpsModel.h"
 #include "daemons/simulator/LidarModel.h"
 #include "daemons/simulator/PathFollower.h"
 
@@ -18,6 +19,7 @@ public:
         double rpm = 600;          ///< turns of the sensor's head a minute
         double radius = 0.3;       ///< of the robot's outline; metres
         LidarModel::Options lidar;
+        GpsModel::Options gps;
         Drivetrain::Options drivetrain;
         std::uint64_t seed = 1;
     };
@@ -43,17 +45,21 @@ public:
     void restart();
     /// Puts the robot anywhere, off its path; restart() brings it back.
     void place(const vectorlib::Pose2D &pose);
-    void setSigma(double sigma) { lidar_.setSigma(sigma); }
+    LidarModel &lidar() { return lidar_; }
+    GpsModel &gps() { return gps_; }
 
     /// The packet of the next twelve firings, each measured from where the robot is at its own time.
     const std::array<std::uint8_t, velodyne::packetSize> &nextPacket();
+    /// The position packet that the sensor sends after its last packet.
+    std::array<std::uint8_t, velodyne::positionPacketSize> positionPacket();
+    /// What the GPS receiver sends now, most often nothing; valid until the next call.
+    std::string_view sentences();
     /// Time passes without packets being made.
     void skip(std::uint64_t packets);
 
     /// The wheels take the robot off its path unless it is following it just now.
     Drivetrain &drivetrain() { return drivetrain_; }
     Truth truth() const;
-    double sigma() const { return lidar_.options().sigma; }
     bool isPlaced() const { return placed_; }
     /// Time of the next firing: of the packet that nextPacket() makes.
     std::int64_t now_ns() const { return start_ns_ + std::int64_t(firings_) * velodyne::firingPeriod_ns; }
@@ -68,6 +74,8 @@ private:
     RobotBody body_;
     Twist rolling_; ///< how the wheels move the robot
     LidarModel lidar_;
+    GpsModel gps_;
+    velodyne::PositionPacket position_;
     velodyne::DataPacketWriter packet_;
     double gap_ = 0; ///< degrees a firing
     std::int64_t start_ns_ = 0;

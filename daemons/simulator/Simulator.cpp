@@ -42,12 +42,18 @@ QString toText(LidarFault::Kind kind) {
 Simulator::Simulator()
     : Daemon(
           {"simulator", "Simulator",
-           "A robot in a made-up world, with an HDL-32E that sends true packets over UDP, and two RoboClaws "
-           "on pseudo-terminals that drive it"})
-    , pump_([this](const Simulation::Truth &truth) {
-        QMetaObject::invokeMethod(
-            this, [this, truth] { publishTruth(truth); }, Qt::QueuedConnection);
-    })
+           "A robot in a made-up world, with an HDL-32E that sends true packets over UDP, two RoboClaws that "
+           "drive it and a GPS receiver on pseudo-terminals"})
+    , pump_(
+          [this](const Simulation::Truth &truth) {
+              QMetaObject::invokeMethod(
+                  this, [this, truth] { publishTruth(truth); }, Qt::QueuedConnection);
+          },
+          [this](const std::string &sentences) {
+              QMetaObject::invokeMethod(
+                  this, [this, sentences] { gpsLine_.send(QByteArray::fromStdString(sentences)); },
+                  Qt::QueuedConnection);
+          })
     , lines_([this](int line, const QByteArray &bytes, double now) {
         std::vector<RoboClawEmulator::Answer> answers;
         pump_.with([&](Simulation &simulation) {
@@ -106,10 +112,24 @@ void Simulator::declareCommands() {
                    .param(Field::number("theta", "Heading").unit("rad"))
                    .returnsNull()
                    .handler([this](const Call &call) { return place(call); }));
-    addCommand(Command("sim.noise", "Sets the noise of the sensor until the next start")
-                   .param(Field::number("sigma_m", "Standard deviation of the range").unit("m").range(0, 1))
-                   .returnsNull()
-                   .handler([this](const Call &call) { return setNoise(call); }));
+    addCommand(
+        Command("sim.noise", "Sets the noise of the sensors until the next start; what is not given stays")
+            .param(Field::number("sigma_m", "Standard deviation of the lidar's range")
+                       .unit("m")
+                       .range(0, 1)
+                       .optional())
+            .param(Field::number("dropouts", "Share of the lidar's returns that do not come")
+                       .range(0, 1)
+                       .optional())
+            .param(Field::number("outliers", "Share that comes from anywhere, up to twice as far")
+                       .range(0, 1)
+                       .optional())
+            .param(Field::number("gps_sigma_m", "Standard deviation of each coordinate of a fix")
+                       .unit("m")
+                       .range(0, 1000)
+                       .optional())
+            .returnsNull()
+            .handler([this](const Call &call) { return setNoise(call); }));
     addCommand(
         Command("sim.fault",
                 "Makes a device fail; none ends its faults. docs/simulator.md tells what each does")
@@ -133,9 +153,10 @@ Result<void> Simulator::start() {
     QStringList links{settings().text("motors.link")};
     if (!settings().text("motors.link2").isEmpty())
         links.append(settings().text("motors.link2"));
-    const Result<void> opened = lines_.open(links);
-    if (!opened)
-        return opened;
+    for (const Result<void> &opened : {lines_.open(links), gpsLine_.open(settings().text("gps.link"))}) {
+        if (!opened)
+            return opened;
+    }
     const QString world = settings().text("world");
     if (world.isEmpty()) {
         setState(DaemonState::Ready);
@@ -150,12 +171,23 @@ Result<void> Simulator::start() {
 void Simulator::stop() {
     lines_.close();
     pump_.stop();
+    gpsLine_.close();
 }
 
 void Simulator::settingsChanged(const QStringList &paths) {
-    if (paths.contains("lidar.sigma_m"))
-        pump_.with(
-            [this](Simulation &simulation) { simulation.setSigma(settings().number("lidar.sigma_m")); });
+    pump_.with([&](Simulation &simulation) {
+        for (const QString &path : paths) {
+            const auto value = [&] { return settings().number(path); };
+            if (path == "lidar.sigma_m")
+                simulation.lidar().setSigma(value());
+            else if (path == "lidar.dropouts")
+                simulation.lidar().setDropouts(value());
+            else if (path == "lidar.outliers")
+                simulation.lidar().setOutliers(value());
+            else if (path == "gps.sigma_m")
+                simulation.gps().setSigma(value());
+        }
+    });
 }
 
 Result<void> Simulator::load(const QString &path) {
@@ -164,7 +196,8 @@ Result<void> Simulator::load(const QString &path) {
     if (!world)
         return Error(ErrorCode::InputOutput, QString::fromStdString(error), QJsonObject{{"path", path}});
     error = pump_.start(*world, options(), settings().text("lidar.host").toStdString(),
-                        quint16(settings().integer("lidar.port")));
+                        quint16(settings().integer("lidar.port")),
+                        quint16(settings().integer("lidar.position_port")));
     if (!error.empty()) {
         setState(DaemonState::Fault);
         return Error(ErrorCode::InputOutput, QString::fromStdString(error));
@@ -211,13 +244,24 @@ Result<QJsonValue> Simulator::place(const Call &call) {
 Result<QJsonValue> Simulator::setNoise(const Call &call) {
     if (worldPath_.isEmpty())
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
-    pump_.with([&](Simulation &simulation) { simulation.setSigma(call.number("sigma_m")); });
+    pump_.with([&](Simulation &simulation) {
+        if (call.has("sigma_m"))
+            simulation.lidar().setSigma(call.number("sigma_m"));
+        if (call.has("dropouts"))
+            simulation.lidar().setDropouts(call.number("dropouts"));
+        if (call.has("outliers"))
+            simulation.lidar().setOutliers(call.number("outliers"));
+        if (call.has("gps_sigma_m"))
+            simulation.gps().setSigma(call.number("gps_sigma_m"));
+    });
     return QJsonValue();
 }
 
 Result<QJsonValue> Simulator::setFault(const Call &call) {
     if (const QString wrong = faultMismatch(call.text("device"), call.text("kind")); !wrong.isEmpty())
         return Error(ErrorCode::InvalidParams, wrong);
+    if (call.text("device") == "gps")
+        return setGpsFault(call);
     if (call.text("device") != "lidar")
         return setMotorFault(call);
     LidarFault fault;
@@ -233,12 +277,12 @@ Result<QJsonValue> Simulator::setFault(const Call &call) {
 
 QJsonObject Simulator::state() {
     Simulation::Truth truth;
-    double sigma = 0;
+    LidarModel::Options lidar;
     bool placed = false;
     QJsonObject motors;
     pump_.with([&](Simulation &simulation) {
         truth = simulation.truth();
-        sigma = simulation.sigma();
+        lidar = simulation.lidar().options();
         placed = simulation.isPlaced();
         motors = motorState(simulation.drivetrain());
     });
@@ -256,9 +300,13 @@ QJsonObject Simulator::state() {
         {"placed", placed},
         {"touching", truth.touching},
         {"motors", motors},
-        {"sigma_m", sigma},
+        {"gps", gpsLine_.toJson()},
+        {"sigma_m", lidar.sigma},
+        {"dropouts", lidar.dropouts},
+        {"outliers", lidar.outliers},
         {"fault", QJsonObject{{"kind", toText(fault.kind)}, {"share", fault.share}}},
         {"packets", double(counts.sent)},
+        {"position_packets", double(counts.positions)},
         {"swallowed", double(counts.swallowed)},
         {"skipped", double(counts.skipped)},
         {"send_errors", double(counts.sendErrors)},

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "daemons/simulator/GpsLine.h"
 #include "daemons/simulator/MotorLines.h"
 #include "daemons/simulator/PacketPump.h"
 
 namespace hermes {
 
-/// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP, and two
-/// RoboClaws on pseudo-terminals that drive it.
+/// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP, two
+/// RoboClaws that drive it and a GPS receiver on pseudo-terminals.
 class Simulator : public Daemon {
 public:
     Simulator();
@@ -20,11 +21,13 @@ protected:
 private:
     void declareSettings();
     void declareMotorSettings();
+    void declareGpsSettings();
     void declareTopics();
     void declareCommands();
 
     Simulation::Options options();
     Drivetrain::Options drivetrainOptions();
+    GpsModel::Options gpsOptions();
     /// Puts the robot at the first pose of a world file and begins to send.
     Result<void> load(const QString &path);
     Result<QJsonValue> drive(bool restart);
@@ -32,6 +35,7 @@ private:
     Result<QJsonValue> setNoise(const Call &call);
     Result<QJsonValue> setFault(const Call &call);
     Result<QJsonValue> setMotorFault(const Call &call);
+    Result<QJsonValue> setGpsFault(const Call &call);
     QJsonObject motorState(Drivetrain &drivetrain) const;
     QJsonObject state();
     void publishTruth(const Simulation::Truth &truth);
@@ -39,6 +43,7 @@ private:
 
     PacketPump pump_;
     MotorLines lines_;
+    GpsLine gpsLine_;
     World world_;
     QString worldPath_;
 };

@@ -45,6 +45,12 @@ void Simulator::declareSettings() {
                    .byDefault(velodyne::dataPort)
                    .appliesOnRestart()
                    .group("Lidar"));
+    addSetting(
+        Field::integer("lidar.position_port", "UDP port that position packets are sent to; 0: none are")
+            .range(0, 65535)
+            .byDefault(velodyne::positionPort)
+            .appliesOnRestart()
+            .group("Lidar"));
     const auto lidar = [this](const char *name, const char *text, const char *unit, double least, double most,
                               double value) {
         addSetting(Field::number(name, text)
@@ -63,7 +69,17 @@ void Simulator::declareSettings() {
                    .range(0, 1)
                    .byDefault(0.01)
                    .group("Lidar"));
+    addSetting(Field::number("lidar.dropouts", "Share of the returns that do not come")
+                   .range(0, 1)
+                   .byDefault(0)
+                   .group("Lidar"));
+    addSetting(
+        Field::number("lidar.outliers", "Share of the returns that come from anywhere, up to twice as far")
+            .range(0, 1)
+            .byDefault(0)
+            .group("Lidar"));
     declareMotorSettings();
+    declareGpsSettings();
 }
 
 Simulation::Options Simulator::options() {
@@ -74,12 +90,15 @@ Simulation::Options Simulator::options() {
     options.turnRate = values.number("robot.turn_rate_rps");
     options.rpm = values.number("lidar.rpm");
     options.lidar.sigma = values.number("lidar.sigma_m");
+    options.lidar.dropouts = values.number("lidar.dropouts");
+    options.lidar.outliers = values.number("lidar.outliers");
     options.lidar.sensorHeight = values.number("lidar.height_m");
     options.lidar.wallHeight = values.number("wall_height_m");
     options.lidar.minRange = values.number("lidar.min_range_m");
     options.lidar.maxRange = values.number("lidar.max_range_m");
     options.radius = values.number("robot.radius_m");
     options.drivetrain = drivetrainOptions();
+    options.gps = gpsOptions();
     options.seed = std::uint64_t(values.number("seed"));
     return options;
 }

@@ -41,4 +41,8 @@ enum class PositionFault {
 /// Reads the bytes; packet is changed only without fault. The text is not judged here: it may be anything.
 PositionFault decodePosition(const std::uint8_t *bytes, std::size_t size, PositionPacket &packet);
 
+/// The bytes of a packet; values beyond 12 bits are limited. A sentence for which there is no room is left
+/// out.
+std::array<std::uint8_t, positionPacketSize> encodePosition(const PositionPacket &packet);
+
 } // namespace hermes::velodyne

@@ -56,6 +56,7 @@ private Q_SLOTS:
     void lasersMeetWallsFloorOrNothing();
     void rangesOutOfReachReturnNothing();
     void rangesAreQuantised();
+    void returnsDropOutAndLieFar();
     void sameSeedSamePackets();
     void drivesThePathOnce();
     void placing();
@@ -257,6 +258,38 @@ void TestSimulation::rangesAreQuantised() {
     Simulation simulation(world, options, start_ns);
     for (int block = 0; block < 12; ++block)
         QCOMPARE(int(velodyne::DataPacket(simulation.nextPacket().data()).distance(block, 15)), 2501);
+}
+
+void TestSimulation::returnsDropOutAndLieFar() {
+    World world;
+    world.edges = {{5, -9, 5, 9}};
+    world.poses = {{0, 0, 0}};
+    Simulation::Options options;
+    options.lidar.sigma = 0;
+    options.lidar.dropouts = 0.1;
+    options.rpm = 1e-3; // as good as standing still, looking straight ahead
+    Simulation simulation(world, options, start_ns);
+    const auto returns = [&] {
+        std::array<int, 3> counts{}; // none, on the wall, elsewhere
+        for (int i = 0; i < 500; ++i) {
+            const velodyne::DataPacket packet(simulation.nextPacket().data());
+            for (int block = 0; block < velodyne::blocksPerPacket; ++block) {
+                const int distance = packet.distance(block, velodyne::horizonLaser);
+                ++counts[distance == 0 ? 0 : std::abs(distance - 2500) <= 1 ? 1 : 2];
+            }
+        }
+        return counts;
+    };
+    auto counts = returns();
+    QVERIFY(counts[0] > 500 && counts[0] < 700 && counts[2] == 0);
+    simulation.lidar().setDropouts(0);
+    simulation.lidar().setOutliers(0.05);
+    counts = returns();
+    QVERIFY(counts[2] > 230 && counts[2] < 370); // 2 mm of 10 m look like the wall
+    QVERIFY(counts[0] < 10);                     // nearer than the sensor sees
+    simulation.lidar().setOutliers(0);
+    counts = returns();
+    QCOMPARE(counts[1], 6000);
 }
 
 void TestSimulation::sameSeedSamePackets() {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "daemons/simulator/DeviceLine.h"
+
+#include <QJsonObject>
+
+namespace hermes {
+
+/// The serial line of the simulated GPS receiver: a pseudo-terminal under a link that stays the same.
+class GpsLine {
+public:
+    /// Error names what cannot be made.
+    Result<void> open(const QString &link);
+    void close() { pty_.reset(); }
+
+    /// Sends it. What no program has read is lost when a later message finds more than some seconds of it.
+    void send(const QByteArray &sentences);
+    /// As when the cable is pulled: device and link vanish. Put back, there is a new device under the link.
+    void setPulled(bool pulled);
+    /// Link, device (none while it is pulled), bytes sent and those that no program has read in time.
+    QJsonObject toJson() const;
+
+private:
+    /// At 10 Hz it is 1.4 s, at 1 Hz it is 14 s.
+    static constexpr qint64 mostUnread = 2048;
+
+    std::shared_ptr<PtyInterface> pty_;
+    QString link_;
+    qint64 sent_ = 0, lost_ = 0; // bytes
+};
+
+} // namespace hermes
