@@ -1,5 +1,6 @@
 #include "common/Time.h"
 #include "common/interface/SerialInterface.h"
+#include "daemons/simulator/GpsLine.h"
 #include "daemons/simulator/MotorLines.h"
 #include "daemons/simulator/Simulation.h"
 #include "protocol/roboclaw/Bus.h"
@@ -8,6 +9,9 @@
 #include <QtTest>
 
 #include <cmath>
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 using namespace hermes;
 using namespace hermes::roboclaw;
@@ -103,6 +107,8 @@ private Q_SLOTS:
     void damagedAnswersAreRepeated();
     void pulledLineIsFoundAgain();
     void badLinkIsNamed();
+    void sentencesThatNobodyReadsAreLost();
+    void claimOfAKilledProgramIsDropped();
     void wheelsDriveTheSimulation();
     void followingIgnoresTheWheels();
     void wallStopsTheSimulation();
@@ -168,6 +174,42 @@ void TestMotorLines::badLinkIsNamed() {
     QVERIFY(!opened);
     QVERIFY2(opened.error().message.contains("/proc/none"), qPrintable(opened.error().message));
     QCOMPARE(robot.lines.count(), 0);
+}
+
+void TestMotorLines::sentencesThatNobodyReadsAreLost() {
+    GpsLine line;
+    QVERIFY(line.open("").ok());
+    QFile near(line.toJson()["device"].toString());
+    QVERIFY(near.open(QIODevice::ReadOnly | QIODevice::Unbuffered));
+    const auto unread = [&near] {
+        int size = 0;
+        return ::ioctl(near.handle(), FIONREAD, &size) == 0 ? size : -1;
+    };
+    int left = 0;
+    for (int i = 0; i < 100; ++i) { // each arrives before the next is sent
+        line.send(QByteArray::number(i).rightJustified(98, '.') + "\r\n");
+        left = left > 2048 ? 100 : left + 100;
+        QTRY_COMPARE_WITH_TIMEOUT(unread(), left, 2000);
+    }
+    const QByteArray latest = near.read(8192);
+    QVERIFY(latest.size() == left && latest.endsWith("99\r\n"));
+    QCOMPARE(line.toJson()["bytes"].toInt(), 10000);
+    QCOMPARE(line.toJson()["unread_lost"].toInt(), 10000 - left);
+}
+
+void TestMotorLines::claimOfAKilledProgramIsDropped() {
+    GpsLine line;
+    QVERIFY(line.open("").ok());
+    const QByteArray device = line.toJson()["device"].toString().toLocal8Bit();
+    const int claimed = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    QVERIFY(claimed >= 0 && ::ioctl(claimed, TIOCEXCL) == 0);
+    ::close(claimed);
+    line.send("$GPRMC*4B\r\n");
+    int exclusive = 1;
+    const int again = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    QVERIFY(again >= 0 && ::ioctl(again, TIOCGEXCL, &exclusive) == 0);
+    QCOMPARE(exclusive, 0);
+    ::close(again);
 }
 
 void TestMotorLines::wheelsDriveTheSimulation() {
