@@ -186,15 +186,16 @@ void TestMotorLines::sentencesThatNobodyReadsAreLost() {
         return ::ioctl(near.handle(), FIONREAD, &size) == 0 ? size : -1;
     };
     int left = 0;
-    for (int i = 0; i < 100; ++i) { // each arrives before the next is sent
+    for (int i = 0; i < 30; ++i) { // each arrives before the next is sent
         line.send(QByteArray::number(i).rightJustified(98, '.') + "\r\n");
         left = left > 2048 ? 100 : left + 100;
         QTRY_COMPARE_WITH_TIMEOUT(unread(), left, 2000);
     }
-    const QByteArray latest = near.read(8192);
-    QVERIFY(latest.size() == left && latest.endsWith("99\r\n"));
-    QCOMPARE(line.toJson()["bytes"].toInt(), 10000);
-    QCOMPARE(line.toJson()["unread_lost"].toInt(), 10000 - left);
+    QByteArray latest(8192, '\0'); // QFile would wait for all of it
+    latest.resize(int(::read(near.handle(), latest.data(), std::size_t(latest.size()))));
+    QVERIFY(latest.size() == left && latest.endsWith("29\r\n"));
+    QCOMPARE(line.toJson()["bytes"].toInt(), 3000);
+    QCOMPARE(line.toJson()["unread_lost"].toInt(), 3000 - left);
 }
 
 void TestMotorLines::claimOfAKilledProgramIsDropped() {
