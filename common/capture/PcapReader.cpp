@@ -15,6 +15,14 @@ namespace {
 /// What 32 bits can hold, signed or not: the stamps of classic pcap.
 constexpr std::int64_t earliest_s = -(std::int64_t(1) << 31), latest_s = (std::int64_t(1) << 32) - 1;
 
+bool isPcapng(std::FILE *file) {
+    constexpr unsigned char magic[4] = {0x0A, 0x0D, 0x0D, 0x0A};
+    unsigned char begin[4] = {};
+    const std::size_t size = std::fread(begin, 1, sizeof begin, file);
+    std::rewind(file);
+    return size == sizeof begin && std::memcmp(begin, magic, sizeof magic) == 0;
+}
+
 } // namespace
 
 PcapReader::PcapReader()
@@ -32,6 +40,7 @@ bool PcapReader::open(const std::string &path) {
         error_ = path + ": cannot be opened: " + std::strerror(errno);
         return false;
     }
+    canSeek_ = !isPcapng(file);
     char message[PCAP_ERRBUF_SIZE] = "";
     pcap_.reset(pcap_fopen_offline_with_tstamp_precision(file, PCAP_TSTAMP_PRECISION_NANO, message));
     if (!pcap_) {
@@ -90,6 +99,24 @@ PcapReader::Next PcapReader::next(Datagram &datagram) {
             std::int64_t(header->ts.tv_sec) * 1000000000 + header->ts.tv_usec; // ns, as asked for
         return Next::Datagram;
     }
+}
+
+PcapReader::Place PcapReader::place() const {
+    return {pcap_ ? std::ftell(pcap_file(pcap_.get())) : 0, counts_.records};
+}
+
+bool PcapReader::seek(const Place &place) {
+    if (place.offset == 0)
+        return open(std::string(path_));
+    if ((!pcap_ && !open(std::string(path_))) || !canSeek_ ||
+        std::fseek(pcap_file(pcap_.get()), place.offset, SEEK_SET) != 0) {
+        if (error_.empty())
+            error_ = path_ + ": cannot be read from byte " + std::to_string(place.offset) + " on";
+        close();
+        return false;
+    }
+    counts_.records = place.records;
+    return true;
 }
 
 void PcapReader::close() {

@@ -23,6 +23,12 @@ public:
         std::uint64_t cut = 0; ///< shorter than its own lengths say
     };
 
+    /// Where a record begins.
+    struct Place {
+        long offset = 0;           ///< in the file, bytes; 0: its beginning
+        std::uint64_t records = 0; ///< before it
+    };
+
     PcapReader();
     ~PcapReader();
     PcapReader(const PcapReader &) = delete;
@@ -34,6 +40,13 @@ public:
     Next next(Datagram &datagram);
     void close();
 
+    /// Of the next record.
+    Place place() const;
+    /// Only classic pcap can be read from a place in the middle; a pcapng tells on the way what to know.
+    bool canSeek() const { return canSeek_; }
+    /// Goes on at a place that a reader of the same file told. False on failure; error() says why.
+    bool seek(const Place &place);
+
     const std::string &path() const { return path_; }
     const std::string &error() const { return error_; }
     const Counts &counts() const { return counts_; }
@@ -43,6 +56,7 @@ private:
     std::string error_;
     Counts counts_;
     int linkType_ = 0;
+    bool canSeek_ = false;
     std::unique_ptr<pcap, void (*)(pcap *)> pcap_;
 };
 

@@ -1,17 +1,26 @@
 #include "daemons/velodynelogger/LidarFeed.h"
 
+#include <algorithm>
+
 namespace hermes {
+
+namespace {
+
+/// Every how many firings are taken so that a turn of so many has no more points than are wanted.
+std::uint32_t firingStep(const velodyne::SensorModel &model, std::int64_t firings, std::uint32_t wanted) {
+    const std::int64_t taken = std::max<std::int64_t>(1, wanted / model.lasers);
+    return std::uint32_t(std::max<std::int64_t>(1, (firings + taken - 1) / taken));
+}
+
+} // namespace
 
 LidarFeed::LidarFeed(Recorder &recorder, Notify turnReady)
     : recorder_(recorder)
     , turnReady_(std::move(turnReady))
     , receiver_([this](const Datagram &datagram) { handle(datagram); })
-    , player_([this](const Datagram &datagram) { handle(datagram); },
+    , player_([this](const Datagram &datagram) { handle(datagram); }, [this] { jump(); },
               [this](const std::string &error) {
-                  {
-                      const std::lock_guard<std::mutex> lock(decoderMutex_);
-                      assembler_->finish();
-                  }
+                  finish();
                   ended_(error);
               }) {}
 
@@ -27,26 +36,28 @@ std::string LidarFeed::openLive(const std::string &address, std::uint16_t port, 
     return receiver_.start(address, port, bufferBytes);
 }
 
-std::string LidarFeed::openPcap(const std::string &path, double speed, const Options &options, Ended ended) {
+std::string LidarFeed::openPcap(const std::string &path, const PcapPlayer::Options &play,
+                                const Options &options, Ended ended) {
     close();
     ended_ = std::move(ended);
-    lossless_ = speed == 0;
+    lossless_ = play.speed == 0;
     begin(options);
-    return player_.start(path, speed);
+    return player_.start(path, play);
 }
 
 void LidarFeed::begin(const Options &options) {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
     options_ = options;
-    velodyne::TurnAssembler::Options ring;
-    ring.laser = options.laser;
-    ring.model = options.model;
-    ring.returns = options.returns;
-    ring.stampOffset_ns = options.stampOffset_ns;
-    assembler_ = std::make_unique<velodyne::TurnAssembler>(
-        ring, [this](const velodyne::Turn &turn) { enqueue(turn); });
+    gps_.reset();
+    ring_.reset(); // numbers begin anew
+    ring_ = makeAssembler(options.laser, [this](const velodyne::Turn &turn) { takeOver(turn); });
+    cloud_.reset();
+    if (thinning_)
+        makeCloudAssembler();
     counts_ = Counts();
     const std::lock_guard<std::mutex> queueLock(queueMutex_);
+    turns_.resetCount();
+    clouds_.resetCount();
     closing_ = false;
 }
 
@@ -58,17 +69,54 @@ void LidarFeed::close() {
     taken_.notify_all();
     receiver_.stop();
     player_.stop();
+    finish();
+}
+
+void LidarFeed::finish() {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
-    if (assembler_)
-        assembler_->finish();
-    cloudAssembler_.reset();
+    forAssemblers([](velodyne::TurnAssembler &assembler) { assembler.finish(); });
+    deliver(nullptr);
+    capture_.reset();
+}
+
+void LidarFeed::jump() {
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    forAssemblers([](velodyne::TurnAssembler &assembler) { assembler.jump(); });
+}
+
+LidarFeed::Assembler LidarFeed::makeAssembler(int laser, velodyne::TurnAssembler::Sink sink) const {
+    velodyne::TurnAssembler::Options options;
+    options.laser = laser;
+    options.model = options_.model;
+    options.returns = options_.returns;
+    options.stampOffset_ns = options_.stampOffset_ns;
+    options.firstNumber = ring_ ? ring_->turnNumber() : 0;
+    auto assembler = std::make_unique<velodyne::TurnAssembler>(options, std::move(sink));
+    assembler->follow(gps_.state().utc_ns);
+    return assembler;
+}
+
+void LidarFeed::makeCloudAssembler() {
+    cloud_ = makeAssembler(velodyne::PacketDecoder::allLasers,
+                           [this](const velodyne::Turn &turn) { takeOverCloud(turn); });
+    const velodyne::SensorModel *model = ring_->model() ? ring_->model() : &velodyne::hdl32e();
+    const double turnsPerSecond = ring_->rpm() > 0 ? ring_->rpm() / 60 : 10;
+    cloud_->setFiringStep(firingStep(*model, std::int64_t(double(model->firingRate()) / turnsPerSecond),
+                                     thinning_->maximumPoints));
+}
+
+template <typename Function>
+void LidarFeed::forAssemblers(Function function) {
+    for (const Assembler *assembler : {&ring_, &cloud_, &capture_})
+        if (*assembler)
+            function(**assembler);
 }
 
 void LidarFeed::handle(const Datagram &datagram) {
     recorder_.push(datagram, lossless_);
     if (lossless_) { // before the decoder is locked, so that counts() answers meanwhile
         std::unique_lock<std::mutex> lock(queueMutex_);
-        taken_.wait(lock, [this] { return turns_.size() < turnCapacity || closing_; });
+        taken_.wait(lock, [this] { return (!turns_.isFull() && !clouds_.isFull()) || closing_; });
     }
     const std::lock_guard<std::mutex> lock(decoderMutex_);
     decode(datagram);
@@ -76,72 +124,112 @@ void LidarFeed::handle(const Datagram &datagram) {
 
 void LidarFeed::decode(const Datagram &datagram) {
     if (datagram.size == velodyne::positionPacketSize) {
-        ++counts_.position;
+        if (gps_.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
+            forAssemblers(
+                [this](velodyne::TurnAssembler &assembler) { assembler.follow(gps_.state().utc_ns); });
         return;
     }
     if (datagram.size != velodyne::packetSize && datagram.destinationPort != options_.dataPort) {
         ++counts_.other;
         return;
     }
-    assembler_->feed(datagram.payload, datagram.size, datagram.stamp_ns);
-    if (cloudAssembler_)
-        cloudAssembler_->feed(datagram.payload, datagram.size, datagram.stamp_ns);
-    if (cloudAssembler_ && !cloudSink_) // delivered
-        cloudAssembler_.reset();
+    forAssemblers([&datagram](velodyne::TurnAssembler &assembler) {
+        assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
+    });
+    if (capture_ && captures_.empty()) // delivered
+        capture_.reset();
 }
 
-void LidarFeed::enqueue(const velodyne::Turn &turn) {
+void LidarFeed::takeOver(const velodyne::Turn &turn) {
     ++counts_.turns;
-    auto copy = std::make_shared<velodyne::Turn>(turn);
+    const auto copy = std::make_shared<velodyne::Turn>(turn);
     {
         const std::lock_guard<std::mutex> lock(queueMutex_);
-        if (turns_.size() >= turnCapacity && !lossless_) {
-            ++counts_.turnsDropped;
+        if (!turns_.push(copy, lossless_))
             return;
-        }
-        turns_.push_back(std::move(copy));
     }
     turnReady_();
 }
 
-LidarFeed::Turn LidarFeed::takeTurn() {
+void LidarFeed::takeOverCloud(const velodyne::Turn &turn) {
+    if (!turn.partial)
+        cloud_->setFiringStep(firingStep(*turn.model, turn.firings, thinning_->maximumPoints));
+    if (turn.number % thinning_->turnStep != 0)
+        return;
+    const auto copy = std::make_shared<velodyne::Turn>(turn);
+    {
+        const std::lock_guard<std::mutex> lock(queueMutex_);
+        if (!clouds_.push(copy, lossless_))
+            return;
+    }
+    turnReady_();
+}
+
+LidarFeed::Turn LidarFeed::take(TurnQueue &queue) {
     Turn turn;
     {
         const std::lock_guard<std::mutex> lock(queueMutex_);
-        if (turns_.empty())
-            return turn;
-        turn = std::move(turns_.front());
-        turns_.pop_front();
+        turn = queue.take();
     }
-    taken_.notify_all();
+    if (turn)
+        taken_.notify_all();
     return turn;
 }
 
-void LidarFeed::captureCloud(std::function<void(const velodyne::Turn &)> function) {
+void LidarFeed::wantClouds(const std::optional<Thinning> &thinning) {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
-    cloudSink_ = std::move(function);
-    velodyne::TurnAssembler::Options all;
-    all.laser = velodyne::PacketDecoder::allLasers;
-    all.returns = options_.returns;
-    all.model = options_.model;
-    all.stampOffset_ns = options_.stampOffset_ns;
-    cloudAssembler_ = std::make_unique<velodyne::TurnAssembler>(all, [this](const velodyne::Turn &turn) {
-        if (turn.partial || !cloudSink_)
-            return;
-        cloudSink_(turn);
-        cloudSink_ = nullptr;
-    });
+    thinning_ = thinning;
+    if (!thinning)
+        cloud_.reset();
+    else if (!cloud_ && ring_)
+        makeCloudAssembler();
+    const std::lock_guard<std::mutex> queueLock(queueMutex_);
+    if (!thinning)
+        clouds_.clear();
+    taken_.notify_all();
+}
+
+void LidarFeed::captureTurn(Capture function) {
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    captures_.push_back(std::move(function));
+    if (!capture_)
+        capture_ = makeAssembler(velodyne::PacketDecoder::allLasers, [this](const velodyne::Turn &turn) {
+            if (!turn.partial)
+                deliver(&turn);
+        });
+}
+
+void LidarFeed::cancelCaptures() {
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    deliver(nullptr);
+    capture_.reset();
+}
+
+void LidarFeed::deliver(const velodyne::Turn *turn) {
+    for (const Capture &capture : captures_)
+        capture(turn);
+    captures_.clear();
 }
 
 LidarFeed::Counts LidarFeed::counts() const {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
     Counts counts = counts_;
-    if (assembler_) {
-        counts.packets = assembler_->counts();
-        counts.rpm = assembler_->rpm();
+    if (ring_) {
+        counts.packets = ring_->counts();
+        counts.rpm = ring_->rpm();
+        counts.model = ring_->model();
     }
+    counts.gps = gps_.counts();
     counts.udp = receiver_.counts();
+    const std::lock_guard<std::mutex> queueLock(queueMutex_);
+    counts.turnsDropped = turns_.dropped();
+    counts.cloudsDropped = clouds_.dropped();
     return counts;
+}
+
+velodyne::GpsReader::State LidarFeed::gps() const {
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
+    return gps_.state();
 }
 
 } // namespace hermes

@@ -2,15 +2,15 @@
 
 #include "daemons/velodynelogger/PcapPlayer.h"
 #include "daemons/velodynelogger/Recorder.h"
+#include "daemons/velodynelogger/TurnQueue.h"
 #include "daemons/velodynelogger/UdpReceiver.h"
-#include "protocol/velodyne/TurnAssembler.h"
-
-#include <deque>
+#include "protocol/velodyne/GpsReader.h"
 
 namespace hermes {
 
 /// From the sensor or a capture file to turns: receives or plays datagrams, hands each to the recorder,
-/// decodes them and keeps the finished turns until they are taken.
+/// decodes them and keeps the finished turns until they are taken. Of one laser always, of all lasers only
+/// while somebody wants them.
 class LidarFeed {
 public:
     struct Options {
@@ -21,18 +21,27 @@ public:
         std::uint16_t dataPort =
             velodyne::dataPort; ///< of other ports only datagrams of the right size are decoded
     };
+    /// How turns of all lasers are thinned.
+    struct Thinning {
+        std::uint32_t maximumPoints = 8000; ///< about: the firings of a turn are thinned evenly
+        std::uint32_t turnStep = 1;         ///< every n-th turn
+    };
     struct Counts {
         velodyne::PacketCounts packets;
         UdpReceiver::Counts udp;
-        std::uint64_t position = 0;     ///< position packets: recorded, not decoded
-        std::uint64_t other = 0;        ///< of another port and another size
-        std::uint64_t turns = 0;        ///< finished
-        std::uint64_t turnsDropped = 0; ///< finished, but nobody took them in time
+        velodyne::GpsReader::Counts gps; ///< of position packets
+        std::uint64_t other = 0;         ///< of another port and another size
+        std::uint64_t turns = 0;         ///< finished
+        std::uint64_t turnsDropped = 0;  ///< finished, but nobody took them in time
+        std::uint64_t cloudsDropped = 0;
         double rpm = 0;
+        const velodyne::SensorModel *model = nullptr; ///< null before the first packet
     };
-    using Turn = std::shared_ptr<const velodyne::Turn>;
+    using Turn = TurnQueue::Turn;
     using Notify = std::function<void()>;
     using Ended = std::function<void(const std::string &error)>;
+    /// Gets the next complete turn of all lasers, or null when the source ended before.
+    using Capture = std::function<void(const velodyne::Turn *turn)>;
 
     /// turnReady is called in another thread when a turn waits to be taken.
     LidarFeed(Recorder &recorder, Notify turnReady);
@@ -42,25 +51,45 @@ public:
     std::string openLive(const std::string &address, std::uint16_t port, int bufferBytes,
                          const Options &options);
     /// ended is called in another thread when the capture has been played to its end, or to the error given.
-    std::string openPcap(const std::string &path, double speed, const Options &options, Ended ended);
-    /// Delivers the turn that was under way as a partial one.
+    std::string openPcap(const std::string &path, const PcapPlayer::Options &play, const Options &options,
+                         Ended ended);
+    /// Delivers the turns that were under way as partial ones.
     void close();
 
-    /// The oldest turn that waits, or null.
-    Turn takeTurn();
-    /// The next complete turn of all lasers goes to the function, in another thread.
-    void captureCloud(std::function<void(const velodyne::Turn &)> function);
+    /// The oldest turn of the one laser that waits, or null.
+    Turn takeTurn() { return take(turns_); }
+    /// Turns of all lasers, thinned, are made from now on; or no longer.
+    void wantClouds(const std::optional<Thinning> &thinning);
+    /// The oldest of them that waits, or null. Its number is that of the turn of the one laser.
+    Turn takeCloud() { return take(clouds_); }
+    /// The next complete turn of all lasers, all points of it; the function is called in another thread.
+    void captureTurn(Capture function);
+    /// Ends the captures that wait, with null.
+    void cancelCaptures();
+
+    PcapPlayer &player() { return player_; }
+    const PcapPlayer &player() const { return player_; }
     Counts counts() const;
+    velodyne::GpsReader::State gps() const;
     std::uint16_t port() const { return receiver_.port(); } ///< of live reception
     std::string receiveError() const { return receiver_.error(); }
 
 private:
+    using Assembler = std::unique_ptr<velodyne::TurnAssembler>;
+
     void begin(const Options &options);
+    void finish();
+    void jump();
     void handle(const Datagram &datagram);
     void decode(const Datagram &datagram);
-    void enqueue(const velodyne::Turn &turn);
-
-    static constexpr std::size_t turnCapacity = 16; // over a second
+    Assembler makeAssembler(int laser, velodyne::TurnAssembler::Sink sink) const;
+    void makeCloudAssembler();
+    template <typename Function>
+    void forAssemblers(Function function);
+    void takeOver(const velodyne::Turn &turn);
+    void takeOverCloud(const velodyne::Turn &turn);
+    void deliver(const velodyne::Turn *turn);
+    Turn take(TurnQueue &queue);
 
     Recorder &recorder_;
     Notify turnReady_;
@@ -69,14 +98,18 @@ private:
 
     mutable std::mutex decoderMutex_; // guards what follows
     Options options_;
-    std::unique_ptr<velodyne::TurnAssembler> assembler_;
-    std::unique_ptr<velodyne::TurnAssembler> cloudAssembler_;
-    std::function<void(const velodyne::Turn &)> cloudSink_;
+    std::optional<Thinning> thinning_;
+    velodyne::GpsReader gps_;
+    Assembler ring_;
+    Assembler cloud_;   ///< while clouds are wanted
+    Assembler capture_; ///< while a capture waits
+    std::vector<Capture> captures_;
     Counts counts_;
 
-    std::mutex queueMutex_; // guards what follows
+    mutable std::mutex queueMutex_; // guards what follows
     std::condition_variable taken_;
-    std::deque<Turn> turns_;
+    TurnQueue turns_{16}; // over a second
+    TurnQueue clouds_{4};
     bool closing_ = false;
 
     UdpReceiver receiver_; // last: their threads end before what they use

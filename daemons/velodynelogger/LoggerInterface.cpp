@@ -26,6 +26,10 @@ void VelodyneLogger::declareSettings() {
                    .byDefault("")
                    .appliesOnRestart()
                    .group("Source"));
+    addSetting(Field::boolean("source.loop", "That replay begins anew at its end")
+                   .byDefault(false)
+                   .appliesOnRestart()
+                   .group("Source"));
     addSetting(
         Field::number("source.speed", "Of that replay: 1 real time, 0 as fast as possible without loss")
             .range(0, 1000)
@@ -55,6 +59,15 @@ void VelodyneLogger::declareSettings() {
                    .byDefault(0)
                    .appliesOnRestart()
                    .group("Decoding"));
+    addSetting(Field::integer("cloud.max_points",
+                              "Of a message of the topic cloud, about: firings are thinned evenly")
+                   .range(100, 20000)
+                   .byDefault(8000)
+                   .group("Cloud"));
+    addSetting(Field::integer("cloud.turn_step", "Every n-th turn goes to the topic cloud")
+                   .range(1, 1000)
+                   .byDefault(1)
+                   .group("Cloud"));
     addSetting(Field::text("record.folder", "Where recordings are kept; made when missing")
                    .byDefault("recordings")
                    .appliesOnRestart()
@@ -69,11 +82,16 @@ void VelodyneLogger::declareTopics() {
               "sensor's frame: x ahead, y left), t (s after stamp), intensity (0 to 255)")
             .schema({{"type", "object"}}));
     addTopic(
-        Topic("lidar",
-              "Once a second: source, rpm, packet_rate_hz, and since the source was opened packets, turns, "
-              "lost and wrong packets by kind, drops by kernel and queues, recording")
-            .schema({{"type", "object"}})
-            .snapshot([this] { return lidarState(); }));
+        Topic("cloud",
+              "Each turn of all lasers, thinned by the settings cloud.*: turn, stamp (s, of its first "
+              "firing), duration_s, partial, lost_packets, frame, model, and of its points, in the order "
+              "of measuring: x, y, z (m, sensor's frame: x ahead, y left, z up), laser, intensity")
+            .schema({{"type", "object"}}));
+    addTopic(Topic("lidar", "Once a second: source, model, rpm, packet_rate_hz, gps, and since the source "
+                            "was opened packets, turns, "
+                            "lost and wrong packets by kind, drops by kernel and queues, recording")
+                 .schema({{"type", "object"}})
+                 .snapshot([this] { return lidarState(); }));
 }
 
 void VelodyneLogger::declareSourceCommands() {
@@ -84,6 +102,7 @@ void VelodyneLogger::declareSourceCommands() {
             .param(Field::number("speed", "Of the replay: 1 real time, 0 as fast as possible without loss")
                        .range(0, 1000)
                        .byDefault(1))
+            .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false))
             .returns({{"type", "object"}})
             .example({{"pcap", "drive.pcap"}, {"speed", 1}},
                      QJsonObject{{"state", "replay"}, {"name", "drive.pcap"}, {"speed", 1}})
@@ -94,20 +113,32 @@ void VelodyneLogger::declareSourceCommands() {
                        ++generation_;
                        feed_.close();
                        publishTurns();
-                       opened(Source::None, {}, 1);
+                       opened(Source::None, {}, {});
                        updateHealth();
                        return QJsonValue();
                    }));
+    addCommand(
+        Command("source.seek", "The replay goes on there; beyond its end it ends")
+            .param(Field::number("t_s", "Seconds after the first packet").unit("s").range(0, 1e7))
+            .returns({{"type", "object"}})
+            .example({{"t_s", 60}}, QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}})
+            .handler([this](const Call &call) { return seek(call.number("t_s")); }));
+    addCommand(Command("source.pause", "The replay waits, or goes on")
+                   .param(Field::boolean("paused", "Whether it waits").byDefault(true))
+                   .returns({{"type", "object"}})
+                   .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}})
+                   .handler([this](const Call &call) { return pause(call.flag("paused")); }));
     addCommand(Command("source.status", "What the topic lidar says, now")
                    .returns({{"type", "object"}})
                    .handler([this](const Call &) -> Result<QJsonValue> { return lidarState(); }));
-    addCommand(Command("capture.turn",
-                       "Writes the next complete turn of all lasers to a file in the folder of recordings")
-                   .param(Field::text("name", "Of the file, without path"))
-                   .param(Field::text("format", "Of the file").choices({"csv"}).byDefault("csv"))
-                   .returns({{"type", "object"}})
-                   .example({{"name", "hall"}}, QJsonObject{{"path", "/data/hall.csv"}, {"points", 60123}})
-                   .asyncHandler([this](const Call &call, const Reply &reply) { captureTurn(call, reply); }));
+    addCommand(
+        Command("capture.turn",
+                "Writes the next complete turn of all lasers to a file in the folder of recordings")
+            .param(Field::text("name", "Of the file, without path"))
+            .param(Field::text("format", "Of the file").choices({"csv", "pcd", "ply"}).byDefault("csv"))
+            .returns({{"type", "object"}})
+            .example({{"name", "hall"}}, QJsonObject{{"path", "/data/hall.csv"}, {"points", 60123}})
+            .asyncHandler([this](const Call &call, const Reply &reply) { captureTurn(call, reply); }));
 }
 
 void VelodyneLogger::declareRecordCommands() {

@@ -18,9 +18,40 @@ QString VelodyneLogger::toText(Source source) {
 }
 
 QJsonObject VelodyneLogger::sourceState() const {
-    QJsonObject state{{"state", toText(source_)}, {"name", sourceName_}, {"speed", speed_}};
+    QJsonObject state{{"state", toText(source_)}, {"name", sourceName_}};
+    if (source_ == Source::Replay || source_ == Source::Ended) {
+        const PcapPlayer::Status replay = feed_.player().status();
+        state.insert("speed", play_.speed);
+        state.insert("loop", play_.loop);
+        state.insert("loops", double(replay.loops));
+        state.insert("paused", replay.paused);
+        state.insert("position_s", replay.position_s);
+        state.insert("duration_s", replay.duration_s ? QJsonValue(*replay.duration_s) : QJsonValue());
+    }
     if (!sourceError_.isEmpty())
         state.insert("error", sourceError_);
+    return state;
+}
+
+/// What the position packets tell; {} before the first.
+QJsonObject VelodyneLogger::gpsState() const {
+    const velodyne::GpsReader::State gps = feed_.gps();
+    const velodyne::GpsReader::Counts counts = feed_.counts().gps;
+    if (counts.packets == 0)
+        return {};
+    QJsonObject state{{"pps", velodyne::toText(gps.packet.pps)},
+                      {"valid", gps.valid},
+                      {"locked", gps.utc_ns.has_value()},
+                      {"nmea", QString::fromLatin1(gps.packet.nmea.data(), int(gps.packet.nmea.size()))},
+                      {"packets", double(counts.packets)},
+                      {"wrong_value", double(counts.wrongValue)},
+                      {"bad_nmea", double(counts.badNmea)}};
+    if (gps.utc_ns)
+        state.insert("utc", double(*gps.utc_ns) * 1e-9);
+    if (gps.position) {
+        state.insert("latitude_deg", gps.position->latitude_deg);
+        state.insert("longitude_deg", gps.position->longitude_deg);
+    }
     return state;
 }
 
@@ -28,8 +59,10 @@ QJsonObject VelodyneLogger::lidarState() {
     const LidarFeed::Counts counts = feed_.counts();
     const velodyne::PacketCounts &packets = counts.packets;
     return {{"source", sourceState()},
+            {"model", counts.model ? QJsonValue(counts.model->name) : QJsonValue()},
             {"rpm", counts.rpm},
             {"packet_rate_hz", packetRate_},
+            {"gps", gpsState()},
             {"packets", double(packets.packets)},
             {"turns", double(counts.turns)},
             {"lost", double(packets.lost)},
@@ -40,10 +73,11 @@ QJsonObject VelodyneLogger::lidarState() {
             {"wrong_flag", double(packets.wrongFlag)},
             {"wrong_value", double(packets.wrongValue)},
             {"other_model", double(packets.otherModel)},
-            {"position_packets", double(counts.position)},
+            {"position_packets", double(counts.gps.packets)},
             {"other_datagrams", double(counts.other + counts.udp.tooLong)},
             {"kernel_drops", double(counts.udp.kernelDrops)},
             {"turns_dropped", double(counts.turnsDropped)},
+            {"clouds_dropped", double(counts.cloudsDropped)},
             {"recording", recordStatus()}};
 }
 
@@ -72,8 +106,8 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     const velodyne::PacketCounts &packets = counts.packets;
     const std::uint64_t wrong =
         packets.wrongSize + packets.wrongFlag + packets.wrongValue + packets.otherModel;
-    const std::uint64_t lost =
-        packets.lost + packets.outOfOrder + counts.udp.kernelDrops + counts.turnsDropped;
+    const std::uint64_t lost = packets.lost + packets.outOfOrder + counts.udp.kernelDrops +
+                               counts.turnsDropped + counts.cloudsDropped;
     const QJsonObject values{{"packets", double(packets.packets)},
                              {"packet_rate_hz", packetRate_},
                              {"rpm", counts.rpm},
@@ -81,6 +115,7 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
                              {"out_of_order", double(packets.outOfOrder)},
                              {"kernel_drops", double(counts.udp.kernelDrops)},
                              {"turns_dropped", double(counts.turnsDropped)},
+                             {"clouds_dropped", double(counts.cloudsDropped)},
                              {"wrong", double(wrong)}};
     const auto set = [&](HealthLevel level, const QString &message) {
         health().set("lidar", level, message, values);
@@ -98,7 +133,17 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     else if (packets.otherModel > 0)
         set(HealthLevel::Warn, velodyne::describe(velodyne::PacketFault::Model));
     else if (wrong > 0)
-        set(HealthLevel::Warn, QString("%1 packets were no data packets of an HDL-32E").arg(wrong));
+        set(HealthLevel::Warn, QString("%1 packets were no data packets of an HDL-32E or VLP-16").arg(wrong));
+    else if (counts.model && settings().integer("decode.laser") >= counts.model->lasers)
+        set(HealthLevel::Warn, QString("decode.laser is %1, but a %2 has lasers 0 to %3: scans are empty")
+                                   .arg(settings().integer("decode.laser"))
+                                   .arg(counts.model->name)
+                                   .arg(counts.model->lasers - 1));
+    else if (counts.gps.wrongValue + counts.gps.badNmea > 0)
+        set(HealthLevel::Warn, QString("of %1 position packets %2 have wrong values, %3 bad NMEA text")
+                                   .arg(counts.gps.packets)
+                                   .arg(counts.gps.wrongValue)
+                                   .arg(counts.gps.badNmea));
     else if (lost > 0)
         set(HealthLevel::Warn, "packets or turns were lost");
     else

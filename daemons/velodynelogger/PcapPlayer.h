@@ -1,11 +1,10 @@
 #pragma once
 
-#include "common/capture/PcapReader.h"
+#include "daemons/velodynelogger/PcapIndex.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
-#include <mutex>
-#include <thread>
 
 namespace hermes {
 
@@ -13,35 +12,69 @@ namespace hermes {
 /// any other.
 class PcapPlayer {
 public:
+    struct Options {
+        double speed = 1; ///< 1 is real time, 0 as fast as the sink takes it
+        bool loop = false;
+    };
+    struct Status {
+        double position_s = 0;            ///< after the first datagram, clock jumps left out
+        std::optional<double> duration_s; ///< nothing until the file has been read through
+        bool paused = false;
+        std::uint64_t loops = 0; ///< how often it began anew
+    };
     /// Called in the playing thread; the payload is valid during the call. May block: playing waits.
     using Sink = std::function<void(const Datagram &)>;
+    /// Called in the playing thread: the next datagram does not follow the last one, after a seek or at the
+    /// beginning of a loop.
+    using Jump = std::function<void()>;
     /// Called in the playing thread when the file has come to its end, or with the error that ended it
     /// before. Not called after stop().
     using End = std::function<void(const std::string &error)>;
 
-    PcapPlayer(Sink sink, End end);
+    PcapPlayer(Sink sink, Jump jump, End end);
     ~PcapPlayer();
 
-    /// speed 1 is real time, 0 as fast as the sink takes it. An empty string on success, else what failed.
-    std::string start(const std::string &path, double speed);
+    /// An empty string on success, else what failed.
+    std::string start(const std::string &path, const Options &options);
     void stop();
 
-    bool isRunning() const { return thread_.joinable(); }
-    std::uint64_t played() const;
+    /// Goes on at the first datagram at or after this time; beyond the end is the end.
+    void seek(double time_s);
+    void setPaused(bool paused);
+    Status status() const;
 
 private:
+    using Clock = std::chrono::steady_clock;
+
     void run();
-    bool waitUntil(std::chrono::steady_clock::time_point due);
+    bool play(const Datagram &datagram);
+    bool goTo(std::int64_t time_ns);
+    bool rewind(const PcapIndex::Mark &mark);
+    void startClock();
 
     Sink sink_;
+    Jump jump_;
     End end_;
-    PcapReader reader_; ///< of the thread while it runs
-    double speed_ = 1;
+    PcapIndex index_;
+    Options options_;
+
+    // Of the thread while it runs.
+    PcapReader reader_;
+    PlayTime time_;
+    bool atTarget_ = false;   ///< the datagram that a seek ended at is yet to be played
+    Datagram target_;         ///< that datagram
+    Clock::time_point clock_; ///< when time clockBegin_ns_ was or is to be played
+    std::int64_t clockBegin_ns_ = 0;
+    bool clockRuns_ = false;
+
     std::thread thread_;
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable wake_;
     bool stopping_ = false;
-    std::uint64_t played_ = 0;
+    bool paused_ = false;
+    std::optional<std::int64_t> seek_ns_;
+    std::int64_t position_ns_ = 0;
+    std::uint64_t loops_ = 0;
 };
 
 } // namespace hermes

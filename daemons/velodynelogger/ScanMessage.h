@@ -2,7 +2,6 @@
 
 #include "protocol/velodyne/TurnAssembler.h"
 
-#include <QByteArray>
 #include <QJsonObject>
 
 namespace hermes {
@@ -11,9 +10,5 @@ namespace hermes {
 /// order in which the sensor measured them, as the vector library wants them. Lengths are rounded to 10 um,
 /// times to 1 us.
 QJsonObject toScanMessage(const velodyne::Turn &turn);
-
-/// A turn as CSV, in the order of measuring: one line a point with turn, stamp, laser, azimuth, range,
-/// intensity, x, y, z; seconds since the Unix epoch, degrees clockwise, metres.
-QByteArray toCsv(const velodyne::Turn &turn);
 
 } // namespace hermes

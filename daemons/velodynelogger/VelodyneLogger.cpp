@@ -1,9 +1,10 @@
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
 #include "common/Log.h"
+#include "daemons/velodynelogger/CloudMessage.h"
 #include "daemons/velodynelogger/ScanMessage.h"
+#include "daemons/velodynelogger/TurnFile.h"
 
-#include <QFile>
 #include <QThreadPool>
 
 namespace hermes {
@@ -12,13 +13,14 @@ namespace {
 
 constexpr int retry_ms = 2;
 constexpr qint64 patience_ms = 5000;
+constexpr qint64 capturePatience_ms = 10000;
 
 } // namespace
 
 VelodyneLogger::VelodyneLogger()
     : Daemon({"velodynelogger", "Velodyne logger",
-              "Receives an HDL-32E or replays a capture of one, publishes its horizontal ring as scans, "
-              "records pcap"})
+              "Receives an HDL-32E or VLP-16 or replays a capture of one, publishes its horizontal ring as "
+              "scans and thinned clouds of all lasers, records pcap"})
     , feed_(recorder_, [this] {
         QMetaObject::invokeMethod(
             this, [this] { publishTurns(); }, Qt::QueuedConnection);
@@ -37,7 +39,8 @@ Result<void> VelodyneLogger::start() {
     second_.start(1000);
     const QString pcap = settings().text("source.pcap");
     const Result<void> result =
-        pcap.isEmpty() ? openLive() : openPcap(pcap, settings().number("source.speed"));
+        pcap.isEmpty() ? openLive()
+                       : openPcap(pcap, {settings().number("source.speed"), settings().flag("source.loop")});
     updateHealth();
     return result;
 }
@@ -65,21 +68,23 @@ Result<void> VelodyneLogger::openLive() {
     const int port = settings().integer("source.port");
     const QString name = QString("udp://%1:%2").arg(address).arg(port);
     ++generation_;
+    updateClouds();
     const std::string error = feed_.openLive(address.toStdString(), quint16(port),
                                              settings().integer("source.receive_buffer_bytes"), options());
     if (!error.empty()) {
-        opened(Source::None, {}, 1);
+        opened(Source::None, {}, {});
         return diskError(QString::fromStdString(error), name);
     }
-    opened(Source::Live, name, 1);
+    opened(Source::Live, name, {});
     return {};
 }
 
-Result<void> VelodyneLogger::openPcap(const QString &path, double speed) {
+Result<void> VelodyneLogger::openPcap(const QString &path, const PcapPlayer::Options &play) {
     PcapReader probe; // a wrong name does not close what is open
     if (!probe.open(path.toStdString()))
         return diskError(QString::fromStdString(probe.error()), path);
     ++generation_;
+    updateClouds();
     const auto ended = [this, generation = generation_](const std::string &failure) {
         const auto tell = [this, generation, failure] {
             if (generation != generation_) // a source that was closed meanwhile
@@ -89,19 +94,19 @@ Result<void> VelodyneLogger::openPcap(const QString &path, double speed) {
         };
         QMetaObject::invokeMethod(this, tell, Qt::QueuedConnection);
     };
-    const std::string error = feed_.openPcap(path.toStdString(), speed, options(), ended);
+    const std::string error = feed_.openPcap(path.toStdString(), play, options(), ended);
     if (!error.empty()) {
-        opened(Source::None, {}, 1);
+        opened(Source::None, {}, {});
         return diskError(QString::fromStdString(error), path);
     }
-    opened(Source::Replay, path, speed);
+    opened(Source::Replay, path, play);
     return {};
 }
 
-void VelodyneLogger::opened(Source source, const QString &name, double speed) {
+void VelodyneLogger::opened(Source source, const QString &name, const PcapPlayer::Options &play) {
     source_ = source;
     sourceName_ = name;
-    speed_ = speed;
+    play_ = play;
     sourceError_.clear();
     replayEnd_.reset();
     sincePublished_.start();
@@ -119,7 +124,8 @@ Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
     if (live == call.has("pcap"))
         return Error(ErrorCode::InvalidParams, "either live: true or pcap: FILE expected",
                      QJsonObject{{"live", "true, without pcap"}, {"pcap", "a capture file, without live"}});
-    const Result<void> result = live ? openLive() : openPcap(call.text("pcap"), call.number("speed"));
+    const Result<void> result =
+        live ? openLive() : openPcap(call.text("pcap"), {call.number("speed"), call.flag("loop")});
     updateHealth();
     if (!result)
         return result.error();
@@ -139,45 +145,83 @@ void VelodyneLogger::replayEnded(QString error) {
     publish("lidar", lidarState());
 }
 
+Result<QJsonValue> VelodyneLogger::seek(double time_s) {
+    if (source_ != Source::Replay)
+        return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
+    feed_.player().seek(time_s);
+    return sourceState();
+}
+
+Result<QJsonValue> VelodyneLogger::pause(bool paused) {
+    if (source_ != Source::Replay)
+        return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
+    feed_.player().setPaused(paused);
+    return sourceState();
+}
+
 void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
-    const Result<QString> path = folder_.newFile(call.text("name"), "csv");
+    const QString format = call.text("format");
+    const Result<QString> path = folder_.newFile(call.text("name"), format);
     if (!path || (source_ != Source::Live && source_ != Source::Replay)) {
         reply.error(path ? Error(ErrorCode::NotReady, "no source is open; source.open opens one")
                          : path.error());
         return;
     }
-    feed_.captureCloud([path = *path, reply](const velodyne::Turn &turn) {
+    sinceCapture_.start();
+    feed_.captureTurn([path = *path, format, reply](const velodyne::Turn *turn) {
+        if (!turn)
+            return reply.error(Error(ErrorCode::NotReady, "no complete turn came; nothing is written"));
         // Not here, where receiving would wait for the disk.
-        QThreadPool::globalInstance()->start(QRunnable::create([path, reply, copy = turn] {
-            QFile file(path);
-            const QByteArray csv = toCsv(copy);
-            if (!file.open(QIODevice::WriteOnly | QIODevice::NewOnly) || file.write(csv) != csv.size() ||
-                !file.flush()) {
-                const QString why = file.errorString();
-                if (file.isOpen())
-                    file.remove();
-                reply.error(diskError(path + ": cannot be written: " + why, path));
-                return;
-            }
-            reply.result(QJsonObject{{"path", path}, {"points", double(copy.points.size())}});
+        QThreadPool::globalInstance()->start(QRunnable::create([path, format, reply, copy = *turn] {
+            const Result<void> written = writeTurn(path, copy, turnFormatFromText(format.toStdString()));
+            if (!written)
+                reply.error(written.error());
+            else
+                reply.result(QJsonObject{{"path", path}, {"points", double(copy.points.size())}});
         }));
     });
 }
 
+void VelodyneLogger::settingsChanged(const QStringList &paths) {
+    Q_UNUSED(paths)
+    cloudsWanted_ = false; // so that the thinning is told anew
+    updateClouds();
+}
+
+void VelodyneLogger::updateClouds() {
+    const bool wanted = hasSubscribers("cloud");
+    if (wanted == cloudsWanted_)
+        return;
+    cloudsWanted_ = wanted;
+    if (!wanted)
+        return feed_.wantClouds({});
+    LidarFeed::Thinning thinning;
+    thinning.maximumPoints = std::uint32_t(settings().integer("cloud.max_points"));
+    thinning.turnStep = std::uint32_t(settings().integer("cloud.turn_step"));
+    feed_.wantClouds(thinning);
+}
+
+/// A replay without loss waits for readers who are behind, but not for one that reads no more.
+bool VelodyneLogger::mayPublish() {
+    const bool patient = source_ == Source::Replay && play_.speed == 0;
+    return !patient || (hasRoom("scan2d") && hasRoom("cloud")) || sincePublished_.elapsed() >= patience_ms;
+}
+
 void VelodyneLogger::publishTurns() {
-    // A replay without loss waits for readers who are behind, but not for one that reads no more.
-    const bool patient = source_ == Source::Replay && speed_ == 0;
+    updateClouds();
     for (;;) {
-        if (patient && !hasRoom("scan2d") && sincePublished_.elapsed() < patience_ms) {
+        if (!mayPublish()) {
             retry_.start(retry_ms);
             return;
         }
-        const LidarFeed::Turn turn = feed_.takeTurn();
-        if (!turn)
+        const LidarFeed::Turn turn = feed_.takeTurn(), cloud = feed_.takeCloud();
+        if (!turn && !cloud)
             break;
         sincePublished_.start();
-        if (hasSubscribers("scan2d"))
+        if (turn && hasSubscribers("scan2d"))
             publish("scan2d", toScanMessage(*turn), double(turn->begin_ns) * 1e-9);
+        if (cloud && hasSubscribers("cloud"))
+            publish("cloud", toCloudMessage(*cloud), double(cloud->begin_ns) * 1e-9);
     }
     if (replayEnd_)
         replayEnded(*replayEnd_);
@@ -191,6 +235,11 @@ void VelodyneLogger::tick() {
         double(packets - packetsAtTick_) * 1e9 / double(std::max<qint64>(1, sinceTick_.nsecsElapsed()));
     sinceTick_.start();
     packetsAtTick_ = packets;
+    if (sinceCapture_.isValid() && sinceCapture_.elapsed() > capturePatience_ms) {
+        feed_.cancelCaptures();
+        sinceCapture_.invalidate();
+    }
+    updateClouds();
     updateHealth();
     publish("lidar", lidarState());
 }

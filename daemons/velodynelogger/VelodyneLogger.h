@@ -8,8 +8,8 @@
 
 namespace hermes {
 
-/// hermes-velodynelogger: receives an HDL-32E or replays a capture, publishes the horizontal ring, records to
-/// pcap.
+/// hermes-velodynelogger: receives an HDL-32E or VLP-16 or replays a capture, publishes the horizontal ring
+/// and thinned turns of all lasers, records to pcap.
 class VelodyneLogger : public Daemon {
 public:
     VelodyneLogger();
@@ -17,6 +17,7 @@ public:
 protected:
     Result<void> start() override;
     void stop() override;
+    void settingsChanged(const QStringList &paths) override;
 
 private:
     /// Where packets come from.
@@ -30,10 +31,12 @@ private:
 
     LidarFeed::Options options();
     Result<void> openLive();
-    Result<void> openPcap(const QString &path, double speed);
+    Result<void> openPcap(const QString &path, const PcapPlayer::Options &play);
     Result<QJsonValue> openSource(const Call &call);
     void replayEnded(QString error);
-    void opened(Source source, const QString &name, double speed);
+    void opened(Source source, const QString &name, const PcapPlayer::Options &play);
+    Result<QJsonValue> seek(double time_s);
+    Result<QJsonValue> pause(bool paused);
 
     Result<QJsonValue> startRecording(const QString &name);
     Result<QJsonValue> stopRecording();
@@ -41,16 +44,19 @@ private:
     void captureTurn(const Call &call, const Reply &reply);
 
     void publishTurns();
+    bool mayPublish();
+    void updateClouds();
     void tick();
     QJsonObject lidarState();
     QJsonObject sourceState() const;
+    QJsonObject gpsState() const;
     void updateHealth();
     void updateSourceHealth(const LidarFeed::Counts &counts);
     void updateRecordHealth();
 
     Source source_ = Source::None;
-    QString sourceName_; ///< "udp://ADDRESS:PORT" or a path
-    double speed_ = 1;
+    QString sourceName_;       ///< "udp://ADDRESS:PORT" or a path
+    PcapPlayer::Options play_; ///< of a replay
     QString sourceError_;
     quint64 generation_ =
         0; ///< counts sources, so that the end of an old one is not taken for that of the new
@@ -61,6 +67,8 @@ private:
     QTimer second_;
     QTimer retry_; ///< of publishing what a reader had no room for
     QElapsedTimer sincePublished_;
+    bool cloudsWanted_ = false;
+    QElapsedTimer sinceCapture_;       ///< since the last capture.turn
     std::optional<QString> replayEnd_; ///< the replay is at its end; what waits is yet to be published
     QElapsedTimer sincePacket_;        ///< since the last second in which one came
     QElapsedTimer sinceTick_;

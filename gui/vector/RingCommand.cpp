@@ -3,6 +3,7 @@
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
+#include "protocol/velodyne/GpsReader.h"
 #include "protocol/velodyne/TurnAssembler.h"
 #include "vectorlib/io/Number.h"
 
@@ -60,11 +61,15 @@ struct RingCommand {
 
     static bool readAll(PcapReader &reader, velodyne::TurnAssembler &assembler) {
         Progress progress("packet");
+        velodyne::GpsReader gps;
         Datagram datagram;
         PcapReader::Next next;
         while ((next = reader.next(datagram)) == PcapReader::Next::Datagram) {
             if (datagram.destinationPort == velodyne::dataPort)
                 assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
+            else if (datagram.destinationPort == velodyne::positionPort &&
+                     gps.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
+                assembler.follow(gps.state().utc_ns);
             progress.update(reader.counts().records, 0);
         }
         return next == PcapReader::Next::End;

@@ -9,6 +9,9 @@ namespace {
 constexpr std::int64_t second_ns = 1000000000;
 /// Half a turn at the highest speed of 20 turns a second: a longer gap may hide the beginning of a turn.
 constexpr std::int64_t longGap_ns = second_ns / 40;
+/// A longer gap between packets is a clock that was set.
+constexpr std::int64_t longestGap_ns = 1800 * second_ns;
+
 void count(PacketCounts &counts, PacketFault fault) {
     ++counts.packets;
     counts.wrongSize += fault == PacketFault::Size;
@@ -21,7 +24,9 @@ void count(PacketCounts &counts, PacketFault fault) {
 
 TurnAssembler::TurnAssembler(const Options &options, Sink sink)
     : options_(options)
-    , sink_(std::move(sink)) {}
+    , sink_(std::move(sink)) {
+    turn_.number = options.firstNumber;
+}
 
 PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns) {
     PacketFault fault = DataPacket::check(bytes, size);
@@ -52,7 +57,8 @@ bool TurnAssembler::isOfModel(const DataPacket &packet, std::int64_t receive_ns)
     // Of two sensors on one port the first is decoded, until it has been silent for a second.
     if (decoder_ && started_ && std::abs(receive_ns - lastReceive_ns_) < second_ns)
         return false;
-    jump();
+    if (decoder_)
+        jump();
     decoder_.emplace(*model, options_.laser, options_.returns);
     turn_.model = model;
     turn_.laser = decoder_->laser();
@@ -86,7 +92,9 @@ bool TurnAssembler::isInOrder(const DataPacket &packet, std::int64_t stamp_ns, s
         return true;
     }
     const std::int64_t step_ns = stamp_ns - lastStamp_ns_;
-    if (std::abs(step_ns - (receive_ns - lastReceive_ns_)) > second_ns) {
+    const bool parted = std::abs(step_ns - (receive_ns - lastReceive_ns_)) > second_ns;
+    // A receiver's clock that is set by whole hours takes the stamps with it.
+    if (parted || step_ns < -second_ns || step_ns > longestGap_ns) {
         ++counts_.clockJumps;
         endTurn(true);
         beginTurn(true);
@@ -146,16 +154,6 @@ void TurnAssembler::jump() {
     finish();
     clock_.reset();
     started_ = false;
-}
-
-void TurnAssembler::reset() {
-    turn_.number = 0;
-    beginTurn(true);
-    clock_.reset();
-    counts_ = PacketCounts();
-    decoder_.reset();
-    started_ = false;
-    rpm_ = 0;
 }
 
 } // namespace hermes::velodyne

@@ -18,7 +18,8 @@ struct PacketCounts {
     std::uint64_t outOfOrder = 0; ///< older than its predecessor, or the same again: not decoded
     std::uint64_t lost = 0;       ///< estimated from gaps between stamps
     std::uint64_t gaps = 0;       ///< places where packets were lost
-    std::uint64_t clockJumps = 0; ///< the sensor's clock and the receiver's parted by more than a second
+    std::uint64_t clockJumps =
+        0; ///< the sensor's clock and the receiver's parted by more than a second, or were set
 };
 
 /// The points of one turn of the head in the order of firing: clockwise seen from above.
@@ -44,6 +45,7 @@ public:
         std::int64_t stampOffset_ns = 0; ///< added to every stamp
         Model model = Model::Blank;      ///< the sensor; Blank: as the packets say
         std::uint32_t firingStep = 1;    ///< of each turn every n-th firing is decoded
+        std::uint64_t firstNumber = 0;   ///< of the first turn
     };
     using Sink = std::function<void(const Turn &)>;
 
@@ -58,10 +60,10 @@ public:
     void finish();
     /// The packets that follow are of another time, as after a seek. Counts and numbers go on.
     void jump();
-    /// For a new source: forgets the current turn, the clock and the counts.
-    void reset();
 
+    void setFiringStep(std::uint32_t step) { options_.firingStep = step; }
     const PacketCounts &counts() const { return counts_; }
+    std::uint64_t turnNumber() const { return turn_.number; } ///< of the one under way
     /// Turns of the head a minute, from the last complete turn; 0 at first.
     double rpm() const { return rpm_; }
     /// The sensor that is decoded; null before the first packet.

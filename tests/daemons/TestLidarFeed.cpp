@@ -2,7 +2,11 @@
 #include "tests/support/RealData.h"
 #include "tests/support/Sensor.h"
 
+#include "daemons/velodynelogger/TurnText.h"
+#include "protocol/nmea/Sentence.h"
+
 #include <QFile>
+#include <QProcess>
 #include <QTemporaryDir>
 #include <QUdpSocket>
 #include <QtTest>
@@ -20,13 +24,14 @@ class Listener {
 public:
     Recorder recorder;
     std::vector<Turn> turns;
+    std::vector<Turn> clouds;
     std::atomic<int> ready{0};
     std::atomic<bool> ended{false};
     std::string error;
     LidarFeed feed{recorder, [this] { ++ready; }};
 
-    std::string openPcap(const std::string &path, double speed) {
-        return feed.openPcap(path, speed, {}, [this](const std::string &why) {
+    std::string openPcap(const std::string &path, double speed, bool loop = false) {
+        return feed.openPcap(path, {speed, loop}, {}, [this](const std::string &why) {
             error = why;
             ended = true;
         });
@@ -35,6 +40,8 @@ public:
     void take() {
         while (const LidarFeed::Turn turn = feed.takeTurn())
             turns.push_back(*turn);
+        while (const LidarFeed::Turn cloud = feed.takeCloud())
+            clouds.push_back(*cloud);
     }
     /// Takes turns until the capture has ended.
     bool waitForEnd() {
@@ -86,6 +93,20 @@ QString makeCapture(const QTemporaryDir &folder, int count) {
     return path;
 }
 
+/// A position packet of a sensor that is locked to a GPS; the sentence without checksum.
+std::vector<std::uint8_t> positionPacket(std::int64_t stamp_ns, const std::string &sentence) {
+    std::vector<std::uint8_t> bytes(velodyne::positionPacketSize);
+    const auto stamp_us = std::uint32_t(stamp_ns / 1000 % velodyne::stampPeriod_us);
+    for (int i = 0; i < 4; ++i)
+        bytes[0xC6 + std::size_t(i)] = std::uint8_t(stamp_us >> 8 * i);
+    bytes[0xCA] = 2;
+    const QByteArray text =
+        QByteArray::fromStdString(sentence) + '*' +
+        QByteArray::number(nmea::checksum(sentence.substr(1)), 16).rightJustified(2, '0').toUpper() + "\r\n";
+    std::copy(text.begin(), text.end(), bytes.begin() + 0xCE);
+    return bytes;
+}
+
 /// Sends every datagram of a capture to a local port, at the pace at which they were received.
 void sendCapture(const QString &path, quint16 port) {
     QUdpSocket socket;
@@ -121,6 +142,16 @@ private Q_SLOTS:
     void slowReadersLoseTurnsAndAreTold();
     void foreignDatagramsAreCounted();
     void allLasersOfATurn();
+    void aCaptureEndsWithItsSource();
+    void cloudsAreThinned();
+    void nobodyReadsClouds();
+    void positionPacketsTellTheHour();
+    void replayLoops();
+    void replaySeeks_data();
+    void replaySeeks();
+    void replayPauses();
+    void clockStepsAreNotWaitedFor();
+    void turnsAreWrittenWithAllDigits();
     void closingEndsAWaitingReplay();
     void recordsWhatComesIn();
     void recorderCountsWhatItDrops();
@@ -255,7 +286,8 @@ void TestLidarFeed::foreignDatagramsAreCounted() {
     QTRY_COMPARE(listener.feed.counts().udp.received, std::uint64_t(4));
     const LidarFeed::Counts counts = listener.feed.counts();
     QCOMPARE(counts.other, std::uint64_t(1)); // of a port that is not the sensor's
-    QCOMPARE(counts.position, std::uint64_t(1));
+    QCOMPARE(counts.gps.packets, std::uint64_t(1));
+    QCOMPARE(counts.gps.wrongValue, std::uint64_t(1));
     QCOMPARE(counts.packets.wrongFlag, std::uint64_t(1));
     QCOMPARE(counts.udp.tooLong, std::uint64_t(1));
 }
@@ -267,13 +299,265 @@ void TestLidarFeed::allLasersOfATurn() {
     std::atomic<std::size_t> points{0};
     std::atomic<int> clouds{0};
     QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
-    listener.feed.captureCloud([&](const Turn &turn) {
-        points = turn.points.size();
+    listener.feed.captureTurn([&](const Turn *turn) {
+        points = turn ? turn->points.size() : 0;
         ++clouds;
     });
     QVERIFY(listener.waitForEnd());
     QCOMPARE(clouds.load(), 1);
     QVERIFY(points >= 2117 * 32);
+}
+
+void TestLidarFeed::aCaptureEndsWithItsSource() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 100); // less than a turn
+    Listener listener;
+    std::atomic<int> refused{0};
+    const auto capture = [&refused](const Turn *turn) { refused += turn == nullptr; };
+    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
+    listener.feed.captureTurn(capture);
+    listener.feed.captureTurn(capture); // both are told
+    QVERIFY(listener.waitForEnd());
+    QCOMPARE(refused.load(), 2);
+    QCOMPARE(listener.feed.openLive("127.0.0.1", 0, 1 << 20, {}), std::string());
+    listener.feed.captureTurn(capture);
+    listener.feed.cancelCaptures();
+    QCOMPARE(refused.load(), 3);
+}
+
+void TestLidarFeed::cloudsAreThinned() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 6000);
+    Listener listener;
+    LidarFeed::Thinning thinning;
+    thinning.maximumPoints = 1000;
+    thinning.turnStep = 2;
+    listener.feed.wantClouds(thinning);
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QVERIFY(listener.waitForEnd());
+    QCOMPARE(listener.turns.size(), std::size_t(35));
+    QCOMPARE(listener.clouds.size(), std::size_t(18));
+    QCOMPARE(listener.feed.counts().cloudsDropped, std::uint64_t(0));
+    for (std::size_t i = 0; i < listener.clouds.size(); ++i) {
+        const Turn &cloud = listener.clouds[i], &ring = listener.turns[2 * i];
+        QCOMPARE(cloud.number, ring.number);
+        QCOMPARE(cloud.begin_ns, ring.begin_ns);
+        QVERIFY(cloud.points.size() <= 1000 && (cloud.partial || cloud.points.size() > 900));
+        QVERIFY(cloud.points.size() % 32 == 0 && cloud.laser == velodyne::PacketDecoder::allLasers);
+    }
+}
+
+/// They are made all the same and dropped, counted; scans are not touched. Without a reader none are made.
+void TestLidarFeed::nobodyReadsClouds() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 6000);
+    for (const bool wanted : {true, false}) {
+        Listener listener;
+        if (wanted)
+            listener.feed.wantClouds(LidarFeed::Thinning());
+        QCOMPARE(listener.openPcap(path.toStdString(), 10), std::string());
+        for (int i = 0; i < 3000 && !listener.ended; ++i) {
+            QTest::qWait(5);
+            while (const LidarFeed::Turn turn = listener.feed.takeTurn())
+                listener.turns.push_back(*turn);
+        }
+        listener.take();
+        QCOMPARE(listener.turns.size(), std::size_t(35));
+        QCOMPARE(listener.feed.counts().cloudsDropped, std::uint64_t(wanted ? 31 : 0));
+        QCOMPARE(listener.clouds.size(), std::size_t(wanted ? 4 : 0));
+    }
+}
+
+void TestLidarFeed::positionPacketsTellTheHour() {
+    // Received on a host whose clock is 5 hours slow.
+    Sensor sensor;
+    QTemporaryDir folder;
+    const QString path = folder.filePath(QStringLiteral("gps.pcap"));
+    const std::int64_t slow_ns = 5 * 3600 * std::int64_t(1000000000);
+    PcapWriter writer;
+    QVERIFY(writer.open(path.toStdString()));
+    for (int i = 0; i < 100; ++i) {
+        if (i % 14 == 0) {
+            const auto position = positionPacket(sensor.stamp(i), "$GPRMC,221319,A,3707.8178,N,12139.2690,W,"
+                                                                  "010.3,188.2,141123,013.8,E,D");
+            Datagram datagram = sensorDatagram(position, sensor.stamp(i) - slow_ns);
+            datagram.destinationPort = velodyne::positionPort;
+            writer.write(datagram);
+        }
+        writer.write(sensorDatagram(sensor.packet(i), sensor.stamp(i) - slow_ns));
+    }
+    QVERIFY(writer.close());
+    Listener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QVERIFY(listener.waitForEnd());
+    QVERIFY(std::abs(listener.turns.at(0).begin_ns - sensor.stamp(0)) < 1000);
+    const velodyne::GpsReader::State gps = listener.feed.gps();
+    QVERIFY(gps.valid && gps.utc_ns && std::abs(*gps.utc_ns - sensor.stamp(98)) < 1000);
+    QVERIFY(std::abs(gps.position->latitude_deg - 37.13030) < 1e-4);
+    QCOMPARE(listener.feed.counts().gps.packets, std::uint64_t(8));
+    QCOMPARE(listener.feed.counts().packets.clockJumps, std::uint64_t(0));
+}
+
+void TestLidarFeed::replayLoops() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 500);
+    Listener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 0, true), std::string());
+    QTRY_VERIFY((listener.take(), listener.turns.size() >= 12));
+    QVERIFY(!listener.ended);
+    listener.feed.close();
+    // Each time the same four turns, numbered on; nothing counts as lost.
+    for (std::size_t i = 4; i < 12; ++i) {
+        QCOMPARE(listener.turns[i].number, std::uint64_t(i));
+        QCOMPARE(listener.turns[i].begin_ns, listener.turns[i % 4].begin_ns);
+        QCOMPARE(listener.turns[i].points.size(), listener.turns[i % 4].points.size());
+    }
+    const velodyne::PacketCounts counts = listener.feed.counts().packets;
+    QCOMPARE(counts.lost + counts.outOfOrder + counts.clockJumps, std::uint64_t(0));
+    QVERIFY(listener.feed.player().status().loops >= 2);
+    // A file that is cut is played to the cut, once.
+    QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
+    Listener cut;
+    QCOMPARE(cut.openPcap(path.toStdString(), 0, true), std::string());
+    QVERIFY(cut.waitForEnd());
+    QVERIFY(!cut.error.empty());
+    QCOMPARE(cut.feed.counts().packets.packets, std::uint64_t(300));
+}
+
+void TestLidarFeed::replaySeeks_data() {
+    QTest::addColumn<double>("target_s");
+    QTest::addColumn<bool>("pcapng");
+    QTest::addColumn<int>("first"); // packet played after it
+    QTest::newRow("to the beginning") << 0.0 << false << 0;
+    QTest::newRow("between two packets") << 0.0100 << false << 19;
+    QTest::newRow("behind the first mark") << 3.0 << false << 5426;
+    QTest::newRow("the last packet") << 11999 * 552.96e-6 << false << 11999;
+    QTest::newRow("pcapng") << 3.0 << true << 5426;
+}
+
+/// Paused, so that nothing but the target is played after the seek; from the front and from behind.
+void TestLidarFeed::replaySeeks() {
+    QFETCH(double, target_s);
+    QFETCH(bool, pcapng);
+    QFETCH(int, first);
+    QTemporaryDir folder;
+    QString path = makeCapture(folder, 12000);
+    if (pcapng) {
+        path = folder.filePath(QStringLiteral("made.pcapng"));
+        if (QProcess::execute(QStringLiteral("editcap"),
+                              {QStringLiteral("-F"), QStringLiteral("pcapng"),
+                               folder.filePath(QStringLiteral("made.pcap")), path}) != 0)
+            QSKIP("editcap is not installed");
+    }
+    for (const double from_s : {0.5, 6.5}) {
+        std::mutex mutex;
+        std::vector<std::int64_t> stamps;
+        std::atomic<int> jumps{0};
+        PcapPlayer player(
+            [&](const Datagram &datagram) {
+                const std::lock_guard<std::mutex> lock(mutex);
+                stamps.push_back(datagram.stamp_ns);
+            },
+            [&] { ++jumps; }, [](const std::string &) {});
+        const auto played = [&] {
+            const std::lock_guard<std::mutex> lock(mutex);
+            return stamps;
+        };
+        QCOMPARE(player.start(path.toStdString(), {1, false}), std::string());
+        QTRY_VERIFY(player.status().duration_s.has_value());
+        QVERIFY(std::abs(*player.status().duration_s - 11999 * 552.96e-6) < 1e-5);
+        player.seek(from_s);
+        QTRY_VERIFY(jumps == 1 && !played().empty() && played().back() - Sensor().stamp(0) >= from_s * 1e9);
+        player.setPaused(true);
+        player.seek(target_s);
+        QTRY_COMPARE(jumps.load(), 2);
+        const std::size_t before = played().size();
+        player.setPaused(false);
+        QTRY_VERIFY(played().size() > before);
+        QCOMPARE(played()[before], Sensor().stamp(first));
+        QVERIFY(player.status().position_s >= first * 552.96e-6 - 1e-6);
+        player.stop();
+    }
+}
+
+void TestLidarFeed::replayPauses() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 1000); // 0.553 s
+    Listener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
+    QTRY_VERIFY(listener.feed.counts().packets.packets > 100);
+    listener.feed.player().setPaused(true);
+    std::uint64_t packets = 0; // one may be on its way
+    QTRY_VERIFY(packets == std::exchange(packets, listener.feed.counts().packets.packets));
+    QElapsedTimer timer;
+    timer.start();
+    while (timer.elapsed() < 700) // the whole capture would have been played
+        QTest::qWait(10);
+    QCOMPARE(listener.feed.counts().packets.packets, packets);
+    QVERIFY(listener.feed.player().status().paused && !listener.ended);
+    listener.feed.player().setPaused(false);
+    QVERIFY(listener.waitForEnd()); // and does not hurry to catch up: the rest takes its time
+    QVERIFY(timer.elapsed() > 700 + qint64(double(1000 - packets) * 0.553) - 20);
+    QVERIFY(same(listener.turns, decode(path)));
+}
+
+/// The clock of the recording host was set back by an hour, then forward by a day.
+void TestLidarFeed::clockStepsAreNotWaitedFor() {
+    QTemporaryDir folder;
+    const QString path = folder.filePath(QStringLiteral("steps.pcap"));
+    const Sensor sensor;
+    PcapWriter writer;
+    QVERIFY(writer.open(path.toStdString()));
+    for (int i = 0; i < 300; ++i) {
+        const std::int64_t off_s = i < 100 ? 0 : i < 200 ? -3600 : 86400;
+        writer.write(sensorDatagram(sensor.packet(i), sensor.stamp(i) + off_s * 1000000000));
+    }
+    QVERIFY(writer.close());
+    Listener listener;
+    QElapsedTimer timer;
+    timer.start();
+    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
+    QVERIFY(listener.waitForEnd());
+    QVERIFY(timer.elapsed() > 160 - 20); // 297 steps of 0.553 ms
+    QCOMPARE(listener.feed.counts().packets.packets, std::uint64_t(300));
+    QCOMPARE(listener.feed.counts().packets.clockJumps, std::uint64_t(2));
+    QCOMPARE(listener.feed.counts().packets.lost, std::uint64_t(0));
+}
+
+void TestLidarFeed::turnsAreWrittenWithAllDigits() {
+    Sensor sensor;
+    sensor.model = &velodyne::vlp16();
+    velodyne::TurnAssembler::Options all;
+    all.laser = velodyne::PacketDecoder::allLasers;
+    std::vector<Turn> turns;
+    velodyne::TurnAssembler assembler(all, [&](const Turn &turn) { turns.push_back(turn); });
+    const auto bytes = sensor.packet(0);
+    assembler.feed(bytes.data(), bytes.size(), sensor.stamp(0));
+    assembler.finish();
+    const Turn &turn = turns.at(0);
+    std::string csv = turnHeader(turn, TurnFormat::Csv);
+    for (const velodyne::Point &point : turn.points)
+        appendPoint(csv, turn, point, TurnFormat::Csv);
+    const QList<QByteArray> lines = QByteArray::fromStdString(csv).split('\n');
+    QCOMPARE(lines.size(), int(turn.points.size()) + 2);
+    for (std::size_t i = 0; i < turn.points.size(); ++i) {
+        const QList<QByteArray> fields = lines[int(i) + 1].split(',');
+        QCOMPARE(fields.size(), 9);
+        QVERIFY(fields[3].toDouble() == turn.points[i].azimuth &&
+                fields[4].toDouble() == turn.points[i].range);
+        QVERIFY(fields[6].toDouble() == turn.points[i].x && fields[7].toDouble() == turn.points[i].y &&
+                fields[8].toDouble() == turn.points[i].z);
+        QCOMPARE(fields[1].mid(0, 10) + fields[1].mid(11),
+                 QByteArray::number(qint64(turn.points[i].stamp_ns)));
+    }
+    for (const TurnFormat format : {TurnFormat::Pcd, TurnFormat::Ply}) {
+        std::string line;
+        appendPoint(line, turn, turn.points[5], format);
+        const QList<QByteArray> fields = QByteArray::fromStdString(line).simplified().split(' ');
+        QCOMPARE(fields.size(), 6);
+        QVERIFY(fields[0].toFloat() == float(turn.points[5].x));
+        QCOMPARE(fields[4], QByteArray("10")); // laser 5 looks 5 degrees up: ring 10
+    }
 }
 
 void TestLidarFeed::closingEndsAWaitingReplay() {

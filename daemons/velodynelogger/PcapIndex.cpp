@@ -1,0 +1,66 @@
+#include "daemons/velodynelogger/PcapIndex.h"
+
+#include <algorithm>
+
+namespace hermes {
+
+namespace {
+
+// Both are waited for, so that no capture, however its stamps lie, fills the memory: 40 bytes a mark.
+constexpr std::int64_t markTime_ns = 1000000000;
+constexpr long markBytes = 1 << 20;
+
+} // namespace
+
+void PcapIndex::start(const std::string &path) {
+    stop();
+    marks_.clear();
+    duration_ns_.reset();
+    stopping_ = false;
+    thread_ = std::thread([this, path] {
+        PcapReader reader;
+        if (reader.open(path)) // the player tells why not
+            run(reader);
+    });
+}
+
+void PcapIndex::stop() {
+    stopping_ = true;
+    if (thread_.joinable())
+        thread_.join();
+}
+
+void PcapIndex::run(PcapReader &reader) {
+    PlayTime time;
+    Datagram datagram;
+    Mark last;
+    while (!stopping_) {
+        const Mark here{time, reader.place()};
+        if (reader.next(datagram) != PcapReader::Next::Datagram) {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            duration_ns_ = time.now_ns();
+            return;
+        }
+        time.advance(datagram.stamp_ns);
+        if (reader.canSeek() && here.before.now_ns() - last.before.now_ns() >= markTime_ns &&
+            here.place.offset - last.place.offset >= markBytes) {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            marks_.push_back(here);
+            last = here;
+        }
+    }
+}
+
+std::optional<std::int64_t> PcapIndex::duration_ns() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return duration_ns_;
+}
+
+PcapIndex::Mark PcapIndex::before(std::int64_t time_ns) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto found = std::find_if(marks_.rbegin(), marks_.rend(),
+                                    [time_ns](const Mark &mark) { return mark.before.now_ns() < time_ns; });
+    return found == marks_.rend() ? Mark() : *found;
+}
+
+} // namespace hermes
