@@ -12,7 +12,6 @@ namespace hermes {
 
 namespace {
 
-constexpr std::uint32_t magicNanoseconds = 0xA1B23C4D;
 constexpr std::uint32_t version = 4u << 16 | 2; // 2.4, as two 16-bit words
 constexpr std::uint32_t snapLength = 262144;    // the most that readers accept
 constexpr std::size_t bufferSize = 256 * 1024;  // about a tenth of a second of an HDL-32E
@@ -37,8 +36,7 @@ bool PcapWriter::open(const std::string &path, bool overwrite) {
             path + ": cannot be created: " + (errno == EEXIST ? "it exists already" : std::strerror(errno));
         return false;
     }
-    for (const std::uint32_t field :
-         {magicNanoseconds, version, 0u, 0u, snapLength, std::uint32_t(LinkType::Ethernet)})
+    for (const std::uint32_t field : {magic, version, 0u, 0u, snapLength, std::uint32_t(LinkType::Ethernet)})
         appendLittleEndian(field);
     if (flush())
         return true;
@@ -88,16 +86,18 @@ bool PcapWriter::flush() {
     return true;
 }
 
-bool PcapWriter::close() {
+bool PcapWriter::close(bool durable) {
     if (!isOpen())
         return error_.empty();
     if (!flush())
         return false;
+    if (durable && ::fsync(file_) != 0)
+        error_ = path_ + ": cannot be brought to the disk: " + std::strerror(errno);
     const int result = ::close(file_);
     file_ = -1;
     if (result != 0)
         error_ = path_ + ": cannot be closed: " + std::strerror(errno);
-    return result == 0;
+    return error_.empty();
 }
 
 bool PcapWriter::fail(const std::string &what) {

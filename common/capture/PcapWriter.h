@@ -12,6 +12,10 @@ namespace hermes {
 /// records.
 class PcapWriter {
 public:
+    static constexpr std::uint32_t magic = 0xA1B23C4D; ///< of little-endian files with nanoseconds
+    static constexpr std::size_t fileHeaderBytes = 24;
+    static constexpr std::size_t recordHeaderBytes = 16;
+
     PcapWriter() = default;
     ~PcapWriter();
     PcapWriter(const PcapWriter &) = delete;
@@ -25,14 +29,17 @@ public:
     bool write(const Datagram &datagram);
     /// Writes what is collected.
     bool flush();
-    /// Flushes and closes. False when something could not be written.
-    bool close();
+    /// Flushes and closes. False when something could not be written. durable: it is on the disk.
+    bool close(bool durable = false);
 
     bool isOpen() const { return file_ >= 0; }
     const std::string &path() const { return path_; }
     const std::string &error() const { return error_; }
     std::uint64_t packets() const { return writtenPackets_ + bufferedPackets_; }
     std::uint64_t bytes() const { return writtenBytes_ + buffer_.size(); }
+    /// Of these, what the last flush or error left in the file.
+    std::uint64_t writtenPackets() const { return writtenPackets_; }
+    std::uint64_t writtenBytes() const { return writtenBytes_; }
 
 private:
     bool fail(const std::string &what);

@@ -130,10 +130,8 @@ void Recording::updateHealth() {
     else if (!unrepaired_.isEmpty())
         health_.set("recording", HealthLevel::Warn, unrepaired_.join("; "), values);
     else if (lost > 0)
-        health_.set(
-            "recording", HealthLevel::Warn,
-            QString("%1: %2 are missing of what was to be recorded, see losses").arg(folder_).arg(lost),
-            values);
+        health_.set("recording", HealthLevel::Warn,
+                    folder_ + ": not all that was to be recorded is there, see losses", values);
     else
         health_.set("recording", HealthLevel::Ok,
                     phase_ == Phase::Recording ? "recording to " + folder_ : QString("not recording"),

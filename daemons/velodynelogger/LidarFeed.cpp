@@ -17,8 +17,8 @@ std::uint32_t firingStep(const velodyne::SensorModel &model, std::int64_t firing
 LidarFeed::LidarFeed(Recorder &recorder, Notify turnReady)
     : recorder_(recorder)
     , turnReady_(std::move(turnReady))
-    , receiver_([this](const Datagram &datagram) { handle(datagram); })
-    , player_([this](const Datagram &datagram) { handle(datagram); }, [this] { jump(); },
+    , live_(recorder, [this](const Datagram &datagram) { decode(datagram); })
+    , player_([this](const Datagram &datagram) { play(datagram); }, [this] { jump(); },
               [this](const std::string &error) {
                   finish();
                   ended_(error);
@@ -33,7 +33,7 @@ std::string LidarFeed::openLive(const std::string &address, std::uint16_t port, 
     close();
     lossless_ = false;
     begin(options);
-    return receiver_.start(address, port, bufferBytes);
+    return live_.start({address, port, options.positionPort, bufferBytes});
 }
 
 std::string LidarFeed::openPcap(const std::string &path, const PcapPlayer::Options &play,
@@ -67,7 +67,7 @@ void LidarFeed::close() {
         closing_ = true; // a player that waits for room must end
     }
     taken_.notify_all();
-    receiver_.stop();
+    live_.stop();
     player_.stop();
     finish();
 }
@@ -112,17 +112,17 @@ void LidarFeed::forAssemblers(Function function) {
             function(**assembler);
 }
 
-void LidarFeed::handle(const Datagram &datagram) {
+void LidarFeed::play(const Datagram &datagram) {
     recorder_.push(datagram, lossless_);
     if (lossless_) { // before the decoder is locked, so that counts() answers meanwhile
         std::unique_lock<std::mutex> lock(queueMutex_);
         taken_.wait(lock, [this] { return (!turns_.isFull() && !clouds_.isFull()) || closing_; });
     }
-    const std::lock_guard<std::mutex> lock(decoderMutex_);
     decode(datagram);
 }
 
 void LidarFeed::decode(const Datagram &datagram) {
+    const std::lock_guard<std::mutex> lock(decoderMutex_);
     if (datagram.size == velodyne::positionPacketSize) {
         if (gps_.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
             forAssemblers(
@@ -220,7 +220,7 @@ LidarFeed::Counts LidarFeed::counts() const {
         counts.model = ring_->model();
     }
     counts.gps = gps_.counts();
-    counts.udp = receiver_.counts();
+    counts.udp = live_.counts();
     const std::lock_guard<std::mutex> queueLock(queueMutex_);
     counts.turnsDropped = turns_.dropped();
     counts.cloudsDropped = clouds_.dropped();

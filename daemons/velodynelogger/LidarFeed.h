@@ -1,9 +1,8 @@
 #pragma once
 
+#include "daemons/velodynelogger/LiveSource.h"
 #include "daemons/velodynelogger/PcapPlayer.h"
-#include "daemons/velodynelogger/Recorder.h"
 #include "daemons/velodynelogger/TurnQueue.h"
-#include "daemons/velodynelogger/UdpReceiver.h"
 #include "protocol/velodyne/GpsReader.h"
 
 namespace hermes {
@@ -19,7 +18,8 @@ public:
         velodyne::Returns returns = velodyne::Returns::Strongest;
         std::int64_t stampOffset_ns = 0;
         std::uint16_t dataPort =
-            velodyne::dataPort; ///< of other ports only datagrams of the right size are decoded
+            velodyne::dataPort;         ///< of other ports only datagrams of the right size are decoded
+        std::uint16_t positionPort = 0; ///< received live as well; 0: none
     };
     /// How turns of all lasers are thinned.
     struct Thinning {
@@ -28,7 +28,7 @@ public:
     };
     struct Counts {
         velodyne::PacketCounts packets;
-        UdpReceiver::Counts udp;
+        LiveSource::Counts udp;
         velodyne::GpsReader::Counts gps; ///< of position packets
         std::uint64_t other = 0;         ///< of another port and another size
         std::uint64_t turns = 0;         ///< finished
@@ -71,8 +71,9 @@ public:
     const PcapPlayer &player() const { return player_; }
     Counts counts() const;
     velodyne::GpsReader::State gps() const;
-    std::uint16_t port() const { return receiver_.port(); } ///< of live reception
-    std::string receiveError() const { return receiver_.error(); }
+    std::uint16_t port() const { return live_.port(); } ///< of live reception
+    std::string receiveError() const { return live_.error(); }
+    const std::string &positionError() const { return live_.positionError(); }
 
 private:
     using Assembler = std::unique_ptr<velodyne::TurnAssembler>;
@@ -80,7 +81,7 @@ private:
     void begin(const Options &options);
     void finish();
     void jump();
-    void handle(const Datagram &datagram);
+    void play(const Datagram &datagram);
     void decode(const Datagram &datagram);
     Assembler makeAssembler(int laser, velodyne::TurnAssembler::Sink sink) const;
     void makeCloudAssembler();
@@ -112,7 +113,7 @@ private:
     TurnQueue clouds_{4};
     bool closing_ = false;
 
-    UdpReceiver receiver_; // last: their threads end before what they use
+    LiveSource live_; // last: their threads end before what they use
     PcapPlayer player_;
 };
 

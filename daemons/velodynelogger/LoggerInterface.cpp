@@ -1,8 +1,6 @@
 // What the Velodyne logger offers: its settings, topics and commands.
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
-#include "common/Log.h"
-
 namespace hermes {
 
 void VelodyneLogger::declareSettings() {
@@ -16,10 +14,16 @@ void VelodyneLogger::declareSettings() {
                    .appliesOnRestart()
                    .group("Source"));
     addSetting(
+        Field::integer("source.position_port", "UDP port of the sensor's position packets; 0: not received")
+            .range(0, 65535)
+            .byDefault(velodyne::positionPort)
+            .appliesOnRestart()
+            .group("Source"));
+    addSetting(
         Field::integer("source.receive_buffer_bytes", "Room the system keeps for packets not yet taken")
             .unit("byte")
             .range(65536, 268435456)
-            .byDefault(4194304) // 1.7 s of packets
+            .byDefault(16777216) // for 3 s of packets, or 0.3 s of a burst of 20,000 a second
             .appliesOnRestart()
             .group("Source"));
     addSetting(Field::text("source.pcap", "Capture file to replay at the start instead of receiving")
@@ -68,10 +72,9 @@ void VelodyneLogger::declareSettings() {
                    .range(1, 1000)
                    .byDefault(1)
                    .group("Cloud"));
-    addSetting(Field::text("record.folder", "Where recordings are kept; made when missing")
-                   .byDefault("recordings")
-                   .appliesOnRestart()
-                   .group("Recording"));
+    for (const Field &field : Recording::settingFields())
+        addSetting(field);
+    settings().addRule(Recording::checkSettings);
 }
 
 void VelodyneLogger::declareTopics() {
@@ -87,7 +90,8 @@ void VelodyneLogger::declareTopics() {
               "firing), duration_s, partial, lost_packets, frame, model, and of its points, in the order "
               "of measuring: x, y, z (m, sensor's frame: x ahead, y left, z up), laser, intensity")
             .schema({{"type", "object"}}));
-    addTopic(Topic("lidar", "Once a second: source, model, rpm, packet_rate_hz, gps, and since the source "
+    addTopic(Topic("lidar", "Once a second: source, model, rpm, packet_rate_hz, receive_buffer_bytes "
+                            "(granted), gps, and since the source "
                             "was opened packets, turns, "
                             "lost and wrong packets by kind, drops by kernel and queues, recording")
                  .schema({{"type", "object"}})
@@ -142,51 +146,9 @@ void VelodyneLogger::declareSourceCommands() {
 }
 
 void VelodyneLogger::declareRecordCommands() {
-    addCommand(
-        Command("record.start", "Records all packets that come in to NAME.pcap in the folder of recordings")
-            .param(Field::text("name", "Of the recording, without path"))
-            .returns({{"type", "object"}})
-            .example({{"name", "drive"}}, QJsonObject{{"recording", true}, {"path", "/data/drive.pcap"}})
-            .handler([this](const Call &call) { return startRecording(call.text("name")); }));
-    addCommand(Command("record.stop", "Ends the recording; everything is on disk when this returns")
-                   .returns({{"type", "object"}})
-                   .handler([this](const Call &) { return stopRecording(); }));
-    addCommand(Command("record.status",
-                       "Path, packets, bytes, packets dropped, and the error that ended a recording")
-                   .returns({{"type", "object"}})
-                   .handler([this](const Call &) -> Result<QJsonValue> { return recordStatus(); }));
-    addCommand(
-        Command("record.list", "The recordings in the folder, the latest first: name, bytes, modified (s)")
-            .returns({{"type", "array"}})
-            .handler([this](const Call &) -> Result<QJsonValue> { return folder_.list(); }));
-}
-
-Result<QJsonValue> VelodyneLogger::startRecording(const QString &name) {
-    if (recorder_.isRecording())
-        return Error(ErrorCode::NotReady, "already recording to " +
-                                              QString::fromStdString(recorder_.status().path) +
-                                              "; record.stop ends it");
-    const Result<QString> path = folder_.newFile(name, "pcap");
-    if (!path)
-        return path.error();
-    const std::string error = recorder_.start(path->toStdString());
-    if (!error.empty())
-        return diskError(QString::fromStdString(error), *path);
-    logInfo("recording", "recording to " + *path);
-    updateHealth();
-    return recordStatus();
-}
-
-Result<QJsonValue> VelodyneLogger::stopRecording() {
-    const QString path = QString::fromStdString(recorder_.status().path);
-    if (!recorder_.isRecording() && recorder_.status().error.empty())
-        return Error(ErrorCode::NotReady, "nothing is being recorded; record.start begins");
-    const std::string error = recorder_.stop();
-    updateHealth();
-    if (!error.empty())
-        return diskError(QString::fromStdString(error), path);
-    logInfo("recording", path + " is complete");
-    return recordStatus();
+    for (const Command &command : recording_.commands())
+        addCommand(command);
+    connect(&recording_, &Recording::changed, this, [this] { publish("lidar", lidarState()); });
 }
 
 } // namespace hermes

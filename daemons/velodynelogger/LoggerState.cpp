@@ -76,30 +76,19 @@ QJsonObject VelodyneLogger::lidarState() {
             {"position_packets", double(counts.gps.packets)},
             {"other_datagrams", double(counts.other + counts.udp.tooLong)},
             {"kernel_drops", double(counts.udp.kernelDrops)},
+            {"decoder_drops", double(counts.udp.decoderDrops)},
+            {"receive_buffer_bytes", counts.udp.bufferBytes},
             {"turns_dropped", double(counts.turnsDropped)},
             {"clouds_dropped", double(counts.cloudsDropped)},
-            {"recording", recordStatus()}};
-}
-
-QJsonObject VelodyneLogger::recordStatus() const {
-    const Recorder::Status status = recorder_.status();
-    QJsonObject state{{"recording", status.recording},
-                      {"path", QString::fromStdString(status.path)},
-                      {"packets", double(status.packets)},
-                      {"bytes", double(status.bytes)},
-                      {"dropped", double(status.dropped)}};
-    if (!status.error.empty()) {
-        const Error error =
-            diskError(QString::fromStdString(status.error), QString::fromStdString(status.path));
-        state.insert("error",
-                     QJsonObject{{"code", error.code}, {"message", error.message}, {"data", error.data}});
-    }
-    return state;
+            {"recording", recording_.status()}};
 }
 
 void VelodyneLogger::updateHealth() {
     updateSourceHealth(feed_.counts());
-    updateRecordHealth();
+    if (source_ == Source::Live && !feed_.positionError().empty())
+        health().set("position packets", HealthLevel::Warn, QString::fromStdString(feed_.positionError()));
+    else
+        health().remove("position packets");
 }
 
 void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
@@ -107,13 +96,14 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     const std::uint64_t wrong =
         packets.wrongSize + packets.wrongFlag + packets.wrongValue + packets.otherModel;
     const std::uint64_t lost = packets.lost + packets.outOfOrder + counts.udp.kernelDrops +
-                               counts.turnsDropped + counts.cloudsDropped;
+                               counts.udp.decoderDrops + counts.turnsDropped + counts.cloudsDropped;
     const QJsonObject values{{"packets", double(packets.packets)},
                              {"packet_rate_hz", packetRate_},
                              {"rpm", counts.rpm},
                              {"lost", double(packets.lost)},
                              {"out_of_order", double(packets.outOfOrder)},
                              {"kernel_drops", double(counts.udp.kernelDrops)},
+                             {"decoder_drops", double(counts.udp.decoderDrops)},
                              {"turns_dropped", double(counts.turnsDropped)},
                              {"clouds_dropped", double(counts.cloudsDropped)},
                              {"wrong", double(wrong)}};
@@ -148,20 +138,6 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
         set(HealthLevel::Warn, "packets or turns were lost");
     else
         set(HealthLevel::Ok, "packets come from " + sourceName_);
-}
-
-void VelodyneLogger::updateRecordHealth() {
-    const Recorder::Status status = recorder_.status();
-    const QJsonObject values = recordStatus();
-    if (!status.error.empty())
-        health().set("recording", HealthLevel::Failed, QString::fromStdString(status.error), values);
-    else if (status.dropped > 0)
-        health().set("recording", HealthLevel::Warn, "the disk was too slow: packets are missing", values);
-    else
-        health().set("recording", HealthLevel::Ok,
-                     status.recording ? "recording to " + QString::fromStdString(status.path)
-                                      : "not recording",
-                     values);
 }
 
 } // namespace hermes

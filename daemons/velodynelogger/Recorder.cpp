@@ -1,129 +1,174 @@
 #include "daemons/velodynelogger/Recorder.h"
 
-#include <chrono>
+#include "common/recording/DiskError.h"
+#include "daemons/velodynelogger/PcapRepair.h"
+#include "protocol/velodyne/PositionPacket.h"
+
+#include <algorithm>
 
 namespace hermes {
 
 namespace {
 
-constexpr std::chrono::seconds flushPeriod{1};          // what a crash may cost
-constexpr std::chrono::milliseconds collectPeriod{100}; // rather than to wake up for each packet
-constexpr std::size_t collectBytes = 256 * 1024;
+constexpr std::size_t datagramsAtOnce = 4096; // until progress is told
+constexpr std::chrono::milliseconds period{
+    20}; // what a crash may cost; rather than to wake up for each packet
+
+/// What the last position packet says, if it says anything.
+QJsonObject gpsOf(const std::vector<std::uint8_t> &bytes, std::uint64_t packets) {
+    QJsonObject gps{{"position_packets", double(packets)}};
+    velodyne::PositionPacket packet;
+    if (velodyne::decodePosition(bytes.data(), bytes.size(), packet) != velodyne::PositionFault::None)
+        return gps;
+    gps.insert("pps", velodyne::toText(packet.pps));
+    gps.insert("stamp_us", double(packet.stamp_us));
+    gps.insert("nmea", QString::fromLatin1(packet.nmea.data(), int(packet.nmea.size())));
+    return gps;
+}
 
 } // namespace
 
-void Recorder::Batch::clear() {
-    datagrams.clear();
-    bytes.clear();
-}
-
 Recorder::Recorder(std::size_t capacity)
-    : capacity_(capacity) {}
+    : ring_(capacity) {}
 
 Recorder::~Recorder() {
-    stop();
+    end();
 }
 
-std::string Recorder::start(const std::string &path) {
-    stop();
-    if (!writer_.open(path))
-        return writer_.error();
-    const std::lock_guard<std::mutex> lock(mutex_);
-    status_ = Status();
-    status_.recording = true;
-    status_.path = path;
-    status_.bytes = writer_.bytes();
+Result<void> Recorder::begin(const RecordingPlan &plan) {
+    end();
+    const std::string error = files_.open(plan);
+    account_ = PacketAccount();
+    queueDrops_ = kernelDrops_ = tooLong_ = 0;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        progress_ = Progress();
+    }
+    publish(error);
+    if (!error.empty())
+        return diskError(QString::fromStdString(error), plan.folder);
     stopping_ = false;
-    queue_.clear();
-    accepted_ = 0;
+    accepting_ = true;
     thread_ = std::thread([this] { run(); });
     return {};
 }
 
-std::string Recorder::stop() {
-    {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        stopping_ = true;
-    }
-    filled_.notify_all();
-    emptied_.notify_all();
+void Recorder::end() {
+    accepting_ = false;
+    while (pushing_) // the queue is to be complete, and empty when the next recording begins
+        std::this_thread::yield();
+    stopping_ = true;
     if (thread_.joinable())
         thread_.join();
-    return status().error;
 }
 
 void Recorder::push(const Datagram &datagram, bool wait) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    const auto fits = [&] { return queue_.bytes.size() + datagram.size <= capacity_; };
-    if (wait)
-        emptied_.wait(lock, [&] { return fits() || !status_.recording || stopping_; });
-    if (!status_.recording || stopping_)
-        return;
-    if (!fits()) {
-        ++status_.dropped;
-        return;
+    pushing_ = true;
+    while (accepting_) {
+        if (ring_.push(datagram))
+            break;
+        if (!wait) {
+            ++queueDrops_;
+            break;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    queue_.datagrams.push_back(datagram);
-    queue_.bytes.insert(queue_.bytes.end(), datagram.payload, datagram.payload + datagram.size);
-    ++accepted_;
-    if (queue_.bytes.size() >= collectBytes)
-        filled_.notify_one();
+    pushing_ = false;
 }
 
-bool Recorder::isRecording() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return status_.recording;
-}
-
-Recorder::Status Recorder::status() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return status_;
+void Recorder::noteLosses(std::uint64_t kernel, std::uint64_t tooLong) {
+    if (!accepting_)
+        return;
+    kernelDrops_ += kernel;
+    tooLong_ += tooLong;
 }
 
 void Recorder::run() {
-    Batch batch;
-    auto nextFlush = std::chrono::steady_clock::now() + flushPeriod;
-    bool writing = true;
+    std::string error;
     bool stopping = false;
-    while (writing && !stopping) {
-        {
-            std::unique_lock<std::mutex> lock(mutex_);
-            filled_.wait_for(lock, collectPeriod,
-                             [this] { return stopping_ || queue_.bytes.size() >= collectBytes; });
-            stopping = stopping_;
-            std::swap(batch, queue_);
-        }
-        emptied_.notify_all();
-        writing = write(batch);
-        if (writing && std::chrono::steady_clock::now() >= nextFlush) {
-            writing = writer_.flush();
-            nextFlush = std::chrono::steady_clock::now() + flushPeriod;
-        }
-        const std::lock_guard<std::mutex> lock(mutex_);
-        status_.packets = writer_.packets();
-        status_.bytes = writer_.bytes();
-        batch.clear();
+    while (error.empty() && !stopping) {
+        stopping = stopping_; // before the queue is looked at for the last time
+        bool more = true;
+        while (error.empty() && more)
+            error = writeWaiting(more);
+        if (!stopping)
+            std::this_thread::sleep_for(period);
     }
-    const bool closed = writer_.close();
-    const std::lock_guard<std::mutex> lock(mutex_);
-    status_.recording = false;
-    status_.bytes = writer_.bytes();
-    status_.packets = writer_.packets();
-    status_.dropped += accepted_ - writer_.packets();
-    if (!closed)
-        status_.error = writer_.error();
-    emptied_.notify_all();
+    accepting_ = false;
+    while (pushing_)
+        std::this_thread::yield();
+    Datagram datagram;
+    for (; ring_.front(datagram); ring_.pop()) // nothing but after an error
+        account_.add(datagram);
+    const std::string closing = files_.close();
+    publish(error.empty() ? closing : error);
 }
 
-bool Recorder::write(const Batch &batch) {
-    std::size_t offset = 0;
-    for (Datagram datagram : batch.datagrams) {
-        datagram.payload = batch.bytes.data() + offset;
-        offset += datagram.size;
-        if (!writer_.write(datagram))
-            return false;
+std::string Recorder::writeWaiting(bool &more) {
+    Datagram datagram;
+    std::string error;
+    std::size_t count = 0;
+    for (; error.empty() && count < datagramsAtOnce && ring_.front(datagram); ++count) {
+        account_.add(datagram);
+        error = files_.write(datagram);
+        ring_.pop();
     }
-    return true;
+    if (error.empty())
+        error = files_.flush();
+    more = count == datagramsAtOnce;
+    publish(error);
+    return error;
+}
+
+void Recorder::publish(const std::string &error) {
+    const std::vector<PcapFiles::File> &files = files_.files();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    // Files before the last that is known here have not changed.
+    const std::size_t known = std::min(progress_.files.size(), files.size());
+    progress_.files.resize(files.size());
+    std::copy(files.begin() + std::ptrdiff_t(known > 0 ? known - 1 : 0), files.end(),
+              progress_.files.begin() + std::ptrdiff_t(known > 0 ? known - 1 : 0));
+    progress_.path = files.empty() ? std::string() : files_.path();
+    progress_.counts = account_.counts();
+    progress_.position = account_.position();
+    progress_.error = error;
+}
+
+RecordingState Recorder::state() const {
+    Progress progress;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        progress = progress_;
+    }
+    const PacketAccount::Counts &counts = progress.counts;
+    RecordingState state;
+    state.path = QString::fromStdString(progress.path);
+    state.files = toJson(progress.files);
+    std::uint64_t written = 0;
+    for (const PcapFiles::File &file : progress.files) {
+        state.bytes += double(file.bytes);
+        written += file.packets;
+    }
+    state.counts = {{"packets", double(written)},
+                    {"data", double(counts.data)},
+                    {"position", double(counts.position)},
+                    {"other", double(counts.other)},
+                    {"late", double(counts.late)},
+                    {"sensor_clock_jumps", double(counts.sensorClockJumps)},
+                    {"host_clock_steps", double(counts.hostClockSteps)}};
+    state.losses = {{"missing", double(counts.missing)},
+                    {"kernel", double(kernelDrops_)},
+                    {"queue", double(queueDrops_)},
+                    {"too_long", double(tooLong_)},
+                    {"unwritten", double(counts.packets - written)}};
+    state.gps = gpsOf(progress.position, counts.position);
+    if (!progress.error.empty())
+        state.error = diskError(QString::fromStdString(progress.error), state.path);
+    return state;
+}
+
+Result<void> Recorder::repair(const RecordingPlan &plan, QJsonObject &sidecar) {
+    return repairPcapFiles(plan, sidecar);
 }
 
 } // namespace hermes

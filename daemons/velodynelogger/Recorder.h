@@ -1,59 +1,61 @@
 #pragma once
 
-#include "common/capture/PcapWriter.h"
+#include "daemons/velodynelogger/DatagramRing.h"
+#include "daemons/velodynelogger/PacketAccount.h"
+#include "daemons/velodynelogger/PcapFiles.h"
 
-#include <condition_variable>
-#include <mutex>
 #include <thread>
 
 namespace hermes {
 
-/// Writes datagrams to a capture file in a thread of its own, so that a slow disk does not hold up receiving.
-/// What does not fit the bounded queue is dropped and counted.
-class Recorder {
+/// Writes datagrams to capture files in a thread of its own, so that a slow disk does not hold up receiving.
+/// What does not fit the bounded queue is dropped and counted. What was pushed is in the file, safe from the
+/// end of this process, a few hundredths of a second later.
+class Recorder : public RecordingWriter {
 public:
-    struct Status {
-        bool recording = false;
-        std::string path;          ///< of this recording or the last
-        std::uint64_t packets = 0; ///< written or about to be
-        std::uint64_t bytes = 0;   ///< of the file
-        std::uint64_t dropped = 0; ///< the queue was full, or the disk failed
-        std::string error;         ///< of the disk; it ended the recording
-    };
+    /// capacity: bytes that may wait for the disk.
+    explicit Recorder(std::size_t capacity = 12 * 1024 * 1024);
+    ~Recorder() override;
 
-    /// capacity: bytes of payload that may wait for the disk.
-    explicit Recorder(std::size_t capacity = 16 * 1024 * 1024);
-    ~Recorder();
+    Result<void> begin(const RecordingPlan &plan) override;
+    void end() override;
+    RecordingState state() const override;
+    Result<void> repair(const RecordingPlan &plan, QJsonObject &sidecar) override;
 
-    /// Fails on an existing file. An empty string on success, else what failed.
-    std::string start(const std::string &path);
-    /// Writes what waits and closes the file. An empty string on success, else what failed.
-    std::string stop();
-    /// Takes a copy; does nothing unless recording. wait: rather wait for the disk than drop. Any thread.
+    /// Takes a copy; does nothing unless recording. wait: rather wait for the disk than drop. From one thread
+    /// at a time.
     void push(const Datagram &datagram, bool wait);
+    /// What was lost before it could be pushed. Any thread.
+    void noteLosses(std::uint64_t kernel, std::uint64_t tooLong);
 
-    bool isRecording() const;
-    Status status() const;
+    bool isRecording() const { return accepting_; }
 
 private:
-    struct Batch {
-        std::vector<Datagram> datagrams; ///< payload not set; in the order of bytes
-        std::vector<std::uint8_t> bytes;
-        void clear();
+    /// Of a recording, together true at one moment.
+    struct Progress {
+        std::string path;
+        std::vector<PcapFiles::File> files;
+        PacketAccount::Counts counts;
+        std::vector<std::uint8_t> position; ///< the last position packet
+        std::string error;
     };
-    void run();
-    bool write(const Batch &batch);
 
-    const std::size_t capacity_;
+    void run();
+    std::string writeWaiting(bool &more);
+    void publish(const std::string &error);
+
+    DatagramRing ring_;
+    std::atomic<bool> accepting_{false};
+    std::atomic<bool> pushing_{false};
+    std::atomic<bool> stopping_{false};
+    std::atomic<std::uint64_t> queueDrops_{0};
+    std::atomic<std::uint64_t> kernelDrops_{0};
+    std::atomic<std::uint64_t> tooLong_{0};
     std::thread thread_;
-    PcapWriter writer_;        ///< of the thread while it runs
-    mutable std::mutex mutex_; // guards what follows
-    std::condition_variable filled_;
-    std::condition_variable emptied_;
-    bool stopping_ = false;
-    Batch queue_;
-    std::uint64_t accepted_ = 0; ///< of this recording
-    Status status_;
+    PcapFiles files_;       ///< of the thread while it runs
+    PacketAccount account_; ///< of the thread while it runs
+    mutable std::mutex mutex_;
+    Progress progress_; ///< guarded by the mutex
 };
 
 } // namespace hermes

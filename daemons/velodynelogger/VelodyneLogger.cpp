@@ -38,6 +38,7 @@ Result<void> VelodyneLogger::start() {
     folder_.setPath(settings().text("record.folder"));
     second_.start(1000);
     const QString pcap = settings().text("source.pcap");
+    recording_.open();
     const Result<void> result =
         pcap.isEmpty() ? openLive()
                        : openPcap(pcap, {settings().number("source.speed"), settings().flag("source.loop")});
@@ -49,7 +50,7 @@ void VelodyneLogger::stop() {
     second_.stop();
     retry_.stop();
     feed_.close();
-    recorder_.stop();
+    recording_.close();
 }
 
 LidarFeed::Options VelodyneLogger::options() {
@@ -60,6 +61,7 @@ LidarFeed::Options VelodyneLogger::options() {
     options.returns = velodyne::returnsFromText(settings().text("decode.returns").toStdString());
     options.stampOffset_ns = std::int64_t(settings().number("decode.stamp_offset_s") * 1e9);
     options.dataPort = quint16(settings().integer("source.port"));
+    options.positionPort = quint16(settings().integer("source.position_port"));
     return options;
 }
 

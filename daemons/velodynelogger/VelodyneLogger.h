@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "common/recording/Recording.h"
 #include "daemons/velodynelogger/LidarFeed.h"
 #include "daemons/velodynelogger/RecordFolder.h"
 
@@ -38,9 +39,6 @@ private:
     Result<QJsonValue> seek(double time_s);
     Result<QJsonValue> pause(bool paused);
 
-    Result<QJsonValue> startRecording(const QString &name);
-    Result<QJsonValue> stopRecording();
-    QJsonObject recordStatus() const;
     void captureTurn(const Call &call, const Reply &reply);
 
     void publishTurns();
@@ -52,7 +50,6 @@ private:
     QJsonObject gpsState() const;
     void updateHealth();
     void updateSourceHealth(const LidarFeed::Counts &counts);
-    void updateRecordHealth();
 
     Source source_ = Source::None;
     QString sourceName_;       ///< "udp://ADDRESS:PORT" or a path
@@ -62,6 +59,7 @@ private:
         0; ///< counts sources, so that the end of an old one is not taken for that of the new
 
     Recorder recorder_;
+    Recording recording_{identity().name, settings(), health(), recorder_};
     RecordFolder folder_;
     LidarFeed feed_;
     QTimer second_;

@@ -80,7 +80,9 @@ class Demo:
         # A few scans more, taken standing still, then the end of the stream.
         seen = len(poses.messages)
         self.wait(lambda: len(poses.messages) >= seen + 5, "the last scans")
-        self.recording = {**self.logger.call("record.stop"), "path": "recording.pcap"}  # where it will be
+        told = self.logger.call("record.stop")
+        self.recording = {"path": os.path.join("recording", os.path.basename(told["path"])),  # where it will be
+                          "bytes": told["bytes"], **told["counts"], "losses": told["losses"]}
         self.matcher.call("matcher.stop")
         self.wait(lambda: self.matcher.call("matcher.state")["waiting"] == 0, "the matcher")
         if sys.stderr.isatty():

@@ -60,7 +60,7 @@ class DemoTest(unittest.TestCase):
         status, out, err = self.finish(self.start(), 120)
         seconds = time.monotonic() - begin
         self.assertEqual(status, 0, out + err)
-        self.assertLessEqual({"map.svg", "map.csv", "trajectory.tum", "recording.pcap", "summary.json"},
+        self.assertLessEqual({"map.svg", "map.csv", "trajectory.tum", "recording", "summary.json"},
                              set(os.listdir(self.out)))
         with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
@@ -76,14 +76,14 @@ class DemoTest(unittest.TestCase):
         self.assertGreaterEqual(len(lines), summary["scans"])
         self.assertTrue(all(len(line.split()) == 8 for line in lines))
         if shutil.which("capinfos"):
-            told = subprocess.run(["capinfos", "-M", "-c", os.path.join(self.out, "recording.pcap")],
+            told = subprocess.run(["capinfos", "-M", "-c", os.path.join(self.out, "recording", "velodynelogger-0001.pcap")],
                                   capture_output=True, text=True, check=True).stdout
             self.assertGreater(int(told.split("Number of packets:")[1].split()[0]), 30 * 1800)
 
     def records(self):
         """Whether the running demo has written a part of its recording."""
         return any(os.path.getsize(path) > 100000
-                   for path in glob.glob(os.path.join(self.folder, "hermes-demo-*", "results", "recording.pcap")))
+                   for path in glob.glob(os.path.join(self.folder, "hermes-demo-*", "results", "recording", "*.pcap")))
 
     def interrupt(self, number):
         process = self.start()

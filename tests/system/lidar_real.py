@@ -87,7 +87,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         lidar_port = free_port(0, socket.SOCK_DGRAM)
         process = Process(BINARIES, "velodynelogger", free_port(0), folder,
-                          {"source.port": lidar_port, "source.address": "127.0.0.1", "record.folder": folder})
+                          {"source.port": lidar_port, "source.address": "127.0.0.1", "source.position_port": 0,
+                           "record.folder": folder})
         try:
             logger = process.connect()
             stream = Daemon(port=process.port, timeout=30).subscribe("scan2d", queue=100)
@@ -95,7 +96,7 @@ def main():
             logger.call("record.start", name="live")
             send_over_udp(lidar_port)
             check_losses(status_when(logger, lambda s: s["packets"] == 500))
-            assert logger.call("record.stop")["packets"] == 500
+            assert logger.call("record.stop")["counts"]["packets"] == 500
             logger.call("source.close")  # delivers the last, partial turn
             check_scans(receive(stream, len(expected)), expected, "live")
 
@@ -108,7 +109,7 @@ def main():
         assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
         # What was recorded live is what was sent, byte for byte.
         sent = [payload for _, payload in reference.datagrams(CAPTURE)]
-        assert [payload for _, payload in reference.datagrams(os.path.join(folder, "live.pcap"))] == sent
+        assert [payload for _, payload in reference.datagrams(os.path.join(folder, "live", "velodynelogger-0001.pcap"))] == sent
     print(f"{len(expected)} turns, {sum(map(len, expected))} points: the same by ring, live, by replay and by the reference")
     return 0
 

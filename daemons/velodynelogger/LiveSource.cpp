@@ -1,0 +1,68 @@
+#include "daemons/velodynelogger/LiveSource.h"
+
+namespace hermes {
+
+namespace {
+
+constexpr std::chrono::milliseconds patience{1000}; // a wait ends as soon as something comes
+
+} // namespace
+
+LiveSource::LiveSource(Recorder &recorder, Sink decode)
+    : recorder_(recorder)
+    , decode_(std::move(decode))
+    , receiver_(
+          {[this](const Datagram &datagram) { take(datagram); },
+           [this](const UdpReceiver::Losses &losses) { recorder_.noteLosses(losses.kernel, losses.tooLong); },
+           [this] { ring_.wake(); }}) {}
+
+LiveSource::~LiveSource() {
+    stop();
+}
+
+std::string LiveSource::start(const UdpReceiver::Options &options) {
+    stop();
+    drops_ = 0;
+    stopping_ = false;
+    ring_.interrupt(false);
+    const std::string error = receiver_.start(options);
+    if (error.empty())
+        thread_ = std::thread([this] { run(); });
+    return error;
+}
+
+void LiveSource::stop() {
+    receiver_.stop();
+    stopping_ = true;
+    ring_.interrupt();
+    if (thread_.joinable())
+        thread_.join();
+}
+
+void LiveSource::take(const Datagram &datagram) {
+    recorder_.push(datagram, false);
+    if (!ring_.push(datagram))
+        ++drops_;
+}
+
+void LiveSource::run() {
+    Datagram datagram;
+    for (;;) {
+        while (ring_.front(datagram)) {
+            decode_(datagram);
+            ring_.pop();
+        }
+        if (stopping_ && ring_.used() == 0)
+            return;
+        ring_.wait(patience);
+    }
+}
+
+LiveSource::Counts LiveSource::counts() const {
+    Counts counts;
+    static_cast<UdpReceiver::Counts &>(counts) = receiver_.counts();
+    counts.decoderDrops = drops_;
+    return counts;
+}
+
+} // namespace hermes
