@@ -1,8 +1,11 @@
 #include "gui/desktop/MainWindow.h"
 
 #include "gui/desktop/TopBar.h"
+#include "gui/desktop/drive/DriveGamepad.h"
+#include "gui/desktop/drive/DriveKeys.h"
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/DaemonsPanel.h"
+#include "gui/desktop/panels/DrivePanel.h"
 #include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
@@ -17,11 +20,10 @@
 
 namespace hermes {
 
-MainWindow::MainWindow(Fleet &fleet, const QString &layoutFile, QWidget *parent)
+MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent)
     : QMainWindow(parent)
-    , fleet_(fleet)
-    , layoutFile_(layoutFile)
-    , topBar_(new TopBar(fleet)) {
+    , drive_(drive)
+    , layoutFile_(layoutFile) {
     setWindowTitle(tr("Hermes"));
     setDockNestingEnabled(true);
     setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
@@ -31,14 +33,18 @@ MainWindow::MainWindow(Fleet &fleet, const QString &layoutFile, QWidget *parent)
     bar->setObjectName("topBar");
     bar->setMovable(false);
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
-    bar->addWidget(topBar_);
+    bar->addWidget(new TopBar(fleet, drive_));
 
     setCentralWidget(new MapPanel(fleet));
     addPanel(Qt::LeftDockWidgetArea, new DaemonsPanel(fleet), tr("Daemons"), "daemons");
     addPanel(Qt::BottomDockWidgetArea, new SettingsPanel(fleet), tr("Settings"), "settings");
     addPanel(Qt::BottomDockWidgetArea, new CommandsPanel(fleet), tr("Commands"), "commands", lastDock());
     addPanel(Qt::BottomDockWidgetArea, new LogPanel(fleet), tr("Log"), "log", lastDock());
+    addPanel(Qt::RightDockWidgetArea, new DrivePanel(drive_), tr("Drive"), "drive");
+    new DriveKeys(drive_, *this);
+    new DriveGamepad(drive_, this);
     restoreLayout();
+    centralWidget()->setFocus(); // so that the keys drive
 }
 
 MainWindow::~MainWindow() = default;
@@ -86,6 +92,7 @@ void MainWindow::saveLayout() const {
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {
+    drive_.halt();
     saveLayout();
     event->accept();
 }

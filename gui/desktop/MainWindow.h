@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gui/desktop/model/Fleet.h"
+#include "gui/desktop/drive/DriveControl.h"
 
 #include <QMainWindow>
 
@@ -8,15 +8,13 @@ class QDockWidget;
 
 namespace hermes {
 
-class TopBar;
-
 /// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
 /// bring the docks to the front.
 class MainWindow : public QMainWindow {
     Q_OBJECT
 public:
     /// layoutFile: where the layout is kept between runs; empty: nowhere.
-    MainWindow(Fleet &fleet, const QString &layoutFile, QWidget *parent = nullptr);
+    MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent = nullptr);
     ~MainWindow() override;
 
 protected:
@@ -29,9 +27,8 @@ private:
     void restoreLayout();
     void saveLayout() const;
 
-    Fleet &fleet_;
+    DriveControl &drive_;
     const QString layoutFile_;
-    TopBar *topBar_;
     std::vector<QDockWidget *> docks_;
 };
 

@@ -1,45 +1,82 @@
 #include "gui/desktop/TopBar.h"
 
+#include "gui/desktop/Theme.h"
+
 #include <QComboBox>
 #include <QHBoxLayout>
+#include <QJsonArray>
 #include <QLabel>
+#include <QPushButton>
 
 namespace hermes {
 
-TopBar::TopBar(Fleet &fleet, QWidget *parent)
+TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
+    , drive_(drive)
+    , power_(
+          fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showBattery(u.data); }, this)
     , robots_(new QComboBox)
-    , link_(new QLabel) {
+    , link_(new QLabel)
+    , control_(new QLabel)
+    , battery_(new QLabel)
+    , release_(new QPushButton(tr("&Release")))
+    , stop_(new QPushButton(tr("STOP"))) {
     robots_->setObjectName("robots");
     robots_->setToolTip(tr("The robot that the panels show and drive"));
     robots_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
     link_->setObjectName("link");
     link_->setToolTip(tr("The longest time that a daemon of this robot takes to answer"));
+    control_->setObjectName("lease");
+    battery_->setObjectName("battery");
+    release_->setObjectName("release");
+    release_->setToolTip(tr("Ends the emergency stop and latched faults. The robot does not move by it."));
+    stop_->setObjectName("stop");
+    stop_->setToolTip(tr("Emergency stop over the network (Space or Esc). It does not replace a wired one."));
+    stop_->setFocusPolicy(Qt::NoFocus);
+    QFont big = stop_->font();
+    big.setBold(true);
+    big.setPointSizeF(1.3 * big.pointSizeF());
+    stop_->setFont(big);
+    stop_->setMinimumSize(110, 40);
+    stop_->setStyleSheet(
+        "QPushButton { background: #c4201d; color: white; border-radius: 6px; padding: 4px 16px; }"
+        "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
 
     auto *const layout = new QHBoxLayout(this);
-    auto *const label = new QLabel(tr("&Robot"));
+    auto *const label = new QLabel(tr("R&obot"));
     label->setBuddy(robots_);
     layout->addWidget(label);
     layout->addWidget(robots_);
+    layout->addSpacing(12);
     layout->addWidget(link_);
+    layout->addSpacing(12);
+    layout->addWidget(control_);
+    layout->addSpacing(12);
+    layout->addWidget(battery_);
     layout->addStretch();
+    layout->addWidget(release_);
+    layout->addWidget(stop_);
 
     connect(robots_, QOverload<int>::of(&QComboBox::activated), this,
             [this](int index) { fleet_.choose(fleet_.robots().at(size_t(index)).get()); });
+    connect(stop_, &QPushButton::pressed, &drive, &DriveControl::stop); // at once, not when it is let go
+    connect(release_, &QPushButton::clicked, &drive, &DriveControl::release);
     connect(&fleet, &Fleet::changed, this, &TopBar::updateRobots);
     connect(&fleet, &Fleet::changed, this, &TopBar::updateLink);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateRobots);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateLink);
+    connect(&power_, &TopicFeed::sourceChanged, battery_, &QLabel::clear);
+    connect(&drive, &DriveControl::changed, this, &TopBar::updateDrive);
     updateRobots();
     updateLink();
+    updateDrive();
 }
 
 void TopBar::updateRobots() {
-    QStringList names;
+    QStringList names, shown;
     for (const auto &robot : fleet_.robots())
         names.append(robot->name());
-    QStringList shown;
     for (int i = 0; i < robots_->count(); ++i)
         shown.append(robots_->itemText(i));
     if (names != shown) {
@@ -56,9 +93,24 @@ void TopBar::updateLink() {
     if (const Robot *const robot = fleet_.robot())
         for (const DaemonLink *daemon : robot->daemons())
             worst = std::max(worst, daemon->latency_ms());
-    link_->setText(worst < 0    ? tr("no link")
-                   : worst < 10 ? tr("link %1 ms").arg(worst, 0, 'f', 1)
-                                : tr("link %1 ms").arg(worst, 0, 'f', 0));
+    link_->setText(worst < 0 ? tr("no link") : tr("link %1 ms").arg(worst, 0, 'f', worst < 10 ? 1 : 0));
+}
+
+void TopBar::updateDrive() {
+    const QString holder = drive_.holder();
+    control_->setText(!drive_.isPossible() ? tr("nothing to drive")
+                      : holder.isEmpty()   ? tr("control free")
+                                           : tr("control: %1").arg(holder));
+    release_->setVisible(drive_.isStopped());
+    stop_->setText(drive_.isStopped() ? tr("STOPPED") : tr("STOP"));
+}
+
+void TopBar::showBattery(const QJsonValue &power) {
+    double least = 0;
+    for (const QJsonValue &controller : power["controllers"].toArray())
+        if (const double volts = controller["battery_v"].toDouble(); volts > 0)
+            least = least > 0 ? std::min(least, volts) : volts;
+    battery_->setText(least > 0 ? tr("battery %1 V").arg(least, 0, 'f', 1) : QString());
 }
 
 } // namespace hermes

@@ -46,7 +46,8 @@ int main(int argc, char **argv) {
             std::fprintf(stderr, "hermes-gui: --connect: %s\n", qPrintable(added.error().message));
             return 2;
         }
-    MainWindow window(fleet, parser.value("layout"));
+    DriveControl drive(fleet);
+    MainWindow window(fleet, drive, parser.value("layout"));
     window.show();
     return QApplication::exec();
 }

@@ -38,16 +38,22 @@ public:
     }
     /// Simulator, motor control, lidar logger and scan matcher in a world of deploy/worlds, wired as on a
     /// robot.
-    void startAll(const QString &world = "pillars.json") {
-        const QString link = folder_.filePath("motors");
+    void startAll() {
         const quint16 lidar = freePort();
         const quint16 logger = start("velodynelogger", {QString("source.port=%1").arg(lidar),
                                                         "record.folder=" + folder_.filePath("recordings")});
         start("scanmatcher",
               {QString("source.address=127.0.0.1:%1").arg(logger), "map.folder=" + folder_.filePath("maps")});
-        start("simulator", {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/" + world,
-                            QString("lidar.port=%1").arg(lidar), "motors.link=" + link});
-        const QString url = "serial://" + link + "?baud=115200";
+        startMotors({QString("lidar.port=%1").arg(lidar)});
+    }
+    /// Simulator and motor control.
+    void startMotors(const QStringList &simulator = {}) {
+        const QString world = qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json";
+        start("simulator", QStringList{"world=" + world, "motors.link=" + motorLink()} + simulator);
+        startMotorControl();
+    }
+    void startMotorControl() {
+        const QString url = "serial://" + motorLink() + "?baud=115200";
         start("motorcontrol", {"controllers.1.url=" + url, "controllers.2.url=" + url});
     }
     /// As SIGKILL does.
@@ -71,6 +77,7 @@ private:
         std::unique_ptr<QProcess> process;
     };
 
+    QString motorLink() const { return folder_.filePath("motors"); }
     static quint16 freePort() {
         QTcpServer probe;
         probe.listen(QHostAddress::LocalHost);

@@ -25,7 +25,8 @@ void Screenshots::all() {
     robot.startAll();
     Fleet fleet;
     robot.connectTo(fleet);
-    MainWindow window(fleet, {});
+    DriveControl drive(fleet);
+    MainWindow window(fleet, drive, {});
     window.resize(1280, 720);
     window.show();
     fleet.choose(fleet.robot()->withName("motorcontrol"));

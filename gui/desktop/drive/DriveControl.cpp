@@ -1,0 +1,233 @@
+#include "gui/desktop/drive/DriveControl.h"
+
+#include "common/Time.h"
+
+#include <QHostInfo>
+
+namespace hermes {
+namespace {
+
+QString clientName() {
+    return "hermes-gui on " + QHostInfo::localHostName();
+}
+
+/// Until the robot has answered, STOP is repeated: more packets make a lost one known sooner.
+constexpr std::chrono::milliseconds stopRepeat{50};
+constexpr int stopMost = 60;
+
+} // namespace
+
+DriveControl::DriveControl(Fleet &fleet, QObject *parent)
+    : QObject(parent)
+    , fleet_(fleet)
+    , odometry_(
+          fleet, "odometry", {{"max_rate_hz", 10}},
+          [this](const TopicUpdate &update) {
+              const QJsonValue twist = update.data["twist"];
+              measured_ = {twist["vx"].toDouble(), twist["vy"].toDouble(), twist["omega"].toDouble()};
+              const double latency_ms = motors_ ? motors_->latency_ms() : 0;
+              clock_.add(update.stamp, stampNow(), latency_ms / 1000);
+              Q_EMIT changed();
+          },
+          this) {
+    timer_.setTimerType(Qt::PreciseTimer);
+    connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
+    connect(&pollTimer_, &QTimer::timeout, this, &DriveControl::poll);
+    connect(&stopTimer_, &QTimer::timeout, this, &DriveControl::stop);
+    connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
+    connect(&fleet, &Fleet::robotChosen, this, &DriveControl::follow);
+    timer_.start(period);
+    pollTimer_.start(std::chrono::milliseconds(500));
+    follow();
+}
+
+DaemonLink *DriveControl::motors() const {
+    return fleet_.robot() ? fleet_.robot()->withMethod("motor.drive") : nullptr;
+}
+
+void DriveControl::follow() {
+    DaemonLink *const found = motors();
+    if (found == motors_)
+        return;
+    halt();
+    if (motors_)
+        motors_->disconnect(this);
+    motors_ = found;
+    state_ = {};
+    isHolding_ = isAsking_ = isPolling_ = false;
+    mustCentre_ = isAnyHeld();
+    clock_ = {};
+    if (!found)
+        return tell(tr("No robot that can drive is connected."));
+    tell({});
+    stopLine_.connectTo(found->address());
+    found->call("settings.get", {{"path", "motion"}}, this, [this](const Result<QJsonValue> &motion) {
+        if (motion && (*motion)["vx"].isDouble())
+            most_ = {(*motion)["vx"].toDouble(), (*motion)["vy"].toDouble(), (*motion)["omega"].toDouble()};
+    });
+    poll();
+}
+
+void DriveControl::steer(const QString &input, const Velocity &wish, bool isHeld) {
+    inputs_[input] = {wish, isHeld};
+    if (mustCentre_ && !isAnyHeld())
+        mustCentre_ = false;
+}
+
+void DriveControl::setLimit(double share) {
+    limit_ = qBound(0.05, share, 1.0);
+    Q_EMIT changed();
+}
+
+bool DriveControl::isAnyHeld() const {
+    return std::any_of(inputs_.begin(), inputs_.end(), [](const Input &input) { return input.isHeld; });
+}
+
+Velocity DriveControl::wish() const {
+    Velocity sum;
+    for (const Input &input : inputs_) {
+        if (!input.isHeld)
+            continue;
+        sum.vx += input.wish.vx;
+        sum.vy += input.wish.vy;
+        sum.omega += input.wish.omega;
+    }
+    const auto scaled = [this](double share, double most) {
+        return qBound(-1.0, share, 1.0) * limit_ * most;
+    };
+    return {scaled(sum.vx, most_.vx), scaled(sum.vy, most_.vy), scaled(sum.omega, most_.omega)};
+}
+
+void DriveControl::tick() {
+    const bool wants = isAnyHeld() && !mustCentre_ && motors_ && motors_->isConnected() && !isStopped();
+    if (!wants) {
+        if (isDriving_)
+            halt();
+        return;
+    }
+    isDriving_ = true;
+    if (isHolding_)
+        send();
+    else if (!isAsking_)
+        acquire(false);
+}
+
+void DriveControl::acquire(bool takeOver) {
+    if (!motors_)
+        return;
+    isAsking_ = true;
+    QJsonObject params{{"client", clientName()}, {"timeout_s", lease_s}};
+    if (takeOver)
+        params["take_over"] = true;
+    motors_->call("control.acquire", params, this, [this](const Result<QJsonValue> &result) {
+        isAsking_ = false;
+        isHolding_ = result.ok();
+        tell(result ? QString() : result.error().message);
+        if (!result)
+            mustCentre_ = isAnyHeld();
+        poll();
+    });
+}
+
+void DriveControl::send() {
+    commanded_ = wish();
+    const QJsonObject command{{"vx", commanded_.vx},
+                              {"vy", commanded_.vy},
+                              {"omega", commanded_.omega},
+                              {"stamp", stampNow() + clock_.seconds()}};
+    motors_->call("motor.drive", command, this, [this](const Result<QJsonValue> &result) {
+        if (result)
+            return tell({});
+        if (!isDriving_)
+            return; // it was on its way when the drive ended
+        if (result.error().is(ErrorCode::ControlHeld))
+            isHolding_ = false; // ran out, or taken over: ask again, or hear who has it
+        tell(result.error().message);
+    });
+    Q_EMIT changed();
+}
+
+void DriveControl::halt() {
+    commanded_ = {};
+    if (isDriving_ && motors_) {
+        motors_->client().notify("motor.stop", QJsonObject());
+        motors_->client().notify("control.release", QJsonObject());
+    }
+    isDriving_ = isHolding_ = false;
+    mustCentre_ = isAnyHeld();
+    Q_EMIT changed();
+}
+
+void DriveControl::stop() {
+    commanded_ = {};
+    isDriving_ = isHolding_ = false;
+    mustCentre_ = isAnyHeld();
+    if (!motors_)
+        return tell(tr("STOP: no robot that can drive is connected."));
+    if (!stopTimer_.isActive())
+        stopTries_ = 0;
+    if (++stopTries_ > stopMost) {
+        stopTimer_.stop();
+        return tell(tr("STOP was not answered: %1").arg(motors_->client().lastError()));
+    }
+    stopTimer_.start(stopRepeat);
+    const auto answered = [this](const Result<QJsonValue> &result) {
+        if (!result)
+            return;
+        stopTimer_.stop();
+        poll();
+    };
+    motors_->call("motor.estop", {}, this, answered);
+    if (stopLine_.isConnected())
+        stopLine_.call("motor.estop", QJsonObject(), answered);
+    Q_EMIT changed();
+}
+
+void DriveControl::release() {
+    mustCentre_ = isAnyHeld();
+    if (!motors_)
+        return;
+    motors_->call("motor.reset_estop", {}, this, [this](const Result<QJsonValue> &result) {
+        tell(result ? QString() : result.error().message);
+        poll();
+    });
+}
+
+void DriveControl::poll() {
+    if (!motors_ || !motors_->isConnected() || isPolling_)
+        return;
+    isPolling_ = true;
+    motors_->call("motor.state", {}, this, [this](const Result<QJsonValue> &state) {
+        isPolling_ = false;
+        if (state)
+            onState(state->toObject());
+    });
+}
+
+void DriveControl::onState(const QJsonObject &state) {
+    const bool wasStopped = isStopped();
+    state_ = state;
+    if (isStopped() && !wasStopped) {
+        isDriving_ = isHolding_ = false;
+        commanded_ = {};
+        mustCentre_ = isAnyHeld();
+    }
+    Q_EMIT changed();
+}
+
+QString DriveControl::holder() const {
+    const QJsonObject control = state_["control"].toObject();
+    if (!control["held"].toBool())
+        return {};
+    const QString name = control["holder"].toString();
+    return isHolding_ && name == clientName() ? tr("you") : name;
+}
+
+void DriveControl::tell(const QString &problem) {
+    if (problem_ == problem)
+        return;
+    problem_ = problem;
+    Q_EMIT changed();
+}
+
+} // namespace hermes

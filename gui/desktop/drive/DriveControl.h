@@ -1,0 +1,93 @@
+#pragma once
+
+#include "gui/desktop/drive/ClockOffset.h"
+#include "gui/desktop/model/TopicFeed.h"
+
+#include <QMap>
+
+namespace hermes {
+
+/// A velocity: m/s ahead and to the left, rad/s counter-clockwise.
+struct Velocity {
+    double vx = 0, vy = 0, omega = 0;
+};
+
+/// Drives the chosen robot: takes what stick, keys and gamepad wish, asks for the control, sends motion
+/// commands at 20 Hz with their time, and stops. Whatever ends a drive (released, focus lost, link lost,
+/// another robot chosen, STOP) ends it with a stop; after a STOP every input has to be centred once before it
+/// counts again.
+class DriveControl : public QObject {
+    Q_OBJECT
+public:
+    static constexpr std::chrono::milliseconds period{50};
+    /// How long the control is kept without a command.
+    static constexpr double lease_s = 1;
+
+    explicit DriveControl(Fleet &fleet, QObject *parent = nullptr);
+
+    /// What an input wishes: each of the three from -1 to 1 of the largest speed. isHeld: its dead-man key or
+    /// button is down; released it wishes nothing.
+    void steer(const QString &input, const Velocity &wish, bool isHeld);
+    /// The share of the largest speed that the whole stick means, 0.05 to 1.
+    void setLimit(double share);
+    double limit() const { return limit_; }
+    /// The emergency stop of the robot: at once, without the control, latched until release().
+    void stop();
+    /// Ends driving softly; the control is given back.
+    void halt();
+    /// Ends the emergency stop and latched faults.
+    void release();
+    /// Takes the control from whoever holds it.
+    void takeOver() { acquire(true); }
+
+    /// Somebody who can be driven is there.
+    bool isPossible() const { return motors() != nullptr; }
+    bool isDriving() const { return isDriving_; }
+    bool isStopped() const { return !latched().isEmpty(); }
+    /// Why the robot does not move, by cause: "estop", faults.
+    QJsonObject latched() const { return state_["latched"].toObject(); }
+    /// Who holds the control: "" nobody, "you", or the name of another client.
+    QString holder() const;
+    /// The velocity that is commanded, and the one that odometry measures.
+    const Velocity &commanded() const { return commanded_; }
+    const Velocity &measured() const { return measured_; }
+    /// The refusal of the last command, or what else hinders; empty while all is well.
+    const QString &problem() const { return problem_; }
+
+Q_SIGNALS:
+    void changed();
+
+private:
+    struct Input {
+        Velocity wish;
+        bool isHeld = false;
+    };
+
+    DaemonLink *motors() const;
+    void follow();
+    void tick();
+    void acquire(bool takeOver);
+    void send();
+    void poll();
+    void onState(const QJsonObject &state);
+    /// What all inputs wish together, in m/s and rad/s.
+    Velocity wish() const;
+    bool isAnyHeld() const;
+    void tell(const QString &problem);
+
+    Fleet &fleet_;
+    TopicFeed odometry_;
+    QPointer<DaemonLink> motors_;
+    Client stopLine_; ///< a second connection: a lost packet on one does not hold up the stop on the other
+    QTimer timer_, pollTimer_, stopTimer_;
+    QMap<QString, Input> inputs_;
+    QJsonObject state_; // motor.state
+    Velocity most_{0.5, 0.5, 1}, commanded_, measured_;
+    ClockOffset clock_;
+    double limit_ = 0.4;
+    bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;
+    int stopTries_ = 0;
+    QString problem_;
+};
+
+} // namespace hermes

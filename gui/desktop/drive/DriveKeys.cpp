@@ -1,0 +1,105 @@
+#include "gui/desktop/drive/DriveKeys.h"
+
+#include <QAbstractItemView>
+#include <QAbstractSlider>
+#include <QApplication>
+#include <QComboBox>
+#include <QKeyEvent>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+
+namespace hermes {
+namespace {
+
+constexpr double slow = 0.3;
+
+bool isTyping(const QWidget *focus) {
+    const auto *const text = qobject_cast<const QPlainTextEdit *>(focus);
+    return qobject_cast<const QLineEdit *>(focus) || (text && !text->isReadOnly());
+}
+
+/// Widgets that need arrows or letters themselves.
+bool usesKeys(const QWidget *focus) {
+    return isTyping(focus) || qobject_cast<const QAbstractItemView *>(focus) ||
+           qobject_cast<const QComboBox *>(focus) || qobject_cast<const QAbstractSlider *>(focus) ||
+           qobject_cast<const QPlainTextEdit *>(focus);
+}
+
+bool isDriveKey(int key) {
+    static const QSet<int> keys{Qt::Key_Up, Qt::Key_Down, Qt::Key_Left, Qt::Key_Right, Qt::Key_W,
+                                Qt::Key_A,  Qt::Key_S,    Qt::Key_D,    Qt::Key_Q,     Qt::Key_E};
+    return keys.contains(key);
+}
+
+} // namespace
+
+DriveKeys::DriveKeys(DriveControl &drive, QWidget &window)
+    : QObject(&window)
+    , drive_(drive)
+    , window_(window) {
+    qApp->installEventFilter(this);
+}
+
+bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
+    if (watched == &window_ && (event->type() == QEvent::WindowDeactivate || event->type() == QEvent::Close))
+        letGo();
+    const auto *const widget = qobject_cast<QWidget *>(watched);
+    if (!widget || (widget->window() != &window_ && widget->window()->parentWidget() != &window_))
+        return false;
+    if (event->type() == QEvent::ShortcutOverride) {
+        // Else a shortcut of the same key would come first.
+        const auto *const key = static_cast<QKeyEvent *>(event);
+        if (key->key() == Qt::Key_Escape ||
+            (isDriveKey(key->key()) && !usesKeys(QApplication::focusWidget())))
+            event->accept();
+        return false;
+    }
+    if (event->type() != QEvent::KeyPress && event->type() != QEvent::KeyRelease)
+        return false;
+    const auto *const key = static_cast<QKeyEvent *>(event);
+    if (event->type() == QEvent::KeyPress)
+        return press(key->key(), key->modifiers());
+    if (key->isAutoRepeat())
+        return down_.contains(key->key());
+    const bool wasDown = down_.remove(key->key());
+    steer(key->modifiers());
+    return wasDown;
+}
+
+bool DriveKeys::press(int key, Qt::KeyboardModifiers modifiers) {
+    const QWidget *const focus = QApplication::focusWidget();
+    if (key == Qt::Key_Escape || (key == Qt::Key_Space && (drive_.isDriving() || !isTyping(focus)))) {
+        down_.clear();
+        drive_.stop();
+        return true;
+    }
+    if (key == Qt::Key_Shift) {
+        steer(modifiers | Qt::ShiftModifier);
+        return false;
+    }
+    const bool isChord = modifiers & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier);
+    if (!isDriveKey(key) || isChord || usesKeys(focus))
+        return false;
+    down_.insert(key);
+    steer(modifiers);
+    return true;
+}
+
+void DriveKeys::steer(Qt::KeyboardModifiers modifiers) {
+    const auto either = [this](int one, int other) {
+        return double(down_.contains(one) || down_.contains(other));
+    };
+    const double share = modifiers & Qt::ShiftModifier ? slow : 1;
+    const double ahead = either(Qt::Key_Up, Qt::Key_W) - either(Qt::Key_Down, Qt::Key_S);
+    const double left = either(Qt::Key_Left, Qt::Key_A) - either(Qt::Key_Right, Qt::Key_D);
+    const double turn = double(down_.contains(Qt::Key_Q)) - double(down_.contains(Qt::Key_E));
+    drive_.steer("keys", {share * ahead, share * left, share * turn}, !down_.isEmpty());
+}
+
+void DriveKeys::letGo() {
+    down_.clear();
+    drive_.steer("keys", {}, false);
+    drive_.halt();
+}
+
+} // namespace hermes

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "gui/desktop/drive/DriveControl.h"
+
+#include <QSet>
+
+namespace hermes {
+
+/// The keyboard as an input, wherever in the window the focus is: arrows or WASD drive, Q and E turn, Shift
+/// is slow, Space and Esc are STOP. Keys that somebody types into a field do not drive; Esc stops even there,
+/// and Space does while the robot is driven. When the window loses the focus the drive ends.
+class DriveKeys : public QObject {
+    Q_OBJECT
+public:
+    DriveKeys(DriveControl &drive, QWidget &window);
+
+protected:
+    bool eventFilter(QObject *watched, QEvent *event) override;
+
+private:
+    bool press(int key, Qt::KeyboardModifiers modifiers);
+    void steer(Qt::KeyboardModifiers modifiers);
+    void letGo();
+
+    DriveControl &drive_;
+    QWidget &window_;
+    QSet<int> down_;
+};
+
+} // namespace hermes

@@ -1,0 +1,104 @@
+#include "gui/desktop/panels/DrivePanel.h"
+
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/drive/Stick.h"
+
+#include <QGridLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSlider>
+#include <QVBoxLayout>
+
+namespace hermes {
+
+DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
+    : QWidget(parent)
+    , drive_(drive)
+    , stick_(new Stick)
+    , limit_(new QSlider(Qt::Horizontal))
+    , limitText_(new QLabel)
+    , control_(new QLabel)
+    , problem_(new QLabel)
+    , takeOver_(new QPushButton(tr("Take o&ver"))) {
+    stick_->setObjectName("stick");
+    limit_->setObjectName("limit");
+    limit_->setRange(5, 100);
+    limit_->setValue(qRound(100 * drive.limit()));
+    limit_->setToolTip(tr("What the whole stick means, as a share of the robot's largest speed"));
+    control_->setObjectName("control");
+    problem_->setObjectName("problem");
+    problem_->setWordWrap(true);
+    takeOver_->setObjectName("takeOver");
+    takeOver_->setToolTip(tr("Takes the control from the other client; the robot stops first"));
+
+    auto *const limitLabel = new QLabel(tr("Spee&d"));
+    limitLabel->setBuddy(limit_);
+    auto *const speed = new QHBoxLayout;
+    speed->addWidget(limitLabel);
+    speed->addWidget(limit_, 1);
+    speed->addWidget(limitText_);
+    auto *const control = new QHBoxLayout;
+    control->addWidget(control_, 1);
+    control->addWidget(takeOver_);
+    auto *const layout = new QVBoxLayout(this);
+    layout->addWidget(stick_, 1);
+    layout->addLayout(speed);
+    layout->addWidget(makeNumbers());
+    layout->addLayout(control);
+    layout->addWidget(problem_);
+
+    connect(stick_, &Stick::moved, this,
+            [this](const Velocity &wish, bool isHeld) { drive_.steer("stick", wish, isHeld); });
+    connect(limit_, &QSlider::valueChanged, this, [this](int percent) { drive_.setLimit(percent / 100.0); });
+    connect(takeOver_, &QPushButton::clicked, &drive, &DriveControl::takeOver);
+    connect(&drive, &DriveControl::changed, this, &DrivePanel::update);
+    update();
+}
+
+QWidget *DrivePanel::makeNumbers() {
+    auto *const table = new QWidget;
+    auto *const grid = new QGridLayout(table);
+    grid->setContentsMargins(0, 0, 0, 0);
+    const QStringList names{tr("ahead m/s"), tr("left m/s"), tr("turn rad/s")};
+    grid->addWidget(new QLabel(tr("commanded")), 1, 0);
+    grid->addWidget(new QLabel(tr("measured")), 2, 0);
+    for (int i = 0; i < 3; ++i) {
+        grid->addWidget(new QLabel(names[i]), 0, i + 1, Qt::AlignRight);
+        grid->addWidget(commanded_[i] = new QLabel, 1, i + 1, Qt::AlignRight);
+        grid->addWidget(measured_[i] = new QLabel, 2, i + 1, Qt::AlignRight);
+        measured_[i]->setObjectName(QString("measured%1").arg(i));
+        commanded_[i]->setObjectName(QString("commanded%1").arg(i));
+    }
+    return table;
+}
+
+void DrivePanel::update() {
+    const auto show = [](QLabel *const(&labels)[3], const Velocity &velocity) {
+        const double values[]{velocity.vx, velocity.vy, velocity.omega};
+        for (int i = 0; i < 3; ++i)
+            labels[i]->setText(QString::number(values[i] + 0.0, 'f', 2).replace("-0.00", "0.00"));
+    };
+    show(commanded_, drive_.commanded());
+    show(measured_, drive_.measured());
+    stick_->setEnabled(drive_.isPossible() && !drive_.isStopped());
+    limitText_->setText(tr("%1 %").arg(qRound(100 * drive_.limit())));
+    const QString holder = drive_.holder();
+    control_->setText(!drive_.isPossible() ? QString()
+                      : holder.isEmpty()   ? tr("The control is free: move the stick to take it.")
+                                           : tr("Control: %1").arg(holder));
+    takeOver_->setVisible(!holder.isEmpty() && holder != tr("you"));
+    QString problem = drive_.problem();
+    if (drive_.isStopped()) {
+        QStringList reasons;
+        const QJsonObject latched = drive_.latched();
+        for (auto cause = latched.begin(); cause != latched.end(); ++cause)
+            reasons.append(cause.value().toString());
+        problem = tr("Stopped: %1. Release it above.").arg(reasons.join("; "));
+    }
+    QPalette palette;
+    palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
+    problem_->setPalette(palette);
+    problem_->setText(problem);
+}
+
+} // namespace hermes

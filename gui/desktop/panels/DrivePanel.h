@@ -1,0 +1,34 @@
+#pragma once
+
+#include "gui/desktop/drive/DriveControl.h"
+
+#include <QWidget>
+
+class QLabel;
+class QPushButton;
+class QSlider;
+
+namespace hermes {
+
+class Stick;
+
+/// Drives by hand: stick, speed limit, the velocity that is commanded and the one that is measured, who has
+/// the control.
+class DrivePanel : public QWidget {
+    Q_OBJECT
+public:
+    explicit DrivePanel(DriveControl &drive, QWidget *parent = nullptr);
+
+private:
+    void update();
+    QWidget *makeNumbers();
+
+    DriveControl &drive_;
+    Stick *stick_;
+    QSlider *limit_;
+    QLabel *limitText_, *control_, *problem_;
+    QLabel *commanded_[3], *measured_[3];
+    QPushButton *takeOver_;
+};
+
+} // namespace hermes

@@ -1,0 +1,210 @@
+#include "gui/desktop/MainWindow.h"
+#include "gui/desktop/drive/Stick.h"
+#include "tests/gui/desktop/RobotProcesses.h"
+
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+
+using namespace hermes;
+
+/// Drives the simulated robot with stick and keys, as an operator does.
+class TestDrivePanel : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void stickDrivesAndLettingGoStops();
+    void keysDriveTurnAndGoSlow();
+    void keysInAFieldDoNotDrive();
+    void stopIsLatchedAndNeedsNoControl_data();
+    void stopIsLatchedAndNeedsNoControl();
+    void afterAReleaseTheStickMustBeCentred();
+    void losingTheFocusStops();
+    void closingTheWindowStops();
+    void heldByAnotherAndTakenOver();
+    void motorControlKilledAndRestarted();
+
+private:
+    template <typename T>
+    T *find(const QString &name) const {
+        return window_->findChild<T *>(name);
+    }
+    /// The velocity that motorcontrol has measured.
+    double speed() const { return std::hypot(drive_->measured().vx, drive_->measured().vy); }
+    QJsonObject state() {
+        const auto result = client_->callAndWait("motor.state");
+        return result ? result->toObject() : QJsonObject();
+    }
+    double commanded(const char *axis) { return state()["target"].toObject()[axis].toDouble(); }
+    QPoint onStick(double right, double up) const {
+        const QPoint middle = find<Stick>("stick")->rect().center();
+        return middle + QPoint(int(right * 40), int(-up * 40));
+    }
+    void press(double right, double up) {
+        auto *const stick = find<Stick>("stick");
+        QTest::mousePress(stick, Qt::LeftButton, {}, onStick(0, 0));
+        QMouseEvent move(QEvent::MouseMove, onStick(right, up), Qt::NoButton, Qt::LeftButton, {});
+        QApplication::sendEvent(stick, &move);
+    }
+    void letGo() { QTest::mouseRelease(find<Stick>("stick"), Qt::LeftButton, {}, onStick(0, 0)); }
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<Fleet> fleet_;
+    std::unique_ptr<DriveControl> drive_;
+    std::unique_ptr<MainWindow> window_;
+    std::unique_ptr<Client> client_; // an independent eye
+};
+
+void TestDrivePanel::init() {
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startMotors();
+    fleet_ = std::make_unique<Fleet>();
+    robot_->connectTo(*fleet_);
+    drive_ = std::make_unique<DriveControl>(*fleet_);
+    window_ = std::make_unique<MainWindow>(*fleet_, *drive_, QString());
+    window_->show();
+    window_->activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(window_.get()));
+    client_ = std::make_unique<Client>();
+    client_->connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+    QVERIFY(client_->waitConnected().ok());
+    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
+    QTRY_VERIFY(find<Stick>("stick")->isEnabled());
+}
+
+void TestDrivePanel::cleanup() {
+    window_.reset();
+    drive_.reset();
+    fleet_.reset();
+    client_.reset();
+    robot_.reset();
+}
+
+void TestDrivePanel::stickDrivesAndLettingGoStops() {
+    press(0, 1);
+    QTRY_VERIFY(speed() > 0.2);
+    QCOMPARE(find<QLabel>("lease")->text(), QString("control: you"));
+    QVERIFY(find<QLabel>("commanded0")->text().toDouble() > 0.3);
+    letGo();
+    QTRY_COMPARE(commanded("vx"), 0.0);
+    QTRY_VERIFY(speed() < 0.01);
+    QTRY_COMPARE(find<QLabel>("lease")->text(), QString("control free"));
+}
+
+void TestDrivePanel::keysDriveTurnAndGoSlow() {
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(commanded("vx") > 0.35);
+    QTest::keyPress(window_.get(), Qt::Key_Shift);
+    QTRY_VERIFY(commanded("vx") < 0.15 && commanded("vx") > 0.05);
+    QTest::keyRelease(window_.get(), Qt::Key_Shift);
+    QTest::keyPress(window_.get(), Qt::Key_Q);
+    QTRY_VERIFY(commanded("omega") > 0.1);
+    QTest::keyRelease(window_.get(), Qt::Key_Q);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QTRY_COMPARE(commanded("vx"), 0.0);
+    QTest::keyPress(window_.get(), Qt::Key_Left);
+    QTRY_VERIFY(commanded("vy") > 0.1);
+    QTest::keyRelease(window_.get(), Qt::Key_Left);
+    QTRY_VERIFY(speed() < 0.01);
+}
+
+void TestDrivePanel::keysInAFieldDoNotDrive() {
+    auto *const field = find<QLineEdit>("address");
+    field->setFocus();
+    QTest::keyClicks(field, "wasd qe");
+    QCOMPARE(field->text(), QString("wasd qe"));
+    QVERIFY(!drive_->isDriving());
+    QVERIFY(!state()["control"].toObject()["held"].toBool());
+}
+
+void TestDrivePanel::stopIsLatchedAndNeedsNoControl_data() {
+    QTest::addColumn<int>("key");
+    QTest::newRow("button") << 0;
+    QTest::newRow("space") << int(Qt::Key_Space);
+    QTest::newRow("escape") << int(Qt::Key_Escape);
+}
+
+void TestDrivePanel::stopIsLatchedAndNeedsNoControl() {
+    QFETCH(int, key);
+    QVERIFY(client_->callAndWait("control.acquire").ok()); // somebody else drives
+    QVERIFY(client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.3}}).ok());
+    if (key == 0)
+        QTest::mousePress(find<QPushButton>("stop"), Qt::LeftButton);
+    else
+        QTest::keyClick(window_.get(), Qt::Key(key));
+    QTRY_VERIFY(state()["estop"].toBool());
+    QTRY_COMPARE(find<QPushButton>("stop")->text(), QString("STOPPED"));
+    QVERIFY(!find<Stick>("stick")->isEnabled());
+    QTRY_VERIFY(find<QPushButton>("release")->isVisible());
+    QTest::mouseClick(find<QPushButton>("release"), Qt::LeftButton);
+    QTRY_VERIFY(!state()["estop"].toBool());
+    QTRY_VERIFY(find<Stick>("stick")->isEnabled());
+}
+
+void TestDrivePanel::afterAReleaseTheStickMustBeCentred() {
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(speed() > 0.2);
+    drive_->stop();
+    QTRY_VERIFY(drive_->isStopped());
+    drive_->release();
+    QTRY_VERIFY(!drive_->isStopped());
+    QVERIFY(!drive_->isDriving()); // W is still down
+    QTest::qWait(300);
+    QCOMPARE(commanded("vx"), 0.0);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(commanded("vx") > 0.1);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+}
+
+void TestDrivePanel::losingTheFocusStops() {
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(speed() > 0.2);
+    QWidget other;
+    other.show();
+    other.activateWindow();
+    QTRY_VERIFY(!window_->isActiveWindow());
+    QTRY_COMPARE(commanded("vx"), 0.0);
+    QTRY_VERIFY(speed() < 0.01);
+}
+
+void TestDrivePanel::closingTheWindowStops() {
+    press(0, 1);
+    QTRY_VERIFY(speed() > 0.2);
+    window_->close();
+    QTRY_COMPARE(commanded("vx"), 0.0);
+    QTRY_VERIFY(!state()["control"].toObject()["held"].toBool());
+}
+
+void TestDrivePanel::heldByAnotherAndTakenOver() {
+    QVERIFY(
+        client_->callAndWait("control.acquire", QJsonObject{{"client", "patrol"}, {"timeout_s", 30}}).ok());
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(find<QLabel>("problem")->text().contains("patrol"));
+    QCOMPARE(commanded("vx"), 0.0);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(find<QPushButton>("takeOver")->isVisible());
+    QTest::mouseClick(find<QPushButton>("takeOver"), Qt::LeftButton);
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY(commanded("vx") > 0.1);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+}
+
+void TestDrivePanel::motorControlKilledAndRestarted() {
+    press(0, 1);
+    QTRY_VERIFY(speed() > 0.2);
+    robot_->kill("motorcontrol");
+    QTRY_VERIFY(!drive_->isDriving());
+    QTRY_COMPARE(find<QLabel>("lease")->text(), QString("nothing to drive"));
+    letGo();
+    robot_->startMotorControl();
+    QTRY_VERIFY_WITH_TIMEOUT(find<Stick>("stick")->isEnabled(), 10000);
+    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
+    press(0, 1);
+    QTRY_VERIFY(speed() > 0.2);
+    letGo();
+}
+
+QTEST_MAIN(TestDrivePanel)
+#include "TestDrivePanel.moc"
