@@ -8,6 +8,7 @@
 #include "gui/desktop/panels/DrivePanel.h"
 #include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
+#include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 
 #include <QAction>
@@ -40,6 +41,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     addPanel(Qt::BottomDockWidgetArea, new SettingsPanel(fleet), tr("Settings"), "settings");
     addPanel(Qt::BottomDockWidgetArea, new CommandsPanel(fleet), tr("Commands"), "commands", lastDock());
     addPanel(Qt::BottomDockWidgetArea, new LogPanel(fleet), tr("Log"), "log", lastDock());
+    addPanel(Qt::BottomDockWidgetArea, new PlotsPanel(fleet), tr("Plots"), "plots", lastDock());
     addPanel(Qt::RightDockWidgetArea, new DrivePanel(drive_), tr("Drive"), "drive");
     new DriveKeys(drive_, *this);
     new DriveGamepad(drive_, this);

@@ -107,6 +107,12 @@ QColor colour(Condition condition) {
     return dark ? QColor(0x8b, 0x92, 0x99) : QColor(0x6a, 0x71, 0x78);
 }
 
+QFont fixedFont() {
+    QFont font("monospace", QApplication::font().pointSize());
+    font.setStyleHint(QFont::Monospace);
+    return font;
+}
+
 QIcon icon(Condition condition) {
     return drawn(iconOf(condition), colour(condition));
 }

@@ -3,6 +3,7 @@
 #include "gui/desktop/model/DaemonLink.h"
 
 #include <QColor>
+#include <QFont>
 #include <QIcon>
 #include <QPalette>
 
@@ -17,6 +18,8 @@ void apply();
 bool isDark();
 
 QColor colour(Condition condition);
+/// For text in columns.
+QFont fixedFont();
 /// An icon of its own shape for each condition, in its colour.
 QIcon icon(Condition condition);
 /// An icon of icons.qrc in the colour of the text.

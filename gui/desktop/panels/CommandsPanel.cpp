@@ -4,7 +4,6 @@
 #include "gui/desktop/widgets/SchemaForm.h"
 
 #include <QElapsedTimer>
-#include <QFontDatabase>
 #include <QHBoxLayout>
 #include <QJsonArray>
 #include <QJsonDocument>
@@ -58,7 +57,7 @@ CommandsPanel::CommandsPanel(Fleet &fleet, QWidget *parent)
     splitter->setStretchFactor(2, 2);
     answer_->setObjectName("answer");
     answer_->setReadOnly(true);
-    answer_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
+    answer_->setFont(theme::fixedFont());
     answer_->setPlaceholderText(tr("The answer appears here."));
     auto *const layout = new QVBoxLayout(this);
     layout->addWidget(splitter);

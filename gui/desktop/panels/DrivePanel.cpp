@@ -26,6 +26,7 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     limit_->setValue(qRound(100 * drive.limit()));
     limit_->setToolTip(tr("What the whole stick means, as a share of the robot's largest speed"));
     control_->setObjectName("control");
+    control_->setWordWrap(true);
     problem_->setObjectName("problem");
     problem_->setWordWrap(true);
     takeOver_->setObjectName("takeOver");

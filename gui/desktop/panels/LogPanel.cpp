@@ -4,7 +4,6 @@
 
 #include <QComboBox>
 #include <QDateTime>
-#include <QFontDatabase>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QLineEdit>
@@ -38,7 +37,7 @@ LogPanel::LogPanel(Fleet &fleet, QWidget *parent)
     filter_->setClearButtonEnabled(true);
     view_->setObjectName("records");
     view_->setReadOnly(true);
-    view_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
+    view_->setFont(theme::fixedFont());
     view_->setLineWrapMode(QPlainTextEdit::NoWrap);
     view_->setMaximumBlockCount(int(maxRecords));
     view_->setPlaceholderText(tr("What the daemons log appears here."));
@@ -109,7 +108,7 @@ void LogPanel::append(const Record &record) {
                              .arg(time, record.daemon.leftJustified(15),
                                   levels.value(record.level, "?").leftJustified(7), record.text);
     const QString colour = colourOf(record.level);
-    view_->appendHtml(QString("<pre style=\"margin:0%1\">%2</pre>")
+    view_->appendHtml(QString("<span style=\"white-space:pre%1\">%2</span>")
                           .arg(colour.isEmpty() ? QString() : ";color:" + colour, line.toHtmlEscaped()));
 }
 

@@ -6,6 +6,7 @@
 #include <QApplication>
 #include <QDir>
 #include <QDockWidget>
+#include <QTreeWidget>
 
 using namespace hermes;
 
@@ -20,6 +21,18 @@ private Q_SLOTS:
 
 QString Screenshots::folder;
 
+/// Ticks the measured velocities in the panel of plots.
+static void plot(MainWindow &window) {
+    auto *const tree = window.findChild<QTreeWidget *>("topics");
+    for (QTreeWidgetItem *item : tree->findItems("odometry", Qt::MatchExactly | Qt::MatchRecursive)) {
+        item->setExpanded(true);
+        QTRY_VERIFY(item->childCount() > 0);
+        for (int i = 0; i < item->childCount(); ++i)
+            if (item->child(i)->text(0).startsWith("twist"))
+                item->child(i)->setCheckState(0, Qt::Checked);
+    }
+}
+
 void Screenshots::all() {
     RobotProcesses robot;
     robot.startAll();
@@ -30,8 +43,9 @@ void Screenshots::all() {
     window.resize(1280, 720);
     window.show();
     fleet.choose(fleet.robot()->withName("motorcontrol"));
-    fleet.robot()->withName("simulator")->client().callAndWait("sim.drive");
-    QTest::qWait(12000); // so that there is a map to see
+    plot(window);
+    drive.steer("pictures", {1, 0, 0.35}, true);
+    QTest::qWait(8000); // so that there is a map to see
     for (auto *const dock : window.findChildren<QDockWidget *>()) {
         dock->raise();
         QTest::qWait(400);

@@ -1,0 +1,245 @@
+#include "gui/desktop/panels/PlotsPanel.h"
+
+#include "gui/desktop/Theme.h"
+
+#include <QFileDialog>
+#include <QGraphicsLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPushButton>
+#include <QSaveFile>
+#include <QSplitter>
+#include <QTextStream>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+#include <QtCharts/QChart>
+#include <QtCharts/QChartView>
+#include <QtCharts/QLegend>
+#include <QtCharts/QLineSeries>
+#include <QtCharts/QValueAxis>
+
+namespace hermes {
+
+using namespace QtCharts;
+
+namespace {
+
+enum Role { AddressRole = Qt::UserRole, TopicRole, PathRole, DaemonRole };
+
+FieldId fieldOf(const QTreeWidgetItem &item) {
+    return {item.data(0, AddressRole).toString(), item.data(0, TopicRole).toString(),
+            item.data(0, PathRole).toString()};
+}
+
+DaemonLink *daemonOf(const QTreeWidgetItem &item) {
+    return qobject_cast<DaemonLink *>(item.data(0, DaemonRole).value<QPointer<QObject>>());
+}
+
+} // namespace
+
+PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
+    : QWidget(parent)
+    , fleet_(fleet)
+    , tree_(new QTreeWidget)
+    , chart_(new QChart)
+    , chartView_(new QChartView(chart_))
+    , time_(new QValueAxis)
+    , value_(new QValueAxis)
+    , message_(new QLabel(tr("Open a topic and tick a number to plot it."))) {
+    tree_->setObjectName("topics");
+    tree_->setHeaderHidden(true);
+    tree_->setUniformRowHeights(true);
+    chart_->setTheme(theme::isDark() ? QChart::ChartThemeDark : QChart::ChartThemeLight);
+    chart_->setMargins({});
+    chart_->setBackgroundRoundness(0);
+    chart_->layout()->setContentsMargins(0, 0, 0, 0);
+    chart_->legend()->setAlignment(Qt::AlignRight);
+    QFont small = font();
+    small.setPointSizeF(0.85 * small.pointSizeF());
+    time_->setLabelsFont(small);
+    value_->setLabelsFont(small);
+    chart_->legend()->setFont(small);
+    time_->setRange(-span_s, 0);
+    time_->setLabelFormat(tr("%g s"));
+    value_->setLabelFormat("%.3g");
+    chart_->addAxis(time_, Qt::AlignBottom);
+    chart_->addAxis(value_, Qt::AlignLeft);
+    chartView_->setMinimumHeight(120);
+    message_->setWordWrap(true);
+
+    auto *const left = new QWidget;
+    auto *const column = new QVBoxLayout(left);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->addWidget(tree_, 1);
+    column->addWidget(message_);
+    column->addWidget(makeButtons());
+    auto *const splitter = new QSplitter;
+    splitter->addWidget(left);
+    splitter->addWidget(chartView_);
+    splitter->setStretchFactor(1, 3);
+    auto *const layout = new QVBoxLayout(this);
+    layout->addWidget(splitter);
+
+    connect(tree_, &QTreeWidget::itemExpanded, this, [this](QTreeWidgetItem *item) {
+        if (item->parent() && item->childCount() == 0)
+            listFields(daemonOf(*item), item->data(0, TopicRole).toString());
+    });
+    connect(tree_, &QTreeWidget::itemChanged, this, &PlotsPanel::onItemChanged);
+    connect(&fleet, &Fleet::changed, this, &PlotsPanel::listTopics);
+    connect(&timer_, &QTimer::timeout, this, &PlotsPanel::redraw);
+    timer_.start(std::chrono::milliseconds(100));
+    listTopics();
+}
+
+QWidget *PlotsPanel::makeButtons() {
+    auto *const row = new QWidget;
+    auto *const layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(pause_ = new QPushButton(theme::icon("pause"), tr("Pause")));
+    auto *const save = new QPushButton(theme::icon("export"), tr("CSV"));
+    layout->addWidget(save);
+    pause_->setObjectName("pause");
+    pause_->setCheckable(true);
+    pause_->setToolTip(tr("The picture stands still; sampling goes on"));
+    save->setObjectName("csv");
+    save->setToolTip(tr("Writes the last ten minutes of all curves"));
+    connect(save, &QPushButton::clicked, this, &PlotsPanel::askFile);
+    return row;
+}
+
+// Daemons and topics that are new; what is listed once stays, so that curves do.
+void PlotsPanel::listTopics() {
+    isListing_ = true;
+    for (const auto &robot : fleet_.robots())
+        for (DaemonLink *daemon : robot->daemons()) {
+            if (daemon->topics().isEmpty())
+                continue;
+            QTreeWidgetItem *item = nullptr;
+            for (int i = 0; i < tree_->topLevelItemCount(); ++i)
+                if (daemonOf(*tree_->topLevelItem(i)) == daemon)
+                    item = tree_->topLevelItem(i);
+            if (!item) {
+                item = new QTreeWidgetItem(tree_, {daemon->name()});
+                item->setData(0, DaemonRole, QVariant::fromValue(QPointer<QObject>(daemon)));
+                item->setToolTip(0, daemon->address());
+            }
+            QStringList listed;
+            for (int i = 0; i < item->childCount(); ++i)
+                listed.append(item->child(i)->text(0));
+            for (const QString &topic : daemon->topics()) {
+                if (listed.contains(topic) || topic == "log" || topic == "settings")
+                    continue;
+                auto *const child = new QTreeWidgetItem(item, {topic});
+                child->setData(0, TopicRole, topic);
+                child->setData(0, DaemonRole, item->data(0, DaemonRole));
+                child->setChildIndicatorPolicy(QTreeWidgetItem::ShowIndicator);
+            }
+        }
+    isListing_ = false;
+}
+
+// The numbers of a topic are those of its next message.
+void PlotsPanel::listFields(DaemonLink *daemon, const QString &topic) {
+    if (!daemon)
+        return;
+    message_->setText(tr("Waiting for a message of %1 ...").arg(topic));
+    const auto handle = std::make_shared<int>(0);
+    *handle = daemon->client().subscribe(
+        topic, {}, [this, daemon = QPointer<DaemonLink>(daemon), topic, handle](const TopicUpdate &update) {
+            if (!daemon)
+                return;
+            daemon->client().unsubscribe(*handle);
+            isListing_ = true;
+            const auto topics = tree_->findItems(topic, Qt::MatchExactly | Qt::MatchRecursive);
+            for (QTreeWidgetItem *item : topics) {
+                if (daemonOf(*item) != daemon || item->childCount() > 0)
+                    continue;
+                for (const QString &path : numericPaths(update.data)) {
+                    auto *const child = new QTreeWidgetItem(item, {path.isEmpty() ? topic : path});
+                    child->setData(0, AddressRole, daemon->address());
+                    child->setData(0, TopicRole, topic);
+                    child->setData(0, PathRole, path);
+                    child->setData(0, DaemonRole, item->data(0, DaemonRole));
+                    child->setCheckState(0, Qt::Unchecked);
+                }
+            }
+            isListing_ = false;
+            message_->setText(tr("Tick a number to plot it."));
+        });
+}
+
+void PlotsPanel::onItemChanged(QTreeWidgetItem *item) {
+    if (isListing_ || !item->data(0, PathRole).isValid())
+        return;
+    const FieldId field = fieldOf(*item);
+    DaemonLink *const daemon = daemonOf(*item);
+    if (item->checkState(0) == Qt::Checked && daemon) {
+        auto *const series = new QLineSeries;
+        series->setName(field.topic + " " + field.path);
+        chart_->addSeries(series);
+        series->attachAxis(time_);
+        series->attachAxis(value_);
+        curves_[field] = series;
+        sampler_.add(daemon, field);
+    } else if (const auto curve = curves_.find(field); curve != curves_.end()) {
+        chart_->removeSeries(curve->second);
+        delete curve->second;
+        curves_.erase(curve);
+        sampler_.remove(field);
+    }
+}
+
+void PlotsPanel::redraw() {
+    if (pause_->isChecked() || curves_.empty() || !isVisible())
+        return;
+    double now = 0;
+    for (const auto &[field, series] : curves_)
+        if (!sampler_.samples(field).empty())
+            now = std::max(now, sampler_.samples(field).back().x());
+    double least = 1e300, most = -1e300;
+    for (const auto &[field, series] : curves_) {
+        QVector<QPointF> points;
+        for (const QPointF &sample : sampler_.samples(field)) {
+            if (sample.x() < now - span_s)
+                continue;
+            points.append({sample.x() - now, sample.y()});
+            least = std::min(least, sample.y());
+            most = std::max(most, sample.y());
+        }
+        series->replace(points);
+    }
+    if (least > most)
+        return;
+    const double margin = std::max(0.05 * (most - least), 1e-3 * std::max(1.0, std::abs(most)));
+    value_->setRange(least - margin, most + margin);
+}
+
+void PlotsPanel::askFile() {
+    auto *const dialog = new QFileDialog(this, tr("Write the curves"), "curves.csv", tr("Tables (*.csv)"));
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setAcceptMode(QFileDialog::AcceptSave);
+    connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
+        const auto done = exportTo(file);
+        message_->setText(done ? tr("Wrote %1").arg(file) : done.error().message);
+    });
+    dialog->open();
+}
+
+Result<void> PlotsPanel::exportTo(const QString &file) const {
+    QSaveFile out(file);
+    if (!out.open(QIODevice::WriteOnly))
+        return Error(ErrorCode::InputOutput, tr("%1: %2").arg(file, out.errorString()));
+    QTextStream text(&out);
+    text.setRealNumberPrecision(17);
+    text << "stamp,daemon,topic,field,value\n";
+    for (const auto &[field, samples] : sampler_.all())
+        for (const QPointF &sample : samples)
+            text << sample.x() << ',' << field.address << ',' << field.topic << ',' << field.path << ','
+                 << sample.y() << '\n';
+    text.flush();
+    if (!out.commit())
+        return Error(ErrorCode::InputOutput, tr("%1: %2").arg(file, out.errorString()));
+    return {};
+}
+
+} // namespace hermes

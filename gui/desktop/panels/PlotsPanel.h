@@ -1,0 +1,54 @@
+#pragma once
+
+#include "gui/desktop/model/TopicSampler.h"
+
+#include <QTimer>
+#include <QWidget>
+#include <QtCharts/QChartGlobal>
+
+QT_CHARTS_BEGIN_NAMESPACE
+class QChart;
+class QChartView;
+class QLineSeries;
+class QValueAxis;
+QT_CHARTS_END_NAMESPACE
+class QLabel;
+class QPushButton;
+class QTreeWidget;
+class QTreeWidgetItem;
+
+namespace hermes {
+
+/// Curves of any numeric field of any topic over time, chosen by a click; with pause and CSV.
+class PlotsPanel : public QWidget {
+    Q_OBJECT
+public:
+    static constexpr double span_s = 30;
+
+    explicit PlotsPanel(Fleet &fleet, QWidget *parent = nullptr);
+
+    /// Writes all curves: stamp, daemon, topic, field, value. Error: the file cannot be written.
+    Result<void> exportTo(const QString &file) const;
+
+private:
+    void listTopics();
+    void listFields(DaemonLink *daemon, const QString &topic);
+    void onItemChanged(QTreeWidgetItem *item);
+    void redraw();
+    void askFile();
+    QWidget *makeButtons();
+
+    Fleet &fleet_;
+    TopicSampler sampler_;
+    QTreeWidget *tree_;
+    QtCharts::QChart *chart_;
+    QtCharts::QChartView *chartView_;
+    QtCharts::QValueAxis *time_, *value_;
+    QLabel *message_;
+    QPushButton *pause_;
+    QTimer timer_;
+    std::map<FieldId, QtCharts::QLineSeries *> curves_;
+    bool isListing_ = false;
+};
+
+} // namespace hermes
