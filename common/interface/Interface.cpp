@@ -7,13 +7,14 @@ namespace hermes {
 namespace {
 
 constexpr std::chrono::milliseconds firstRetry{100};
-constexpr std::chrono::milliseconds longestRetry{5000};
+constexpr std::chrono::milliseconds usualLongestRetry{5000};
 
 } // namespace
 
 Interface::Interface(QObject *parent)
     : QObject(parent)
-    , nextRetry(firstRetry) {
+    , nextRetry(firstRetry)
+    , longestRetry(usualLongestRetry) {
     retry.setSingleShot(true);
     connect(&retry, &QTimer::timeout, this, &Interface::open);
 }
@@ -24,6 +25,11 @@ void Interface::open() {
         return;
     current = State::Opening;
     doOpen();
+}
+
+void Interface::setLongestRetry(std::chrono::milliseconds pause) {
+    longestRetry = pause;
+    nextRetry = std::min(nextRetry, pause);
 }
 
 void Interface::close(const QString &reason) {
@@ -49,7 +55,7 @@ void Interface::nowOpen() {
         return;
     current = State::Open;
     ++counts.opened;
-    nextRetry = firstRetry;
+    nextRetry = std::min(firstRetry, longestRetry);
     Q_EMIT opened();
 }
 

@@ -19,7 +19,7 @@ struct InterfaceCounters {
 
 /// The lower layer of a channel: the life cycle of a carrier of bytes or datagrams. It does not know what the
 /// bytes mean. With reconnecting on, a carrier that closes is opened again after 0.1 s, doubled each time up
-/// to 5 s. Everything is asynchronous; use from one thread.
+/// to 5 s or setLongestRetry(). Everything is asynchronous; use from one thread.
 class Interface : public QObject {
     Q_OBJECT
 public:
@@ -46,6 +46,8 @@ public:
     const InterfaceCounters &counters() const { return counts; }
 
     void setReconnecting(bool on) { reconnecting = on; }
+    /// The pause between attempts grows up to this.
+    void setLongestRetry(std::chrono::milliseconds pause);
     void setWriteLimit(qint64 bytes) { writeLimit = bytes; }
 
 Q_SIGNALS:
@@ -75,7 +77,7 @@ private:
     qint64 writeLimit = defaultWriteLimit;
     InterfaceCounters counts;
     QTimer retry;
-    std::chrono::milliseconds nextRetry;
+    std::chrono::milliseconds nextRetry, longestRetry;
 };
 
 } // namespace hermes

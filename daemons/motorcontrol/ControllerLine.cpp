@@ -12,6 +12,8 @@ using Task = MotorController::Task;
 
 namespace {
 
+constexpr std::chrono::milliseconds longestRetry{250}; // the robot stands until the line is back
+
 // A request is not repeated as it is: what is due then is newer.
 Bus::Options withoutRepetition() {
     Bus::Options options;
@@ -29,6 +31,7 @@ ControllerLine::ControllerLine(Interface *interface, std::vector<MotorController
     , bus_(withoutRepetition()) {
     interface_->setParent(this);
     interface_->setReconnecting(true);
+    interface_->setLongestRetry(longestRetry);
     bus_.setOpen(false);
     deadline_.setTimerType(Qt::PreciseTimer);
     deadline_.setSingleShot(true);

@@ -62,6 +62,7 @@ public:
     /// voltage: of the battery; powered: false while the bridge is off and the motor rolls freely.
     void advance(double seconds, double voltage, bool powered);
 
+    double target() const { return target_; }                            ///< as last asked: duty or counts/s
     double speed() const { return speed_; }                              ///< of the shaft
     double measuredSpeed() const { return encoderBroken_ ? 0 : speed_; } ///< as the encoder tells it
     std::int64_t count() const;

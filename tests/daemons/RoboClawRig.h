@@ -1,10 +1,13 @@
 #pragma once
 
+#include "WireEar.h"
 #include "daemons/simulator/RoboClawEmulator.h"
+#include "daemons/simulator/RobotBody.h"
 
 #include <QString>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -16,6 +19,7 @@
 #include <poll.h>
 #include <pthread.h>
 #include <pty.h>
+#include <random>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <thread>
@@ -28,18 +32,10 @@ class RoboClawRig {
 public:
     using Emulator = hermes::RoboClawEmulator;
 
-    /// Counts/s below which a wheel stands: 5 mm/s.
-    static constexpr double standing = 300;
+    static constexpr double standing = 0.005; ///< m/s below which rims and body stand
+    static constexpr double countsPerTurn = 38000;
 
-    /// A set-point (command 40) as it came over the wire.
-    struct SetPoint {
-        double time; ///< monotonic
-        int address;
-        quint32 acceleration;
-        qint32 m1, m2;
-
-        bool isZero() const { return m1 == 0 && m2 == 0; }
-    };
+    using SetPoint = WireEar::SetPoint;
 
     /// link: where programs find the line.
     RoboClawRig(const QString &link, const std::vector<Emulator::Options> &controllers)
@@ -106,94 +102,111 @@ public:
             most = std::max(most, std::abs(speed));
         return most;
     }
-    /// When a wheel turned last, and when a controller last meant one to turn.
+    /// The fastest rim; m/s.
+    double rimSpeed() {
+        const std::lock_guard lock(mutex_);
+        return rimSpeed_;
+    }
+    /// When the body or a wheel moved last, and when a controller last meant one to turn.
     double lastMoved() const { return lastMoved_; }
     double lastDriven() const { return lastDriven_; }
     void setVoltage(double volts) { voltage_ = volts; }
 
-    /// When the last controller got a set-point of zero that was followed by nothing else since; infinite
-    /// when one of them was told to turn last.
-    double zeroSince() {
+    /// The set-point of zero that stopped the last controller; infinite in time when one of them was told to
+    /// turn last.
+    SetPoint zero() {
         const std::lock_guard lock(mutex_);
-        double latest = 0;
+        SetPoint latest{};
         for (std::size_t i = 0; i < emulators_.size(); ++i) {
-            double since = std::numeric_limits<double>::infinity();
-            for (auto s = heard_.rbegin(); s != heard_.rend(); ++s) {
-                if (s->address != 0x80 + int(i))
-                    continue;
-                if (!s->isZero())
-                    break;
-                since = s->time;
-            }
-            latest = std::max(latest, since);
+            const SetPoint zero = ear_.zeroOf(0x80 + int(i));
+            if (zero.time > latest.time)
+                latest = zero;
         }
         return latest;
     }
+    double zeroSince() { return zero().time; }
     std::vector<SetPoint> heard() {
         const std::lock_guard lock(mutex_);
-        return {heard_.begin(), heard_.end()};
+        return {ear_.heard().begin(), ear_.heard().end()};
     }
     /// Packets that are none of those that the motor control may send.
-    int strange() const { return strange_; }
+    int strange() {
+        const std::lock_guard lock(mutex_);
+        return ear_.strange();
+    }
+
+    /// What a noisy line did: see setFlips().
+    struct Noise {
+        quint64 bytes = 0, flipped = 0;
+        int foreign = 0;         ///< executed commands after which a motor turned as nobody had asked
+        double longestPause = 0; ///< between two set-points that one controller executed; seconds
+    };
+    /// From now on this share of the bytes has one bit flipped, both ways. Begins to count anew.
+    void setFlips(double share) {
+        const std::lock_guard lock(mutex_);
+        flips_ = share;
+        noise_ = {};
+        executed_.fill(now());
+    }
+    Noise noise() {
+        const std::lock_guard lock(mutex_);
+        return noise_;
+    }
 
 private:
-    // The length of a request by the published table, 0 where the motor control has no business.
-    static int lengthOf(quint8 command) {
-        switch (command) {
-        case 14:
-            return 5;
-        case 28:
-        case 29:
-            return 20;
-        case 40:
-            return 16;
-        case 15:
-        case 21:
-        case 24:
-        case 25:
-        case 49:
-        case 55:
-        case 56:
-        case 78:
-        case 82:
-        case 90:
-            return 2;
-        }
-        return 0;
-    }
-    static qint32 number(const std::deque<quint8> &bytes, std::size_t at) {
-        quint32 value = 0;
-        for (std::size_t i = 0; i < 4; ++i)
-            value = value << 8 | bytes[at + i];
-        return qint32(value);
-    }
-    void overhear(quint8 byte, double time) {
-        packet_.push_back(byte);
-        if (packet_.size() < 2)
-            return;
-        const int length = lengthOf(packet_[1]);
-        strange_ += length == 0;
-        if (length == 0)
-            return packet_.clear();
-        if (int(packet_.size()) < length)
-            return;
-        if (packet_[1] == 40)
-            heard_.push_back(
-                {time, packet_[0], quint32(number(packet_, 2)), number(packet_, 6), number(packet_, 10)});
-        if (heard_.size() > 20000)
-            heard_.pop_front();
-        packet_.clear();
+    quint8 noisy(quint8 byte) {
+        ++noise_.bytes;
+        if (std::uniform_real_distribution<double>()(random_) >= flips_)
+            return byte;
+        ++noise_.flipped;
+        return quint8(byte ^ 1 << random_() % 8);
     }
     void receive() {
         quint8 bytes[256];
         const auto size = ::read(far_, bytes, sizeof(bytes));
         for (int i = 0; i < size; ++i) {
-            overhear(bytes[i], now());
-            for (Emulator &emulator : emulators_) {
-                if (const auto answer = emulator.receive(bytes[i], now()))
-                    late_.push_back({now() + answer->delay, answer->bytes});
-            }
+            ear_.hear(bytes[i], now(), rimSpeed_);
+            const quint8 byte = noisy(bytes[i]);
+            for (std::size_t e = 0; e < emulators_.size(); ++e)
+                hand(e, byte, now());
         }
+    }
+    void hand(std::size_t number, quint8 byte, double time) {
+        Emulator &emulator = emulators_[number];
+        const auto before = emulator.counts().requests;
+        const auto answer = emulator.receive(byte, time);
+        if (emulator.counts().requests != before)
+            judge(number, answer && answer->bytes.size() == 1, time);
+        if (!answer)
+            return;
+        hermes::roboclaw::Bytes bytes;
+        for (std::size_t i = 0; i < answer->bytes.size(); ++i)
+            bytes.push(noisy(answer->bytes[i]));
+        late_.push_back({time + answer->delay, bytes});
+    }
+    // After a command that was executed the motors are told what the host has sent, or stopped by themselves.
+    void judge(std::size_t number, bool acknowledged, double time) {
+        const double m1 = emulators_[number].channel(0).target(), m2 = emulators_[number].channel(1).target();
+        noise_.foreign += (m1 != 0 || m2 != 0) && !ear_.wasAsked(0x80 + int(number), m1, m2);
+        if (!acknowledged)
+            return;
+        noise_.longestPause = std::max(noise_.longestPause, time - executed_[number % 2]);
+        executed_[number % 2] = time;
+    }
+    // The body goes where its wheels drive it.
+    void moveBody(double seconds, double time) {
+        std::array<double, 4> wheels{};
+        rimSpeed_ = 0;
+        for (std::size_t i = 0; i < std::min<std::size_t>(4, 2 * emulators_.size()); ++i) {
+            const double speed = emulators_[i / 2].channel(int(i % 2)).speed();
+            wheels[i] = speed / countsPerTurn * 2 * std::acos(-1.0);
+            rimSpeed_ = std::max(rimSpeed_, std::abs(wheels[i]) * base_.radius);
+        }
+        const auto before = pose_;
+        pose_ = body_.move(pose_, base_.twistOf(wheels), seconds);
+        const double way = std::hypot(pose_.x - before.x, pose_.y - before.y);
+        if (rimSpeed_ > standing || way > standing * seconds)
+            lastMoved_ = time;
     }
     void run() {
         // A controller keeps its time however busy the machine is; without the privilege it is an ordinary
@@ -217,18 +230,15 @@ private:
             const double time = now();
             while (!late_.empty() && late_.front().due <= time) {
                 if (far_ >= 0 && ::write(far_, late_.front().bytes.data(), late_.front().bytes.size()) < 0)
-                    ++strange_;
+                    std::abort(); // the host does not read
                 late_.pop_front();
             }
             for (Emulator &emulator : emulators_) {
                 emulator.advance(time - before, voltage_);
-                for (int motor : {0, 1}) {
-                    if (std::abs(emulator.channel(motor).speed()) > standing)
-                        lastMoved_ = time;
-                    if (emulator.channel(motor).isDriven())
-                        lastDriven_ = time;
-                }
+                if (emulator.channel(0).isDriven() || emulator.channel(1).isDriven())
+                    lastDriven_ = time;
             }
+            moveBody(time - before, time);
             before = time;
         }
     }
@@ -244,10 +254,16 @@ private:
     int far_ = -1, near_ = -1; // near is held open, so that the far end can be read before a program comes
     std::atomic<double> voltage_{25};
     std::atomic<double> lastMoved_{0}, lastDriven_{0};
-    std::deque<quint8> packet_;
-    std::deque<SetPoint> heard_;
+    const hermes::WheelBase base_;
+    hermes::RobotBody body_; // no walls
+    vectorlib::Pose2D pose_;
+    double rimSpeed_ = 0; // m/s
+    WireEar ear_;
+    double flips_ = 0;
+    std::mt19937 random_{7};
+    Noise noise_;
+    std::array<double, 2> executed_{}; // the last set-point of each controller
     std::deque<Late> late_;
-    std::atomic<int> strange_{0};
     std::atomic<bool> ends_{false};
     std::thread thread_;
 };
