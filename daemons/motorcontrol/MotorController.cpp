@@ -169,6 +169,7 @@ void MotorController::takeSetup(const Bus::Outcome &outcome, double now) {
             version_ = QString::fromLatin1(outcome.reply.text.data());
         if (++step_ == setupSteps) {
             lastObeyed_ = lastCounts_ = now;
+            ++readings_.setups;
             error_.clear();
         }
         return;
@@ -213,7 +214,7 @@ void MotorController::finished(Task task, const Bus::Outcome &outcome, double no
     awaits_ = false;
     if (outcome.result == Bus::Result::Cancelled)
         return; // never sent
-    failing_ = outcome.result != Bus::Result::Done;
+    failures_ = outcome.result == Bus::Result::Done ? 0 : std::min(failures_ + 1, 2);
     if (!isReady())
         return takeSetup(outcome, now);
     if (outcome.result != Bus::Result::Done) {

@@ -16,6 +16,7 @@ struct ControllerReadings {
     double temperature_c = 0;
     quint32 status = 0;    ///< bits of roboclaw::StatusBit
     bool complete = false; ///< each of the slow ones has been read since it was set up
+    int setups = 0;        ///< times it was set up: it may have been without power in between
 };
 
 /// One RoboClaw: set up with time-out and PID, which are read back; then set-points out and readings in.
@@ -44,8 +45,8 @@ public:
 
     /// Set up, and answers.
     bool isReady() const { return step_ == setupSteps; }
-    /// Its last request was not answered as it should.
-    bool isFailing() const { return failing_; }
+    /// Its last requests were not answered as they should; one alone may be damaged on any line.
+    bool isFailing() const { return failures_ > 1; }
     /// The last command was acknowledged.
     bool hasObeyed() const { return isReady() && obeyed_ == commanded_; }
     /// "controller 1 (0x80 on serial:///dev/ttyS1)"
@@ -84,7 +85,7 @@ private:
     QString error_ = "has not answered yet";
     QString version_;
 
-    bool failing_ = false;
+    int failures_ = 0;    // in a row
     bool awaits_ = false; // the answer to a request that is still wanted
     bool wantsEncoders_ = false, wantsSlow_ = false;
     quint64 commanded_ = 0, sent_ = 0, obeyed_ = 0; // set-points, counted

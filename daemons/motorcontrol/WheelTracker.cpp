@@ -27,8 +27,8 @@ void WheelTracker::configure(const std::array<WheelMount, wheelCount> &wheels, d
     mostSpeed_ = mostSpeed;
 }
 
-bool WheelTracker::isPlausible(int wheel, double turn, double gap) const {
-    if (gap > silence_s)
+bool WheelTracker::isPlausible(int wheel, double turn, double gap, bool wasSilent) const {
+    if (wasSilent)
         return std::abs(turn) <= longestRun_s * (std::abs(speeds_[wheel]) + pushed_rad_s);
     return std::abs(turn) <= mostSpeed_ * std::max(gap, 0.1);
 }
@@ -41,9 +41,11 @@ WheelTracker::update(const std::array<const ControllerReadings *, controllerCoun
     }
     const auto countsBefore = counts_;
     const auto timesBefore = times_;
+    const auto setupsBefore = setups_;
     for (int i = 0; i < controllerCount; ++i) {
         counts_[i] = readings[i]->counts;
         times_[i] = readings[i]->countsTime;
+        setups_[i] = readings[i]->setups;
     }
     if (std::find(timesBefore.begin(), timesBefore.end(), 0.0) != timesBefore.end())
         return std::nullopt;
@@ -58,9 +60,9 @@ WheelTracker::update(const std::array<const ControllerReadings *, controllerCoun
         const double gap = times_[wheel.controller] - timesBefore[wheel.controller];
         motion.turns[i] = wheel.sign * counts * radiansPerCount_;
         motion.speeds[i] = motion.turns[i] / gap;
-        const bool reset =
-            gap > silence_s && wasReset(countsBefore[wheel.controller], counts_[wheel.controller]);
-        motion.plausible = motion.plausible && !reset && isPlausible(i, motion.turns[i], gap);
+        const bool wasSilent = gap > silence_s || setups_[wheel.controller] != setupsBefore[wheel.controller];
+        const bool reset = wasSilent && wasReset(countsBefore[wheel.controller], counts_[wheel.controller]);
+        motion.plausible = motion.plausible && !reset && isPlausible(i, motion.turns[i], gap, wasSilent);
     }
     if (!motion.plausible)
         motion.turns = motion.speeds = {};

@@ -28,13 +28,14 @@ public:
     update(const std::array<const ControllerReadings *, controllerCount> &readings);
 
 private:
-    bool isPlausible(int wheel, double turn, double gap) const;
+    bool isPlausible(int wheel, double turn, double gap, bool wasSilent) const;
 
     std::array<WheelMount, wheelCount> wheels_;
     double radiansPerCount_ = 0;
     double mostSpeed_ = 0;
     std::array<std::array<quint32, 2>, controllerCount> counts_{};
     std::array<double, controllerCount> times_{}; // 0: not read yet
+    std::array<int, controllerCount> setups_{};
     WheelValues speeds_{};
 };
 

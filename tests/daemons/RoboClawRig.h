@@ -1,5 +1,6 @@
 #pragma once
 
+#include "PriorityMutex.h"
 #include "WireEar.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
@@ -107,6 +108,11 @@ public:
         const std::lock_guard lock(mutex_);
         return rimSpeed_;
     }
+    /// Where the body has come to; it began at zero.
+    vectorlib::Pose2D pose() {
+        const std::lock_guard lock(mutex_);
+        return pose_;
+    }
     /// When the body or a wheel moved last, and when a controller last meant one to turn.
     double lastMoved() const { return lastMoved_; }
     double lastDriven() const { return lastDriven_; }
@@ -208,6 +214,15 @@ private:
         if (rimSpeed_ > standing || way > standing * seconds)
             lastMoved_ = time;
     }
+    // The thread may have waited: motions end when they end, not when it goes on.
+    void advance(double seconds, double time) {
+        for (Emulator &emulator : emulators_) {
+            emulator.advance(seconds, voltage_);
+            if (emulator.channel(0).isDriven() || emulator.channel(1).isDriven())
+                lastDriven_ = time;
+        }
+        moveBody(seconds, time);
+    }
     void run() {
         // A controller keeps its time however busy the machine is; without the privilege it is an ordinary
         // thread.
@@ -223,25 +238,23 @@ private:
             }
             ::poll(&line, 1, 1);
             const std::lock_guard lock(mutex_);
+            const double time = now();
+            for (double at = before; at < time; at += step)
+                advance(std::min(step, time - at), std::min(at + step, time));
             if (far_ >= 0) {
                 ::ioctl(near_, TIOCNXCL); // the claim of a program that was killed
                 receive();
             }
-            const double time = now();
-            while (!late_.empty() && late_.front().due <= time) {
+            while (!late_.empty() && late_.front().due <= now()) {
                 if (far_ >= 0 && ::write(far_, late_.front().bytes.data(), late_.front().bytes.size()) < 0)
                     std::abort(); // the host does not read
                 late_.pop_front();
             }
-            for (Emulator &emulator : emulators_) {
-                emulator.advance(time - before, voltage_);
-                if (emulator.channel(0).isDriven() || emulator.channel(1).isDriven())
-                    lastDriven_ = time;
-            }
-            moveBody(time - before, time);
             before = time;
         }
     }
+
+    static constexpr double step = 0.001; // seconds
 
     struct Late {
         double due;
@@ -250,7 +263,7 @@ private:
 
     const std::string link_;
     std::vector<Emulator> emulators_;
-    std::mutex mutex_;
+    PriorityMutex mutex_;
     int far_ = -1, near_ = -1; // near is held open, so that the far end can be read before a program comes
     std::atomic<double> voltage_{25};
     std::atomic<double> lastMoved_{0}, lastDriven_{0};

@@ -31,7 +31,10 @@ void TestMotorFaults::pulledLineRecoversWithoutAJump() {
     const double before = state()["pose"].toObject()["x"].toDouble();
     QTRY_VERIFY_WITH_TIMEOUT(rig_->fastest() < 10, 1000); // by the controllers' own time-out
     rig_->plugIn();
-    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 7000);
+    const double back = RoboClawRig::now();
+    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 2000);
+    const double found = RoboClawRig::now() - back;
+    QVERIFY2(found < 0.6, qPrintable(QString::number(found)));
     passCycles(5); // with readings
     const double rolled = state()["pose"].toObject()["x"].toDouble() - before;
     QVERIFY2(rolled >= 0 && rolled < 0.2, qPrintable(QString::number(rolled))); // what the wheels really did
