@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Motor control and simulator as processes, each controller on a serial line of its own: one line is pulled while the robot
+drives and put back. The robot stops, goes on without a restart, and its odometry is where the robot truly is."""
+import json
+import math
+import os
+import socket
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
+from processes import Process, free_port  # noqa: E402
+from hermes import DaemonError  # noqa: E402
+
+BINARIES = os.environ["HERMES_BIN"]
+SPEED = 0.4  # m/s
+
+
+def wait_for(what, condition, limit_s):
+    """Seconds until the condition held."""
+    began = time.monotonic()
+    while not condition():
+        assert time.monotonic() < began + limit_s, f"{what} did not happen within {limit_s} s"
+        time.sleep(0.005)
+    return time.monotonic() - began
+
+
+def is_ready(motors):
+    return motors.call("motor.state")["ready"]
+
+
+def true_speed(simulator):
+    twist = simulator.call("sim.state")["twist"]
+    return math.hypot(twist["vx"], twist["vy"])
+
+
+def drive(motors, seconds):
+    motors.call("control.acquire")
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        motors.call("motor.drive", vx=SPEED)
+        time.sleep(0.05)
+
+
+def refusal(motors):
+    """The message with which a command to drive is refused."""
+    try:
+        motors.call("motor.drive", vx=SPEED)
+    except DaemonError as error:
+        return str(error)
+    raise AssertionError("the robot may drive")
+
+
+def compare_ways(simulator, motors):
+    """Robot and odometry began at zero; when the robot stands they agree within 5 mm. Gives how far it has gone."""
+    wait_for("standing", lambda: true_speed(simulator) == 0, 2)
+    truth = simulator.call("sim.state")["pose"]
+
+    def away():
+        told = motors.call("motor.state")["pose"]
+        return math.hypot(truth["x"] - told["x"], truth["y"] - told["y"])
+
+    wait_for(f"agreement of the odometry with the robot at {truth}", lambda: away() < 0.005, 1)
+    return truth["x"]
+
+
+def pull_and_put_back(simulator, motors, line):
+    drive(motors, 1)
+    assert abs(true_speed(simulator) - SPEED) < 0.05
+    simulator.call("sim.fault", device=line, kind="pulled")
+    noticed = wait_for("notice of the pulled line", lambda: not is_ready(motors), 0.5)
+    message = refusal(motors)
+    assert f"controller {line[-1]} (0x80 on serial://" in message, message
+    stood = wait_for("standing", lambda: true_speed(simulator) == 0, 1)
+    time.sleep(1)  # the pauses between the attempts to open the line have grown
+    simulator.call("sim.fault", device=line, kind="none")
+    back = wait_for("recovery", lambda: is_ready(motors), 2)
+    assert back < 0.6, f"only {back:.2f} s after the line was put back the controllers were ready"
+    way = compare_ways(simulator, motors)
+    assert motors.call("motor.state")["counter_jumps"] == 0
+    print(f"{line}: noticed after {noticed:.3f} s, stood {stood:.3f} s later, ready {back:.3f} s after its return, {way:.3f} m")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        links, world = [os.path.join(folder, name) for name in ("front", "rear")], os.path.join(folder, "hall.json")
+        with open(world, "w", encoding="utf-8") as file:
+            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
+                       "poses": [[0, 0, 0]]}, file)
+        settings = {"motors.link": links[0], "motors.link2": links[1], "motors.address2": 128, "world": world,
+                    "lidar.port": free_port(0, socket.SOCK_DGRAM)}
+        processes = [Process(BINARIES, "simulator", free_port(0), folder, settings)]
+        try:
+            simulator = processes[0].connect()
+            settings = {f"controllers.{i}.url": f"serial://{links[i - 1]}" for i in (1, 2)}
+            processes.append(Process(BINARIES, "motorcontrol", free_port(0), folder, {**settings, "controllers.2.address": 128}))
+            motors = processes[1].connect()
+            wait_for("readiness", lambda: is_ready(motors), 5)
+            for line in ("line1", "line2", "line1"):
+                pull_and_put_back(simulator, motors, line)
+            drive(motors, 0.5)
+            assert true_speed(simulator) > 0.2, "it does not drive again"
+        finally:
+            statuses = [process.stop() for process in reversed(processes)]
+        assert statuses == [0, 0], f"{statuses}: {processes[-1].last_words()}"
+
+
+if __name__ == "__main__":
+    main()
