@@ -22,6 +22,7 @@ public:
     const roboclaw::Bus::Counts &counts(const MotorController &controller) const {
         return bus_.counts(controller.address());
     }
+    quint64 strayBytes() const { return bus_.strayBytes(); }
     const Interface &interface() const { return *interface_; }
 
 Q_SIGNALS:

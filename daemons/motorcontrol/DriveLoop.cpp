@@ -138,6 +138,7 @@ void DriveLoop::takeReadings(double now) {
                 controller.isReady(),
                 controller.readings(),
                 lineOf_[i]->counts(controller),
+                lineOf_[i]->strayBytes(),
                 controller.overruns()};
     }
     const auto motion = tracker_.update({&controllers_[0]->readings(), &controllers_[1]->readings()});

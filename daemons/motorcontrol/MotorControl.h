@@ -41,6 +41,7 @@ private:
     DriveLoop *loop_ = nullptr; // lives in thread_
     MotorSettings active_;      // what the loop works with
     Telemetry told_;
+    std::array<QString, controllerCount> logged_; // how the controllers are
     quint64 cycles_ = 0;
 };
 

@@ -1,4 +1,5 @@
 // What the motor control tells about itself: health items, state, motor.state.
+#include "common/Log.h"
 #include "daemons/motorcontrol/MotorControl.h"
 #include "daemons/motorcontrol/MotorJson.h"
 
@@ -28,8 +29,12 @@ HealthLevel toHealth(Threshold::Level level) {
 void MotorControl::updateHealth() {
     for (int i = 0; i < controllerCount; ++i) {
         const Telemetry::Controller &c = told_.controllers[i];
+        const QString text = c.name + ": " + (c.ready ? c.version : c.error);
         health().set(QString("controller_%1").arg(i + 1), c.ready ? HealthLevel::Ok : HealthLevel::Failed,
-                     c.name + ": " + (c.ready ? c.version : c.error), controllerJson(c));
+                     text, controllerJson(c));
+        if (text != logged_[i])
+            c.ready ? logInfo("controllers", text) : logWarning("controllers", text);
+        logged_[i] = text;
     }
     double battery = 1e9, current = 0, temperature = -1e9;
     bool known = false;

@@ -62,6 +62,7 @@ QJsonObject controllerJson(const Telemetry::Controller &c) {
             {"timeouts", double(c.counts.timeouts)},
             {"crc_errors", double(c.counts.crcErrors)},
             {"unexpected", double(c.counts.unexpected)},
+            {"stray_bytes", double(c.strayBytes)},
             {"overruns", double(c.overruns)}};
 }
 

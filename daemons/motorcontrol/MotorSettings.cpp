@@ -1,5 +1,6 @@
 #include "daemons/motorcontrol/MotorSettings.h"
 
+#include "common/interface/InterfaceUrl.h"
 #include "common/settings/DottedPath.h"
 
 #include <algorithm>
@@ -120,6 +121,13 @@ void declareFaults(const std::function<void(const Field &)> &declare) {
     add("faults.encoder_hold_s", "How long a wheel must disobey; longer than braking takes", "s", 10, 0.7);
 }
 
+// A device, or a serial server.
+bool isLine(const QString &url) {
+    const auto parsed = InterfaceUrl::parse(url);
+    return parsed && ((parsed->scheme == "serial" && !parsed->path.isEmpty()) ||
+                      (parsed->scheme == "tcp" && !parsed->host.isEmpty() && parsed->port != 0));
+}
+
 } // namespace
 
 void declareMotorSettings(const std::function<void(const Field &)> &declare) {
@@ -136,6 +144,9 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
         if (!fine)
             wrong.push_back({path, valueAt(settings, path), expected});
     };
+    for (const QString &path : {QString("controllers.1.url"), QString("controllers.2.url")})
+        require(isLine(valueAt(settings, path).toString()), path,
+                "a line, as serial:///dev/ttyACM0?baud=115200 or, of a serial server, tcp://HOST:PORT");
     require(valueAt(settings, "controllers.1.url") != valueAt(settings, "controllers.2.url") ||
                 number("controllers.1.address") != number("controllers.2.address"),
             "controllers.2.address", "another address than that of controller 1, which is on the same line");

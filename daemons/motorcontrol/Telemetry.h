@@ -12,6 +12,7 @@ struct Telemetry {
         bool ready = false;
         ControllerReadings readings;
         roboclaw::Bus::Counts counts;
+        quint64 strayBytes = 0; ///< on its line: they came when none was awaited
         quint64 overruns = 0;
     };
 

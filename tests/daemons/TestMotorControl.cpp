@@ -2,6 +2,9 @@
 #include "MotorFixture.h"
 #include "common/settings/DottedPath.h"
 
+#include <QTcpSocket>
+#include <QUrl>
+
 using namespace hermes;
 
 namespace {
@@ -20,6 +23,8 @@ private Q_SLOTS:
     void topicsCome();
     void refusals_data();
     void refusals();
+    void numbersWithoutAValueAreRefused();
+    void missingDeviceIsNamedAndFoundWhenItComes();
     void leaseIsExclusiveAndRunsOut();
     void takingOverStopsTheRobot();
     void emergencyStopLatches();
@@ -119,6 +124,8 @@ void TestMotorControl::refusals_data() {
     row("wheel too fast", "motor.wheels", {{"rear_left", 1e6}}, ErrorCode::OverLimit, "rear_left is 1e+06");
     row("unknown parameter", "motor.drive", {{"vz", 1}}, ErrorCode::InvalidParams, "vz");
     row("not a number", "motor.drive", {{"vx", "fast"}}, ErrorCode::InvalidParams, "vx");
+    row("null", "motor.drive", {{"omega", QJsonValue()}}, ErrorCode::InvalidParams,
+        "omega is null, expected a number in rad/s");
     row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, ErrorCode::NotReady,
         "less than 0.25 s from now");
     row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, ErrorCode::InvalidParams, "timeout_s");
@@ -139,6 +146,42 @@ void TestMotorControl::refusals() {
     passCycles(5);
     for (const RoboClawRig::SetPoint &setPoint : rig_->heard())
         QVERIFY(setPoint.isZero());
+}
+
+// As a client may send them that does not keep to JSON.
+void TestMotorControl::numbersWithoutAValueAreRefused() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    QTcpSocket socket;
+    socket.connectToHost("127.0.0.1", quint16(QUrl(address()).port()));
+    QByteArray answers;
+    const auto ask = [&](const QByteArray &method, const QByteArray &params) {
+        answers.clear();
+        socket.write(R"({"jsonrpc":"2.0","id":1,"method":")" + method + R"(","params":)" + params + "}\n");
+        return QTest::qWaitFor([&] { return (answers += socket.readAll()).endsWith('\n'); });
+    };
+    QVERIFY(ask("control.acquire", "{}") && answers.contains(R"("held":true)"));
+    for (const char *number : {"NaN", "1e999", "-Infinity"}) {
+        QVERIFY(ask("motor.drive", QByteArray(R"({"vx":)") + number + "}"));
+        QVERIFY2(answers.contains(R"("code":-32700)") && answers.contains("illegal"), answers.constData());
+    }
+    passCycles(5);
+    for (const RoboClawRig::SetPoint &setPoint : rig_->heard())
+        QVERIFY(setPoint.isZero());
+}
+
+void TestMotorControl::missingDeviceIsNamedAndFoundWhenItComes() {
+    rig_->pull();
+    launch();
+    const QString says =
+        QString("controller 1 (0x80 on %1): cannot open %1: there is no such device").arg(url());
+    QTRY_COMPARE(healthItem("controller_1")["message"].toString(), says);
+    const Error error = failure("control.acquire");
+    QCOMPARE(error.code, int(ErrorCode::DeviceFault));
+    QCOMPARE(error.message, says);
+    QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).message, says);
+    rig_->plugIn();
+    QTRY_VERIFY(state()["ready"].toBool());
 }
 
 void TestMotorControl::leaseIsExclusiveAndRunsOut() {
@@ -280,6 +323,9 @@ void TestMotorControl::shutdownStops() {
 void TestMotorControl::settingsAreCheckedAgainstEachOther_data() {
     QTest::addColumn<QStringList>("settings");
     QTest::addColumn<QString>("path");
+    QTest::newRow("a path alone") << QStringList{"controllers.1.url=/dev/ttyACM0"} << "controllers.1.url";
+    QTest::newRow("unknown scheme") << QStringList{"controllers.2.url=serail:///dev/ttyACM0"}
+                                    << "controllers.2.url";
     QTest::newRow("one address twice") << QStringList{"controllers.2.address=128"} << "controllers.2.address";
     QTest::newRow("one motor twice") << QStringList{"wheels.rear_left.controller=1"}
                                      << "wheels.rear_left.motor";
