@@ -43,8 +43,10 @@ protected:
         const QString url = "serial://" + folder_->filePath("line");
         daemon_ = std::make_unique<QProcess>();
         daemon_->setProcessChannelMode(QProcess::MergedChannels);
-        daemon_->start(qEnvironmentVariable("HERMES_BIN") + "/hermes-motorcontrol",
-                       {"--listen", "tcp://" + host_ + ":0", "--set", "insecure=true", "--set",
+        // Should this program be ended, the daemon must not go on and find the line of another test.
+        daemon_->start("setpriv",
+                       {"--pdeathsig", "KILL", qEnvironmentVariable("HERMES_BIN") + "/hermes-motorcontrol",
+                        "--listen", "tcp://" + host_ + ":0", "--set", "insecure=true", "--set",
                         "controllers.1.url=" + url, "--set", "controllers.2.url=" + url});
         QVERIFY(daemon_->waitForStarted());
         const QRegularExpression where(QRegularExpression::escape(host_) + ":(\\d+),");
