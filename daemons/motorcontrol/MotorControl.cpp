@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <future>
+#include <sys/resource.h>
 
 namespace hermes {
 namespace {
 
 constexpr quint64 slowEvery = 5; // cycles between two messages of what changes slowly
 constexpr std::chrono::milliseconds stopLimit{1000};
+constexpr int niceness = -11; // where it may: what must stop the robot does not wait behind ordinary work
 
 } // namespace
 
@@ -57,6 +59,9 @@ void MotorControl::declareTopics() {
 
 Result<void> MotorControl::start() {
     active_ = MotorSettings::from(settings());
+    // The drive loop also waits for locks of the event queue that this thread may hold.
+    if (::getpriority(PRIO_PROCESS, 0) > niceness)
+        ::setpriority(PRIO_PROCESS, 0, niceness);
     loop_ = new DriveLoop([this](const Telemetry &telemetry) {
         QMetaObject::invokeMethod(
             this, [this, telemetry] { show(telemetry); }, Qt::QueuedConnection);
