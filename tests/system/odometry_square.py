@@ -55,11 +55,13 @@ class Robot:
         return [process.stop() for process in reversed(self.processes)]
 
     def left(self, x, y, theta):
-        """What is left to this pose, as the robot sees it: ahead, to its left, turn."""
-        pose = self.motors.call("motor.state")["pose"]
+        """What is left to this pose, as the robot sees it: ahead, to its left, turn; and whether it is slow."""
+        state = self.motors.call("motor.state")
+        pose, twist = state["pose"], state["twist"]
+        slow = math.hypot(twist["vx"], twist["vy"]) < 0.05 and abs(twist["omega"]) < 0.05
         c, s = math.cos(pose["theta"]), math.sin(pose["theta"])
         dx, dy = x - pose["x"], y - pose["y"]
-        return c * dx + s * dy, c * dy - s * dx, math.remainder(theta - pose["theta"], 2 * math.pi)
+        return c * dx + s * dy, c * dy - s * dx, math.remainder(theta - pose["theta"], 2 * math.pi), slow
 
     def drive(self, command):
         try:
@@ -79,14 +81,14 @@ class Robot:
     def drive_to(self, goal, near, near_angle):
         deadline = time.monotonic() + 60 + 4 * SIDE
         while True:
-            ahead, left, turn = self.left(*goal)
+            ahead, left, turn, slow = self.left(*goal)
             if self.layout == "differential":  # across it only steers, while it has way to go
                 distance, command = abs(ahead), {"vx": towards(ahead, SPEED, SLOWING)}
             else:
                 distance = math.hypot(ahead, left)
                 share = towards(distance, SPEED, SLOWING) / distance if distance > 0 else 0
                 command = {"vx": share * ahead, "vy": share * left}
-            if distance < near and abs(turn) < near_angle:
+            if slow and distance < near and abs(turn) < near_angle:  # it does not just pass
                 return
             assert time.monotonic() < deadline, f"{self.layout}: {distance} m and {turn} rad are left to {goal}"
             command["omega"] = towards(turn, TURN_RATE, TURN_SLOWING)
