@@ -54,6 +54,7 @@ private:
     void followSupervisor(DaemonLink *link);
 
     const QString host_;
+    QString name_;
     std::map<quint16, Entry> entries_;
     QJsonArray processes_;
     QPointer<DaemonLink> followed_;

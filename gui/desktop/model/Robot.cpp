@@ -10,9 +10,7 @@ Robot::Robot(const QString &host, QObject *parent)
     , host_(host) {}
 
 QString Robot::name() const {
-    const DaemonLink *const link = supervisor();
-    const QString robot = link ? link->info()["robot"].toString() : QString();
-    return robot.isEmpty() ? host_ : robot;
+    return name_.isEmpty() ? host_ : name_;
 }
 
 std::vector<DaemonLink *> Robot::daemons() const {
@@ -102,6 +100,7 @@ void Robot::followSupervisor(DaemonLink *link) {
     followed_ = link;
     search();
     link->client().subscribe("processes", {}, [this](const TopicUpdate &update) {
+        name_ = update.data["robot"].toString();
         processes_ = update.data["processes"].toArray();
         for (const QJsonValue &process : qAsConst(processes_))
             if (const int port = process["port"].toInt(); port > 0 && port < 65536)

@@ -1,0 +1,211 @@
+#include "daemons/supervisor/SupervisedProcess.h"
+
+#include "common/Log.h"
+#include "common/Time.h"
+#include "daemons/supervisor/ProcessUsage.h"
+
+#include <QCoreApplication>
+#include <QFileInfo>
+#include <QJsonArray>
+#include <csignal>
+#include <sys/prctl.h>
+
+namespace hermes {
+namespace {
+
+constexpr int longestLine = 4096;
+
+/// Beside the supervisor first: an installation that is not in PATH finds its own programs.
+QString found(const QString &program) {
+    const QString beside = QCoreApplication::applicationDirPath() + "/" + program;
+    return !program.contains('/') && QFileInfo(beside).isExecutable() ? beside : program;
+}
+
+} // namespace
+
+QString toString(SupervisedProcess::State state) {
+    switch (state) {
+    case SupervisedProcess::State::Stopped:
+        return "stopped";
+    case SupervisedProcess::State::Running:
+        return "running";
+    case SupervisedProcess::State::Stopping:
+        return "stopping";
+    case SupervisedProcess::State::Waiting:
+        return "waiting";
+    case SupervisedProcess::State::Failed:
+        break;
+    }
+    return "failed";
+}
+
+void SupervisedProcess::Child::setupChildProcess() {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+}
+
+SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
+    : QObject(parent)
+    , entry_(entry) {
+    process_.setProcessChannelMode(QProcess::MergedChannels);
+    process_.setStandardInputFile(QProcess::nullDevice());
+    connect(&process_, &QProcess::readyRead, this, &SupervisedProcess::readOutput);
+    connect(&process_, QOverload<int, QProcess::ExitStatus>::of(&QProcess::finished), this,
+            &SupervisedProcess::onEnded);
+    connect(&process_, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {
+        if (error == QProcess::FailedToStart)
+            onFailedToStart();
+    });
+    connect(&process_, &QProcess::started, this, [this] {
+        logInfo("process",
+                QString("%1: started with process id %2").arg(entry_.name).arg(process_.processId()));
+        setState(State::Running);
+    });
+    retry_.setSingleShot(true);
+    connect(&retry_, &QTimer::timeout, this, [this] {
+        ++restarts_;
+        start();
+    });
+    kill_.setSingleShot(true);
+    connect(&kill_, &QTimer::timeout, this, [this] {
+        logWarning("process", QString("%1: did not end within %2 s, killed")
+                                  .arg(entry_.name)
+                                  .arg(double(killAfter.count()) / 1000));
+        process_.kill();
+    });
+}
+
+SupervisedProcess::~SupervisedProcess() {
+    process_.disconnect(this);
+    if (!isAlive())
+        return;
+    process_.terminate();
+    if (!process_.waitForFinished(int(killAfter.count())))
+        process_.kill();
+    process_.waitForFinished(1000);
+}
+
+void SupervisedProcess::start() {
+    retry_.stop();
+    if (state_ == State::Stopping)
+        startAfterStop_ = true;
+    if (isAlive())
+        return;
+    started_ = measured_ = monotonicNow();
+    used_s_ = cpu_ = 0;
+    process_.start(found(entry_.program), entry_.arguments);
+}
+
+void SupervisedProcess::stop() {
+    retry_.stop();
+    startAfterStop_ = false;
+    if (!isAlive())
+        return setState(State::Stopped);
+    setState(State::Stopping);
+    process_.terminate();
+    kill_.start(killAfter);
+}
+
+void SupervisedProcess::restart() {
+    stop();
+    startAfterStop_ = true;
+    if (!isAlive())
+        start();
+}
+
+void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
+    kill_.stop();
+    readOutput();
+    lastExit_ =
+        status == QProcess::NormalExit ? QString("exit status %1").arg(code) : QString("killed by a signal");
+    logInfo("process", QString("%1: ended, %2").arg(entry_.name, lastExit_));
+    const bool wasAsked = state_ == State::Stopping;
+    if (std::exchange(startAfterStop_, false) && wasAsked) {
+        ++restarts_;
+        return start();
+    }
+    if (wasAsked || (status == QProcess::NormalExit && code == 0))
+        return setState(State::Stopped);
+    if (status == QProcess::NormalExit && code == 2)
+        return setState(State::Failed); // a wrong command line or setting does not mend itself
+    retryLater();
+}
+
+void SupervisedProcess::onFailedToStart() {
+    lastExit_ = process_.errorString();
+    logError("process", QString("%1: %2: %3").arg(entry_.name, entry_.program, lastExit_));
+    setState(State::Failed);
+}
+
+void SupervisedProcess::retryLater() {
+    if (monotonicNow() - started_ > std::chrono::duration<double>(wellAfter).count())
+        backOff_ = firstBackOff;
+    retry_.start(backOff_);
+    backOff_ = std::min(2 * backOff_, longestBackOff);
+    setState(State::Waiting);
+}
+
+void SupervisedProcess::readOutput() {
+    partialLine_ += process_.readAll();
+    while (true) {
+        qsizetype end = partialLine_.indexOf('\n');
+        if (end < 0 && partialLine_.size() > longestLine)
+            end = longestLine;
+        if (end < 0)
+            return;
+        lines_.push_back(QString::fromUtf8(partialLine_.left(int(std::min<qsizetype>(end, longestLine)))));
+        partialLine_.remove(0, int(end) + (partialLine_[int(end)] == '\n' ? 1 : 0));
+        if (lines_.size() > keptLines)
+            lines_.pop_front();
+    }
+}
+
+QStringList SupervisedProcess::output(int lines) const {
+    const auto from = lines_.size() - std::min(lines_.size(), std::size_t(std::max(0, lines)));
+    return QStringList(lines_.begin() + std::ptrdiff_t(from), lines_.end());
+}
+
+QJsonObject SupervisedProcess::toJson() const {
+    QJsonObject json{{"name", entry_.name},
+                     {"program", entry_.program},
+                     {"arguments", QJsonArray::fromStringList(entry_.arguments)},
+                     {"port", entry_.port},
+                     {"autostart", entry_.autostart},
+                     {"state", toString(state_)},
+                     {"pid", isAlive() ? double(process_.processId()) : 0},
+                     {"restarts", restarts_},
+                     {"last_exit", lastExit_}};
+    if (retry_.isActive())
+        json["next_start_s"] = double(retry_.remainingTime()) / 1000;
+    if (isAlive()) {
+        json["uptime_s"] = monotonicNow() - started_;
+        json["memory_bytes"] = double(memory_bytes_);
+        json["cpu"] = cpu_;
+    }
+    return json;
+}
+
+void SupervisedProcess::measure() {
+    const auto usage = ProcessUsage::of(process_.processId());
+    const double now = monotonicNow();
+    if (!usage || now <= measured_)
+        return;
+    cpu_ = std::max(0.0, usage->cpu_s - used_s_) / (now - measured_);
+    memory_bytes_ = usage->memory_bytes;
+    measured_ = now;
+    used_s_ = usage->cpu_s;
+}
+
+void SupervisedProcess::setEntry(const ProcessEntry &entry) {
+    if (entry == entry_)
+        return;
+    entry_ = entry;
+    if (isAlive() && state_ != State::Stopping)
+        restart();
+}
+
+void SupervisedProcess::setState(State state) {
+    state_ = state;
+    Q_EMIT changed();
+}
+
+} // namespace hermes

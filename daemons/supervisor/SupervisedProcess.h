@@ -1,0 +1,94 @@
+#pragma once
+
+#include <QJsonObject>
+#include <QObject>
+#include <QProcess>
+#include <QStringList>
+#include <QTimer>
+#include <deque>
+
+namespace hermes {
+
+/// What a process is started with.
+struct ProcessEntry {
+    QString name;
+    QString program; ///< a path, or a name that is looked for beside the supervisor and then in PATH
+    QStringList arguments;
+    int port = 0; ///< where its commands are accepted, for those who look for it; 0: none
+    bool autostart = false;
+
+    bool operator==(const ProcessEntry &other) const {
+        return name == other.name && program == other.program && arguments == other.arguments &&
+               port == other.port && autostart == other.autostart;
+    }
+};
+
+/// One process that is kept running. When it ends by itself with an error it is started again, after a
+/// back-off that doubles; a wrong command line (exit status 2) is not tried again, nor is an end in order
+/// (0). It ends with the supervisor, however that ends.
+class SupervisedProcess : public QObject {
+    Q_OBJECT
+public:
+    enum class State { Stopped, Running, Stopping, Waiting, Failed };
+    static constexpr std::chrono::milliseconds firstBackOff{500}, longestBackOff{30000}, killAfter{5000};
+    /// Having run so long it is well: the next back-off is the first again.
+    static constexpr std::chrono::milliseconds wellAfter{10000};
+    static constexpr std::size_t keptLines = 200;
+
+    explicit SupervisedProcess(const ProcessEntry &entry, QObject *parent = nullptr);
+    ~SupervisedProcess() override;
+
+    const ProcessEntry &entry() const { return entry_; }
+    /// A running process is started again with what is new.
+    void setEntry(const ProcessEntry &entry);
+    State state() const { return state_; }
+    bool isAlive() const { return process_.state() != QProcess::NotRunning; }
+
+    void start();
+    /// SIGTERM, and SIGKILL after killAfter.
+    void stop();
+    void restart();
+
+    /// Looks how much of a core (since the last time) and how much memory it uses.
+    void measure();
+    /// {name, program, arguments, port, autostart, state, pid, cpu, memory_bytes, restarts, uptime_s,
+    /// last_exit, next_start_s}; cpu is a share of one core.
+    QJsonObject toJson() const;
+    const QString &lastExit() const { return lastExit_; }
+    /// The last lines that it wrote to stdout and stderr, oldest first.
+    QStringList output(int lines) const;
+
+Q_SIGNALS:
+    void changed();
+
+private:
+    /// Ends with its parent even when that is killed.
+    class Child : public QProcess {
+    protected:
+        void setupChildProcess() override;
+    };
+
+    void onEnded(int code, QProcess::ExitStatus status);
+    void onFailedToStart();
+    void retryLater();
+    void readOutput();
+    void setState(State state);
+
+    ProcessEntry entry_;
+    Child process_;
+    State state_ = State::Stopped;
+    QTimer retry_, kill_;
+    std::chrono::milliseconds backOff_ = firstBackOff;
+    int restarts_ = 0;
+    double started_ = 0; // monotonic
+    bool startAfterStop_ = false;
+    QString lastExit_;
+    std::deque<QString> lines_;
+    QByteArray partialLine_;
+    double measured_ = 0, used_s_ = 0, cpu_ = 0;
+    qint64 memory_bytes_ = 0;
+};
+
+QString toString(SupervisedProcess::State state);
+
+} // namespace hermes

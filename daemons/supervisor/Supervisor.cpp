@@ -1,0 +1,255 @@
+#include "daemons/supervisor/Supervisor.h"
+
+#include "common/Project.h"
+
+#include <QHostInfo>
+#include <QSet>
+
+namespace hermes {
+namespace {
+
+const QJsonObject object{{"type", "object"}};
+
+QJsonObject entrySchema() {
+    const QJsonObject text{{"type", "string"}, {"minLength", 1}};
+    const QJsonObject strings{{"type", "array"}, {"items", QJsonObject{{"type", "string"}}}};
+    return {{"type", "object"},
+            {"properties",
+             QJsonObject{{"name", text},
+                         {"program", text},
+                         {"arguments", strings},
+                         {"port", QJsonObject{{"type", "integer"}, {"minimum", 0}, {"maximum", 65535}}},
+                         {"autostart", QJsonObject{{"type", "boolean"}}}}},
+            {"required", QJsonArray{"name"}},
+            {"additionalProperties", false}};
+}
+
+/// What is not said follows from the name: hermes-NAME at its usual port.
+ProcessEntry toEntry(const QJsonObject &json) {
+    ProcessEntry entry;
+    entry.name = json["name"].toString();
+    entry.program = json["program"].toString("hermes-" + entry.name);
+    entry.port = json["port"].toInt(defaultPort(entry.name));
+    entry.autostart = json["autostart"].toBool();
+    for (const QJsonValue &argument : json["arguments"].toArray())
+        entry.arguments.append(argument.toString());
+    return entry;
+}
+
+/// Its health item.
+QString itemOf(const SupervisedProcess &process) {
+    return "process " + process.entry().name;
+}
+
+std::vector<SchemaViolation> namesAreUnique(const QJsonObject &settings) {
+    std::vector<SchemaViolation> violations;
+    QSet<QString> names;
+    const QJsonArray entries = settings["processes"].toArray();
+    for (int i = 0; i < entries.size(); ++i) {
+        const QString name = entries[i].toObject()["name"].toString();
+        if (names.contains(name))
+            violations.push_back(
+                {QString("processes.%1.name").arg(i), name, "a name that no other process has"});
+        names.insert(name);
+    }
+    return violations;
+}
+
+} // namespace
+
+Supervisor::Supervisor()
+    : Daemon({"supervisor", "Supervisor", "Starts the daemons of this host and keeps them running"}) {
+    declareSettings();
+    declareCommands();
+    addTopic(Topic("processes", "All processes, each second and at each change: {robot, processes: [...]} as "
+                                "process.list gives them")
+                 .schema(object)
+                 .snapshot([this] { return QJsonValue(list()); }));
+    connect(&timer_, &QTimer::timeout, this, [this] {
+        for (const auto &process : processes_)
+            process->measure();
+        update();
+    });
+}
+
+void Supervisor::declareSettings() {
+    QJsonArray standard;
+    for (const QString &name : daemonNames())
+        if (name != identity().name)
+            standard.append(QJsonObject{{"name", name}});
+    addSetting(Field::text("robot", "What people call this robot; empty: the name of the host")
+                   .group("Robot")
+                   .byDefault(""));
+    addSetting(
+        Field::array(
+            "processes",
+            "What runs here, in the order of their start: name, program (hermes-NAME), arguments, port "
+            "(the usual one of NAME), autostart (false)",
+            entrySchema())
+            .group("Processes")
+            .byDefault(standard));
+    settings().addRule(namesAreUnique);
+}
+
+void Supervisor::declareCommands() {
+    addCommand(Command("process.list",
+                       "All processes: state, process id, share of a core, memory (bytes), restarts, "
+                       "how it ended last")
+                   .returns(object)
+                   .handler([this](const Call &) { return QJsonValue(list()); }));
+    addCommand(processCommand("process.start", "Starts a process", &SupervisedProcess::start));
+    addCommand(processCommand("process.stop", "Ends a process: SIGTERM, after 5 s SIGKILL",
+                              &SupervisedProcess::stop));
+    addCommand(
+        processCommand("process.restart", "Ends a process and starts it again", &SupervisedProcess::restart));
+    addCommand(
+        Command("process.output", "The last lines that a process wrote")
+            .param(Field::text("name", "Of the process"))
+            .param(
+                Field::integer("lines", "How many").range(1, int(SupervisedProcess::keptLines)).byDefault(50))
+            .returns({{"type", "array"}})
+            .handler([this](const Call &call) -> Result<QJsonValue> {
+                const SupervisedProcess *const process = find(call.text("name"));
+                if (!process)
+                    return Error(ErrorCode::InvalidParams,
+                                 QString("no process \"%1\"").arg(call.text("name")));
+                return QJsonValue(QJsonArray::fromStringList(process->output(call.integer("lines"))));
+            }));
+    addCommand(
+        Command("process.add", "Adds a process to the settings; settings.save keeps it")
+            .param(Field::text("name", "Of the process").with("minLength", 1))
+            .param(Field::text("program", "Path or name (hermes-NAME)").optional())
+            .param(Field::array("arguments", "Command line", {{"type", "string"}}).optional())
+            .param(Field::integer("port", "Where it accepts commands (the usual one of NAME)")
+                       .range(0, 65535)
+                       .optional())
+            .param(Field::boolean("autostart", "Starts with the supervisor").optional())
+            .returnsNull()
+            .example({{"name", "camera"}, {"program", "/opt/robot/camera.py"}, {"port", 7480}}, QJsonValue())
+            .handler([this](const Call &call) { return add(call); }));
+    addCommand(Command("process.remove", "Ends a process and takes it out of the settings")
+                   .param(Field::text("name", "Of the process"))
+                   .returnsNull()
+                   .handler([this](const Call &call) { return remove(call.text("name")); }));
+}
+
+Command Supervisor::processCommand(const QString &name, const QString &summary,
+                                   void (SupervisedProcess::*action)()) {
+    return Command(name, summary)
+        .param(Field::text("name", "Of the process"))
+        .returnsNull()
+        .example({{"name", "scanmatcher"}}, QJsonValue())
+        .handler([this, action](const Call &call) -> Result<QJsonValue> {
+            SupervisedProcess *const process = find(call.text("name"));
+            if (!process)
+                return Error(ErrorCode::InvalidParams, QString("no process \"%1\"").arg(call.text("name")));
+            (process->*action)();
+            return QJsonValue();
+        });
+}
+
+Result<void> Supervisor::start() {
+    reconcile();
+    timer_.start(std::chrono::seconds(1));
+    setState(DaemonState::Running);
+    return {};
+}
+
+void Supervisor::settingsChanged(const QStringList &) {
+    reconcile();
+}
+
+void Supervisor::reconcile() {
+    std::vector<std::unique_ptr<SupervisedProcess>> next;
+    for (const QJsonValue &json : settings().value("processes").toArray()) {
+        const ProcessEntry entry = toEntry(json.toObject());
+        const auto known = std::find_if(processes_.begin(), processes_.end(), [&](const auto &process) {
+            return process && process->entry().name == entry.name;
+        });
+        if (known != processes_.end()) {
+            (*known)->setEntry(entry);
+            next.push_back(std::move(*known));
+            continue;
+        }
+        next.push_back(std::make_unique<SupervisedProcess>(entry));
+        connect(next.back().get(), &SupervisedProcess::changed, this, &Supervisor::update);
+        if (entry.autostart)
+            next.back()->start();
+    }
+    std::swap(processes_, next);
+    for (auto &process : next)
+        if (process)
+            dismiss(std::move(process));
+    update();
+}
+
+void Supervisor::dismiss(std::unique_ptr<SupervisedProcess> process) {
+    process->disconnect(this);
+    health().remove(itemOf(*process));
+    SupervisedProcess *const leaving = process.release();
+    leaving->setParent(this);
+    connect(leaving, &SupervisedProcess::changed, leaving, [leaving] {
+        if (!leaving->isAlive())
+            leaving->deleteLater();
+    });
+    leaving->stop();
+}
+
+SupervisedProcess *Supervisor::find(const QString &name) const {
+    for (const auto &process : processes_)
+        if (process->entry().name == name)
+            return process.get();
+    return nullptr;
+}
+
+Result<QJsonValue> Supervisor::add(const Call &call) {
+    QJsonArray entries = settings().value("processes").toArray();
+    entries.append(call.params);
+    return setEntries(entries);
+}
+
+Result<QJsonValue> Supervisor::remove(const QString &name) {
+    QJsonArray entries = settings().value("processes").toArray();
+    for (int i = 0; i < entries.size(); ++i)
+        if (entries[i].toObject()["name"].toString() == name) {
+            entries.removeAt(i);
+            return setEntries(entries);
+        }
+    return Error(ErrorCode::InvalidParams, QString("no process \"%1\"").arg(name));
+}
+
+Result<QJsonValue> Supervisor::setEntries(const QJsonArray &entries) {
+    const auto done = settings().set({{"processes", entries}});
+    if (!done)
+        return done.error();
+    return QJsonValue();
+}
+
+QJsonObject Supervisor::list() {
+    const QString robot = settings().text("robot");
+    QJsonArray all;
+    for (const auto &process : processes_)
+        all.append(process->toJson());
+    return {{"robot", robot.isEmpty() ? QHostInfo::localHostName() : robot}, {"processes", all}};
+}
+
+void Supervisor::update() {
+    for (const auto &process : processes_) {
+        const QString item = itemOf(*process);
+        const auto state = process->state();
+        if (state == SupervisedProcess::State::Failed || state == SupervisedProcess::State::Waiting)
+            health().set(item, HealthLevel::Failed, toString(state) + ": " + process->lastExit());
+        else
+            health().set(item, HealthLevel::Ok, toString(state));
+    }
+    publish("processes", list());
+}
+
+void Supervisor::stop() {
+    timer_.stop();
+    // In reverse order: first who listens to others, then the others.
+    while (!processes_.empty())
+        processes_.pop_back();
+}
+
+} // namespace hermes

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "common/daemon/Daemon.h"
+#include "daemons/supervisor/SupervisedProcess.h"
+
+#include <memory>
+#include <vector>
+
+namespace hermes {
+
+/// Starts and watches the daemons of one host: those of its setting `processes`, in that order; ends them in
+/// reverse order.
+class Supervisor : public Daemon {
+    Q_OBJECT
+public:
+    Supervisor();
+
+protected:
+    Result<void> start() override;
+    void stop() override;
+    void settingsChanged(const QStringList &paths) override;
+
+private:
+    void declareSettings();
+    void declareCommands();
+    Command processCommand(const QString &name, const QString &summary, void (SupervisedProcess::*action)());
+    /// Makes the processes those of the settings: what is new is added, what was changed is restarted with
+    /// its new entry, what is missing is ended.
+    void reconcile();
+    SupervisedProcess *find(const QString &name) const;
+    Result<QJsonValue> add(const Call &call);
+    Result<QJsonValue> remove(const QString &name);
+    Result<QJsonValue> setEntries(const QJsonArray &entries);
+    void dismiss(std::unique_ptr<SupervisedProcess> process);
+    /// {robot, processes: [...]}
+    QJsonObject list();
+    void update();
+
+    std::vector<std::unique_ptr<SupervisedProcess>> processes_;
+    QTimer timer_;
+};
+
+} // namespace hermes

@@ -1,0 +1,232 @@
+#include "common/client/Client.h"
+#include "daemons/supervisor/Supervisor.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+#include <csignal>
+
+using namespace hermes;
+
+/// The supervisor with real processes: small shell scripts, and a daemon of ours.
+class TestSupervisor : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void startsInOrderAndEndsInReverse();
+    void killedProcessComesBackWithBackOff();
+    void endInOrderIsNotStartedAgain();
+    void wrongCommandLineIsNotTriedAgain();
+    void missingProgramIsTold();
+    void stubbornProcessIsKilled();
+    void keepsTheLastOutput();
+    void reportsUse();
+    void addAndRemove();
+    void changedEntryIsStartedAnew();
+    void refusals();
+    void childrenEndWithAKilledSupervisor();
+    void runsADaemon();
+
+private:
+    void launch(const QJsonArray &processes);
+    QJsonObject process(const QString &name);
+    QString stateOf(const QString &name) { return process(name)["state"].toString(); }
+    QJsonObject shell(const QString &name, const QString &script, bool autostart = true) const {
+        return {{"name", name},
+                {"program", "/bin/sh"},
+                {"arguments", QJsonArray{"-c", script}},
+                {"port", 0},
+                {"autostart", autostart}};
+    }
+    Result<QJsonValue> call(const QString &method, const QJsonObject &params = {}) {
+        return client_->callAndWait(method, params);
+    }
+    QStringList written() const {
+        QFile file(folder_->filePath("log"));
+        return file.open(QIODevice::ReadOnly) ? QString(file.readAll()).split('\n', Qt::SkipEmptyParts)
+                                              : QStringList();
+    }
+
+    std::unique_ptr<QTemporaryDir> folder_;
+    std::unique_ptr<Supervisor> supervisor_;
+    std::unique_ptr<Client> client_;
+};
+
+void TestSupervisor::init() {
+    folder_ = std::make_unique<QTemporaryDir>();
+}
+
+void TestSupervisor::cleanup() {
+    client_.reset();
+    if (supervisor_)
+        supervisor_->shutDown();
+    supervisor_.reset();
+}
+
+void TestSupervisor::launch(const QJsonArray &processes) {
+    supervisor_ = std::make_unique<Supervisor>();
+    const QByteArray json = QJsonDocument(processes).toJson(QJsonDocument::Compact);
+    const auto ended = supervisor_->prepare({"hermes-supervisor", "--listen", "tcp://127.0.0.1:0", "--set",
+                                             "processes=" + QString::fromUtf8(json)});
+    QVERIFY(!ended);
+    const auto launched = supervisor_->launch();
+    QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
+    client_ = std::make_unique<Client>();
+    client_->connectTo(supervisor_->info()["listen"].toArray()[0].toString());
+    QVERIFY(client_->waitConnected().ok());
+}
+
+QJsonObject TestSupervisor::process(const QString &name) {
+    const auto list = call("process.list");
+    if (list)
+        for (const QJsonValue &one : (*list)["processes"].toArray())
+            if (one["name"].toString() == name)
+                return one.toObject();
+    return {};
+}
+
+void TestSupervisor::startsInOrderAndEndsInReverse() {
+    const QString script = "echo start %1 >> " + folder_->filePath("log") + "; trap 'echo end %1 >> " +
+                           folder_->filePath("log") + "; exit 0' TERM; while :; do sleep 0.02; done";
+    launch({shell("one", script.arg("one")), shell("two", script.arg("two")),
+            shell("three", script.arg("three"), false)});
+    QTRY_COMPARE(written().size(), 2);
+    QCOMPARE(stateOf("one"), QString("running"));
+    QCOMPARE(stateOf("three"), QString("stopped"));
+    QVERIFY(call("process.start", {{"name", "three"}}).ok());
+    QTRY_COMPARE(written().size(), 3);
+    client_.reset();
+    supervisor_->shutDown();
+    QCOMPARE(written().mid(3), QStringList({"end three", "end two", "end one"}));
+}
+
+void TestSupervisor::killedProcessComesBackWithBackOff() {
+    launch({shell("one", "exec sleep 100")});
+    QTRY_COMPARE(stateOf("one"), QString("running"));
+    double waits[2]{};
+    for (double &wait : waits) {
+        const int restarts = process("one")["restarts"].toInt();
+        QTRY_VERIFY(process("one")["pid"].toInt() > 0);
+        ::kill(process("one")["pid"].toInt(), SIGKILL);
+        QTRY_COMPARE(stateOf("one"), QString("waiting"));
+        QCOMPARE(process("one")["last_exit"].toString(), QString("killed by a signal"));
+        wait = process("one")["next_start_s"].toDouble();
+        QTRY_COMPARE(stateOf("one"), QString("running"));
+        QCOMPARE(process("one")["restarts"].toInt(), restarts + 1);
+    }
+    QVERIFY(waits[0] > 0 && waits[0] <= 0.5);
+    QVERIFY(waits[1] > 0.5 && waits[1] <= 1);
+}
+
+void TestSupervisor::endInOrderIsNotStartedAgain() {
+    launch({shell("one", "exit 0")});
+    QTRY_COMPARE(process("one")["last_exit"].toString(), QString("exit status 0"));
+    QCOMPARE(stateOf("one"), QString("stopped"));
+}
+
+void TestSupervisor::wrongCommandLineIsNotTriedAgain() {
+    launch({shell("one", "exit 2")});
+    QTRY_COMPARE(stateOf("one"), QString("failed"));
+    QTRY_COMPARE(call("daemon.status")->toObject()["state"].toString(), QString("degraded"));
+}
+
+void TestSupervisor::missingProgramIsTold() {
+    launch({QJsonObject{{"name", "one"}, {"program", "/nowhere/one"}, {"autostart", true}}});
+    QTRY_COMPARE(stateOf("one"), QString("failed"));
+    QVERIFY(!process("one")["last_exit"].toString().isEmpty());
+}
+
+void TestSupervisor::stubbornProcessIsKilled() {
+    launch({shell("one", "trap '' TERM; while :; do sleep 0.02; done")});
+    QTRY_COMPARE(stateOf("one"), QString("running"));
+    QVERIFY(call("process.stop", {{"name", "one"}}).ok());
+    QCOMPARE(stateOf("one"), QString("stopping"));
+    QTRY_COMPARE_WITH_TIMEOUT(stateOf("one"), QString("stopped"), 8000);
+}
+
+void TestSupervisor::keepsTheLastOutput() {
+    launch({shell(
+        "one",
+        "i=0; while [ $i -lt 300 ]; do echo line $i; i=$((i+1)); done; printf 'no end'; exec sleep 100")});
+    const auto lines = [this](int count) {
+        return call("process.output", {{"name", "one"}, {"lines", count}})->toArray();
+    };
+    QTRY_COMPARE(lines(1), QJsonArray{"line 299"});
+    QCOMPARE(lines(200).size(), 200);
+    QCOMPARE(lines(200)[0].toString(), QString("line 100"));
+}
+
+void TestSupervisor::reportsUse() {
+    launch({shell("busy", "while :; do :; done")});
+    QTRY_VERIFY(process("busy")["cpu"].toDouble() > 0.1);
+    QVERIFY(process("busy")["cpu"].toDouble() < 1.5);
+    QVERIFY(process("busy")["memory_bytes"].toDouble() > 100e3);
+    QVERIFY(process("busy")["uptime_s"].toDouble() > 0);
+}
+
+void TestSupervisor::addAndRemove() {
+    launch({});
+    QVERIFY(call("process.add", shell("one", "exec sleep 100")).ok());
+    QTRY_COMPARE(stateOf("one"), QString("running"));
+    const int pid = process("one")["pid"].toInt();
+    QVERIFY(call("process.remove", {{"name", "one"}}).ok());
+    QVERIFY(process("one").isEmpty());
+    QTRY_VERIFY(::kill(pid, 0) != 0);
+}
+
+void TestSupervisor::changedEntryIsStartedAnew() {
+    launch({shell("one", "echo first; exec sleep 100"), shell("two", "exec sleep 100")});
+    QTRY_COMPARE(stateOf("two"), QString("running"));
+    const int pid = process("two")["pid"].toInt();
+    const QJsonArray changed{shell("one", "echo second; exec sleep 100"), shell("two", "exec sleep 100")};
+    QVERIFY(call("settings.set", {{"values", QJsonObject{{"processes", changed}}}}).ok());
+    QTRY_COMPARE(call("process.output", {{"name", "one"}, {"lines", 1}})->toArray(), QJsonArray{"second"});
+    QCOMPARE(process("two")["pid"].toInt(), pid);
+}
+
+void TestSupervisor::refusals() {
+    launch({shell("one", "exec sleep 100")});
+    const auto message = [this](const QString &method, const QJsonObject &params) {
+        const auto result = call(method, params);
+        return result ? QString("accepted") : result.error().message;
+    };
+    QVERIFY(message("process.start", {{"name", "none"}}).contains("no process \"none\""));
+    QVERIFY(message("process.remove", {{"name", "none"}}).contains("no process \"none\""));
+    QVERIFY2(message("process.add", shell("one", "true")).contains("processes.1.name"),
+             qPrintable(message("process.add", shell("one", "true"))));
+    QVERIFY(message("process.add", {{"name", ""}}).contains("name"));
+    QVERIFY(message("process.add", {{"name", "x"}, {"port", 70000}}).contains("port"));
+}
+
+void TestSupervisor::childrenEndWithAKilledSupervisor() {
+    QProcess supervisor;
+    const QJsonArray processes{shell("one", "echo $$ > " + folder_->filePath("pid") + "; exec sleep 100")};
+    supervisor.start(
+        qEnvironmentVariable("HERMES_BIN") + "/hermes-supervisor",
+        {"--listen", "tcp://127.0.0.1:0", "--set",
+         "processes=" + QString::fromUtf8(QJsonDocument(processes).toJson(QJsonDocument::Compact))});
+    QFile file(folder_->filePath("pid"));
+    QTRY_VERIFY(file.size() > 0);
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    const int pid = file.readAll().trimmed().toInt();
+    QCOMPARE(::kill(pid, 0), 0);
+    supervisor.kill();
+    QVERIFY(supervisor.waitForFinished());
+    QTRY_VERIFY(::kill(pid, 0) != 0);
+}
+
+void TestSupervisor::runsADaemon() {
+    const QString program = qEnvironmentVariable("HERMES_BIN") + "/hermes-scanmatcher";
+    launch({QJsonObject{{"name", "scanmatcher"},
+                        {"program", program},
+                        {"autostart", true},
+                        {"arguments", QJsonArray{"--listen", "tcp://127.0.0.1:0"}}}});
+    QTRY_COMPARE(stateOf("scanmatcher"), QString("running"));
+    QTRY_VERIFY(call("process.output", {{"name", "scanmatcher"}})->toArray().size() > 0);
+    QVERIFY(call("process.stop", {{"name", "scanmatcher"}}).ok());
+    QTRY_COMPARE(stateOf("scanmatcher"), QString("stopped"));
+    QCOMPARE(process("scanmatcher")["last_exit"].toString(), QString("exit status 0"));
+}
+
+QTEST_GUILESS_MAIN(TestSupervisor)
+#include "TestSupervisor.moc"
