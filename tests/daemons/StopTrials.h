@@ -1,5 +1,6 @@
 #pragma once
 
+#include "MachineStalls.h"
 #include "RoboClawRig.h"
 
 #include <QProcess>
@@ -83,6 +84,19 @@ protected:
         return last;
     }
 
+    /// Every trial begins with it.
+    void beginTrial() { stalls_.takeLongest(); }
+    /// Whether the trial counts: one during which the machine stood still is made again, as long as those are
+    /// not too many.
+    bool endTrial() {
+        if (stalls_.takeLongest() < 0.02 || repeated_ >= trials())
+            return true;
+        ++repeated_;
+        if (!beyond_.empty())
+            beyond_.pop_back();
+        return false;
+    }
+
     /// Waits until the controllers were told to stop and the robot stands.
     void awaitStop() {
         QTRY_VERIFY_WITH_TIMEOUT(rig_->zeroSince() < RoboClawRig::now(), 2000);
@@ -90,9 +104,14 @@ protected:
         const RoboClawRig::SetPoint zero = rig_->zero();
         beyond_.push_back(rig_->lastMoved() - zero.time - zero.rimSpeed / deceleration);
     }
+    void reportRepeated() {
+        if (const int repeated = std::exchange(repeated_, 0))
+            qInfo("%d trials were made again: the machine stood still", repeated);
+    }
     /// The stops of which awaitStop() has seen the end: robot and wheels stand 50 ms after the time that the
     /// deceleration implies.
     void reportStand() {
+        reportRepeated();
         report("stand after the time of braking from the speed at the zero", std::exchange(beyond_, {}), 0.05,
                1);
     }
@@ -142,5 +161,7 @@ while True:
     time.sleep(0.05)
 )";
 
+    MachineStalls stalls_;
+    int repeated_ = 0;
     std::vector<double> beyond_; // seconds from the end of braking to the stand
 };

@@ -25,7 +25,7 @@ void TestMotorStops::emergencyStopReachesTheWire() {
     QVERIFY(client.connectTo("127.0.0.1:" + port_).ok());
     QVERIFY(client.waitConnected().ok());
     std::vector<double> times;
-    for (int trial = 0; trial < trials(); ++trial) {
+    for (int trial = 0; int(times.size()) < trials(); ++trial) {
         QTRY_VERIFY(client.callAndWait("control.acquire", QJsonObject()).ok());
         // Not in step with the cycle of the daemon.
         const double until = RoboClawRig::now() + 0.3 + 0.00137 * trial;
@@ -33,10 +33,14 @@ void TestMotorStops::emergencyStopReachesTheWire() {
             QVERIFY(client.callAndWait("motor.drive", QJsonObject{{"vx", 0.5}}).ok());
             QTest::qWait(5);
         }
+        beginTrial();
         const double asked = RoboClawRig::now();
         QVERIFY(client.callAndWait("motor.estop", QJsonObject()).ok());
         awaitStop();
-        times.push_back(rig_->zeroSince() - asked);
+        if (QTest::currentTestFailed())
+            return;
+        if (endTrial())
+            times.push_back(rig_->zeroSince() - asked);
         QVERIFY(client.callAndWait("motor.reset_estop", QJsonObject()).ok());
     }
     report("motor.estop to stop bytes", times, 0.020, 0.99);
@@ -52,15 +56,19 @@ void TestMotorStops::signalToTheClient_data() {
 void TestMotorStops::signalToTheClient() {
     QFETCH(int, signal);
     std::vector<double> times;
-    for (int trial = 0; trial < trials(); ++trial) {
+    for (int trial = 0; int(times.size()) < trials(); ++trial) {
         startDriver();
         QTest::qWait(trial * 7 % 50); // not in step with its commands
+        beginTrial();
         QCOMPARE(::kill(pid_t(driver_->processId()), signal), 0);
         const double sent = RoboClawRig::now();
         awaitStop();
+        if (QTest::currentTestFailed())
+            return;
         const double last = lastCommand(sent);
         QVERIFY(last > sent - 1);
-        times.push_back(rig_->zeroSince() - last);
+        if (endTrial())
+            times.push_back(rig_->zeroSince() - last);
         driver_->kill();
         QVERIFY(driver_->state() == QProcess::NotRunning || driver_->waitForFinished());
     }
@@ -76,17 +84,23 @@ void TestMotorStops::signalToTheDaemon_data() {
 void TestMotorStops::signalToTheDaemon() {
     QFETCH(int, signal);
     std::vector<double> times, standing;
-    for (int trial = 0; trial < trials(); ++trial) {
+    for (int trial = 0; int(times.size()) < trials(); ++trial) {
         startDriver();
         QTest::qWait(trial * 7 % 50);
+        beginTrial();
         const double sent = RoboClawRig::now(), speed = rig_->rimSpeed();
         QCOMPARE(::kill(pid_t(daemon_->processId()), signal), 0);
         QTRY_VERIFY_WITH_TIMEOUT(RoboClawRig::now() - rig_->lastMoved() > 0.1, 2000);
-        times.push_back(rig_->lastDriven() - sent);
-        standing.push_back(rig_->lastMoved() - rig_->lastDriven() - speed / deceleration);
+        if (endTrial()) {
+            times.push_back(rig_->lastDriven() - sent);
+            standing.push_back(rig_->lastMoved() - rig_->lastDriven() - speed / deceleration);
+        }
         cleanup();
         init();
+        if (QTest::currentTestFailed())
+            return;
     }
+    reportRepeated();
     report(QTest::currentDataTag(), times, 0.3, 1);
     report("stand after the time of braking from the speed at the time-out", standing, 0.05, 1);
 }
