@@ -110,7 +110,7 @@ private:
     mutable std::mutex queueMutex_; // guards what follows
     std::condition_variable taken_;
     TurnQueue turns_{16}; // over a second
-    TurnQueue clouds_{4};
+    TurnQueue clouds_{8};
     bool closing_ = false;
 
     LiveSource live_; // last: their threads end before what they use

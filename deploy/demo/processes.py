@@ -8,7 +8,7 @@ import sys
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "..", "docs", "examples"))
-from hermes import Daemon  # noqa: E402
+from hermes import Daemon, DaemonError  # noqa: E402
 
 PR_SET_PDEATHSIG = 1
 

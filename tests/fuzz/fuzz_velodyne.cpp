@@ -1,5 +1,6 @@
 #include "tests/fuzz/FuzzInput.h"
 
+#include "protocol/velodyne/GpsReader.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
 using namespace hermes::velodyne;
@@ -28,6 +29,21 @@ std::array<std::uint8_t, packetSize> takePacket(FuzzInput &in) {
     return bytes;
 }
 
+/// A position packet that is locked to a GPS, with any text and what else the input says.
+void feedPosition(GpsReader &gps, FuzzInput &in) {
+    PositionPacket packet;
+    packet.stamp_us = in.take<std::uint32_t>() % stampPeriod_us;
+    packet.pps = Pps::Locked;
+    packet.nmea = in.bytes(in.take<std::uint8_t>() % maximumNmea);
+    auto bytes = encodePosition(packet);
+    bytes[in.take<std::uint16_t>() % bytes.size()] = in.take<std::uint8_t>();
+    const auto size =
+        in.take<std::uint8_t>() % 8 == 0 ? in.take<std::uint16_t>() % bytes.size() : bytes.size();
+    gps.feed(bytes.data(), size);
+    FUZZ_REQUIRE(gps.state().packet.nmea.size() <= maximumNmea);
+    FUZZ_REQUIRE(!gps.state().utc_ns || (gps.state().valid && *gps.state().utc_ns > 0));
+}
+
 void requireSound(const Turn &turn) {
     FUZZ_REQUIRE(turn.firings > 0);
     FUZZ_REQUIRE(turn.points.size() <= std::size_t(turn.firings) * lasers * 2);
@@ -50,13 +66,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     options.model = models[in.take<std::uint8_t>() % 3];
     std::int64_t now_ns = 0;
     TurnAssembler assembler(options, requireSound);
-    std::uint64_t packets = 0;
+    GpsReader gps;
+    std::uint64_t packets = 0, positions = 0;
     for (; in.left() > 0 && packets < 200; ++packets) {
         const auto kind = in.take<std::uint8_t>();
         if (kind == 0)
             now_ns = in.take<std::uint32_t>() * std::int64_t(1000000000); // all that PcapReader lets pass
         else
             now_ns += kind * packetPeriod_ns / 4;
+        if (kind % 16 == 2) {
+            feedPosition(gps, in);
+            assembler.follow(gps.state().utc_ns);
+            ++positions;
+        }
+        if (kind % 16 == 3)
+            assembler.jump();
         if (kind % 16 == 1) {
             const std::string raw = in.bytes(in.take<std::uint16_t>());
             assembler.feed(reinterpret_cast<const std::uint8_t *>(raw.data()), raw.size(), now_ns);
@@ -66,6 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
         }
     }
     assembler.finish();
+    FUZZ_REQUIRE(gps.counts().packets == positions);
     FUZZ_REQUIRE(assembler.counts().packets == packets && assembler.rpm() >= 0 && assembler.rpm() < 1e9);
     return 0;
 }

@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""The logger replays both sensors: clouds are thinned and numbered as the scans, a subscriber that does not read them costs
+nobody else a message, turns are written as CSV, PCD and PLY, and a replay seeks, pauses and ends as asked."""
+import math
+import os
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
+import velodyne_reference as reference  # noqa: E402
+from lidar_decoders import write_capture  # noqa: E402
+from processes import Daemon, DaemonError, Process, free_port  # noqa: E402
+
+BINARIES = os.environ["HERMES_BIN"]
+PACKETS = 1200
+
+
+class Reader(threading.Thread):
+    """Keeps turn, sequence number and losses of every message of a topic, and the last message."""
+
+    def __init__(self, port, topic):
+        super().__init__(daemon=True)
+        self.seen, self.last = [], None
+        self.stream = Daemon(port=port, timeout=60).subscribe(topic, queue=1000)
+        self.start()
+
+    def run(self):
+        try:
+            for message in self.stream:
+                self.last = message["data"]
+                self.seen.append((message["data"]["turn"], message["seq"], message["dropped"]))
+        except (OSError, ValueError):
+            pass  # the daemon has ended
+
+    def wait(self, count):
+        until(lambda: len(self.seen) >= count, f"{count} messages")
+
+
+def until(condition, what, limit_s=60):
+    deadline = time.monotonic() + limit_s
+    while not condition():
+        assert time.monotonic() < deadline, f"{what} did not come in {limit_s} s"
+        time.sleep(0.02)
+
+
+def refused(code, daemon, method, **params):
+    try:
+        daemon.call(method, **params)
+    except DaemonError as error:
+        assert error.code == code, (method, params, error)
+        return error
+    raise AssertionError(f"{method} {params} was not refused")
+
+
+def dropped_messages(logger):
+    """By all clients together."""
+    items = logger.call("daemon.status")["health"]
+    return next(item for item in items if item["name"] == "channel")["values"]["dropped_topic_messages"]
+
+
+def check_slow_reader(logger, port, capture):
+    """One reads clouds, one scans, and one subscribes to clouds and reads nothing meanwhile: only that one loses messages."""
+    before = dropped_messages(logger)
+    slow = Daemon(port=port, timeout=60)
+    unread = slow.subscribe("cloud", queue=1000)
+    first = threading.Thread(target=lambda: next(unread))  # makes the subscription
+    first.start()
+    clouds, scans = Reader(port, "cloud"), Reader(port, "scan2d")
+    logger.call("source.open", pcap=capture, speed=1, loop=True)
+    first.join()
+    until(lambda: dropped_messages(logger) > before, "a loss of the one who does not read")
+    clouds.wait(30)
+    scans.wait(30)
+    passed_over = 0
+    for reader in (clouds, scans):
+        turns, sequence, dropped = zip(*reader.seen)
+        assert set(dropped) == {0}, f"{max(dropped)} messages were lost by one who reads"
+        assert list(sequence) == list(range(sequence[0], sequence[0] + len(sequence)))
+        passed_over += turns[-1] - turns[0] + 1 - len(turns)
+    until(lambda: next(unread)["dropped"] > 0, "word of that loss")
+    slow.close()
+    status = logger.call("source.status")
+    check_losses(status)
+    # On a busy machine the daemon itself may be late; it says so, and nothing else is missing.
+    assert passed_over <= status["turns_dropped"] + status["clouds_dropped"], (passed_over, status)
+
+
+def check_losses(status):
+    for name in ("lost", "out_of_order", "wrong_size"):
+        assert status[name] == 0, status
+
+
+def check_clouds(logger, port, capture, name):
+    model = {"hdl32e": reference.HDL32E, "vlp16": reference.VLP16}[name]
+    clouds = Reader(port, "cloud")
+    logger.call("source.open", pcap=capture, speed=1, loop=True)
+    clouds.wait(10)
+    cloud = clouds.last
+    count = len(cloud["x"])
+    assert 0 < count <= 2000 and all(len(cloud[name]) == count for name in ("y", "z", "laser", "intensity")), count
+    status = logger.call("source.status")
+    assert cloud["model"] == status["model"] and cloud["frame"] == "lidar", (cloud["model"], status)
+    for x, y, z, laser in zip(*(cloud[name] for name in ("x", "y", "z", "laser"))):
+        far = math.hypot(x, y, z)
+        assert far < 0.1 or abs(math.asin(z / far) - math.radians(model.elevations[laser])) < 0.002 / far, (x, y, z, laser)
+    # Settings apply at once.
+    logger.call("settings.set", values={"cloud": {"turn_step": 3}})
+    until(lambda: len(clouds.seen) > 3 and all(b[0] - a[0] == 3 for a, b in zip(clouds.seen[-3:], clouds.seen[-2:])),
+          "every third turn only")
+    logger.call("settings.set", values={"cloud": {"turn_step": 1}})
+    check_losses(logger.call("source.status"))
+
+
+def single(value):
+    """As a float of 32 bits has it."""
+    return struct.unpack("f", struct.pack("f", value))[0]
+
+
+def read_rows(path, end):
+    """Header and rows of numbers of an ascii PCD or PLY file."""
+    with open(path, encoding="ascii") as file:
+        header, rows = file.read().split(end + "\n")
+    return header.splitlines(), [[float(value) for value in row.split()] for row in rows.splitlines()]
+
+
+def check_csv(path, turns):
+    with open(path, encoding="ascii") as file:
+        header, *rows = file.read().splitlines()
+    assert header == "turn,stamp,laser,azimuth,range,intensity,x,y,z"
+    first = int(rows[0].split(",")[1].replace(".", ""))
+    turn = next(turn for turn in turns if turn and turn[0].stamp_ns == first)
+    assert len(rows) == len(turn), (len(rows), len(turn))
+    for row, point in zip(rows, turn):
+        _, stamp, laser, azimuth, metres, intensity, x, y, z = row.split(",")
+        assert (int(stamp.replace(".", "")), int(laser), float(azimuth), float(metres), int(intensity), float(x), float(y),
+                float(z)) == point, (row, point)
+
+
+def check_floats(rows, turns, model):
+    rings = sorted(model.elevations)
+    turn = next(turn for turn in turns if len(turn) == len(rows) and single(turn[0].x) == single(rows[0][0]))
+    for (x, y, z, intensity, ring, t), point in zip(rows, turn):
+        assert [single(value) for value in (x, y, z)] == [single(value) for value in (point.x, point.y, point.z)], point
+        assert intensity == point.intensity and rings[int(ring)] == model.elevations[point.laser]
+        assert abs((t - rows[0][5]) - (point.stamp_ns - turn[0].stamp_ns) * 1e-9) < 1e-7
+
+
+def check_captures(logger, folder, capture, model):
+    turns = reference.turns(capture, "all")
+    paths = {}
+    for kind in ("csv", "pcd", "ply"):
+        result = logger.call("capture.turn", name=model, format=kind)
+        paths[kind] = result["path"]
+        assert result["path"] == os.path.join(folder, f"{model}.{kind}") and result["points"] > 1000, result
+        refused(-32008, logger, "capture.turn", name=model, format=kind)  # it exists
+    sensor = {"hdl32e": reference.HDL32E, "vlp16": reference.VLP16}[model]
+    check_csv(paths["csv"], turns)
+    header, rows = read_rows(paths["pcd"], "DATA ascii")
+    assert header[3] == "FIELDS x y z intensity ring t" and header[-1] == f"POINTS {len(rows)}", header
+    check_floats(rows, turns, sensor)
+    subprocess.run([os.path.join(BINARIES, "hermes-vector"), "segment", paths["pcd"], "--out", os.devnull, "--force"],
+                   check=True, stdin=subprocess.DEVNULL)
+    header, rows = read_rows(paths["ply"], "end_header")
+    assert header[0] == "ply" and f"element vertex {len(rows)}" in header, header
+    check_floats(rows, turns, sensor)
+    assert not [name for name in os.listdir(folder) if ".part-" in name]
+    refused(-32602, logger, "capture.turn", name="x", format="xyz")
+    refused(-32602, logger, "capture.turn", name="../x")
+
+
+def check_replay(logger, port, capture):
+    first_s = next(reference.datagrams(capture))[0] * 1e-9
+    stream = Daemon(port=port, timeout=60).subscribe("scan2d", queue=1000)
+    threading.Thread(target=next, args=(stream,)).start()  # makes the subscription
+    opened = logger.call("source.open", pcap=capture, speed=1)
+    assert opened["state"] == "replay" and not opened["paused"], opened
+    status = lambda: logger.call("source.status")["source"]  # noqa: E731
+    until(lambda: status()["duration_s"] is not None, "the duration")
+    duration_s = status()["duration_s"]
+    last_s = max(stamp for stamp, _ in reference.datagrams(capture)) * 1e-9
+    assert abs(duration_s - (last_s - first_s)) < 1e-3, (duration_s, last_s - first_s)
+    assert logger.call("source.pause")["paused"]
+    target_s = 0.75 * duration_s
+    assert abs(logger.call("source.seek", t_s=target_s)["position_s"] - target_s) < 1e-6
+    assert not logger.call("source.pause", paused=False)["paused"]
+    assert next(message for message in stream if message["data"]["stamp"] >= first_s + target_s - 0.01)
+    logger.call("source.seek", t_s=2 * duration_s)
+    until(lambda: status()["state"] == "ended", "the end")
+    refused(-32005, logger, "source.seek", t_s=0)
+    refused(-32005, logger, "source.pause")
+    refused(-32005, logger, "capture.turn", name="late")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        process = Process(BINARIES, "velodynelogger", free_port(0), folder,
+                          {"source.port": free_port(0, socket.SOCK_DGRAM), "source.address": "127.0.0.1",
+                           "record.folder": folder, "cloud.max_points": 2000,
+                           "limits.topic_bytes": 2 << 20})  # so that a busy machine costs a reader nothing
+        try:
+            logger = process.connect()
+            for model, product in (("hdl32e", 0x21), ("vlp16", 0x22)):
+                capture = os.path.join(folder, f"made-{model}.pcap")
+                write_capture(capture, product, product, 0x37, PACKETS)
+                check_clouds(logger, process.port, capture, model)
+                check_captures(logger, folder, capture, model)
+                check_replay(logger, process.port, capture)
+            check_slow_reader(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
+        finally:
+            status = process.stop()
+        assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+    print("clouds, captured turns and replays of both sensors are as they should be")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
