@@ -8,9 +8,9 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double silence_s = MotorController::lostAfter_s;
-// After a silence wheels may have gone on at their speed for so long, then the controllers stopped them; and
-// somebody may have pushed the robot a little.
-constexpr double longestRun_s = 0.5, pushed_rad_s = 2;
+// Without commands for so long wheels stand, even if they had their largest speed: the controllers' time-out
+// and the time that braking takes. No reading is so exact in its time as shortestRun_s.
+constexpr double longestRun_s = 1, shortestRun_s = 0.1;
 
 // Both counters begin again.
 bool wasReset(const std::array<quint32, 2> &before, const std::array<quint32, 2> &now) {
@@ -27,10 +27,8 @@ void WheelTracker::configure(const std::array<WheelMount, wheelCount> &wheels, d
     mostSpeed_ = mostSpeed;
 }
 
-bool WheelTracker::isPlausible(int wheel, double turn, double gap, bool wasSilent) const {
-    if (wasSilent)
-        return std::abs(turn) <= longestRun_s * (std::abs(speeds_[wheel]) + pushed_rad_s);
-    return std::abs(turn) <= mostSpeed_ * std::max(gap, 0.1);
+bool WheelTracker::isPlausible(double turn, double gap) const {
+    return std::abs(turn) <= mostSpeed_ * std::clamp(gap, shortestRun_s, longestRun_s);
 }
 
 std::optional<WheelMotion>
@@ -62,11 +60,10 @@ WheelTracker::update(const std::array<const ControllerReadings *, controllerCoun
         motion.speeds[i] = motion.turns[i] / gap;
         const bool wasSilent = gap > silence_s || setups_[wheel.controller] != setupsBefore[wheel.controller];
         const bool reset = wasSilent && wasReset(countsBefore[wheel.controller], counts_[wheel.controller]);
-        motion.plausible = motion.plausible && !reset && isPlausible(i, motion.turns[i], gap, wasSilent);
+        motion.plausible = motion.plausible && !reset && isPlausible(motion.turns[i], gap);
     }
     if (!motion.plausible)
         motion.turns = motion.speeds = {};
-    speeds_ = motion.speeds;
     return motion;
 }
 

@@ -28,7 +28,7 @@ public:
     update(const std::array<const ControllerReadings *, controllerCount> &readings);
 
 private:
-    bool isPlausible(int wheel, double turn, double gap, bool wasSilent) const;
+    bool isPlausible(double turn, double gap) const;
 
     std::array<WheelMount, wheelCount> wheels_;
     double radiansPerCount_ = 0;
@@ -36,7 +36,6 @@ private:
     std::array<std::array<quint32, 2>, controllerCount> counts_{};
     std::array<double, controllerCount> times_{}; // 0: not read yet
     std::array<int, controllerCount> setups_{};
-    WheelValues speeds_{};
 };
 
 } // namespace hermes
