@@ -2,6 +2,10 @@
 
 #include <QFileInfo>
 
+#include <cerrno>
+#include <cstring>
+#include <sys/ioctl.h>
+
 namespace hermes {
 namespace {
 
@@ -99,6 +103,19 @@ void SerialInterface::doOpen() {
 void SerialInterface::doClose() {
     port.flush();
     port.close();
+}
+
+// Not by QSerialPort: for it a port without such lines is a failure of the whole port.
+Result<void> SerialInterface::setSignal(Signal signal, bool on) {
+    const char *const text = signal == Signal::Rts ? "RTS" : "DTR";
+    if (!isOpen())
+        return Error(ErrorCode::NotReady, QStringLiteral("%1 is not open").arg(name()));
+    const int bit = signal == Signal::Rts ? TIOCM_RTS : TIOCM_DTR;
+    if (::ioctl(port.handle(), on ? TIOCMBIS : TIOCMBIC, &bit) != 0)
+        return Error(ErrorCode::DeviceFault,
+                     QStringLiteral("%1: cannot set %2: %3")
+                         .arg(name(), QLatin1String(text), QString::fromLocal8Bit(std::strerror(errno))));
+    return {};
 }
 
 void SerialInterface::fail(QSerialPort::SerialPortError error) {

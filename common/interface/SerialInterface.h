@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/Result.h"
 #include "common/interface/Interface.h"
 #include "common/interface/InterfaceUrl.h"
 
@@ -19,6 +20,12 @@ public:
     QString name() const override { return url.toString(); }
     void flush() override { port.flush(); }
     qint64 bytesToWrite() const override { return port.bytesToWrite(); }
+
+    /// The lines of the port that a program may drive by itself.
+    enum class Signal { Rts, Dtr };
+    /// Raises or lowers one at once. NotReady when the port is not open, DeviceFault when it has no such
+    /// line.
+    Result<void> setSignal(Signal signal, bool on);
 
 protected:
     void doOpen() override;

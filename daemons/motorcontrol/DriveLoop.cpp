@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/DriveLoop.h"
 
 #include "common/Log.h"
+#include "common/Realtime.h"
 #include "common/Time.h"
 #include "common/interface/InterfaceRegistry.h"
 
@@ -8,23 +9,16 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <pthread.h>
 
 namespace hermes {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double overspeed = 1.5;   // times full duty: faster no wheel turns
+constexpr double overspeed = 1.5; // times full duty: faster no wheel turns
+constexpr int realtimePriority = 20;
 constexpr double shutdown_s = 0.15; // for the last set-point
 
 const QString source = "drive";
-
-// Before all ordinary threads; needs a privilege (CAP_SYS_NICE or a limit RTPRIO).
-bool becomeRealtime() {
-    sched_param parameter{};
-    parameter.sched_priority = 20;
-    return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameter) == 0;
-}
 
 } // namespace
 
@@ -34,7 +28,7 @@ DriveLoop::DriveLoop(Listener listener)
 
 Result<void> DriveLoop::start(const MotorSettings &settings) {
     settings_ = settings;
-    telemetry_.realtime = becomeRealtime();
+    telemetry_.realtime = becomeRealtime(realtimePriority);
     for (int i = 0; i < controllerCount; ++i)
         controllers_.push_back(std::make_unique<MotorController>(i + 1, settings.controllers[i]));
     configure(settings);

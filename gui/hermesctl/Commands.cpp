@@ -1,6 +1,7 @@
 #include "gui/hermesctl/Commands.h"
 
 #include "common/Project.h"
+#include "common/client/DaemonAddress.h"
 #include "common/daemon/CommandLine.h"
 #include "common/settings/DottedPath.h"
 #include "gui/hermesctl/Markdown.h"
@@ -77,7 +78,7 @@ Result<void> listDaemons(const Arguments &arguments) {
             loop.quit();
     };
     for (const QString &name : daemonNames()) {
-        const auto address = resolveDaemon(name, arguments.host);
+        const auto address = daemonAddress(name, arguments.host);
         Client *const client = clients.emplace_back(std::make_unique<Client>()).get();
         ++open;
         QObject::connect(client, &Client::disconnected, &loop, [client, done] {

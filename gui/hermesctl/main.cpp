@@ -1,4 +1,5 @@
 #include "common/Project.h"
+#include "common/client/DaemonAddress.h"
 #include "gui/hermesctl/Commands.h"
 #include "protocol/jsonrpc/JsonText.h"
 
@@ -84,7 +85,7 @@ int runDaemonCommand(const Entry &entry, const Arguments &arguments) {
         if (word.indexOf(QLatin1Char('=')) <= 0)
             return usageError(QStringLiteral("\"%1\": expected NAME=VALUE").arg(word));
     }
-    const auto address = resolveDaemon(arguments.words.first(), arguments.host);
+    const auto address = daemonAddress(arguments.words.first(), arguments.host);
     if (!address)
         return usageError(address.error().message);
     Client client;
