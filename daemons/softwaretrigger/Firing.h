@@ -1,0 +1,37 @@
+#pragma once
+
+#include "common/Result.h"
+#include "daemons/softwaretrigger/Watch.h"
+
+#include <functional>
+#include <vector>
+
+namespace hermes {
+
+/// One firing of a trigger, from its begin to the end of its last action.
+struct Firing {
+    struct ActionResult {
+        QString action;
+        bool ended = false;
+        double duration_s = 0;
+        Result<QJsonValue> result{QJsonValue()};
+    };
+
+    QString id;
+    quint64 seq = 0;
+    QString cause; ///< kind
+    Occasion occasion;
+    double stamp = 0, mono = 0; ///< when its actions began
+    std::vector<ActionResult> results;
+    std::function<void(const QJsonObject &)> ended; ///< who waits for it
+
+    bool isOver() const;
+    int failures() const;
+    /// As the topic `fired` has it.
+    QJsonObject toJson() const;
+    /// A row of the log for each action; one for a firing without actions.
+    QByteArray csvRows() const;
+    static QByteArray csvHeader();
+};
+
+} // namespace hermes

@@ -1,0 +1,82 @@
+#include "daemons/softwaretrigger/SoftwareTrigger.h"
+
+namespace hermes {
+
+SoftwareTrigger::SoftwareTrigger()
+    : Daemon({"softwaretrigger", "Software trigger",
+              "Fires triggers by period, way, time of day, a condition on any topic, or command; each calls "
+              "commands of daemons, writes to serial lines or pulses lines"}) {
+    declareSettings();
+    addTopic(Topic("fired",
+                   "Each firing, when its last action has ended: id, seq, stamp and mono of its begin, "
+                   "jitter_s, missed, cause, ok, results {action, ok, duration_s, error or result}")
+                 .schema({{"type", "object"}}));
+    declareCommands();
+}
+
+SoftwareTrigger::~SoftwareTrigger() {
+    stop();
+}
+
+void SoftwareTrigger::declareSettings() {
+    addSetting(
+        Field::array("triggers", "The definitions; trigger.define adds and changes one", triggerSchema())
+            .with("maxItems", 100)
+            .group("Triggers")
+            .byDefault(QJsonArray()));
+    addSetting(Field::text("firings.folder", "Folder of the CSV log of all firings; empty: none")
+                   .appliesOnRestart()
+                   .group("Log of firings")
+                   .byDefault(""));
+    addSetting(Field::number("firings.file_bytes", "Size at which the log goes on in a new file")
+                   .unit("B")
+                   .range(1000, 1e12)
+                   .appliesOnRestart()
+                   .group("Log of firings")
+                   .byDefault(1e8));
+    settings().addRule(checkTriggers);
+}
+
+Result<void> SoftwareTrigger::start() {
+    engine_ = new TriggerEngine(settings().text("firings.folder"), settings().number("firings.file_bytes"));
+    connect(engine_, &TriggerEngine::fired, this,
+            [this](const QJsonObject &firing, double stamp) { publish("fired", firing, stamp); });
+    engine_->moveToThread(&thread_);
+    connect(&thread_, &QThread::finished, engine_, &QObject::deleteLater);
+    thread_.setObjectName("triggers");
+    thread_.start();
+    inEngine([](TriggerEngine &engine) { engine.start(); });
+    settingsChanged({"triggers"});
+    provideHealth();
+    setState(DaemonState::Running);
+    return {};
+}
+
+void SoftwareTrigger::stop() {
+    if (!engine_)
+        return;
+    for (const QString &item : TriggerEngine::healthItems())
+        health().remove(item);
+    inEngine([](TriggerEngine &engine) { engine.stop(); });
+    engine_ = nullptr;
+    thread_.quit();
+    thread_.wait();
+}
+
+void SoftwareTrigger::settingsChanged(const QStringList &paths) {
+    if (paths.contains("triggers"))
+        inEngine(
+            [wanted = definitions(settings().values())](TriggerEngine &engine) { engine.apply(wanted); });
+}
+
+void SoftwareTrigger::provideHealth() {
+    for (const QString &item : TriggerEngine::healthItems()) {
+        health().provide(item, [this, item] {
+            EngineHealth report;
+            inEngine([&](TriggerEngine &engine) { report = engine.health(item); });
+            health().set(item, report.level, report.message, report.values);
+        });
+    }
+}
+
+} // namespace hermes

@@ -1,0 +1,99 @@
+#include "daemons/softwaretrigger/TopicWatch.h"
+
+#include "common/Time.h"
+#include "common/schema/SchemaText.h"
+
+namespace hermes {
+namespace {
+
+constexpr int queueLength = 1000; // messages that wait here rather than being thinned
+
+} // namespace
+
+TopicWatch::TopicWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
+    : topic_(definition.text("topic"))
+    , client_(&client)
+    , listener_(listener) {
+    handle_ = client.subscribe(topic_, {{"queue", queueLength}},
+                               [this](const TopicUpdate &update) { receive(update); });
+    connect(&client, &Client::subscriptionFailed, this, [this](int handle, const RpcError &error) {
+        if (handle == handle_)
+            problem_ = error.message;
+    });
+    connect(&client, &Client::disconnected, this, [this] {
+        dropped_ = 0; // the daemon counts anew
+        interrupted();
+    });
+}
+
+TopicWatch::~TopicWatch() {
+    if (client_)
+        client_->unsubscribe(handle_);
+}
+
+QString TopicWatch::problem() const {
+    if (!client_ || !client_->isConnected())
+        return client_ ? "not connected: " + client_->lastError() : QString("not connected");
+    return problem_;
+}
+
+QJsonObject TopicWatch::state() const {
+    return {{"messages", double(messages_)}, {"bad_messages", double(bad_)}};
+}
+
+void TopicWatch::receive(const TopicUpdate &update) {
+    ++messages_;
+    problem_ = take(update);
+    if (!problem_.isEmpty()) {
+        ++bad_;
+        problem_ = "topic " + topic_ + ": " + problem_;
+    } else if (update.dropped > dropped_) {
+        problem_ = QString("topic %1: %2 messages were lost on the way").arg(topic_).arg(update.dropped);
+    }
+    dropped_ = update.dropped;
+}
+
+void TopicWatch::fire(const TopicUpdate &update, quint64 missed, const QJsonObject &detail) {
+    listener_.fire({stampNow() - update.stamp, missed, detail});
+}
+
+TravelWatch::TravelWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
+    : TopicWatch(definition, client, listener)
+    , travel_(definition.cause() == Cause::Distance
+                  ? Travel(Travel::Kind::Distance, definition.number("distance_m"))
+                  : Travel(Travel::Kind::Angle, definition.number("angle_rad"))) {}
+
+QJsonObject TravelWatch::state() const {
+    QJsonObject state = TopicWatch::state();
+    state.insert("travelled", travel_.total());
+    state.insert("jumps", double(travel_.jumps()));
+    return state;
+}
+
+QString TravelWatch::take(const TopicUpdate &update) {
+    const auto passed = travel_.add(update.data);
+    if (!passed)
+        return passed.error().message;
+    if (*passed)
+        fire(update, (*passed)->missed,
+             {{"n", double((*passed)->n)}, {"travelled", travel_.total()}, {"pose", update.data["pose"]}});
+    return {};
+}
+
+ConditionWatch::ConditionWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
+    : TopicWatch(definition, client, listener)
+    , path_(definition.text("path"))
+    , condition_(path_, definition.text("op"), definition.when.value("value")) {}
+
+QString ConditionWatch::take(const TopicUpdate &update) {
+    const auto becomesTrue = condition_.becomesTrue(update.data);
+    const QJsonValue value = lookUp(update.data, path_);
+    if (!becomesTrue)
+        return value.isUndefined() ? "there is no " + path_
+                                   : QString("%1 is %2, not a number").arg(path_, shown(value));
+    if (*becomesTrue)
+        fire(update, 0, {{"value", value}});
+    return {};
+}
+
+} // namespace hermes

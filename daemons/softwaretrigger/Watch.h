@@ -1,0 +1,41 @@
+#pragma once
+
+#include "daemons/softwaretrigger/Definition.h"
+#include "daemons/softwaretrigger/Schedule.h"
+#include "daemons/softwaretrigger/Targets.h"
+
+#include <functional>
+#include <memory>
+
+namespace hermes {
+
+/// Why a trigger fires now.
+struct Occasion {
+    double late_s = 0;  ///< after the time, or after the stamp of the message, that it fires for
+    quint64 missed = 0; ///< firings before this one that did not happen, since the last
+    QJsonObject detail; ///< what its kind has to tell, for people
+};
+
+/// Watches for what fires one armed trigger, from its making to its end.
+class Watch {
+public:
+    struct Listener {
+        std::function<void(const Occasion &)> fire;
+        std::function<void()> missed; ///< a firing was missed, and none follows now
+    };
+    virtual ~Watch() = default;
+
+    /// Why it cannot watch at the moment; empty when it can.
+    virtual QString problem() const { return {}; }
+    /// What it has seen, for trigger.list.
+    virtual QJsonObject state() const { return {}; }
+
+    /// None for causes that need no watch: trigger, command. The daemon of the definition must be in use.
+    static std::unique_ptr<Watch> make(const TriggerDefinition &definition, Schedule &schedule,
+                                       Targets &targets, const Listener &listener);
+};
+
+/// The daemon whose topic a definition watches; empty for none.
+QString watchedDaemon(const TriggerDefinition &definition);
+
+} // namespace hermes

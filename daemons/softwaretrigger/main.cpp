@@ -1,0 +1,5 @@
+#include "daemons/softwaretrigger/SoftwareTrigger.h"
+
+int main(int argc, char **argv) {
+    return hermes::runDaemon<hermes::SoftwareTrigger>(argc, argv);
+}
