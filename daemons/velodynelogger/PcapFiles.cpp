@@ -39,7 +39,7 @@ std::string PcapFiles::open(const RecordingPlan &plan) {
 }
 
 std::string PcapFiles::next() {
-    if (!writer_.close())
+    if (writer_.isOpen() && !writer_.close())
         return writer_.error();
     note();
     const std::string path = pathOf(files_.size() + 1);

@@ -2,6 +2,7 @@
 
 #include "common/recording/DiskError.h"
 #include "daemons/velodynelogger/PcapRepair.h"
+#include "daemons/velodynelogger/ThreadPriority.h"
 #include "protocol/velodyne/PositionPacket.h"
 
 #include <algorithm>
@@ -84,6 +85,7 @@ void Recorder::noteLosses(std::uint64_t kernel, std::uint64_t tooLong) {
 }
 
 void Recorder::run() {
+    preferThisThread();
     std::string error;
     bool stopping = false;
     while (error.empty() && !stopping) {

@@ -1,5 +1,7 @@
 #include "daemons/velodynelogger/UdpReceiver.h"
 
+#include "daemons/velodynelogger/ThreadPriority.h"
+
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -52,6 +54,7 @@ void UdpReceiver::stop() {
 }
 
 void UdpReceiver::run() {
+    preferThisThread();
     pollfd waits[] = {
         {wake_, POLLIN, 0}, {data_.descriptor(), POLLIN, 0}, {position_.descriptor(), POLLIN, 0}};
     for (;;) {

@@ -229,6 +229,14 @@ void TestRecorder::reportsTheDisk() {
     QVERIFY(written > 0 && state.losses.value("unwritten").toInt() > 0);
     QCOMPARE(stampsOf(state.path).size(), std::size_t(written)); // what is there is whole
     QCOMPARE(double(QFileInfo(state.path).size()), state.bytes);
+    // And the next recording is one.
+    QTemporaryDir other;
+    QVERIFY(recorder.begin(planIn(other)).ok());
+    push(recorder, sensor, 0, 100);
+    recorder.end();
+    QVERIFY(!recorder.state().error);
+    QCOMPARE(recorder.state().counts.value("packets").toInt(), 100);
+    QCOMPARE(recorder.state().losses.value("unwritten").toInt(), 0);
 }
 
 void TestRecorder::toolsReadTheFiles() {

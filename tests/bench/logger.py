@@ -1,0 +1,15 @@
+#!/usr/bin/env python3
+"""The Velodyne logger under load, as a report for tests/bench/run: nominal traffic, then bursts, counted end to end."""
+import json
+import os
+import sys
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+os.environ.setdefault("HERMES_SOURCE", ROOT)
+os.environ.setdefault("HERMES_BUILD", os.path.join(ROOT, "build", "release"))
+os.environ.setdefault("HERMES_BIN", os.path.join(os.environ["HERMES_BUILD"], "bin"))
+sys.path.insert(0, os.path.join(ROOT, "tests", "system"))
+import recording_load  # noqa: E402
+
+if __name__ == "__main__":
+    print(json.dumps({"context": {"compiler": "release"}, "figures": recording_load.run(600, 6, 10)}))
