@@ -41,7 +41,7 @@ Result<void> TriggerEngine::fireNow(const QString &id, const QString &client, co
     const auto found = triggers_.find(id);
     if (found == triggers_.end() || !found->second.definition.armed)
         return Error(ErrorCode::NotReady, id + " is disarmed: trigger.arm first");
-    fire(found->second, {0, 0, {{"client", client}}}, ended);
+    fire(found->second, {0, 0, {{"kind", "command"}, {"client", client}}}, ended);
     return {};
 }
 
@@ -79,15 +79,17 @@ void TriggerEngine::fire(Trigger &trigger, const Occasion &occasion, const Ended
     const auto firing = std::make_shared<Firing>();
     firing->id = trigger.definition.id;
     firing->seq = ++trigger.seq;
-    firing->cause = trigger.definition.text("kind");
+    const QString kind = trigger.definition.text("kind");
+    firing->cause = occasion.detail.value("kind").toString(kind); // trigger.fire has one of its own
     firing->occasion = occasion;
     firing->stamp = stampNow();
     firing->mono = monotonicNow();
     firing->ended = ended;
     firing->results.resize(trigger.definition.actions.size());
     trigger.missed += occasion.missed;
-    trigger.jitter.add(occasion.late_s);
-    if (trigger.definition.cause() == Cause::Period)
+    if (firing->cause == kind)
+        trigger.jitter.add(occasion.late_s);
+    if (firing->cause == "period")
         jitter_.add(occasion.late_s);
     underWay_.insert(firing);
     for (size_t i = 0; i < firing->results.size(); ++i)

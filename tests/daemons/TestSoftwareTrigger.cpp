@@ -274,6 +274,7 @@ void TestSoftwareTrigger::chain() {
 void TestSoftwareTrigger::armAndDisarm() {
     define("t", period(0.01));
     QTRY_VERIFY(fired_["t"].size() >= 3);
+    QCOMPARE(fire("t")["cause"]["kind"].toString(), QString("command"));
     call("trigger.disarm", {{"id", "t"}});
     const int count = listed("t")["fired"].toInt();
     QCOMPARE(listed("t")["armed"].toBool(true), false);
