@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QByteArray>
+#include <QMap>
 #include <QObject>
 #include <QString>
 #include <QTimer>
@@ -44,6 +45,9 @@ public:
     /// Bytes taken by write() and not yet given to the system.
     virtual qint64 bytesToWrite() const = 0;
     const InterfaceCounters &counters() const { return counts; }
+    /// What the system says it lost or found damaged since the opening, by kind; empty where it does not
+    /// tell.
+    virtual QMap<QString, quint64> systemErrors() const { return {}; }
 
     void setReconnecting(bool on) { reconnecting = on; }
     /// The pause between attempts grows up to this.

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <linux/serial.h>
 #include <sys/ioctl.h>
 
 namespace hermes {
@@ -97,7 +98,26 @@ void SerialInterface::doOpen() {
         return nowClosed(QStringLiteral("cannot open %1: %2").arg(name(), reason), true);
     }
     port.clear();
+    errorsAtOpening = driverErrors();
     nowOpen();
+}
+
+QMap<QString, quint64> SerialInterface::driverErrors() const {
+    serial_icounter_struct driver{};
+    if (!port.isOpen() || ioctl(port.handle(), TIOCGICOUNT, &driver) != 0)
+        return {}; // a pseudo-terminal, or a driver that does not count
+    return {{QStringLiteral("overrun"), quint64(driver.overrun)},
+            {QStringLiteral("buffer_overrun"), quint64(driver.buf_overrun)},
+            {QStringLiteral("framing"), quint64(driver.frame)},
+            {QStringLiteral("parity"), quint64(driver.parity)},
+            {QStringLiteral("break"), quint64(driver.brk)}};
+}
+
+QMap<QString, quint64> SerialInterface::systemErrors() const {
+    QMap<QString, quint64> errors = driverErrors(); // since the driver was loaded
+    for (auto error = errors.begin(); error != errors.end(); ++error)
+        *error -= std::min(*error, errorsAtOpening.value(error.key()));
+    return errors;
 }
 
 void SerialInterface::doClose() {

@@ -20,6 +20,8 @@ public:
     QString name() const override { return url.toString(); }
     void flush() override { port.flush(); }
     qint64 bytesToWrite() const override { return port.bytesToWrite(); }
+    /// Of the driver: "overrun" (bytes that came too fast), "buffer_overrun", "framing", "parity", "break".
+    QMap<QString, quint64> systemErrors() const override;
 
     /// The lines of the port that a program may drive by itself.
     enum class Signal { Rts, Dtr };
@@ -36,9 +38,11 @@ private:
     /// Takes the settings from the URL; gives what is wrong with them, or an empty text.
     QString configure();
     void fail(QSerialPort::SerialPortError error);
+    QMap<QString, quint64> driverErrors() const;
 
     InterfaceUrl url;
-    QSerialPort port;
+    mutable QSerialPort port; // handle() is not const
+    QMap<QString, quint64> errorsAtOpening;
 };
 
 } // namespace hermes

@@ -2,6 +2,9 @@
 
 #include <QNetworkDatagram>
 
+#include <linux/sock_diag.h>
+#include <sys/socket.h>
+
 namespace hermes {
 
 UdpInterface::UdpInterface(const InterfaceUrl &address, QObject *parent)
@@ -25,6 +28,15 @@ QString UdpInterface::name() const {
 
 quint16 UdpInterface::localPort() const {
     return socket.localPort();
+}
+
+QMap<QString, quint64> UdpInterface::systemErrors() const {
+    quint32 memory[SK_MEMINFO_VARS] = {};
+    socklen_t size = sizeof memory;
+    const auto descriptor = socket.socketDescriptor();
+    if (descriptor < 0 || getsockopt(int(descriptor), SOL_SOCKET, SO_MEMINFO, memory, &size) != 0)
+        return {};
+    return {{QStringLiteral("datagrams"), memory[SK_MEMINFO_DROPS]}};
 }
 
 void UdpInterface::doOpen() {

@@ -19,6 +19,8 @@ public:
     QString name() const override;
     bool isDatagram() const override { return true; }
     qint64 bytesToWrite() const override { return 0; }
+    /// "datagrams" that came while the room for them was full.
+    QMap<QString, quint64> systemErrors() const override;
     /// The port bound, while open.
     quint16 localPort() const;
 
