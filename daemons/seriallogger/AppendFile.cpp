@@ -1,0 +1,61 @@
+#include "daemons/seriallogger/AppendFile.h"
+
+#include <QFile>
+
+#include <cerrno>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace hermes {
+
+bool AppendFile::create(const QString &path) {
+    close();
+    path_ = path;
+    size_ = 0;
+    file_ =
+        ::open(QFile::encodeName(path).constData(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
+    return file_ >= 0 || fail("cannot be made");
+}
+
+bool AppendFile::append(const void *bytes, std::size_t size) {
+    const char *next = static_cast<const char *>(bytes);
+    while (size > 0) {
+        const ssize_t written = ::write(file_, next, size);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written <= 0)
+            return fail("cannot be written");
+        next += written;
+        size -= std::size_t(written);
+        size_ += quint64(written);
+    }
+    return true;
+}
+
+bool AppendFile::truncate(quint64 size) {
+    if (::ftruncate(file_, off_t(size)) != 0)
+        return fail("cannot be cut");
+    size_ = size;
+    return true;
+}
+
+bool AppendFile::sync() {
+    return ::fdatasync(file_) == 0 || fail("cannot be brought to the disk");
+}
+
+void AppendFile::syncBeside() const {
+    ::fdatasync(file_);
+}
+
+void AppendFile::close() {
+    if (file_ >= 0)
+        ::close(file_);
+    file_ = -1;
+}
+
+bool AppendFile::fail(const char *what) {
+    error_ = QStringLiteral("%1: %2: %3").arg(path_, QLatin1String(what), qt_error_string());
+    return false;
+}
+
+} // namespace hermes

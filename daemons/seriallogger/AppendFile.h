@@ -1,0 +1,41 @@
+#pragma once
+
+#include <QString>
+
+namespace hermes {
+
+/// A new file that only grows, written without buffers of its own, so that what was written survives the end
+/// of the process. Blocks.
+class AppendFile {
+public:
+    AppendFile() = default;
+    ~AppendFile() { close(); }
+    AppendFile(const AppendFile &) = delete;
+    AppendFile &operator=(const AppendFile &) = delete;
+
+    /// Fails on an existing file.
+    bool create(const QString &path);
+    /// False when not all of it could be written; size() tells how much was.
+    bool append(const void *bytes, std::size_t size);
+    bool truncate(quint64 size);
+    /// On the disk when it returns.
+    bool sync();
+    /// The same in another thread than that which appends; a failure is left for sync() to tell.
+    void syncBeside() const;
+    void close();
+
+    bool isOpen() const { return file_ >= 0; }
+    quint64 size() const { return size_; }
+    const QString &path() const { return path_; }
+    /// What failed last, naming the file.
+    const QString &error() const { return error_; }
+
+private:
+    bool fail(const char *what);
+
+    QString path_, error_;
+    int file_ = -1;
+    quint64 size_ = 0;
+};
+
+} // namespace hermes

@@ -1,0 +1,79 @@
+// What the serial logger offers: its settings, topics and commands.
+#include "daemons/seriallogger/SerialLogger.h"
+
+namespace hermes {
+
+void SerialLogger::declareSettings() {
+    addSetting(PortSettings::field());
+    settings().addRule(PortSettings::check);
+    for (const Field &field : Recording::settingFields()) {
+        if (!field.name().startsWith("record.file_")) // a port has one file, however long
+            addSetting(field);
+    }
+    settings().addRule(Recording::checkSettings);
+    addSetting(Field::integer("record.queue_bytes", "Bytes of each port that may wait for the disk")
+                   .unit("byte")
+                   .range(4096, 1 << 30)
+                   .byDefault(4194304) // 45 s of 921,600 baud
+                   .appliesOnRestart()
+                   .group("Recording"));
+}
+
+void SerialLogger::declareTopics() {
+    addTopic(
+        Topic("lines",
+              "Each line of the ports with view lines or nmea: port, stamp (s) and mono (s) of its first "
+              "byte, text (printable ASCII; \\\\ and \\xHH for the rest), cut (more of it follows)")
+            .schema({{"type", "object"}}));
+    addTopic(Topic("fix",
+                   "Each fix of the ports with view nmea: port, stamp and mono of its arrival, time (s since "
+                   "the epoch by the satellites), valid, lat_deg, lon_deg, alt (m above sea level), quality, "
+                   "satellites, hdop, speed (m/s), course_deg (clockwise from north); null where unknown")
+                 .schema({{"type", "object"}}));
+    addTopic(Topic("serial", "Once a second: ports as ports.list gives them, and whether they are recorded")
+                 .schema({{"type", "object"}})
+                 .snapshot([this] {
+                     return QJsonObject{{"ports", portList()}, {"recording", recording_.isActive()}};
+                 }));
+}
+
+void SerialLogger::declareCommands() {
+    for (const Command &command : recording_.commands())
+        addCommand(command);
+    addCommand(
+        Command("record.export", "Makes a CSV of one port of a recording, beside it; the reply comes when it "
+                                 "is complete")
+            .param(Field::text("name", "Of the recording"))
+            .param(Field::text("port", "Of the recording"))
+            .param(Field::text("rows", "One for each line, for all bytes that came in together, or each fix")
+                       .choices({"lines", "bytes", "fixes"})
+                       .byDefault("lines"))
+            .param(Field::boolean("force", "Replace the CSV of an earlier export").byDefault(false))
+            .returns({{"type", "object"}})
+            .example({{"name", "drive"}, {"port", "gps"}},
+                     QJsonObject{{"path", "/data/drive/seriallogger-gps-lines.csv"}, {"rows", 4711}})
+            .asyncHandler([this](const Call &call, const Reply &reply) { exportRecording(call, reply); }));
+    addCommand(Command("ports.list",
+                       "Of each port: state, reason why it is closed, device, times opened, failures, bytes, "
+                       "bytes_per_s, sent, lost (bytes that the disk was too slow for), errors that the "
+                       "system tells of, last_stamp, and with view nmea counts of sentences and the last fix")
+                   .returns({{"type", "array"}})
+                   .handler([this](const Call &) -> Result<QJsonValue> { return portList(); }));
+    addCommand(Command("mark", "Puts a text with the time into the events of the recording")
+                   .param(Field::text("text", "What to remember").with("maxLength", 1000))
+                   .returns({{"type", "object"}})
+                   .example({{"text", "at the door"}}, QJsonObject{{"stamp", 1.7e9}, {"mono", 4711.5}})
+                   .handler([this](const Call &call) { return mark(call); }));
+    addCommand(
+        Command("send", "Sends bytes to the device of a port")
+            .param(Field::text("port", "Which"))
+            .param(Field::text("bytes", "Pairs of hexadecimal digits: \"B5 62 0A 04\"")
+                       .with("maxLength", 65536)
+                       .optional())
+            .param(Field::text("text", "Instead of bytes; sent as UTF-8").with("maxLength", 65536).optional())
+            .returns({{"type", "object"}})
+            .example({{"port", "gps"}, {"text", "$PMTK220,200*2C\r\n"}}, QJsonObject{{"sent", 17}})
+            .asyncHandler([this](const Call &call, const Reply &reply) { send(call, reply); }));
+}
+
+} // namespace hermes

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "daemons/seriallogger/AppendFile.h"
+#include "daemons/seriallogger/ChunkQueue.h"
+
+#include <optional>
+
+namespace hermes {
+
+/// The recording of one port: its bytes as they came (BASE.raw), and beside them when they came (BASE.index,
+/// see SerialIndex.h).
+class PortFile {
+public:
+    /// Both files are new.
+    bool create(const QString &base);
+    /// False when not all of it could be written; the files then end with the last byte that was.
+    bool write(const ChunkBatch &batch);
+    bool sync();
+    void syncBeside() const;
+    void close();
+
+    quint64 bytes() const { return raw_.size(); }
+    quint64 chunks() const;
+    /// Of the first chunk.
+    const std::optional<Arrival> &first() const { return first_; }
+    const std::optional<Arrival> &last() const { return last_; }
+    const QString &path() const { return raw_.path(); }
+    /// What failed, and the path of the file that did.
+    const QString &error() const { return error_; }
+    const QString &failedPath() const { return failedPath_; }
+
+private:
+    bool fail(const AppendFile &file);
+
+    AppendFile raw_, index_;
+    std::vector<unsigned char> records_; ///< of the batch being written
+    std::optional<Arrival> first_, last_;
+    QString error_, failedPath_;
+};
+
+} // namespace hermes

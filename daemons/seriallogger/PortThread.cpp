@@ -1,0 +1,130 @@
+#include "daemons/seriallogger/PortThread.h"
+
+#include "common/interface/InterfaceRegistry.h"
+
+#include <QFileInfo>
+#include <QJsonObject>
+
+namespace hermes {
+
+namespace {
+
+constexpr std::chrono::milliseconds longestRetry{250}; // what is sent to a closed port is lost
+constexpr int errorPeriod_ms = 1000;
+
+} // namespace
+
+PortThread::PortThread(const PortSettings &settings, ChunkQueue &recording, ChunkQueue &view,
+                       std::function<void()> viewFilled, Note note)
+    : settings_(settings)
+    , recording_(recording)
+    , view_(view)
+    , viewFilled_(std::move(viewFilled))
+    , note_(std::move(note)) {
+    setObjectName("port " + settings.name);
+    context_.moveToThread(this);
+}
+
+void PortThread::end() {
+    quit();
+    wait();
+}
+
+PortThread::State PortThread::state() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return state_;
+}
+
+void PortThread::run() {
+    const Result<Interface *> made = makeInterface(*InterfaceUrl::parse(settings_.url), nullptr);
+    const std::unique_ptr<Interface> carrier(*made); // the settings were checked
+    carrier_ = carrier.get();
+    carrier->setReconnecting(true);
+    carrier->setLongestRetry(longestRetry);
+    connect(carrier_, &Interface::received, carrier_, [this](const QByteArray &bytes) { received(bytes); });
+    connect(carrier_, &Interface::opened, carrier_, [this] { changed({}); });
+    connect(carrier_, &Interface::closed, carrier_, [this](const QString &reason) { changed(reason); });
+    QTimer errorTimer;
+    connect(&errorTimer, &QTimer::timeout, carrier_, [this] { checkErrors(); });
+    errorTimer.start(errorPeriod_ms);
+    carrier->open();
+    exec();
+    carrier->close("the logger ends");
+    carrier_ = nullptr;
+}
+
+void PortThread::received(const QByteArray &bytes) {
+    const Arrival now = Arrival::now();
+    const auto size = std::size_t(bytes.size());
+    recording_.push(bytes.constData(), size, now);
+    if (view_.push(bytes.constData(), size, now))
+        viewFilled_();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    state_.counters = carrier_->counters();
+    state_.last = now;
+}
+
+void PortThread::changed(const QString &reason) {
+    const bool isOpen = carrier_->isOpen();
+    bool wasOpen;
+    QString device;
+    if (isOpen && settings_.url.startsWith("serial:"))
+        device = QFileInfo(InterfaceUrl::parse(settings_.url)->path).canonicalFilePath();
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        wasOpen = state_.carrier == Interface::State::Open;
+        state_.carrier = carrier_->state();
+        state_.counters = carrier_->counters();
+        state_.reason = reason;
+        state_.device = device;
+    }
+    if (isOpen)
+        note_("opened", {{"device", device}});
+    else if (wasOpen) // not each attempt
+        note_("closed", {{"reason", reason}});
+    for (auto error = errorsNow_.begin(); error != errorsNow_.end(); ++error)
+        errorsBefore_[error.key()] += *error;
+    errorsNow_.clear();
+}
+
+void PortThread::checkErrors() {
+    if (!carrier_->isOpen())
+        return;
+    const QMap<QString, quint64> errors = carrier_->systemErrors();
+    if (errors == errorsNow_)
+        return;
+    QJsonObject more;
+    QMap<QString, quint64> sum = errorsBefore_;
+    for (auto error = errors.begin(); error != errors.end(); ++error) {
+        sum[error.key()] += *error;
+        if (*error > errorsNow_.value(error.key()))
+            more.insert(error.key(), double(*error - errorsNow_.value(error.key())));
+    }
+    errorsNow_ = errors;
+    if (!more.isEmpty())
+        note_("errors", more);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    state_.systemErrors = sum;
+}
+
+void PortThread::send(const QByteArray &bytes, const Reply &reply) {
+    const auto write = [this, bytes, reply] {
+        if (carrier_ && carrier_->write(bytes)) {
+            carrier_->flush();
+            note_("sent", {{"bytes", QString::fromLatin1(bytes.toHex())}});
+            {
+                const std::lock_guard<std::mutex> lock(mutex_);
+                state_.counters = carrier_->counters();
+            }
+            return reply.result(QJsonObject{{"sent", bytes.size()}});
+        }
+        reply.error(
+            Error(ErrorCode::NotReady,
+                  state().carrier == Interface::State::Open
+                      ? QString("%1: %2 does not take more bytes now").arg(settings_.name, settings_.url)
+                      : QString("%1 is closed: %2").arg(settings_.name, state().reason)));
+    };
+    QMetaObject::invokeMethod(&context_, write, Qt::QueuedConnection);
+}
+
+} // namespace hermes

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "common/daemon/Reply.h"
+#include "common/interface/Interface.h"
+#include "daemons/seriallogger/ChunkQueue.h"
+#include "daemons/seriallogger/PortSettings.h"
+
+#include <QThread>
+#include <functional>
+#include <optional>
+
+namespace hermes {
+
+/// Receives from one port in a thread of its own, so that nothing else holds it up: stamps what comes in and
+/// puts it into the queues of the recording and of the view. Opens the port again when it closes.
+class PortThread : public QThread {
+public:
+    struct State {
+        Interface::State carrier = Interface::State::Closed;
+        QString reason; ///< why it is closed
+        QString device; ///< that a link led to as it was opened
+        InterfaceCounters counters;
+        QMap<QString, quint64> systemErrors; ///< since the start, over all openings
+        std::optional<Arrival> last;         ///< bytes
+    };
+    /// What happened to the port, in its thread: "opened", "closed" {reason}, "errors" {kind: count}.
+    using Note = std::function<void(const QString &event, const QJsonObject &details)>;
+
+    /// viewFilled: called in the thread when something waits for the view again.
+    PortThread(const PortSettings &settings, ChunkQueue &recording, ChunkQueue &view,
+               std::function<void()> viewFilled, Note note);
+    ~PortThread() override { end(); }
+
+    /// Ends the thread and waits for it.
+    void end();
+    State state() const;
+    /// Answers when the bytes are with the system, or with what keeps them from it.
+    void send(const QByteArray &bytes, const Reply &reply);
+
+protected:
+    void run() override;
+
+private:
+    void received(const QByteArray &bytes);
+    void changed(const QString &reason);
+    void checkErrors();
+
+    const PortSettings settings_;
+    ChunkQueue &recording_, &view_;
+    const std::function<void()> viewFilled_;
+    const Note note_;
+
+    Interface *carrier_ = nullptr;        ///< of the thread
+    QMap<QString, quint64> errorsBefore_; ///< of earlier openings; of the thread
+    QMap<QString, quint64> errorsNow_;    ///< of this opening; of the thread
+    QObject context_;                     ///< lives in the thread
+
+    mutable std::mutex mutex_; // guards what follows
+    State state_;
+};
+
+} // namespace hermes

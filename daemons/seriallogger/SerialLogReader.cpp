@@ -1,0 +1,60 @@
+#include "daemons/seriallogger/SerialLogReader.h"
+
+#include "common/recording/DiskError.h"
+
+#include <algorithm>
+
+namespace hermes {
+
+using namespace serialindex;
+
+Result<void> SerialLogReader::open(const QString &base) {
+    index_.setFileName(base + ".index");
+    raw_.setFileName(base + ".raw");
+    for (QFile *file : {&index_, &raw_}) {
+        if (!file->open(QIODevice::ReadOnly))
+            return diskError(file->fileName() + ": cannot be read: " + file->errorString(), file->fileName());
+    }
+    if (index_.read(headerSize) !=
+        QByteArray(reinterpret_cast<const char *>(header.data()), int(header.size())))
+        return wrong("\"HERMESIX\" version 1 expected at its beginning");
+    offset_ = end_ = 0;
+    size_ = quint64(raw_.size()); // before the index is read, which grows first
+    chunk_.reset();
+    following_ = readRecord();
+    if (size_ > 0 && (!following_ || following_->offset != 0))
+        return wrong("expected a first record, at byte 0");
+    return {};
+}
+
+Result<SerialLogReader::Piece> SerialLogReader::next() {
+    if (offset_ == end_) {
+        if (!following_ || following_->offset >= size_)
+            return Piece();
+        chunk_ = following_;
+        following_ = readRecord();
+        if (following_ && following_->offset <= chunk_->offset)
+            return wrong(QString("a record at byte %1 follows one at byte %2")
+                             .arg(following_->offset)
+                             .arg(chunk_->offset));
+        end_ = following_ ? std::min<quint64>(following_->offset, size_) : size_;
+    }
+    Piece piece{offset_, chunk_->arrival, raw_.read(std::min(mostBytes, qint64(end_ - offset_)))};
+    if (piece.bytes.isEmpty())
+        return diskError(raw_.fileName() + ": cannot be read: " + raw_.errorString(), raw_.fileName());
+    offset_ += quint64(piece.bytes.size());
+    return piece;
+}
+
+std::optional<Record> SerialLogReader::readRecord() {
+    unsigned char bytes[recordSize];
+    if (index_.read(reinterpret_cast<char *>(bytes), recordSize) != qint64(recordSize))
+        return std::nullopt;
+    return decode(bytes);
+}
+
+Error SerialLogReader::wrong(const QString &what) const {
+    return diskError(index_.fileName() + ": " + what, index_.fileName());
+}
+
+} // namespace hermes

@@ -1,0 +1,201 @@
+#include "daemons/seriallogger/SerialLogger.h"
+
+#include "common/Log.h"
+#include "common/recording/DiskError.h"
+#include "common/recording/SessionFolder.h"
+#include "daemons/seriallogger/FixJson.h"
+#include "daemons/seriallogger/SerialExport.h"
+
+#include <QDir>
+
+namespace hermes {
+
+namespace {
+
+constexpr int viewPeriod_ms = 20; // rather than to wake up for each byte
+
+Error wrongParameter(const QString &name, const QString &found, const QString &expected) {
+    return Error(
+        ErrorCode::InvalidParams, QString("%1: found \"%2\", expected %3").arg(name, found, expected),
+        QJsonObject{
+            {"errors", QJsonArray{QJsonObject{{"path", name}, {"value", found}, {"expected", expected}}}}});
+}
+
+} // namespace
+
+SerialLogger::SerialLogger()
+    : Daemon({"seriallogger", "Serial logger",
+              "Records the bytes of serial lines, UDP and TCP sources as they come, with the time of each; "
+              "shows lines and GPS fixes"})
+    , recording_("seriallogger", settings(), health(), recorder_) {
+    declareSettings();
+    declareTopics();
+    declareCommands();
+    exports_.setMaxThreadCount(1);
+    connect(&second_, &QTimer::timeout, this, &SerialLogger::tick);
+    viewTimer_.setSingleShot(true);
+    connect(&viewTimer_, &QTimer::timeout, this, &SerialLogger::processViews);
+}
+
+Result<void> SerialLogger::start() {
+    std::vector<SerialRecorder::Port> recorded;
+    for (const PortSettings &port : PortSettings::read(settings().values())) {
+        addPort(port);
+        recorded.push_back({port.name, port.url, &ports_.back()->recordingQueue()});
+    }
+    recorder_.setPorts(std::move(recorded));
+    recording_.open();
+    for (const auto &port : ports_)
+        port->start();
+    sinceTick_.start();
+    second_.start(1000);
+    setState(ports_.empty() ? DaemonState::Ready : DaemonState::Running);
+    updateHealth();
+    return {};
+}
+
+void SerialLogger::addPort(const PortSettings &settings) {
+    const auto viewFilled = [this] {
+        const auto later = [this] {
+            if (!viewTimer_.isActive())
+                viewTimer_.start(viewPeriod_ms);
+        };
+        QMetaObject::invokeMethod(this, later, Qt::QueuedConnection);
+    };
+    const auto note = [this, name = settings.name](const QString &event, QJsonObject details) {
+        if (event == "opened")
+            logInfo(name, "open");
+        else if (event == "closed")
+            logWarning(name, details.value("reason").toString());
+        details.insert("port", name);
+        recorder_.note(event, details);
+    };
+    const auto queueBytes = std::size_t(this->settings().integer("record.queue_bytes"));
+    ports_.push_back(std::make_unique<LoggedPort>(settings, queueBytes, viewFilled, note));
+    health().provide("port " + settings.name, [this, port = ports_.back().get()] { updateHealth(*port); });
+}
+
+void SerialLogger::stop() {
+    second_.stop();
+    viewTimer_.stop();
+    cancelExports_ = true;
+    for (const auto &port : ports_)
+        port->thread().end();
+    recording_.close();
+    exports_.waitForDone();
+}
+
+LoggedPort *SerialLogger::findPort(const QString &name) const {
+    for (const auto &port : ports_)
+        if (port->settings().name == name)
+            return port.get();
+    return nullptr;
+}
+
+Error SerialLogger::noSuchPort(const QString &name) const {
+    QStringList names;
+    for (const auto &port : ports_)
+        names << port->settings().name;
+    return wrongParameter("port", name, "one of: " + names.join(", "));
+}
+
+Result<QJsonValue> SerialLogger::mark(const Call &call) {
+    const Arrival now = Arrival::now();
+    if (!recorder_.note("mark", {{"text", call.text("text")}}, now))
+        return Error(ErrorCode::NotReady, "nothing is being recorded, or the disk does not keep up; "
+                                          "record.start begins");
+    return QJsonObject{{"stamp", now.stamp()}, {"mono", now.mono()}};
+}
+
+void SerialLogger::send(const Call &call, const Reply &reply) {
+    LoggedPort *port = findPort(call.text("port"));
+    if (!port)
+        return reply.error(noSuchPort(call.text("port")));
+    const QString expected = "either bytes, as pairs of hexadecimal digits, or text, and not nothing";
+    QByteArray bytes = call.text("text").toUtf8();
+    if (call.has("bytes")) {
+        const QString digits = call.text("bytes").remove(' ');
+        bytes = QByteArray::fromHex(digits.toLatin1());
+        if (call.has("text") || bytes.toHex() != digits.toLower().toUtf8())
+            bytes.clear();
+    }
+    if (bytes.isEmpty())
+        return reply.error(wrongParameter("bytes", call.text("bytes"), expected));
+    port->thread().send(bytes, reply);
+}
+
+void SerialLogger::exportRecording(const Call &call, const Reply &reply) {
+    const QString name = call.text("name"), port = call.text("port"), rows = call.text("rows");
+    Result<void> fine = checkName("name", name);
+    if (fine)
+        fine = checkName("port", port);
+    if (!fine)
+        return reply.error(fine.error());
+    const QString base =
+        QDir(QDir(settings().text("record.folder")).absoluteFilePath(name)).filePath("seriallogger-" + port);
+    SerialExport job;
+    job.base = base;
+    job.target = base + '-' + rows + ".csv";
+    job.rows = rows == "lines" ? ExportRows::Lines : rows == "bytes" ? ExportRows::Bytes : ExportRows::Fixes;
+    const LoggedPort *known = findPort(port);
+    job.checksum = known ? known->settings().checksum : nmea::ChecksumRule::Strict;
+    if (QFile::exists(job.target) && !call.flag("force"))
+        return reply.error(diskError(job.target + ": it exists already; force=true replaces it", job.target));
+    exports_.start(QRunnable::create([this, job, reply] {
+        const Result<double> count = job.run(cancelExports_);
+        reply.give(count ? Result<QJsonValue>(QJsonObject{{"path", job.target}, {"rows", *count}})
+                         : Result<QJsonValue>(count.error()));
+    }));
+}
+
+void SerialLogger::processViews() {
+    for (const auto &port : ports_) {
+        const QString name = port->settings().name;
+        const auto line = [&](const LineSplitter::Line &found) {
+            if (!hasSubscribers("lines"))
+                return;
+            publish("lines",
+                    QJsonObject{{"port", name},
+                                {"stamp", found.arrival.stamp()},
+                                {"mono", found.arrival.mono()},
+                                {"text", QString::fromStdString(escaped(found.bytes))},
+                                {"cut", found.cut}},
+                    found.arrival.stamp());
+        };
+        const auto fix = [&](const Fix &found) {
+            QJsonObject data = toJson(found);
+            data.insert("port", name);
+            publish("fix", data, found.arrival.stamp());
+        };
+        port->processView({line, fix});
+    }
+}
+
+void SerialLogger::tick() {
+    const double elapsed_s = double(sinceTick_.restart()) * 1e-3;
+    for (const auto &port : ports_)
+        port->tick(elapsed_s);
+    updateHealth();
+    publish("serial", QJsonObject{{"ports", portList()}, {"recording", recording_.isActive()}});
+}
+
+void SerialLogger::updateHealth() {
+    for (const auto &port : ports_)
+        updateHealth(*port);
+    if (ports_.empty())
+        health().set("ports", HealthLevel::Warn, "no port is set; the setting ports lists them");
+}
+
+void SerialLogger::updateHealth(const LoggedPort &port) {
+    const auto [level, message] = port.health();
+    health().set("port " + port.settings().name, level, message, port.toJson());
+}
+
+QJsonArray SerialLogger::portList() const {
+    QJsonArray list;
+    for (const auto &port : ports_)
+        list.append(port->toJson());
+    return list;
+}
+
+} // namespace hermes

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "common/daemon/Daemon.h"
+#include "common/recording/Recording.h"
+#include "daemons/seriallogger/LoggedPort.h"
+#include "daemons/seriallogger/SerialRecorder.h"
+
+#include <QElapsedTimer>
+#include <QThreadPool>
+#include <atomic>
+
+namespace hermes {
+
+/// hermes-seriallogger: records the bytes of any number of ports as they come, with the time of each; shows
+/// lines and GPS fixes of them.
+class SerialLogger : public Daemon {
+public:
+    SerialLogger();
+
+protected:
+    Result<void> start() override;
+    void stop() override;
+
+private:
+    void declareSettings();
+    void declareTopics();
+    void declareCommands();
+
+    void addPort(const PortSettings &settings);
+    LoggedPort *findPort(const QString &name) const;
+    Error noSuchPort(const QString &name) const;
+
+    Result<QJsonValue> mark(const Call &call);
+    void send(const Call &call, const Reply &reply);
+    void exportRecording(const Call &call, const Reply &reply);
+
+    void processViews();
+    void tick();
+    void updateHealth();
+    void updateHealth(const LoggedPort &port);
+    QJsonArray portList() const;
+
+    std::vector<std::unique_ptr<LoggedPort>> ports_; ///< outlive the recorder, which takes from them
+    SerialRecorder recorder_;
+    Recording recording_;
+    QTimer second_;
+    QTimer viewTimer_;
+    QElapsedTimer sinceTick_;
+    QThreadPool exports_; ///< one after the other
+    std::atomic<bool> cancelExports_{false};
+};
+
+} // namespace hermes

@@ -1,0 +1,236 @@
+#include "daemons/seriallogger/SerialRecorder.h"
+
+#include "common/recording/DiskError.h"
+#include "daemons/seriallogger/SerialRepair.h"
+
+#include <QJsonDocument>
+
+#include <chrono>
+
+namespace hermes {
+
+namespace {
+
+constexpr std::chrono::milliseconds collectPeriod{20}; // what the end of the process may cost
+constexpr std::chrono::seconds syncPeriod{1};          // what the end of the power may cost
+constexpr int mostEventBytes = 1 << 20;
+
+} // namespace
+
+void SerialRecorder::setPorts(std::vector<Port> ports) {
+    entries_.clear();
+    for (Port &port : ports) {
+        entries_.push_back(std::make_unique<Entry>());
+        entries_.back()->port = std::move(port);
+    }
+}
+
+Result<void> SerialRecorder::begin(const RecordingPlan &plan) {
+    end();
+    if (const std::optional<Error> failure = openFiles(plan))
+        return *failure;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    plan_ = plan;
+    events_.clear();
+    eventCount_ = markCount_ = eventsLost_ = diskLost_ = 0;
+    error_.reset();
+    stopping_ = false;
+    recording_ = true;
+    publish();
+    for (const auto &entry : entries_)
+        entry->port.queue->open();
+    thread_ = std::thread([this] { run(); });
+    syncer_ = std::thread([this] { syncBeside(); });
+    return {};
+}
+
+std::optional<Error> SerialRecorder::openFiles(const RecordingPlan &plan) {
+    const QString base = plan.folder + '/' + plan.prefix + '-';
+    for (const auto &entry : entries_) {
+        if (!entry->file.create(base + entry->port.name))
+            return diskError(entry->file.error(), entry->file.failedPath());
+    }
+    if (!eventFile_.create(base + "events.jsonl"))
+        return diskError(eventFile_.error(), eventFile_.path());
+    return std::nullopt;
+}
+
+void SerialRecorder::end() {
+    for (const auto &entry : entries_)
+        entry->port.queue->close();
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stopping_ = true;
+    }
+    wake_.notify_all();
+    for (std::thread *thread : {&thread_, &syncer_}) {
+        if (thread->joinable())
+            thread->join();
+    }
+    for (const auto &entry : entries_)
+        entry->file.close();
+    eventFile_.close();
+}
+
+bool SerialRecorder::note(const QString &event, const QJsonObject &details, const Arrival &when) {
+    return addEvent(event, details, when, false);
+}
+
+bool SerialRecorder::addEvent(const QString &event, QJsonObject line, const Arrival &when, bool atEnd) {
+    line.insert("event", event);
+    line.insert("stamp", when.stamp());
+    line.insert("mono", when.mono());
+    const QByteArray text = QJsonDocument(line).toJson(QJsonDocument::Compact) + '\n';
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!recording_ || (stopping_ && !atEnd))
+        return false;
+    if (events_.size() + text.size() > mostEventBytes) {
+        ++eventsLost_;
+        return false;
+    }
+    events_ += text;
+    ++eventCount_;
+    markCount_ += event == "mark";
+    return true;
+}
+
+void SerialRecorder::run() {
+    bool writing = true;
+    bool stopping = false;
+    while (writing && !stopping) {
+        {
+            std::unique_lock<std::mutex> lock(mutex_);
+            wake_.wait_for(lock, collectPeriod, [this] { return stopping_; });
+            stopping = stopping_;
+        }
+        writing = writePorts();
+        writing = writeEvents() && writing;
+        if (writing && stopping)
+            syncAll();
+        const std::lock_guard<std::mutex> lock(mutex_);
+        publish();
+    }
+    for (const auto &entry : entries_) // what came meanwhile has no place
+        entry->port.queue->close();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto &entry : entries_) {
+        entry->port.queue->take(entry->batch);
+        diskLost_ += entry->batch.bytes.size();
+    }
+    recording_ = false;
+}
+
+bool SerialRecorder::writePorts() {
+    bool fine = true;
+    for (const auto &entry : entries_) {
+        entry->port.queue->take(entry->batch);
+        const quint64 begin = entry->file.bytes();
+        if (!entry->file.write(entry->batch)) {
+            fine = fail(entry->file.error(), entry->file.failedPath());
+            const std::lock_guard<std::mutex> lock(mutex_);
+            diskLost_ += begin + entry->batch.bytes.size() - entry->file.bytes();
+        }
+        noteLosses(*entry, begin);
+    }
+    return fine;
+}
+
+void SerialRecorder::noteLosses(const Entry &entry, quint64 begin) {
+    const auto tell = [&](quint64 offset, quint64 bytes, const Arrival &when) {
+        addEvent("lost", {{"port", entry.port.name}, {"offset", double(offset)}, {"bytes", double(bytes)}},
+                 when, true);
+    };
+    quint64 offset = begin;
+    for (const ChunkBatch::Chunk &chunk : entry.batch.chunks) {
+        if (chunk.lostBefore > 0)
+            tell(offset, chunk.lostBefore, chunk.arrival);
+        offset += chunk.size;
+    }
+    if (entry.batch.lostAtEnd > 0)
+        tell(offset, entry.batch.lostAtEnd, Arrival::now());
+}
+
+bool SerialRecorder::writeEvents() {
+    QByteArray lines;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        lines.swap(events_);
+    }
+    const quint64 before = eventFile_.size();
+    if (lines.isEmpty() || eventFile_.append(lines.constData(), std::size_t(lines.size())))
+        return true;
+    const QString why = eventFile_.error();
+    eventFile_.truncate(before); // no half lines
+    return fail(why, eventFile_.path());
+}
+
+bool SerialRecorder::syncAll() {
+    for (const auto &entry : entries_) {
+        if (!entry->file.sync())
+            return fail(entry->file.error(), entry->file.failedPath());
+    }
+    return eventFile_.sync() || fail(eventFile_.error(), eventFile_.path());
+}
+
+void SerialRecorder::syncBeside() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!wake_.wait_for(lock, syncPeriod, [this] { return stopping_; })) {
+        lock.unlock();
+        for (const auto &entry : entries_)
+            entry->file.syncBeside();
+        eventFile_.syncBeside();
+        lock.lock();
+    }
+}
+
+bool SerialRecorder::fail(const QString &message, const QString &path) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!error_)
+        error_ = diskError(message, path);
+    return false;
+}
+
+void SerialRecorder::publish() {
+    for (const auto &entry : entries_) {
+        entry->bytes = entry->file.bytes();
+        entry->chunks = entry->file.chunks();
+        entry->first = entry->file.first();
+        entry->last = entry->file.last();
+    }
+}
+
+RecordingState SerialRecorder::state() const {
+    RecordingState state;
+    double queueLost = 0, chunks = 0;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const auto &entry : entries_) {
+        QJsonObject file{{"name", plan_.prefix + '-' + entry->port.name + ".raw"},
+                         {"port", entry->port.name},
+                         {"url", entry->port.url},
+                         {"bytes", double(entry->bytes)},
+                         {"chunks", double(entry->chunks)}};
+        if (entry->first) {
+            file.insert("first_stamp", entry->first->stamp());
+            file.insert("last_stamp", entry->last->stamp());
+        }
+        state.files.append(file);
+        state.bytes += double(entry->bytes);
+        chunks += double(entry->chunks);
+        queueLost += double(entry->port.queue->lost());
+    }
+    state.path = plan_.folder;
+    state.counts = {{"bytes", state.bytes},
+                    {"chunks", chunks},
+                    {"events", double(eventCount_)},
+                    {"marks", double(markCount_)}};
+    state.losses = {
+        {"queue_bytes", queueLost}, {"disk_bytes", double(diskLost_)}, {"events", double(eventsLost_)}};
+    state.error = error_;
+    return state;
+}
+
+Result<void> SerialRecorder::repair(const RecordingPlan &plan, QJsonObject &sidecar) {
+    return repairSerialRecording(plan, sidecar);
+}
+
+} // namespace hermes

@@ -1,0 +1,5 @@
+#include "daemons/seriallogger/SerialLogger.h"
+
+int main(int argc, char **argv) {
+    return hermes::runDaemon<hermes::SerialLogger>(argc, argv);
+}
