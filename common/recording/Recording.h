@@ -23,6 +23,8 @@ public:
     ~Recording() override;
 
     static std::vector<Field> settingFields();
+    /// For a logger whose recordings go on in new files.
+    static std::vector<Field> rotationFields();
     /// The free space to warn at lies above that to stop at.
     static std::vector<SchemaViolation> checkSettings(const QJsonObject &settings);
     std::vector<Command> commands();

@@ -7,29 +7,38 @@
 
 namespace hermes {
 
+namespace {
+
+Field byteField(const char *name, const char *description, double least, double value) {
+    return Field::integer(name, description)
+        .unit("byte")
+        .range(least, 1e15)
+        .byDefault(value)
+        .group("Recording");
+}
+
+} // namespace
+
 std::vector<Field> Recording::settingFields() {
-    const auto bytes = [](const char *name, const char *description, double least, double value) {
-        return Field::integer(name, description)
-            .unit("byte")
-            .range(least, 1e15)
-            .byDefault(value)
-            .group("Recording");
-    };
     return {Field::text("record.folder", "Where recordings are kept, a folder each; made when missing")
                 .byDefault("recordings")
                 .appliesOnRestart()
                 .group("Recording"),
-            bytes("record.file_bytes", "A recording goes on in a new file before one gets longer than this",
-                  65536, 1e9),
+            byteField("record.free_floor_bytes", "Free space of the disk at which a recording is ended", 0,
+                      268435456),
+            byteField("record.free_warn_bytes",
+                      "Free space of the disk below which health is at error while recording", 0,
+                      2147483648.0)};
+}
+
+std::vector<Field> Recording::rotationFields() {
+    return {byteField("record.file_bytes",
+                      "A recording goes on in a new file before one gets longer than this", 65536, 1e9),
             Field::number("record.file_s", "A recording goes on in a new file after this time")
                 .unit("s")
                 .range(1, 1e9)
                 .byDefault(3600)
-                .group("Recording"),
-            bytes("record.free_floor_bytes", "Free space of the disk at which a recording is ended", 0,
-                  268435456),
-            bytes("record.free_warn_bytes",
-                  "Free space of the disk below which health is at error while recording", 0, 2147483648.0)};
+                .group("Recording")};
 }
 
 std::vector<SchemaViolation> Recording::checkSettings(const QJsonObject &settings) {

@@ -6,10 +6,8 @@ namespace hermes {
 void SerialLogger::declareSettings() {
     addSetting(PortSettings::field());
     settings().addRule(PortSettings::check);
-    for (const Field &field : Recording::settingFields()) {
-        if (!field.name().startsWith("record.file_")) // a port has one file, however long
-            addSetting(field);
-    }
+    for (const Field &field : Recording::settingFields())
+        addSetting(field);
     settings().addRule(Recording::checkSettings);
     addSetting(Field::integer("record.queue_bytes", "Bytes of each port that may wait for the disk")
                    .unit("byte")

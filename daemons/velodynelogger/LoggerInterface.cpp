@@ -72,8 +72,10 @@ void VelodyneLogger::declareSettings() {
                    .range(1, 1000)
                    .byDefault(1)
                    .group("Cloud"));
-    for (const Field &field : Recording::settingFields())
-        addSetting(field);
+    for (const auto &fields : {Recording::settingFields(), Recording::rotationFields()}) {
+        for (const Field &field : fields)
+            addSetting(field);
+    }
     settings().addRule(Recording::checkSettings);
 }
 
