@@ -24,10 +24,11 @@ inline Corners foldedHall() {
 }
 
 /// The scan of walls by a scanner at the origin, counter-clockwise, at even steps of the angle, with 1 cm
-/// noise of the range: one continuous cluster.
-inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays, const Corners &corners = plainRoom()) {
+/// noise of the range: one continuous cluster. Other seeds give other noise.
+inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays, const Corners &corners = plainRoom(),
+                                                        unsigned seed = 1) {
     using Point = vectorlib::Vector2D<double>;
-    std::mt19937 random(1);
+    std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, 0.01);
     std::vector<vectorlib::Vector2D<float>> points;
     for (int i = 0; i < rays; ++i) {
@@ -44,4 +45,20 @@ inline std::vector<vectorlib::Vector2D<float>> roomScan(int rays, const Corners 
         points.emplace_back(direction * (range + noise(random)));
     }
     return points;
+}
+
+/// Scans of such walls from places within 30 cm of the origin.
+inline std::vector<std::vector<vectorlib::Vector2D<float>>> roomScans(int scans, int rays,
+                                                                      const Corners &corners) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> step(-0.2, 0.2);
+    std::vector<std::vector<vectorlib::Vector2D<float>>> result;
+    for (int i = 0; i < scans; ++i) {
+        const vectorlib::Vector2D<double> place(step(random), step(random));
+        Corners seen = corners;
+        for (auto &corner : seen)
+            corner = corner - place;
+        result.push_back(roomScan(rays, seen, unsigned(i) + 1));
+    }
+    return result;
 }

@@ -11,21 +11,27 @@ using namespace vectorlib;
 
 namespace {
 
-std::vector<Vector2D<float>> scan(const benchmark::State &state) {
-    return roomScan(int(state.range(1)), state.range(0) > 20 ? foldedHall() : plainRoom());
+/// The room (by its number of lines), the points of a scan, and how many scans.
+std::vector<std::vector<Vector2D<float>>> scans(const benchmark::State &state) {
+    const Corners room = state.range(0) > 20 ? foldedHall() : plainRoom();
+    const int points = int(state.range(1)), count = int(state.range(2));
+    if (count == 1)
+        return {roomScan(points, room)};
+    return roomScans(count, points, room);
 }
 
-/// Runs a vectorizer that returns how many lines it found.
+/// Runs a vectorizer that returns how many lines it found, on one scan again and again or on many in turn.
 template <typename Method>
 void run(benchmark::State &state, Method method) {
-    const auto points = scan(state);
-    std::size_t lines = 0;
+    const auto all = scans(state);
+    std::size_t at = 0, lines = 0;
     for (auto _ : state) {
-        lines = method(PointSpan<float>(points));
+        lines += method(PointSpan<float>(all[at]));
+        at = at + 1 == all.size() ? 0 : at + 1;
         benchmark::DoNotOptimize(lines);
         benchmark::ClobberMemory();
     }
-    state.counters["lines"] = double(lines);
+    state.counters["lines"] = double(lines) / double(state.iterations());
 }
 
 template <bool polyline>
@@ -51,9 +57,9 @@ struct Segment {
 
 template <typename Method>
 void add(const char *name) {
-    benchmark::RegisterBenchmark(name, [](benchmark::State &state) {
-        run(state, Method());
-    })->ArgsProduct({{10, 50}, {180, 2000, 20000}});
+    benchmark::RegisterBenchmark(name, [](benchmark::State &state) { run(state, Method()); })
+        ->ArgsProduct({{10, 50}, {180, 2000, 20000}, {1}})
+        ->ArgsProduct({{10, 50}, {2000}, {64}});
 }
 
 } // namespace

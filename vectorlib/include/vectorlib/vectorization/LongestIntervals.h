@@ -58,14 +58,17 @@ private:
             return true; // one interval
         const std::size_t low = std::max(back.index, first.index + 2),
                           high = std::min(ahead.index, end.index - 2);
-        const Cut half = better(first, search.at((low + high) / 2), search.at((low + high + 1) / 2), end);
-        const Cut edge = better(first, search.at(low), search.at(high), end);
-        for (const Cut &cut : {half, edge})
-            if (search.fits(first, cut) && search.fits(cut, end)) {
-                cuts_.push_back(cut);
-                return true;
-            }
-        return false;
+        return cutThere(first, search.at((low + high) / 2), search.at((low + high + 1) / 2), end) ||
+               cutThere(first, search.at(low), search.at(high), end);
+    }
+    // At a or b, where less error is left, if both intervals fit.
+    bool cutThere(const Cut &first, const Cut &a, const Cut &b, const Cut &end) {
+        const auto error = [&](const Cut &cut) { return squares(first, cut) + squares(cut, end); };
+        const Cut &cut = a.index == b.index || error(a) <= error(b) ? a : b;
+        if (!search.fits(first, cut) || !search.fits(cut, end))
+            return false;
+        cuts_.push_back(cut);
+        return true;
     }
     // The end of an interval from `first` that fits, before `end`.
     Cut shorter(const Cut &first, const Cut &end) const {
@@ -107,12 +110,6 @@ private:
     }
     static double squares(const Cut &first, const Cut &end) {
         return sumOfSquares(double(end.index - first.index), end.row - first.row);
-    }
-    // Which of two places leaves less error.
-    static const Cut &better(const Cut &first, const Cut &a, const Cut &b, const Cut &end) {
-        if (a.index == b.index)
-            return a;
-        return squares(first, a) + squares(a, end) <= squares(first, b) + squares(b, end) ? a : b;
     }
 
     std::vector<Cut> cuts_, tail_;
