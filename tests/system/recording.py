@@ -80,6 +80,8 @@ class Recording(unittest.TestCase):
             told = logger.daemon.call("record.stop")
             self.assertFalse(any(told["losses"].values()), told)
             load.check_files(recorded, 0, data, position)
+            print(f"two readers stopped for {PAUSE_S:.0f} s: none of {data + position} packets lost, at most "
+                  f"{logger.peak_mb():.1f} MB resident")
             for daemon in stopped:
                 daemon.close()
 
