@@ -1,6 +1,7 @@
 #include "daemons/scanmatcher/Scan.h"
 
 #include <QJsonArray>
+#include <algorithm>
 #include <cmath>
 
 namespace hermes {
@@ -38,6 +39,14 @@ Result<std::vector<float>> numbers(const QJsonObject &data, const char *member, 
 }
 
 } // namespace
+
+double Scan::begin() const {
+    return stamp + (seconds.empty() ? 0 : double(*std::min_element(seconds.begin(), seconds.end())));
+}
+
+double Scan::end() const {
+    return stamp + (seconds.empty() ? 0 : double(*std::max_element(seconds.begin(), seconds.end())));
+}
 
 Result<Scan> parseScan(const QJsonObject &data) {
     Scan scan;

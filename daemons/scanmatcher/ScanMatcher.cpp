@@ -53,60 +53,8 @@ ScanMatcher::ScanMatcher()
     declareMapCommands();
     connect(&source, &Client::connected, this, &ScanMatcher::updateHealth);
     connect(&source, &Client::disconnected, this, &ScanMatcher::updateHealth);
-}
-
-void ScanMatcher::declareSettings() {
-    addSetting(Field::text("source.address", "Daemon that publishes the scans: HOST:PORT or a URL")
-                   .byDefault("127.0.0.1:7420")
-                   .group("Source"));
-    addSetting(Field::text("source.topic", "Its topic").byDefault("scan2d").group("Source"));
-    addSetting(Field::integer("source.queue", "Scans that may wait to be matched; more drop the oldest")
-                   .unit("scans")
-                   .range(1, 10000)
-                   .byDefault(50)
-                   .group("Source"));
-    addSetting(Field::text("matcher.start", "What to do from the start on")
-                   .choices({"mapping", "localization", "nothing"})
-                   .byDefault("mapping")
-                   .appliesOnRestart()
-                   .group("Matching"));
-    addSetting(Field::boolean("matcher.compensate_motion",
-                              "Correct each scan for the sensor's motion while it was taken")
-                   .byDefault(true)
-                   .group("Matching"));
-    addSetting(
-        Field::number("matcher.sigma_m", "Largest standard deviation of points from their line segment")
-            .unit("m")
-            .range(0.001, 1)
-            .byDefault(0.02)
-            .group("Matching"));
-    addSetting(Field::number("matcher.expected_deviation_m", "How far the expected position is usually wrong")
-                   .unit("m")
-                   .range(0.001, 10)
-                   .byDefault(0.05)
-                   .group("Matching"));
-    addSetting(
-        Field::number("matcher.expected_deviation_rad", "How far the expected heading is usually wrong")
-            .unit("rad")
-            .range(0.001, 3)
-            .byDefault(0.10)
-            .group("Matching"));
-    addSetting(Field::number("matcher.permitted_m", "Largest error of the expected position in x and y")
-                   .unit("m")
-                   .range(0.01, 20)
-                   .byDefault(0.5)
-                   .group("Matching"));
-    addSetting(Field::number("matcher.permitted_rad", "Largest error of the expected heading")
-                   .unit("rad")
-                   .range(0.01, 3.1)
-                   .byDefault(0.4)
-                   .group("Matching"));
-    addSetting(Field::number("matcher.min_matched_share", "Share of the seen length that must match the map")
-                   .range(0, 1)
-                   .byDefault(0.15)
-                   .group("Matching"));
-    addSetting(
-        Field::text("map.folder", "Where map files with a relative path are").byDefault(".").group("Map"));
+    connect(&odometry.client(), &Client::connected, this, &ScanMatcher::updateHealth);
+    connect(&odometry.client(), &Client::disconnected, this, &ScanMatcher::updateHealth);
 }
 
 void ScanMatcher::declareTopics() {
@@ -144,6 +92,7 @@ Result<void> ScanMatcher::start() {
 
 void ScanMatcher::stop() {
     source.close();
+    odometry.close();
     worker.reset();
 }
 
@@ -152,22 +101,10 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
         return;
     worker->setQueueLimit(size_t(settings().integer("source.queue")));
     worker->post([s = trackerSettings()](Tracker &tracker) { tracker.apply(s); });
-    const bool sourceChanged = paths.filter("source.").size() > 0;
-    if (active && sourceChanged)
+    if (active && !paths.filter("source.").isEmpty())
         connectToSource();
-}
-
-TrackerSettings ScanMatcher::trackerSettings() const {
-    auto &values = const_cast<ScanMatcher *>(this)->settings();
-    TrackerSettings s;
-    s.compensateMotion = values.flag("matcher.compensate_motion");
-    s.sigma = values.number("matcher.sigma_m");
-    s.expectedDeviationXY = values.number("matcher.expected_deviation_m");
-    s.expectedDeviationAlpha = values.number("matcher.expected_deviation_rad");
-    s.permittedXY = values.number("matcher.permitted_m");
-    s.permittedAlpha = values.number("matcher.permitted_rad");
-    s.minMatchedShare = values.number("matcher.min_matched_share");
-    return s;
+    if (active && !paths.filter("odometry.").isEmpty())
+        connectToOdometry();
 }
 
 void ScanMatcher::begin(Tracker::Mode wanted) {
@@ -175,12 +112,14 @@ void ScanMatcher::begin(Tracker::Mode wanted) {
     worker->post([wanted](Tracker &tracker) { tracker.setMode(wanted); });
     active = true;
     connectToSource();
+    connectToOdometry();
     setState(DaemonState::Running);
 }
 
 void ScanMatcher::pause() {
     active = false;
     source.close();
+    odometry.close();
     setState(DaemonState::Ready);
 }
 
@@ -197,18 +136,28 @@ void ScanMatcher::connectToSource() {
                          [this](const TopicUpdate &update) { takeScan(update); });
 }
 
+void ScanMatcher::connectToOdometry() {
+    const auto opened = odometry.open(settings().text("odometry.address"), settings().text("odometry.topic"));
+    if (!opened)
+        logError("odometry", opened.error().message);
+    updateHealth();
+}
+
 void ScanMatcher::takeScan(const TopicUpdate &update) {
     lastScan = monotonicNow();
     droppedBySource = update.dropped;
-    auto scan = parseScan(update.data.toObject());
-    if (!scan) {
+    auto parsed = parseScan(update.data.toObject());
+    if (!parsed) {
         if (badScans++ == 0)
-            logWarning("source", scan.error().message);
-        lastBadScan = scan.error().message;
+            logWarning("source", parsed.error().message);
+        lastBadScan = parsed.error().message;
         return;
     }
-    if (!scan->partial)
-        worker->push(scan.take());
+    Scan scan = parsed.take();
+    if (scan.partial)
+        return;
+    scan.odometry = odometry.over(scan.begin(), scan.end());
+    worker->push(std::move(scan));
 }
 
 ScanMatcher::Outcome ScanMatcher::outcomeOf(Tracker &tracker, const Scan &scan) {
@@ -273,6 +222,7 @@ void ScanMatcher::updateHealth() {
                      QString("refused %1 scans, the last: %2").arg(badScans).arg(lastBadScan));
     else
         health().set("source", HealthLevel::Ok, "connected to " + address);
+    odometry.report(health());
     const quint64 dropped = droppedBySource + (worker ? worker->dropped() : 0);
     health().set("queue", dropped ? HealthLevel::Warn : HealthLevel::Ok,
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
@@ -294,6 +244,8 @@ QJsonObject ScanMatcher::matcherState() const {
             {"dropped", qint64(worker ? worker->dropped() : 0)},
             {"dropped_by_source", qint64(droppedBySource)},
             {"refused", qint64(badScans)},
+            {"by_odometry", qint64(counts.byOdometry)},
+            {"odometry", odometry.state()},
             {"ms_per_scan", counts.totalMs / scans},
             {"map_segments", qint64(mirror.size())}};
 }

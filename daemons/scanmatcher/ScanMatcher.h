@@ -3,6 +3,7 @@
 #include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
 #include "daemons/scanmatcher/MapMirror.h"
+#include "daemons/scanmatcher/OdometrySource.h"
 #include "daemons/scanmatcher/Worker.h"
 
 #include <memory>
@@ -39,6 +40,7 @@ private:
     void updateHealth();
 
     void connectToSource();
+    void connectToOdometry();
     void takeScan(const TopicUpdate &update);
     void begin(Tracker::Mode mode);
     void pause();
@@ -58,6 +60,7 @@ private:
     std::unique_ptr<Worker> worker;
     Client source;
     int subscription = 0;
+    OdometrySource odometry;
     bool active = false;
     Tracker::Mode mode = Tracker::Mode::Mapping;
     MapMirror mirror;

@@ -9,20 +9,37 @@ void Tracker::apply(const TrackerSettings &settings) {
     builder.extract.vectorize.settings.sigma = settings.sigma;
     vectorlib::TrackingSettings &track = builder.track.settings;
     track.permitted = {settings.permittedXY, settings.permittedXY, settings.permittedAlpha};
-    track.expectedDeviationXY = settings.expectedDeviationXY;
-    track.expectedDeviationAlpha = settings.expectedDeviationAlpha;
     track.minMatchedShare = settings.minMatchedShare;
+    odometry.setMount(settings.sensorOnRobot);
+}
+
+vectorlib::Pose2D Tracker::expect(const Scan &scan) {
+    vectorlib::TrackingSettings &track = builder.track.settings;
+    const auto expected = scan.odometry ? odometry.expect(*scan.odometry, scan.stamp) : std::nullopt;
+    if (expected) {
+        ++total.byOdometry;
+        track.expectedDeviationXY = expected->deviationXY;
+        track.expectedDeviationAlpha = expected->deviationAlpha;
+        return expected->pose;
+    }
+    track.expectedDeviationXY = configured.expectedDeviationXY;
+    track.expectedDeviationAlpha = configured.expectedDeviationAlpha;
+    return model.predict(scan.stamp);
 }
 
 const ScanReport &Tracker::process(Scan &scan) {
     const float middle = vectorlib::middleTime(scan.seconds);
-    scan.stamp += double(middle);
-    if (configured.compensateMotion)
+    if (configured.compensateMotion && scan.odometry)
+        odometry.straighten(scan, *scan.odometry, middle);
+    else if (configured.compensateMotion)
         compensateMotion(scan.points, scan.seconds, middle, model.twist());
+    scan.stamp += double(middle);
     builder.extract.segment.settings =
         vectorlib::EarSettings::forScanner(2 * vectorlib::pi, scan.points.size());
-    const ScanReport &report = builder.process(scan.points, model.predict(scan.stamp));
+    const ScanReport &report = builder.process(scan.points, expect(scan));
     model.update(report.pose, scan.stamp);
+    if (scan.odometry)
+        odometry.update(report.pose, *scan.odometry, scan.stamp);
 
     ++total.scans;
     total.totalMs += report.totalMs();
@@ -42,11 +59,12 @@ const ScanReport &Tracker::process(Scan &scan) {
 
 void Tracker::place(const vectorlib::Pose2D &pose) {
     model.reset(pose);
+    odometry.reset();
 }
 
 void Tracker::clear() {
     builder.clear();
-    model.reset({});
+    place({});
     total = TrackerCounts();
 }
 

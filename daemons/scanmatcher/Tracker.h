@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/scanmatcher/Scan.h"
+#include "daemons/scanmatcher/OdometryModel.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MotionModel.h"
 
@@ -15,12 +15,14 @@ struct TrackerSettings {
     double permittedXY = 0.5;             ///< metres
     double permittedAlpha = 0.4;          ///< radians
     double minMatchedShare = 0.15;
+    vectorlib::Pose2D sensorOnRobot; ///< the odometry is that of the robot
 };
 
 /// Counts of all scans since the start or the last clear.
 struct TrackerCounts {
     quint64 scans = 0, matched = 0, lost = 0, skipped = 0;
-    double totalMs = 0; ///< of all scans together
+    quint64 byOdometry = 0; ///< scans whose expected pose came from the odometry
+    double totalMs = 0;     ///< of all scans together
 };
 
 /// Follows the sensor through its map and lets the map grow, scan by scan. Plain computing: no thread, no
@@ -37,8 +39,9 @@ public:
     void apply(const TrackerSettings &settings);
     void setMode(Mode mode) { builder.settings.grow = mode == Mode::Mapping; }
 
-    /// Compensates the motion during the scan, predicts, matches, maps. The scan's stamp becomes the middle
-    /// of its time, to which the pose refers.
+    /// Compensates the motion during the scan, predicts, matches, maps: by the scan's odometry where it is
+    /// known, else by the motion so far. The scan's stamp becomes the middle of its time, to which the pose
+    /// refers.
     const vectorlib::ScanReport &process(Scan &scan);
     /// Puts the sensor somewhere, standing still.
     void place(const vectorlib::Pose2D &pose);
@@ -49,8 +52,12 @@ public:
     const TrackerCounts &counts() const { return total; }
 
 private:
+    /// Where the sensor is expected; tells the builder how sure that is.
+    vectorlib::Pose2D expect(const Scan &scan);
+
     TrackerSettings configured;
     vectorlib::MotionModel model;
+    OdometryModel odometry;
     TrackerCounts total;
 };
 

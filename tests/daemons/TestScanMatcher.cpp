@@ -1,10 +1,5 @@
-#include "common/client/Client.h"
-#include "daemons/scanmatcher/ScanMatcher.h"
+#include "MatcherFixture.h"
 
-#include <QTemporaryDir>
-#include <QtTest>
-
-#include <cmath>
 #include <csignal>
 #include <future>
 #include <limits>
@@ -12,53 +7,11 @@
 
 using namespace hermes;
 
-namespace {
-
-// A logger that publishes what a test tells it.
-class ScanSource : public Daemon {
-public:
-    ScanSource()
-        : Daemon({"scansource", "Scan source", "Publishes the scans of a test"}) {
-        addTopic(Topic("scan2d", "Scans"));
-    }
-    using Daemon::publish;
-};
-
-// What a scanner without noise sees from a pose in a room of 8 m x 6 m with a niche.
-QJsonObject roomScan(const vectorlib::Pose2D &pose, double stamp) {
-    const std::vector<vectorlib::LineSegment2D<double>> walls{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},
-                                                              {{4, 3}, {-1, 3}},   {{-1, 3}, {-1, 2}},
-                                                              {{-1, 2}, {-4, 2}},  {{-4, 2}, {-4, -3}}};
-    QJsonArray x, y;
-    for (int i = 0; i < 1000; ++i) {
-        const double angle = 2 * vectorlib::pi * i / 1000;
-        const vectorlib::Vector2D<double> d(std::cos(pose.theta + angle), std::sin(pose.theta + angle)),
-            from(pose.x, pose.y);
-        double range = 1e9;
-        for (const auto &wall : walls) {
-            const double across = d.cross(wall.direction());
-            const double r = (wall.begin() - from).cross(wall.direction()) / across;
-            const double t = wall.along(from + d * r);
-            if (std::abs(across) > 1e-9 && r > 0 && t >= -1e-9 && t <= wall.length() + 1e-9)
-                range = std::min(range, r);
-        }
-        x.append(range * std::cos(angle));
-        y.append(range * std::sin(angle));
-    }
-    return {{"stamp", stamp}, {"turn", std::round(10 * stamp)}, {"x", x}, {"y", y}};
-}
-
-vectorlib::Pose2D onTheWay(int i) {
-    return {-1.5 + 0.05 * i, -0.5 + 0.02 * i, 0.03 * i};
-}
-
-} // namespace
-
-class TestScanMatcher : public QObject {
+class TestScanMatcher : public QObject, MatcherFixture {
     Q_OBJECT
 private Q_SLOTS:
-    void init();
-    void cleanup();
+    void init() { setUp(); }
+    void cleanup() { tearDown(); }
     void parsesScans_data();
     void parsesScans();
     void tracksAndMaps();
@@ -74,69 +27,8 @@ private Q_SLOTS:
     void queueDropsItsOldestAndCounts();
 
 private:
-    QJsonObject call(const QString &method, const QJsonObject &params = {});
-    Error failure(const QString &method, const QJsonObject &params);
     void drive(int from, int to);
-    void startSource(quint16 port);
-    QJsonObject healthItem(const QString &name);
-
-    std::unique_ptr<QTemporaryDir> folder;
-    std::unique_ptr<ScanSource> source;
-    std::unique_ptr<ScanMatcher> matcher;
-    std::unique_ptr<Client> client;
-    quint16 sourcePort = 0;
 };
-
-void TestScanMatcher::startSource(quint16 port) {
-    source = std::make_unique<ScanSource>();
-    QVERIFY(!source->prepare({"scansource", "--listen", QString("tcp://127.0.0.1:%1").arg(port), "--set",
-                              "limits.topic_bytes=100000000"}));
-    const auto launched = source->launch();
-    QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
-    sourcePort = quint16(QUrl(source->server().addresses().value(0)).port());
-}
-
-void TestScanMatcher::init() {
-    folder = std::make_unique<QTemporaryDir>();
-    startSource(0);
-    matcher = std::make_unique<ScanMatcher>();
-    QVERIFY(!matcher->prepare({"scanmatcher", "--listen", "tcp://127.0.0.1:0", "--set",
-                               QString("source.address=127.0.0.1:%1").arg(sourcePort), "--set",
-                               "map.folder=" + folder->path()}));
-    QVERIFY(matcher->launch().ok());
-    client = std::make_unique<Client>();
-    QVERIFY(client->connectTo(matcher->server().addresses().value(0)).ok());
-    QVERIFY(client->waitConnected().ok());
-    QTRY_VERIFY(source->hasSubscribers("scan2d"));
-}
-
-void TestScanMatcher::cleanup() {
-    client.reset();
-    matcher->shutDown();
-    matcher.reset();
-    if (source)
-        source->shutDown();
-    source.reset();
-}
-
-QJsonObject TestScanMatcher::call(const QString &method, const QJsonObject &params) {
-    const auto result = client->callAndWait(method, params);
-    if (!result)
-        qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
-    return result ? result->toObject() : QJsonObject{{"failed", result.error().message}};
-}
-
-Error TestScanMatcher::failure(const QString &method, const QJsonObject &params) {
-    const auto result = client->callAndWait(method, params);
-    return result ? Error(ErrorCode::InternalError, "succeeded, though it should not") : result.error();
-}
-
-QJsonObject TestScanMatcher::healthItem(const QString &name) {
-    for (const QJsonValue &item : call("daemon.status")["health"].toArray())
-        if (item.toObject()["name"] == name)
-            return item.toObject();
-    return {};
-}
 
 void TestScanMatcher::drive(int from, int to) {
     for (int i = from; i < to; ++i)

@@ -1,0 +1,86 @@
+#include "daemons/scanmatcher/ScanMatcher.h"
+
+namespace hermes {
+
+void ScanMatcher::declareSettings() {
+    addSetting(Field::text("source.address", "Daemon that publishes the scans: HOST:PORT or a URL")
+                   .byDefault("127.0.0.1:7420")
+                   .group("Source"));
+    addSetting(Field::text("source.topic", "Its topic").byDefault("scan2d").group("Source"));
+    addSetting(Field::integer("source.queue", "Scans that may wait to be matched; more drop the oldest")
+                   .unit("scans")
+                   .range(1, 10000)
+                   .byDefault(50)
+                   .group("Source"));
+    addSetting(Field::text("odometry.address",
+                           "Daemon that publishes the robot's odometry: HOST:PORT or a URL; "
+                           "none: poses are expected from the scans alone")
+                   .byDefault("")
+                   .group("Odometry"));
+    addSetting(Field::text("odometry.topic", "Its topic").byDefault("odometry").group("Odometry"));
+    const auto sensor = [this](const char *name, const char *text, const char *unit) {
+        addSetting(Field::number(name, text).unit(unit).range(-100, 100).byDefault(0).group("Odometry"));
+    };
+    sensor("sensor.x_m", "How far the sensor is ahead of the robot's centre", "m");
+    sensor("sensor.y_m", "How far it is to the left", "m");
+    sensor("sensor.theta_rad", "Its heading in the robot's frame, counter-clockwise", "rad");
+    addSetting(Field::text("matcher.start", "What to do from the start on")
+                   .choices({"mapping", "localization", "nothing"})
+                   .byDefault("mapping")
+                   .appliesOnRestart()
+                   .group("Matching"));
+    addSetting(Field::boolean("matcher.compensate_motion",
+                              "Correct each scan for the sensor's motion while it was taken")
+                   .byDefault(true)
+                   .group("Matching"));
+    addSetting(
+        Field::number("matcher.sigma_m", "Largest standard deviation of points from their line segment")
+            .unit("m")
+            .range(0.001, 1)
+            .byDefault(0.02)
+            .group("Matching"));
+    addSetting(Field::number("matcher.expected_deviation_m", "How far the expected position is usually wrong")
+                   .unit("m")
+                   .range(0.001, 10)
+                   .byDefault(0.05)
+                   .group("Matching"));
+    addSetting(
+        Field::number("matcher.expected_deviation_rad", "How far the expected heading is usually wrong")
+            .unit("rad")
+            .range(0.001, 3)
+            .byDefault(0.10)
+            .group("Matching"));
+    addSetting(Field::number("matcher.permitted_m", "Largest error of the expected position in x and y")
+                   .unit("m")
+                   .range(0.01, 20)
+                   .byDefault(0.5)
+                   .group("Matching"));
+    addSetting(Field::number("matcher.permitted_rad", "Largest error of the expected heading")
+                   .unit("rad")
+                   .range(0.01, 3.1)
+                   .byDefault(0.4)
+                   .group("Matching"));
+    addSetting(Field::number("matcher.min_matched_share", "Share of the seen length that must match the map")
+                   .range(0, 1)
+                   .byDefault(0.15)
+                   .group("Matching"));
+    addSetting(
+        Field::text("map.folder", "Where map files with a relative path are").byDefault(".").group("Map"));
+}
+
+TrackerSettings ScanMatcher::trackerSettings() const {
+    auto &values = const_cast<ScanMatcher *>(this)->settings();
+    TrackerSettings s;
+    s.compensateMotion = values.flag("matcher.compensate_motion");
+    s.sigma = values.number("matcher.sigma_m");
+    s.expectedDeviationXY = values.number("matcher.expected_deviation_m");
+    s.expectedDeviationAlpha = values.number("matcher.expected_deviation_rad");
+    s.permittedXY = values.number("matcher.permitted_m");
+    s.permittedAlpha = values.number("matcher.permitted_rad");
+    s.minMatchedShare = values.number("matcher.min_matched_share");
+    s.sensorOnRobot = {values.number("sensor.x_m"), values.number("sensor.y_m"),
+                       values.number("sensor.theta_rad")};
+    return s;
+}
+
+} // namespace hermes

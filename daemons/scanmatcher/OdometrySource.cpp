@@ -1,0 +1,96 @@
+#include "daemons/scanmatcher/OdometrySource.h"
+
+#include "common/Log.h"
+#include "common/daemon/Health.h"
+
+namespace hermes {
+
+namespace {
+
+constexpr int queue = 100;      // messages, two seconds
+constexpr int mayBeWithout = 3; // scans in a row: a reset leaves out one or two
+
+} // namespace
+
+Result<void> OdometrySource::open(const QString &address, const QString &topic) {
+    close();
+    address_ = address;
+    if (address.isEmpty())
+        return {};
+    const auto connecting = client_.connectTo(address);
+    if (!connecting)
+        return connecting;
+    subscription_ =
+        client_.subscribe(topic, {{"queue", queue}}, [this](const TopicUpdate &update) { take(update); });
+    return {};
+}
+
+void OdometrySource::close() {
+    client_.close();
+    client_.unsubscribe(subscription_);
+    buffer_.restart();
+    address_.clear();
+    withoutInARow_ = 0;
+}
+
+void OdometrySource::take(const TopicUpdate &update) {
+    dropped_ = update.dropped;
+    const auto sample = parseOdometry(update.data.toObject(), update.stamp);
+    if (!sample) {
+        if (refused_++ == 0)
+            logWarning("odometry", sample.error().message);
+        lastRefused_ = sample.error().message;
+        return;
+    }
+    ++messages_;
+    switch (buffer_.add(*sample)) {
+    case OdometryBuffer::Outcome::Taken:
+        break;
+    case OdometryBuffer::Outcome::OutOfOrder:
+        ++outOfOrder_;
+        break;
+    case OdometryBuffer::Outcome::Restarted:
+        if (restarts_++ == 0)
+            logInfo("odometry", "begins anew: it was reset, or there was a gap");
+        break;
+    }
+}
+
+std::optional<OdometryTrack> OdometrySource::over(double begin, double end) {
+    if (address_.isEmpty())
+        return std::nullopt;
+    auto track = buffer_.over(begin, end);
+    scansWithout_ += track ? 0 : 1;
+    withoutInARow_ = track ? 0 : withoutInARow_ + 1;
+    return track;
+}
+
+void OdometrySource::report(Health &health) const {
+    const auto set = [&](HealthLevel level, const QString &message) {
+        health.set("odometry", level, message, state());
+    };
+    if (address_.isEmpty())
+        health.remove("odometry");
+    else if (!client_.isConnected())
+        set(HealthLevel::Warn, QString("no connection to %1: %2; poses are expected from the scans alone")
+                                   .arg(address_, client_.lastError()));
+    else if (withoutInARow_ >= mayBeWithout)
+        set(HealthLevel::Warn, QString("the last %1 scans found no odometry of their time; their poses were "
+                                       "expected from the scans alone")
+                                   .arg(withoutInARow_));
+    else if (refused_ > 0)
+        set(HealthLevel::Warn, QString("refused %1 messages, the last: %2").arg(refused_).arg(lastRefused_));
+    else if (dropped_ > 0)
+        set(HealthLevel::Warn, QString("%1 messages were dropped").arg(dropped_));
+    else
+        set(HealthLevel::Ok, "connected to " + address_);
+}
+
+QJsonObject OdometrySource::state() const {
+    return {{"connected", client_.isConnected()},    {"messages", qint64(messages_)},
+            {"refused", qint64(refused_)},           {"out_of_order", qint64(outOfOrder_)},
+            {"restarts", qint64(restarts_)},         {"dropped", qint64(dropped_)},
+            {"scans_without", qint64(scansWithout_)}};
+}
+
+} // namespace hermes

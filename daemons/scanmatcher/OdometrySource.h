@@ -1,0 +1,39 @@
+#pragma once
+
+#include "common/client/Client.h"
+#include "daemons/scanmatcher/OdometryBuffer.h"
+
+namespace hermes {
+
+class Health;
+
+/// The topic of another daemon that tells where the robot is by its wheels: receives, checks, counts, and
+/// hands each scan the odometry of its time.
+class OdometrySource {
+public:
+    /// An empty address: there is no odometry. Error: a bad address only.
+    Result<void> open(const QString &address, const QString &topic);
+    void close();
+
+    /// What is known from begin to end, seconds since the Unix epoch.
+    std::optional<OdometryTrack> over(double begin, double end);
+    /// Sets the health item `odometry`, or removes it when there is no source.
+    void report(Health &health) const;
+    /// Counts: {connected, messages, refused, out_of_order, restarts, dropped, scans_without}.
+    QJsonObject state() const;
+    /// For its signals.
+    const Client &client() const { return client_; }
+
+private:
+    void take(const TopicUpdate &update);
+
+    Client client_;
+    QString address_;
+    int subscription_ = 0;
+    OdometryBuffer buffer_;
+    QString lastRefused_;
+    quint64 messages_ = 0, refused_ = 0, outOfOrder_ = 0, restarts_ = 0, dropped_ = 0, scansWithout_ = 0;
+    int withoutInARow_ = 0;
+};
+
+} // namespace hermes
