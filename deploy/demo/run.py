@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Drives a simulated robot once through a world and lets the daemons build its vector map, or does the same from a log."""
 import argparse
+import bisect
 import json
 import math
 import os
@@ -13,9 +14,12 @@ import tempfile
 import threading
 import time
 
-from processes import Daemon, Process, free_port
+from processes import Daemon, DaemonError, Process, free_port
+from drive import DriveError, PathFollower, PoseTopic, drive  # of docs/examples
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+SPEED_MPS = 0.8
+SLIP = 0.03  # of the simulated wheels, that the odometry does not know of
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(ROOT, "build", "release", "bin"))
 
 
@@ -40,44 +44,56 @@ class Listener(threading.Thread):
 
 
 class Demo:
-    """The three daemons and one drive."""
+    """The four daemons and one drive."""
 
     def __init__(self, world, folder, logs):
-        lidar_port = free_port(2368, socket.SOCK_DGRAM)
-        ports = {name: free_port(port) for name, port in
-                 (("simulator", 7490), ("velodynelogger", 7420), ("scanmatcher", 7450))}
-        self.folder = folder
+        self.world = world
+        lidar_port, motor_line = free_port(2368, socket.SOCK_DGRAM), os.path.join(logs, "motors")
+        self.ports = {name: free_port(port) for name, port in
+                      (("simulator", 7490), ("motorcontrol", 7410), ("velodynelogger", 7420), ("scanmatcher", 7450))}
         self.processes = []
         try:
-            self.start("scanmatcher", ports, logs, {"source.address": f"127.0.0.1:{ports['velodynelogger']}",
-                                                    "map.folder": folder})
-            self.start("velodynelogger", ports, logs, {"source.port": lidar_port, "record.folder": folder})
-            self.start("simulator", ports, logs, {"world": world, "lidar.port": lidar_port})
-            self.matcher, self.logger, self.simulator = [process.connect() for process in self.processes]
+            # Who listens first, then what it listens to.
+            self.start("scanmatcher", logs, {"source.address": f"127.0.0.1:{self.ports['velodynelogger']}",
+                                             "odometry.address": f"127.0.0.1:{self.ports['motorcontrol']}",
+                                             "map.folder": folder})
+            self.start("velodynelogger", logs, {"source.port": lidar_port, "record.folder": folder})
+            self.start("simulator", logs, {"world": world, "lidar.port": lidar_port, "motors.link": motor_line,
+                                           "frame.slip": SLIP})
+            line = f"serial://{motor_line}?baud=115200"
+            self.start("motorcontrol", logs, {"controllers.1.url": line, "controllers.2.url": line})
+            self.matcher, self.logger, self.simulator, self.motors = [process.connect() for process in self.processes]
         except BaseException:
             self.stop()
             raise
 
-    def start(self, name, ports, logs, settings):
-        print(f"  starting hermes-{name:<15} port {ports[name]}")
-        self.processes.append(Process(BINARIES, name, ports[name], logs, settings))
+    def start(self, name, logs, settings):
+        print(f"  starting hermes-{name:<15} port {self.ports[name]}", flush=True)
+        self.processes.append(Process(BINARIES, name, self.ports[name], logs, settings))
+
+    def way_points(self):
+        with open(self.world, encoding="utf-8") as file:  # the simulator has found it good
+            points = json.load(file)["poses"]
+        if len(points) < 2:
+            raise RuntimeError(f"{self.world}: has no path: two poses or more expected")
+        return points
 
     def drive(self):
-        """One drive through the world; gives the estimated poses and the true ones."""
+        """One drive through the world; gives the messages of matcher, odometry and truth."""
+        path = PathFollower(self.way_points(), SPEED_MPS)
         start = self.simulator.call("sim.state")["pose"]
-        self.matcher.call("pose.set", x=start["x"], y=start["y"], theta=start["theta"])
-        poses = Listener(self.processes[0].port, "pose", 1000)
-        truth = Listener(self.processes[2].port, "truth", 1000)
+        self.wait(lambda: self.motors.call("motor.state")["ready"], "the motor controllers")
+        self.motors.call("odometry.reset", **start)
+        self.matcher.call("pose.set", **start)
+        poses = Listener(self.ports["scanmatcher"], "pose", 1000)
+        odometry = Listener(self.ports["motorcontrol"], "odometry", 1000)
+        truth = Listener(self.ports["simulator"], "truth", 1000)
         self.logger.call("record.start", name="recording")
         self.wait(lambda: poses.messages, "the first scan")
-        self.simulator.call("sim.drive")
-        while True:
-            state = self.simulator.call("sim.state")
-            self.show(state["progress"], poses.messages)
-            if state["finished"]:
-                break
-            time.sleep(0.2)
+        drive(self.motors, PoseTopic("pose", port=self.ports["scanmatcher"]), path, "the demo",
+              lambda follower: self.show(follower.progress, poses.messages))
         # A few scans more, taken standing still, then the end of the stream.
+        self.wait(lambda: self.motors.call("motor.state")["twist"] == {"vx": 0, "vy": 0, "omega": 0}, "the standstill")
         seen = len(poses.messages)
         self.wait(lambda: len(poses.messages) >= seen + 5, "the last scans")
         told = self.logger.call("record.stop")
@@ -87,7 +103,7 @@ class Demo:
         self.wait(lambda: self.matcher.call("matcher.state")["waiting"] == 0, "the matcher")
         if sys.stderr.isatty():
             print(file=sys.stderr)
-        return poses, truth
+        return poses, odometry, truth
 
     @staticmethod
     def show(progress, messages):
@@ -112,61 +128,73 @@ class Demo:
         return self.matcher.call("matcher.state")
 
     def stop(self):
-        """In order: first the source, then who listens to it."""
+        """In order: first what drives, then the sources, then who listens to them."""
         return {process.name: process.stop() for process in reversed(self.processes)}
 
 
-def true_pose(truth, stamp):
+def pose_of(message):
+    """Of the matcher's topic, of the odometry's, of the truth's."""
+    return message["data"].get("pose", message["data"])
+
+
+def true_pose(truth, stamps, stamp):
     """The true pose at a time, interpolated between two messages."""
-    for before, after in zip(truth, truth[1:]):
-        if before["stamp"] <= stamp <= after["stamp"]:
-            k = (stamp - before["stamp"]) / max(1e-9, after["stamp"] - before["stamp"])
-            a, b = before["data"], after["data"]
-            turn = math.remainder(b["theta"] - a["theta"], 2 * math.pi)
-            return a["x"] + k * (b["x"] - a["x"]), a["y"] + k * (b["y"] - a["y"]), a["theta"] + k * turn
-    return None
+    after = bisect.bisect(stamps, stamp)
+    if after == 0 or after == len(truth):
+        return None
+    before, after = truth[after - 1], truth[after]
+    k = (stamp - before["stamp"]) / max(1e-9, after["stamp"] - before["stamp"])
+    a, b = pose_of(before), pose_of(after)
+    turn = math.remainder(b["theta"] - a["theta"], 2 * math.pi)
+    return a["x"] + k * (b["x"] - a["x"]), a["y"] + k * (b["y"] - a["y"]), a["theta"] + k * turn
 
 
 def errors(poses, truth):
     """Position and heading error of every pose whose time the truth covers: [(metres, degrees)]."""
-    result = []
+    result, stamps = [], [message["stamp"] for message in truth]
     for message in poses:
-        real, pose = true_pose(truth, message["stamp"]), message["data"]
+        real, pose = true_pose(truth, stamps, message["stamp"]), pose_of(message)
         if real:
             turn = math.remainder(pose["theta"] - real[2], 2 * math.pi)
             result.append((math.hypot(pose["x"] - real[0], pose["y"] - real[1]), abs(math.degrees(turn))))
     return result
 
 
+def final_and_largest(name, deviations):
+    """The members of the summary that tell how wrong the poses were."""
+    return {f"final_{name}_m": deviations[-1][0], f"final_{name}_deg": deviations[-1][1],
+            f"largest_{name}_m": max(d[0] for d in deviations), f"largest_{name}_deg": max(d[1] for d in deviations)}
+
+
 def write_tum(path, poses):
     with open(path, "w", encoding="utf-8") as file:
         for message in poses:
-            pose = message["data"]
+            pose = pose_of(message)
             half = pose["theta"] / 2
             file.write(f"{message['stamp']:.6f} {pose['x']:.6f} {pose['y']:.6f} 0 0 0 "
                        f"{math.sin(half):.9f} {math.cos(half):.9f}\n")
 
 
-def drive(world, folder, logs):
+def drive_world(world, folder, logs):
     """The demo without a log; gives the summary."""
     begin = time.monotonic()
     demo = Demo(world, folder, logs)
     try:
-        poses, truth = demo.drive()
+        poses, odometry, truth = demo.drive()
         state = demo.save()
     finally:
         statuses = demo.stop()
-    write_tum(os.path.join(folder, "trajectory.tum"), poses.messages)
-    write_tum(os.path.join(folder, "truth.tum"), truth.messages)
+    for name, listener in (("trajectory", poses), ("odometry", odometry), ("truth", truth)):
+        write_tum(os.path.join(folder, name + ".tum"), listener.messages)
     deviations = errors(poses.messages, truth.messages)
-    if not deviations:
-        raise RuntimeError("no pose of the matcher lies within the time of the simulator's truth")
+    drift = errors(odometry.messages, truth.messages)
+    if not deviations or not drift:
+        raise RuntimeError("no pose of matcher and odometry lies within the time of the simulator's truth")
     return {
         "world": os.path.basename(world), "scans": state["scans"], "matched": state["matched"], "lost": state["lost"],
         "skipped": state["skipped"], "dropped": state["dropped"] + state["dropped_by_source"] + poses.dropped,
-        "ms_per_scan": state["ms_per_scan"], "map_segments": state["map_segments"],
-        "final_error_m": deviations[-1][0], "final_error_deg": deviations[-1][1],
-        "largest_error_m": max(d[0] for d in deviations), "largest_error_deg": max(d[1] for d in deviations),
+        "by_odometry": state["by_odometry"], "ms_per_scan": state["ms_per_scan"], "map_segments": state["map_segments"],
+        **final_and_largest("error", deviations), **final_and_largest("drift", drift),
         "recording": demo.recording, "exit_status": statuses, "seconds": time.monotonic() - begin}
 
 
@@ -187,13 +215,13 @@ def map_log(log, corrected, folder):
 
 
 def table(summary):
-    rows = [("scans", f"{summary['scans']}"), ("matched", f"{summary['matched']}"), ("lost", f"{summary['lost']}"),
-            ("dropped", f"{summary['dropped']}"), ("time a scan", f"{summary['ms_per_scan']:.2f} ms"),
-            ("map segments", f"{summary['map_segments']}")]
-    if summary.get("final_error_m") is not None:
-        rows.append(("final error", f"{100 * summary['final_error_m']:.1f} cm, {summary['final_error_deg']:.2f} deg"))
-    if summary.get("largest_error_m") is not None:
-        rows.append(("largest error", f"{100 * summary['largest_error_m']:.1f} cm, {summary['largest_error_deg']:.2f} deg"))
+    rows = [(name, f"{summary[member]}") for name, member in
+            (("scans", "scans"), ("matched", "matched"), ("by odometry", "by_odometry"), ("lost", "lost"),
+             ("dropped", "dropped")) if member in summary]
+    rows += [("time a scan", f"{summary['ms_per_scan']:.2f} ms"), ("map segments", f"{summary['map_segments']}")]
+    rows += [(name, f"{100 * summary[member + '_m']:.1f} cm, {summary[member + '_deg']:.2f} deg") for name, member in
+             (("final error", "final_error"), ("largest error", "largest_error"), ("final drift", "final_drift"),
+              ("largest drift", "largest_drift")) if summary.get(member + "_m") is not None]
     rows.append(("seconds", f"{summary['seconds']:.1f}"))
     return "\n".join(f"  {name:<14}{value:>22}" for name, value in rows)
 
@@ -207,8 +235,8 @@ def replace(folder, target):
 
 def main():
     parser = argparse.ArgumentParser(
-        prog="./demo", description="Starts the simulator, the Velodyne logger and the scan matcher as processes of their "
-        "own, drives once through a world, and leaves map, trajectory, recording and summary in demo-out/.")
+        prog="./demo", description="Starts simulator, motor control, Velodyne logger and scan matcher as processes of their own, "
+        "drives once through a world as any client would, and leaves map, trajectories, recording and summary in demo-out/.")
     parser.add_argument("--log", metavar="FILE", help="map a CARMEN log (also .gz) or an HDL-32E capture instead")
     parser.add_argument("--corrected", action="store_true", help="the log's scan poses are a corrected reference")
     parser.add_argument("--world", default=os.path.join(ROOT, "deploy", "worlds", "pillars.json"), metavar="FILE",
@@ -232,11 +260,11 @@ def main():
             if arguments.log:
                 summary = map_log(os.path.abspath(arguments.log), arguments.corrected, results)
             else:
-                summary = drive(os.path.abspath(arguments.world), results, work)
+                summary = drive_world(os.path.abspath(arguments.world), results, work)
         except KeyboardInterrupt:
             print("\nInterrupted: all daemons are stopped, nothing was written.", file=sys.stderr)
             return 130
-        except (RuntimeError, OSError) as error:
+        except (RuntimeError, DriveError, DaemonError, OSError) as error:
             print(f"\ndemo: {error}", file=sys.stderr)
             return 1
         with open(os.path.join(results, "summary.json"), "w", encoding="utf-8") as file:

@@ -60,7 +60,7 @@ class DemoTest(unittest.TestCase):
         status, out, err = self.finish(self.start(), 120)
         seconds = time.monotonic() - begin
         self.assertEqual(status, 0, out + err)
-        self.assertLessEqual({"map.svg", "map.csv", "trajectory.tum", "recording", "summary.json"},
+        self.assertLessEqual({"map.svg", "map.csv", "trajectory.tum", "odometry.tum", "truth.tum", "recording", "summary.json"},
                              set(os.listdir(self.out)))
         with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
@@ -69,6 +69,10 @@ class DemoTest(unittest.TestCase):
         self.assertEqual(summary["dropped"], 0, summary)
         self.assertLess(summary["final_error_m"], 0.05)
         self.assertLess(summary["final_error_deg"], 1.0)
+        # The wheels slip, and the matcher, which goes by them, puts it right.
+        self.assertGreater(summary["by_odometry"], 0.95 * summary["scans"], summary)
+        self.assertGreater(summary["final_drift_m"], 0.2)
+        self.assertEqual(set(summary["exit_status"]), {"simulator", "motorcontrol", "velodynelogger", "scanmatcher"})
         self.assertLess(seconds, 60)
         self.assertEqual(set(summary["exit_status"].values()), {0})
         with open(os.path.join(self.out, "trajectory.tum"), encoding="utf-8") as file:
@@ -104,7 +108,7 @@ class DemoTest(unittest.TestCase):
 
     def test_kill_leaves_no_process(self):
         process = self.start()
-        self.assertTrue(wait_for(lambda: len(marked(self.mark)) >= 4, 20))
+        self.assertTrue(wait_for(lambda: len(marked(self.mark)) >= 5, 20))
         process.kill()
         process.communicate()
         self.assertTrue(wait_for(lambda: not marked(self.mark), 10), "daemons outlive a killed demo")
