@@ -48,11 +48,10 @@ std::optional<OdometryModel::Expectation> OdometryModel::expect(const OdometryTr
                        deviation(leastDeviationAlpha, q(2, 2))};
 }
 
-void OdometryModel::straighten(Scan &scan, const OdometryTrack &track, float reference) const {
-    const Transformation2D fromOdometry = track.at(scan.stamp + double(reference)).inverse();
-    for (std::size_t i = 0; i < scan.points.size() && i < scan.seconds.size(); ++i)
-        scan.points[i] =
-            ofSensor(fromOdometry * track.at(scan.stamp + double(scan.seconds[i]))) * scan.points[i];
+vectorlib::Twist2D OdometryModel::twist(const OdometryTrack &track, double begin, double end) const {
+    if (!(end > begin))
+        return {};
+    return vectorlib::Twist2D::between(ofSensor(track.at(begin).inverse() * track.at(end)), end - begin);
 }
 
 } // namespace hermes

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/scanmatcher/Scan.h"
+#include "daemons/scanmatcher/OdometryTrack.h"
 
 #include <optional>
 
@@ -26,9 +26,9 @@ public:
     /// Nothing when the track does not follow from that of the last update.
     std::optional<Expectation> expect(const OdometryTrack &track, double stamp) const;
 
-    /// Moves the scan's points to where they would have been seen from the sensor's place at this time after
-    /// the scan's stamp; seconds.
-    void straighten(Scan &scan, const OdometryTrack &track, float reference) const;
+    /// The sensor's mean velocity from begin to end. In a turn of 0.1 s a robot that brakes with 4 m/s^2 is
+    /// never more than 5 mm from where this leads; the stamps of single samples are often worse.
+    vectorlib::Twist2D twist(const OdometryTrack &track, double begin, double end) const;
 
 private:
     struct Last {

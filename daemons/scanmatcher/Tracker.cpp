@@ -29,10 +29,10 @@ vectorlib::Pose2D Tracker::expect(const Scan &scan) {
 
 const ScanReport &Tracker::process(Scan &scan) {
     const float middle = vectorlib::middleTime(scan.seconds);
-    if (configured.compensateMotion && scan.odometry)
-        odometry.straighten(scan, *scan.odometry, middle);
-    else if (configured.compensateMotion)
-        compensateMotion(scan.points, scan.seconds, middle, model.twist());
+    if (configured.compensateMotion)
+        compensateMotion(scan.points, scan.seconds, middle,
+                         scan.odometry ? odometry.twist(*scan.odometry, scan.begin(), scan.end())
+                                       : model.twist());
     scan.stamp += double(middle);
     builder.extract.segment.settings =
         vectorlib::EarSettings::forScanner(2 * vectorlib::pi, scan.points.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "daemons/scanmatcher/OdometryModel.h"
+#include "daemons/scanmatcher/Scan.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MotionModel.h"
 

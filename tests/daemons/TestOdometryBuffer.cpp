@@ -1,6 +1,7 @@
 // The odometry on its way to a scan: parsing, the buffer, what a pose is expected from it.
 #include "daemons/scanmatcher/OdometryBuffer.h"
 #include "daemons/scanmatcher/OdometryModel.h"
+#include "daemons/scanmatcher/Scan.h"
 
 #include <QJsonArray>
 #include <QtTest>
@@ -246,7 +247,9 @@ void TestOdometryBuffer::straightensAScan() {
         scan.points.emplace_back(sensor(1.003 + double(t)).inverse() * seen);
     }
     scan.odometry = buffer.over(scan.begin(), scan.end());
-    model.straighten(scan, *scan.odometry, 0.05f);
+    vectorlib::compensateMotion(scan.points, scan.seconds, 0.05f,
+                                model.twist(*scan.odometry, scan.begin(), scan.end()));
+    QCOMPARE(model.twist(*scan.odometry, scan.begin(), scan.begin()).omega, 0.0);
     const vectorlib::Vector2D<double> expected = sensor(1.053).inverse() * seen;
     for (const auto &point : scan.points)
         QVERIFY((vectorlib::Vector2D<double>(point) - expected).norm() < 1e-5);
