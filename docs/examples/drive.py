@@ -25,7 +25,13 @@ NOT_READY = -32005
 
 
 class DriveError(Exception):
-    """The drive ended before its last way point; the robot stands."""
+    """The drive ended before its last way point; the robot stands. `code` is that of the refusal, if there was one,
+    `halted` why the robot had stopped by then."""
+
+    def __init__(self, reason, halted=""):
+        text = f"motor control: {reason}" if isinstance(reason, DaemonError) else reason
+        super().__init__(f"{text}; {halted}" if halted else text)
+        self.code, self.halted = getattr(reason, "code", None), halted
 
 
 class PathFollower:
@@ -127,7 +133,7 @@ def send(motors, vx, omega):
     except DaemonError as error:
         if error.code == NOT_READY and not error.data:  # with data: the emergency stop
             return False
-        raise DriveError(f"motor control: {error}") from error
+        raise DriveError(error, motors.call("motor.state")["halted"]) from error
     return True
 
 
@@ -146,7 +152,7 @@ def drive(motors, poses, follower, name="drive.py", watch=lambda follower: None)
     try:
         motors.call("control.acquire", client=name, timeout_s=CONTROL_S)
     except DaemonError as error:
-        raise DriveError(f"motor control: {error}") from error
+        raise DriveError(error) from error
     try:
         fine = due = time.monotonic()
         while True:

@@ -149,6 +149,7 @@ class DriveTest(unittest.TestCase):
         status, _, err = self.end(process, 5)
         self.assertEqual(status, 1)
         self.assertIn("does not hold the control", err)
+        self.assertIn("stopped by", err)
 
     def test_nobody_there(self):
         port = free_port(0)
