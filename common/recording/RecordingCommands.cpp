@@ -17,6 +17,15 @@ Field byteField(const char *name, const char *description, double least, double 
         .group("Recording");
 }
 
+/// The names of those that have a sidecar in the folder of a session.
+QJsonArray loggersIn(const QString &folder) {
+    QJsonArray loggers;
+    for (const QFileInfo &file : QDir(folder).entryInfoList({"*.json"}, QDir::Files, QDir::Name))
+        if (const Result<QJsonObject> sidecar = Sidecar::read(file.absoluteFilePath()))
+            loggers.append(sidecar->value("logger"));
+    return loggers;
+}
+
 } // namespace
 
 std::vector<Field> Recording::settingFields() {
@@ -70,8 +79,9 @@ std::vector<Command> Recording::commands() {
             .returns({{"type", "object"}})
             .handler([this](const Call &) -> Result<QJsonValue> { return status(); }),
         Command("record.list",
-                "The recordings in the folder, the latest first: name, session, start, end, bytes, "
-                "complete; or the error of one that cannot be read")
+                "The recordings in the folder, the latest first: name, folder, loggers (those of its session "
+                "in the same folder), and of its sidecar session, start, end, ended, complete, files (how "
+                "many), bytes, counts, losses; or the error of one that cannot be read")
             .returns({{"type", "array"}})
             .asyncHandler([this](const Call &, const Reply &reply) { list(reply); })};
 }
@@ -85,9 +95,16 @@ void Recording::list(const Reply &reply) {
                 continue;
             const Result<QJsonObject> sidecar = Sidecar::read(path);
             QJsonObject entry{{"name", name}};
-            for (const char *member : {"session", "start", "end", "bytes", "complete"})
+            for (const char *member :
+                 {"session", "start", "end", "ended", "complete", "bytes", "counts", "losses"})
                 if (sidecar)
                     entry.insert(member, sidecar->value(member));
+            if (sidecar) {
+                const QString folder = QDir(root).absoluteFilePath(name);
+                entry.insert("folder", folder);
+                entry.insert("files", sidecar->value("files").toArray().size());
+                entry.insert("loggers", loggersIn(folder));
+            }
             if (!sidecar)
                 entry.insert("error", sidecar.error().message);
             found.push_back(entry);

@@ -12,12 +12,14 @@ _hermesctl() {
         [[ $word == -* ]] || words+=("$word")
     done
     case $previous in
-    --host | --timeout | --rate | --count) return ;;
+    --host | --timeout | --rate | --count | --daemons) return ;;
     esac
     if [[ $current == -* ]]; then
-        candidates="--host --timeout --rate --count --csv --json --follow --help --version"
+        candidates="--host --timeout --rate --count --daemons --csv --json --follow --help --version"
     elif [ ${#words[@]} -eq 0 ]; then
-        candidates="list discover call get set watch log doc"
+        candidates="list record discover call get set watch log doc"
+    elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" = record ]; then
+        candidates="start stop status list"
     elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" != list ]; then
         candidates="supervisor motorcontrol velodynelogger seriallogger softwaretrigger scanmatcher simulator"
     elif [ ${#words[@]} -eq 2 ] && [ "${words[0]}" = call ]; then

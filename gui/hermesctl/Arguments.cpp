@@ -21,6 +21,8 @@ bool *flagOf(Arguments &arguments, const QString &option) {
         return &arguments.json;
     if (option == QStringLiteral("--follow"))
         return &arguments.follow;
+    if (option == QStringLiteral("--loop"))
+        return &arguments.loop;
     if (option == QStringLiteral("--help") || option == QStringLiteral("-h"))
         return &arguments.help;
     return option == QStringLiteral("--version") ? &arguments.version : nullptr;
@@ -32,6 +34,8 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
         return value.error();
     if (option == QStringLiteral("--rate"))
         arguments.rate_hz = *value;
+    else if (option == QStringLiteral("--speed"))
+        arguments.speed = *value;
     else if (option == QStringLiteral("--timeout"))
         arguments.timeout = std::chrono::milliseconds(int(std::min(*value, 1e6) * 1000));
     else if (*value != std::floor(*value))
@@ -42,11 +46,22 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
     return {};
 }
 
+Result<void> takeValue(Arguments &arguments, const QString &option, const QString &text) {
+    if (option == QStringLiteral("--host"))
+        arguments.host = text;
+    else if (option == QStringLiteral("--daemons"))
+        arguments.daemons = text.split(QLatin1Char(','));
+    else
+        return takeNumber(arguments, option, text);
+    return {};
+}
+
 } // namespace
 
 Result<Arguments> Arguments::parse(const QStringList &list) {
-    const QStringList numbers{QStringLiteral("--rate"), QStringLiteral("--timeout"),
-                              QStringLiteral("--count")};
+    const QStringList withValue{QStringLiteral("--rate"),  QStringLiteral("--timeout"),
+                                QStringLiteral("--count"), QStringLiteral("--speed"),
+                                QStringLiteral("--host"),  QStringLiteral("--daemons")};
     Arguments result;
     for (int i = 0; i < list.size(); ++i) {
         const QString &word = list.at(i);
@@ -63,17 +78,13 @@ Result<Arguments> Arguments::parse(const QStringList &list) {
             *flag = true;
             continue;
         }
-        if (!numbers.contains(option) && option != QStringLiteral("--host"))
+        if (!withValue.contains(option))
             return Error(ErrorCode::InvalidParams, QStringLiteral("unknown option %1").arg(word));
         const bool inOne = word.contains(QLatin1Char('='));
         if (!inOne && i + 1 == list.size())
             return Error(ErrorCode::InvalidParams, QStringLiteral("option %1 needs a value").arg(option));
         const QString value = inOne ? word.section(QLatin1Char('='), 1) : list.at(++i);
-        if (option == QStringLiteral("--host")) {
-            result.host = value;
-            continue;
-        }
-        const auto taken = takeNumber(result, option, value);
+        const auto taken = takeValue(result, option, value);
         if (!taken)
             return taken.error();
     }

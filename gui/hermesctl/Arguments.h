@@ -15,6 +15,9 @@ struct Arguments {
     std::chrono::milliseconds timeout{5000};
     double rate_hz = 0; ///< 0: every message
     int count = 0;      ///< 0: without end
+    double speed = 1;
+    QStringList daemons; ///< loggers to speak to; empty: those at their default ports
+    bool loop = false;
     bool csv = false;
     bool json = false;
     bool follow = false;

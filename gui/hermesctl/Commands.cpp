@@ -10,9 +10,7 @@
 #include <QDateTime>
 #include <QEventLoop>
 #include <QJsonDocument>
-#include <QTimer>
 #include <cstdio>
-#include <memory>
 
 namespace hermes {
 namespace {
@@ -53,13 +51,6 @@ QString logLine(const QJsonValue &record) {
              record[QStringLiteral("source")].toString(), record[QStringLiteral("text")].toString());
 }
 
-struct Found {
-    QString name;
-    QString state = QStringLiteral("?");
-    QString version;
-    QString address;
-};
-
 } // namespace
 
 void printLine(const QString &text) {
@@ -68,54 +59,28 @@ void printLine(const QString &text) {
 }
 
 Result<void> listDaemons(const Arguments &arguments) {
-    QEventLoop loop;
-    QTimer::singleShot(arguments.timeout, &loop, &QEventLoop::quit);
-    std::vector<std::unique_ptr<Client>> clients;
-    std::vector<Found> found;
-    int open = 0;
-    const auto done = [&] {
-        if (--open == 0)
-            loop.quit();
+    QStringList addresses;
+    for (const QString &name : daemonNames())
+        addresses.append(*daemonAddress(name, arguments.host));
+    const auto all = connectAll(addresses, arguments.timeout);
+    std::vector<Client *> clients;
+    for (const auto &client : all) {
+        if (client->isConnected())
+            clients.push_back(client.get());
+    }
+    const auto infos = callAll(clients, QStringLiteral("daemon.info"), {}, arguments.timeout);
+    const auto states = callAll(clients, QStringLiteral("daemon.status"), {}, arguments.timeout);
+    const auto text = [](const Result<QJsonValue> &result, const char *member, const char *unknown) {
+        return result ? (*result)[QLatin1String(member)].toString() : QString::fromLatin1(unknown);
     };
-    for (const QString &name : daemonNames()) {
-        const auto address = daemonAddress(name, arguments.host);
-        Client *const client = clients.emplace_back(std::make_unique<Client>()).get();
-        ++open;
-        QObject::connect(client, &Client::disconnected, &loop, [client, done] {
-            client->disconnect();
-            done();
-        });
-        QObject::connect(client, &Client::connected, &loop, [client, done, &found] {
-            client->disconnect(SIGNAL(disconnected(QString)));
-            const size_t row = found.size();
-            found.push_back({QStringLiteral("?"), QStringLiteral("?"), QString(), client->address()});
-            client->call(QStringLiteral("daemon.info"), QJsonObject(),
-                         [&found, row](const Result<QJsonValue> &info) {
-                             if (info) {
-                                 found[row].name = (*info)[QStringLiteral("name")].toString();
-                                 found[row].version = (*info)[QStringLiteral("version")].toString();
-                             }
-                         });
-            client->call(QStringLiteral("daemon.status"), QJsonObject(),
-                         [&found, row, done](const Result<QJsonValue> &status) {
-                             if (status)
-                                 found[row].state = (*status)[QStringLiteral("state")].toString();
-                             done();
-                         });
-        });
-        const auto begun = client->connectTo(*address);
-        if (!begun)
-            return begun;
-    }
-    loop.exec();
-    for (const Found &one : found) {
+    for (std::size_t i = 0; i < clients.size(); ++i) {
         printLine(QStringLiteral("%1 %2 %3 %4")
-                      .arg(one.name, -16)
-                      .arg(one.state, -10)
-                      .arg(one.version, -8)
-                      .arg(one.address));
+                      .arg(text(infos[i], "name", "?"), -16)
+                      .arg(text(states[i], "state", "?"), -10)
+                      .arg(text(infos[i], "version", ""), -8)
+                      .arg(clients[i]->address()));
     }
-    if (found.empty())
+    if (clients.empty())
         return Error(ErrorCode::Disconnected,
                      QStringLiteral("no daemon answers at its default port on %1").arg(arguments.host));
     return {};

@@ -8,8 +8,18 @@ namespace hermes {
 /// A command of hermesctl that speaks to one daemon: prints its result to stdout.
 using DaemonCommand = Result<void> (*)(Client &client, const Arguments &arguments);
 
+/// One that speaks to all of a robot.
+using RobotCommand = Result<void> (*)(const Arguments &arguments);
+
 /// The daemons that answer at their default ports on a host, one a line: name, state, version, address.
 Result<void> listDaemons(const Arguments &arguments);
+
+/// All loggers begin one session, or none does and the error tells what was taken back.
+Result<void> recordStart(const Arguments &arguments);
+/// Error: what is missing or does not agree.
+Result<void> recordStop(const Arguments &arguments);
+Result<void> recordStatus(const Arguments &arguments);
+Result<void> recordList(const Arguments &arguments);
 
 Result<void> discover(Client &client, const Arguments &arguments);
 Result<void> call(Client &client, const Arguments &arguments);

@@ -24,4 +24,49 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
                  reason.isEmpty() ? QStringLiteral("%1: no answer").arg(client.address()) : reason);
 }
 
+std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
+                                                std::chrono::milliseconds timeout) {
+    QEventLoop loop;
+    QTimer::singleShot(timeout, &loop, &QEventLoop::quit);
+    std::vector<std::unique_ptr<Client>> clients;
+    std::size_t open = std::size_t(addresses.size());
+    for (const QString &address : addresses) {
+        Client *const client = clients.emplace_back(std::make_unique<Client>()).get();
+        const auto done = [&loop, &open, client] {
+            QObject::disconnect(client, nullptr, &loop, nullptr);
+            if (--open == 0)
+                loop.quit();
+        };
+        QObject::connect(client, &Client::connected, &loop, done);
+        QObject::connect(client, &Client::disconnected, &loop, done);
+        if (!client->connectTo(address))
+            done();
+    }
+    if (open > 0)
+        loop.exec();
+    for (const auto &client : clients) {
+        if (!client->isConnected())
+            client->close();
+    }
+    return clients;
+}
+
+std::vector<Result<QJsonValue>> callAll(const std::vector<Client *> &clients, const QString &method,
+                                        const QJsonObject &params, std::chrono::milliseconds timeout) {
+    QEventLoop loop;
+    std::vector<Result<QJsonValue>> results(clients.size(), Result<QJsonValue>(QJsonValue()));
+    std::size_t open = clients.size();
+    for (std::size_t i = 0; i < clients.size(); ++i) {
+        const auto done = [&loop, &open, &results, i](const Result<QJsonValue> &result) {
+            results[i] = result;
+            if (--open == 0)
+                loop.quit();
+        };
+        clients[i]->call(method, params, done, timeout);
+    }
+    if (open > 0)
+        loop.exec();
+    return results;
+}
+
 } // namespace hermes

@@ -2,11 +2,23 @@
 
 #include "common/client/Client.h"
 
-#include <QString>
+#include <QStringList>
+#include <functional>
+#include <memory>
+#include <vector>
 
 namespace hermes {
 
 /// Connects, with one attempt. Error: who did not answer and why.
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout);
+
+/// Connects to all at the same time, with one attempt each. Who did not answer has no connection, and a
+/// lastError() unless the time was up.
+std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
+                                                std::chrono::milliseconds timeout);
+
+/// Calls a method of each at the same time; gives each its result, in the order of the clients.
+std::vector<Result<QJsonValue>> callAll(const std::vector<Client *> &clients, const QString &method,
+                                        const QJsonObject &params, std::chrono::milliseconds timeout);
 
 } // namespace hermes

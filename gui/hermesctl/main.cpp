@@ -15,6 +15,10 @@ const char *const helpText = R"(Usage: hermesctl [OPTION]... COMMAND ...
 Speaks to the daemons of a robot.
 
   list                           the daemons that answer at their default ports
+  record start NAME              all loggers begin to record as one session, or none does
+  record stop                    ends it and checks that nothing is missing
+  record status                  what each logger records
+  record list                    the sessions that were recorded
   discover D                     the commands and topics of a daemon (--json: its OpenRPC document)
   call D METHOD [NAME=VALUE]...  calls a command and prints the result; VALUE is JSON, else a string
   get D [PATH]                   all settings, or the value at a path
@@ -25,6 +29,9 @@ Speaks to the daemons of a robot.
 
 D is the name of a daemon (at its default port), HOST:PORT, or a URL.
 
+Loggers are the daemons with the command record.start that answer at their default ports.
+
+  --daemons A,B  record: these loggers and no others
   --host HOST    where daemons given by name run (127.0.0.1)
   --timeout S    how long to wait for a connection and for a reply (5)
   --rate HZ      watch: at most so many messages a second
@@ -39,6 +46,7 @@ Exit status: 0 success, 2 wrong usage, 1 any other failure.
 Examples:
   hermesctl call scanmatcher daemon.status
   hermesctl set velodynelogger limits.clients=20
+  hermesctl record start run1
   hermesctl watch scanmatcher pose --rate 5 --csv > pose.csv
 )";
 
@@ -50,7 +58,22 @@ struct Entry {
     DaemonCommand run;
 };
 
+struct RobotEntry {
+    const char *name;
+    int words;
+    const char *usage;
+    RobotCommand run;
+};
+
 constexpr int any = 1000000;
+
+const RobotEntry robotCommands[] = {
+    {"list", 0, "list", listDaemons},
+    {"record start", 1, "record start NAME", recordStart},
+    {"record stop", 0, "record stop", recordStop},
+    {"record status", 0, "record status", recordStatus},
+    {"record list", 0, "record list", recordList},
+};
 
 const Entry commands[] = {
     {"discover", 1, 1, "discover D", discover},
@@ -96,6 +119,28 @@ int runDaemonCommand(const Entry &entry, const Arguments &arguments) {
     return finish(entry.run(client, arguments));
 }
 
+int runRobotCommand(const RobotEntry &entry, const Arguments &arguments) {
+    if (arguments.words.size() != entry.words)
+        return usageError(QStringLiteral("usage: hermesctl %1").arg(QLatin1String(entry.usage)));
+    const Result<void> result = entry.run(arguments);
+    return !result && result.error().is(ErrorCode::InvalidParams) ? usageError(result.error().message)
+                                                                  : finish(result);
+}
+
+int run(Arguments arguments) {
+    if (arguments.command == QStringLiteral("record") && !arguments.words.isEmpty())
+        arguments.command += QLatin1Char(' ') + arguments.words.takeFirst();
+    for (const RobotEntry &entry : robotCommands) {
+        if (arguments.command == QLatin1String(entry.name))
+            return runRobotCommand(entry, arguments);
+    }
+    for (const Entry &entry : commands) {
+        if (arguments.command == QLatin1String(entry.name))
+            return runDaemonCommand(entry, arguments);
+    }
+    return usageError(QStringLiteral("unknown command \"%1\"").arg(arguments.command));
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
@@ -109,12 +154,5 @@ int main(int argc, char **argv) {
         return std::printf("hermesctl %s\n", qPrintable(projectVersion())) < 0;
     if (arguments->command.isEmpty())
         return usageError(QStringLiteral("a command is missing"));
-    if (arguments->command == QStringLiteral("list"))
-        return arguments->words.isEmpty() ? finish(listDaemons(*arguments))
-                                          : usageError(QStringLiteral("usage: hermesctl list"));
-    for (const Entry &entry : commands) {
-        if (arguments->command == QLatin1String(entry.name))
-            return runDaemonCommand(entry, *arguments);
-    }
-    return usageError(QStringLiteral("unknown command \"%1\"").arg(arguments->command));
+    return run(*arguments);
 }

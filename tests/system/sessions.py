@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""All loggers of a robot record as one session and play it back, by hermesctl: all or none begins, the end is checked, what is
+played is what was recorded, together in time."""
+import json
+import os
+import shutil
+import socket
+import subprocess
+import tempfile
+import unittest
+
+import recording_load as load
+from processes import Process, free_port
+
+CTL = os.path.join(load.BINARIES, "hermesctl")
+PACKETS_HZ, SECONDS = 1810, 2
+
+
+class Serial:
+    """hermes-seriallogger with one UDP source `gps`."""
+
+    def __init__(self, folder, records):
+        self.source = free_port(0, socket.SOCK_DGRAM)
+        ports = [{"name": "gps", "url": f"udp://127.0.0.1:{self.source}", "view": "nmea", "checksum": "lenient"}]
+        self.process = Process(load.BINARIES, "seriallogger", free_port(0), folder,
+                               {"ports": json.dumps(ports), "record.folder": records, "record.free_floor_bytes": 0,
+                                "record.free_warn_bytes": 0})
+        self.daemon = self.process.connect()
+        load.wait_for(lambda: self.daemon.call("ports.list")[0]["state"] == "open", "the port")
+
+    def send(self, text):
+        before = self.daemon.call("ports.list")[0]["bytes"]
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            sender.sendto(text, ("127.0.0.1", self.source))
+        load.wait_for(lambda: self.daemon.call("ports.list")[0]["bytes"] == before + len(text), "the bytes")
+
+
+def ctl(*arguments):
+    return subprocess.run([CTL, *arguments], capture_output=True, text=True, timeout=60, check=False)
+
+
+class Sessions(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.records = os.path.join(self.folder, "records")
+        self.lidar = load.Logger(self.records, self.folder, **{"record.file_bytes": 1000000, "record.free_floor_bytes": 0,
+                                                               "record.free_warn_bytes": 0})
+        self.addCleanup(self.end, self.lidar)
+        self.serial = Serial(self.folder, self.records)
+        self.addCleanup(self.end, self.serial)
+        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{self.serial.process.port}"
+
+    @staticmethod
+    def end(logger):
+        logger.daemon.close()
+        logger.process.stop()
+
+    def ctl(self, *arguments, status=0):
+        shown = ctl("--daemons", self.daemons, *arguments)
+        self.assertEqual(shown.returncode, status, shown)
+        return shown.stdout if status == 0 else shown.stderr
+
+    def sidecar(self, name, logger):
+        with open(os.path.join(self.records, name, logger + ".json"), encoding="utf-8") as file:
+            return json.load(file)
+
+    def record(self, name):
+        """A session with packets and lines; gives how many data packets, position packets and bytes."""
+        self.ctl("record", "start", name)
+        sender = self.lidar.send(PACKETS_HZ, SECONDS, 0)
+        text = b""
+        while sender.poll() is None:
+            line = b"$GPTXT,01,01,02,line %d\r\n" % text.count(b"\n")
+            self.serial.send(line)
+            text += line
+        data, position, _ = load.sent(sender)
+        load.wait_for(lambda: self.lidar.daemon.call("record.status")["counts"]["packets"] == data + position, "the packets")
+        return data, position, len(text)
+
+    def test_record(self):
+        data, position, size = self.record("run1")
+        self.assertRegex(self.ctl("record", "status"), r"velodynelogger +recording +run1 .* nothing\n")
+        self.assertIn('records "run1" already', self.ctl("record", "start", "run2", status=1))
+        self.assertRegex(self.ctl("record", "list"), r"run1 .*velodynelogger being recorded")
+        shown = self.ctl("record", "stop")
+        self.assertRegex(shown, rf"velodynelogger +run1 +\S+ +\d+ +\d+ +data {data}, packets {data + position}, "
+                                rf"position {position} +nothing\n")
+        self.assertRegex(shown, rf"seriallogger +run1 +\S+ +1 +{size} +bytes {size}, chunks \d+ +nothing\n")
+        self.assertRegex(self.ctl("record", "list"), r"run1 .* velodynelogger,seriallogger +complete\n")
+        self.assertIn("nothing is being recorded", self.ctl("record", "stop", status=1))
+        self.assertIn('has a recording "run1" already', self.ctl("record", "start", "run1", status=1))
+        self.assertEqual(sorted(os.listdir(self.records)), [".seriallogger.lock", ".velodynelogger.lock", "run1"])
+        sidecars = [self.sidecar("run1", name) for name in ("velodynelogger", "seriallogger")]
+        self.assertEqual(sidecars[0]["session"], sidecars[1]["session"])
+        self.assertLess(abs(sidecars[0]["start"] - sidecars[1]["start"]), 1)
+        load.check_files(os.path.join(self.records, "run1"), 0, data, position)
+
+    def test_all_or_none(self):
+        self.serial.daemon.call("settings.set", values={"record": {"free_warn_bytes": 1e15, "free_floor_bytes": 1e15}})
+        told = self.ctl("record", "start", "run1", status=1)
+        self.assertIn("seriallogger: ", told)
+        self.assertIn("free_floor_bytes", told)
+        self.assertIn("velodynelogger had begun and was stopped", told)
+        for logger in (self.lidar, self.serial):
+            self.assertFalse(logger.daemon.call("record.status")["recording"])
+
+    def test_one_that_died_is_told(self):
+        self.record("run1")
+        self.serial.process.process.kill()
+        self.serial.process.process.wait()
+        shown = ctl("--daemons", self.daemons.split(",")[0], "record", "stop")
+        self.assertEqual(shown.returncode, 1)
+        self.assertIn("seriallogger: it took part, but does not answer", shown.stderr)
+
+    def test_one_that_began_anew_is_told(self):
+        self.record("run1")
+        self.serial.process.process.kill()
+        self.serial.process.process.wait()
+        again = Serial(self.folder, self.records)
+        self.addCleanup(self.end, again)
+        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{again.process.port}"
+        self.assertIn("seriallogger: cut off", self.ctl("record", "stop", status=1))
+
+    def test_losses_are_told(self):
+        self.ctl("record", "start", "run1")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+            stranger.sendto(bytes(3000), ("127.0.0.1", self.lidar.lidar_port))
+        load.wait_for(lambda: self.lidar.daemon.call("record.status")["losses"]["too_long"], "the loss")
+        self.assertIn("velodynelogger: lost: too_long 1", self.ctl("record", "stop", status=1))
+
+    def test_who_is_asked(self):
+        nobody = f"127.0.0.1:{free_port(0)}"
+        for arguments, words, status in ((("--daemons", nobody, "record", "start", "x"), "refused", 1),
+                                         (("--host", "127.0.0.79", "record", "start", "x"), "no logger answers", 1),
+                                         (("--daemons", "nobody", "record", "stop"), "unknown daemon", 2),
+                                         (("record", "start", "a/b"), "NAME", 2), (("record",), "unknown command", 2),
+                                         (("record", "start"), "usage", 2), (("record", "stop", "x"), "usage", 2)):
+            shown = ctl(*arguments)
+            self.assertEqual(shown.returncode, status, shown)
+            self.assertIn(words, shown.stderr)
+        trigger = Process(load.BINARIES, "softwaretrigger", free_port(0), self.folder, {})
+        self.addCleanup(trigger.stop)
+        trigger.connect().close()
+        shown = ctl("--daemons", f"127.0.0.1:{trigger.port}", "record", "status")
+        self.assertEqual(shown.returncode, 1)
+        self.assertIn("no logger", shown.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
