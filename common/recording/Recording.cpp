@@ -130,6 +130,7 @@ void Recording::stop(const Reply &reply) {
 
 void Recording::end(RecordingEnd reason, const std::optional<Error> &error) {
     phase_ = Phase::Ending;
+    error_ = error; // told at once, not when the disk is done
     run([this, reason, error]() -> Done {
         const Result<void> result = session_.finish(reason, error);
         return [this, result] { ended(result); };
