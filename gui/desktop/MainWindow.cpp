@@ -9,6 +9,7 @@
 #include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/PlotsPanel.h"
+#include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 
 #include <QAction>
@@ -43,6 +44,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     addPanel(Qt::BottomDockWidgetArea, new LogPanel(fleet), tr("Log"), "log", lastDock());
     addPanel(Qt::BottomDockWidgetArea, new PlotsPanel(fleet), tr("Plots"), "plots", lastDock());
     addPanel(Qt::RightDockWidgetArea, new DrivePanel(drive_), tr("Drive"), "drive");
+    addPanel(Qt::LeftDockWidgetArea, new RecordPanel(fleet), tr("Recordings"), "recordings", docks_.front());
     new DriveKeys(drive_, *this);
     new DriveGamepad(drive_, this);
     restoreLayout();
@@ -76,6 +78,7 @@ void MainWindow::restoreLayout() {
     resize(1280, 720);
     resizeDocks({docks_[0]}, {300}, Qt::Horizontal);
     resizeDocks({docks_[1]}, {220}, Qt::Vertical);
+    docks_[0]->raise();
     docks_[1]->raise();
     if (layoutFile_.isEmpty())
         return;

@@ -61,10 +61,10 @@ PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
     chart_->legend()->setFont(small);
     time_->setRange(-span_s, 0);
     time_->setLabelFormat(tr("%g s"));
-    value_->setLabelFormat("%.3g");
+    value_->setLabelFormat("%g");
     chart_->addAxis(time_, Qt::AlignBottom);
     chart_->addAxis(value_, Qt::AlignLeft);
-    chartView_->setMinimumHeight(120);
+    chartView_->setMinimumHeight(80);
     message_->setWordWrap(true);
 
     auto *const left = new QWidget;
@@ -212,6 +212,7 @@ void PlotsPanel::redraw() {
         return;
     const double margin = std::max(0.05 * (most - least), 1e-3 * std::max(1.0, std::abs(most)));
     value_->setRange(least - margin, most + margin);
+    value_->applyNiceNumbers();
 }
 
 void PlotsPanel::askFile() {
