@@ -27,7 +27,7 @@ def free_port(preferred, kind=socket.SOCK_STREAM):
     raise OSError("no free port on 127.0.0.1")
 
 
-def _die_with(parent):
+def die_with(parent):
     # The children have a session of their own, so that Ctrl-C reaches only this process and it can stop them in order;
     # should it be killed, the kernel ends them. It may have been killed a moment ago.
     ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
@@ -47,7 +47,7 @@ class Process:
         parent = os.getpid()
         with open(self.log_name, "w", encoding="utf-8") as log:
             self.process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-                                            start_new_session=True, preexec_fn=lambda: _die_with(parent))
+                                            start_new_session=True, preexec_fn=lambda: die_with(parent))
 
     def connect(self, limit_s=10.0):
         """A connection to the daemon, as soon as it answers."""

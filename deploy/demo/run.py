@@ -15,6 +15,7 @@ import threading
 import time
 
 from processes import Daemon, DaemonError, Process, free_port
+from window import Window, has_display
 from drive import DriveError, PathFollower, PoseTopic, drive  # of docs/examples
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
@@ -190,14 +191,23 @@ def write_tum(path, poses):
                        f"{math.sin(half):.9f} {math.cos(half):.9f}\n")
 
 
-def drive_world(world, folder, logs):
+def drive_world(world, folder, logs, with_window):
     """The demo without a log; gives the summary."""
     begin = time.monotonic()
     demo = Demo(world, folder, logs)
+    window = None
     try:
+        if with_window:
+            window = Window(BINARIES, demo.ports.values(), logs)
         poses, odometry, truth = demo.drive()
         state = demo.save()
+        seconds = time.monotonic() - begin
+        if window:
+            demo.matcher.call("matcher.start", mode="mapping")
+            window.stay("  The drive is over and its map is saved. Drive on by hand; close the window to end.")
     finally:
+        if window:
+            window.stop()
         statuses = demo.stop()
     for name, listener in (("trajectory", poses), ("odometry", odometry), ("truth", truth)):
         write_tum(os.path.join(folder, name + ".tum"), listener.messages)
@@ -210,7 +220,7 @@ def drive_world(world, folder, logs):
         "skipped": state["skipped"], "dropped": state["dropped"] + state["dropped_by_source"] + poses.dropped,
         "by_odometry": state["by_odometry"], "ms_per_scan": state["ms_per_scan"], "map_segments": state["map_segments"],
         **final_and_largest("error", deviations), **final_and_largest("drift", drift),
-        "pauses": demo.pauses, "recording": demo.recording, "exit_status": statuses, "seconds": time.monotonic() - begin}
+        "pauses": demo.pauses, "recording": demo.recording, "exit_status": statuses, "seconds": seconds}
 
 
 def map_log(log, corrected, folder):
@@ -244,7 +254,10 @@ def table(summary):
 
 
 def replace(folder, target):
-    """Puts the finished results where those of the last run were."""
+    """Puts the finished results where those of the last run were, without the locks of the daemons."""
+    for name in os.listdir(folder):
+        if name.startswith("."):
+            os.remove(os.path.join(folder, name))
     if os.path.exists(target):
         shutil.rmtree(target)
     shutil.move(folder, target)
@@ -260,6 +273,8 @@ def main():
                         help="world to drive through (pillars)")
     parser.add_argument("--out", default=os.path.join(ROOT, "demo-out"), metavar="FOLDER",
                         help="where the results go (demo-out); replaced when it holds earlier results")
+    parser.add_argument("--no-window", action="store_true",
+                        help="stay without the operator's window, which opens where there is a display")
     arguments = parser.parse_args()
     if os.path.exists(arguments.out) and not os.path.exists(os.path.join(arguments.out, "summary.json")) \
             and os.listdir(arguments.out):
@@ -277,7 +292,8 @@ def main():
             if arguments.log:
                 summary = map_log(os.path.abspath(arguments.log), arguments.corrected, results)
             else:
-                summary = drive_world(os.path.abspath(arguments.world), results, work)
+                with_window = has_display() and not arguments.no_window
+                summary = drive_world(os.path.abspath(arguments.world), results, work, with_window)
         except KeyboardInterrupt:
             print("\nInterrupted: all daemons are stopped, nothing was written.", file=sys.stderr)
             return 130

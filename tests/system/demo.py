@@ -44,11 +44,12 @@ class DemoTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
         self.out = os.path.join(self.folder, "out")
         self.mark = str(uuid.uuid4())
+        self.display = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}
 
     def start(self, *arguments):
         return subprocess.Popen([sys.executable, RUN, "--out", self.out, *arguments], stdin=subprocess.DEVNULL,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
-                                env={**os.environ, "HERMES_DEMO_MARK": self.mark, "TMPDIR": self.folder})
+                                env={**os.environ, "HERMES_DEMO_MARK": self.mark, "TMPDIR": self.folder, **self.display})
 
     def finish(self, process, limit_s):
         out, err = process.communicate(timeout=limit_s)
@@ -106,9 +107,20 @@ class DemoTest(unittest.TestCase):
         self.assertEqual(status, 143)
         self.assertEqual(os.listdir(self.folder), [])
 
+    def with_window(self):
+        """The window opens, but nowhere."""
+        self.display = {"DISPLAY": ":0", "QT_QPA_PLATFORM": "offscreen"}
+
+    def test_ctrl_c_closes_the_window(self):
+        self.with_window()
+        status, out, err = self.interrupt(signal.SIGINT)
+        self.assertEqual(status, 130, out + err)
+        self.assertIn("opening hermes-gui", out)
+
     def test_kill_leaves_no_process(self):
+        self.with_window()
         process = self.start()
-        self.assertTrue(wait_for(lambda: len(marked(self.mark)) >= 5, 20))
+        self.assertTrue(wait_for(lambda: len(marked(self.mark)) >= 6, 20))
         process.kill()
         process.communicate()
         self.assertTrue(wait_for(lambda: not marked(self.mark), 10), "daemons outlive a killed demo")
