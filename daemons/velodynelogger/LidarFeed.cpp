@@ -36,13 +36,13 @@ std::string LidarFeed::openLive(const std::string &address, std::uint16_t port, 
     return live_.start({address, port, options.positionPort, bufferBytes});
 }
 
-std::string LidarFeed::openPcap(const std::string &path, const PcapPlayer::Options &play,
+std::string LidarFeed::openPcap(const std::vector<std::string> &paths, const PcapPlayer::Options &play,
                                 const Options &options, Ended ended) {
     close();
     ended_ = std::move(ended);
     lossless_ = play.speed == 0;
     begin(options);
-    return player_.start(path, play);
+    return player_.start(paths, play);
 }
 
 void LidarFeed::begin(const Options &options) {

@@ -50,9 +50,10 @@ public:
     /// An empty string on success, else what failed. Whatever was open is closed first.
     std::string openLive(const std::string &address, std::uint16_t port, int bufferBytes,
                          const Options &options);
-    /// ended is called in another thread when the capture has been played to its end, or to the error given.
-    std::string openPcap(const std::string &path, const PcapPlayer::Options &play, const Options &options,
-                         Ended ended);
+    /// ended is called in another thread when the captures have been played to their end, or to the error
+    /// given.
+    std::string openPcap(const std::vector<std::string> &paths, const PcapPlayer::Options &play,
+                         const Options &options, Ended ended);
     /// Delivers the turns that were under way as partial ones.
     void close();
 

@@ -102,13 +102,20 @@ void VelodyneLogger::declareTopics() {
 
 void VelodyneLogger::declareSourceCommands() {
     addCommand(
-        Command("source.open", "Receives live, or replays a capture file; what was open is closed")
+        Command("source.open",
+                "Receives live, or replays a capture file or a recording; what was open is closed")
             .param(Field::boolean("live", "Receive on the UDP port of the settings").optional())
             .param(Field::text("pcap", "Capture file to replay, pcap or pcapng").optional())
+            .param(Field::text("recording", "Recording of this logger to replay, by its name").optional())
             .param(Field::number("speed", "Of the replay: 1 real time, 0 as fast as possible without loss")
                        .range(0, 1000)
                        .byDefault(1))
             .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false))
+            .param(Field::boolean("paused", "The replay waits for source.pause").byDefault(false))
+            .param(Field::number("delay_s", "Time of the replay at which the recording begins")
+                       .unit("s")
+                       .range(0, 1e7)
+                       .byDefault(0))
             .returns({{"type", "object"}})
             .example({{"pcap", "drive.pcap"}, {"speed", 1}},
                      QJsonObject{{"state", "replay"}, {"name", "drive.pcap"}, {"speed", 1}})
@@ -125,7 +132,9 @@ void VelodyneLogger::declareSourceCommands() {
                    }));
     addCommand(
         Command("source.seek", "The replay goes on there; beyond its end it ends")
-            .param(Field::number("t_s", "Seconds after the first packet").unit("s").range(0, 1e7))
+            .param(Field::number("t_s", "Seconds after the first packet, of a recording after its beginning")
+                       .unit("s")
+                       .range(0, 1e7))
             .returns({{"type", "object"}})
             .example({{"t_s", 60}}, QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}})
             .handler([this](const Call &call) { return seek(call.number("t_s")); }));

@@ -12,15 +12,16 @@ constexpr long markBytes = 1 << 20;
 
 } // namespace
 
-void PcapIndex::start(const std::string &path) {
+void PcapIndex::start(const std::vector<std::string> &paths, const PlayTime &begin) {
     stop();
+    begin_ = {begin, {}};
     marks_.clear();
     duration_ns_.reset();
     stopping_ = false;
-    thread_ = std::thread([this, path] {
-        PcapReader reader;
-        if (reader.open(path)) // the player tells why not
-            run(reader);
+    thread_ = std::thread([this, paths, begin] {
+        PcapSequence reader;
+        if (reader.open(paths)) // the player tells why not
+            run(reader, begin);
     });
 }
 
@@ -30,10 +31,9 @@ void PcapIndex::stop() {
         thread_.join();
 }
 
-void PcapIndex::run(PcapReader &reader) {
-    PlayTime time;
+void PcapIndex::run(PcapSequence &reader, PlayTime time) {
     Datagram datagram;
-    Mark last;
+    Mark last{time, {}};
     while (!stopping_) {
         const Mark here{time, reader.place()};
         if (reader.next(datagram) != PcapReader::Next::Datagram) {
@@ -43,7 +43,8 @@ void PcapIndex::run(PcapReader &reader) {
         }
         time.advance(datagram.stamp_ns);
         if (reader.canSeek() && here.before.now_ns() - last.before.now_ns() >= markTime_ns &&
-            here.place.offset - last.place.offset >= markBytes) {
+            (here.place.file != last.place.file ||
+             here.place.inFile.offset - last.place.inFile.offset >= markBytes)) {
             const std::lock_guard<std::mutex> lock(mutex_);
             marks_.push_back(here);
             last = here;
@@ -60,7 +61,7 @@ PcapIndex::Mark PcapIndex::before(std::int64_t time_ns) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = std::find_if(marks_.rbegin(), marks_.rend(),
                                     [time_ns](const Mark &mark) { return mark.before.now_ns() < time_ns; });
-    return found == marks_.rend() ? Mark() : *found;
+    return found == marks_.rend() ? begin_ : *found;
 }
 
 } // namespace hermes

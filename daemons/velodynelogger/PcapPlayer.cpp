@@ -1,8 +1,15 @@
 #include "daemons/velodynelogger/PcapPlayer.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace hermes {
+
+namespace {
+
+constexpr double longestWait_ns = 1e18; // 30 years
+
+}
 
 PcapPlayer::PcapPlayer(Sink sink, Jump jump, End end)
     : sink_(std::move(sink))
@@ -13,18 +20,20 @@ PcapPlayer::~PcapPlayer() {
     stop();
 }
 
-std::string PcapPlayer::start(const std::string &path, const Options &options) {
+std::string PcapPlayer::start(const std::vector<std::string> &paths, const Options &options) {
     stop();
-    if (!reader_.open(path))
+    if (!reader_.open(paths))
         return reader_.error();
     options_ = options;
-    time_ = PlayTime();
+    time_ = options.begin;
     clockRuns_ = atTarget_ = false;
-    stopping_ = paused_ = false;
+    clockBegin_ns_ = 0;
+    stopping_ = false;
+    paused_ = options.paused;
     seek_ns_.reset();
     position_ns_ = 0;
     loops_ = 0;
-    index_.start(path);
+    index_.start(paths, options.begin);
     thread_ = std::thread([this] { run(); });
     return {};
 }
@@ -88,7 +97,8 @@ void PcapPlayer::run() {
             return;
         }
         played = false;
-        if (!rewind({}))
+        clockBegin_ns_ = 0;
+        if (!rewind({options_.begin, {}}))
             return;
         const std::lock_guard<std::mutex> lock(mutex_);
         ++loops_;
@@ -108,18 +118,16 @@ bool PcapPlayer::play(const Datagram &datagram) {
             return goTo(target_ns);
         }
         if (paused_) {
+            stopClock();
             wake_.wait(lock);
-            clockRuns_ = false;
             continue;
         }
         if (options_.speed <= 0)
             break;
-        if (!std::exchange(clockRuns_, true)) {
+        if (!std::exchange(clockRuns_, true))
             clock_ = Clock::now();
-            clockBegin_ns_ = now_ns;
-        }
-        const auto due =
-            clock_ + std::chrono::nanoseconds(std::int64_t(double(now_ns - clockBegin_ns_) / options_.speed));
+        const double wait_ns = std::min(double(now_ns - clockBegin_ns_) / options_.speed, longestWait_ns);
+        const auto due = clock_ + std::chrono::nanoseconds(std::int64_t(wait_ns));
         if (Clock::now() >= due)
             break;
         wake_.wait_until(lock, due);
@@ -128,6 +136,14 @@ bool PcapPlayer::play(const Datagram &datagram) {
     lock.unlock();
     sink_(datagram);
     return true;
+}
+
+/// It goes on where it was.
+void PcapPlayer::stopClock() {
+    if (!std::exchange(clockRuns_, false))
+        return;
+    const std::chrono::duration<double, std::nano> run = Clock::now() - clock_;
+    clockBegin_ns_ += std::int64_t(run.count() * options_.speed);
 }
 
 bool PcapPlayer::goTo(std::int64_t time_ns) {
@@ -139,6 +155,7 @@ bool PcapPlayer::goTo(std::int64_t time_ns) {
     else if (!rewind(mark))
         return false;
     clockRuns_ = false;
+    clockBegin_ns_ = time_ns;
     while (reader_.next(target_) == PcapReader::Next::Datagram) {
         PlayTime after = time_;
         if (after.advance(target_.stamp_ns) >= time_ns) {

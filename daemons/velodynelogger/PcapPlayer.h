@@ -8,17 +8,19 @@
 
 namespace hermes {
 
-/// Plays the datagrams of a capture file in a thread of its own, at the pace at which they were received or
-/// any other.
+/// Plays the datagrams of capture files, one after the other, in a thread of its own, at the pace at which
+/// they were received or any other.
 class PcapPlayer {
 public:
     struct Options {
         double speed = 1; ///< 1 is real time, 0 as fast as the sink takes it
         bool loop = false;
+        bool paused = false; ///< from the beginning
+        PlayTime begin{};    ///< when the first datagram is played, and what is a jump of the clock
     };
     struct Status {
-        double position_s = 0;            ///< after the first datagram, clock jumps left out
-        std::optional<double> duration_s; ///< nothing until the file has been read through
+        double position_s = 0;            ///< after the beginning, clock jumps left out
+        std::optional<double> duration_s; ///< nothing until the files have been read through
         bool paused = false;
         std::uint64_t loops = 0; ///< how often it began anew
     };
@@ -27,7 +29,7 @@ public:
     /// Called in the playing thread: the next datagram does not follow the last one, after a seek or at the
     /// beginning of a loop.
     using Jump = std::function<void()>;
-    /// Called in the playing thread when the file has come to its end, or with the error that ended it
+    /// Called in the playing thread when the last file has come to its end, or with the error that ended it
     /// before. Not called after stop().
     using End = std::function<void(const std::string &error)>;
 
@@ -35,7 +37,7 @@ public:
     ~PcapPlayer();
 
     /// An empty string on success, else what failed.
-    std::string start(const std::string &path, const Options &options);
+    std::string start(const std::vector<std::string> &paths, const Options &options);
     void stop();
 
     /// Goes on at the first datagram at or after this time; beyond the end is the end.
@@ -50,7 +52,7 @@ private:
     bool play(const Datagram &datagram);
     bool goTo(std::int64_t time_ns);
     bool rewind(const PcapIndex::Mark &mark);
-    void startClock();
+    void stopClock();
 
     Sink sink_;
     Jump jump_;
@@ -59,13 +61,13 @@ private:
     Options options_;
 
     // Of the thread while it runs.
-    PcapReader reader_;
+    PcapSequence reader_;
     PlayTime time_;
     bool atTarget_ = false;   ///< the datagram that a seek ended at is yet to be played
     Datagram target_;         ///< that datagram
-    Clock::time_point clock_; ///< when time clockBegin_ns_ was or is to be played
+    Clock::time_point clock_; ///< when time clockBegin_ns_ was played
     std::int64_t clockBegin_ns_ = 0;
-    bool clockRuns_ = false;
+    bool clockRuns_ = false; ///< else it begins at clockBegin_ns_
 
     std::thread thread_;
     mutable std::mutex mutex_; // guards what follows

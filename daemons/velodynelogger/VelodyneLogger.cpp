@@ -1,6 +1,7 @@
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
 #include "common/Log.h"
+#include "common/recording/StoredRecording.h"
 #include "daemons/velodynelogger/CloudMessage.h"
 #include "daemons/velodynelogger/ScanMessage.h"
 #include "daemons/velodynelogger/TurnFile.h"
@@ -14,6 +15,14 @@ namespace {
 constexpr int retry_ms = 2;
 constexpr qint64 patience_ms = 5000;
 constexpr qint64 capturePatience_ms = 10000;
+
+PcapPlayer::Options replayOptions(const Call &call) {
+    PcapPlayer::Options options;
+    options.speed = call.number("speed");
+    options.loop = call.flag("loop");
+    options.paused = call.flag("paused");
+    return options;
+}
 
 } // namespace
 
@@ -40,8 +49,9 @@ Result<void> VelodyneLogger::start() {
     const QString pcap = settings().text("source.pcap");
     recording_.open();
     const Result<void> result =
-        pcap.isEmpty() ? openLive()
-                       : openPcap(pcap, {settings().number("source.speed"), settings().flag("source.loop")});
+        pcap.isEmpty()
+            ? openLive()
+            : openPcap(pcap, {pcap}, {settings().number("source.speed"), settings().flag("source.loop")});
     updateHealth();
     return result;
 }
@@ -81,10 +91,15 @@ Result<void> VelodyneLogger::openLive() {
     return {};
 }
 
-Result<void> VelodyneLogger::openPcap(const QString &path, const PcapPlayer::Options &play) {
-    PcapReader probe; // a wrong name does not close what is open
-    if (!probe.open(path.toStdString()))
-        return diskError(QString::fromStdString(probe.error()), path);
+Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &paths,
+                                      const PcapPlayer::Options &play) {
+    std::vector<std::string> files;
+    for (const QString &path : paths) {
+        PcapReader probe; // a wrong name does not close what is open
+        if (!probe.open(path.toStdString()))
+            return diskError(QString::fromStdString(probe.error()), path);
+        files.push_back(path.toStdString());
+    }
     ++generation_;
     updateClouds();
     const auto ended = [this, generation = generation_](const std::string &failure) {
@@ -96,12 +111,12 @@ Result<void> VelodyneLogger::openPcap(const QString &path, const PcapPlayer::Opt
         };
         QMetaObject::invokeMethod(this, tell, Qt::QueuedConnection);
     };
-    const std::string error = feed_.openPcap(path.toStdString(), play, options(), ended);
+    const std::string error = feed_.openPcap(files, play, options(), ended);
     if (!error.empty()) {
         opened(Source::None, {}, {});
-        return diskError(QString::fromStdString(error), path);
+        return diskError(QString::fromStdString(error), name);
     }
-    opened(Source::Replay, path, play);
+    opened(Source::Replay, name, play);
     return {};
 }
 
@@ -123,15 +138,37 @@ void VelodyneLogger::opened(Source source, const QString &name, const PcapPlayer
 
 Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
     const bool live = call.has("live") && call.flag("live");
-    if (live == call.has("pcap"))
-        return Error(ErrorCode::InvalidParams, "either live: true or pcap: FILE expected",
-                     QJsonObject{{"live", "true, without pcap"}, {"pcap", "a capture file, without live"}});
-    const Result<void> result =
-        live ? openLive() : openPcap(call.text("pcap"), {call.number("speed"), call.flag("loop")});
+    if (live + call.has("pcap") + call.has("recording") != 1)
+        return Error(ErrorCode::InvalidParams, "one of live: true, pcap: FILE and recording: NAME expected",
+                     QJsonObject{{"live", "true, without the others"},
+                                 {"pcap", "a capture file, without the others"},
+                                 {"recording", "the name of one, without the others"}});
+    const QString pcap = call.text("pcap");
+    const Result<void> result = live                    ? openLive()
+                                : call.has("recording") ? openRecording(call)
+                                                        : openPcap(pcap, {pcap}, replayOptions(call));
     updateHealth();
     if (!result)
         return result.error();
     return sourceState();
+}
+
+/// The time of the replay is that of the recording, which began before its first packet.
+Result<void> VelodyneLogger::openRecording(const Call &call) {
+    if (recording_.isActive())
+        return Error(ErrorCode::NotReady,
+                     "what is replayed would be recorded; record.stop ends the recording");
+    const Result<StoredRecording> stored =
+        StoredRecording::find(settings().text("record.folder"), call.text("recording"), identity().name);
+    if (!stored)
+        return stored.error();
+    const Result<QStringList> files = stored->files();
+    if (!files)
+        return files.error();
+    PcapPlayer::Options play = replayOptions(call);
+    play.begin = PlayTime(std::int64_t(stored->start_s * 1e9), std::int64_t(stored->length_s * 1e9),
+                          std::int64_t(call.number("delay_s") * 1e9));
+    return openPcap(stored->folder, *files, play);
 }
 
 void VelodyneLogger::replayEnded(QString error) {

@@ -32,7 +32,8 @@ private:
 
     LidarFeed::Options options();
     Result<void> openLive();
-    Result<void> openPcap(const QString &path, const PcapPlayer::Options &play);
+    Result<void> openPcap(const QString &name, const QStringList &paths, const PcapPlayer::Options &play);
+    Result<void> openRecording(const Call &call);
     Result<QJsonValue> openSource(const Call &call);
     void replayEnded(QString error);
     void opened(Source source, const QString &name, const PcapPlayer::Options &play);

@@ -1,0 +1,59 @@
+#include "common/recording/StoredRecording.h"
+
+#include "common/recording/DiskError.h"
+#include "common/recording/SessionFolder.h"
+#include "common/recording/Sidecar.h"
+
+#include <QDir>
+#include <QJsonArray>
+
+#include <algorithm>
+
+namespace hermes {
+
+namespace {
+
+constexpr double latest_s = 4294967295; // what the stamps of the files can hold
+constexpr double longest_s = 1e7;       // four months
+
+} // namespace
+
+Result<StoredRecording> StoredRecording::find(const QString &root, const QString &name,
+                                              const QString &logger) {
+    if (const Result<void> fine = checkName("recording", name); !fine)
+        return fine.error();
+    StoredRecording recording;
+    recording.folder = QDir(root).absoluteFilePath(name);
+    const QString path = Sidecar::path(recording.folder, logger);
+    const Result<QJsonObject> sidecar = Sidecar::read(path);
+    if (!sidecar)
+        return sidecar.error();
+    if (!sidecar->value("ended").isString())
+        return Error(ErrorCode::NotReady, path + ": the recording has not ended; record.stop ends it");
+    recording.sidecar = *sidecar;
+    recording.start_s = sidecar->value("start").toDouble(-1);
+    if (!(recording.start_s >= 0 && recording.start_s <= latest_s))
+        return diskError(path + ": \"start\": seconds since the epoch expected", path);
+    const bool hasMono = sidecar->value("end_mono").isDouble();
+    const double length =
+        hasMono ? sidecar->value("end_mono").toDouble() - sidecar->value("start_mono").toDouble()
+                : sidecar->value("end").toDouble() - recording.start_s;
+    recording.length_s = std::clamp(length, 0.0, longest_s);
+    return recording;
+}
+
+Result<QStringList> StoredRecording::files() const {
+    QStringList paths;
+    for (const QJsonValue &file : sidecar.value("files").toArray()) {
+        const QString name = file.toObject().value("name").toString();
+        if (name.isEmpty() || name.contains('/') || name.startsWith('.'))
+            return diskError(QString("%1: a file \"%2\" cannot be of this recording").arg(folder, name),
+                             folder);
+        paths << QDir(folder).filePath(name);
+    }
+    if (paths.isEmpty())
+        return diskError(folder + ": the recording has no files", folder);
+    return paths;
+}
+
+} // namespace hermes
