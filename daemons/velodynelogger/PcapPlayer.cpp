@@ -1,15 +1,8 @@
 #include "daemons/velodynelogger/PcapPlayer.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace hermes {
-
-namespace {
-
-constexpr double longestWait_ns = 1e18; // 30 years
-
-}
 
 PcapPlayer::PcapPlayer(Sink sink, Jump jump, End end)
     : sink_(std::move(sink))
@@ -26,8 +19,8 @@ std::string PcapPlayer::start(const std::vector<std::string> &paths, const Optio
         return reader_.error();
     options_ = options;
     time_ = options.begin;
-    clockRuns_ = atTarget_ = false;
-    clockBegin_ns_ = 0;
+    atTarget_ = false;
+    clock_.set(0, options.speed);
     stopping_ = false;
     paused_ = options.paused;
     seek_ns_.reset();
@@ -97,9 +90,9 @@ void PcapPlayer::run() {
             return;
         }
         played = false;
-        clockBegin_ns_ = 0;
         if (!rewind({options_.begin, {}}))
             return;
+        clock_.set(0, options_.speed);
         const std::lock_guard<std::mutex> lock(mutex_);
         ++loops_;
     }
@@ -118,17 +111,15 @@ bool PcapPlayer::play(const Datagram &datagram) {
             return goTo(target_ns);
         }
         if (paused_) {
-            stopClock();
+            clock_.hold();
             wake_.wait(lock);
             continue;
         }
         if (options_.speed <= 0)
             break;
-        if (!std::exchange(clockRuns_, true))
-            clock_ = Clock::now();
-        const double wait_ns = std::min(double(now_ns - clockBegin_ns_) / options_.speed, longestWait_ns);
-        const auto due = clock_ + std::chrono::nanoseconds(std::int64_t(wait_ns));
-        if (Clock::now() >= due)
+        clock_.run();
+        const auto due = clock_.due(now_ns);
+        if (PlayClock::Clock::now() >= due)
             break;
         wake_.wait_until(lock, due);
     }
@@ -136,14 +127,6 @@ bool PcapPlayer::play(const Datagram &datagram) {
     lock.unlock();
     sink_(datagram);
     return true;
-}
-
-/// It goes on where it was.
-void PcapPlayer::stopClock() {
-    if (!std::exchange(clockRuns_, false))
-        return;
-    const std::chrono::duration<double, std::nano> run = Clock::now() - clock_;
-    clockBegin_ns_ += std::int64_t(run.count() * options_.speed);
 }
 
 bool PcapPlayer::goTo(std::int64_t time_ns) {
@@ -154,8 +137,7 @@ bool PcapPlayer::goTo(std::int64_t time_ns) {
         jump_();
     else if (!rewind(mark))
         return false;
-    clockRuns_ = false;
-    clockBegin_ns_ = time_ns;
+    clock_.set(time_ns, options_.speed);
     while (reader_.next(target_) == PcapReader::Next::Datagram) {
         PlayTime after = time_;
         if (after.advance(target_.stamp_ns) >= time_ns) {
@@ -174,7 +156,6 @@ bool PcapPlayer::goTo(std::int64_t time_ns) {
 
 bool PcapPlayer::rewind(const PcapIndex::Mark &mark) {
     jump_();
-    clockRuns_ = false;
     time_ = mark.before;
     const bool opened = reader_.seek(mark.place);
     if (!opened)

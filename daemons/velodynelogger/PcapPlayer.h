@@ -1,8 +1,8 @@
 #pragma once
 
+#include "common/recording/PlayClock.h"
 #include "daemons/velodynelogger/PcapIndex.h"
 
-#include <chrono>
 #include <condition_variable>
 #include <functional>
 
@@ -46,13 +46,10 @@ public:
     Status status() const;
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     void run();
     bool play(const Datagram &datagram);
     bool goTo(std::int64_t time_ns);
     bool rewind(const PcapIndex::Mark &mark);
-    void stopClock();
 
     Sink sink_;
     Jump jump_;
@@ -63,11 +60,9 @@ private:
     // Of the thread while it runs.
     PcapSequence reader_;
     PlayTime time_;
-    bool atTarget_ = false;   ///< the datagram that a seek ended at is yet to be played
-    Datagram target_;         ///< that datagram
-    Clock::time_point clock_; ///< when time clockBegin_ns_ was played
-    std::int64_t clockBegin_ns_ = 0;
-    bool clockRuns_ = false; ///< else it begins at clockBegin_ns_
+    bool atTarget_ = false; ///< the datagram that a seek ended at is yet to be played
+    Datagram target_;       ///< that datagram
+    PlayClock clock_;
 
     std::thread thread_;
     mutable std::mutex mutex_; // guards what follows
