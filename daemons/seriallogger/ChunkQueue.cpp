@@ -33,7 +33,7 @@ bool ChunkQueue::push(const char *bytes, std::size_t size, const Arrival &arriva
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!open_ || size == 0)
         return false;
-    if (waiting_.bytes.size() + size > capacity_ || waiting_.chunks.size() >= mostChunks) {
+    if (!fits(size)) {
         lostNow_ += size;
         lost_ += size;
         return false;
@@ -42,6 +42,15 @@ bool ChunkQueue::push(const char *bytes, std::size_t size, const Arrival &arriva
     waiting_.chunks.push_back({arrival, size, std::exchange(lostNow_, 0)});
     waiting_.bytes.insert(waiting_.bytes.end(), bytes, bytes + size);
     return wasEmpty;
+}
+
+bool ChunkQueue::fits(std::size_t size) const {
+    return waiting_.bytes.size() + size <= capacity_ && waiting_.chunks.size() < mostChunks;
+}
+
+bool ChunkQueue::hasRoom(std::size_t size) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return fits(size);
 }
 
 void ChunkQueue::take(ChunkBatch &batch) {

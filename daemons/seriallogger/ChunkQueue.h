@@ -36,12 +36,16 @@ public:
 
     /// True when the queue was empty before.
     bool push(const char *bytes, std::size_t size, const Arrival &arrival);
+    /// Whether a chunk of this size would be taken.
+    bool hasRoom(std::size_t size) const;
     /// Gives what waits; batch keeps its memory for the next time.
     void take(ChunkBatch &batch);
     /// Bytes dropped since open().
     std::uint64_t lost() const;
 
 private:
+    bool fits(std::size_t size) const;
+
     const std::size_t capacity_;
     mutable std::mutex mutex_; // guards what follows
     bool open_ = false;

@@ -7,8 +7,6 @@ namespace hermes {
 
 namespace {
 
-constexpr std::size_t viewBytes = 1 << 20; // 11 s of 921,600 baud
-
 QString toText(Interface::State state) {
     return state == Interface::State::Open      ? "open"
            : state == Interface::State::Opening ? "opening"
@@ -21,35 +19,13 @@ LoggedPort::LoggedPort(const PortSettings &settings, std::size_t queueBytes, std
                        PortThread::Note note)
     : settings_(settings)
     , recording_(queueBytes)
-    , view_(viewBytes)
-    , thread_(settings, recording_, view_, std::move(viewFilled), std::move(note))
-    , fixes_(settings.checksum) {}
+    , view_(settings)
+    , thread_(settings, recording_, view_.queue(), std::move(viewFilled), std::move(note)) {}
 
 void LoggedPort::start() {
     startedMono_ = monotonicNow();
-    if (settings_.view != PortSettings::View::None)
-        view_.open();
+    view_.open();
     thread_.start();
-}
-
-void LoggedPort::processView(const Sinks &sinks) {
-    const auto fixSink = [this, &sinks](const Fix &fix) {
-        lastFix_ = fix;
-        sinks.fix(fix);
-    };
-    view_.take(batch_);
-    const char *next = batch_.bytes.data();
-    for (const ChunkBatch::Chunk &chunk : batch_.chunks) {
-        if (chunk.lostBefore > 0) {
-            lines_.skip(chunk.lostBefore, sinks.line);
-            fixes_.skip();
-        }
-        const std::string_view bytes(next, chunk.size);
-        lines_.feed(bytes, chunk.arrival, sinks.line);
-        if (settings_.view == PortSettings::View::Nmea)
-            fixes_.feed(bytes, chunk.arrival, fixSink);
-        next += chunk.size;
-    }
 }
 
 void LoggedPort::tick(double elapsed_s) {
@@ -74,27 +50,27 @@ QJsonObject LoggedPort::toJson() const {
                      {"bytes_per_s", rate_},
                      {"sent", double(state.counters.bytesOut)},
                      {"lost", double(recording_.lost())},
-                     {"view_lost", double(view_.lost())},
+                     {"view_lost", double(view_.queue().lost())},
                      {"system_errors", errors}};
     port.insert("last_stamp", state.last ? QJsonValue(state.last->stamp()) : QJsonValue());
     if (settings_.view == PortSettings::View::Nmea) {
         port.insert("nmea", nmeaJson());
-        port.insert("fix", lastFix_ ? QJsonValue(hermes::toJson(*lastFix_)) : QJsonValue());
+        port.insert("fix", view_.lastFix() ? QJsonValue(hermes::toJson(*view_.lastFix())) : QJsonValue());
     }
     return port;
 }
 
 QJsonObject LoggedPort::nmeaJson() const {
-    const nmea::SentenceParser::Counts &counts = fixes_.counts();
+    const nmea::SentenceParser::Counts &counts = view_.fixes().counts();
     QJsonObject nmea{
         {"sentences", double(counts.sentences)},        {"bad_checksum", double(counts.badChecksum)},
         {"no_checksum", double(counts.noChecksum)},     {"too_long", double(counts.tooLong)},
         {"bad_byte", double(counts.badByte)},           {"cut_short", double(counts.cutShort)},
-        {"skipped_bytes", double(counts.skippedBytes)}, {"bad_fields", double(fixes_.badFields())}};
-    if (fixes_.lastFault())
-        nmea.insert(
-            "last_fault",
-            QString("field %1: expected %2").arg(fixes_.lastFault().field).arg(fixes_.lastFault().expected));
+        {"skipped_bytes", double(counts.skippedBytes)}, {"bad_fields", double(view_.fixes().badFields())}};
+    if (view_.fixes().lastFault())
+        nmea.insert("last_fault", QString("field %1: expected %2")
+                                      .arg(view_.fixes().lastFault().field)
+                                      .arg(view_.fixes().lastFault().expected));
     return nmea;
 }
 
@@ -116,9 +92,9 @@ std::pair<HealthLevel, QString> LoggedPort::health() const {
         errors += count;
     if (errors > 0)
         return {HealthLevel::Warn, QString("the system tells of %1 errors on the line").arg(errors)};
-    const nmea::SentenceParser::Counts &counts = fixes_.counts();
+    const nmea::SentenceParser::Counts &counts = view_.fixes().counts();
     const quint64 wrong = counts.badChecksum + counts.noChecksum + counts.tooLong + counts.badByte +
-                          counts.cutShort + fixes_.badFields();
+                          counts.cutShort + view_.fixes().badFields();
     if (wrong > 1) // the first may have been begun before
         return {HealthLevel::Warn, QString("%1 NMEA sentences were damaged").arg(wrong)};
     return {HealthLevel::Ok, "receiving from " + (state.device.isEmpty() ? settings_.url : state.device)};

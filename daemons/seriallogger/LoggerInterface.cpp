@@ -28,14 +28,40 @@ void SerialLogger::declareTopics() {
                    "the epoch by the satellites), valid, lat_deg, lon_deg, alt (m above sea level), quality, "
                    "satellites, hdop, speed (m/s), course_deg (clockwise from north); null where unknown")
                  .schema({{"type", "object"}}));
-    addTopic(Topic("serial", "Once a second: ports as ports.list gives them, and whether they are recorded")
+    addTopic(Topic("serial", "Once a second: ports as ports.list gives them, whether they are recorded, and "
+                             "source as source.open gives it")
                  .schema({{"type", "object"}})
-                 .snapshot([this] {
-                     return QJsonObject{{"ports", portList()}, {"recording", recording_.isActive()}};
-                 }));
+                 .snapshot([this] { return state(); }));
+}
+
+void SerialLogger::declareSourceCommands() {
+    addCommand(
+        Command("source.open",
+                "Shows lines and fixes of the ports, or of a recording; the ports are received "
+                "and recorded all the same")
+            .param(Field::boolean("live", "Show those of the ports").optional())
+            .param(Field::text("recording", "Recording to replay, by its name").optional())
+            .param(Field::number("speed", "Of the replay: 1 real time").range(0.001, 1000).byDefault(1))
+            .param(Field::boolean("paused", "The replay waits for source.pause").byDefault(false))
+            .param(Field::number("delay_s", "Time of the replay at which the recording begins")
+                       .unit("s")
+                       .range(0, 1e7)
+                       .byDefault(0))
+            .returns({{"type", "object"}})
+            .example({{"recording", "drive"}}, QJsonObject{{"state", "replay"}, {"name", "/data/drive"}})
+            .handler([this](const Call &call) { return openSource(call); }));
+    addCommand(Command("source.pause", "The replay waits, or goes on")
+                   .param(Field::boolean("paused", "Whether it waits").byDefault(true))
+                   .returns({{"type", "object"}})
+                   .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}})
+                   .handler([this](const Call &call) { return pause(call.flag("paused")); }));
+    addCommand(Command("source.status", "What the topic serial says, now")
+                   .returns({{"type", "object"}})
+                   .handler([this](const Call &) -> Result<QJsonValue> { return state(); }));
 }
 
 void SerialLogger::declareCommands() {
+    declareSourceCommands();
     for (const Command &command : recording_.commands())
         addCommand(command);
     addCommand(

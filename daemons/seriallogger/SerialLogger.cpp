@@ -55,13 +55,6 @@ Result<void> SerialLogger::start() {
 }
 
 void SerialLogger::addPort(const PortSettings &settings) {
-    const auto viewFilled = [this] {
-        const auto later = [this] {
-            if (!viewTimer_.isActive())
-                viewTimer_.start(viewPeriod_ms);
-        };
-        QMetaObject::invokeMethod(this, later, Qt::QueuedConnection);
-    };
     const auto note = [this, name = settings.name](const QString &event, QJsonObject details) {
         if (event == "opened")
             logInfo(name, "open");
@@ -71,7 +64,7 @@ void SerialLogger::addPort(const PortSettings &settings) {
         recorder_.note(event, details);
     };
     const auto queueBytes = std::size_t(this->settings().integer("record.queue_bytes"));
-    ports_.push_back(std::make_unique<LoggedPort>(settings, queueBytes, viewFilled, note));
+    ports_.push_back(std::make_unique<LoggedPort>(settings, queueBytes, viewFilled(), note));
     health().provide("port " + settings.name, [this, port = ports_.back().get()] { updateHealth(*port); });
 }
 
@@ -79,6 +72,7 @@ void SerialLogger::stop() {
     second_.stop();
     viewTimer_.stop();
     cancelExports_ = true;
+    endReplay();
     for (const auto &port : ports_)
         port->thread().end();
     recording_.close();
@@ -148,27 +142,41 @@ void SerialLogger::exportRecording(const Call &call, const Reply &reply) {
     }));
 }
 
+std::function<void()> SerialLogger::viewFilled() {
+    return [this] {
+        const auto later = [this] {
+            if (!viewTimer_.isActive())
+                viewTimer_.start(viewPeriod_ms);
+        };
+        QMetaObject::invokeMethod(this, later, Qt::QueuedConnection);
+    };
+}
+
+PortView::Sinks SerialLogger::sinks(const QString &port) {
+    const auto line = [this, port](const LineSplitter::Line &found) {
+        if (!hasSubscribers("lines"))
+            return;
+        publish("lines",
+                QJsonObject{{"port", port},
+                            {"stamp", found.arrival.stamp()},
+                            {"mono", found.arrival.mono()},
+                            {"text", QString::fromStdString(escaped(found.bytes))},
+                            {"cut", found.cut}},
+                found.arrival.stamp());
+    };
+    const auto fix = [this, port](const Fix &found) {
+        QJsonObject data = toJson(found);
+        data.insert("port", port);
+        publish("fix", data, found.arrival.stamp());
+    };
+    return {line, fix};
+}
+
 void SerialLogger::processViews() {
-    for (const auto &port : ports_) {
-        const QString name = port->settings().name;
-        const auto line = [&](const LineSplitter::Line &found) {
-            if (!hasSubscribers("lines"))
-                return;
-            publish("lines",
-                    QJsonObject{{"port", name},
-                                {"stamp", found.arrival.stamp()},
-                                {"mono", found.arrival.mono()},
-                                {"text", QString::fromStdString(escaped(found.bytes))},
-                                {"cut", found.cut}},
-                    found.arrival.stamp());
-        };
-        const auto fix = [&](const Fix &found) {
-            QJsonObject data = toJson(found);
-            data.insert("port", name);
-            publish("fix", data, found.arrival.stamp());
-        };
-        port->processView({line, fix});
-    }
+    for (const auto &port : ports_)
+        port->view().process(sinks(port->settings().name));
+    for (const auto &track : player_.tracks())
+        track->view->process(sinks(track->port));
 }
 
 void SerialLogger::tick() {
@@ -176,10 +184,15 @@ void SerialLogger::tick() {
     for (const auto &port : ports_)
         port->tick(elapsed_s);
     updateHealth();
-    publish("serial", QJsonObject{{"ports", portList()}, {"recording", recording_.isActive()}});
+    publish("serial", state());
+}
+
+QJsonObject SerialLogger::state() const {
+    return {{"ports", portList()}, {"recording", recording_.isActive()}, {"source", sourceState()}};
 }
 
 void SerialLogger::updateHealth() {
+    updateSourceHealth();
     for (const auto &port : ports_)
         updateHealth(*port);
     if (ports_.empty())

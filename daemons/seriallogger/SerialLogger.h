@@ -3,6 +3,7 @@
 #include "common/daemon/Daemon.h"
 #include "common/recording/Recording.h"
 #include "daemons/seriallogger/LoggedPort.h"
+#include "daemons/seriallogger/SerialPlayer.h"
 #include "daemons/seriallogger/SerialRecorder.h"
 
 #include <QElapsedTimer>
@@ -12,7 +13,7 @@
 namespace hermes {
 
 /// hermes-seriallogger: records the bytes of any number of ports as they come, with the time of each; shows
-/// lines and GPS fixes of them.
+/// lines and GPS fixes of them, or of a recording.
 class SerialLogger : public Daemon {
 public:
     SerialLogger();
@@ -22,9 +23,13 @@ protected:
     void stop() override;
 
 private:
+    /// Where lines and fixes come from.
+    enum class Source { Live, Replay, Ended };
+
     void declareSettings();
     void declareTopics();
     void declareCommands();
+    void declareSourceCommands();
 
     void addPort(const PortSettings &settings);
     LoggedPort *findPort(const QString &name) const;
@@ -34,15 +39,33 @@ private:
     void send(const Call &call, const Reply &reply);
     void exportRecording(const Call &call, const Reply &reply);
 
+    Result<QJsonValue> openSource(const Call &call);
+    Result<void> openRecording(const Call &call);
+    void endReplay();
+    void openViews();
+    void replayEnded(const Result<void> &result);
+    Result<QJsonValue> pause(bool paused);
+    QJsonObject sourceState() const;
+    void updateSourceHealth();
+
+    /// For other threads to tell that a view was filled.
+    std::function<void()> viewFilled();
+    PortView::Sinks sinks(const QString &port);
     void processViews();
     void tick();
     void updateHealth();
     void updateHealth(const LoggedPort &port);
     QJsonArray portList() const;
+    QJsonObject state() const;
 
     std::vector<std::unique_ptr<LoggedPort>> ports_; ///< outlive the recorder, which takes from them
     SerialRecorder recorder_;
     Recording recording_;
+    SerialPlayer player_;
+    Source source_ = Source::Live;
+    QString sourceName_, sourceError_; ///< of a replay
+    double speed_ = 1;
+    quint64 generation_ = 0; ///< counts replays, so that the end of an old one is not taken for a new one's
     QTimer second_;
     QTimer viewTimer_;
     QElapsedTimer sinceTick_;

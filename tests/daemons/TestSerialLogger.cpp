@@ -41,6 +41,7 @@ private Q_SLOTS:
     void marksNeedARecording();
     void exportsToCsv();
     void saysWhatAPortLacks();
+    void replaysARecording();
 
 private:
     void launch(const QJsonArray &ports);
@@ -337,6 +338,61 @@ void TestSerialLogger::saysWhatAPortLacks() {
     QTRY_COMPARE(healthItem("port dev").value("level").toString(), "stale");
     device_->write("x");
     QTRY_COMPARE(healthItem("port dev").value("level").toString(), "ok");
+}
+
+void TestSerialLogger::replaysARecording() {
+    QUdpSocket probe;
+    QVERIFY(probe.bind(QHostAddress::LocalHost));
+    launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}},
+            QJsonObject{{"name", "raw"},
+                        {"url", QString("udp://127.0.0.1:%1").arg(probe.localPort())},
+                        {"view", "none"}}});
+    probe.close();
+    QTRY_VERIFY(isOpen("gps"));
+    QJsonArray lines, fixes;
+    client_->subscribe("lines", {{"queue", 100}}, [&](const TopicUpdate &update) { lines << update.data; });
+    client_->subscribe("fix", {{"queue", 100}}, [&](const TopicUpdate &update) { fixes << update.data; });
+    QTRY_VERIFY(daemon_->hasSubscribers("lines") && daemon_->hasSubscribers("fix"));
+    call("record.start", {{"name", "run"}});
+    QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::NotReady)); // not ended
+    device_->write(rmc + gga);
+    QTRY_COMPARE(fixes.size(), 1);
+    QTest::qWait(300); // a gap to be found again
+    device_->write("$GPTXT,1\r\nhalf a line");
+    QTRY_COMPARE(lines.size(), 3);
+    QTRY_COMPARE(port("gps").value("bytes").toInt(), rmc.size() + gga.size() + 21);
+    call("record.stop");
+    device_->write("\r\n");
+    QTRY_COMPARE(lines.size(), 4);
+    const QJsonArray liveLines = std::exchange(lines, {}), liveFixes = std::exchange(fixes, {});
+
+    QElapsedTimer timer;
+    QCOMPARE(
+        call("source.open", {{"recording", "run"}, {"paused", true}, {"delay_s", 0.1}})["paused"].toBool(),
+        true);
+    device_->write("not shown now\r\n");
+    timer.start();
+    call("source.pause", {{"paused", false}});
+    QTRY_COMPARE(call("source.status")["source"]["state"].toString(), "ended");
+    QTRY_COMPARE(lines, liveLines); // with their stamps
+    QCOMPARE(fixes, liveFixes);
+    QVERIFY(timer.elapsed() >= 400);
+    QCOMPARE(healthItem("source").value("level").toString(), "ok");
+    QVERIFY(failure("source.pause").is(ErrorCode::NotReady));
+
+    QCOMPARE(call("source.open", {{"live", true}})["state"].toString(), "live");
+    device_->write("live again\r\n");
+    QTRY_COMPARE(lines.size(), 5);
+    QCOMPARE(lines.last()["text"].toString(), "live again");
+    QVERIFY(healthItem("source").isEmpty());
+
+    QVERIFY(failure("source.open").is(ErrorCode::InvalidParams));
+    QVERIFY(failure("source.open", {{"live", true}, {"recording", "run"}}).is(ErrorCode::InvalidParams));
+    QVERIFY(failure("source.open", {{"recording", "../run"}}).is(ErrorCode::InvalidParams));
+    QVERIFY(failure("source.open", {{"recording", "none"}}).is(ErrorCode::InputOutput));
+    QVERIFY(QFile::remove(folder_->filePath("recordings/run/seriallogger-gps.index")));
+    QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::InputOutput));
+    QCOMPARE(call("source.status")["source"]["state"].toString(), "live");
 }
 
 QTEST_GUILESS_MAIN(TestSerialLogger)

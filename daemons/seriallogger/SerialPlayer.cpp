@@ -1,0 +1,148 @@
+#include "daemons/seriallogger/SerialPlayer.h"
+
+#include <QJsonArray>
+#include <QRegularExpression>
+
+#include <algorithm>
+
+namespace hermes {
+
+namespace {
+
+constexpr double longest_s = 1e8; // of a replay, whatever its index says
+constexpr std::chrono::milliseconds roomPeriod{5};
+
+/// Those of the recording, or what is usual where its sidecar does not tell.
+PortSettings settingsOf(const StoredRecording &recording, const QString &port) {
+    for (const PortSettings &settings : PortSettings::read(recording.sidecar.value("settings").toObject()))
+        if (settings.name == port)
+            return settings;
+    PortSettings usual;
+    usual.name = port;
+    return usual;
+}
+
+} // namespace
+
+Result<void> SerialPlayer::start(const StoredRecording &recording, const Options &options, Filled filled,
+                                 End end) {
+    stop();
+    options_ = options;
+    startMono_s_ = recording.sidecar.value("start_mono").toDouble();
+    length_s_ = recording.length_s;
+    filled_ = std::move(filled);
+    end_ = std::move(end);
+    const Result<QStringList> files = recording.files();
+    if (!files)
+        return files.error();
+    const QJsonArray entries = recording.sidecar.value("files").toArray();
+    for (int i = 0; i < entries.size(); ++i) {
+        const QString port = entries[i].toObject().value("port").toString();
+        const Result<void> added = addTrack(files->at(i), settingsOf(recording, port));
+        if (!added) {
+            tracks_.clear();
+            return added;
+        }
+    }
+    stopping_ = false;
+    paused_ = options.paused;
+    position_ns_ = 0;
+    clock_.set(0, options.speed);
+    thread_ = std::thread([this] { run(); });
+    return {};
+}
+
+Result<void> SerialPlayer::addTrack(const QString &path, const PortSettings &settings) {
+    if (settings.view == PortSettings::View::None)
+        return {};
+    auto track = std::make_unique<Track>();
+    track->port = settings.name;
+    track->view = std::make_unique<PortView>(settings);
+    Result<void> result = track->reader.open(QString(path).remove(QRegularExpression("\\.raw$")));
+    if (result)
+        result = advance(*track);
+    track->view->open();
+    tracks_.push_back(std::move(track));
+    return result;
+}
+
+/// A clock that goes back within the index counts as none.
+Result<void> SerialPlayer::advance(Track &track) {
+    Result<SerialLogReader::Piece> piece = track.reader.next();
+    if (!piece)
+        return piece.error();
+    track.piece = piece.take();
+    const double time_s = options_.delay_s + track.piece.arrival.mono() - startMono_s_;
+    track.time_ns = std::max(track.time_ns, std::int64_t(std::clamp(time_s, 0.0, longest_s) * 1e9));
+    return {};
+}
+
+void SerialPlayer::stop() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stopping_ = true;
+    }
+    wake_.notify_all();
+    if (thread_.joinable())
+        thread_.join();
+    tracks_.clear();
+}
+
+void SerialPlayer::setPaused(bool paused) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        paused_ = paused;
+    }
+    wake_.notify_all();
+}
+
+SerialPlayer::Status SerialPlayer::status() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return {double(position_ns_) * 1e-9, options_.delay_s + length_s_, paused_};
+}
+
+SerialPlayer::Track *SerialPlayer::nextTrack() const {
+    Track *next = nullptr;
+    for (const auto &track : tracks_)
+        if (!track->piece.bytes.isEmpty() && (!next || track->time_ns < next->time_ns))
+            next = track.get();
+    return next;
+}
+
+void SerialPlayer::run() {
+    while (Track *const track = nextTrack()) {
+        if (!wait(*track))
+            return;
+        const QByteArray &bytes = track->piece.bytes;
+        track->view->queue().push(bytes.constData(), std::size_t(bytes.size()), track->piece.arrival);
+        filled_();
+        if (const Result<void> advanced = advance(*track); !advanced)
+            return end_(advanced);
+    }
+    end_({});
+}
+
+/// Until the piece is due and there is room for it; false when the replay is stopped.
+bool SerialPlayer::wait(const Track &track) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!stopping_) {
+        if (paused_) {
+            clock_.hold();
+            wake_.wait(lock);
+            continue;
+        }
+        clock_.run();
+        const auto due = clock_.due(track.time_ns);
+        if (PlayClock::Clock::now() < due) {
+            wake_.wait_until(lock, due);
+        } else if (!track.view->queue().hasRoom(std::size_t(track.piece.bytes.size()))) {
+            wake_.wait_for(lock, roomPeriod);
+        } else {
+            position_ns_ = track.time_ns;
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace hermes

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "common/recording/PlayClock.h"
+#include "common/recording/StoredRecording.h"
+#include "daemons/seriallogger/PortView.h"
+#include "daemons/seriallogger/SerialLogReader.h"
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <thread>
+
+namespace hermes {
+
+/// Plays the bytes of a recording into views of its ports, in a thread of its own, at the pace at which they
+/// came in or any other. Loses nothing: waits where a view has no room.
+class SerialPlayer {
+public:
+    struct Options {
+        double speed = 1;
+        double delay_s = 0; ///< time of the replay at which the recording begins
+        bool paused = false;
+    };
+    struct Status {
+        double position_s = 0, duration_s = 0; ///< after the beginning of the replay
+        bool paused = false;
+    };
+    /// One port of the recording.
+    struct Track {
+        QString port;
+        std::unique_ptr<PortView> view;
+        SerialLogReader reader;
+        SerialLogReader::Piece piece; ///< the next one to be played; no bytes: at its end
+        std::int64_t time_ns = 0;     ///< of the replay, of that piece
+    };
+    /// Called in the playing thread: a view was filled; all has been played, or an error ended it.
+    using Filled = std::function<void()>;
+    using End = std::function<void(const Result<void> &result)>;
+
+    ~SerialPlayer() { stop(); }
+
+    /// Nothing is played when it fails. Ports that are not shown are left out.
+    Result<void> start(const StoredRecording &recording, const Options &options, Filled filled, End end);
+    void stop();
+    void setPaused(bool paused);
+    Status status() const;
+    /// Its views are of the main thread.
+    const std::vector<std::unique_ptr<Track>> &tracks() const { return tracks_; }
+
+private:
+    Result<void> addTrack(const QString &path, const PortSettings &settings);
+    Result<void> advance(Track &track);
+    Track *nextTrack() const;
+    void run();
+    bool wait(const Track &track);
+
+    Options options_;
+    double startMono_s_ = 0;
+    double length_s_ = 0;
+    std::vector<std::unique_ptr<Track>> tracks_;
+    Filled filled_;
+    End end_;
+    PlayClock clock_;
+
+    std::thread thread_;
+    mutable std::mutex mutex_; // guards what follows
+    std::condition_variable wake_;
+    bool stopping_ = false;
+    bool paused_ = false;
+    std::int64_t position_ns_ = 0;
+};
+
+} // namespace hermes
