@@ -12,14 +12,16 @@ _hermesctl() {
         [[ $word == -* ]] || words+=("$word")
     done
     case $previous in
-    --host | --timeout | --rate | --count | --daemons) return ;;
+    --host | --timeout | --rate | --count | --daemons | --speed) return ;;
     esac
     if [[ $current == -* ]]; then
-        candidates="--host --timeout --rate --count --daemons --csv --json --follow --help --version"
+        candidates="--host --timeout --rate --count --daemons --speed --loop --csv --json --follow --help --version"
     elif [ ${#words[@]} -eq 0 ]; then
-        candidates="list record discover call get set watch log doc"
+        candidates="list record replay discover call get set watch log doc"
     elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" = record ]; then
         candidates="start stop status list"
+    elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" = replay ]; then
+        candidates=$(hermesctl --timeout 1 record list 2>/dev/null | awk 'NR > 1 { print $1 }')
     elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" != list ]; then
         candidates="supervisor motorcontrol velodynelogger seriallogger softwaretrigger scanmatcher simulator"
     elif [ ${#words[@]} -eq 2 ] && [ "${words[0]}" = call ]; then

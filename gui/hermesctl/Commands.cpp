@@ -63,13 +63,13 @@ Result<void> listDaemons(const Arguments &arguments) {
     for (const QString &name : daemonNames())
         addresses.append(*daemonAddress(name, arguments.host));
     const auto all = connectAll(addresses, arguments.timeout);
-    std::vector<Client *> clients;
+    std::vector<ClientCall> clients;
     for (const auto &client : all) {
         if (client->isConnected())
-            clients.push_back(client.get());
+            clients.push_back({client.get(), {}});
     }
-    const auto infos = callAll(clients, QStringLiteral("daemon.info"), {}, arguments.timeout);
-    const auto states = callAll(clients, QStringLiteral("daemon.status"), {}, arguments.timeout);
+    const auto infos = callAll(clients, QStringLiteral("daemon.info"), arguments.timeout);
+    const auto states = callAll(clients, QStringLiteral("daemon.status"), arguments.timeout);
     const auto text = [](const Result<QJsonValue> &result, const char *member, const char *unknown) {
         return result ? (*result)[QLatin1String(member)].toString() : QString::fromLatin1(unknown);
     };
@@ -78,7 +78,7 @@ Result<void> listDaemons(const Arguments &arguments) {
                       .arg(text(infos[i], "name", "?"), -16)
                       .arg(text(states[i], "state", "?"), -10)
                       .arg(text(infos[i], "version", ""), -8)
-                      .arg(clients[i]->address()));
+                      .arg(clients[i].first->address()));
     }
     if (clients.empty())
         return Error(ErrorCode::Disconnected,

@@ -20,6 +20,8 @@ Result<void> recordStart(const Arguments &arguments);
 Result<void> recordStop(const Arguments &arguments);
 Result<void> recordStatus(const Arguments &arguments);
 Result<void> recordList(const Arguments &arguments);
+/// All loggers of a session replay it, until its end or SIGINT; then they are live again.
+Result<void> replay(const Arguments &arguments);
 
 Result<void> discover(Client &client, const Arguments &arguments);
 Result<void> call(Client &client, const Arguments &arguments);

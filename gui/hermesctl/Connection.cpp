@@ -51,18 +51,18 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
     return clients;
 }
 
-std::vector<Result<QJsonValue>> callAll(const std::vector<Client *> &clients, const QString &method,
-                                        const QJsonObject &params, std::chrono::milliseconds timeout) {
+std::vector<Result<QJsonValue>> callAll(const std::vector<ClientCall> &calls, const QString &method,
+                                        std::chrono::milliseconds timeout) {
     QEventLoop loop;
-    std::vector<Result<QJsonValue>> results(clients.size(), Result<QJsonValue>(QJsonValue()));
-    std::size_t open = clients.size();
-    for (std::size_t i = 0; i < clients.size(); ++i) {
+    std::vector<Result<QJsonValue>> results(calls.size(), Result<QJsonValue>(QJsonValue()));
+    std::size_t open = calls.size();
+    for (std::size_t i = 0; i < calls.size(); ++i) {
         const auto done = [&loop, &open, &results, i](const Result<QJsonValue> &result) {
             results[i] = result;
             if (--open == 0)
                 loop.quit();
         };
-        clients[i]->call(method, params, done, timeout);
+        calls[i].first->call(method, calls[i].second, done, timeout);
     }
     if (open > 0)
         loop.exec();

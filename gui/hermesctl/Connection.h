@@ -3,7 +3,6 @@
 #include "common/client/Client.h"
 
 #include <QStringList>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -17,8 +16,11 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
 std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
                                                 std::chrono::milliseconds timeout);
 
-/// Calls a method of each at the same time; gives each its result, in the order of the clients.
-std::vector<Result<QJsonValue>> callAll(const std::vector<Client *> &clients, const QString &method,
-                                        const QJsonObject &params, std::chrono::milliseconds timeout);
+/// A client and the parameters that a method is called with.
+using ClientCall = std::pair<Client *, QJsonObject>;
+
+/// Calls a method of each at the same time; gives each its result, in the order of the calls.
+std::vector<Result<QJsonValue>> callAll(const std::vector<ClientCall> &calls, const QString &method,
+                                        std::chrono::milliseconds timeout);
 
 } // namespace hermes

@@ -83,18 +83,24 @@ void Loggers::keepThoseThatRecord(QStringList &others) {
     }
 }
 
-std::vector<std::size_t> Loggers::everyone() const {
-    std::vector<std::size_t> numbers(members_.size());
+Loggers::Numbers Loggers::everyone() const {
+    Numbers numbers(members_.size());
     std::iota(numbers.begin(), numbers.end(), 0);
     return numbers;
 }
 
-Loggers::Replies Loggers::call(const std::vector<std::size_t> &numbers, const QString &method,
-                               const QJsonObject &params, std::chrono::milliseconds atLeast) const {
-    std::vector<Client *> clients;
-    for (const std::size_t number : numbers)
-        clients.push_back(members_[number].client.get());
-    return callAll(clients, method, params, std::max(timeout_, atLeast));
+Loggers::Replies Loggers::call(const Numbers &numbers, const QString &method, const QJsonObject &params,
+                               std::chrono::milliseconds atLeast) const {
+    return callEach(numbers, method, std::vector<QJsonObject>(numbers.size(), params), atLeast);
+}
+
+Loggers::Replies Loggers::callEach(const Numbers &numbers, const QString &method,
+                                   const std::vector<QJsonObject> &params,
+                                   std::chrono::milliseconds atLeast) const {
+    std::vector<ClientCall> calls;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        calls.push_back({members_[numbers[i]].client.get(), params[i]});
+    return callAll(calls, method, std::max(timeout_, atLeast));
 }
 
 } // namespace hermes

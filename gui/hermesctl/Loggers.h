@@ -17,7 +17,6 @@ public:
     std::size_t size() const { return members_.size(); }
     Numbers everyone() const;
     const QString &name(std::size_t number) const { return members_[number].name; }
-    Client &client(std::size_t number) const { return *members_[number].client; }
     /// What answers at a default port but does not say what it is, and why.
     const QStringList &silent() const { return silent_; }
 
@@ -25,6 +24,9 @@ public:
     /// long a reply may take, whatever --timeout says.
     Replies call(const Numbers &numbers, const QString &method, const QJsonObject &params = {},
                  std::chrono::milliseconds atLeast = {}) const;
+    /// With parameters for each.
+    Replies callEach(const Numbers &numbers, const QString &method, const std::vector<QJsonObject> &params,
+                     std::chrono::milliseconds atLeast = {}) const;
     Replies call(const QString &method, const QJsonObject &params = {}) const {
         return call(everyone(), method, params);
     }

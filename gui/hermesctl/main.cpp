@@ -19,6 +19,7 @@ Speaks to the daemons of a robot.
   record stop                    ends it and checks that nothing is missing
   record status                  what each logger records
   record list                    the sessions that were recorded
+  replay SESSION                 plays a session back through the same topics, until its end or Ctrl-C
   discover D                     the commands and topics of a daemon (--json: its OpenRPC document)
   call D METHOD [NAME=VALUE]...  calls a command and prints the result; VALUE is JSON, else a string
   get D [PATH]                   all settings, or the value at a path
@@ -31,12 +32,14 @@ D is the name of a daemon (at its default port), HOST:PORT, or a URL.
 
 Loggers are the daemons with the command record.start that answer at their default ports.
 
-  --daemons A,B  record: these loggers and no others
+  --daemons A,B  record, replay: these loggers and no others
   --host HOST    where daemons given by name run (127.0.0.1)
   --timeout S    how long to wait for a connection and for a reply (5)
   --rate HZ      watch: at most so many messages a second
   --count N      watch: end after N messages; log: the last N records (100)
   --csv          watch: CSV instead of JSON
+  --speed X      replay: so many times as fast (1)
+  --loop         replay: begin anew at the end
   --json         discover: the whole description as JSON
   --follow       log: go on with new records
   --help, --version
@@ -73,6 +76,7 @@ const RobotEntry robotCommands[] = {
     {"record stop", 0, "record stop", recordStop},
     {"record status", 0, "record status", recordStatus},
     {"record list", 0, "record list", recordList},
+    {"replay", 1, "replay SESSION [--speed X] [--loop]", replay},
 };
 
 const Entry commands[] = {

@@ -4,16 +4,22 @@ played is what was recorded, together in time."""
 import json
 import os
 import shutil
+import pty
+import signal
 import socket
+import statistics
 import subprocess
 import tempfile
+import threading
+import time
 import unittest
 
 import recording_load as load
+from hermes import Daemon
 from processes import Process, free_port
 
 CTL = os.path.join(load.BINARIES, "hermesctl")
-PACKETS_HZ, SECONDS = 1810, 2
+PACKETS_HZ, SECONDS = 1810, 1
 
 
 class Serial:
@@ -33,6 +39,24 @@ class Serial:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             sender.sendto(text, ("127.0.0.1", self.source))
         load.wait_for(lambda: self.daemon.call("ports.list")[0]["bytes"] == before + len(text), "the bytes")
+
+
+class Reader(threading.Thread):
+    """Everything that a topic says, with the time at which it came."""
+
+    def __init__(self, port, topic):
+        super().__init__(daemon=True)
+        self.connection = Daemon(port=port, timeout=None)
+        self.messages = []
+        self.subscription = self.connection.subscribe(topic, queue=1000)
+        self.start()
+
+    def run(self):
+        try:
+            for message in self.subscription:
+                self.messages.append((time.monotonic(), message["data"]))
+        except (ConnectionError, OSError, ValueError):
+            pass  # closed
 
 
 def ctl(*arguments):
@@ -95,6 +119,71 @@ class Sessions(unittest.TestCase):
         self.assertEqual(sidecars[0]["session"], sidecars[1]["session"])
         self.assertLess(abs(sidecars[0]["start"] - sidecars[1]["start"]), 1)
         load.check_files(os.path.join(self.records, "run1"), 0, data, position)
+
+    def test_replay(self):
+        lines, scans = self.read(self.serial, "lines"), self.read(self.lidar, "scan2d")
+        self.record("run1")
+        self.ctl("record", "stop")
+        self.assertGreater(len(load.captures(os.path.join(self.records, "run1"))), 2)
+        live_lines, live_scans = list(lines.messages), list(scans.messages)
+        lines.messages.clear()
+        scans.messages.clear()
+        self.assertEqual(self.ctl("replay", "run1"), "")
+        load.wait_for(lambda: len(lines.messages) == len(live_lines), "the lines")
+        # The turn that was under way came when the replay began, the last of the replay at its end.
+        load.wait_for(lambda: len(scans.messages) == len(live_scans) + 2, "the turns")
+        live_scans.append(scans.messages.pop(0))
+        self.assertEqual([line for _, line in lines.messages], [line for _, line in live_lines])
+        for (_, turn), (_, same) in zip(scans.messages, live_scans):
+            self.assertEqual((turn["turn"], turn["stamp"], turn["x"]), (same["turn"], same["stamp"], same["x"]))
+            self.assertEqual(turn["lost_packets"], 0)
+        late = [[now - then for (now, _), (then, _) in list(zip(again.messages, before))[:-1]]
+                for again, before in ((lines, live_lines), (scans, live_scans))]
+        apart = statistics.median(late[0]) - statistics.median(late[1])
+        print(f"replay: lines and turns {1e3 * apart:+.1f} ms apart from how they came live, spread of lines "
+              f"{1e3 * statistics.pstdev(late[0]):.1f} ms, of turns {1e3 * statistics.pstdev(late[1]):.1f} ms")
+        self.assertLess(abs(apart), 0.1)
+        self.check_live()
+
+    def check_live(self):
+        for logger in (self.lidar, self.serial):
+            self.assertEqual(logger.daemon.call("source.status")["source"]["state"], "live")
+
+    def read(self, logger, topic):
+        reader = Reader(logger.process.port, topic)
+        self.addCleanup(reader.connection.socket.close)
+        return reader
+
+    def test_replay_loops_until_interrupted(self):
+        self.record("run1")
+        self.ctl("record", "stop")
+        lines = self.read(self.serial, "lines")
+        far, near = pty.openpty()
+        replay = subprocess.Popen([CTL, "--daemons", self.daemons, "replay", "run1", "--loop", "--speed", "10"], stderr=near)
+        os.close(near)
+        try:
+            load.wait_for(lambda: sum(line["text"].endswith("line 0") for _, line in lines.messages) >= 3, "the third time")
+            replay.send_signal(signal.SIGINT)
+            self.assertEqual(replay.wait(20), 0)
+        finally:
+            replay.kill()
+            replay.wait()
+        self.assertRegex(os.read(far, 100000).decode(), r"run1: [\d.]+ of [\d.]+ s")
+        os.close(far)
+        self.check_live()
+        shown = ctl("--daemons", self.daemons, "replay", "run2")
+        self.assertEqual(shown.returncode, 1)
+        self.assertIn('there is no session "run2"', shown.stderr)
+
+    def test_what_cannot_be_replayed(self):
+        self.record("run1")
+        self.assertIn('is recording "run1"', self.ctl("replay", "run1", status=1))
+        self.ctl("record", "stop")
+        os.remove(load.captures(os.path.join(self.records, "run1"))[0])
+        told = self.ctl("replay", "run1", status=1)
+        self.assertIn("velodynelogger: ", told)
+        self.assertIn("0001.pcap: cannot be opened", told)
+        self.check_live()
 
     def test_all_or_none(self):
         self.serial.daemon.call("settings.set", values={"record": {"free_warn_bytes": 1e15, "free_floor_bytes": 1e15}})

@@ -1,0 +1,102 @@
+#include "common/recording/Sidecar.h"
+#include "common/recording/StoredRecording.h"
+
+#include <QDir>
+#include <QTemporaryDir>
+#include <QtTest>
+
+using namespace hermes;
+
+namespace {
+
+QJsonObject usual() {
+    return {{"format", Sidecar::format},
+            {"start", 1000.5},
+            {"end", 1003},
+            {"start_mono", 7},
+            {"end_mono", 9.5},
+            {"ended", "stopped"},
+            {"files", QJsonArray{QJsonObject{{"name", "logger-0001.pcap"}}, QJsonObject{{"name", "b"}}}}};
+}
+
+QJsonObject with(const char *member, const QJsonValue &value) {
+    QJsonObject content = usual();
+    content.insert(member, value);
+    return content;
+}
+
+} // namespace
+
+/// Recordings that are found to be replayed, and sidecars that somebody has edited.
+class TestStoredRecording : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void tellsFilesAndTime();
+    void lengths_data();
+    void lengths();
+    void refusals_data();
+    void refusals();
+
+private:
+    Result<StoredRecording> find(const QJsonObject &content, const QString &name = "run") {
+        QDir(folder_.path()).mkpath("run");
+        if (!Sidecar::write(Sidecar::path(folder_.filePath("run"), "logger"), content, false))
+            qFatal("the sidecar cannot be written");
+        return StoredRecording::find(folder_.path(), name, "logger");
+    }
+
+    QTemporaryDir folder_;
+};
+
+void TestStoredRecording::tellsFilesAndTime() {
+    const Result<StoredRecording> found = find(usual());
+    QVERIFY2(found.ok(), found ? "" : qPrintable(found.error().message));
+    QCOMPARE(found->start_s, 1000.5);
+    QCOMPARE(found->length_s, 2.5);
+    QCOMPARE(*found->files(),
+             QStringList({folder_.filePath("run/logger-0001.pcap"), folder_.filePath("run/b")}));
+}
+
+void TestStoredRecording::lengths_data() {
+    QTest::addColumn<QJsonObject>("sidecar");
+    QTest::addColumn<double>("length");
+    QTest::newRow("the clock was set meanwhile") << with("end", 5000) << 2.5;
+    QTest::newRow("cut off, without end_mono") << with("end_mono", QJsonValue()) << 2.5;
+    QTest::newRow("ends before it begins") << with("end_mono", 1) << 0.0;
+    QTest::newRow("of no use") << with("end_mono", 1e300) << 1e7;
+}
+
+void TestStoredRecording::lengths() {
+    QFETCH(QJsonObject, sidecar);
+    QTEST(find(sidecar)->length_s, "length");
+}
+
+void TestStoredRecording::refusals_data() {
+    QTest::addColumn<QJsonObject>("sidecar");
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<int>("code");
+    const auto row = [](const char *title, const QJsonObject &sidecar, ErrorCode code,
+                        const char *name = "run") { QTest::newRow(title) << sidecar << name << int(code); };
+    row("being recorded", with("ended", QJsonValue()), ErrorCode::NotReady);
+    row("another name", usual(), ErrorCode::InputOutput, "walk");
+    row("a path", usual(), ErrorCode::InvalidParams, "../run");
+    row("no sidecar", with("format", "x"), ErrorCode::InputOutput);
+    row("no start", with("start", "now"), ErrorCode::InputOutput);
+    row("a start beyond all stamps", with("start", 1e18), ErrorCode::InputOutput);
+    row("no files", with("files", QJsonArray()), ErrorCode::InputOutput);
+    row("a file elsewhere", with("files", QJsonArray{QJsonObject{{"name", "../secret"}}}),
+        ErrorCode::InputOutput);
+    row("a file without name", with("files", QJsonArray{1}), ErrorCode::InputOutput);
+}
+
+void TestStoredRecording::refusals() {
+    QFETCH(QJsonObject, sidecar);
+    QFETCH(QString, name);
+    const Result<StoredRecording> found = find(sidecar, name);
+    const Error error = !found ? found.error() : found->files() ? Error() : found->files().error();
+    QTEST(error.code, "code");
+    QVERIFY2(error.message.contains(name.section('/', -1)), qPrintable(error.message));
+}
+
+QTEST_GUILESS_MAIN(TestStoredRecording)
+#include "TestStoredRecording.moc"
