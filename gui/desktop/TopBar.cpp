@@ -14,12 +14,12 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
     , drive_(drive)
-    , power_(
-          fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showBattery(u.data); }, this)
+    , powerFeed_(
+          fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
     , robots_(new QComboBox)
     , link_(new QLabel)
     , control_(new QLabel)
-    , battery_(new QLabel)
+    , power_(new QLabel)
     , release_(new QPushButton(tr("&Release")))
     , stop_(new QPushButton(tr("STOP"))) {
     robots_->setObjectName("robots");
@@ -28,7 +28,9 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     link_->setObjectName("link");
     link_->setToolTip(tr("The longest time that a daemon of this robot takes to answer"));
     control_->setObjectName("lease");
-    battery_->setObjectName("battery");
+    power_->setObjectName("power");
+    power_->setToolTip(tr("The lower battery voltage, the sum of the motor currents and the higher "
+                          "temperature of the controllers"));
     release_->setObjectName("release");
     release_->setToolTip(tr("Ends the emergency stop and latched faults. The robot does not move by it."));
     stop_->setObjectName("stop");
@@ -53,7 +55,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     layout->addSpacing(12);
     layout->addWidget(control_);
     layout->addSpacing(12);
-    layout->addWidget(battery_);
+    layout->addWidget(power_);
     layout->addStretch();
     layout->addWidget(release_);
     layout->addWidget(stop_);
@@ -66,7 +68,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     connect(&fleet, &Fleet::changed, this, &TopBar::updateLink);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateRobots);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateLink);
-    connect(&power_, &TopicFeed::sourceChanged, battery_, &QLabel::clear);
+    connect(&powerFeed_, &TopicFeed::sourceChanged, power_, &QLabel::clear);
     connect(&drive, &DriveControl::changed, this, &TopBar::updateDrive);
     updateRobots();
     updateLink();
@@ -105,12 +107,22 @@ void TopBar::updateDrive() {
     stop_->setText(drive_.isStopped() ? tr("STOPPED") : tr("STOP"));
 }
 
-void TopBar::showBattery(const QJsonValue &power) {
-    double least = 0;
-    for (const QJsonValue &controller : power["controllers"].toArray())
-        if (const double volts = controller["battery_v"].toDouble(); volts > 0)
-            least = least > 0 ? std::min(least, volts) : volts;
-    battery_->setText(least > 0 ? tr("battery %1 V").arg(least, 0, 'f', 1) : QString());
+void TopBar::showPower(const QJsonValue &power) {
+    double volts = 0, amperes = 0, hottest = -300;
+    for (const QJsonValue &controller : power["controllers"].toArray()) {
+        if (!controller["ready"].toBool())
+            continue;
+        const double battery = controller["battery_v"].toDouble();
+        volts = volts > 0 ? std::min(volts, battery) : battery;
+        hottest = std::max(hottest, controller["temperature_c"].toDouble());
+        for (const QJsonValue &current : controller["current_a"].toArray())
+            amperes += std::abs(current.toDouble());
+    }
+    power_->setText(hottest < -273 ? QString()
+                                   : tr("battery %1 V   %2 A   %3 °C")
+                                         .arg(volts, 0, 'f', 1)
+                                         .arg(amperes, 0, 'f', 1)
+                                         .arg(hottest, 0, 'f', 0));
 }
 
 } // namespace hermes

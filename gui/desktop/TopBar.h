@@ -10,7 +10,8 @@ class QPushButton;
 
 namespace hermes {
 
-/// What is always in sight: which robot, how good its link is, who has the control, the battery, STOP.
+/// What is always in sight: which robot, how good its link is, who has the control, battery, currents and
+/// temperature, STOP.
 class TopBar : public QWidget {
     Q_OBJECT
 public:
@@ -20,13 +21,13 @@ private:
     void updateRobots();
     void updateLink();
     void updateDrive();
-    void showBattery(const QJsonValue &power);
+    void showPower(const QJsonValue &power);
 
     Fleet &fleet_;
     DriveControl &drive_;
-    TopicFeed power_;
+    TopicFeed powerFeed_;
     QComboBox *robots_;
-    QLabel *link_, *control_, *battery_;
+    QLabel *link_, *control_, *power_;
     QPushButton *release_, *stop_;
 };
 
