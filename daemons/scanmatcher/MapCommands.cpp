@@ -84,6 +84,7 @@ void ScanMatcher::postMapChange(const std::function<void(Tracker &)> &change, co
         QMetaObject::invokeMethod(this, [this, changes, reply, answer] {
             counts = TrackerCounts();
             lostInARow = 0;
+            lastRecovery.reset();
             publish("map", mirror.apply(changes));
             reply.result(answer);
         });

@@ -64,6 +64,18 @@ void ScanMatcher::declareSettings() {
                    .range(0, 1)
                    .byDefault(0.15)
                    .group("Matching"));
+    addSetting(Field::integer("matcher.relocalize_after",
+                              "Lost scans in a row after which the whole map is searched; 0: never. "
+                              "Only 1 and 2 act while the map grows")
+                   .unit("scans")
+                   .range(0, 100000)
+                   .byDefault(10)
+                   .group("Matching"));
+    addSetting(Field::number("matcher.relocalize_s", "Longest search of the whole map")
+                   .unit("s")
+                   .range(0.1, 20)
+                   .byDefault(3)
+                   .group("Matching"));
     addSetting(
         Field::text("map.folder", "Where map files with a relative path are").byDefault(".").group("Map"));
 }
@@ -78,6 +90,8 @@ TrackerSettings ScanMatcher::trackerSettings() const {
     s.permittedXY = values.number("matcher.permitted_m");
     s.permittedAlpha = values.number("matcher.permitted_rad");
     s.minMatchedShare = values.number("matcher.min_matched_share");
+    s.relocalizeAfter = values.integer("matcher.relocalize_after");
+    s.relocalizeSeconds = values.number("matcher.relocalize_s");
     s.sensorOnRobot = {values.number("sensor.x_m"), values.number("sensor.y_m"),
                        values.number("sensor.theta_rad")};
     return s;

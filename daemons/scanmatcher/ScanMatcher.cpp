@@ -51,6 +51,7 @@ ScanMatcher::ScanMatcher()
     declareTopics();
     declareMatcherCommands();
     declareMapCommands();
+    declareRelocalization();
     connect(&source, &Client::connected, this, &ScanMatcher::updateHealth);
     connect(&source, &Client::disconnected, this, &ScanMatcher::updateHealth);
     connect(&odometry.client(), &Client::connected, this, &ScanMatcher::updateHealth);
@@ -78,7 +79,8 @@ void ScanMatcher::declareTopics() {
 
 Result<void> ScanMatcher::start() {
     worker = std::make_unique<Worker>([this](Tracker &tracker, const Scan &scan) {
-        const Outcome outcome = outcomeOf(tracker, scan);
+        Outcome outcome = outcomeOf(tracker, scan);
+        outcome.recovery = tracker.recover();
         QMetaObject::invokeMethod(this, [this, outcome] { show(outcome); });
     });
     settingsChanged({});
@@ -202,12 +204,16 @@ ScanMatcher::Outcome ScanMatcher::outcomeOf(Tracker &tracker, const Scan &scan) 
 void ScanMatcher::show(const Outcome &o) {
     counts = o.counts;
     lostInARow = o.outcome == ScanReport::Outcome::Lost ? lostInARow + 1 : 0;
+    if (lostInARow == 0)
+        lastRecovery.reset();
     mirror.addPose({o.stamp, {o.pose["x"].toDouble(), o.pose["y"].toDouble(), o.pose["theta"].toDouble()}});
     publish("pose", o.pose, o.stamp);
     publish("match", o.match, o.stamp);
     publish("segments", o.segments, o.stamp);
     if (!o.changes.changed.empty() || !o.changes.removed.empty())
         publish("map", mirror.apply(o.changes), o.stamp);
+    if (o.recovery)
+        showRecovery(*o.recovery);
 }
 
 void ScanMatcher::updateHealth() {
@@ -227,9 +233,7 @@ void ScanMatcher::updateHealth() {
     health().set("queue", dropped ? HealthLevel::Warn : HealthLevel::Ok,
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
                  matcherState());
-    health().set("tracking", lostInARow >= 3 ? HealthLevel::Failed : HealthLevel::Ok,
-                 lostInARow > 0 ? QString("lost for %1 scans").arg(lostInARow) : QString("on track"),
-                 {{"lost_in_a_row", lostInARow}});
+    updateTrackingHealth();
 }
 
 QJsonObject ScanMatcher::matcherState() const {
@@ -244,6 +248,8 @@ QJsonObject ScanMatcher::matcherState() const {
             {"dropped", qint64(worker ? worker->dropped() : 0)},
             {"dropped_by_source", qint64(droppedBySource)},
             {"refused", qint64(badScans)},
+            {"recoveries", qint64(recoveries)},
+            {"recovered", qint64(recovered)},
             {"by_odometry", qint64(counts.byOdometry)},
             {"odometry", odometry.state()},
             {"ms_per_scan", counts.totalMs / scans},

@@ -31,12 +31,14 @@ private:
         double stamp = 0;
         TrackerCounts counts;
         vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
+        std::optional<Relocalized> recovery; ///< when the whole map was searched after this scan
     };
 
     void declareSettings();
     void declareTopics();
     void declareMatcherCommands();
     void declareMapCommands();
+    void declareRelocalization();
     void updateHealth();
 
     void connectToSource();
@@ -46,6 +48,9 @@ private:
     void pause();
     static Outcome outcomeOf(Tracker &tracker, const Scan &scan);
     void show(const Outcome &outcome);
+    void relocalize(bool apply, const Reply &reply);
+    void showRecovery(const Relocalized &recovery);
+    void updateTrackingHealth();
 
     TrackerSettings trackerSettings() const;
     /// Runs in the worker's thread, then hands the map's changes over.
@@ -66,6 +71,10 @@ private:
     MapMirror mirror;
     TrackerCounts counts;
     int lostInARow = 0;
+    bool relocalizing = false; ///< for a command
+    quint64 recoveries = 0,
+            recovered = 0; ///< searches of the whole map after lost scans, and their successes
+    std::optional<Relocalized> lastRecovery; ///< since tracking was lost
     quint64 badScans = 0, droppedBySource = 0;
     double lastScan = 0; // monotonic
     QString lastBadScan;

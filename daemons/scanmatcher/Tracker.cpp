@@ -11,6 +11,7 @@ void Tracker::apply(const TrackerSettings &settings) {
     track.permitted = {settings.permittedXY, settings.permittedXY, settings.permittedAlpha};
     track.minMatchedShare = settings.minMatchedShare;
     odometry.setMount(settings.sensorOnRobot);
+    search.maxSeconds = settings.relocalizeSeconds;
 }
 
 vectorlib::Pose2D Tracker::expect(const Scan &scan) {
@@ -41,6 +42,7 @@ const ScanReport &Tracker::process(Scan &scan) {
     if (scan.odometry)
         odometry.update(report.pose, *scan.odometry, scan.stamp);
 
+    lostInARow = report.outcome == ScanReport::Outcome::Lost ? lostInARow + 1 : 0;
     ++total.scans;
     total.totalMs += report.totalMs();
     switch (report.outcome) {
@@ -62,8 +64,36 @@ void Tracker::place(const vectorlib::Pose2D &pose) {
     odometry.reset();
 }
 
+Relocalized Tracker::relocalize(bool apply) {
+    if (total.scans == 0)
+        return {};
+    const Relocalized &result = search(builder.map, builder.edges(), builder.report().pose);
+    if (apply && result.isFound())
+        place(result.places.front().pose);
+    return result;
+}
+
+std::optional<Relocalized> Tracker::recover() {
+    if (!isSearchDue())
+        return std::nullopt;
+    const Relocalized result = relocalize(true);
+    const std::chrono::duration<double, std::milli> pause(std::max(1000.0, 10 * result.ms));
+    nextSearch = std::chrono::steady_clock::now() +
+                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(pause);
+    return result;
+}
+
+bool Tracker::isSearchDue() const {
+    // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
+    // itself, at a place that may be wrong, and the search would find that.
+    const bool holdsTheScan = builder.settings.grow && lostInARow >= builder.settings.lostBeforeRestart;
+    return configured.relocalizeAfter > 0 && lostInARow >= configured.relocalizeAfter && !holdsTheScan &&
+           std::chrono::steady_clock::now() >= nextSearch;
+}
+
 void Tracker::clear() {
     builder.clear();
+    lostInARow = 0;
     place({});
     total = TrackerCounts();
 }

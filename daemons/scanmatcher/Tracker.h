@@ -1,9 +1,13 @@
 #pragma once
 
 #include "daemons/scanmatcher/OdometryModel.h"
+#include "daemons/scanmatcher/Relocalization.h"
 #include "daemons/scanmatcher/Scan.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MotionModel.h"
+
+#include <chrono>
+#include <optional>
 
 namespace hermes {
 
@@ -16,6 +20,8 @@ struct TrackerSettings {
     double permittedXY = 0.5;             ///< metres
     double permittedAlpha = 0.4;          ///< radians
     double minMatchedShare = 0.15;
+    qint64 relocalizeAfter = 10;     ///< lost scans in a row; 0: never by itself
+    double relocalizeSeconds = 3;    ///< longest search
     vectorlib::Pose2D sensorOnRobot; ///< the odometry is that of the robot
 };
 
@@ -46,6 +52,11 @@ public:
     const vectorlib::ScanReport &process(Scan &scan);
     /// Puts the sensor somewhere, standing still.
     void place(const vectorlib::Pose2D &pose);
+    /// Finds the last scan in the whole map; puts the sensor there when it was found and `apply`.
+    Relocalized relocalize(bool apply);
+    /// The same by itself, to be called after each scan: when enough scans in a row were lost, and for at
+    /// most about a tenth of the time; else nothing.
+    std::optional<Relocalized> recover();
     /// Forgets map, pose and counts.
     void clear();
 
@@ -55,11 +66,15 @@ public:
 private:
     /// Where the sensor is expected; tells the builder how sure that is.
     vectorlib::Pose2D expect(const Scan &scan);
+    bool isSearchDue() const;
 
     TrackerSettings configured;
     vectorlib::MotionModel model;
     OdometryModel odometry;
     TrackerCounts total;
+    Relocalization search;
+    int lostInARow = 0;
+    std::chrono::steady_clock::time_point nextSearch;
 };
 
 } // namespace hermes

@@ -1,0 +1,113 @@
+#include "common/Log.h"
+#include "daemons/scanmatcher/ScanMatcher.h"
+
+namespace hermes {
+
+namespace {
+
+QString name(Relocalized::Outcome outcome) {
+    switch (outcome) {
+    case Relocalized::Outcome::Found:
+        return "found";
+    case Relocalized::Outcome::NoScan:
+        return "no_scan";
+    case Relocalized::Outcome::NoMap:
+        return "no_map";
+    case Relocalized::Outcome::TooLittle:
+        return "too_little";
+    case Relocalized::Outcome::Nowhere:
+        return "nowhere";
+    case Relocalized::Outcome::Ambiguous:
+        return "ambiguous";
+    case Relocalized::Outcome::Unfinished:
+        return "unfinished";
+    }
+    return {};
+}
+
+QJsonObject toJson(const Place &place) {
+    const bool accepted = place.fault == vectorlib::Fault::None;
+    return {{"pose", QJsonObject{{"x", place.pose.x}, {"y", place.pose.y}, {"theta", place.pose.theta}}},
+            {"score", place.score},
+            {"reliability", place.reliability},
+            {"ambiguity", place.ambiguity},
+            {"discrepancy", place.discrepancy},
+            {"matched_share", place.matchedShare},
+            {"accepted", accepted},
+            {"fault", accepted ? QJsonValue() : QJsonValue(QString(vectorlib::describe(place.fault)))}};
+}
+
+QJsonObject toJson(const Relocalized &r) {
+    QJsonArray candidates;
+    for (const Place &place : r.places)
+        candidates.append(toJson(place));
+    return {{"outcome", name(r.outcome)}, {"candidates", candidates},       {"alike", qint64(r.alike)},
+            {"parts", qint64(r.parts)},   {"searched", qint64(r.searched)}, {"ms", r.ms}};
+}
+
+QString text(const vectorlib::Pose2D &pose) {
+    return QString("x %1 m, y %2 m, theta %3 rad")
+        .arg(pose.x, 0, 'f', 2)
+        .arg(pose.y, 0, 'f', 2)
+        .arg(pose.theta, 0, 'f', 2);
+}
+
+} // namespace
+
+void ScanMatcher::declareRelocalization() {
+    addCommand(
+        Command("pose.relocalize",
+                "Finds the last scan in the whole map, wherever the sensor was expected, and takes its place "
+                "over. Where several places fit alike, or none, the pose stays; data.candidates has the best")
+            .param(Field::boolean("apply", "Take the pose over; false: only tell it").byDefault(true))
+            .returns({{"type", "object"}})
+            .asyncHandler(
+                [this](const Call &call, const Reply &reply) { relocalize(call.flag("apply"), reply); }));
+}
+
+void ScanMatcher::relocalize(bool apply, const Reply &reply) {
+    if (relocalizing) // calls that pile up would keep the scans waiting
+        return reply.error({ErrorCode::NotReady, "another search of the map is under way"});
+    relocalizing = true;
+    worker->post([this, apply, reply](Tracker &tracker) {
+        const Relocalized found = tracker.relocalize(apply);
+        QMetaObject::invokeMethod(this, [this, apply, found, reply] {
+            relocalizing = false;
+            QJsonObject answer = toJson(found);
+            if (!found.isFound())
+                return reply.error(
+                    {ErrorCode::NotReady, "the pose stays: " + QString::fromStdString(found.text()), answer});
+            const QJsonObject place = toJson(found.places.front());
+            for (auto member = place.begin(); member != place.end(); ++member)
+                answer[member.key()] = member.value();
+            answer["applied"] = apply;
+            reply.result(answer);
+        });
+    });
+}
+
+void ScanMatcher::showRecovery(const Relocalized &recovery) {
+    ++recoveries;
+    recovered += recovery.isFound();
+    if (recovery.isFound())
+        logInfo("tracking", QString("found in the whole map after %1 lost scans: %2")
+                                .arg(lostInARow)
+                                .arg(text(recovery.places.front().pose)));
+    else if (!lastRecovery || lastRecovery->outcome != recovery.outcome)
+        logWarning("tracking", QString("not found in the whole map after %1 lost scans: %2")
+                                   .arg(lostInARow)
+                                   .arg(QString::fromStdString(recovery.text())));
+    lastRecovery = recovery;
+}
+
+void ScanMatcher::updateTrackingHealth() {
+    QString message = lostInARow > 0 ? QString("lost for %1 scans").arg(lostInARow) : QString("on track");
+    if (lastRecovery)
+        message += "; the whole map was searched: " + QString::fromStdString(lastRecovery->text());
+    health().set("tracking", lostInARow >= 3 ? HealthLevel::Failed : HealthLevel::Ok, message,
+                 {{"lost_in_a_row", lostInARow},
+                  {"recoveries", qint64(recoveries)},
+                  {"recovered", qint64(recovered)}});
+}
+
+} // namespace hermes
