@@ -51,8 +51,6 @@ Result<QStringList> StoredRecording::files() const {
                              folder);
         paths << QDir(folder).filePath(name);
     }
-    if (paths.isEmpty())
-        return diskError(folder + ": the recording has no files", folder);
     return paths;
 }
 

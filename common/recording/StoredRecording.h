@@ -17,7 +17,8 @@ struct StoredRecording {
     /// ROOT/NAME. InvalidParams: a wrong name; InputOutput: no sidecar of this logger is there, or it makes
     /// no sense; NotReady: it has not ended.
     static Result<StoredRecording> find(const QString &root, const QString &name, const QString &logger);
-    /// The paths of its files, in order. InputOutput: a name leads out of the folder, or there is none.
+    /// The paths of its files, in order; none where nothing was to be recorded. InputOutput: a name leads out
+    /// of the folder.
     Result<QStringList> files() const;
 };
 

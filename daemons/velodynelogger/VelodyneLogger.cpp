@@ -163,8 +163,9 @@ Result<void> VelodyneLogger::openRecording(const Call &call) {
     if (!stored)
         return stored.error();
     const Result<QStringList> files = stored->files();
-    if (!files)
-        return files.error();
+    if (!files || files->isEmpty())
+        return files ? diskError(stored->folder + ": the recording has no files", stored->folder)
+                     : files.error();
     PcapPlayer::Options play = replayOptions(call);
     play.begin = PlayTime(std::int64_t(stored->start_s * 1e9), std::int64_t(stored->length_s * 1e9),
                           std::int64_t(call.number("delay_s") * 1e9));

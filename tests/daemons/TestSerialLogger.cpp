@@ -161,6 +161,8 @@ void TestSerialLogger::withoutPortsItWaits() {
     QCOMPARE(healthItem("ports").value("level").toString(), "warn");
     QCOMPARE(call("record.start", {{"name", "nothing"}}).toObject().value("recording").toBool(), true);
     QCOMPARE(call("record.stop").toObject().value("bytes").toInt(), 0);
+    call("source.open", {{"recording", "nothing"}}); // nor played: it is at its end
+    QTRY_COMPARE(call("source.status")["source"]["state"].toString(), "ended");
 }
 
 void TestSerialLogger::recordsASerialLine() {

@@ -13,32 +13,28 @@ SessionPlayer::SessionPlayer(Fleet &fleet, QObject *parent)
 
 void SessionPlayer::play(const QJsonObject &session, double speed) {
     live();
-    speed_ = speed;
     for (const QJsonValue &part : session["parts"].toArray()) {
-        const QString logger = part["logger"].toString(), folder = part["folder"].toString();
+        const QString logger = part["logger"].toString();
         DaemonLink *const daemon = fleet_.robot() ? fleet_.robot()->withName(logger) : nullptr;
-        if (!daemon || !daemon->hasMethod("source.open") || folder.isEmpty())
+        if (!daemon || !daemon->hasMethod("source.open"))
             continue;
-        tracks_.push_back({daemon, folder, logger, part["files"].toInt(1)});
+        tracks_.push_back({daemon, part["start"].toDouble() - session["start"].toDouble()});
     }
     if (tracks_.empty())
         return Q_EMIT told(tr("No logger of this robot can replay %1.").arg(session["name"].toString()),
                            true);
     for (Track &track : tracks_)
-        openNext(track);
+        open(track, session["name"].toString(), speed);
     timer_.start();
     Q_EMIT told(tr("Replaying %1.").arg(session["name"].toString()), false);
     Q_EMIT changed();
 }
 
-// The files of a recording are numbered from 1: docs/recording.md.
-void SessionPlayer::openNext(Track &track) {
-    const QString file =
-        QString("%1/%2-%3.pcap").arg(track.folder, track.logger).arg(track.next++, 4, 10, QChar('0'));
+void SessionPlayer::open(Track &track, const QString &recording, double speed) {
     DaemonLink *const daemon = track.daemon;
     track.isOpening = true;
-    daemon->call("source.open", {{"pcap", file}, {"speed", speed_}}, this,
-                 [this, daemon](const Result<QJsonValue> &r) {
+    daemon->call("source.open", {{"recording", recording}, {"speed", speed}, {"delay_s", track.delay_s}},
+                 this, [this, daemon](const Result<QJsonValue> &r) {
                      Track *const opened = trackOf(daemon);
                      if (!opened)
                          return;
@@ -60,13 +56,10 @@ void SessionPlayer::poll() {
 }
 
 void SessionPlayer::onStatus(DaemonLink *daemon, const QJsonObject &status) {
-    Track *const track = trackOf(daemon);
+    const Track *const track = trackOf(daemon);
     const QString state = status["source"].toObject()["state"].toString();
-    if (!track || track->isOpening || state != "ended")
-        return;
-    if (track->next <= track->files)
-        return openNext(*track);
-    finish(daemon);
+    if (track && !track->isOpening && state == "ended")
+        finish(daemon);
 }
 
 void SessionPlayer::finish(DaemonLink *daemon) {

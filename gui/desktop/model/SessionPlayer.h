@@ -6,8 +6,8 @@
 
 namespace hermes {
 
-/// Replays a recorded session through the same topics: each daemon with the command source.open plays the
-/// captures of its part, one file after the other, and is live again at the end.
+/// Replays a recorded session through the same topics: each daemon with the command source.open plays its
+/// part from where it began in the session, and is live again at the end.
 class SessionPlayer : public QObject {
     Q_OBJECT
 public:
@@ -26,12 +26,11 @@ Q_SIGNALS:
 private:
     struct Track {
         QPointer<DaemonLink> daemon;
-        QString folder, logger;
-        int files = 1, next = 1;
+        double delay_s = 0; ///< after the beginning of the session
         bool isOpening = false;
     };
 
-    void openNext(Track &track);
+    void open(Track &track, const QString &recording, double speed);
     void poll();
     void onStatus(DaemonLink *daemon, const QJsonObject &status);
     void finish(DaemonLink *daemon);
@@ -39,7 +38,6 @@ private:
 
     Fleet &fleet_;
     QTimer timer_;
-    double speed_ = 1;
     std::vector<Track> tracks_;
 };
 

@@ -15,8 +15,7 @@ QJsonObject merged(QJsonObject session, const QJsonObject &recording, const QStr
     const bool isFirst = session.isEmpty();
     const double start = recording["start"].toDouble();
     QJsonArray parts = session["parts"].toArray();
-    parts.append(
-        QJsonObject{{"logger", logger}, {"folder", recording["folder"]}, {"files", recording["files"]}});
+    parts.append(QJsonObject{{"logger", logger}, {"start", recording["start"]}});
     return {{"name", recording["name"]},
             {"start", isFirst ? start : std::min(start, session["start"].toDouble())},
             {"end", std::max(recording["end"].toDouble(), session["end"].toDouble())},
