@@ -186,13 +186,17 @@ class Sessions(unittest.TestCase):
         self.check_live()
 
     def test_all_or_none(self):
-        self.serial.daemon.call("settings.set", values={"record": {"free_warn_bytes": 1e15, "free_floor_bytes": 1e15}})
+        full = Serial(self.folder, os.path.join(self.folder, "elsewhere"))  # a disk of its own
+        self.addCleanup(self.end, full)
+        full.daemon.call("settings.set", values={"record": {"free_warn_bytes": 1e15, "free_floor_bytes": 1e15}})
+        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{full.process.port}"
         told = self.ctl("record", "start", "run1", status=1)
         self.assertIn("seriallogger: ", told)
         self.assertIn("free_floor_bytes", told)
         self.assertIn("velodynelogger had begun and was stopped", told)
-        for logger in (self.lidar, self.serial):
+        for logger in (self.lidar, full):
             self.assertFalse(logger.daemon.call("record.status")["recording"])
+        self.assertEqual(self.sidecar("run1", "velodynelogger")["ended"], "stopped")
 
     def test_one_that_died_is_told(self):
         self.record("run1")
