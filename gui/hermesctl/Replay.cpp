@@ -54,6 +54,8 @@ Result<void> replay(const Arguments &arguments) {
     const Result<Session> session = theSession(*loggers, arguments.words.first());
     if (!session)
         return session.error();
+    for (const QString &line : absentLoggers(*loggers, *session))
+        std::fprintf(stderr, "hermesctl: %s\n", qPrintable(line));
     return Replay(*loggers, *session, arguments.speed, arguments.loop).run();
 }
 

@@ -1,6 +1,7 @@
 #include "gui/hermesctl/Sessions.h"
 
 #include <QJsonArray>
+#include <QSet>
 #include <algorithm>
 
 namespace hermes {
@@ -56,6 +57,19 @@ std::vector<Session> findSessions(const Loggers &loggers, QStringList &problems)
     std::stable_sort(sessions.begin(), sessions.end(),
                      [](const Session &a, const Session &b) { return a.start > b.start; });
     return sessions;
+}
+
+QStringList absentLoggers(const Loggers &loggers, const Session &session) {
+    QSet<QString> expected, present;
+    for (const SessionPart &part : session.parts) {
+        present.insert(loggers.name(part.logger).section(QLatin1Char('@'), 0, 0));
+        for (const QJsonValue &logger : part.entry[QStringLiteral("loggers")].toArray())
+            expected.insert(logger.toString());
+    }
+    QStringList lines;
+    for (const QString &logger : expected - present)
+        lines.append(QStringLiteral("%1: it took part, but does not answer").arg(logger));
+    return lines;
 }
 
 QString countsText(const QJsonObject &counts) {

@@ -27,6 +27,9 @@ struct Session {
 /// Those of all loggers, the latest first. What could not be told or read becomes a line of problems.
 std::vector<Session> findSessions(const Loggers &loggers, QStringList &problems);
 
+/// A line for each logger that has a sidecar beside those of the session but is none of these loggers.
+QStringList absentLoggers(const Loggers &loggers, const Session &session);
+
 /// "data 1800, packets 1810": what is not 0.
 QString countsText(const QJsonObject &counts);
 

@@ -1,7 +1,5 @@
 #include "gui/hermesctl/StopCheck.h"
 
-#include <QJsonArray>
-
 namespace hermes {
 
 /// Those that record; and where none does, the sessions that were ended by an error are found.
@@ -55,15 +53,9 @@ Result<void> StopCheck::stop() {
 }
 
 void StopCheck::verify(const Session &session) {
-    QSet<QString> expected, present;
-    for (const SessionPart &part : session.parts) {
+    for (const SessionPart &part : session.parts)
         verify(session, part);
-        present.insert(loggers_.name(part.logger).section(QLatin1Char('@'), 0, 0));
-        for (const QJsonValue &logger : part.entry[QStringLiteral("loggers")].toArray())
-            expected.insert(logger.toString());
-    }
-    for (const QString &logger : expected - present)
-        problems_.append(QStringLiteral("%1: it took part, but does not answer").arg(logger));
+    problems_ += absentLoggers(loggers_, session);
 }
 
 void StopCheck::verify(const Session &session, const SessionPart &part) {

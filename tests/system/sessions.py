@@ -205,6 +205,9 @@ class Sessions(unittest.TestCase):
         shown = ctl("--daemons", self.daemons.split(",")[0], "record", "stop")
         self.assertEqual(shown.returncode, 1)
         self.assertIn("seriallogger: it took part, but does not answer", shown.stderr)
+        shown = ctl("--daemons", self.daemons.split(",")[0], "replay", "run1", "--speed", "10")  # what is there
+        self.assertEqual(shown.returncode, 0)
+        self.assertIn("seriallogger: it took part, but does not answer", shown.stderr)
 
     def test_one_that_began_anew_is_told(self):
         self.record("run1")
