@@ -41,27 +41,30 @@ void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now
             continue;
         Controller &watch = controllers_[i];
         const auto judge = [&](int item, Threshold &threshold, double value, const char *fault,
-                               const QString &text) {
+                               const auto &text) {
             const Level level = threshold.judge(value, now);
             telemetry.levels[item] = std::max(telemetry.levels[item], level);
             if (level == Level::Fault)
-                drive.fault(fault, QString("%1: %2").arg(told.name, text));
+                drive.fault(fault, QString("%1: %2").arg(told.name, text()));
         };
         const ControllerReadings &r = told.readings;
-        judge(0, watch.battery, r.battery_v, "battery",
-              QString("the battery has %1 V, at least %2 V are needed")
-                  .arg(r.battery_v)
-                  .arg(watch.battery.settings().fault));
+        judge(0, watch.battery, r.battery_v, "battery", [&] {
+            return QString("the battery has %1 V, at least %2 V are needed")
+                .arg(r.battery_v)
+                .arg(watch.battery.settings().fault);
+        });
         for (int motor = 0; motor < 2; ++motor)
-            judge(1, watch.current[motor], std::abs(r.current_a[motor]), "current",
-                  QString("M%1 draws %2 A, at most %3 A are allowed")
-                      .arg(motor + 1)
-                      .arg(r.current_a[motor])
-                      .arg(watch.current[motor].settings().fault));
-        judge(2, watch.temperature, r.temperature_c, "temperature",
-              QString("%1 degrees Celsius, at most %2 are allowed")
-                  .arg(r.temperature_c)
-                  .arg(watch.temperature.settings().fault));
+            judge(1, watch.current[motor], std::abs(r.current_a[motor]), "current", [&] {
+                return QString("M%1 draws %2 A, at most %3 A are allowed")
+                    .arg(motor + 1)
+                    .arg(r.current_a[motor])
+                    .arg(watch.current[motor].settings().fault);
+            });
+        judge(2, watch.temperature, r.temperature_c, "temperature", [&] {
+            return QString("%1 degrees Celsius, at most %2 are allowed")
+                .arg(r.temperature_c)
+                .arg(watch.temperature.settings().fault);
+        });
         const QString errors = statusErrors(r.status);
         if (!errors.isEmpty())
             drive.fault(QString("controller_%1").arg(i + 1),

@@ -140,7 +140,9 @@ void MotorControl::declareControlCommands() {
                            }));
     addCommand(Command("control.state", "Who holds the control, and for how long without a further command")
                    .returns(object)
-                   .handler([this](const Call &) -> Result<QJsonValue> { return told_.lease; }));
+                   .handler([this](const Call &) -> Result<QJsonValue> {
+                       return told_.lease.state(monotonicNow());
+                   }));
 }
 
 } // namespace hermes

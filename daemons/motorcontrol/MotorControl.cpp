@@ -3,7 +3,10 @@
 #include "common/Log.h"
 #include "daemons/motorcontrol/MotorJson.h"
 
+#include <QSocketNotifier>
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <future>
 #include <sys/resource.h>
 
@@ -12,6 +15,11 @@ namespace {
 
 constexpr quint64 slowEvery = 5; // cycles between two messages of what changes slowly
 constexpr std::chrono::milliseconds stopLimit{1000};
+// Nobody waits for it.
+Reply unanswered() {
+    return Reply([](const Result<QJsonValue> &) {});
+}
+
 constexpr int niceness = -11; // where it may: what must stop the robot does not wait behind ordinary work
 
 } // namespace
@@ -33,7 +41,7 @@ MotorControl::MotorControl()
                     loop.drive().clientGone(client);
                     return QJsonValue();
                 },
-                Reply([](const Result<QJsonValue> &) {}));
+                unanswered());
     });
 }
 
@@ -59,20 +67,21 @@ void MotorControl::declareTopics() {
 
 Result<void> MotorControl::start() {
     active_ = MotorSettings::from(settings());
-    // The drive loop also waits for locks of the event queue that this thread may hold.
     if (::getpriority(PRIO_PROCESS, 0) > niceness)
         ::setpriority(PRIO_PROCESS, 0, niceness);
-    loop_ = new DriveLoop([this](const Telemetry &telemetry) {
-        QMetaObject::invokeMethod(
-            this, [this, telemetry] { show(telemetry); }, Qt::QueuedConnection);
-    });
+    if (mail_.reports.descriptor() < 0)
+        return Error(ErrorCode::InternalError,
+                     QString("the system gives no event descriptor: %1").arg(std::strerror(errno)));
+    connect(new QSocketNotifier(mail_.reports.descriptor(), QSocketNotifier::Read, this),
+            &QSocketNotifier::activated, this, &MotorControl::takeReports);
+    loop_ = new DriveLoop(active_, mail_);
     loop_->moveToThread(&thread_);
     connect(&thread_, &QThread::finished, loop_, &QObject::deleteLater);
     thread_.setObjectName("drive");
     thread_.start();
     Result<void> outcome;
     QMetaObject::invokeMethod(
-        loop_, [&] { outcome = loop_->start(active_); }, Qt::BlockingQueuedConnection);
+        loop_, [&] { outcome = loop_->start(); }, Qt::BlockingQueuedConnection);
     health().expectEvery("cycle", std::chrono::seconds(1));
     return outcome;
 }
@@ -91,6 +100,9 @@ void MotorControl::stop() {
     thread_.quit();
     thread_.wait();
     loop_ = nullptr;
+    answerJobs(mail_.finished.exchange(0));
+    for (const DriveMail::Job &job : std::exchange(jobs_, {}))
+        job.reply.error(Error(ErrorCode::NotReady, "the daemon is stopping"));
 }
 
 void MotorControl::settingsChanged(const QStringList &paths) {
@@ -105,24 +117,46 @@ void MotorControl::settingsChanged(const QStringList &paths) {
     const auto places = active_.controllers; // wait for a restart
     active_ = MotorSettings::from(settings());
     active_.controllers = places;
-    QMetaObject::invokeMethod(
-        loop_, [loop = loop_, s = active_] { loop->configure(s); }, Qt::QueuedConnection);
+    inLoop(
+        [s = active_](DriveLoop &loop) {
+            loop.configure(s);
+            return QJsonValue();
+        },
+        unanswered());
 }
 
 void MotorControl::inLoop(const Work &work, const Reply &reply) {
     if (!loop_)
         return reply.error(Error(ErrorCode::NotReady, "the daemon is stopping"));
-    QMetaObject::invokeMethod(
-        loop_,
-        [loop = loop_, work, reply] {
-            const Result<QJsonValue> result = work(*loop);
-            loop->obey();
-            reply.give(result);
-        },
-        Qt::QueuedConnection);
+    jobs_.push_back({work, reply});
+    postJobs();
+}
+
+void MotorControl::postJobs() {
+    while (posted_ < jobs_.size() && mail_.asked.post(&jobs_[posted_]))
+        ++posted_;
+}
+
+void MotorControl::answerJobs(std::size_t count) {
+    for (; count > 0; --count) {
+        const DriveMail::Job job = std::move(jobs_.front());
+        jobs_.pop_front();
+        --posted_;
+        job.reply.give(job.result); // may ask for the next one
+    }
+    postJobs();
+}
+
+void MotorControl::takeReports() {
+    const std::size_t finished = mail_.finished.exchange(0); // their effect is in the reports
+    for (const Telemetry &telemetry : mail_.reports.take())
+        show(telemetry);
+    answerJobs(finished);
 }
 
 void MotorControl::show(const Telemetry &telemetry) {
+    if (telemetry.counterJumps != told_.counterJumps)
+        logWarning("drive", "a controller has lost its counts; the odometry goes on from where it was");
     told_ = telemetry;
     if (!telemetry.moved && cycles_ == telemetry.cycle.cycles)
         return; // a report between two cycles

@@ -4,6 +4,7 @@
 #include "daemons/motorcontrol/DriveLoop.h"
 
 #include <QThread>
+#include <deque>
 
 namespace hermes {
 
@@ -21,7 +22,7 @@ protected:
     void settingsChanged(const QStringList &paths) override;
 
 private:
-    using Work = std::function<Result<QJsonValue>(DriveLoop &)>;
+    using Work = decltype(DriveMail::Job::work);
 
     void declareTopics();
     void declareMotorCommands();
@@ -33,10 +34,16 @@ private:
     Command loopCommand(const QString &name, const QString &summary,
                         const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work);
 
+    void postJobs();
+    void takeReports();
+    void answerJobs(std::size_t count);
     void show(const Telemetry &telemetry);
     void updateHealth();
     QJsonObject state() const;
 
+    DriveMail mail_;
+    std::deque<DriveMail::Job> jobs_; // not yet answered
+    std::size_t posted_ = 0;          // of them: the first ones
     QThread thread_;
     DriveLoop *loop_ = nullptr; // lives in thread_
     MotorSettings active_;      // what the loop works with

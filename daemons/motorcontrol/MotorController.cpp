@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hermes {
 
@@ -14,6 +15,8 @@ using roboclaw::Request;
 namespace {
 
 constexpr double setupPause_s = 0.25; // between attempts at a controller that does not answer
+
+constexpr double longestStep_s = 0.04; // a cycle that came later: this program stood still, and asked nothing
 
 constexpr Command setPids[] = {Command::SetVelocityPidM1, Command::SetVelocityPidM2};
 constexpr Command readPids[] = {Command::ReadVelocityPidM1, Command::ReadVelocityPidM2};
@@ -75,9 +78,12 @@ void MotorController::command(const std::array<qint32, 2> &speeds, quint32 accel
 }
 
 void MotorController::beginCycle(double now) {
+    const double step = std::min(now - std::exchange(lastCycle_, now), longestStep_s);
     if (!isReady())
         return;
-    if (now - std::min(lastObeyed_, lastCounts_) > lostAfter_s)
+    sinceObeyed_ += step;
+    sinceCounts_ += step;
+    if (std::max(sinceObeyed_, sinceCounts_) > lostAfter_s)
         return lose(error_.isEmpty() ? "was not heard" : error_);
     overruns_ += wantsEncoders_;
     wantsEncoders_ = wantsSlow_ = true;
@@ -168,7 +174,7 @@ void MotorController::takeSetup(const Bus::Outcome &outcome, double now) {
         if (step_ == 0)
             version_ = QString::fromLatin1(outcome.reply.text.data());
         if (++step_ == setupSteps) {
-            lastObeyed_ = lastCounts_ = now;
+            sinceObeyed_ = sinceCounts_ = 0;
             ++readings_.setups;
             error_.clear();
         }
@@ -223,12 +229,13 @@ void MotorController::finished(Task task, const Bus::Outcome &outcome, double no
     }
     switch (task) {
     case Task::SetPoint:
-        lastObeyed_ = now;
+        sinceObeyed_ = 0;
         obeyed_ = sent_;
         break;
     case Task::Encoders:
         readings_.counts = {quint32(outcome.reply[0]), quint32(outcome.reply[1])};
-        readings_.countsTime = lastCounts_ = outcome.received;
+        readings_.countsTime = outcome.received;
+        sinceCounts_ = 0;
         wantsEncoders_ = false;
         error_.clear();
         break;

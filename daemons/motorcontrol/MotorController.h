@@ -93,7 +93,8 @@ private:
     quint32 acceleration_ = 1;
     int slow_ = 0;
     ControllerReadings readings_;
-    double lastObeyed_ = 0, lastCounts_ = 0; // monotonic
+    double lastCycle_ = 0;                     // monotonic
+    double sinceObeyed_ = 0, sinceCounts_ = 0; // seconds of cycles
     quint64 overruns_ = 0;
 };
 

@@ -1,5 +1,6 @@
 // What the motor control tells about itself: health items, state, motor.state.
 #include "common/Log.h"
+#include "common/Time.h"
 #include "daemons/motorcontrol/MotorControl.h"
 #include "daemons/motorcontrol/MotorJson.h"
 
@@ -66,13 +67,11 @@ void MotorControl::updateHealth() {
                      .arg(cycle.missed),
                  cycleJson(told_, period_s));
 
-    const bool latched = !told_.latch.isEmpty();
-    QStringList reasons;
-    for (const QJsonValue &reason : told_.latch)
-        reasons.append(reason.toString());
+    const bool latched = told_.latch.isSet();
+    const QJsonObject causes = told_.latch.toJson();
     health().set("stop", latched ? HealthLevel::Failed : HealthLevel::Ok,
-                 latched ? reasons.join("; ") : QString("not latched"), told_.latch);
-    const bool fault = told_.latch.size() > int(told_.latch.contains(Drive::emergencyCause));
+                 latched ? told_.latch.text() : QString("not latched"), causes);
+    const bool fault = causes.size() > int(told_.latch.has(Drive::emergencyCause));
     const bool ready = std::all_of(told_.controllers.begin(), told_.controllers.end(),
                                    [](const Telemetry::Controller &c) { return c.ready; });
     setState(fault ? DaemonState::Fault : ready && !latched ? DaemonState::Running : DaemonState::Ready);
@@ -85,10 +84,10 @@ QJsonObject MotorControl::state() const {
     const bool ready = std::all_of(told_.controllers.begin(), told_.controllers.end(),
                                    [](const Telemetry::Controller &c) { return c.ready; });
     return {{"ready", ready},
-            {"estop", told_.latch.contains(Drive::emergencyCause)},
-            {"latched", told_.latch},
+            {"estop", told_.latch.has(Drive::emergencyCause)},
+            {"latched", told_.latch.toJson()},
             {"halted", told_.haltReason},
-            {"control", told_.lease},
+            {"control", told_.lease.state(monotonicNow())},
             {"pose", toJson(told_.pose)},
             {"twist", toJson(told_.twist)},
             {"target", toJson(active_.drive.layout.twist(told_.target))},

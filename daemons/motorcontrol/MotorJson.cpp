@@ -73,6 +73,7 @@ QJsonObject cycleJson(const Telemetry &telemetry, double period_s) {
             {"missed", double(cycle.missed)},
             {"mean_lateness_s", cycle.meanLateness_s},
             {"worst_lateness_s", cycle.worstLateness_s},
+            {"unread", double(telemetry.unread)},
             {"realtime", telemetry.realtime}};
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "daemons/motorcontrol/CycleTimer.h"
+#include "daemons/motorcontrol/Drive.h"
 #include "daemons/motorcontrol/MotorController.h"
 
 namespace hermes {
 
-/// What the drive loop tells about one cycle. Stamps are seconds since the epoch.
+/// What the drive loop tells about one cycle. Stamps are seconds since the epoch. To copy it allocates
+/// nothing.
 struct Telemetry {
     struct Controller {
         QString name, error, version, interface;
@@ -28,7 +30,9 @@ struct Telemetry {
     CycleStatistics cycle;
     bool realtime = false; ///< the cycle goes before all ordinary threads
     QString haltReason;
-    QJsonObject latch, lease;
+    StopLatch latch;
+    ControlLease lease;
+    quint64 unread = 0;                       ///< reports that the rest of the daemon was too slow to take
     std::array<Threshold::Level, 3> levels{}; ///< battery, current, temperature: the worst
 };
 

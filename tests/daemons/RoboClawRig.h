@@ -1,7 +1,7 @@
 #pragma once
 
-#include "PriorityMutex.h"
 #include "WireEar.h"
+#include "common/PriorityMutex.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
 
@@ -263,7 +263,7 @@ private:
 
     const std::string link_;
     std::vector<Emulator> emulators_;
-    PriorityMutex mutex_;
+    hermes::PriorityMutex mutex_;
     int far_ = -1, near_ = -1; // near is held open, so that the far end can be read before a program comes
     std::atomic<double> voltage_{25};
     std::atomic<double> lastMoved_{0}, lastDriven_{0};

@@ -2,6 +2,8 @@
 
 #include <pthread.h>
 
+namespace hermes {
+
 /// A mutex for std::lock_guard whose holder runs with the priority of a real-time thread that waits for it:
 /// on a busy machine an ordinary thread would keep that one waiting for tens of milliseconds.
 class PriorityMutex {
@@ -23,3 +25,5 @@ public:
 private:
     pthread_mutex_t mutex_;
 };
+
+} // namespace hermes

@@ -1,0 +1,132 @@
+#include "daemons/motorcontrol/DriveEngine.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hermes {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double overspeed = 1.5; // times full duty: faster no wheel turns
+
+} // namespace
+
+DriveEngine::DriveEngine(const MotorSettings &settings) {
+    for (int i = 0; i < controllerCount; ++i) {
+        controllers_.push_back(std::make_unique<MotorController>(i + 1, settings.controllers[i]));
+        telemetry_.controllers[i].name = controllers_.back()->name();
+    }
+    configure(settings);
+}
+
+void DriveEngine::configure(const MotorSettings &settings) {
+    settings_ = settings;
+    drive_.configure(settings.drive);
+    odometry_.setNoise(settings.odometry);
+    tracker_.configure(settings.wheels, settings.countsPerTurn,
+                       overspeed * settings.pid.qpps * 2 * pi / settings.countsPerTurn);
+    faults_.configure(settings);
+    for (const auto &controller : controllers_)
+        controller->configure(settings);
+}
+
+void DriveEngine::retire(const QString &why) {
+    drive_.setNotReady(why);
+    retired_ = true;
+    stand();
+}
+
+bool DriveEngine::obey() {
+    telemetry_.moved = false;
+    const bool halts = drive_.setPoint() == WheelValues{} && sent_ != WheelValues{};
+    if (halts)
+        stand();
+    return halts;
+}
+
+void DriveEngine::cycle(double now) {
+    for (const auto &controller : controllers_)
+        controller->beginCycle(now);
+    updateReadiness();
+    takeReadings();
+    trackWheels(now);
+    faults_.judgeControllers(telemetry_, drive_, now);
+    command(drive_.step(now));
+}
+
+bool DriveEngine::hasObeyed() const {
+    return std::all_of(controllers_.begin(), controllers_.end(),
+                       [](const auto &c) { return !c->isReady() || c->hasObeyed(); });
+}
+
+void DriveEngine::updateReadiness() {
+    if (retired_)
+        return;
+    for (const auto &controller : controllers_) {
+        if (!controller->isReady())
+            return drive_.setNotReady(controller->name() + ": " + controller->error());
+    }
+    drive_.setReady();
+}
+
+void DriveEngine::takeReadings() {
+    for (int i = 0; i < controllerCount; ++i) {
+        const MotorController &controller = *controllers_[i];
+        Telemetry::Controller &told = telemetry_.controllers[i];
+        told.error = controller.error();
+        told.version = controller.version();
+        told.ready = controller.isReady();
+        told.readings = controller.readings();
+        told.overruns = controller.overruns();
+    }
+}
+
+void DriveEngine::trackWheels(double now) {
+    const auto motion = tracker_.update({&controllers_[0]->readings(), &controllers_[1]->readings()});
+    telemetry_.moved = motion.has_value();
+    if (!motion) {
+        if (now - telemetry_.mono > MotorController::lostAfter_s)
+            faults_.forgetWheels();
+        return;
+    }
+    telemetry_.mono = motion->time;
+    telemetry_.speeds = motion->speeds;
+    for (int i = 0; i < wheelCount; ++i)
+        telemetry_.turns[i] += motion->turns[i];
+    telemetry_.twist = settings_.drive.layout.twist(motion->speeds);
+    telemetry_.slip = settings_.drive.layout.slip(motion->speeds);
+    odometry_.move(settings_.drive.layout.twist(motion->turns));
+    if (!motion->plausible) {
+        ++telemetry_.counterJumps;
+        odometry_.doubt(0.1, 0.1);
+    }
+    faults_.judgeWheels(sent_, motion->speeds, drive_, now);
+}
+
+void DriveEngine::command(const WheelValues &setPoint) {
+    const double countsPerRadian = settings_.countsPerTurn / (2 * pi);
+    const auto acceleration =
+        quint32(std::llround(settings_.emergencyDeceleration / settings_.wheelRadius * countsPerRadian));
+    std::array<std::array<qint32, 2>, controllerCount> speeds{};
+    for (int i = 0; i < wheelCount; ++i) {
+        const WheelMount &wheel = settings_.wheels[i];
+        speeds[wheel.controller][wheel.motor] =
+            qint32(std::lround(wheel.sign * setPoint[i] * countsPerRadian));
+    }
+    for (int i = 0; i < controllerCount; ++i)
+        controllers_[i]->command(speeds[i], acceleration);
+    sent_ = setPoint;
+}
+
+Telemetry &DriveEngine::report() {
+    telemetry_.pose = odometry_.pose();
+    telemetry_.covariance = odometry_.covariance();
+    telemetry_.target = drive_.target();
+    telemetry_.setPoint = drive_.setPoint();
+    telemetry_.haltReason = drive_.haltReason();
+    telemetry_.latch = drive_.latch();
+    telemetry_.lease = drive_.lease();
+    return telemetry_;
+}
+
+} // namespace hermes

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "daemons/motorcontrol/FaultWatch.h"
+#include "daemons/motorcontrol/WheelTracker.h"
+
+#include <memory>
+
+namespace hermes {
+
+/// The work of a cycle: set-points for the controllers, motion from their readings, faults. Knows no clock,
+/// no thread and no line; times are monotonic.
+class DriveEngine {
+public:
+    explicit DriveEngine(const MotorSettings &settings);
+
+    /// New settings, except those of the lines. Halts.
+    void configure(const MotorSettings &settings);
+    /// From now on the robot may not move.
+    void retire(const QString &why);
+
+    void cycle(double now);
+    /// After a command or configure(): a halt is given to the controllers at once. True when there is one.
+    bool obey();
+    /// Gives a stand to the controllers, whatever they were told before.
+    void stand() { command({}); }
+    /// All that are ready have acknowledged their set-point.
+    bool hasObeyed() const;
+
+    Drive &drive() { return drive_; }
+    Odometry &odometry() { return odometry_; }
+    MotorController &controller(int index) { return *controllers_[size_t(index)]; }
+    /// Of the last cycle, with what has changed since; the owner adds what it knows of lines, clock and
+    /// thread.
+    Telemetry &report();
+
+private:
+    void updateReadiness();
+    void takeReadings();
+    void trackWheels(double now);
+    void command(const WheelValues &setPoint);
+
+    MotorSettings settings_;
+    Drive drive_;
+    Odometry odometry_;
+    WheelTracker tracker_;
+    FaultWatch faults_;
+    std::vector<std::unique_ptr<MotorController>> controllers_;
+    Telemetry telemetry_;
+    WheelValues sent_{}; // the set-point of the last cycle
+    bool retired_ = false;
+};
+
+} // namespace hermes
