@@ -30,6 +30,8 @@ private Q_SLOTS:
     void emergencyStopLatches();
     void stopsBrakeWithTheEmergencyDeceleration();
     void silentClientIsStopped();
+    void aBusyMainThreadDelaysNoStop();
+    void manyCommandsAtOnceAreAllAnswered();
     void clientThatGoesIsStopped();
     void newPidIsWrittenAndReadBack();
     void twoLines();
@@ -268,6 +270,38 @@ void TestMotorControl::silentClientIsStopped() {
     QTRY_VERIFY_WITH_TIMEOUT(rig_->zeroSince() < RoboClawRig::now(), 1000);
     QCOMPARE(state()["halted"].toString(), QString("no command for 0.25 s"));
     drive({{"vx", 0.5}}, 0.2); // the control was kept
+}
+
+// Longer than the mail to it holds: the cycle goes on, and tells how much was not read.
+void TestMotorControl::aBusyMainThreadDelaysNoStop() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    call("control.acquire", {{"timeout_s", 10}});
+    drive({{"vx", 0.5}}, 0.5);
+    const double commanded = RoboClawRig::now();
+    while (RoboClawRig::now() < commanded + 2) {
+    } // the daemon's main thread is this one
+    QVERIFY2(rig_->zeroSince() < commanded + 0.5, qPrintable(QString::number(rig_->zeroSince() - commanded)));
+    QTRY_VERIFY(state()["cycle"].toObject()["unread"].toInt() > 10);
+    QVERIFY(state()["ready"].toBool());
+    drive({{"vx", 0.5}}, 0.2);
+}
+
+// More than the mail to the loop holds.
+void TestMotorControl::manyCommandsAtOnceAreAllAnswered() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    constexpr int count = 300;
+    QStringList names;
+    for (int i = 0; i < count; ++i)
+        client_->call("control.acquire", QJsonObject{{"client", QString::number(i)}},
+                      [&](const Result<QJsonValue> &result) {
+                          names.append(result ? result->toObject()["holder"].toString()
+                                              : result.error().message);
+                      });
+    QTRY_COMPARE(names.size(), count);
+    for (int i = 0; i < count; ++i)
+        QVERIFY2(names[i] == QString::number(i), qPrintable(QString("%1: %2").arg(i).arg(names[i])));
 }
 
 void TestMotorControl::clientThatGoesIsStopped() {
