@@ -20,7 +20,8 @@ protected:
     /// m/s at the rim, or m
     static double atRim(double counts) { return counts / countsPerTurn * 2 * std::acos(-1.0) * radius; }
 
-    QString url(const QString &link = "line") const { return "serial://" + folder_->filePath(link); }
+    QString url() const { return rig_ ? rig_->url() : url("line"); }
+    QString url(const QString &link) const { return "serial://" + folder_->filePath(link); }
     QString address() const { return daemon_->server().addresses().value(0); }
     QJsonObject state() { return call("motor.state"); }
 
@@ -31,6 +32,11 @@ protected:
     void plug(const std::vector<hermes::RoboClawEmulator::Options> &controllers) {
         rig_.reset();
         rig_ = std::make_unique<RoboClawRig>(folder_->filePath("line"), controllers);
+    }
+    /// The same controllers behind a serial server instead: their bytes need no kernel thread that waits.
+    void plugServer() {
+        rig_.reset();
+        rig_ = std::make_unique<RoboClawRig>(QString(), std::vector{controllerAt(0x80), controllerAt(0x81)});
     }
     void tearDown() {
         client_.reset();

@@ -17,18 +17,23 @@
 #include <fcntl.h>
 #include <limits>
 #include <mutex>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <pthread.h>
 #include <pty.h>
 #include <random>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <termios.h>
 #include <thread>
 #include <unistd.h>
 #include <vector>
 
-/// A robot for tests of the motor control: emulated controllers on a pseudo-terminal, in a thread of their
-/// own that runs in real time, and an ear on the wire.
+/// A robot for tests of the motor control: emulated controllers on a pseudo-terminal or behind a serial
+/// server, in a thread of their own that runs in real time, and an ear on the wire. The bytes of a
+/// pseudo-terminal pass through an ordinary kernel thread, which on a busy machine holds them up for tenths
+/// of a second; those of the serial server do not.
 class RoboClawRig {
 public:
     using Emulator = hermes::RoboClawEmulator;
@@ -38,18 +43,26 @@ public:
 
     using SetPoint = WireEar::SetPoint;
 
-    /// link: where programs find the line.
+    /// link: where programs find the line; empty: a serial server, see url().
     RoboClawRig(const QString &link, const std::vector<Emulator::Options> &controllers)
         : link_(link.toStdString()) {
         for (const Emulator::Options &options : controllers)
             emulators_.emplace_back(options);
-        plugIn();
+        link_.empty() ? listen() : plugIn();
         thread_ = std::thread([this] { run(); });
     }
     ~RoboClawRig() {
         ends_ = true;
         thread_.join();
         pull();
+        if (server_ >= 0)
+            ::close(server_);
+    }
+
+    /// The line for settings.
+    QString url() const {
+        return link_.empty() ? QString("tcp://127.0.0.1:%1").arg(port_)
+                             : "serial://" + QString::fromStdString(link_);
     }
 
     static double now() {
@@ -160,6 +173,30 @@ public:
     }
 
 private:
+    void listen() {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof(address);
+        auto *generic = reinterpret_cast<sockaddr *>(&address);
+        server_ = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+        if (::bind(server_, generic, size) != 0 || ::listen(server_, 1) != 0 ||
+            ::getsockname(server_, generic, &size) != 0)
+            std::abort();
+        port_ = ntohs(address.sin_port);
+    }
+    void acceptHost() {
+        far_ = ::accept4(server_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        const int on = 1;
+        if (far_ >= 0)
+            ::setsockopt(far_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof(on));
+    }
+    void answer(const hermes::roboclaw::Bytes &bytes) {
+        if (server_ >= 0)
+            ::send(far_, bytes.data(), bytes.size(), MSG_NOSIGNAL); // the host may have been killed
+        else if (::write(far_, bytes.data(), bytes.size()) < 0)
+            std::abort(); // the host does not read
+    }
     quint8 noisy(quint8 byte) {
         ++noise_.bytes;
         if (std::uniform_real_distribution<double>()(random_) >= flips_)
@@ -170,6 +207,10 @@ private:
     void receive() {
         quint8 bytes[256];
         const auto size = ::read(far_, bytes, sizeof(bytes));
+        if (size == 0 && server_ >= 0) { // the host has hung up
+            ::close(far_);
+            far_ = -1;
+        }
         for (int i = 0; i < size; ++i) {
             ear_.hear(bytes[i], now(), rimSpeed_);
             const quint8 byte = noisy(bytes[i]);
@@ -234,20 +275,22 @@ private:
             pollfd line{-1, POLLIN, 0};
             {
                 const std::lock_guard lock(mutex_);
-                line.fd = far_;
+                line.fd = far_ >= 0 ? far_ : server_;
             }
             ::poll(&line, 1, 1);
             const std::lock_guard lock(mutex_);
             const double time = now();
             for (double at = before; at < time; at += step)
                 advance(std::min(step, time - at), std::min(at + step, time));
+            if (far_ < 0 && server_ >= 0)
+                acceptHost();
             if (far_ >= 0) {
                 ::ioctl(near_, TIOCNXCL); // the claim of a program that was killed
                 receive();
             }
             while (!late_.empty() && late_.front().due <= now()) {
-                if (far_ >= 0 && ::write(far_, late_.front().bytes.data(), late_.front().bytes.size()) < 0)
-                    std::abort(); // the host does not read
+                if (far_ >= 0)
+                    answer(late_.front().bytes);
                 late_.pop_front();
             }
             before = time;
@@ -264,6 +307,7 @@ private:
     const std::string link_;
     std::vector<Emulator> emulators_;
     hermes::PriorityMutex mutex_;
+    int server_ = -1, port_ = 0;
     int far_ = -1, near_ = -1; // near is held open, so that the far end can be read before a program comes
     std::atomic<double> voltage_{25};
     std::atomic<double> lastMoved_{0}, lastDriven_{0};

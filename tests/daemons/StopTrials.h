@@ -5,11 +5,11 @@
 
 #include <QProcess>
 #include <QRegularExpression>
-#include <QTemporaryDir>
 #include <QtTest>
 
 /// Trials of how fast hermes-motorcontrol stops: the daemon and a driving client as processes, emulated
-/// controllers with wheels and body in this one. Times are taken at the far end of the serial line.
+/// controllers with wheels and body in this one. Times are taken at the far end of the line, that of a serial
+/// server.
 class StopTrials {
 protected:
     static constexpr double deceleration = 4; // m/s^2, the default of safety.deceleration
@@ -22,10 +22,9 @@ protected:
     }
 
     void setUp() {
-        folder_ = std::make_unique<QTemporaryDir>();
         hermes::RoboClawEmulator::Options first, second;
         second.address = 0x81;
-        rig_ = std::make_unique<RoboClawRig>(folder_->filePath("line"), std::vector{first, second});
+        rig_ = std::make_unique<RoboClawRig>(QString(), std::vector{first, second});
         startDaemon();
     }
     void tearDown() {
@@ -41,7 +40,7 @@ protected:
     }
 
     void startDaemon() {
-        const QString url = "serial://" + folder_->filePath("line");
+        const QString url = rig_->url();
         daemon_ = std::make_unique<QProcess>();
         daemon_->setProcessChannelMode(QProcess::MergedChannels);
         // Should this program be ended, the daemon must not go on and find the line of another test.
@@ -66,7 +65,7 @@ protected:
         for (int attempt = 0; attempt < 50 && !isDriving(); ++attempt) {
             driver_->start(program, words);
             // Until the controllers are set up, and the control is free, it is refused and ends.
-            QTRY_VERIFY_WITH_TIMEOUT(isDriving() || driver_->state() == QProcess::NotRunning, 5000);
+            QTRY_VERIFY_WITH_TIMEOUT(isDriving() || driver_->state() == QProcess::NotRunning, 20000);
         }
         QVERIFY2(isDriving(), driver_->readAllStandardError().constData());
     }
@@ -136,7 +135,6 @@ protected:
     }
 
     QString host_ = "127.0.0.1"; // where the daemon listens
-    std::unique_ptr<QTemporaryDir> folder_;
     std::unique_ptr<RoboClawRig> rig_;
     std::unique_ptr<QProcess> daemon_, driver_;
     QString port_;

@@ -7,7 +7,10 @@ using namespace hermes;
 class TestMotorNoise : public QObject, MotorFixture {
     Q_OBJECT
 private Q_SLOTS:
-    void init() { setUp(); }
+    void init() {
+        setUp();
+        plugServer();
+    }
     void cleanup() { tearDown(); }
     void flippedBytesStopAndMoveNothing();
 
