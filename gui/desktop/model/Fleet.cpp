@@ -9,6 +9,10 @@ Result<void> Fleet::add(const QString &address) {
     const auto url = InterfaceUrl::parse(hasPort ? address : address + ":1");
     if (!url)
         return url.error();
+    if (url->scheme != "tcp" || url->host.isEmpty() || url->port == 0 || !url->path.isEmpty())
+        return Error(
+            ErrorCode::InvalidParams,
+            tr("address \"%1\": expected HOST or HOST:PORT, with a port from 1 to 65535").arg(address));
     Robot &robot = robotAt(url->host);
     if (hasPort)
         robot.add(url->port, true);

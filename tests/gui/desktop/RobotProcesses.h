@@ -68,6 +68,11 @@ public:
             QVERIFY(fleet.add(QString("127.0.0.1:%1").arg(daemon.port)).ok());
         QTRY_VERIFY_WITH_TIMEOUT(areAllReady(*fleet.robots().front()), 20000);
     }
+    static quint16 freePort() {
+        QTcpServer probe;
+        probe.listen(QHostAddress::LocalHost);
+        return probe.serverPort();
+    }
     quint16 port(const QString &name) const { return daemons_.at(name).port; }
     QString path(const QString &name) const { return folder_.filePath(name); }
 
@@ -78,11 +83,6 @@ private:
     };
 
     QString motorLink() const { return folder_.filePath("motors"); }
-    static quint16 freePort() {
-        QTcpServer probe;
-        probe.listen(QHostAddress::LocalHost);
-        return probe.serverPort();
-    }
     bool areAllReady(const Robot &robot) const {
         for (const auto &[name, daemon] : daemons_)
             if (!robot.withName(name) || !robot.withName(name)->hasTopic("status"))

@@ -1,0 +1,174 @@
+#include "gui/desktop/panels/CommandsPanel.h"
+#include "gui/desktop/panels/DaemonsPanel.h"
+#include "gui/desktop/panels/LogPanel.h"
+#include "gui/desktop/panels/PlotsPanel.h"
+#include "gui/desktop/panels/SettingsPanel.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QLabel>
+#include <QListWidget>
+#include <QPlainTextEdit>
+#include <csignal>
+
+using namespace hermes;
+
+/// A supervisor with two daemons, one of them in Python, which the window has never heard of.
+class TestDaemonsPanel : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void daemonOfAnotherLanguageShowsAllItHas();
+    void stopStartRestart();
+    void killedDaemonComesBack();
+    void whatNobodyManagesHasNoButtons();
+    void addedByAddress();
+    void badAddressIsToldBesideIt();
+
+private:
+    /// By its port: others may run daemons of these names on this machine.
+    DaemonLink *daemon(const QString &name) const {
+        for (DaemonLink *found : window_->fleet.robot()->daemons())
+            if (found->isKnown() && found->address().endsWith(QString(":%1").arg(ports_.at(name))))
+                return found;
+        return nullptr;
+    }
+    QJsonObject process(const QString &name) const { return window_->fleet.robot()->process(*daemon(name)); }
+    int pid(const QString &name) const { return process(name)["pid"].toInt(); }
+    QString stateOf(const QString &name) const { return window_->row(daemon(name))->text(1); }
+    DaemonsPanel *panel() const { return window_->panel<DaemonsPanel>("daemons"); }
+    QLabel *message() const { return panel()->findChild<QLabel *>("message"); }
+
+    std::map<QString, quint16> ports_;
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> window_;
+};
+
+void TestDaemonsPanel::init() {
+    robot_ = std::make_unique<RobotProcesses>();
+    ports_ = {{"fan", RobotProcesses::freePort()}, {"scanmatcher", RobotProcesses::freePort()}};
+    const QString url = QString("tcp://127.0.0.1:%1?protocol=json").arg(ports_["scanmatcher"]);
+    const QJsonArray processes{
+        QJsonObject{{"name", "fan"},
+                    {"program", qEnvironmentVariable("HERMES_SOURCE") + "/docs/examples/daemon.py"},
+                    {"arguments", QJsonArray{"--port", QString::number(ports_["fan"])}},
+                    {"port", ports_["fan"]},
+                    {"autostart", true}},
+        QJsonObject{{"name", "scanmatcher"},
+                    {"arguments", QJsonArray{"--listen", url}},
+                    {"port", ports_["scanmatcher"]},
+                    {"autostart", true}}};
+    ports_["supervisor"] =
+        robot_->start("supervisor", {"robot=rover",
+                                     "processes=" + QJsonDocument(processes).toJson(QJsonDocument::Compact)});
+    window_ = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(window_->show());
+    QTRY_VERIFY_WITH_TIMEOUT(daemon("fan") && daemon("fan")->hasTopic("air"), 10000);
+    QTRY_VERIFY_WITH_TIMEOUT(daemon("scanmatcher") && pid("fan") > 0, 10000);
+    QCOMPARE(window_->fleet.robot()->name(), QString("rover"));
+}
+
+void TestDaemonsPanel::cleanup() {
+    window_.reset();
+    robot_.reset();
+}
+
+void TestDaemonsPanel::daemonOfAnotherLanguageShowsAllItHas() {
+    QTRY_COMPARE(stateOf("fan"), QString("running"));
+    QVERIFY(window_->choose(daemon("fan")));
+    QTRY_COMPARE(window_->row(daemon("fan"))->childCount(), 1);
+    QCOMPARE(window_->row(daemon("fan"))->child(0)->text(0), QString("air"));
+    QCOMPARE(window_->row(daemon("fan"))->child(0)->text(1), QString("ok"));
+
+    auto *const settings = window_->panel<SettingsPanel>("settings");
+    QTRY_VERIFY(settings->findChild<QWidget *>("alarm_c"));
+    QCOMPARE(settings->findChild<QLabel *>("alarm_c/note")->text(), QString("-20 to 120"));
+    OpenWindow::type(settings->findChild<QWidget *>("alarm_c")->findChild<QLineEdit *>(), "20");
+    OpenWindow::click(settings, "apply");
+    QTRY_COMPARE(window_->row(daemon("fan"))->child(0)->text(1), QString("warn"));
+    QTRY_COMPARE(stateOf("fan"), QString("warning"));
+
+    auto *const commands = window_->panel<CommandsPanel>("commands");
+    auto *const methods = commands->findChild<QListWidget *>("methods");
+    methods->setCurrentItem(methods->findItems("fan.boost", Qt::MatchExactly).value(0));
+    QVERIFY(!commands->findChild<QPushButton *>("call")->isEnabled()); // the duration is missing
+    OpenWindow::type(commands->findChild<QWidget *>("duration_s")->findChild<QLineEdit *>(), "7");
+    OpenWindow::click(commands, "call");
+    QTRY_VERIFY(commands->findChild<QPlainTextEdit *>("answer")->toPlainText().contains("\"speed\": 1"));
+    auto *const records = window_->panel<LogPanel>("log")->findChild<QPlainTextEdit *>("records");
+    QTRY_VERIFY(records->toPlainText().contains("full speed for 7 s"));
+
+    auto *const topics = window_->panel<PlotsPanel>("plots")->findChild<QTreeWidget *>("topics");
+    QTreeWidgetItem *const air = topics->findItems("air", Qt::MatchExactly | Qt::MatchRecursive).value(0);
+    QVERIFY(air);
+    air->setExpanded(true);
+    QTRY_COMPARE(air->childCount(), 2);
+    QCOMPARE(air->child(1)->text(0), QString("temperature_c"));
+}
+
+void TestDaemonsPanel::stopStartRestart() {
+    QVERIFY(window_->choose(daemon("fan")));
+    const int first = pid("fan");
+    OpenWindow::click(panel(), "process.stop");
+    QTRY_COMPARE(stateOf("fan"), QString("stopped"));
+    QTRY_VERIFY(!panel()->findChild<QPushButton *>("process.stop")->isEnabled());
+    OpenWindow::click(panel(), "process.start");
+    QTRY_COMPARE_WITH_TIMEOUT(stateOf("fan"), QString("running"), 10000);
+    QVERIFY(pid("fan") != first);
+    const int second = pid("fan");
+    OpenWindow::click(panel(), "process.restart");
+    QTRY_VERIFY_WITH_TIMEOUT(pid("fan") > 0 && pid("fan") != second, 10000);
+    QTRY_COMPARE_WITH_TIMEOUT(stateOf("fan"), QString("running"), 10000);
+    QVERIFY(!message()->isVisible());
+}
+
+void TestDaemonsPanel::killedDaemonComesBack() {
+    QVERIFY(window_->choose(daemon("scanmatcher")));
+    QTRY_VERIFY_WITH_TIMEOUT(pid("scanmatcher") > 0 && daemon("scanmatcher")->isConnected(), 10000);
+    const DaemonLink *const before = daemon("scanmatcher");
+    QCOMPARE(::kill(pid("scanmatcher"), SIGKILL), 0);
+    QTRY_COMPARE(before->condition(), Condition::Unreachable);
+    QTRY_VERIFY_WITH_TIMEOUT(before->isConnected(), 10000);
+    QCOMPARE(daemon("scanmatcher"), before); // the same row, still chosen
+    QVERIFY(window_->fleet.daemon() == before);
+    QTRY_COMPARE(process("scanmatcher")["restarts"].toInt(), 1);
+}
+
+void TestDaemonsPanel::whatNobodyManagesHasNoButtons() {
+    QVERIFY(window_->choose(daemon("supervisor")));
+    for (const char *const name : {"process.start", "process.stop", "process.restart"}) {
+        auto *const button = panel()->findChild<QPushButton *>(name);
+        QVERIFY(!button->isEnabled());
+        QVERIFY(button->toolTip().contains("supervisor"));
+    }
+}
+
+void TestDaemonsPanel::addedByAddress() {
+    const quint16 port = robot_->start("velodynelogger");
+    auto *const field = panel()->findChild<QLineEdit *>("address");
+    OpenWindow::type(field, QString(" localhost:%1").arg(port));
+    QTest::keyClick(field, Qt::Key_Return);
+    QVERIFY(field->text().isEmpty());
+    QCOMPARE(window_->fleet.robots().size(), size_t(2));
+    const Robot &other = *window_->fleet.robots().back();
+    QTRY_VERIFY_WITH_TIMEOUT(other.withName("velodynelogger"), 10000);
+    QVERIFY(window_->choose(other.withName("velodynelogger")));
+    QCOMPARE(window_->fleet.robot(), &other);
+}
+
+void TestDaemonsPanel::badAddressIsToldBesideIt() {
+    auto *const field = panel()->findChild<QLineEdit *>("address");
+    for (const char *const address :
+         {"", ":", "robot:", "robot:0", "robot:65536", "robot:x", "http://robot:80", "robot:80/path",
+          "a b:7400", "[::1", "1.2.3.4:7400:7410"}) {
+        OpenWindow::type(field, address);
+        OpenWindow::click(panel(), "add");
+        QVERIFY2(message()->isVisible(), address);
+        QVERIFY2(message()->text().contains(address), qPrintable(message()->text()));
+        QCOMPARE(field->text(), QString(address)); // to be mended
+        QCOMPARE(window_->fleet.robots().size(), size_t(1));
+    }
+}
+
+QTEST_MAIN(TestDaemonsPanel)
+#include "TestDaemonsPanel.moc"
