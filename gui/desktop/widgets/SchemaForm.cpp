@@ -187,6 +187,9 @@ void SchemaForm::check() {
     errors_.clear();
     for (const SchemaViolation &violation : validator_->check(values()))
         errors_[violation.path] = violation.expected;
+    for (const auto &[path, row] : rows_) // what has a value cannot be left without one
+        if (row.editor->value().isUndefined() && !valueAt(baseline_, path).isUndefined())
+            errors_[path] = expectation(row.schema);
     for (auto &[path, row] : rows_)
         mark(path, row);
 }

@@ -53,7 +53,7 @@ public:
     }
     /// Replaces the text of a field by typing.
     static void type(QLineEdit *field, const QString &text) {
-        QVERIFY(field && field->isVisible());
+        QTRY_VERIFY(field && field->isVisible()); // a new one is shown with the next event
         field->setFocus();
         field->selectAll();
         QTest::keyClick(field, Qt::Key_Delete);

@@ -23,11 +23,12 @@ public:
     }
 
     /// Starts hermes-NAME with settings as `path=value`; gives its port.
-    quint16 start(const QString &name, const QStringList &settings = {}) {
+    quint16 start(const QString &name, const QStringList &settings = {}, const QStringList &options = {}) {
         Daemon &daemon = daemons_[name];
         if (daemon.port == 0)
             daemon.port = freePort();
         QStringList arguments{"--listen", QString("tcp://127.0.0.1:%1?protocol=json").arg(daemon.port)};
+        arguments << options;
         for (const QString &setting : settings)
             arguments << "--set" << setting;
         daemon.process = std::make_unique<QProcess>();

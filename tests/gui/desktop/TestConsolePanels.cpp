@@ -1,0 +1,196 @@
+#include "gui/desktop/panels/CommandsPanel.h"
+#include "gui/desktop/panels/LogPanel.h"
+#include "gui/desktop/panels/PlotsPanel.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QChart>
+#include <QChartView>
+#include <QComboBox>
+#include <QFile>
+#include <QLabel>
+#include <QListWidget>
+#include <QPlainTextEdit>
+#include <QValueAxis>
+#include <QXYSeries>
+
+using namespace hermes;
+
+/// The console, the log and the plots of a robot in the simulator.
+class TestConsolePanels : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void initTestCase();
+    void cleanupTestCase();
+    void commandWithParameters();
+    void wrongParametersAreToldAtTheirRows();
+    void refusedCommandShowsItsError();
+    void commandsAreFound();
+    void logOfAllDaemonsFiltered();
+    void plotTickedPausedAndWritten();
+    void plotThatCannotBeWritten();
+    void goneDaemonIsTold();
+
+private:
+    DaemonLink *daemon(const QString &name) const { return window_->fleet.robot()->withName(name); }
+    CommandsPanel *commands() const { return window_->panel<CommandsPanel>("commands"); }
+    void chooseMethod(const QString &name) const {
+        auto *const methods = commands()->findChild<QListWidget *>("methods");
+        const auto found = methods->findItems(name, Qt::MatchExactly);
+        QVERIFY2(!found.isEmpty(), qPrintable(name));
+        methods->scrollToItem(found[0]);
+        QTest::mouseClick(methods->viewport(), Qt::LeftButton, {},
+                          methods->visualItemRect(found[0]).center());
+        QCOMPARE(methods->currentItem(), found[0]);
+    }
+    QLineEdit *parameter(const QString &name) const {
+        return commands()->findChild<QWidget *>(name)->findChild<QLineEdit *>();
+    }
+    QString answer() const { return commands()->findChild<QPlainTextEdit *>("answer")->toPlainText(); }
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> window_;
+};
+
+void TestConsolePanels::initTestCase() {
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startMotors();
+    window_ = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(window_->show());
+    QVERIFY(window_->choose(daemon("simulator")));
+}
+
+void TestConsolePanels::cleanupTestCase() {
+    window_.reset();
+    robot_.reset();
+}
+
+void TestConsolePanels::commandWithParameters() {
+    chooseMethod("sim.place");
+    QVERIFY(!commands()->findChild<QPushButton *>("call")->isEnabled()); // x and y are missing
+    OpenWindow::type(parameter("x"), "0.5");
+    OpenWindow::type(parameter("y"), "-0.25");
+    OpenWindow::type(parameter("theta"), "1");
+    OpenWindow::click(commands(), "call");
+    QTRY_VERIFY(answer().startsWith("sim.place: "));
+    QVERIFY2(answer().contains(" ms") && !answer().contains("Error"), qPrintable(answer()));
+}
+
+void TestConsolePanels::wrongParametersAreToldAtTheirRows() {
+    chooseMethod("sim.place");
+    OpenWindow::type(parameter("x"), "here");
+    QVERIFY(commands()->findChild<QLabel *>("x/note")->text().startsWith("expected"));
+    QVERIFY(!commands()->findChild<QPushButton *>("call")->isEnabled());
+}
+
+void TestConsolePanels::refusedCommandShowsItsError() {
+    QVERIFY(window_->choose(daemon("motorcontrol")));
+    chooseMethod("motor.drive"); // without the control
+    OpenWindow::click(commands(), "call");
+    QTRY_VERIFY2(answer().contains("Error -3200"), qPrintable(answer()));
+    QVERIFY(window_->choose(daemon("simulator")));
+}
+
+void TestConsolePanels::commandsAreFound() {
+    auto *const methods = commands()->findChild<QListWidget *>("methods");
+    auto *const filter = commands()->findChild<QLineEdit *>("filter");
+    const int all = methods->count();
+    OpenWindow::type(filter, "settings.");
+    QVERIFY(methods->count() >= 4 && methods->count() < all);
+    OpenWindow::type(filter, "no such command");
+    QCOMPARE(methods->count(), 0);
+    QVERIFY(!commands()->findChild<QPushButton *>("call")->isEnabled());
+    OpenWindow::type(filter, "");
+    QCOMPARE(methods->count(), all);
+}
+
+void TestConsolePanels::logOfAllDaemonsFiltered() {
+    auto *const panel = window_->panel<LogPanel>("log");
+    auto *const records = panel->findChild<QPlainTextEdit *>("records");
+    auto *const level = panel->findChild<QComboBox *>("level");
+    auto *const filter = panel->findChild<QLineEdit *>("filter");
+    QTRY_VERIFY(records->toPlainText().contains("simulator ") &&
+                records->toPlainText().contains("motorcontrol "));
+    OpenWindow::type(filter, "listening");
+    const QStringList lines = records->toPlainText().split('\n');
+    QCOMPARE(lines.size(), 2);
+    for (const QString &line : lines)
+        QVERIFY(line.contains("listening") && line.contains("info"));
+    QTest::keyClick(level, Qt::Key_Down); // warnings and errors
+    QCOMPARE(records->toPlainText(), QString());
+    level->setCurrentIndex(1);
+    OpenWindow::type(filter, "shutdown asked");
+    QCOMPARE(records->toPlainText(), QString());
+    daemon("motorcontrol")->call("daemon.shutdown", {}, this, [](const auto &) {});
+    QTRY_VERIFY(records->toPlainText().contains("shutdown asked")); // a new record passes the filter too
+    OpenWindow::type(filter, "");
+    QTRY_COMPARE(daemon("motorcontrol")->condition(), Condition::Unreachable);
+    robot_->startMotorControl();
+    QTRY_COMPARE_WITH_TIMEOUT(daemon("motorcontrol")->isConnected(), true, 10000);
+}
+
+void TestConsolePanels::plotTickedPausedAndWritten() {
+    auto *const panel = window_->panel<PlotsPanel>("plots");
+    auto *const topics = panel->findChild<QTreeWidget *>("topics");
+    QTreeWidgetItem *const odometry =
+        topics->findItems("odometry", Qt::MatchExactly | Qt::MatchRecursive).value(0);
+    QVERIFY(odometry);
+    odometry->setExpanded(true);
+    QTRY_VERIFY(odometry->childCount() > 3);
+    QTreeWidgetItem *vx = nullptr;
+    for (int i = 0; i < odometry->childCount(); ++i)
+        if (odometry->child(i)->text(0) == "twist.vx")
+            vx = odometry->child(i);
+    QVERIFY(vx);
+    vx->setCheckState(0, Qt::Checked);
+    QtCharts::QChart *const chart = panel->findChild<QtCharts::QChartView *>()->chart();
+    QCOMPARE(chart->series().size(), 1);
+    auto *const curve = static_cast<QtCharts::QXYSeries *>(chart->series().constFirst());
+    QTRY_VERIFY(curve->count() > 10);
+
+    window_->drive.steer("test", {1, 0, 0}, true);
+    auto *const axis = static_cast<QtCharts::QValueAxis *>(chart->axes(Qt::Vertical).constFirst());
+    QTRY_VERIFY(axis->max() > 0.1); // m/s
+    OpenWindow::click(panel, "pause");
+    const int paused = curve->count();
+    QTest::qWait(400); // nothing may happen
+    QCOMPARE(curve->count(), paused);
+    OpenWindow::click(panel, "pause");
+    QTRY_VERIFY(curve->count() > paused + 5); // what was sampled meanwhile is there
+    window_->drive.halt();
+    window_->drive.steer("test", {}, false);
+
+    const QString file = robot_->path("curves.csv");
+    QVERIFY(panel->exportTo(file).ok());
+    QFile table(file);
+    QVERIFY(table.open(QIODevice::ReadOnly));
+    QCOMPARE(table.readLine().trimmed(), QByteArray("stamp,daemon,topic,field,value"));
+    int rows = 0;
+    double last = 0;
+    while (!table.atEnd()) {
+        const QList<QByteArray> cells = table.readLine().trimmed().split(',');
+        QCOMPARE(cells.size(), 5);
+        QVERIFY(cells[0].toDouble() > last);
+        last = cells[0].toDouble();
+        QCOMPARE(cells[3], QByteArray("twist.vx"));
+        ++rows;
+    }
+    QVERIFY(rows >= paused);
+    vx->setCheckState(0, Qt::Unchecked);
+    QCOMPARE(chart->series().size(), 0);
+}
+
+void TestConsolePanels::plotThatCannotBeWritten() {
+    const auto done = window_->panel<PlotsPanel>("plots")->exportTo(robot_->path("nowhere/curves.csv"));
+    QVERIFY(!done.ok());
+    QVERIFY(done.error().message.contains("nowhere"));
+}
+
+void TestConsolePanels::goneDaemonIsTold() {
+    QVERIFY(window_->choose(daemon("motorcontrol")));
+    chooseMethod("motor.state");
+    robot_->kill("motorcontrol");
+    QTRY_VERIFY(!commands()->findChild<QPushButton *>("call")->isEnabled());
+}
+
+QTEST_MAIN(TestConsolePanels)
+#include "TestConsolePanels.moc"

@@ -1,0 +1,215 @@
+#include "gui/desktop/panels/CommandsPanel.h"
+#include "gui/desktop/panels/MapPanel.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QAction>
+#include <QFileInfo>
+#include <QImage>
+#include <QLabel>
+#include <QListWidget>
+#include <QPlainTextEdit>
+#include <QToolBar>
+#include <QToolButton>
+#include <QWheelEvent>
+#include <QXmlStreamReader>
+
+using namespace hermes;
+
+/// The map of a robot that stands in a simulated hall.
+class TestMapPanel : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void initTestCase();
+    void cleanupTestCase();
+    void mapScanAndRobotAreShown();
+    void panZoomFitFollow();
+    void keysOfTheView();
+    void measured();
+    void placedByADrag();
+    void exported_data();
+    void exported();
+    void exportThatFails();
+    void savedByCommand();
+    void matcherGoneAndBack();
+
+private:
+    MapPanel *panel() const { return window_->window.findChild<MapPanel *>(); }
+    MapView &view() const { return panel()->view(); }
+    const MapModel &model() const { return panel()->model(); }
+    QString message() const { return panel()->findChild<QLabel *>("message")->text(); }
+    void tool(const QString &name) const {
+        auto *const bar = panel()->findChild<QToolBar *>();
+        auto *const button = bar->widgetForAction(panel()->findChild<QAction *>(name));
+        QVERIFY2(button && button->isEnabled(), qPrintable(name));
+        QTest::mouseClick(button, Qt::LeftButton);
+    }
+    QPoint pixel(double x, double y) const { return view().transform().map(QPointF(x, y)).toPoint(); }
+    void drag(QPoint from, QPoint to) const {
+        QTest::mousePress(&view(), Qt::LeftButton, {}, from);
+        QMouseEvent move(QEvent::MouseMove, to, Qt::NoButton, Qt::LeftButton, {});
+        QApplication::sendEvent(&view(), &move);
+        QTest::mouseRelease(&view(), Qt::LeftButton, {}, to);
+    }
+    double scale() const { return view().transform().m11(); }
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> window_;
+};
+
+void TestMapPanel::initTestCase() {
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startAll();
+    window_ = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(window_->show());
+    QTRY_VERIFY_WITH_TIMEOUT(model().pose() && model().edges().size() > 20, 20000);
+}
+
+void TestMapPanel::cleanupTestCase() {
+    window_.reset();
+    robot_.reset();
+}
+
+void TestMapPanel::mapScanAndRobotAreShown() {
+    QTRY_VERIFY(model().scan().size() > 500);
+    QTRY_VERIFY(model().segments().size() > 10);
+    QTRY_VERIFY(model().correspondences().size() > 5);
+    QTRY_VERIFY(model().covariance());
+    QCOMPARE(model().outcome(), QString("matched"));
+    // The points of the scan lie on edges of the map.
+    int near = 0;
+    for (const QPointF &p : model().scan())
+        for (const QLineF &edge : model().edges()) {
+            const QPointF d = edge.p2() - edge.p1(), e = p - edge.p1();
+            const double along = QPointF::dotProduct(d, e) / QPointF::dotProduct(d, d);
+            const QPointF off = e - qBound(0.0, along, 1.0) * d;
+            if (std::hypot(off.x(), off.y()) < 0.1) {
+                ++near;
+                break;
+            }
+        }
+    QVERIFY2(near > 0.8 * model().scan().size(), qPrintable(QString::number(near)));
+}
+
+void TestMapPanel::panZoomFitFollow() {
+    tool("fit");
+    QVERIFY(!view().isFollowing());
+    for (const QLineF &edge : model().edges())
+        QVERIFY(QRectF(view().rect()).contains(view().transform().map(edge.center())));
+    const QPoint here = pixel(1, 1);
+    QWheelEvent wheel(here, view().mapToGlobal(here), {}, {0, 120}, Qt::NoButton, {}, Qt::NoScrollPhase,
+                      false);
+    const double before = scale();
+    QApplication::sendEvent(&view(), &wheel);
+    QCOMPARE(scale(), 1.2 * before);
+    QVERIFY((pixel(1, 1) - here).manhattanLength() <= 2); // what is under the pointer stays there
+    drag(here, here + QPoint(60, -40));
+    QVERIFY((pixel(1, 1) - here - QPoint(60, -40)).manhattanLength() <= 3);
+    tool("follow");
+    QVERIFY(view().isFollowing());
+    QTRY_VERIFY((pixel(model().pose()->x, model().pose()->y) - view().rect().center()).manhattanLength() < 4);
+    drag(here, here + QPoint(60, -40)); // looking elsewhere ends it
+    QVERIFY(!view().isFollowing());
+    QVERIFY(!panel()->findChild<QAction *>("follow")->isChecked());
+}
+
+void TestMapPanel::keysOfTheView() {
+    view().setFocus();
+    const double before = scale();
+    QTest::keyClick(&view(), Qt::Key_Plus);
+    QCOMPARE(scale(), 1.2 * before);
+    QTest::keyClick(&view(), Qt::Key_Minus);
+    QCOMPARE(scale(), before);
+    QTest::keyClick(&view(), Qt::Key_F);
+    QVERIFY(view().isFollowing());
+    QTest::keyClick(&view(), Qt::Key_0);
+    QVERIFY(!view().isFollowing());
+}
+
+void TestMapPanel::measured() {
+    tool("fit");
+    tool("measure");
+    drag(pixel(0, 0), pixel(3, 4));
+    QVERIFY2(std::abs(message().section(' ', 0, 0).toDouble() - 5) < 2 / scale() + 1e-3,
+             qPrintable(message()));
+    tool("measure"); // off again
+    QVERIFY(view().tool() == MapView::Tool::Pan);
+}
+
+void TestMapPanel::placedByADrag() {
+    const MapPose at = *model().pose();
+    const double reach = 40 / scale();
+    tool("place");
+    drag(pixel(at.x, at.y), pixel(at.x + reach * std::cos(at.theta), at.y + reach * std::sin(at.theta)));
+    QTRY_VERIFY2(message().startsWith("Placed at"), qPrintable(message()));
+    QVERIFY(view().tool() == MapView::Tool::Pan);
+    QTRY_COMPARE(model().outcome(), QString("matched"));
+    QVERIFY(std::hypot(model().pose()->x - at.x, model().pose()->y - at.y) < 0.2);
+}
+
+void TestMapPanel::exported_data() {
+    QTest::addColumn<QString>("name");
+    QTest::newRow("svg") << "view.svg";
+    QTest::newRow("png") << "view.png";
+}
+
+void TestMapPanel::exported() {
+    QFETCH(QString, name);
+    const QString file = robot_->path(name);
+    QVERIFY(panel()->exportTo(file).ok());
+    if (name.endsWith("png")) {
+        const QImage picture(file);
+        QCOMPARE(picture.size(), view().size());
+        QVERIFY(picture.convertToFormat(QImage::Format_Indexed8).colorCount() > 3); // not one blank sheet
+        return;
+    }
+    QFile text(file);
+    QVERIFY(text.open(QIODevice::ReadOnly));
+    QXmlStreamReader xml(&text);
+    int lines = 0;
+    while (!xml.atEnd())
+        lines += xml.readNext() == QXmlStreamReader::StartElement && xml.name() == "polyline";
+    QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
+    QVERIFY(lines >= model().edges().size());
+}
+
+void TestMapPanel::exportThatFails() {
+    for (const char *const name : {"nowhere/view.svg", "nowhere/view.png"}) {
+        const auto done = panel()->exportTo(robot_->path(name));
+        QVERIFY(!done.ok());
+        QVERIFY(done.error().message.contains(name));
+    }
+}
+
+void TestMapPanel::savedByCommand() {
+    QVERIFY(window_->choose(window_->fleet.robot()->withName("scanmatcher")));
+    auto *const commands = window_->panel<CommandsPanel>("commands");
+    auto *const methods = commands->findChild<QListWidget *>("methods");
+    methods->setCurrentItem(methods->findItems("map.save", Qt::MatchExactly).value(0));
+    const QString file = robot_->path("saved.csv");
+    OpenWindow::type(commands->findChild<QWidget *>("path")->findChild<QLineEdit *>(), file);
+    OpenWindow::click(commands, "call");
+    QTRY_VERIFY2(QFileInfo(file).size() > 1000,
+                 qPrintable(commands->findChild<QPlainTextEdit *>("answer")->toPlainText()));
+}
+
+void TestMapPanel::matcherGoneAndBack() {
+    robot_->kill("scanmatcher");
+    QTRY_VERIFY(!panel()->findChild<QAction *>("place")->isEnabled());
+    robot_->start("scanmatcher",
+                  {QString("source.address=127.0.0.1:%1").arg(robot_->port("velodynelogger"))});
+    QTRY_VERIFY_WITH_TIMEOUT(panel()->findChild<QAction *>("place")->isEnabled(), 10000);
+    // The map of the new one replaces that of the old one.
+    const auto count = [this] {
+        Client client;
+        client.connectTo(QString("127.0.0.1:%1").arg(robot_->port("scanmatcher")));
+        if (!client.waitConnected())
+            return -1;
+        const auto map = client.callAndWait("map.get");
+        return map ? (*map)["edges"].toArray().size() : -1;
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(model().edges().size() > 20, 10000);
+    QTRY_COMPARE_WITH_TIMEOUT(model().edges().size(), count(), 10000);
+}
+
+QTEST_MAIN(TestMapPanel)
+#include "TestMapPanel.moc"

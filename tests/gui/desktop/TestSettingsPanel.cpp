@@ -1,0 +1,186 @@
+#include "gui/desktop/panels/SettingsPanel.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QComboBox>
+#include <QFile>
+#include <QJsonDocument>
+#include <QLabel>
+
+using namespace hermes;
+
+/// Changes the settings of a motor control without motors, as an operator does.
+class TestSettingsPanel : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void validChangeIsApplied();
+    void wrongValueIsToldAsOneTypes();
+    void refusedByARuleIsToldAtItsRow();
+    void revertAndDefaults();
+    void restartIsSaid();
+    void saved();
+    void changeOfAnotherClientArrives();
+    void otherDaemonMeanwhile();
+    void everyRowFitsItsSetting();
+
+private:
+    QLineEdit *field(const QString &path) const {
+        return panel_->findChild<QWidget *>(path)->findChild<QLineEdit *>();
+    }
+    QString note(const QString &path) const { return panel_->findChild<QLabel *>(path + "/note")->text(); }
+    QString message() const { return panel_->findChild<QLabel *>("message")->text(); }
+    bool isEnabled(const QString &button) const {
+        return panel_->findChild<QPushButton *>(button)->isEnabled();
+    }
+    QJsonValue setting(const QString &path) {
+        const auto value = client_->callAndWait("settings.get", QJsonObject{{"path", path}});
+        return value ? *value : QJsonValue();
+    }
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> window_;
+    std::unique_ptr<Client> client_; // an independent eye
+    SettingsPanel *panel_ = nullptr;
+};
+
+void TestSettingsPanel::init() {
+    robot_ = std::make_unique<RobotProcesses>();
+    QFile file(robot_->path("motors.json"));
+    QVERIFY(file.open(QIODevice::WriteOnly) && file.write("{}") == 2 && file.flush());
+    const quint16 port = robot_->start("motorcontrol", {}, {"--config", robot_->path("motors.json")});
+    robot_->start("scanmatcher");
+    window_ = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(window_->show());
+    panel_ = window_->panel<SettingsPanel>("settings");
+    QVERIFY(window_->choose(window_->fleet.robot()->withName("motorcontrol")));
+    QTRY_VERIFY(panel_->findChild<QWidget *>("motion.vx"));
+    client_ = std::make_unique<Client>();
+    client_->connectTo(QString("127.0.0.1:%1").arg(port));
+    QVERIFY(client_->waitConnected().ok());
+}
+
+void TestSettingsPanel::cleanup() {
+    client_.reset();
+    window_.reset();
+    robot_.reset();
+}
+
+void TestSettingsPanel::validChangeIsApplied() {
+    QVERIFY(!isEnabled("apply"));
+    OpenWindow::type(field("safety.command_timeout_s"), "0.6");
+    QCOMPARE(note("safety.command_timeout_s"), QString("changed"));
+    QCOMPARE(setting("safety.command_timeout_s"), QJsonValue(0.25)); // not before Apply
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(message(), QString("Applied."));
+    QCOMPARE(setting("safety.command_timeout_s"), QJsonValue(0.6));
+    QTRY_VERIFY(!isEnabled("apply"));
+    QVERIFY(note("safety.command_timeout_s") != "changed");
+}
+
+void TestSettingsPanel::wrongValueIsToldAsOneTypes() {
+    const QString limits = note("motion.vx");
+    for (const char *const wrong : {"-1", "1e9", "fast", "1e999", "NaN", "[1]", "", "0.5 m/s"}) {
+        OpenWindow::type(field("motion.vx"), wrong);
+        QVERIFY2(note("motion.vx").startsWith("expected"), wrong);
+        QVERIFY2(!isEnabled("apply"), wrong);
+        QVERIFY2(isEnabled("revert"), wrong);
+    }
+    OpenWindow::click(panel_, "revert");
+    QCOMPARE(note("motion.vx"), limits);
+    QVERIFY(!isEnabled("revert"));
+}
+
+void TestSettingsPanel::refusedByARuleIsToldAtItsRow() {
+    const double before = setting("faults.battery_v").toDouble();
+    const double warning = setting("faults.battery_warning_v").toDouble();
+    OpenWindow::type(field("faults.battery_v"), QString::number(warning + 1));
+    OpenWindow::type(field("motion.vx"), "0.3");
+    OpenWindow::click(panel_, "apply");
+    QTRY_VERIFY(note("faults.battery_v").contains("faults.battery_warning_v"));
+    QVERIFY(message().contains("faults.battery_v"));
+    QCOMPARE(setting("faults.battery_v").toDouble(), before); // all or nothing
+    QVERIFY(setting("motion.vx").toDouble() != 0.3);
+    QCOMPARE(field("motion.vx")->text(), QString("0.3")); // what one typed stays
+    OpenWindow::type(field("faults.battery_v"), QString::number(before));
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("motion.vx").toDouble(), 0.3);
+}
+
+void TestSettingsPanel::revertAndDefaults() {
+    OpenWindow::type(field("motion.vx"), "0.31");
+    OpenWindow::type(field("pid.p"), "2");
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("pid.p"), QJsonValue(2));
+    QTRY_VERIFY(!isEnabled("apply"));
+    OpenWindow::click(panel_, "defaults");
+    QCOMPARE(note("pid.p"), QString("changed"));
+    QCOMPARE(field("pid.p")->text(), QString("1"));
+    OpenWindow::click(panel_, "revert");
+    QCOMPARE(field("pid.p")->text(), QString("2"));
+    OpenWindow::click(panel_, "defaults");
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("pid.p"), QJsonValue(1));
+}
+
+void TestSettingsPanel::restartIsSaid() {
+    OpenWindow::type(field("controllers.2.address"), "130");
+    QVERIFY(note("controllers.2.address").contains("needs a restart"));
+    OpenWindow::click(panel_, "apply");
+    QTRY_VERIFY(message().contains("Needs a restart") && message().contains("controllers.2.address"));
+}
+
+void TestSettingsPanel::saved() {
+    OpenWindow::type(field("motion.vx"), "0.31");
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(message(), QString("Applied."));
+    OpenWindow::click(panel_, "save");
+    QTRY_VERIFY(message().startsWith("Saved"));
+    QFile file(robot_->path("motors.json"));
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    QCOMPARE(QJsonDocument::fromJson(file.readAll())["motion"]["vx"], QJsonValue(0.31));
+}
+
+void TestSettingsPanel::changeOfAnotherClientArrives() {
+    OpenWindow::type(field("pid.i"), "0.7"); // not yet applied
+    const QJsonObject others{{"motion", QJsonObject{{"vx", 0.32}}}};
+    QVERIFY(client_->callAndWait("settings.set", QJsonObject{{"values", others}}).ok());
+    QTRY_COMPARE(field("motion.vx")->text(), QString("0.32"));
+    QVERIFY(note("motion.vx") != "changed");
+    QCOMPARE(field("pid.i")->text(), QString("0.7")); // stays
+    QCOMPARE(note("pid.i"), QString("changed"));
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("pid.i"), QJsonValue(0.7));
+    QCOMPARE(setting("motion.vx"), QJsonValue(0.32));
+}
+
+void TestSettingsPanel::otherDaemonMeanwhile() {
+    OpenWindow::type(field("pid.i"), "0.7");
+    QVERIFY(window_->choose(window_->fleet.robot()->withName("scanmatcher")));
+    QTRY_VERIFY(panel_->findChild<QWidget *>("map.folder"));
+    QVERIFY(!panel_->findChild<QWidget *>("pid.i"));
+    QVERIFY(!isEnabled("apply"));
+    robot_->kill("scanmatcher");
+    QTRY_VERIFY(!isEnabled("save"));
+    QVERIFY(!isEnabled("defaults"));
+}
+
+void TestSettingsPanel::everyRowFitsItsSetting() {
+    const auto schema = client_->callAndWait("settings.schema");
+    QVERIFY(schema.ok());
+    QVERIFY(panel_->findChild<QWidget *>("frame.layout")->findChild<QComboBox *>());
+    QVERIFY(field("controllers.1.url"));
+    auto *const filter = panel_->findChild<QLineEdit *>("filter");
+    OpenWindow::type(filter, "wheel radius");
+    QVERIFY(field("frame.wheel_radius_m")->isVisible());
+    QVERIFY(!field("motion.vx")->isVisible());
+    auto *const number = field("frame.wheel_radius_m");
+    QTest::keyClick(number, Qt::Key_Up); // steps
+    QCOMPARE(number->text(), QString("0.2"));
+    for (int i = 0; i < 20; ++i)
+        QTest::keyClick(number, Qt::Key_Up);
+    QCOMPARE(number->text(), QString("1")); // its limit
+}
+
+QTEST_MAIN(TestSettingsPanel)
+#include "TestSettingsPanel.moc"
