@@ -61,7 +61,7 @@ void TestMapPanel::initTestCase() {
     robot_->startAll();
     window_ = std::make_unique<OpenWindow>(*robot_);
     QVERIFY(window_->show());
-    QTRY_VERIFY_WITH_TIMEOUT(model().pose() && model().edges().size() > 20, 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(model().pose() && model().edges().size() > 10, 20000);
 }
 
 void TestMapPanel::cleanupTestCase() {
@@ -207,7 +207,7 @@ void TestMapPanel::matcherGoneAndBack() {
         const auto map = client.callAndWait("map.get");
         return map ? (*map)["edges"].toArray().size() : -1;
     };
-    QTRY_VERIFY_WITH_TIMEOUT(model().edges().size() > 20, 10000);
+    QTRY_VERIFY_WITH_TIMEOUT(model().edges().size() > 10, 10000);
     QTRY_COMPARE_WITH_TIMEOUT(model().edges().size(), count(), 10000);
 }
 
