@@ -26,6 +26,7 @@ void Client::connectTo(Channel *newChannel) {
     channel = newChannel;
     channel->setParent(this);
     channel->interface().setReconnecting(true);
+    channel->codec().setFrameLimit(frameLimit);
     connect(channel, &Channel::opened, this, &Client::onOpened);
     connect(channel, &Channel::closed, this, &Client::onClosed);
     connect(channel, &Channel::message, this, &Client::onMessage);

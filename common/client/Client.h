@@ -30,6 +30,8 @@ public:
     using Callback = std::function<void(const Result<QJsonValue> &)>;
     using TopicCallback = std::function<void(const TopicUpdate &)>;
     static constexpr std::chrono::milliseconds defaultTimeout{5000};
+    /// Of a message from the daemon, e.g. the reply that holds a map of 100,000 edges.
+    static constexpr int frameLimit = 16 << 20;
 
     explicit Client(QObject *parent = nullptr);
     ~Client() override;

@@ -85,6 +85,8 @@ protected:
     /// subscribers.
     void publish(const QString &topic, const QJsonValue &data);
     void publish(const QString &topic, const QJsonValue &data, double stamp);
+    /// The full state of a topic with a snapshot in parts once more, to all subscribers.
+    void publishSnapshot(const QString &topic) { topics.publishSnapshot(topic); }
     /// Ready: can work. Running: works. Fault: cannot, with a health item that says why.
     void setState(DaemonState state);
     void feedWatchdog();

@@ -10,6 +10,9 @@ namespace hermes {
 class Topic {
 public:
     using Snapshot = std::function<QJsonValue()>;
+    /// Gives the part of the state that follows `cursor` (0 at first) and moves it on; below 0: it was the
+    /// last.
+    using SnapshotParts = std::function<QJsonValue(qint64 &cursor)>;
 
     Topic(const QString &name, const QString &summary)
         : topicName(name)
@@ -26,14 +29,22 @@ public:
         return *this;
     }
 
+    /// For a state that may be large. Changes are published between the parts: a part has what is true when
+    /// it is asked for.
+    Topic &snapshotParts(const SnapshotParts &function) {
+        parts = function;
+        return *this;
+    }
+
     const QString &name() const { return topicName; }
     const Snapshot &snapshot() const { return state; }
+    const SnapshotParts &snapshotParts() const { return parts; }
     /// {name, summary, schema, snapshot}
     QJsonObject description() const {
         return {{QStringLiteral("name"), topicName},
                 {QStringLiteral("summary"), topicSummary},
                 {QStringLiteral("schema"), content},
-                {QStringLiteral("snapshot"), bool(state)}};
+                {QStringLiteral("snapshot"), bool(state) || bool(parts)}};
     }
 
 private:
@@ -41,6 +52,7 @@ private:
     QString topicSummary;
     QJsonObject content;
     Snapshot state;
+    SnapshotParts parts;
 };
 
 } // namespace hermes

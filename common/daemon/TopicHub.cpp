@@ -43,7 +43,8 @@ Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions
     queue->add(id, topic, options);
     if (!entry->queues.contains(queue))
         entry->queues.append(queue);
-    if (entry->topic.snapshot()) { // queued: it follows the reply that tells the id
+    if (entry->topic.snapshot() ||
+        entry->topic.snapshotParts()) { // queued: it follows the reply that tells the id
         QMetaObject::invokeMethod(
             queue, [this, topic, id, queue] { sendSnapshot(topic, id, queue); }, Qt::QueuedConnection);
     }
@@ -52,9 +53,29 @@ Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions
 
 void TopicHub::sendSnapshot(const QString &topic, quint64 id, TopicQueue *queue) const {
     const Entry &entry = *topics.constFind(topic);
+    if (entry.topic.snapshotParts())
+        return queue->stream(topic, id, partsOf(topic));
     const QJsonValue state = entry.topic.snapshot()();
     if (!state.isUndefined())
         queue->offer({topic, entry.seq, stampNow(), state}, id);
+}
+
+TopicQueue::Parts TopicHub::partsOf(const QString &topic) const {
+    return [this, topic, cursor = qint64(0)]() mutable -> std::optional<TopicMessage> {
+        if (cursor < 0)
+            return std::nullopt;
+        const Entry &entry = *topics.constFind(topic);
+        const QJsonValue part = entry.topic.snapshotParts()(cursor);
+        return TopicMessage{topic, entry.seq, stampNow(), part};
+    };
+}
+
+void TopicHub::publishSnapshot(const QString &topic) {
+    const auto entry = topics.find(topic);
+    ++entry->seq;
+    const auto queues = entry->queues;
+    for (TopicQueue *queue : queues)
+        queue->stream(topic, 0, partsOf(topic));
 }
 
 bool TopicHub::unsubscribe(quint64 id, TopicQueue *queue) {

@@ -27,6 +27,8 @@ public:
     /// To all subscribers. stamp: when the data were true, in seconds since the epoch. An unknown topic is
     /// an error in the log.
     void publish(const QString &topic, const QJsonValue &data, double stamp);
+    /// Sends the snapshot of the topic to all subscribers once more, after a change of everything.
+    void publishSnapshot(const QString &topic);
 
     /// The id of the new subscription, or NoSuchTopic. A topic with a snapshot sends it next.
     Result<quint64> subscribe(const QString &topic, const SubscribeOptions &options, TopicQueue *queue);
@@ -44,6 +46,8 @@ private:
     };
 
     void sendSnapshot(const QString &topic, quint64 id, TopicQueue *queue) const;
+
+    TopicQueue::Parts partsOf(const QString &topic) const;
 
     QMap<QString, Entry> topics;
     quint64 lastId = 0;

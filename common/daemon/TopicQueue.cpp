@@ -140,8 +140,40 @@ void TopicQueue::dropOldest(Subscription *of) {
     frames.erase(oldest);
 }
 
+void TopicQueue::stream(const QString &topic, quint64 onlyTo, const Parts &parts) {
+    for (Subscription &subscription : subscriptions)
+        if (subscription.topic == topic && (onlyTo == 0 || subscription.id == onlyTo)) {
+            subscription.parts = parts;
+            subscription.held.reset(); // older than the series
+        }
+    flush();
+}
+
 void TopicQueue::flush() {
-    while (!frames.empty() && channel.isOpen() && channel.interface().bytesToWrite() < handOverBytes) {
+    do
+        writeFrames();
+    while (frames.empty() && hasSpace() && enqueueNextPart());
+}
+
+bool TopicQueue::hasSpace() const {
+    return channel.isOpen() && channel.interface().bytesToWrite() < handOverBytes;
+}
+
+bool TopicQueue::enqueueNextPart() {
+    for (Subscription &subscription : subscriptions) {
+        if (!subscription.parts)
+            continue;
+        if (const auto part = subscription.parts()) {
+            enqueue(subscription, *part);
+            return true;
+        }
+        subscription.parts = nullptr;
+    }
+    return false;
+}
+
+void TopicQueue::writeFrames() {
+    while (!frames.empty() && hasSpace()) {
         const Frame frame = std::move(frames.front());
         frames.pop_front();
         frameBytes -= frame.bytes.size();

@@ -5,6 +5,8 @@
 #include <QObject>
 #include <QTimer>
 #include <deque>
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace hermes {
@@ -29,6 +31,9 @@ struct SubscribeOptions {
 class TopicQueue : public QObject {
     Q_OBJECT
 public:
+    /// The next message of a series; nothing after the last.
+    using Parts = std::function<std::optional<TopicMessage>()>;
+
     TopicQueue(Channel &channel, qint64 byteLimit, QObject *parent);
 
     void add(quint64 id, const QString &topic, const SubscribeOptions &options);
@@ -40,6 +45,9 @@ public:
     bool isEmpty() const { return subscriptions.empty(); }
     /// To every subscription of this topic; or to one of them.
     void offer(const TopicMessage &message, quint64 onlyTo = 0);
+    /// A series to every subscription of this topic, or to one of them; in place of one that is on its way.
+    /// Each part is asked for when the client has read those before: none is dropped.
+    void stream(const QString &topic, quint64 onlyTo, const Parts &parts);
     quint64 dropped() const { return droppedInAll; }
 
 private:
@@ -51,6 +59,7 @@ private:
         std::optional<TopicMessage> held; // the newest, waiting for its time
         int waiting = 0;                  // frames of it in the queue
         quint64 dropped = 0;
+        Parts parts; // of a snapshot on its way
     };
     struct Frame {
         quint64 subscription;
@@ -62,6 +71,9 @@ private:
     void dropOldest(Subscription *of);
     void releaseHeld();
     void flush();
+    void writeFrames();
+    bool hasSpace() const;
+    bool enqueueNextPart();
     Subscription *find(quint64 id);
 
     Channel &channel;

@@ -85,7 +85,8 @@ void ScanMatcher::postMapChange(const std::function<void(Tracker &)> &change, co
             counts = TrackerCounts();
             lostInARow = 0;
             lastRecovery.reset();
-            publish("map", mirror.apply(changes));
+            mirror.apply(changes);
+            publishSnapshot("map");
             reply.result(answer);
         });
     });

@@ -57,6 +57,20 @@ QJsonObject MapMirror::full() const {
             {"size", qint64(edges.size())}};
 }
 
+QJsonObject MapMirror::part(qint64 &cursor) const {
+    const bool isFirst = cursor == 0;
+    QJsonArray some;
+    auto edge = edges.lower_bound(cursor);
+    for (; edge != edges.end() && some.size() < partEdges; ++edge)
+        some.append(toJson(edge->second));
+    cursor = edge == edges.end() ? -1 : edge->first;
+    return {{"revision", revision},
+            {"cleared", isFirst},
+            {"edges", some},
+            {"removed", QJsonArray()},
+            {"size", qint64(edges.size())}};
+}
+
 std::vector<vectorlib::MapEdge> MapMirror::segments() const {
     std::vector<vectorlib::MapEdge> result;
     for (const auto &[id, edge] : edges)

@@ -30,6 +30,10 @@ public:
 
     /// The full state in the same form, `cleared` true.
     QJsonObject full() const;
+    /// At most partEdges of them, from the id `cursor` on, which moves behind them, or below 0 with the last;
+    /// `cleared` is true in the first part, from 0 on.
+    QJsonObject part(qint64 &cursor) const;
+    static constexpr int partEdges = 1000;
     std::vector<vectorlib::MapEdge> segments() const;
     const std::vector<vectorlib::StampedPose> &trajectory() const { return poses; }
     size_t size() const { return edges.size(); }

@@ -70,7 +70,7 @@ void ScanMatcher::declareTopics() {
               "map. A step of more than 1 in revision means that changes were missed: subscribe again or "
               "call map.get")
             .schema({{"type", "object"}})
-            .snapshot([this] { return QJsonValue(mirror.full()); }));
+            .snapshotParts([this](qint64 &cursor) { return QJsonValue(mirror.part(cursor)); }));
     addTopic(Topic("match",
                    "How the last scan was matched: correspondences [map edge, segment], reliability, "
                    "ambiguity (m^2), matched and visible length (m), milliseconds of each step")

@@ -11,6 +11,7 @@
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
+#include "gui/desktop/widgets/EnterKey.h"
 
 #include <QAction>
 #include <QCloseEvent>
@@ -47,6 +48,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     addPanel(Qt::LeftDockWidgetArea, new RecordPanel(fleet), tr("Recordings"), "recordings", docks_.front());
     new DriveKeys(drive_, *this);
     new DriveGamepad(drive_, this);
+    new EnterKey(*this);
     restoreLayout();
     centralWidget()->setFocus(); // so that the keys drive
 }

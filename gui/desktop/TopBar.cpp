@@ -46,7 +46,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
         "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
 
     auto *const layout = new QHBoxLayout(this);
-    auto *const label = new QLabel(tr("R&obot"));
+    auto *const label = new QLabel(tr("Ro&bot"));
     label->setBuddy(robots_);
     layout->addWidget(label);
     layout->addWidget(robots_);

@@ -23,6 +23,13 @@ void TopicFeed::setEnabled(bool isEnabled) {
     update();
 }
 
+void TopicFeed::renew() {
+    if (!source_)
+        return;
+    source_->client().unsubscribe(handle_);
+    handle_ = source_->client().subscribe(topic_, options_, callback_);
+}
+
 void TopicFeed::follow(Robot *robot) {
     if (robot_)
         robot_->disconnect(this);

@@ -18,6 +18,8 @@ public:
     DaemonLink *source() const { return source_; }
     /// Switched off it costs nothing on the link.
     void setEnabled(bool isEnabled);
+    /// Subscribes anew, for the snapshot with which the topic begins.
+    void renew();
 
 Q_SIGNALS:
     /// Another daemon, or none: what came before belongs to the old one.

@@ -94,7 +94,7 @@ QWidget *CommandsPanel::makeCall() {
     scroll->setFrameShape(QFrame::NoFrame);
     layout->addWidget(summary_ = new QLabel);
     layout->addWidget(scroll, 1);
-    layout->addWidget(call_ = new QPushButton(theme::icon("call"), tr("Ca&ll")));
+    layout->addWidget(call_ = new QPushButton(theme::icon("call"), tr("Ru&n")));
     summary_->setWordWrap(true);
     summary_->setObjectName("summary");
     call_->setObjectName("call");

@@ -65,7 +65,7 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
 
     address_->setObjectName("address");
     address_->setPlaceholderText(tr("HOST or HOST:PORT"));
-    auto *const add = new QPushButton(theme::icon("add"), tr("&Add"));
+    auto *const add = new QPushButton(theme::icon("add"), tr("A&dd"));
     add->setObjectName("add");
     auto *const adding = new QHBoxLayout;
     adding->addWidget(address_);
@@ -97,7 +97,7 @@ QWidget *DaemonsPanel::makeButtons() {
         layout->addWidget(made);
         return made;
     };
-    start_ = button("start", tr("S&tart"), "process.start");
+    start_ = button("start", tr("St&art"), "process.start");
     stop_ = button("stop", tr("St&op"), "process.stop");
     restart_ = button("restart", tr("R&estart"), "process.restart");
     return row;

@@ -19,7 +19,7 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     , limitText_(new QLabel)
     , control_(new QLabel)
     , problem_(new QLabel)
-    , takeOver_(new QPushButton(tr("Take o&ver"))) {
+    , takeOver_(new QPushButton(tr("Ta&ke over"))) {
     stick_->setObjectName("stick");
     limit_->setObjectName("limit");
     limit_->setRange(5, 100);
@@ -32,7 +32,7 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     takeOver_->setObjectName("takeOver");
     takeOver_->setToolTip(tr("Takes the control from the other client; the robot stops first"));
 
-    auto *const limitLabel = new QLabel(tr("Spee&d"));
+    auto *const limitLabel = new QLabel(tr("Speed li&mit"));
     limitLabel->setBuddy(limit_);
     auto *const speed = new QHBoxLayout;
     speed->addWidget(limitLabel);

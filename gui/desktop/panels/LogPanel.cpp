@@ -8,17 +8,21 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPlainTextEdit>
+#include <QScrollBar>
+#include <QTextCursor>
 #include <QVBoxLayout>
+#include <algorithm>
+#include <utility>
 
 namespace hermes {
 namespace {
 
 const QStringList levels{"debug", "info", "warning", "error"};
 
-QString colourOf(int level) {
-    return level == 3   ? theme::colour(Condition::Fault).name()
-           : level == 2 ? theme::colour(Condition::Warning).name()
-                        : QString();
+QBrush colourOf(int level) {
+    return level == 3   ? QBrush(theme::colour(Condition::Fault))
+           : level == 2 ? QBrush(theme::colour(Condition::Warning))
+                        : QBrush(Qt::NoBrush);
 }
 
 } // namespace
@@ -39,11 +43,12 @@ LogPanel::LogPanel(Fleet &fleet, QWidget *parent)
     view_->setReadOnly(true);
     view_->setFont(theme::fixedFont());
     view_->setLineWrapMode(QPlainTextEdit::NoWrap);
-    view_->setMaximumBlockCount(int(maxRecords));
+    view_->setMaximumBlockCount(int(maxLines));
+    view_->setUndoRedoEnabled(false);
     view_->setPlaceholderText(tr("What the daemons log appears here."));
 
     auto *const top = new QHBoxLayout;
-    auto *const label = new QLabel(tr("&Level"));
+    auto *const label = new QLabel(tr("Sho&w"));
     label->setBuddy(level_);
     top->addWidget(label);
     top->addWidget(level_);
@@ -55,6 +60,8 @@ LogPanel::LogPanel(Fleet &fleet, QWidget *parent)
     connect(level_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &LogPanel::refill);
     connect(filter_, &QLineEdit::textChanged, this, &LogPanel::refill);
     connect(&fleet, &Fleet::changed, this, &LogPanel::followAll);
+    connect(&timer_, &QTimer::timeout, this, &LogPanel::refresh);
+    timer_.setSingleShot(true);
     followAll();
 }
 
@@ -82,17 +89,29 @@ void LogPanel::follow(DaemonLink *daemon) {
 void LogPanel::add(const QString &daemon, const QJsonObject &record) {
     const Record made{record["stamp"].toDouble(), daemon, levels.indexOf(record["level"].toString()),
                       record["source"].toString() + ": " + record["text"].toString()};
-    const bool isNewest = records_.empty() || records_.back().stamp <= made.stamp;
-    const auto after =
-        std::upper_bound(records_.begin(), records_.end(), made.stamp,
-                         [](double stamp, const Record &other) { return stamp < other.stamp; });
-    records_.insert(after, made);
+    isUnsorted_ = isUnsorted_ || (!records_.empty() && made.stamp < records_.back().stamp);
+    records_.push_back(made);
+    ++newRecords_;
+    if (!timer_.isActive())
+        timer_.start(refreshPeriod);
+}
+
+// A daemon may log faster than anybody can read: what came since the last time is shown at once.
+void LogPanel::refresh() {
+    if (std::exchange(isUnsorted_, false)) {
+        std::stable_sort(records_.begin(), records_.end(),
+                         [](const Record &one, const Record &other) { return one.stamp < other.stamp; });
+        newRecords_ = records_.size();
+        view_->clear();
+    }
     if (records_.size() > maxRecords)
-        records_.pop_front();
-    if (!isNewest)
-        refill();
-    else if (passes(made))
-        append(made);
+        records_.erase(records_.begin(), records_.end() - maxRecords);
+    std::vector<const Record *> shown;
+    const std::size_t count = std::min(std::exchange(newRecords_, 0), records_.size());
+    for (auto record = records_.end() - std::ptrdiff_t(count); record != records_.end(); ++record)
+        if (passes(*record))
+            shown.push_back(&*record);
+    append(shown);
 }
 
 bool LogPanel::passes(const Record &record) const {
@@ -102,21 +121,34 @@ bool LogPanel::passes(const Record &record) const {
             record.daemon.contains(text, Qt::CaseInsensitive));
 }
 
-void LogPanel::append(const Record &record) {
-    const QString time = QDateTime::fromMSecsSinceEpoch(qint64(record.stamp * 1000)).toString("HH:mm:ss.zzz");
-    const QString line = QString("%1  %2  %3  %4")
-                             .arg(time, record.daemon.leftJustified(15),
-                                  levels.value(record.level, "?").leftJustified(7), record.text);
-    const QString colour = colourOf(record.level);
-    view_->appendHtml(QString("<span style=\"white-space:pre%1\">%2</span>")
-                          .arg(colour.isEmpty() ? QString() : ";color:" + colour, line.toHtmlEscaped()));
+void LogPanel::append(const std::vector<const Record *> &records) {
+    const bool isAtEnd = view_->verticalScrollBar()->value() == view_->verticalScrollBar()->maximum();
+    QTextCursor cursor(view_->document());
+    cursor.beginEditBlock();
+    cursor.movePosition(QTextCursor::End);
+    const std::size_t first = records.size() - std::min(records.size(), maxLines);
+    for (std::size_t i = first; i < records.size(); ++i) {
+        const Record &record = *records[i];
+        if (!view_->document()->isEmpty())
+            cursor.insertBlock();
+        QTextCharFormat format;
+        if (const QBrush colour = colourOf(record.level); colour != Qt::NoBrush)
+            format.setForeground(colour);
+        const QDateTime time = QDateTime::fromMSecsSinceEpoch(qint64(record.stamp * 1000));
+        cursor.insertText(QString("%1  %2  %3  %4")
+                              .arg(time.toString("HH:mm:ss.zzz"), record.daemon.leftJustified(15),
+                                   levels.value(record.level, "?").leftJustified(7), record.text),
+                          format);
+    }
+    cursor.endEditBlock();
+    if (isAtEnd)
+        view_->verticalScrollBar()->setValue(view_->verticalScrollBar()->maximum());
 }
 
 void LogPanel::refill() {
     view_->clear();
-    for (const Record &record : records_)
-        if (passes(record))
-            append(record);
+    newRecords_ = records_.size();
+    refresh();
 }
 
 } // namespace hermes

@@ -4,8 +4,11 @@
 
 #include <QJsonArray>
 #include <QSet>
+#include <QTimer>
 #include <QWidget>
+#include <chrono>
 #include <deque>
+#include <vector>
 
 class QComboBox;
 class QLineEdit;
@@ -18,6 +21,9 @@ class LogPanel : public QWidget {
     Q_OBJECT
 public:
     static constexpr std::size_t maxRecords = 5000;
+    /// Of those that pass the filter, the newest are shown.
+    static constexpr std::size_t maxLines = 1000;
+    static constexpr std::chrono::milliseconds refreshPeriod{100};
 
     explicit LogPanel(Fleet &fleet, QWidget *parent = nullptr);
 
@@ -33,7 +39,8 @@ private:
     void follow(DaemonLink *daemon);
     void add(const QString &daemon, const QJsonObject &record);
     bool passes(const Record &record) const;
-    void append(const Record &record);
+    void append(const std::vector<const Record *> &records);
+    void refresh();
     void refill();
 
     Fleet &fleet_;
@@ -41,6 +48,9 @@ private:
     QLineEdit *filter_;
     QPlainTextEdit *view_;
     std::deque<Record> records_;
+    std::size_t newRecords_ = 0; // not shown yet
+    bool isUnsorted_ = false;
+    QTimer timer_;
     QSet<const DaemonLink *> followed_;
 };
 

@@ -25,6 +25,8 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     addTools(*bar);
     addLayers(*bar);
     bar->addAction(theme::icon("export"), tr("Export"), this, &MapPanel::askFile)->setObjectName("export");
+    for (auto *const button : bar->findChildren<QToolButton *>())
+        button->setFocusPolicy(Qt::TabFocus); // within reach of the keyboard
     view_->setObjectName("map");
     message_->setObjectName("message");
     message_->setMargin(4);

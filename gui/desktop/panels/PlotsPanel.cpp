@@ -95,7 +95,7 @@ QWidget *PlotsPanel::makeButtons() {
     auto *const row = new QWidget;
     auto *const layout = new QHBoxLayout(row);
     layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(pause_ = new QPushButton(theme::icon("pause"), tr("Pause")));
+    layout->addWidget(pause_ = new QPushButton(theme::icon("pause"), tr("Pa&use")));
     auto *const save = new QPushButton(theme::icon("export"), tr("CSV"));
     layout->addWidget(save);
     pause_->setObjectName("pause");

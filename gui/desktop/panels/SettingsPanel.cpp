@@ -65,7 +65,7 @@ QWidget *SettingsPanel::makeButtons() {
     revert_ = button("revert", tr("Re&vert"), "revert", tr("Forgets the changes that were not applied"));
     defaults_ =
         button("restart", tr("De&faults"), "defaults", tr("Shows the defaults; Apply makes them true"));
-    save_ = button("save", tr("Sa&ve"), "save", tr("The daemon keeps its settings for its next start"));
+    save_ = button("save", tr("&Save"), "save", tr("The daemon keeps its settings for its next start"));
     connect(apply_, &QPushButton::clicked, this, &SettingsPanel::apply);
     connect(revert_, &QPushButton::clicked, this, [this] {
         form_->revert();

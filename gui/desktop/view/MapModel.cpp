@@ -2,6 +2,7 @@
 
 #include <QJsonArray>
 #include <QtMath>
+#include <limits>
 
 namespace hermes {
 namespace {
@@ -88,11 +89,18 @@ QRectF MapModel::bounds() const {
 }
 
 void MapModel::onMap(const QJsonValue &data) {
+    const double revision = data["revision"].toDouble();
     if (data["cleared"].toBool()) {
         edges_.clear();
         rows_.clear();
         ids_.clear();
+    } else if (revision > revision_ + 1) {
+        revision_ = std::numeric_limits<double>::infinity(); // changes were lost: the whole map anew, once
+        QMetaObject::invokeMethod(&maps_, &TopicFeed::renew, Qt::QueuedConnection); // not from its callback
+        return;
     }
+    revision_ = revision;
+    size_ = data["size"].toInt();
     for (const QJsonValue &edge : data["edges"].toArray()) {
         const qint64 id = qint64(edge["id"].toDouble());
         const QLineF line(edge["x1"].toDouble(), edge["y1"].toDouble(), edge["x2"].toDouble(),

@@ -28,6 +28,8 @@ public:
 
     /// The edges of the map, free space on their left.
     const QVector<QLineF> &edges() const { return edges_; }
+    /// A large map comes in parts.
+    bool isWhole() const { return edges_.size() >= size_; }
     /// The last scan's segments and points; the segments' partners in the map.
     const QVector<QLineF> &segments() const { return segments_; }
     const QPolygonF &scan() const { return scan_; }
@@ -79,6 +81,8 @@ private:
     QVector<QLineF> edges_, segments_, correspondences_;
     QHash<qint64, int> rows_; // of an edge in edges_, by its id
     QVector<qint64> ids_;     // of each row
+    double revision_ = 0;     // of the map, counts its changes
+    int size_ = 0;            // edges that the daemon's map has
     QJsonValue rawScan_;      // waits for its pose
     QPolygonF scan_;
     MapPose twist_;        // metres and radians a second, in the frame of the sensor

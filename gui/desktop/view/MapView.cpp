@@ -28,7 +28,7 @@ QTransform MapView::transform() const {
 }
 
 void MapView::refresh() {
-    if (!wasFitted_ && !model_.edges().isEmpty()) {
+    if (!wasFitted_ && !model_.edges().isEmpty() && model_.isWhole()) {
         wasFitted_ = true;
         const bool follows = isFollowing_;
         fit();

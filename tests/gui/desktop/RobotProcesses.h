@@ -6,6 +6,7 @@
 #include <QTcpServer>
 #include <QTemporaryDir>
 #include <QtTest>
+#include <csignal>
 #include <map>
 
 namespace hermes {
@@ -34,7 +35,10 @@ public:
         daemon.process = std::make_unique<QProcess>();
         daemon.process->setStandardOutputFile(QProcess::nullDevice());
         daemon.process->setStandardErrorFile(folder_.filePath(name + ".log"), QIODevice::Append);
-        daemon.process->start(qEnvironmentVariable("HERMES_BIN") + "/hermes-" + name, arguments);
+        const QString beside = QCoreApplication::applicationDirPath() + "/hermes-" + name; // one of the tests
+        daemon.process->start(QFile::exists(beside) ? beside
+                                                    : qEnvironmentVariable("HERMES_BIN") + "/hermes-" + name,
+                              arguments);
         return daemon.port;
     }
     /// Simulator, motor control, lidar logger and scan matcher in a world of deploy/worlds, wired as on a
@@ -56,6 +60,9 @@ public:
     void startMotorControl() {
         const QString url = "serial://" + motorLink() + "?baud=115200";
         start("motorcontrol", {"controllers.1.url=" + url, "controllers.2.url=" + url});
+    }
+    void signal(const QString &name, int number) {
+        ::kill(pid_t(daemons_.at(name).process->processId()), number);
     }
     /// As SIGKILL does.
     void kill(const QString &name) {

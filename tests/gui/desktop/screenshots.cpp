@@ -1,4 +1,5 @@
-// Makes the pictures of the operator's window for the documentation: screenshots FOLDER.
+// Makes the pictures of the operator's window for the documentation: screenshots FOLDER [SUFFIX [WIDTHxHEIGHT
+// [DOCK]]], of all docks or of one.
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/Theme.h"
 #include "tests/gui/desktop/RobotProcesses.h"
@@ -7,19 +8,20 @@
 #include <QDir>
 #include <QDockWidget>
 #include <QTreeWidget>
+#include <cstdio>
 
 using namespace hermes;
 
 class Screenshots : public QObject {
     Q_OBJECT
 public:
-    static QString folder;
+    static QStringList arguments; // those of the program
 
 private Q_SLOTS:
     void all();
 };
 
-QString Screenshots::folder;
+QStringList Screenshots::arguments;
 
 /// Ticks the measured velocities in the panel of plots.
 static void plot(MainWindow &window) {
@@ -40,24 +42,36 @@ void Screenshots::all() {
     robot.connectTo(fleet);
     DriveControl drive(fleet);
     MainWindow window(fleet, drive, {});
-    window.resize(1280, 720);
+    const QStringList size = arguments.value(3, "1280x720").split('x');
+    window.resize(size.value(0).toInt(), size.value(1).toInt());
     window.show();
     fleet.choose(fleet.robot()->withName("motorcontrol"));
     plot(window);
     drive.steer("pictures", {1, 0, 0.35}, true);
-    QTest::qWait(8000); // so that there is a map to see
+    QTest::qWait(qEnvironmentVariable("HERMES_PICTURE_S", "8").toInt() *
+                 1000); // so that there is a map to see
     for (auto *const dock : window.findChildren<QDockWidget *>()) {
+        if (arguments.size() > 4 && dock->objectName() != arguments[4])
+            continue;
         dock->raise();
         QTest::qWait(400);
-        QVERIFY(window.grab().save(folder + "/desktop-" + dock->objectName() + ".png"));
+        const QString file =
+            QString("%1/desktop-%2%3.png").arg(arguments[1], dock->objectName(), arguments.value(2));
+        QVERIFY2(window.grab().save(file), qPrintable(file));
     }
 }
 
 int main(int argc, char **argv) {
+    QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling); // as hermes-gui does
+    QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
     QApplication application(argc, argv);
     theme::apply();
-    Screenshots::folder = argc > 1 ? argv[1] : ".";
-    QDir().mkpath(Screenshots::folder);
+    Screenshots::arguments = QApplication::arguments();
+    if (argc < 2) {
+        std::fprintf(stderr, "screenshots FOLDER [SUFFIX [WIDTHxHEIGHT [DOCK]]]\n");
+        return 2;
+    }
+    QDir().mkpath(Screenshots::arguments[1]);
     Screenshots screenshots;
     return QTest::qExec(&screenshots, {argv[0]});
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <QObject>
+
+class QWidget;
+
+namespace hermes {
+
+/// Enter does what Space does in other programs, where it is STOP in this one: it presses the button and
+/// ticks the item that has the focus.
+class EnterKey : public QObject {
+    Q_OBJECT
+public:
+    explicit EnterKey(QWidget &window);
+
+protected:
+    bool eventFilter(QObject *watched, QEvent *event) override;
+
+private:
+    QWidget &window_;
+};
+
+} // namespace hermes

@@ -1,0 +1,98 @@
+#include "tests/daemons/RoboClawRig.h"
+#include "tests/gui/desktop/LoopWatch.h"
+#include "tests/gui/desktop/OpenWindow.h"
+#include "tests/gui/desktop/SlowLink.h"
+
+using namespace hermes;
+
+/// The window on a robot behind a link with 300 ms delay either way and 5 % loss: the motor control is a
+/// process on the far computer, its controllers are emulated here, where times are taken at the far end of
+/// the serial line.
+class TestBadLink : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void initTestCase();
+    void stopReachesTheWire();
+
+private:
+    static int trials() { return qMax(3, qEnvironmentVariableIntValue("HERMES_TRIALS")); }
+    static double median(std::vector<double> values) {
+        std::sort(values.begin(), values.end());
+        return values[values.size() / 2];
+    }
+
+    FarNetwork network_;
+    SlowLink link_;
+};
+
+void TestBadLink::initTestCase() {
+    const QString missing = network_.make();
+    if (!missing.isEmpty())
+        QSKIP(qPrintable(missing));
+    const QString noLink = link_.make(network_);
+    if (!noLink.isEmpty())
+        QSKIP(qPrintable(noLink));
+}
+
+void TestBadLink::stopReachesTheWire() {
+    QTemporaryDir folder;
+    RoboClawEmulator::Options first, second;
+    second.address = 0x81;
+    RoboClawRig rig(folder.filePath("line"), {first, second});
+    const QString url = "serial://" + folder.filePath("line");
+    QProcess motors;
+    QStringList command = network_.enter() +
+                          QStringList{"setpriv",  "--pdeathsig",
+                                      "KILL",     qEnvironmentVariable("HERMES_BIN") + "/hermes-motorcontrol",
+                                      "--listen", QString("tcp://%1:7410").arg(SlowLink::farHost)};
+    // Commands that are on their way for 0.3 s, and longer after a loss, are not too old on such a link.
+    for (const QString &setting : {QString("insecure=true"), QString("safety.command_timeout_s=0.6"),
+                                   "controllers.1.url=" + url, "controllers.2.url=" + url})
+        command << "--set" << setting;
+    motors.setProcessChannelMode(QProcess::ForwardedErrorChannel);
+    motors.start(command.takeFirst(), command);
+    QVERIFY(motors.waitForStarted());
+
+    Fleet fleet;
+    DriveControl drive(fleet);
+    MainWindow window(fleet, drive, {});
+    window.show();
+    window.activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(&window));
+    QVERIFY(fleet.add(QString("%1:7410").arg(SlowLink::farHost)).ok());
+    QTRY_VERIFY_WITH_TIMEOUT(drive.isPossible(), 15000);
+    link_.set(0.3, 0.3, 0.05);
+    QTRY_VERIFY_WITH_TIMEOUT(fleet.robot()->withName("motorcontrol")->latency_ms() > 500, 15000);
+
+    std::vector<double> times_s, busy_ms, busyCpu_ms;
+    LoopWatch watch;
+    while (int(times_s.size()) < trials()) {
+        watch.restart();
+        QTest::keyPress(&window, Qt::Key_W);
+        QTRY_VERIFY2_WITH_TIMEOUT(rig.rimSpeed() > 0.15, qPrintable(drive.problem()), 15000);
+        QTest::qWait(int(times_s.size()) * 13 % 50); // not in step with its commands
+        const double pressed = RoboClawRig::now();
+        QTest::keyClick(&window, Qt::Key_Space);
+        QTRY_VERIFY_WITH_TIMEOUT(drive.isStopped(), 15000);
+        QTest::keyRelease(&window, Qt::Key_W);
+        QTRY_VERIFY_WITH_TIMEOUT(rig.rimSpeed() < 0.01, 5000);
+        times_s.push_back(rig.zeroSince() - pressed);
+        busy_ms.push_back(watch.longest_ms());
+        busyCpu_ms.push_back(watch.longestCpu_ms());
+        drive.release();
+        QTRY_VERIFY_WITH_TIMEOUT(!drive.isStopped(), 15000);
+    }
+    const double slowest = *std::max_element(times_s.begin(), times_s.end());
+    const double busiest = *std::max_element(busyCpu_ms.begin(), busyCpu_ms.end());
+    qInfo("figure STOP to the wire, median of %d %.3f s, slowest %.3f s", trials(), median(times_s), slowest);
+    qInfo("figure packets %d, lost %d", link_.carried(), link_.lost());
+    QVERIFY(link_.lost() > 0.02 * link_.carried());
+    qInfo("figure event loop busy at most %.1f ms of the processor, median %.1f ms on the clock", busiest,
+          median(busy_ms));
+    QVERIFY(slowest < 1);
+    QVERIFY(busiest < 50);
+    QVERIFY(median(busy_ms) < 50);
+}
+
+QTEST_MAIN(TestBadLink)
+#include "TestBadLink.moc"

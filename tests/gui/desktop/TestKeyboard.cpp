@@ -1,0 +1,133 @@
+#include "gui/desktop/MainWindow.h"
+
+#include <QAbstractButton>
+#include <QAbstractItemView>
+#include <QAction>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QTreeWidget>
+#include <QtTest>
+
+using namespace hermes;
+
+/// Everything in the window is within reach of the keyboard.
+class TestKeyboard : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void mnemonicsAreUnique();
+    void everyControlIsInTheTabOrder();
+    void docksComeByNumber();
+    void enterPressesAndTicks();
+
+private:
+    std::unique_ptr<Fleet> fleet_;
+    std::unique_ptr<DriveControl> drive_;
+    std::unique_ptr<MainWindow> window_;
+};
+
+void TestKeyboard::init() {
+    fleet_ = std::make_unique<Fleet>();
+    drive_ = std::make_unique<DriveControl>(*fleet_);
+    window_ = std::make_unique<MainWindow>(*fleet_, *drive_, QString());
+    window_->show();
+    window_->activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(window_.get()));
+}
+
+void TestKeyboard::cleanup() {
+    window_.reset();
+    drive_.reset();
+    fleet_.reset();
+}
+
+void TestKeyboard::mnemonicsAreUnique() {
+    QMap<QString, QString> owners;
+    const auto add = [&owners](const QString &text) {
+        const QString keys = QKeySequence::mnemonic(text).toString();
+        if (keys.isEmpty())
+            return;
+        QVERIFY2(!owners.contains(keys), qPrintable(keys + ": " + owners.value(keys) + " and " + text));
+        owners[keys] = text;
+    };
+    for (const auto *button : window_->findChildren<QAbstractButton *>())
+        add(button->text());
+    for (const auto *label : window_->findChildren<QLabel *>())
+        if (label->buddy())
+            add(label->text());
+    QVERIFY(owners.size() > 10);
+}
+
+void TestKeyboard::everyControlIsInTheTabOrder() {
+    QSet<QWidget *> reached;
+    for (QWidget *next = window_->nextInFocusChain(); next != window_.get(); next = next->nextInFocusChain())
+        reached.insert(next);
+    QWidgetList controls;
+    for (auto *button : window_->findChildren<QAbstractButton *>())
+        controls.append(button);
+    for (auto *field : window_->findChildren<QLineEdit *>())
+        controls.append(field);
+    for (auto *choice : window_->findChildren<QComboBox *>())
+        controls.append(choice);
+    for (auto *view : window_->findChildren<QAbstractItemView *>())
+        controls.append(view);
+    int count = 0;
+    for (QWidget *control : qAsConst(controls)) {
+        const QString name = control->objectName();
+        // STOP has Space and Esc; those of Qt are parts of other controls.
+        if (name == "stop" || name.startsWith("qt_") || !control->parentWidget() ||
+            control->inherits("QHeaderView") || control->inherits("QComboBoxListView") ||
+            qobject_cast<QDockWidget *>(control->parentWidget()) || control->inherits("QLineEditIconButton"))
+            continue;
+        const QString who = QString("%1 %2").arg(control->metaObject()->className(), name);
+        QVERIFY2(reached.contains(control), qPrintable(who));
+        QVERIFY2(control->focusPolicy() & Qt::TabFocus, qPrintable(who));
+        ++count;
+    }
+    QVERIFY(count > 25);
+}
+
+void TestKeyboard::docksComeByNumber() {
+    const auto docks = window_->findChildren<QDockWidget *>(QString(), Qt::FindDirectChildrenOnly);
+    QVERIFY(docks.size() >= 6);
+    QSet<QString> seen;
+    for (int number = 1; number <= docks.size(); ++number) {
+        QTest::keyClick(window_.get(), Qt::Key(Qt::Key_0 + number), Qt::ControlModifier);
+        QWidget *const focus = QApplication::focusWidget();
+        QVERIFY2(focus, qPrintable(QString::number(number)));
+        for (const QDockWidget *dock : docks)
+            if (dock->isAncestorOf(focus) && !dock->visibleRegion().isEmpty())
+                seen.insert(dock->objectName());
+    }
+    QCOMPARE(seen.size(), docks.size());
+}
+
+void TestKeyboard::enterPressesAndTicks() {
+    auto *const follow = window_->findChild<QAction *>("follow");
+    QWidget *button = nullptr;
+    for (auto *candidate : window_->findChildren<QAbstractButton *>())
+        if (candidate->actions().contains(follow))
+            button = candidate;
+    QVERIFY(button);
+    const bool before = follow->isChecked();
+    button->setFocus();
+    QTest::keyClick(button, Qt::Key_Return);
+    QCOMPARE(follow->isChecked(), !before);
+
+    auto *const topics = window_->findChild<QTreeWidget *>("topics");
+    auto *const item = new QTreeWidgetItem(topics, {"number"});
+    item->setCheckState(0, Qt::Unchecked);
+    topics->setCurrentItem(item);
+    QTest::keyClick(topics, Qt::Key_Return);
+    QCOMPARE(item->checkState(0), Qt::Checked);
+    QTest::keyClick(topics, Qt::Key_Space); // STOP, not a tick
+    QCOMPARE(item->checkState(0), Qt::Checked);
+}
+
+QTEST_MAIN(TestKeyboard)
+#include "TestKeyboard.moc"
