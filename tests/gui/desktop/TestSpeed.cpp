@@ -22,7 +22,7 @@ private Q_SLOTS:
 
 private:
     static void figure(const char *name, double value, const char *unit) {
-        qInfo("figure %s %.3g %s", name, value, unit);
+        qInfo("figure %s: %.3g %s", name, value, unit);
     }
     static double median(std::vector<double> values) {
         std::sort(values.begin(), values.end());
@@ -50,7 +50,7 @@ void TestSpeed::framesOfALargeMap() {
         QCoreApplication::processEvents(); // and what arrives meanwhile
     }
     const double rate = painted / (double(whole.elapsed()) / 1000);
-    figure("frames a second, 20,000 edges and 2,000 points at 10 Hz", rate, "1/s");
+    figure("frames, 20,000 edges and 2,000 points at 10 Hz", rate, "a second");
     figure("a frame of it, median", median(frames_ms), "ms");
     QVERIFY2(rate > 15, qPrintable(QString::number(rate)));
 }
