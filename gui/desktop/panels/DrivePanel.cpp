@@ -60,7 +60,7 @@ QWidget *DrivePanel::makeNumbers() {
     auto *const table = new QWidget;
     auto *const grid = new QGridLayout(table);
     grid->setContentsMargins(0, 0, 0, 0);
-    const QStringList names{tr("ahead m/s"), tr("left m/s"), tr("turn rad/s")};
+    const QStringList names{tr("ahead\nm/s"), tr("left\nm/s"), tr("turn\nrad/s")};
     grid->addWidget(new QLabel(tr("commanded")), 1, 0);
     grid->addWidget(new QLabel(tr("measured")), 2, 0);
     for (int i = 0; i < 3; ++i) {

@@ -212,6 +212,7 @@ void PlotsPanel::redraw() {
         return;
     const double margin = std::max(0.05 * (most - least), 1e-3 * std::max(1.0, std::abs(most)));
     value_->setRange(least - margin, most + margin);
+    value_->setTickCount(3); // more have no room for their labels in a low panel
     value_->applyNiceNumbers();
 }
 
