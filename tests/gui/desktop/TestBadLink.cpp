@@ -90,6 +90,8 @@ void TestBadLink::stopReachesTheWire() {
     qInfo("figure bad link: event loop busy at most: %.1f ms of the processor", busiest);
     qInfo("figure bad link: the same on the clock, median of the trials: %.1f ms", median(busy_ms));
     QVERIFY(link_.lost() > 0.02 * link_.carried());
+    motors.terminate();
+    QVERIFY(motors.waitForFinished());
     QVERIFY(slowest < 1);
     QVERIFY(busiest < 50);
     QVERIFY(median(busy_ms) < 50);
