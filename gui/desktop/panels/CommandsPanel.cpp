@@ -55,6 +55,7 @@ CommandsPanel::CommandsPanel(Fleet &fleet, QWidget *parent)
     splitter->addWidget(answer_ = new QPlainTextEdit);
     splitter->setStretchFactor(1, 2);
     splitter->setStretchFactor(2, 2);
+    splitter->setSizes({220, 560, 460});
     answer_->setObjectName("answer");
     answer_->setReadOnly(true);
     answer_->setFont(theme::fixedFont());
@@ -88,11 +89,15 @@ QWidget *CommandsPanel::makeCall() {
     auto *const column = new QWidget;
     auto *const layout = new QVBoxLayout(column);
     layout->setContentsMargins(0, 0, 0, 0);
+    auto *const method = new QWidget;
+    auto *const rows = new QVBoxLayout(method);
+    rows->setContentsMargins(0, 0, 0, 0);
+    rows->addWidget(summary_ = new QLabel);
+    rows->addWidget(form_ = new SchemaForm, 1);
     auto *const scroll = new QScrollArea;
-    scroll->setWidget(form_ = new SchemaForm);
+    scroll->setWidget(method);
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
-    layout->addWidget(summary_ = new QLabel);
     layout->addWidget(scroll, 1);
     layout->addWidget(call_ = new QPushButton(theme::icon("call"), tr("Ru&n")));
     summary_->setWordWrap(true);

@@ -45,7 +45,7 @@ void Screenshots::all() {
     const QStringList size = arguments.value(3, "1280x720").split('x');
     window.resize(size.value(0).toInt(), size.value(1).toInt());
     window.show();
-    fleet.choose(fleet.robot()->withName("motorcontrol"));
+    fleet.choose(fleet.robot()->withName("scanmatcher"));
     plot(window);
     drive.steer("pictures", {1, 0, 0.35}, true);
     QTest::qWait(qEnvironmentVariable("HERMES_PICTURE_S", "8").toInt() *
