@@ -94,6 +94,7 @@ class Robot:
             command["omega"] = towards(turn, TURN_RATE, TURN_SLOWING)
             if self.layout == "differential":
                 command["omega"] += math.copysign(6 * left, left * command["vx"])
+                command["omega"] = max(-TURN_RATE, min(TURN_RATE, command["omega"]))
             self.drive(command)
             time.sleep(0.03)
 
