@@ -73,7 +73,7 @@ void ScanMatcher::declareSettings() {
                    .group("Matching"));
     addSetting(Field::number("matcher.relocalize_s", "Longest search of the whole map")
                    .unit("s")
-                   .range(0.1, 20)
+                   .range(0.01, 20)
                    .byDefault(3)
                    .group("Matching"));
     addSetting(

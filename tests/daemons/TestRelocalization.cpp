@@ -293,7 +293,7 @@ void TestRelocalization::largeMapTakesNoLongerThanPermitted() {
     const QJsonObject found = call("pose.relocalize");
     QVERIFY2(isNear(poseOf(found["pose"].toObject()), {23.4, 21.6, 0.75}), QJsonDocument(found).toJson());
     qInfo("%d parts, %.0f ms", found["parts"].toInt(), found["ms"].toDouble());
-    set("relocalize_s", 0.1);
+    set("relocalize_s", 0.01);
     Segments many = building();
     for (const auto &wall : building())
         many.emplace_back(wall.begin() + Point(60, 50), wall.end() + Point(60, 50));
