@@ -93,7 +93,8 @@ class Robot:
             assert time.monotonic() < deadline, f"{self.layout}: {distance} m and {turn} rad are left to {goal}"
             command["omega"] = towards(turn, TURN_RATE, TURN_SLOWING)
             if self.layout == "differential":
-                command["omega"] += math.copysign(6 * left, left * command["vx"])
+                across = left * math.cos(turn) - ahead * math.sin(turn)  # of the way, not of the robot
+                command["omega"] += math.copysign(6 * across * min(1, 2 * distance), across * command["vx"])
                 command["omega"] = max(-TURN_RATE, min(TURN_RATE, command["omega"]))
             self.drive(command)
             time.sleep(0.03)
