@@ -11,7 +11,6 @@
 
 #include <fcntl.h>
 #include <sys/statvfs.h>
-#include <unistd.h>
 
 namespace hermes {
 
@@ -39,12 +38,9 @@ QString toUtc(double stamp) {
 
 /// Room that stays taken until the recording ends. Not every file system can; then there is none.
 void reserve(const QString &path) {
-    const int file = ::open(QFile::encodeName(path).constData(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-    if (file < 0)
-        return;
-    if (::posix_fallocate(file, 0, reserveBytes) != 0)
-        ::unlink(QFile::encodeName(path).constData());
-    ::close(file);
+    QFile file(path);
+    if (file.open(QIODevice::ReadWrite) && ::posix_fallocate(file.handle(), 0, reserveBytes) != 0)
+        file.resize(0);
 }
 
 } // namespace
@@ -64,9 +60,14 @@ QString RecordingSession::sidecarPath() const {
 
 Result<void> RecordingSession::begin(const Options &options, const SessionName &session) {
     options_ = options;
+    Result<void> result = lock_.take(options.root, options.logger);
+    if (!result)
+        return result;
     const Result<QString> folder = enterSessionFolder(options.root, session, options.logger);
-    if (!folder)
+    if (!folder) {
+        lock_.release();
         return folder.error();
+    }
     plan_ = {*folder, options.logger, options.fileBytes, options.fileSeconds};
     session_ =
         session.session.isEmpty() ? QUuid::createUuid().toString(QUuid::WithoutBraces) : session.session;
@@ -94,10 +95,7 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
                                      .arg(*room * 1e-6, 0, 'f', 1)
                                      .arg(options.floorBytes * 1e-6, 0, 'f', 1),
                                  *folder));
-    Result<void> result = lock_.take(options.root, options.logger);
-    if (!result)
-        return refused(result.error());
-    reserve(reservePath());
+    reserve(ownReserve());
     result = writer_.begin(plan_);
     if (result)
         result = refresh();
@@ -110,7 +108,7 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
 }
 
 void RecordingSession::abandon() {
-    QFile::remove(reservePath());
+    QFile::remove(ownReserve());
     lock_.release();
     QDir().rmdir(plan_.folder); // only when nothing else is in it
 }
@@ -145,7 +143,7 @@ Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Erro
     content.insert("complete", !writer_.state().error);
     if (failure)
         content.insert("error", failure->message);
-    QFile::remove(reservePath());
+    QFile::remove(ownReserve());
     const Result<void> written = Sidecar::write(sidecarPath(), content, true);
     lock_.release();
     return failure ? Result<void>(*failure) : written;
@@ -172,7 +170,7 @@ RecordingSession::Completed RecordingSession::completeAll(const Options &options
         QJsonObject content = read ? *read : QJsonObject();
         Result<void> result = read ? Result<void>() : read.error();
         if (result) {
-            QFile::remove(folder + "/." + options.logger + ".reserve");
+            QFile::remove(reservePath(folder, options.logger));
             content.insert("end", content.value("start")); // until the writer knows better
             result = writer.repair({folder, options.logger, 0, 0}, content);
         }

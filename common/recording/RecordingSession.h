@@ -44,7 +44,7 @@ public:
 
 private:
     QJsonObject describe() const;
-    QString reservePath() const { return plan_.folder + "/." + options_.logger + ".reserve"; }
+    QString ownReserve() const { return reservePath(plan_.folder, options_.logger); }
     QString sidecarPath() const;
     void abandon();
 

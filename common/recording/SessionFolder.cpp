@@ -32,6 +32,18 @@ Result<void> checkSession(const QString &folder, const QString &session) {
     return {};
 }
 
+/// Whether the logger may join the folder, which exists.
+Result<void> checkFolder(const QString &folder, const SessionName &session, const QString &logger) {
+    if (!QFileInfo(folder).isDir())
+        return diskError(folder + ": the folder of the recording cannot be made: a file has this name",
+                         folder);
+    const bool fresh = QDir(folder).entryList({logger + ".json", logger + "-*"}, QDir::Files).isEmpty();
+    const bool empty = QDir(folder).isEmpty(QDir::AllEntries | QDir::Hidden | QDir::NoDotAndDotDot);
+    if (!fresh || (session.session.isEmpty() && !empty))
+        return diskError(folder + ": it exists already; recordings are not overwritten", folder);
+    return checkSession(folder, session.session);
+}
+
 } // namespace
 
 Result<void> checkName(const QString &what, const QString &name) {
@@ -47,27 +59,39 @@ Result<void> checkName(const QString &what, const QString &name) {
                  QJsonObject{{what, expected}});
 }
 
+QString reservePath(const QString &folder, const QString &logger) {
+    return folder + "/." + logger + ".reserve";
+}
+
 Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger) {
-    const QDir base(root);
-    if (!base.mkpath("."))
-        return diskError(root + ": the folder for recordings cannot be made", root);
-    const QString folder = base.absoluteFilePath(session.name);
-    if (base.mkdir(session.name))
-        return folder;
-    if (!QFileInfo(folder).isDir())
-        return diskError(folder + ": the folder of the recording cannot be made", folder);
-    const bool fresh = QDir(folder).entryList({logger + ".json", logger + "-*"}, QDir::Files).isEmpty();
-    const bool empty = QDir(folder).isEmpty(QDir::AllEntries | QDir::Hidden | QDir::NoDotAndDotDot);
-    if (!fresh || (session.session.isEmpty() && !empty))
-        return diskError(folder + ": it exists already; recordings are not overwritten", folder);
-    const Result<void> same = checkSession(folder, session.session);
-    if (!same)
-        return same.error();
-    return folder;
+    const QString folder = QDir(root).absoluteFilePath(session.name);
+    QString why;
+    for (int attempt = 0; attempt < 100; ++attempt) { // others may make and remove it at the same time
+        if (!QDir(root).mkdir(session.name) && QFileInfo::exists(folder)) {
+            const Result<void> joined = checkFolder(folder, session, logger);
+            if (!joined)
+                return joined.error();
+        }
+        // From here on the folder is not empty, so that no other logger can remove it.
+        const QByteArray path = QFile::encodeName(reservePath(folder, logger));
+        const int file = ::open(path.constData(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+        if (file >= 0) {
+            ::close(file);
+            return folder;
+        }
+        const bool gone = errno == ENOENT;
+        why = qt_error_string();
+        if (!gone)
+            break;
+    }
+    QDir().rmdir(folder); // only when nothing is in it
+    return diskError(folder + ": the folder of the recording cannot be made: " + why, folder);
 }
 
 Result<void> FolderLock::take(const QString &root, const QString &logger) {
     release();
+    if (!QDir().mkpath(root))
+        return diskError(root + ": the folder for recordings cannot be made", root);
     const QString path = QDir(root).absoluteFilePath('.' + logger + ".lock");
     const int file = ::open(QFile::encodeName(path).constData(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (file < 0)

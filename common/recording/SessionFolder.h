@@ -16,9 +16,12 @@ struct SessionName {
 /// (InvalidParams otherwise). what: the parameter, for the message.
 Result<void> checkName(const QString &what, const QString &name);
 
-/// Makes ROOT/NAME, or joins it where a logger of the same session has made it; gives its absolute path.
-/// Whatever was recorded stays: a folder of another session, or one in which this logger has recorded, is
-/// refused (InputOutput, data.path).
+/// A logger's file in its folder for as long as it records: keeps the folder, and room for the sidecar.
+QString reservePath(const QString &folder, const QString &logger);
+
+/// Makes ROOT/NAME, or joins it where a logger of the same session has made it; puts the (empty) reserve into
+/// it, gives its absolute path. Whatever was recorded stays: a folder of another session, or one in which
+/// this logger has recorded, is refused (InputOutput, data.path). The logger holds the lock of the root.
 Result<QString> enterSessionFolder(const QString &root, const SessionName &session, const QString &logger);
 
 /// Held while a logger writes below a folder or repairs what is there, so that two of a kind do not disturb
@@ -30,7 +33,8 @@ public:
     FolderLock(const FolderLock &) = delete;
     FolderLock &operator=(const FolderLock &) = delete;
 
-    /// NotReady when another process has it, InputOutput when the folder cannot be written.
+    /// Makes the folder. NotReady when another process has the lock, InputOutput when the folder cannot be
+    /// written.
     Result<void> take(const QString &root, const QString &logger);
     void release();
     bool isHeld() const { return file_ >= 0; }

@@ -1,10 +1,14 @@
 #include "common/recording/Recording.h"
+#include "common/recording/RecordingSession.h"
 #include "common/recording/Sidecar.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
 
+#include <atomic>
+#include <future>
 #include <mutex>
+#include <thread>
 
 using namespace hermes;
 
@@ -130,6 +134,7 @@ private Q_SLOTS:
     void namesAreChecked();
     void nothingIsOverwritten();
     void loggersShareASession();
+    void aLoggerThatGivesUpLeavesTheFolderToOthers();
     void twoOfAKindDoNotDisturbEachOther();
     void refusalsLeaveNothingBehind();
     void lowSpaceIsToldAndEndsTheRecording();
@@ -242,6 +247,32 @@ void TestRecording::loggersShareASession() {
     QVERIFY(b.call("record.stop").ok());
     QCOMPARE(sidecarOf(folderOf(first), "a").value("session").toString(), "s1");
     QCOMPARE(sidecarOf(folderOf(first), "b").value("session").toString(), "s1");
+}
+
+void TestRecording::aLoggerThatGivesUpLeavesTheFolderToOthers() {
+    QTemporaryDir root;
+    TextWriter refusing, writer;
+    refusing.refuse = true;
+    RecordingSession givesUp(refusing), records(writer);
+    for (int i = 0; i < 50; ++i) {
+        const SessionName name{QString("run%1").arg(i), "s"};
+        std::atomic<int> ready{0};
+        const auto begin = [&](RecordingSession &session, const QString &logger) {
+            RecordingSession::Options options;
+            options.logger = logger;
+            options.root = root.path();
+            for (++ready; ready < 2;)
+                std::this_thread::yield();
+            return session.begin(options, name);
+        };
+        auto other = std::async(std::launch::async, [&] { return begin(givesUp, "other"); });
+        const Result<void> begun = begin(records, "logger");
+        QCOMPARE(other.get().error().message, QString("refused"));
+        QVERIFY2(begun.ok(), qPrintable(QString("%1: %2").arg(i).arg(begun.error().message)));
+        QVERIFY(records.finish(RecordingEnd::Stopped, {}).ok());
+        QCOMPARE(QDir(root.path() + '/' + name.name).entryList(QDir::Files | QDir::Hidden),
+                 QStringList({"logger-0001.txt", "logger.json"}));
+    }
 }
 
 void TestRecording::twoOfAKindDoNotDisturbEachOther() {
