@@ -23,6 +23,12 @@ QJsonObject actionJson(const Firing::ActionResult &one) {
 
 } // namespace
 
+double Firing::late_s() const {
+    if (occasion.dueMono)
+        return mono - *occasion.dueMono;
+    return occasion.dueStamp ? stamp - *occasion.dueStamp : 0;
+}
+
 bool Firing::isOver() const {
     return std::all_of(results.begin(), results.end(), [](const auto &one) { return one.ended; });
 }
@@ -37,9 +43,9 @@ QJsonObject Firing::toJson() const {
         actions.append(actionJson(one));
     QJsonObject why = occasion.detail;
     why.insert("kind", cause);
-    return {{"id", id},     {"seq", double(seq)},          {"stamp", stamp},
-            {"mono", mono}, {"jitter_s", occasion.late_s}, {"missed", double(occasion.missed)},
-            {"cause", why}, {"ok", failures() == 0},       {"results", actions}};
+    return {{"id", id},     {"seq", double(seq)},    {"stamp", stamp},
+            {"mono", mono}, {"jitter_s", late_s()},  {"missed", double(occasion.missed)},
+            {"cause", why}, {"ok", failures() == 0}, {"results", actions}};
 }
 
 QByteArray Firing::csvHeader() {
@@ -49,8 +55,8 @@ QByteArray Firing::csvHeader() {
 QByteArray Firing::csvRows() const {
     const QByteArray head = QByteArray::number(stamp, 'f', 6) + ',' + QByteArray::number(mono, 'f', 6) + ',' +
                             csvField(id) + ',' + QByteArray::number(seq) + ',' + csvField(cause) + ',' +
-                            QByteArray::number(occasion.late_s, 'f', 6) + ',' +
-                            QByteArray::number(occasion.missed) + ',';
+                            QByteArray::number(late_s(), 'f', 6) + ',' + QByteArray::number(occasion.missed) +
+                            ',';
     if (results.empty())
         return head + ",1,0,\n";
     QByteArray rows;

@@ -25,6 +25,8 @@ struct Firing {
     std::vector<ActionResult> results;
     std::function<void(const QJsonObject &)> ended; ///< who waits for it
 
+    /// How long its actions began after the time that it fires for; 0 where there is none (a command).
+    double late_s() const;
     bool isOver() const;
     int failures() const;
     /// As the topic `fired` has it.

@@ -1,6 +1,5 @@
 #include "daemons/softwaretrigger/TopicWatch.h"
 
-#include "common/Time.h"
 #include "common/schema/SchemaText.h"
 
 namespace hermes {
@@ -54,7 +53,7 @@ void TopicWatch::receive(const TopicUpdate &update) {
 }
 
 void TopicWatch::fire(const TopicUpdate &update, quint64 missed, const QJsonObject &detail) {
-    listener_.fire({stampNow() - update.stamp, missed, detail});
+    listener_.fire({{}, update.stamp, missed, detail});
 }
 
 TravelWatch::TravelWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)

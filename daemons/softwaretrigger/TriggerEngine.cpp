@@ -41,7 +41,7 @@ Result<void> TriggerEngine::fireNow(const QString &id, const QString &client, co
     const auto found = triggers_.find(id);
     if (found == triggers_.end() || !found->second.definition.armed)
         return Error(ErrorCode::NotReady, id + " is disarmed: trigger.arm first");
-    fire(found->second, {0, 0, {{"kind", "command"}, {"client", client}}}, ended);
+    fire(found->second, {{}, {}, 0, {{"kind", "command"}, {"client", client}}}, ended);
     return {};
 }
 
@@ -88,9 +88,9 @@ void TriggerEngine::fire(Trigger &trigger, const Occasion &occasion, const Ended
     firing->results.resize(trigger.definition.actions.size());
     trigger.missed += occasion.missed;
     if (firing->cause == kind)
-        trigger.jitter.add(occasion.late_s);
+        trigger.jitter.add(firing->late_s());
     if (firing->cause == "period")
-        jitter_.add(occasion.late_s);
+        jitter_.add(firing->late_s());
     underWay_.insert(firing);
     for (size_t i = 0; i < firing->results.size(); ++i)
         firing->results[i].action = trigger.definition.actions[i].name();
@@ -115,9 +115,8 @@ void TriggerEngine::fireFollowers(const Firing &firing) {
     for (auto &[id, trigger] : triggers_) {
         if (trigger.definition.armed && trigger.definition.cause() == Cause::Trigger &&
             trigger.definition.text("trigger") == firing.id)
-            fire(trigger, {monotonicNow() - firing.mono,
-                           0,
-                           {{"trigger", firing.id}, {"trigger_seq", double(firing.seq)}}});
+            fire(trigger,
+                 {firing.mono, {}, 0, {{"trigger", firing.id}, {"trigger_seq", double(firing.seq)}}});
     }
 }
 

@@ -16,8 +16,7 @@ public:
         , key_(schedule.add(
               std::chrono::nanoseconds(std::llround(period_s * 1e9)), [listener](const Schedule::Due &due) {
                   const double time = std::chrono::duration<double>(due.time.time_since_epoch()).count();
-                  const double late = monotonicNow() - time;
-                  listener.fire({late, due.missed, {{"n", double(due.n)}, {"due_mono", time}}});
+                  listener.fire({time, {}, due.missed, {{"n", double(due.n)}, {"due_mono", time}}});
               })) {}
     ~PeriodWatch() override { schedule_.remove(key_); }
 
@@ -34,7 +33,7 @@ public:
                 ++missed_;
                 return listener.missed();
             }
-            listener.fire({stampNow() - verdict.due, missed_, {{"due", verdict.due}}});
+            listener.fire({{}, verdict.due, missed_, {{"due", verdict.due}}});
             missed_ = 0;
         }) {}
 

@@ -6,14 +6,16 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace hermes {
 
 /// Why a trigger fires now.
 struct Occasion {
-    double late_s = 0;  ///< after the time, or after the stamp of the message, that it fires for
-    quint64 missed = 0; ///< firings before this one that did not happen, since the last
-    QJsonObject detail; ///< what its kind has to tell, for people
+    std::optional<double> dueMono;  ///< the time that it fires for, by the monotonic clock
+    std::optional<double> dueStamp; ///< the same, or the stamp of the message, since the Unix epoch
+    quint64 missed = 0;             ///< firings before this one that did not happen, since the last
+    QJsonObject detail;             ///< what its kind has to tell, for people
 };
 
 /// Watches for what fires one armed trigger, from its making to its end.

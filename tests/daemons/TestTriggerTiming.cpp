@@ -123,11 +123,9 @@ void TestTriggerTiming::tenHertz() {
     const auto n = [](const QJsonValue &one) { return one["cause"]["n"].toDouble(); };
     const double t0 = due(fired_[0]) - 0.1 * n(fired_[0]);
     std::vector<double> late;
-    int toldOtherwise = 0;
     for (size_t i = 0; i < fired_.size(); ++i) {
         QVERIFY(std::abs(due(fired_[i]) - t0 - 0.1 * n(fired_[i])) < 1e-6); // no drift
-        const double was = fired_[i]["mono"].toDouble() - due(fired_[i]);
-        toldOtherwise += std::abs(was - fired_[i]["jitter_s"].toDouble()) > 0.001;
+        QVERIFY(fired_[i]["mono"].toDouble() - due(fired_[i]) == fired_[i]["jitter_s"].toDouble());
         QCOMPARE(fired_[i]["seq"].toInt(), int(i + 1));
         late.push_back(fired_[i]["jitter_s"].toDouble());
     }
@@ -148,7 +146,6 @@ void TestTriggerTiming::tenHertz() {
                                 .arg(1000 * bare, 0, 'f', 3);
     qInfo("%s", qPrintable(figures));
     QVERIFY(late.front() >= 0);
-    QVERIFY(toldOtherwise <= 1 + count / 500); // a processor may stand still between the two readings
     QVERIFY2(p99 < bare + (seconds >= 600 ? 0.002 : 0.1), qPrintable(figures));
     QVERIFY(told["p99_s"].toDouble() > 0 && told["mean_s"].toDouble() > 0);
 }
