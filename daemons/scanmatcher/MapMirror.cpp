@@ -25,11 +25,13 @@ MapChanges takeChanges(vectorlib::VectorMap &map) {
     return changes;
 }
 
+void MapMirror::replace(Edges &other) {
+    edges.swap(other);
+    poses.clear();
+    ++revision;
+}
+
 QJsonObject MapMirror::apply(const MapChanges &changes) {
-    if (changes.cleared) {
-        edges.clear();
-        poses.clear();
-    }
     QJsonArray changed, removed;
     for (const vectorlib::MapEdge &m : changes.changed) {
         edges[m.id] = m;
@@ -40,7 +42,7 @@ QJsonObject MapMirror::apply(const MapChanges &changes) {
         removed.append(id);
     }
     return {{"revision", ++revision},
-            {"cleared", changes.cleared},
+            {"cleared", false},
             {"edges", changed},
             {"removed", removed},
             {"size", qint64(edges.size())}};
@@ -69,13 +71,6 @@ QJsonObject MapMirror::part(qint64 &cursor) const {
             {"edges", some},
             {"removed", QJsonArray()},
             {"size", qint64(edges.size())}};
-}
-
-std::vector<vectorlib::MapEdge> MapMirror::segments() const {
-    std::vector<vectorlib::MapEdge> result;
-    for (const auto &[id, edge] : edges)
-        result.push_back(edge);
-    return result;
 }
 
 } // namespace hermes

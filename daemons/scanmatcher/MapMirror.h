@@ -15,15 +15,18 @@ namespace hermes {
 struct MapChanges {
     std::vector<vectorlib::MapEdge> changed; ///< new and altered edges
     std::vector<qint64> removed;             ///< edges that were merged into others
-    bool cleared = false;                    ///< everything before is gone
 };
 
 MapChanges takeChanges(vectorlib::VectorMap &map);
 
-/// A copy of the worker's map and trajectory for the main thread, kept up to date by changes: what files,
-/// replies and subscriptions are made from without disturbing the matching.
+/// A copy of the worker's map and trajectory for the main thread, kept up to date by changes: what replies
+/// and subscriptions are made from without disturbing the matching.
 class MapMirror {
 public:
+    using Edges = std::map<qint64, vectorlib::MapEdge>;
+
+    /// Takes the edges of another map over and forgets the trajectory; `other` has the old edges afterwards.
+    void replace(Edges &other);
     /// Takes the changes in and gives the data of the topic `map`: {revision, cleared, edges, removed, size}.
     QJsonObject apply(const MapChanges &changes);
     void addPose(const vectorlib::StampedPose &pose) { poses.push_back(pose); }
@@ -34,12 +37,11 @@ public:
     /// `cleared` is true in the first part, from 0 on.
     QJsonObject part(qint64 &cursor) const;
     static constexpr int partEdges = 1000;
-    std::vector<vectorlib::MapEdge> segments() const;
     const std::vector<vectorlib::StampedPose> &trajectory() const { return poses; }
     size_t size() const { return edges.size(); }
 
 private:
-    std::map<qint64, vectorlib::MapEdge> edges;
+    Edges edges;
     std::vector<vectorlib::StampedPose> poses;
     qint64 revision = 0;
 };

@@ -47,6 +47,7 @@ ScanMatcher::ScanMatcher()
               "Turns laser scans into line segments, finds the sensor's pose among those of a vector map, "
               "and lets the "
               "map grow"}) {
+    files.setMaxThreadCount(1);
     declareSettings();
     declareTopics();
     declareMatcherCommands();
@@ -96,6 +97,7 @@ void ScanMatcher::stop() {
     source.close();
     odometry.close();
     worker.reset();
+    files.waitForDone();
 }
 
 void ScanMatcher::settingsChanged(const QStringList &paths) {

@@ -6,6 +6,8 @@
 #include "daemons/scanmatcher/OdometrySource.h"
 #include "daemons/scanmatcher/Worker.h"
 
+#include <QThreadPool>
+#include <atomic>
 #include <memory>
 
 namespace hermes {
@@ -53,15 +55,16 @@ private:
     void updateTrackingHealth();
 
     TrackerSettings trackerSettings() const;
-    /// Runs in the worker's thread, then hands the map's changes over.
-    void postMapChange(const std::function<void(Tracker &)> &change, const Reply &reply,
-                       const QJsonValue &answer);
+    void saveMap(const QString &format, const Call &call, const Reply &reply);
+    void loadMap(const Call &call, const Reply &reply);
+    /// In the worker's thread, when the map is another one: hands it over to the main thread, then answers.
+    void showNewMap(Tracker &tracker, const Reply &reply, const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
-    Result<QJsonValue> writeMapFile(const QString &path, const QString &format, bool force) const;
-    Result<std::vector<vectorlib::MapEdge>> readMapFile(const QString &path) const;
     QString absolutePath(const QString &path) const;
     QJsonObject matcherState() const;
 
+    std::atomic<int> filesUnderWay{0};
+    QThreadPool files; ///< one thread, which writes maps: a disk may take its time
     std::unique_ptr<Worker> worker;
     Client source;
     int subscription = 0;

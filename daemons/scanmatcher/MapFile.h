@@ -1,0 +1,22 @@
+#pragma once
+
+#include "common/Result.h"
+#include "vectorlib/io/MapDrawing.h"
+
+#include <vector>
+
+namespace hermes {
+
+/// Largest file that readMapFile() takes: some 400,000 edges.
+constexpr qint64 largestMapFile = 64 << 20;
+
+/// Reads what writeMapFile() wrote as csv. Waits for the disk. InputOutput with data.path.
+Result<std::vector<vectorlib::MapEdge>> readMapFile(const QString &path);
+
+/// Writes a map as csv, svg, geojson or dxf (only svg takes more than its segments); the file appears when it
+/// is complete. Gives {path, segments, bytes}. Waits for the disk. InputOutput with data.path, also where the
+/// file exists and force is not set.
+Result<QJsonValue> writeMapFile(const QString &path, const QString &format, bool force,
+                                const vectorlib::MapDrawing &map);
+
+} // namespace hermes
