@@ -13,19 +13,10 @@ import time
 import unittest
 from unittest import mock
 
-SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
-sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
-from processes import Daemon, Process, free_port  # noqa: E402
-import drive  # noqa: E402 of docs/examples
+from support import BINARIES, SOURCE, Daemon, Process, free_port, wait_for
+import drive  # of docs/examples
 
 PROGRAM = os.path.join(SOURCE, "docs", "examples", "drive.py")
-
-
-def wait_for(what, condition, limit_s=10):
-    deadline = time.monotonic() + limit_s
-    while not condition():
-        assert time.monotonic() < deadline, f"{what} did not happen within {limit_s} s"
-        time.sleep(0.02)
 
 
 class FollowerTest(unittest.TestCase):

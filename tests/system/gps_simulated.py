@@ -8,27 +8,16 @@ import os
 import select
 import socket
 import struct
-import sys
 import tempfile
 import time
-import tty
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-from processes import Process, free_port  # noqa: E402
+from support import BINARIES, Process, SerialPort, free_port
 
-BINARIES = os.environ["HERMES_BIN"]
 ORIGIN = 48.2, 11.5
 
 
-class Receiver:
+class Receiver(SerialPort):
     """Reads lines as from a serial port."""
-
-    def __init__(self, path):
-        self.port = os.open(path, os.O_RDWR | os.O_NOCTTY)
-        tty.setraw(self.port)
-
-    def close(self):
-        os.close(self.port)
 
     def lines(self, seconds):
         """What comes within this time, without the part before the first line end."""

@@ -9,14 +9,11 @@ import subprocess
 import sys
 import tempfile
 import threading
-import time
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-import velodyne_reference as reference  # noqa: E402
-from lidar_decoders import write_capture  # noqa: E402
-from processes import Daemon, DaemonError, Process, free_port  # noqa: E402
+from support import BINARIES, Daemon, DaemonError, Process, free_port, wait_for
+import velodyne_reference as reference
+from lidar_decoders import write_capture
 
-BINARIES = os.environ["HERMES_BIN"]
 PACKETS = 1200
 
 
@@ -38,14 +35,7 @@ class Reader(threading.Thread):
             pass  # the daemon has ended
 
     def wait(self, count):
-        until(lambda: len(self.seen) >= count, f"{count} messages")
-
-
-def until(condition, what, limit_s=60):
-    deadline = time.monotonic() + limit_s
-    while not condition():
-        assert time.monotonic() < deadline, f"{what} did not come in {limit_s} s"
-        time.sleep(0.02)
+        wait_for(f"{count} messages", lambda: len(self.seen) >= count)
 
 
 def refused(code, daemon, method, **params):
@@ -73,7 +63,7 @@ def check_slow_reader(logger, port, capture):
     clouds, scans = Reader(port, "cloud"), Reader(port, "scan2d")
     logger.call("source.open", pcap=capture, speed=1, loop=True)
     first.join()
-    until(lambda: dropped_messages(logger) > before, "a loss of the one who does not read")
+    wait_for("a loss of the one who does not read", lambda: dropped_messages(logger) > before)
     clouds.wait(30)
     scans.wait(30)
     passed_over = 0
@@ -82,7 +72,7 @@ def check_slow_reader(logger, port, capture):
         assert set(dropped) == {0}, f"{max(dropped)} messages were lost by one who reads"
         assert list(sequence) == list(range(sequence[0], sequence[0] + len(sequence)))
         passed_over += turns[-1] - turns[0] + 1 - len(turns)
-    until(lambda: next(unread)["dropped"] > 0, "word of that loss")
+    wait_for("word of that loss", lambda: next(unread)["dropped"] > 0)
     slow.close()
     status = logger.call("source.status")
     check_losses(status)
@@ -110,8 +100,8 @@ def check_clouds(logger, port, capture, name):
         assert far < 0.1 or abs(math.asin(z / far) - math.radians(model.elevations[laser])) < 0.002 / far, (x, y, z, laser)
     # Settings apply at once.
     logger.call("settings.set", values={"cloud": {"turn_step": 3}})
-    until(lambda: len(clouds.seen) > 3 and all(b[0] - a[0] == 3 for a, b in zip(clouds.seen[-3:], clouds.seen[-2:])),
-          "every third turn only")
+    wait_for("every third turn only",
+             lambda: len(clouds.seen) > 3 and all(b[0] - a[0] == 3 for a, b in zip(clouds.seen[-3:], clouds.seen[-2:])))
     logger.call("settings.set", values={"cloud": {"turn_step": 1}})
     check_losses(logger.call("source.status"))
 
@@ -180,7 +170,7 @@ def check_replay(logger, port, capture):
     opened = logger.call("source.open", pcap=capture, speed=1)
     assert opened["state"] == "replay" and not opened["paused"], opened
     status = lambda: logger.call("source.status")["source"]  # noqa: E731
-    until(lambda: status()["duration_s"] is not None, "the duration")
+    wait_for("the duration", lambda: status()["duration_s"] is not None)
     duration_s = status()["duration_s"]
     last_s = max(stamp for stamp, _ in reference.datagrams(capture)) * 1e-9
     assert abs(duration_s - (last_s - first_s)) < 1e-3, (duration_s, last_s - first_s)
@@ -190,7 +180,7 @@ def check_replay(logger, port, capture):
     assert not logger.call("source.pause", paused=False)["paused"]
     assert next(message for message in stream if message["data"]["stamp"] >= first_s + target_s - 0.01)
     logger.call("source.seek", t_s=2 * duration_s)
-    until(lambda: status()["state"] == "ended", "the end")
+    wait_for("the end", lambda: status()["state"] == "ended")
     refused(-32005, logger, "source.seek", t_s=0)
     refused(-32005, logger, "source.pause")
     refused(-32005, logger, "capture.turn", name="late")

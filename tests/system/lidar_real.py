@@ -10,11 +10,9 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-import velodyne_reference as reference  # noqa: E402
-from processes import Daemon, Process, free_port  # noqa: E402
+from support import BINARIES, SOURCE, Daemon, Process, free_port
+import velodyne_reference as reference
 
-SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
 DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 CAPTURE = os.path.join(DATA, "hdl32e-outdoor.pcap")
 HOUR_S = 3600

@@ -14,11 +14,9 @@ import tempfile
 import threading
 import time
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-import velodyne_reference as reference  # noqa: E402
-from processes import Daemon, Process, free_port  # noqa: E402
+from support import BINARIES, SOURCE, Daemon, Process, free_port
+import velodyne_reference as reference
 
-SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 SIGMA = 0.01
 

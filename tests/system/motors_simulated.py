@@ -7,29 +7,16 @@ import json
 import math
 import os
 import select
+import socket
 import struct
-import sys
 import tempfile
 import time
-import tty
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-from processes import Process, free_port  # noqa: E402
-from hermes import DaemonError  # noqa: E402
-import socket  # noqa: E402
-
-SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
+from support import BINARIES, DaemonError, Process, SerialPort, free_port, wait_for
 
 
-class RoboClaw:
+class RoboClaw(SerialPort):
     """A client of its own: packet serial as the manual of the controllers describes it."""
-
-    def __init__(self, path):
-        self.port = os.open(path, os.O_RDWR | os.O_NOCTTY)
-        tty.setraw(self.port)
-
-    def close(self):
-        os.close(self.port)
 
     def exchange(self, packet, size, limit_s=0.5):
         os.write(self.port, packet)
@@ -54,13 +41,6 @@ class RoboClaw:
     def drive(self, speed, acceleration=120000):
         for address in (0x80, 0x81):
             assert self.write(address, 40, "Iii", acceleration, speed, speed)
-
-
-def wait_for(what, condition, limit_s=10):
-    deadline = time.monotonic() + limit_s
-    while not condition():
-        assert time.monotonic() < deadline, f"{what} did not happen within {limit_s} s"
-        time.sleep(0.02)
 
 
 def speed_of(simulator):

@@ -5,24 +5,17 @@ import json
 import math
 import os
 import socket
-import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-from processes import Process, free_port  # noqa: E402
-from hermes import DaemonError  # noqa: E402
+from support import BINARIES, DaemonError, Process, free_port, wait_for
 
-BINARIES = os.environ["HERMES_BIN"]
 SPEED = 0.4  # m/s
 
 
-def wait_for(what, condition, limit_s):
-    """Seconds until the condition held."""
+def seconds_until(what, condition, limit_s):
     began = time.monotonic()
-    while not condition():
-        assert time.monotonic() < began + limit_s, f"{what} did not happen within {limit_s} s"
-        time.sleep(0.005)
+    wait_for(what, condition, limit_s)
     return time.monotonic() - began
 
 
@@ -69,13 +62,13 @@ def pull_and_put_back(simulator, motors, line):
     drive(motors, 1)
     assert abs(true_speed(simulator) - SPEED) < 0.05
     simulator.call("sim.fault", device=line, kind="pulled")
-    noticed = wait_for("notice of the pulled line", lambda: not is_ready(motors), 0.5)
+    noticed = seconds_until("notice of the pulled line", lambda: not is_ready(motors), 0.5)
     message = refusal(motors)
     assert f"controller {line[-1]} (0x80 on serial://" in message, message
-    stood = wait_for("standing", lambda: true_speed(simulator) == 0, 1)
+    stood = seconds_until("standing", lambda: true_speed(simulator) == 0, 1)
     time.sleep(1)  # the pauses between the attempts to open the line have grown
     simulator.call("sim.fault", device=line, kind="none")
-    back = wait_for("recovery", lambda: is_ready(motors), 2)
+    back = seconds_until("recovery", lambda: is_ready(motors), 2)
     assert back < 0.6, f"only {back:.2f} s after the line was put back the controllers were ready"
     way = compare_ways(simulator, motors)
     assert motors.call("motor.state")["counter_jumps"] == 0

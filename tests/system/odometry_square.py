@@ -5,16 +5,12 @@ import json
 import math
 import os
 import socket
-import sys
 import tempfile
 import threading
 import time
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-from processes import Process, free_port  # noqa: E402
-from hermes import DaemonError  # noqa: E402
+from support import BINARIES, DaemonError, Process, free_port
 
-BINARIES = os.environ["HERMES_BIN"]
 SIDE = float(os.environ.get("HERMES_SIDE", "1"))
 SPEED, TURN_RATE = 1.0, 2.5  # m/s, rad/s
 SLOWING, TURN_SLOWING = 1.0, 3.0  # m/s^2, rad/s^2: half of what the robot can

@@ -12,7 +12,7 @@ import time
 import unittest
 
 import recording_load as load
-from hermes import Daemon, DaemonError
+from support import Daemon, DaemonError, wait_for
 
 KILLS = int(os.environ.get("HERMES_KILLS", 5))
 PAUSE_S = float(os.environ.get("HERMES_PAUSE_S", 4))
@@ -58,7 +58,7 @@ class Recording(unittest.TestCase):
         with load.Logger(self.folder, **{"record.file_bytes": 1000000}) as logger:
             recorded = logger.daemon.call("record.start", name="tools")["folder"]
             data, position, _ = load.sent(logger.send(load.NOMINAL_HZ, 2, 0))
-            load.wait_for(lambda: logger.daemon.call("record.status")["counts"]["packets"] == data + position, "packets")
+            wait_for("packets", lambda: logger.daemon.call("record.status")["counts"]["packets"] == data + position)
             logger.daemon.call("record.stop")
         sidecar = load.check_files(recorded, 0, data, position)
         self.assertEqual(len(sidecar["files"]), len(load.captures(recorded)))
@@ -76,7 +76,7 @@ class Recording(unittest.TestCase):
                 daemon.call("topics.subscribe", topic=topic, queue=1000)  # and read no more
             recorded = logger.daemon.call("record.start", name="slow")["folder"]
             data, position, _ = load.sent(logger.send(load.NOMINAL_HZ, PAUSE_S, 0))
-            load.wait_for(lambda: logger.daemon.call("record.status")["counts"]["packets"] == data + position, "packets")
+            wait_for("packets", lambda: logger.daemon.call("record.status")["counts"]["packets"] == data + position)
             told = logger.daemon.call("record.stop")
             self.assertFalse(any(told["losses"].values()), told)
             load.check_files(recorded, 0, data, position)
@@ -100,8 +100,8 @@ class Recording(unittest.TestCase):
                 time.sleep(0.002)
             data, position, _ = load.sent(sender)
             fitting, longer = sum(size <= 2048 for size in sizes), sum(size > 2048 for size in sizes)
-            load.wait_for(lambda: logger.daemon.call("record.status")["counts"]["packets"] == data + position + fitting,
-                          f"the packets, seed {seed}")
+            wait_for(f"the packets, seed {seed}",
+                     lambda: logger.daemon.call("record.status")["counts"]["packets"] == data + position + fitting)
             told = logger.daemon.call("record.stop")
         self.assertEqual(told["losses"], {"missing": 0, "kernel": 0, "queue": 0, "too_long": longer, "unwritten": 0}, seed)
         self.assertEqual(told["counts"]["data"], data, seed)
@@ -118,7 +118,7 @@ class Recording(unittest.TestCase):
             for number in range(KILLS):
                 recorded = logger.daemon.call("record.start", name=f"kill{number}")["folder"]
                 sender = logger.send(load.NOMINAL_HZ, 30, 0)
-                load.wait_for(lambda: logger.daemon.call("record.status")["counts"]["data"] > 100, "packets")
+                wait_for("packets", lambda: logger.daemon.call("record.status")["counts"]["data"] > 100)
                 time.sleep(random.uniform(0, 1.2))
                 killed = time.time()
                 os.kill(logger.pid, signal.SIGKILL)
@@ -128,7 +128,7 @@ class Recording(unittest.TestCase):
                 logger.daemon.close()
                 self.assertIsNone(sidecar_of(recorded)["ended"])
                 logger = load.Logger(self.folder)
-                load.wait_for(lambda: sidecar_of(recorded)["ended"] == "cut off", "the sidecar")
+                wait_for("the sidecar", lambda: sidecar_of(recorded)["ended"] == "cut off")
                 written = self.check_cut_off(recorded)
                 cost.append(max([0] + [killed - time for time in times[written:]]))  # of the packets that are missing
         finally:
@@ -169,7 +169,7 @@ class Recording(unittest.TestCase):
             recorded = logger.daemon.call("record.start", name="full")["folder"]
             sender = logger.send(load.NOMINAL_HZ, 60, 0)
             try:
-                load.wait_for(lambda: not logger.daemon.call("record.status")["recording"], "the end", 40)
+                wait_for("the end", lambda: not logger.daemon.call("record.status")["recording"], 40)
             finally:
                 sender.kill()
                 sender.communicate()

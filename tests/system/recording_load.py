@@ -9,10 +9,9 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-from processes import Process, free_port  # noqa: E402
+from support import BINARIES, Process, free_port, wait_for
 
-BINARIES, BUILD = os.environ["HERMES_BIN"], os.environ["HERMES_BUILD"]
+BUILD = os.environ["HERMES_BUILD"]
 NOMINAL_HZ, BURST_HZ = 1810, 20000
 RECORD, DATA, POSITION = struct.Struct("<IIII"), 1206, 512
 
@@ -115,7 +114,7 @@ def run(seconds, bursts, burst_s, folder=None):
             more, also, took = sent(logger.send(BURST_HZ, burst_s, data))
             data, position = data + more, position + also
             rates.append(more / took)
-        wait_for(lambda: logger.daemon.call("record.status")["counts"]["packets"] >= data + position, "the last packets")
+        wait_for("the last packets", lambda: logger.daemon.call("record.status")["counts"]["packets"] >= data + position)
         told = logger.daemon.call("record.stop")
         assert not any(told["losses"].values()), told
         assert told["counts"]["data"] == data and told["counts"]["position"] == position, (told, data, position)
@@ -126,13 +125,6 @@ def run(seconds, bursts, burst_s, folder=None):
                 "burst_hz": min(rates, default=0), "bursts": bursts, "burst_s": burst_s, "peak_mb": logger.peak_mb(),
                 "files": len(sidecar["files"]), "decoder_drops": lidar["decoder_drops"],
                 "receive_buffer_bytes": lidar["receive_buffer_bytes"]}
-
-
-def wait_for(condition, what, limit_s=20):
-    deadline = time.monotonic() + limit_s
-    while not condition():
-        assert time.monotonic() < deadline, f"waited {limit_s} s for {what}"
-        time.sleep(0.02)
 
 
 if __name__ == "__main__":

@@ -4,13 +4,11 @@ import json
 import os
 import random
 import subprocess
-import sys
 import time
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "docs", "examples"))
-from hermes import DaemonError  # noqa: E402
-from seriallog import chunks  # noqa: E402
-from serial_port import Device, Logger, make_folder, wait_for  # noqa: E402
+from support import DaemonError, wait_for
+from seriallog import chunks  # of docs/examples
+from serial_port import Device, Logger, make_folder
 
 
 def load(path, mode="rb"):

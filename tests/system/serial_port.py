@@ -1,13 +1,10 @@
 """The far end of a serial line for tests: a pseudo-terminal behind a link, as a device in /dev/serial/by-id is."""
 import os
 import pty
-import sys
 import tempfile
-import time
 import tty
 
-sys.path.insert(0, os.path.join(os.environ["HERMES_SOURCE"], "deploy", "demo"))
-from processes import Process, free_port  # noqa: E402
+from support import BINARIES, Process, free_port, wait_for
 
 
 class Device:
@@ -31,23 +28,12 @@ class Device:
         os.close(self.far)
 
 
-def wait_for(what, condition, limit_s=20):
-    """The first value of condition() that counts as true."""
-    deadline = time.monotonic() + limit_s
-    while True:
-        value = condition()
-        if value:
-            return value
-        assert time.monotonic() < deadline, f"{what} did not happen within {limit_s} s"
-        time.sleep(0.01)
-
-
 class Logger(Process):
     """hermes-seriallogger with one port `dev` on a serial line."""
 
     def __init__(self, folder, link, **settings):
         ports = f'[{{"name":"dev","url":"serial://{link}?baud=921600"}}]'
-        super().__init__(os.environ["HERMES_BIN"], "seriallogger", free_port(0), folder,
+        super().__init__(BINARIES, "seriallogger", free_port(0), folder,
                          {"ports": ports, "record.folder": os.path.join(folder, "recordings"), "record.free_floor_bytes": 0,
                           "record.free_warn_bytes": 0, **settings})
         self.daemon = self.connect()

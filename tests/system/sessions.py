@@ -15,8 +15,7 @@ import time
 import unittest
 
 import recording_load as load
-from hermes import Daemon
-from processes import Process, free_port
+from support import Daemon, Process, free_port, wait_for
 
 CTL = os.path.join(load.BINARIES, "hermesctl")
 PACKETS_HZ, SECONDS = 1810, 1
@@ -32,13 +31,13 @@ class Serial:
                                {"ports": json.dumps(ports), "record.folder": records, "record.free_floor_bytes": 0,
                                 "record.free_warn_bytes": 0})
         self.daemon = self.process.connect()
-        load.wait_for(lambda: self.daemon.call("ports.list")[0]["state"] == "open", "the port")
+        wait_for("the port", lambda: self.daemon.call("ports.list")[0]["state"] == "open")
 
     def send(self, text):
         before = self.daemon.call("ports.list")[0]["bytes"]
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             sender.sendto(text, ("127.0.0.1", self.source))
-        load.wait_for(lambda: self.daemon.call("ports.list")[0]["bytes"] == before + len(text), "the bytes")
+        wait_for("the bytes", lambda: self.daemon.call("ports.list")[0]["bytes"] == before + len(text))
 
 
 class Reader(threading.Thread):
@@ -99,7 +98,7 @@ class Sessions(unittest.TestCase):
             self.serial.send(line)
             text += line
         data, position, _ = load.sent(sender)
-        load.wait_for(lambda: self.lidar.daemon.call("record.status")["counts"]["packets"] == data + position, "the packets")
+        wait_for("the packets", lambda: self.lidar.daemon.call("record.status")["counts"]["packets"] == data + position)
         return data, position, len(text)
 
     def test_record(self):
@@ -129,9 +128,9 @@ class Sessions(unittest.TestCase):
         lines.messages.clear()
         scans.messages.clear()
         self.assertEqual(self.ctl("replay", "run1"), "")
-        load.wait_for(lambda: len(lines.messages) == len(live_lines), "the lines")
+        wait_for("the lines", lambda: len(lines.messages) == len(live_lines))
         # The turn that was under way came when the replay began, the last of the replay at its end.
-        load.wait_for(lambda: len(scans.messages) == len(live_scans) + 2, "the turns")
+        wait_for("the turns", lambda: len(scans.messages) == len(live_scans) + 2)
         live_scans.append(scans.messages.pop(0))
         self.assertEqual([line for _, line in lines.messages], [line for _, line in live_lines])
         for (_, turn), (_, same) in zip(scans.messages, live_scans):
@@ -162,7 +161,7 @@ class Sessions(unittest.TestCase):
         replay = subprocess.Popen([CTL, "--daemons", self.daemons, "replay", "run1", "--loop", "--speed", "10"], stderr=near)
         os.close(near)
         try:
-            load.wait_for(lambda: sum(line["text"].endswith("line 0") for _, line in lines.messages) >= 3, "the third time")
+            wait_for("the third time", lambda: sum(line["text"].endswith("line 0") for _, line in lines.messages) >= 3)
             replay.send_signal(signal.SIGINT)
             self.assertEqual(replay.wait(20), 0)
         finally:
@@ -222,7 +221,7 @@ class Sessions(unittest.TestCase):
         self.ctl("record", "start", "run1")
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
             stranger.sendto(bytes(3000), ("127.0.0.1", self.lidar.lidar_port))
-        load.wait_for(lambda: self.lidar.daemon.call("record.status")["losses"]["too_long"], "the loss")
+        wait_for("the loss", lambda: self.lidar.daemon.call("record.status")["losses"]["too_long"])
         self.assertIn("velodynelogger: lost: too_long 1", self.ctl("record", "stop", status=1))
 
     def test_who_is_asked(self):
