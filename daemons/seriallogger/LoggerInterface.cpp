@@ -1,4 +1,5 @@
 // What the serial logger offers: its settings, topics and commands.
+#include "common/recording/ReplayCommands.h"
 #include "daemons/seriallogger/SerialLogger.h"
 
 namespace hermes {
@@ -42,19 +43,12 @@ void SerialLogger::declareSourceCommands() {
             .param(Field::boolean("live", "Show those of the ports").optional())
             .param(Field::text("recording", "Recording to replay, by its name").optional())
             .param(Field::number("speed", "Of the replay: 1 real time").range(0.001, 1000).byDefault(1))
-            .param(Field::boolean("paused", "The replay waits for source.pause").byDefault(false))
-            .param(Field::number("delay_s", "Time of the replay at which the recording begins")
-                       .unit("s")
-                       .range(0, 1e7)
-                       .byDefault(0))
+            .param(pausedParam())
+            .param(delayParam())
             .returns({{"type", "object"}})
             .example({{"recording", "drive"}}, QJsonObject{{"state", "replay"}, {"name", "/data/drive"}})
             .handler([this](const Call &call) { return openSource(call); }));
-    addCommand(Command("source.pause", "The replay waits, or goes on")
-                   .param(Field::boolean("paused", "Whether it waits").byDefault(true))
-                   .returns({{"type", "object"}})
-                   .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}})
-                   .handler([this](const Call &call) { return pause(call.flag("paused")); }));
+    addCommand(pauseCommand([this](bool paused) { return pause(paused); }));
     addCommand(Command("source.status", "What the topic serial says, now")
                    .returns({{"type", "object"}})
                    .handler([this](const Call &) -> Result<QJsonValue> { return state(); }));

@@ -20,6 +20,9 @@ protected:
 
 private:
     void declareSettings();
+    /// A setting that has effect at the next start.
+    void addNumber(const char *group, const char *name, const char *text, const char *unit, double least,
+                   double most, double value);
     void declareMotorSettings();
     void declareGpsSettings();
     void declareTopics();

@@ -4,15 +4,6 @@
 namespace hermes {
 
 void Simulator::declareGpsSettings() {
-    const auto number = [this](const char *name, const char *text, const char *unit, double least,
-                               double most, double value) {
-        addSetting(Field::number(name, text)
-                       .unit(unit)
-                       .range(least, most)
-                       .byDefault(value)
-                       .appliesOnRestart()
-                       .group("GPS"));
-    };
     addSetting(Field::text("gps.link",
                            "Link to the pseudo-terminal of the GPS receiver; none: sim.state tells "
                            "its name")
@@ -25,10 +16,10 @@ void Simulator::declareGpsSettings() {
                    .byDefault(5)
                    .appliesOnRestart()
                    .group("GPS"));
-    number("gps.latitude_deg", "Of the world's origin, north positive; x points east, y north", "deg", -89,
-           89, 50);
-    number("gps.longitude_deg", "Of the world's origin, east positive", "deg", -180, 180, 10);
-    number("gps.altitude_m", "Of the receiver above the sea", "m", -500, 9000, 300);
+    addNumber("GPS", "gps.latitude_deg", "Of the world's origin, north positive; x points east, y north",
+              "deg", -89, 89, 50);
+    addNumber("GPS", "gps.longitude_deg", "Of the world's origin, east positive", "deg", -180, 180, 10);
+    addNumber("GPS", "gps.altitude_m", "Of the receiver above the sea", "m", -500, 9000, 300);
     addSetting(Field::number("gps.sigma_m", "Standard deviation of each coordinate of a fix")
                    .unit("m")
                    .range(0, 1000)

@@ -36,15 +36,6 @@ void applyFault(MotorChannel &motor, const QString &kind) {
 } // namespace
 
 void Simulator::declareMotorSettings() {
-    const auto number = [this](const char *name, const char *text, const char *unit, double least,
-                               double most, double value, const char *group) {
-        addSetting(Field::number(name, text)
-                       .unit(unit)
-                       .range(least, most)
-                       .byDefault(value)
-                       .appliesOnRestart()
-                       .group(group));
-    };
     addSetting(Field::text("motors.link",
                            "Link to the pseudo-terminal of the motor controllers; none: sim.state "
                            "tells its name")
@@ -70,22 +61,22 @@ void Simulator::declareMotorSettings() {
             .byDefault(32)
             .appliesOnRestart()
             .group("Motors"));
-    number("motors.full_speed", "Encoder counts a second at full duty and 24 V", "1/s", 100, 2e7, 160000,
-           "Motors");
-    number("motors.lag_s", "Time constant with which a wheel follows", "s", 0.001, 10, 0.02, "Motors");
-    number("battery.capacity_ah", "Charge of the battery", "Ah", 0.001, 10000, 20, "Motors");
-    number("battery.full_v", "Its voltage when full", "V", 0, 34, 25.2, "Motors");
-    number("battery.empty_v", "Its voltage when empty", "V", 0, 34, 20, "Motors");
+    addNumber("Motors", "motors.full_speed", "Encoder counts a second at full duty and 24 V", "1/s", 100, 2e7,
+              160000);
+    addNumber("Motors", "motors.lag_s", "Time constant with which a wheel follows", "s", 0.001, 10, 0.02);
+    addNumber("Motors", "battery.capacity_ah", "Charge of the battery", "Ah", 0.001, 10000, 20);
+    addNumber("Motors", "battery.full_v", "Its voltage when full", "V", 0, 34, 25.2);
+    addNumber("Motors", "battery.empty_v", "Its voltage when empty", "V", 0, 34, 20);
     addSetting(Field::text("frame.layout", "How the wheels move the robot")
                    .choices({"mecanum", "differential"})
                    .byDefault("mecanum")
                    .appliesOnRestart()
                    .group("Wheels"));
-    number("frame.wheel_radius_m", "Radius of a wheel", "m", 0.01, 1, 0.1, "Wheels");
-    number("frame.half_base_m", "From the centre to an axle", "m", 0.01, 5, 0.25, "Wheels");
-    number("frame.half_track_m", "From the centre to the middle of a wheel", "m", 0.01, 5, 0.25, "Wheels");
-    number("frame.counts_per_turn", "Encoder counts in one turn of a wheel", "", 1, 1e7, 38000, "Wheels");
-    number("frame.slip", "Share of the wheels' way that the robot does not make", "", 0, 1, 0, "Wheels");
+    addNumber("Wheels", "frame.wheel_radius_m", "Radius of a wheel", "m", 0.01, 1, 0.1);
+    addNumber("Wheels", "frame.half_base_m", "From the centre to an axle", "m", 0.01, 5, 0.25);
+    addNumber("Wheels", "frame.half_track_m", "From the centre to the middle of a wheel", "m", 0.01, 5, 0.25);
+    addNumber("Wheels", "frame.counts_per_turn", "Encoder counts in one turn of a wheel", "", 1, 1e7, 38000);
+    addNumber("Wheels", "frame.slip", "Share of the wheels' way that the robot does not make", "", 0, 1, 0);
 }
 
 Drivetrain::Options Simulator::drivetrainOptions() {

@@ -2,6 +2,16 @@
 
 namespace hermes {
 
+void Simulator::addNumber(const char *group, const char *name, const char *text, const char *unit,
+                          double least, double most, double value) {
+    addSetting(Field::number(name, text)
+                   .unit(unit)
+                   .range(least, most)
+                   .byDefault(value)
+                   .appliesOnRestart()
+                   .group(group));
+}
+
 void Simulator::declareSettings() {
     // All but the noise have effect with the next world that is loaded.
     addSetting(Field::text("world", "World file to load at the start; none waits for sim.load")
@@ -13,25 +23,13 @@ void Simulator::declareSettings() {
                    .byDefault(1)
                    .appliesOnRestart()
                    .group("World"));
-    addSetting(Field::number("wall_height_m", "Height of the walls; beams above them return nothing")
-                   .unit("m")
-                   .range(0.01, 100)
-                   .byDefault(2.5)
-                   .appliesOnRestart()
-                   .group("World"));
-    const auto robot = [this](const char *name, const char *text, const char *unit, double least, double most,
-                              double value) {
-        addSetting(Field::number(name, text)
-                       .unit(unit)
-                       .range(least, most)
-                       .byDefault(value)
-                       .appliesOnRestart()
-                       .group("Robot"));
-    };
-    robot("robot.speed_mps", "Largest speed along the path", "m/s", 0.01, 20, 0.8);
-    robot("robot.acceleration_mps2", "When speeding up and slowing down", "m/s^2", 0.01, 50, 0.8);
-    robot("robot.turn_rate_rps", "Largest turn rate", "rad/s", 0.01, 20, 1.0);
-    robot("robot.radius_m", "Of its outline, which walls stop", "m", 0.01, 5, 0.3);
+    addNumber("World", "wall_height_m", "Height of the walls; beams above them return nothing", "m", 0.01,
+              100, 2.5);
+    addNumber("Robot", "robot.speed_mps", "Largest speed along the path", "m/s", 0.01, 20, 0.8);
+    addNumber("Robot", "robot.acceleration_mps2", "When speeding up and slowing down", "m/s^2", 0.01, 50,
+              0.8);
+    addNumber("Robot", "robot.turn_rate_rps", "Largest turn rate", "rad/s", 0.01, 20, 1.0);
+    addNumber("Robot", "robot.radius_m", "Of its outline, which walls stop", "m", 0.01, 5, 0.3);
     addSetting(Field::boolean("robot.autostart", "Follow the path at once, without sim.drive")
                    .byDefault(false)
                    .appliesOnRestart()
@@ -51,19 +49,10 @@ void Simulator::declareSettings() {
             .byDefault(velodyne::positionPort)
             .appliesOnRestart()
             .group("Lidar"));
-    const auto lidar = [this](const char *name, const char *text, const char *unit, double least, double most,
-                              double value) {
-        addSetting(Field::number(name, text)
-                       .unit(unit)
-                       .range(least, most)
-                       .byDefault(value)
-                       .appliesOnRestart()
-                       .group("Lidar"));
-    };
-    lidar("lidar.rpm", "Turns of the head a minute", "1/min", 300, 1200, 600);
-    lidar("lidar.height_m", "Of the sensor above the floor", "m", 0.01, 10, 0.5);
-    lidar("lidar.min_range_m", "Nearer things return nothing", "m", 0, 10, 0.05);
-    lidar("lidar.max_range_m", "Farther things return nothing", "m", 1, 131, 100);
+    addNumber("Lidar", "lidar.rpm", "Turns of the head a minute", "1/min", 300, 1200, 600);
+    addNumber("Lidar", "lidar.height_m", "Of the sensor above the floor", "m", 0.01, 10, 0.5);
+    addNumber("Lidar", "lidar.min_range_m", "Nearer things return nothing", "m", 0, 10, 0.05);
+    addNumber("Lidar", "lidar.max_range_m", "Farther things return nothing", "m", 1, 131, 100);
     addSetting(Field::number("lidar.sigma_m", "Standard deviation of the range")
                    .unit("m")
                    .range(0, 1)

@@ -1,4 +1,5 @@
 // What the Velodyne logger offers: its settings, topics and commands.
+#include "common/recording/ReplayCommands.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
 namespace hermes {
@@ -111,11 +112,8 @@ void VelodyneLogger::declareSourceCommands() {
                        .range(0, 1000)
                        .byDefault(1))
             .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false))
-            .param(Field::boolean("paused", "The replay waits for source.pause").byDefault(false))
-            .param(Field::number("delay_s", "Time of the replay at which the recording begins")
-                       .unit("s")
-                       .range(0, 1e7)
-                       .byDefault(0))
+            .param(pausedParam())
+            .param(delayParam())
             .returns({{"type", "object"}})
             .example({{"pcap", "drive.pcap"}, {"speed", 1}},
                      QJsonObject{{"state", "replay"}, {"name", "drive.pcap"}, {"speed", 1}})
@@ -138,11 +136,7 @@ void VelodyneLogger::declareSourceCommands() {
             .returns({{"type", "object"}})
             .example({{"t_s", 60}}, QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}})
             .handler([this](const Call &call) { return seek(call.number("t_s")); }));
-    addCommand(Command("source.pause", "The replay waits, or goes on")
-                   .param(Field::boolean("paused", "Whether it waits").byDefault(true))
-                   .returns({{"type", "object"}})
-                   .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}})
-                   .handler([this](const Call &call) { return pause(call.flag("paused")); }));
+    addCommand(pauseCommand([this](bool paused) { return pause(paused); }));
     addCommand(Command("source.status", "What the topic lidar says, now")
                    .returns({{"type", "object"}})
                    .handler([this](const Call &) -> Result<QJsonValue> { return lidarState(); }));

@@ -2,9 +2,8 @@
 
 #include "common/Log.h"
 #include "common/recording/StoredRecording.h"
-#include "daemons/velodynelogger/CloudMessage.h"
-#include "daemons/velodynelogger/ScanMessage.h"
 #include "daemons/velodynelogger/TurnFile.h"
+#include "daemons/velodynelogger/TurnMessages.h"
 
 #include <QThreadPool>
 

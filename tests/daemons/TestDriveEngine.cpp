@@ -2,10 +2,9 @@
 // byte in 1,000 has a bit flipped, and the memory that $HERMES_TRAFFIC_HOURS of it need (half an hour where
 // it is not set).
 #include "VirtualDrive.h"
+#include "tests/support/HeapGrowth.h"
 
 #include <QtTest>
-
-#include <malloc.h>
 
 using namespace hermes;
 
@@ -86,18 +85,10 @@ void TestDriveEngine::aPauseOfTheProgramIsNoSilenceOfTheControllers() {
 }
 
 void TestDriveEngine::drivingNeedsNoMoreMemory() {
-    const double hours = qEnvironmentVariable("HERMES_TRAFFIC_HOURS", "0.5").toDouble();
     constexpr double coarse = 0.02; // wheels need no more here
     VirtualDrive drive(1e-3);
-    drive.run(60, coarse);
-    const std::size_t before = mallinfo2().uordblks;
-    if (before == 0)
-        QSKIP("a sanitizer has a heap of its own");
-    drive.run(hours * 3600, coarse);
-    const std::size_t after = mallinfo2().uordblks;
-    qInfo("%.1f h, %llu bytes on the line: heap %zu bytes before, %zu after", hours, drive.bytes + 0ULL,
-          before, after);
-    QVERIFY(after <= before + 4096);
+    verifyTrafficNeedsNoMoreMemory([&](double seconds) { drive.run(seconds, coarse); },
+                                   [&] { return drive.bytes; });
 }
 
 QTEST_GUILESS_MAIN(TestDriveEngine)

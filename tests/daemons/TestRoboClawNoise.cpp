@@ -1,10 +1,10 @@
 #include "daemons/simulator/Drivetrain.h"
 #include "protocol/roboclaw/Bus.h"
+#include "tests/support/HeapGrowth.h"
 
 #include <QtTest>
 
 #include <cmath>
-#include <malloc.h>
 #include <random>
 
 using namespace hermes;
@@ -147,17 +147,9 @@ void TestRoboClawNoise::aCleanLineLosesNothing() {
 }
 
 void TestRoboClawNoise::trafficNeedsNoMoreMemory() {
-    const double hours = qEnvironmentVariable("HERMES_TRAFFIC_HOURS", "0.5").toDouble();
     NoisyDrive drive(1e-3);
-    drive.run(60, false);
-    const std::size_t before = mallinfo2().uordblks;
-    if (before == 0)
-        QSKIP("a sanitizer has a heap of its own");
-    drive.run(hours * 3600, false);
-    const std::size_t after = mallinfo2().uordblks;
-    qInfo("%.1f h, %llu bytes on the line: heap %zu bytes before, %zu after", hours, drive.bytes + 0ULL,
-          before, after);
-    QVERIFY(after <= before + 4096);
+    verifyTrafficNeedsNoMoreMemory([&](double seconds) { drive.run(seconds, false); },
+                                   [&] { return drive.bytes; });
 }
 
 QTEST_GUILESS_MAIN(TestRoboClawNoise)

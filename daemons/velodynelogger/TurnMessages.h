@@ -11,4 +11,8 @@ namespace hermes {
 /// times to 1 us.
 QJsonObject toScanMessage(const velodyne::Turn &turn);
 
+/// The data of a `cloud` message: the points of all lasers in one turn, in the order of measuring, as arrays
+/// x, y, z (metres, rounded to 1 mm), laser and intensity.
+QJsonObject toCloudMessage(const velodyne::Turn &turn);
+
 } // namespace hermes
