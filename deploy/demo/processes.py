@@ -1,6 +1,7 @@
 """Starts daemons as processes of their own and stops them in order, whatever happens to this one."""
 import ctypes
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -13,17 +14,34 @@ from hermes import Daemon, DaemonError  # noqa: E402
 PR_SET_PDEATHSIG = 1
 
 
+held = []  # sockets of reserved ports
+
+
 def free_port(preferred, kind=socket.SOCK_STREAM):
-    """The preferred port of the loopback address when it is free, else any free one."""
-    for port in (preferred, 0):
+    """The preferred port of the loopback address when it is free, else one that nobody gets by chance: it is none of those that
+    the system hands out, and this process holds the TCP port as long as it lives, without listening."""
+    if preferred:
         with socket.socket(socket.AF_INET, kind) as probe:
             if kind == socket.SOCK_STREAM:
                 probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
-                probe.bind(("127.0.0.1", port))
-                return probe.getsockname()[1]
+                probe.bind(("127.0.0.1", preferred))
+                return preferred
             except OSError:
-                continue
+                pass
+    for _ in range(1000):
+        port = random.randrange(20000, 32000)
+        holder = socket.socket()
+        try:
+            holder.bind(("127.0.0.1", port))
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+                probe.bind(("127.0.0.1", port))
+        except OSError:
+            holder.close()
+            continue
+        holder.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # the daemon has it too, and may listen
+        held.append(holder)
+        return port
     raise OSError("no free port on 127.0.0.1")
 
 

@@ -15,12 +15,6 @@ def ctl(*arguments):
     return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=30)
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 class Hermesctl(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -86,7 +80,9 @@ class Hermesctl(unittest.TestCase):
             self.assertEqual(shown.stdout, "")
 
     def test_nobody_there(self):
-        shown = ctl("call", f"127.0.0.1:{free_port()}", "daemon.info")
+        with socket.socket() as taken:  # and nobody listens
+            taken.bind(("127.0.0.1", 0))
+            shown = ctl("call", f"127.0.0.1:{taken.getsockname()[1]}", "daemon.info")
         self.assertEqual(shown.returncode, 1)
         self.assertIn("refused", shown.stderr)
 
@@ -95,12 +91,13 @@ class Hermesctl(unittest.TestCase):
         self.assertRegex(self.ok("--version"), r"^hermesctl \d")
 
     def test_list(self):
-        shown = ctl("list", "--host", "127.0.0.77")  # loopback too, but nobody listens there
+        host = f"127.77.{os.getpid() // 250 % 250}.{1 + os.getpid() % 250}"  # loopback too, of this process alone
+        shown = ctl("list", "--host", host)
         self.assertEqual(shown.returncode, 1)
-        daemon = subprocess.Popen([DAEMON, "--listen", "tcp://127.0.0.78:7490"], stderr=subprocess.PIPE, text=True)
+        daemon = subprocess.Popen([DAEMON, "--listen", f"tcp://{host}:7490"], stderr=subprocess.PIPE, text=True)
         try:
             daemon.stderr.readline()
-            self.assertRegex(self.ok("list", "--host", "127.0.0.78"), r"thermometer +running +\S+ +tcp://127.0.0.78:7490")
+            self.assertRegex(self.ok("list", "--host", host), rf"thermometer +running +\S+ +tcp://{host}:7490")
         finally:
             daemon.terminate()
             daemon.stderr.close()

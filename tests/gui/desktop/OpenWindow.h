@@ -46,9 +46,10 @@ public:
                 return *i;
         return nullptr;
     }
+    /// Clicks as soon as the button can be clicked.
     static void click(QWidget *panel, const QString &button) {
         auto *const found = panel->findChild<QAbstractButton *>(button);
-        QVERIFY2(found && found->isEnabled() && found->isVisible(), qPrintable(button));
+        QTRY_VERIFY2(found && found->isEnabled() && found->isVisible(), qPrintable(button));
         QTest::mouseClick(found, Qt::LeftButton);
     }
     /// Replaces the text of a field by typing.

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "gui/desktop/model/Fleet.h"
+#include "tests/support/ChildProcess.h"
+#include "tests/support/FreePort.h"
 
-#include <QProcess>
-#include <QTcpServer>
 #include <QTemporaryDir>
 #include <QtTest>
 #include <csignal>
@@ -27,12 +27,12 @@ public:
     quint16 start(const QString &name, const QStringList &settings = {}, const QStringList &options = {}) {
         Daemon &daemon = daemons_[name];
         if (daemon.port == 0)
-            daemon.port = freePort();
+            daemon.port = reservePort();
         QStringList arguments{"--listen", QString("tcp://127.0.0.1:%1?protocol=json").arg(daemon.port)};
         arguments << options;
         for (const QString &setting : settings)
             arguments << "--set" << setting;
-        daemon.process = std::make_unique<QProcess>();
+        daemon.process = std::make_unique<ChildProcess>();
         daemon.process->setStandardOutputFile(QProcess::nullDevice());
         daemon.process->setStandardErrorFile(folder_.filePath(name + ".log"), QIODevice::Append);
         const QString beside = QCoreApplication::applicationDirPath() + "/hermes-" + name; // one of the tests
@@ -44,7 +44,7 @@ public:
     /// Simulator, motor control, lidar logger and scan matcher in a world of deploy/worlds, wired as on a
     /// robot.
     void startAll() {
-        const quint16 lidar = freePort();
+        const quint16 lidar = reservePort();
         const quint16 logger = start("velodynelogger", {QString("source.port=%1").arg(lidar),
                                                         "record.folder=" + folder_.filePath("recordings")});
         start("scanmatcher",
@@ -57,9 +57,11 @@ public:
         start("simulator", QStringList{"world=" + world, "motors.link=" + motorLink()} + simulator);
         startMotorControl();
     }
+    /// Its client may be silent for 1 s, as it is when the machine stalls.
     void startMotorControl() {
         const QString url = "serial://" + motorLink() + "?baud=115200";
-        start("motorcontrol", {"controllers.1.url=" + url, "controllers.2.url=" + url});
+        start("motorcontrol",
+              {"controllers.1.url=" + url, "controllers.2.url=" + url, "safety.command_timeout_s=1"});
     }
     void signal(const QString &name, int number) {
         ::kill(pid_t(daemons_.at(name).process->processId()), number);
@@ -76,18 +78,13 @@ public:
             QVERIFY(fleet.add(QString("127.0.0.1:%1").arg(daemon.port)).ok());
         QTRY_VERIFY_WITH_TIMEOUT(areAllReady(*fleet.robots().front()), 20000);
     }
-    static quint16 freePort() {
-        QTcpServer probe;
-        probe.listen(QHostAddress::LocalHost);
-        return probe.serverPort();
-    }
     quint16 port(const QString &name) const { return daemons_.at(name).port; }
     QString path(const QString &name) const { return folder_.filePath(name); }
 
 private:
     struct Daemon {
         quint16 port = 0;
-        std::unique_ptr<QProcess> process;
+        std::unique_ptr<ChildProcess> process;
     };
 
     QString motorLink() const { return folder_.filePath("motors"); }

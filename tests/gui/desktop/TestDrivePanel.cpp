@@ -84,8 +84,8 @@ void TestDrivePanel::cleanup() {
 void TestDrivePanel::stickDrivesAndLettingGoStops() {
     press(0, 1);
     QTRY_VERIFY(speed() > 0.2);
-    QCOMPARE(find<QLabel>("lease")->text(), QString("control: you"));
-    QVERIFY(find<QLabel>("commanded0")->text().toDouble() > 0.3);
+    QTRY_COMPARE(find<QLabel>("lease")->text(), QString("control: you"));
+    QTRY_VERIFY(find<QLabel>("commanded0")->text().toDouble() > 0.3);
     letGo();
     QTRY_COMPARE(commanded("vx"), 0.0);
     QTRY_VERIFY(speed() < 0.01);
@@ -135,7 +135,7 @@ void TestDrivePanel::stopIsLatchedAndNeedsNoControl() {
         QTest::keyClick(window_.get(), Qt::Key(key));
     QTRY_VERIFY(state()["estop"].toBool());
     QTRY_COMPARE(find<QPushButton>("stop")->text(), QString("STOPPED"));
-    QVERIFY(!find<Stick>("stick")->isEnabled());
+    QTRY_VERIFY(!find<Stick>("stick")->isEnabled());
     QTRY_VERIFY(find<QPushButton>("release")->isVisible());
     QTest::mouseClick(find<QPushButton>("release"), Qt::LeftButton);
     QTRY_VERIFY(!state()["estop"].toBool());
@@ -150,7 +150,7 @@ void TestDrivePanel::afterAReleaseTheStickMustBeCentred() {
     drive_->release();
     QTRY_VERIFY(!drive_->isStopped());
     QVERIFY(!drive_->isDriving()); // W is still down
-    QTest::qWait(300);
+    QTest::qWait(300);             // in which it would drive off
     QCOMPARE(commanded("vx"), 0.0);
     QTest::keyRelease(window_.get(), Qt::Key_W);
     QTest::keyPress(window_.get(), Qt::Key_W);

@@ -40,10 +40,10 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     click("record");
     QTRY_COMPARE(message(), QString("Recording first."));
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
-    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("amount")->text().contains("the disk will do for"), 8000);
+    QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("amount")->text().contains("the disk will do for"), 15000);
     click("record");
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
-    QVERIFY2(message().contains("nothing missing"), qPrintable(message()));
+    QTRY_VERIFY2(message().contains("nothing missing"), qPrintable(message()));
 
     auto *const sessions = find<QTreeWidget>("sessions");
     QTRY_COMPARE(sessions->topLevelItemCount(), 1); // both loggers, one session
@@ -67,13 +67,13 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     };
     click("replay");
     QTRY_COMPARE(state(), QString("replay"));
-    QVERIFY(find<QPushButton>("live")->isEnabled());
+    QTRY_VERIFY(find<QPushButton>("live")->isEnabled());
     click("live");
     QTRY_COMPARE(state(), QString("live"));
     click("replay");
     QTRY_COMPARE(state(), QString("replay"));
     QTRY_COMPARE_WITH_TIMEOUT(state(), QString("live"), 15000); // played to its end
-    QVERIFY(!find<QPushButton>("live")->isEnabled());
+    QTRY_VERIFY(!find<QPushButton>("live")->isEnabled());
     panel_.reset();
 }
 

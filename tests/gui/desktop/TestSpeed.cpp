@@ -4,6 +4,8 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QPlainTextEdit>
+#include <QTcpServer>
+#include <QTcpSocket>
 #include <csignal>
 
 using namespace hermes;
@@ -75,7 +77,7 @@ void TestSpeed::daemonThatDoesNotAnswer() {
     OpenWindow open(robot);
     QVERIFY(open.show());
     QVERIFY(open.choose(open.fleet.robot()->withName("scanmatcher")));
-    QTest::qWait(500);
+    QTest::qWait(500);                    // until what it shows has settled
     robot.signal("scanmatcher", SIGSTOP); // its connection stays open
     LoopWatch watch;
     open.window.findChild<QPushButton *>("save")->click();
@@ -112,7 +114,7 @@ void TestSpeed::start() {
     for (int i = 0; i < 5; ++i) {
         QTcpServer daemon;
         QVERIFY(daemon.listen(QHostAddress::LocalHost));
-        QProcess program;
+        ChildProcess program;
         QTemporaryDir folder;
         QElapsedTimer time;
         time.start();
@@ -136,7 +138,7 @@ void TestSpeed::memoryOfAnHour() {
     RobotProcesses robot;
     const int messages = qEnvironmentVariableIntValue("HERMES_HOUR") ? 36000 : 3600;
     const quint16 port = robot.start("mapsource", {"rate_hz=1000", "points=100"});
-    QProcess program;
+    ChildProcess program;
     program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
                   {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.ini")});
     QVERIFY(program.waitForStarted());
