@@ -46,6 +46,7 @@ protected:
         rig_.reset();
     }
 
+    /// The client may be silent for 1 s, as it is when the machine stalls.
     void launch(const QStringList &settings = {}) {
         client_ = std::make_unique<hermes::Client>();
         daemon_ = std::make_unique<hermes::MotorControl>();
@@ -55,7 +56,9 @@ protected:
                               "--set",
                               "controllers.1.url=" + url(),
                               "--set",
-                              "controllers.2.url=" + url()};
+                              "controllers.2.url=" + url(),
+                              "--set",
+                              "safety.command_timeout_s=1"};
         for (const QString &setting : settings)
             arguments += {"--set", setting};
         QVERIFY(!daemon_->prepare(arguments));
@@ -100,6 +103,19 @@ protected:
             QVERIFY2(!reply.contains("failed"), qPrintable(reply["failed"].toString()));
             QTest::qWait(50); // the pace of a client
         }
+    }
+    /// The same until it is so, for 10 s at most.
+    template <typename Condition>
+    void driveUntil(const QJsonObject &twist, Condition isSo) {
+        const double end = RoboClawRig::now() + 10;
+        while (!isSo()) {
+            QVERIFY(RoboClawRig::now() < end);
+            drive(twist, 0.05);
+        }
+    }
+    /// Until the wheels turn.
+    void driveOff(const QJsonObject &twist) {
+        driveUntil(twist, [this] { return rig_->fastest() > 1000; });
     }
 
     std::unique_ptr<QTemporaryDir> folder_;

@@ -1,4 +1,5 @@
 // hermes-motorcontrol as its clients see it, with emulated controllers on a pseudo-terminal.
+#include "MachineStalls.h"
 #include "MotorFixture.h"
 #include "common/settings/DottedPath.h"
 
@@ -67,13 +68,17 @@ void TestMotorControl::drivesAndTellsWhere() {
     QTRY_VERIFY(state()["ready"].toBool());
     call("odometry.reset", {{"x", 1}, {"y", 2}, {"theta", pi / 2}});
     call("control.acquire", {{"client", "test"}});
-    drive({{"vx", 0.4}, {"vy", 0.2}}, 1);
-    const std::vector<double> speeds = rig_->speeds(); // front left and right, rear left and right
-    for (int i = 0; i < 4; ++i)
-        QVERIFY2(std::abs(atRim(speeds[i]) - (i == 0 || i == 3 ? 0.2 : 0.6)) < 0.03,
-                 qPrintable(QString("%1: %2").arg(i).arg(atRim(speeds[i]))));
-    const QJsonObject twist = state()["twist"].toObject();
-    QVERIFY(std::abs(twist["vx"].toDouble() - 0.4) < 0.03 && std::abs(twist["vy"].toDouble() - 0.2) < 0.03);
+    const QJsonObject twist{{"vx", 0.4}, {"vy", 0.2}};
+    drive(twist, 1);
+    driveUntil(twist, [this] { // front left and right, rear left and right
+        const std::vector<double> speeds = rig_->speeds();
+        return std::abs(atRim(speeds[0]) - 0.2) < 0.03 && std::abs(atRim(speeds[1]) - 0.6) < 0.03 &&
+               std::abs(atRim(speeds[2]) - 0.6) < 0.03 && std::abs(atRim(speeds[3]) - 0.2) < 0.03;
+    });
+    driveUntil(twist, [this] {
+        const QJsonObject told = state()["twist"].toObject();
+        return std::abs(told["vx"].toDouble() - 0.4) < 0.03 && std::abs(told["vy"].toDouble() - 0.2) < 0.03;
+    });
     call("motor.stop");
     QTRY_VERIFY(rig_->fastest() < 10);
     QTRY_VERIFY(std::abs(state()["twist"].toObject()["vx"].toDouble()) < 1e-3);
@@ -106,7 +111,11 @@ void TestMotorControl::topicsCome() {
     client_->subscribe("power", {}, [&](const TopicUpdate &update) { power = update.data.toObject(); });
     QTRY_VERIFY(!wheels.isEmpty() && !power.isEmpty());
     QTRY_VERIFY(times.size() > 50);
-    const double rate = double(times.size() - 1) / (times.back() - times.front());
+    std::vector<double> periods; // the median: the machine may have stalled
+    for (std::size_t i = 1; i < times.size(); ++i)
+        periods.push_back(times[i] - times[i - 1]);
+    std::sort(periods.begin(), periods.end());
+    const double rate = 1 / periods[periods.size() / 2];
     QVERIFY2(rate > 40 && rate < 51, qPrintable(QString::number(rate)));
     QCOMPARE(first["covariance"].toArray().size(), 9);
     QVERIFY(first["pose"].toObject().contains("theta") && first["twist"].toObject().contains("omega"));
@@ -129,7 +138,7 @@ void TestMotorControl::refusals_data() {
     row("null", "motor.drive", {{"omega", QJsonValue()}}, ErrorCode::InvalidParams,
         "omega is null, expected a number in rad/s");
     row("too old", "motor.drive", {{"vx", 0.1}, {"stamp", 1e9}}, ErrorCode::NotReady,
-        "less than 0.25 s from now");
+        "less than 1 s from now");
     row("lease too long", "control.acquire", {{"timeout_s", 1e9}}, ErrorCode::InvalidParams, "timeout_s");
 }
 
@@ -192,7 +201,7 @@ void TestMotorControl::leaseIsExclusiveAndRunsOut() {
     Client other;
     QVERIFY(other.connectTo(address()).ok());
     QVERIFY(other.waitConnected().ok());
-    QCOMPARE(call("control.acquire", {{"client", "anna"}, {"timeout_s", 0.3}})["holder"].toString(),
+    QCOMPARE(call("control.acquire", {{"client", "anna"}, {"timeout_s", 1}})["holder"].toString(),
              QString("anna"));
     const auto refused = other.callAndWait("motor.drive", QJsonObject{{"vx", 0.1}});
     QVERIFY(!refused.ok() && refused.error().is(ErrorCode::ControlHeld));
@@ -209,8 +218,7 @@ void TestMotorControl::takingOverStopsTheRobot() {
     QVERIFY(other.connectTo(address()).ok());
     QVERIFY(other.waitConnected().ok());
     call("control.acquire", {{"client", "anna"}, {"timeout_s", 10}});
-    drive({{"vx", 0.5}}, 0.5);
-    QVERIFY(rig_->fastest() > 1000);
+    driveOff({{"vx", 0.5}});
     const QJsonObject ask{{"client", "bert"}, {"timeout_s", 10}};
     QVERIFY(other.callAndWait("control.acquire", ask).error().is(ErrorCode::ControlHeld));
     QJsonObject takeOver = ask;
@@ -230,8 +238,7 @@ void TestMotorControl::emergencyStopLatches() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire");
-    drive({{"vx", 0.5}}, 0.6);
-    QVERIFY(rig_->fastest() > 1000);
+    driveOff({{"vx", 0.5}});
     call("motor.estop");
     QVERIFY(state()["estop"].toBool());
     QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::NotReady));
@@ -243,45 +250,46 @@ void TestMotorControl::emergencyStopLatches() {
     QVERIFY(rig_->fastest() < 10);
     QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::ControlHeld));
     call("control.acquire");
-    drive({{"vx", 0.5}}, 0.3);
-    QVERIFY(rig_->fastest() > 1000);
+    driveOff({{"vx", 0.5}});
 }
 
 void TestMotorControl::stopsBrakeWithTheEmergencyDeceleration() {
     launch({"safety.deceleration=2", "faults.encoder_hold_s=2"});
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire");
-    drive({{"vx", 0.6}}, 0.9);
+    driveUntil({{"vx", 0.6}}, [this] { return atRim(rig_->fastest()) > 0.58; });
     call("motor.stop");
     QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
-    const double since = rig_->zeroSince();
     // 2 m/s^2 in counts
     QCOMPARE(rig_->heard().back().acceleration, quint32(std::llround(2 / radius * countsPerTurn / (2 * pi))));
-    QTRY_VERIFY_WITH_TIMEOUT(atRim(rig_->fastest()) < 0.02, 2000);
-    const double took = RoboClawRig::now() - since;
+    QTRY_VERIFY(RoboClawRig::now() - rig_->lastMoved() > 0.1);
+    const double took = rig_->lastMoved() - rig_->zeroSince();
     QVERIFY2(took > 0.2 && took < 0.6, qPrintable(QString::number(took))); // 0.3 s, and the lag
 }
 
 void TestMotorControl::silentClientIsStopped() {
-    launch();
+    launch({"safety.command_timeout_s=0.25"});
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire", {{"timeout_s", 10}});
-    drive({{"vx", 0.5}}, 0.5);
-    QTRY_VERIFY_WITH_TIMEOUT(rig_->zeroSince() < RoboClawRig::now(), 1000);
+    driveOff({{"vx", 0.5}});
+    QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
     QCOMPARE(state()["halted"].toString(), QString("no command for 0.25 s"));
     drive({{"vx", 0.5}}, 0.2); // the control was kept
 }
 
 // Longer than the mail to it holds: the cycle goes on, and tells how much was not read.
 void TestMotorControl::aBusyMainThreadDelaysNoStop() {
-    launch();
+    plugServer();
+    launch({"safety.command_timeout_s=0.25"});
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire", {{"timeout_s", 10}});
-    drive({{"vx", 0.5}}, 0.5);
+    driveOff({{"vx", 0.5}});
+    MachineStalls stalls;
     const double commanded = RoboClawRig::now();
     while (RoboClawRig::now() < commanded + 2) {
     } // the daemon's main thread is this one
-    QVERIFY2(rig_->zeroSince() < commanded + 0.5, qPrintable(QString::number(rig_->zeroSince() - commanded)));
+    const double stopped = rig_->zeroSince() - commanded, most = 0.5 + stalls.takeLongest();
+    QVERIFY2(stopped < most, qPrintable(QString("%1 of %2").arg(stopped).arg(most)));
     QTRY_VERIFY(state()["cycle"].toObject()["unread"].toInt() > 10);
     QVERIFY(state()["ready"].toBool());
     drive({{"vx", 0.5}}, 0.2);
@@ -308,10 +316,10 @@ void TestMotorControl::clientThatGoesIsStopped() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire", {{"timeout_s", 10}});
-    drive({{"vx", 0.5}}, 0.5);
+    driveOff({{"vx", 0.5}});
     const QString where = address();
     client_ = std::make_unique<Client>();
-    QTRY_VERIFY_WITH_TIMEOUT(rig_->zeroSince() < RoboClawRig::now(), 200);
+    QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
     QVERIFY(client_->connectTo(where).ok());
     QVERIFY(client_->waitConnected().ok());
     QCOMPARE(state()["halted"].toString(), QString("the client that held the control has gone"));
@@ -334,10 +342,12 @@ void TestMotorControl::twoLines() {
             "controllers.2.address=128", "wheels.rear_left.reversed=true"});
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire");
-    drive({{"omega", 1}}, 0.8);
-    const auto f = front.speeds(), r = rear.speeds(); // rear_left is mounted the other way round
-    QVERIFY(f[0] < -1000 && f[1] > 1000 && r[0] > 1000 && r[1] > 1000);
-    QVERIFY(std::abs(state()["twist"].toObject()["omega"].toDouble() - 1) < 0.1);
+    driveUntil({{"omega", 1}}, [&] {
+        const auto f = front.speeds(), r = rear.speeds(); // rear_left is mounted the other way round
+        return f[0] < -1000 && f[1] > 1000 && r[0] > 1000 && r[1] > 1000;
+    });
+    driveUntil({{"omega", 1}},
+               [&] { return std::abs(state()["twist"].toObject()["omega"].toDouble() - 1) < 0.1; });
     client_.reset();
     daemon_->shutDown();
     daemon_.reset();
@@ -347,10 +357,10 @@ void TestMotorControl::shutdownStops() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire");
-    drive({{"vx", 0.5}}, 0.5);
+    driveOff({{"vx", 0.5}});
     client_.reset();
     daemon_->shutDown();
-    QVERIFY(rig_->zeroSince() < RoboClawRig::now());
+    QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now()); // the last bytes may still be in the line
     daemon_.reset();
 }
 

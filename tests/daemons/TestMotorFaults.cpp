@@ -1,4 +1,5 @@
 // What breaks under hermes-motorcontrol: lines, controllers, wheels, batteries.
+#include "MachineStalls.h"
 #include "MotorFixture.h"
 
 Q_DECLARE_METATYPE(std::function<void(RoboClawRig &)>)
@@ -24,17 +25,21 @@ void TestMotorFaults::pulledLineRecoversWithoutAJump() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire");
-    drive({{"vx", 0.5}}, 0.8);
+    driveOff({{"vx", 0.5}});
+    drive({{"vx", 0.5}}, 0.5);
     rig_->pull();
-    QTRY_VERIFY_WITH_TIMEOUT(!state()["ready"].toBool(), 500);
+    QTRY_VERIFY(!state()["ready"].toBool());
     QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::DeviceFault));
     const double before = state()["pose"].toObject()["x"].toDouble();
-    QTRY_VERIFY_WITH_TIMEOUT(rig_->fastest() < 10, 1000); // by the controllers' own time-out
+    QTRY_VERIFY(rig_->fastest() < 10); // by the controllers' own time-out
+    const std::size_t heard = rig_->heard().size();
+    MachineStalls stalls;
     rig_->plugIn();
     const double back = RoboClawRig::now();
-    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 2000);
-    const double found = RoboClawRig::now() - back;
-    QVERIFY2(found < 0.6, qPrintable(QString::number(found)));
+    QTRY_VERIFY(state()["ready"].toBool());
+    QTRY_VERIFY(rig_->heard().size() > heard);
+    const double found = rig_->heard().at(heard).time - back, most = 0.6 + stalls.takeLongest();
+    QVERIFY2(found < most, qPrintable(QString("%1 of %2").arg(found).arg(most)));
     passCycles(5); // with readings
     const double rolled = state()["pose"].toObject()["x"].toDouble() - before;
     QVERIFY2(rolled >= 0 && rolled < 0.2, qPrintable(QString::number(rolled))); // what the wheels really did
@@ -43,20 +48,18 @@ void TestMotorFaults::pulledLineRecoversWithoutAJump() {
     QVERIFY(std::abs(state()["pose"].toObject()["x"].toDouble() - atRim(counts)) < 0.005);
     QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::ControlHeld));
     call("control.acquire");
-    drive({{"vx", 0.5}}, 0.3);
-    QVERIFY(rig_->fastest() > 1000);
+    driveOff({{"vx", 0.5}});
 }
 
 void TestMotorFaults::controllerThatLostItsCountsMakesNoJump() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire");
-    drive({{"vx", 0.5}}, 0.8);
+    driveUntil({{"vx", 0.5}}, [this] { return state()["pose"].toObject()["x"].toDouble() > 0.05; });
     call("motor.stop");
     QTRY_VERIFY(rig_->fastest() < 10);
     passCycles(5); // with readings
     const double before = state()["pose"].toObject()["x"].toDouble();
-    QVERIFY(before > 0.05);
     rig_->pull();
     rig_->with([](auto &all) {
         for (int motor : {0, 1})
@@ -114,16 +117,16 @@ void TestMotorFaults::faultsStopAndLatch() {
     launch({setting, "faults.hold_s=0.1"});
     QTRY_VERIFY(state()["ready"].toBool());
     const auto isLatched = [&] { return state()["latched"].toObject().contains(name); };
-    const auto driveUntil = [&](const auto &isReached) { // at 25 Hz, for 2.4 s at most
-        for (int i = 0; i < 60 && !isReached(); ++i) {
+    const auto tryUntil = [&](const auto &isReached) { // at 25 Hz, for 10 s at most
+        for (int i = 0; i < 250 && !isReached(); ++i) {
             client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.4}}); // refused once it is latched
             QTest::qWait(40);
         }
     };
     client_->callAndWait("control.acquire", QJsonObject());
-    driveUntil([&] { return isLatched() || rig_->fastest() > 10000; }); // the temperature is latched at once
+    tryUntil([&] { return isLatched() || rig_->fastest() > 10000; }); // the temperature is latched at once
     breakIt(*rig_);
-    driveUntil(isLatched);
+    tryUntil(isLatched);
     const QString reason = state()["latched"].toObject()[name].toString();
     QVERIFY2(reason.contains(says), qPrintable(QJsonDocument(state()["latched"].toObject()).toJson()));
     QCOMPARE(failure("motor.drive", {{"vx", 0.4}}).code, int(ErrorCode::DeviceFault));
@@ -137,9 +140,9 @@ void TestMotorFaults::deafControllerIsNamed() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire");
-    drive({{"vx", 0.4}}, 0.5);
+    driveOff({{"vx", 0.4}});
     rig_->with([](auto &all) { all[1].faults().silent = true; });
-    QTRY_VERIFY_WITH_TIMEOUT(!state()["ready"].toBool(), 1000);
+    QTRY_VERIFY(!state()["ready"].toBool());
     const Error error = failure("motor.drive", {{"vx", 0.4}});
     QCOMPARE(error.code, int(ErrorCode::DeviceFault));
     QVERIFY2(error.message.startsWith("controller 2 (0x81 on") && error.message.endsWith("does not answer"),
@@ -172,7 +175,8 @@ void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
     call("control.acquire");
     drive({{"vx", 0.4}}, 2);
     QCOMPARE(state()["halted"].toString(), QString());
-    QVERIFY(std::abs(state()["twist"].toObject()["vx"].toDouble() - 0.4) < 0.05);
+    driveUntil({{"vx", 0.4}},
+               [this] { return std::abs(state()["twist"].toObject()["vx"].toDouble() - 0.4) < 0.05; });
     const QJsonObject values = healthItem("controller_1")["values"].toObject();
     QVERIFY(values["crc_errors"].toInt() + values["unexpected"].toInt() > 0);
 }
@@ -180,7 +184,7 @@ void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
 void TestMotorFaults::turningUncommandedIsAFault() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
-    for (int i = 0; i < 100 && state()["latched"].toObject().isEmpty(); ++i) {
+    for (int i = 0; i < 1000 && state()["latched"].toObject().isEmpty(); ++i) {
         rig_->with([](auto &all) { all[1].channel(0).setCount(all[1].channel(0).count() + 200); });
         QTest::qWait(10); // so that it turns: some 20000 counts/s
     }

@@ -26,7 +26,7 @@ void TestMotorStops::emergencyStopReachesTheWire() {
     QVERIFY(client.waitConnected().ok());
     std::vector<double> times;
     for (int trial = 0; int(times.size()) < trials(); ++trial) {
-        QTRY_VERIFY(client.callAndWait("control.acquire", QJsonObject()).ok());
+        QTRY_VERIFY(client.callAndWait("control.acquire", QJsonObject{{"timeout_s", 10}}).ok());
         // Not in step with the cycle of the daemon.
         const double until = RoboClawRig::now() + 0.3 + 0.00137 * trial;
         while (RoboClawRig::now() < until || !isDriving()) {
