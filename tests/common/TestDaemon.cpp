@@ -358,10 +358,15 @@ void TestDaemon::rateIsLimitedAndNewestArrives() {
     for (int i = 1; i <= 100; ++i)
         daemon->publish("numbers", i);
     QCOMPARE(client.message()["params"].toObject()["seq"].toInt(), 1);
-    const QJsonObject last = client.message()["params"].toObject();
-    QCOMPARE(last["seq"].toInt(), 100);   // held until its time, then the newest
+    QJsonObject last;
+    int messages = 0;
+    for (; last["seq"].toInt() < 100; ++messages) { // held until its time, then the newest
+        last = client.message()["params"].toObject();
+        QVERIFY(!last.isEmpty());
+    }
     QCOMPARE(last["dropped"].toInt(), 0); // thinned on request, not lost
     QVERIFY(clock.elapsed() >= 40);
+    QVERIFY(messages <= 1 + clock.elapsed() / 50);
 }
 
 void TestDaemon::slowReaderLosesTopicsButNoReplies() {
@@ -449,7 +454,7 @@ void TestDaemon::clientLimit() {
 }
 
 void TestDaemon::idleClientIsClosed() {
-    start({"limits.idle_s=0.1"});
+    start({"limits.idle_s=1"});
     RawClient subscriber(address());
     subscriber.ask("topics.subscribe", QJsonArray{"numbers"});
     RawClient client(address());

@@ -3,6 +3,7 @@
 #include "common/interface/PtyInterface.h"
 #include "common/recording/Sidecar.h"
 #include "daemons/seriallogger/SerialLogger.h"
+#include "tests/support/FreePort.h"
 
 #include <QTcpServer>
 #include <QTcpSocket>
@@ -193,18 +194,16 @@ void TestSerialLogger::recordsASerialLine() {
 void TestSerialLogger::recordsDatagramsAndStreams() {
     QTcpServer server;
     QVERIFY(server.listen(QHostAddress::LocalHost));
-    QUdpSocket probe;
-    QVERIFY(probe.bind(QHostAddress::LocalHost));
-    const quint16 udpPort = probe.localPort();
-    probe.close();
+    const quint16 udpPort = reservePort();
     launch({QJsonObject{{"name", "udp"}, {"url", QString("udp://127.0.0.1:%1").arg(udpPort)}},
             QJsonObject{{"name", "tcp"}, {"url", QString("tcp://127.0.0.1:%1").arg(server.serverPort())}}});
     QTRY_VERIFY(server.hasPendingConnections());
     std::unique_ptr<QTcpSocket> peer(server.nextPendingConnection());
     QTRY_VERIFY(isOpen("udp") && isOpen("tcp"));
     const QString folder = call("record.start", {{"name", "net"}}).toObject().value("folder").toString();
+    QUdpSocket sender;
     for (const char *datagram : {"one", "two"})
-        probe.writeDatagram(datagram, QHostAddress::LocalHost, udpPort);
+        sender.writeDatagram(datagram, QHostAddress::LocalHost, udpPort);
     peer->write("stream");
     QTRY_COMPARE(port("udp").value("bytes").toInt(), 6);
     QTRY_COMPARE(port("tcp").value("bytes").toInt(), 6);
@@ -329,7 +328,7 @@ void TestSerialLogger::exportsToCsv() {
 
 void TestSerialLogger::saysWhatAPortLacks() {
     device_.reset();
-    launch({QJsonObject{{"name", "dev"}, {"url", deviceUrl()}, {"silence_s", 0.2}},
+    launch({QJsonObject{{"name", "dev"}, {"url", deviceUrl()}, {"silence_s", 1}},
             QJsonObject{{"name", "odd"}, {"url", "serial:///dev/null?baud=many"}}});
     QTRY_VERIFY(port("dev").value("reason").toString().contains("there is no such device"));
     QTRY_VERIFY(healthItem("port odd").value("message").toString().contains("baud \"many\""));
@@ -343,13 +342,10 @@ void TestSerialLogger::saysWhatAPortLacks() {
 }
 
 void TestSerialLogger::replaysARecording() {
-    QUdpSocket probe;
-    QVERIFY(probe.bind(QHostAddress::LocalHost));
     launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}},
             QJsonObject{{"name", "raw"},
-                        {"url", QString("udp://127.0.0.1:%1").arg(probe.localPort())},
+                        {"url", QString("udp://127.0.0.1:%1").arg(reservePort())},
                         {"view", "none"}}});
-    probe.close();
     QTRY_VERIFY(isOpen("gps"));
     QJsonArray lines, fixes;
     client_->subscribe("lines", {{"queue", 100}}, [&](const TopicUpdate &update) { lines << update.data; });
@@ -359,7 +355,7 @@ void TestSerialLogger::replaysARecording() {
     QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::NotReady)); // not ended
     device_->write(rmc + gga);
     QTRY_COMPARE(fixes.size(), 1);
-    QTest::qWait(300); // a gap to be found again
+    QTest::qWait(300); // a gap in time, to be found again
     device_->write("$GPTXT,1\r\nhalf a line");
     QTRY_COMPARE(lines.size(), 3);
     QTRY_COMPARE(port("gps").value("bytes").toInt(), rmc.size() + gga.size() + 21);
@@ -377,7 +373,7 @@ void TestSerialLogger::replaysARecording() {
     call("source.pause", {{"paused", false}});
     QTRY_COMPARE(call("source.status")["source"]["state"].toString(), "ended");
     QTRY_COMPARE(lines, liveLines); // with their stamps
-    QCOMPARE(fixes, liveFixes);
+    QTRY_COMPARE(fixes, liveFixes);
     QVERIFY(timer.elapsed() >= 400);
     QCOMPARE(healthItem("source").value("level").toString(), "ok");
     QVERIFY(failure("source.pause").is(ErrorCode::NotReady));

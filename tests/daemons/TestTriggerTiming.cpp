@@ -1,10 +1,11 @@
 // How punctual hermes-softwaretrigger is, as a process. $HERMES_TRIGGER_SECONDS (10 where it is not set) of
 // 10 Hz; the figures are printed. From 600 s on they are bounded as an idle machine must keep them: by 2 ms
 // more than a thread that does nothing but wait for the same period in the same time needs.
+#include "MachineStalls.h"
 #include "common/Realtime.h"
 #include "common/client/Client.h"
+#include "tests/support/ChildProcess.h"
 
-#include <QProcess>
 #include <QRegularExpression>
 #include <QtTest>
 
@@ -66,13 +67,13 @@ private:
                                [&](double s, const QJsonValue &one) { return s + one[member].toDouble(); });
     }
 
-    std::unique_ptr<QProcess> daemon_;
+    std::unique_ptr<ChildProcess> daemon_;
     std::unique_ptr<Client> client_;
     std::vector<QJsonValue> fired_;
 };
 
 void TestTriggerTiming::init() {
-    daemon_ = std::make_unique<QProcess>();
+    daemon_ = std::make_unique<ChildProcess>();
     daemon_->setProcessChannelMode(QProcess::MergedChannels);
     daemon_->start(qEnvironmentVariable("HERMES_BIN") + "/hermes-softwaretrigger",
                    {"--listen", "tcp://127.0.0.1:0"});
@@ -115,6 +116,7 @@ void TestTriggerTiming::tenHertz() {
     const int seconds = std::max(10, qEnvironmentVariableIntValue("HERMES_TRIGGER_SECONDS"));
     const int count = 10 * seconds;
     Bystander bystander;
+    MachineStalls stalls;
     define(0.1);
     QTRY_VERIFY_WITH_TIMEOUT(int(fired_.size()) >= count ||
                                  (!fired_.empty() && fired_.back()["cause"]["n"].toInt() >= count),
@@ -146,7 +148,7 @@ void TestTriggerTiming::tenHertz() {
                                 .arg(1000 * bare, 0, 'f', 3);
     qInfo("%s", qPrintable(figures));
     QVERIFY(late.front() >= 0);
-    QVERIFY2(p99 < bare + (seconds >= 600 ? 0.002 : 0.1), qPrintable(figures));
+    QVERIFY2(p99 < bare + (seconds >= 600 ? 0.002 : 0.1 + stalls.takeLongest()), qPrintable(figures));
     QVERIFY(told["p99_s"].toDouble() > 0 && told["mean_s"].toDouble() > 0);
 }
 
