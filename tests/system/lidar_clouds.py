@@ -88,7 +88,8 @@ def check_losses(status):
 def check_clouds(logger, port, capture, name):
     model = {"hdl32e": reference.HDL32E, "vlp16": reference.VLP16}[name]
     clouds = Reader(port, "cloud")
-    logger.call("source.open", pcap=capture, speed=1, loop=True)
+    opened = logger.call("source.open", pcap=capture, speed=1, loop=True)
+    assert opened["state"] == "replay" and not opened["paused"], opened
     clouds.wait(10)
     cloud = clouds.last
     count = len(cloud["x"])
@@ -167,15 +168,16 @@ def check_replay(logger, port, capture):
     first_s = next(reference.datagrams(capture))[0] * 1e-9
     stream = Daemon(port=port, timeout=60).subscribe("scan2d", queue=1000)
     threading.Thread(target=next, args=(stream,)).start()  # makes the subscription
-    opened = logger.call("source.open", pcap=capture, speed=1)
-    assert opened["state"] == "replay" and not opened["paused"], opened
+    opened = logger.call("source.open", pcap=capture, speed=0.2, paused=True)  # slow, so that it does not end meanwhile
+    assert opened["state"] == "replay" and opened["paused"], opened
     status = lambda: logger.call("source.status")["source"]  # noqa: E731
     wait_for("the duration", lambda: status()["duration_s"] is not None)
     duration_s = status()["duration_s"]
     last_s = max(stamp for stamp, _ in reference.datagrams(capture)) * 1e-9
     assert abs(duration_s - (last_s - first_s)) < 1e-3, (duration_s, last_s - first_s)
+    assert not logger.call("source.pause", paused=False)["paused"]
     assert logger.call("source.pause")["paused"]
-    target_s = 0.75 * duration_s
+    target_s = 0.3 * duration_s
     assert abs(logger.call("source.seek", t_s=target_s)["position_s"] - target_s) < 1e-6
     assert not logger.call("source.pause", paused=False)["paused"]
     assert next(message for message in stream if message["data"]["stamp"] >= first_s + target_s - 0.01)

@@ -14,7 +14,7 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, SOURCE, Daemon, Process, free_port
+from support import BINARIES, SOURCE, Daemon, Process, free_port, wait_for
 import velodyne_reference as reference
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
@@ -132,7 +132,8 @@ def drive(folder):
         after = simulator.call("sim.state")
         seconds = after["stamp"] - before["stamp"]
         assert abs((after["packets"] - before["packets"]) / seconds - 1808.45) < 2, (before, after)
-        assert abs(seconds - (time.monotonic() - begin)) < 0.5, "the simulator's time drifts"
+        wait_for("keeping of the time", lambda: abs(simulator.call("sim.state")["stamp"] - before["stamp"] -
+                                                    (time.monotonic() - begin)) < 0.5, 10)  # after a stall of the machine
         assert after["driving"] and abs(after["twist"]["vx"] - 0.8) < 0.01, after
         status = logger.call("record.stop")
         assert not any(status["losses"].values()) and status["counts"]["packets"] > 8000, status
@@ -150,20 +151,21 @@ def drive(folder):
 
 
 def check_state(lidar, logger):
+    def is_at_its_pace():  # of the last second, in which the machine may have stalled
+        state = lidar.messages[-1]["data"]
+        return abs(state["rpm"] - 600) < 3 and abs(state["packet_rate_hz"] - 1808) < 200
+
+    wait_for("the pace of the sensor", is_at_its_pace, 10)
     state = lidar.messages[-1]["data"]
-    assert abs(state["rpm"] - 600) < 3 and abs(state["packet_rate_hz"] - 1808) < 200, state
     for name in ("lost", "out_of_order", "kernel_drops", "turns_dropped", "wrong_size", "wrong_flag"):
         assert state[name] == 0, state
-    assert logger.call("daemon.status")["state"] == "running"
+    wait_for("the state running", lambda: logger.call("daemon.status")["state"] == "running", 10)
     assert [entry["name"] for entry in logger.call("record.list")] == ["drive"]
 
 
 def check_faults(simulator, logger):
     simulator.call("sim.fault", device="lidar", kind="loss", share=0.2)
-    deadline = time.monotonic() + 10
-    while logger.call("source.status")["lost"] < 50:
-        assert time.monotonic() < deadline, "lost packets are not noticed"
-        time.sleep(0.05)
+    wait_for("notice of lost packets", lambda: logger.call("source.status")["lost"] >= 50, 10)
     simulator.call("sim.fault", device="lidar", kind="none")
 
 

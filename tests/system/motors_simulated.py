@@ -18,7 +18,7 @@ from support import BINARIES, DaemonError, Process, SerialPort, free_port, wait_
 class RoboClaw(SerialPort):
     """A client of its own: packet serial as the manual of the controllers describes it."""
 
-    def exchange(self, packet, size, limit_s=0.5):
+    def exchange(self, packet, size, limit_s=5):
         os.write(self.port, packet)
         answer = b""
         deadline = time.monotonic() + limit_s
@@ -30,7 +30,7 @@ class RoboClaw(SerialPort):
         packet = bytes([address, command]) + struct.pack(">" + fmt, *values)
         return self.exchange(packet + struct.pack(">H", binascii.crc_hqx(packet, 0)), 1) == b"\xff"
 
-    def read(self, address, command, fmt, limit_s=0.5):
+    def read(self, address, command, fmt, limit_s=5):
         asked = bytes([address, command])
         answer = self.exchange(asked, struct.calcsize(">" + fmt) + 2, limit_s)
         if len(answer) < struct.calcsize(">" + fmt) + 2:
@@ -59,7 +59,7 @@ def refused(simulator, expected, **params):
 
 def check_drive(simulator, client):
     for address in (0x80, 0x81):
-        assert client.write(address, 14, "B", 2)  # they stop after 0.2 s of silence
+        assert client.write(address, 14, "B", 10)  # they stop after 1 s of silence
         for command in (28, 29):
             assert client.write(address, command, "IIII", 0x4000, 0x10000, 0x8000, 150000)
     before = simulator.call("sim.state")["pose"]
@@ -69,7 +69,7 @@ def check_drive(simulator, client):
         assert client.read(0x80, 78, "II") and client.read(0x81, 24, "H")
         time.sleep(0.02)
     assert abs(speed_of(simulator) - 0.5) < 0.02, speed_of(simulator)
-    wait_for("stopping of the silent controllers", lambda: speed_of(simulator) == 0, 1.5)
+    wait_for("stopping of the silent controllers", lambda: speed_of(simulator) == 0)
     state = simulator.call("sim.state")
     assert all(controller["timeouts"] == 1 for controller in state["motors"]["controllers"]), state
     way = math.hypot(state["pose"]["x"] - before["x"], state["pose"]["y"] - before["y"])

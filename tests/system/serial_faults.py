@@ -6,6 +6,7 @@ import random
 import subprocess
 import time
 
+from lateness import Lateness
 from support import DaemonError, wait_for
 from seriallog import chunks  # of docs/examples
 from serial_port import Device, Logger, make_folder
@@ -55,49 +56,55 @@ def check_replug(folder, times=20):
 
 def check_kill(folder, times):
     """Killed while it records: what was sent more than 100 ms before is there, and the next start completes the sidecar."""
-    link, missing, late = os.path.join(folder, "device"), [], []
-    for i in range(times):
-        source = random.Random(i)
-        device = Device(link)
-        logger = Logger(folder, link)
-        logger.wait_open()
-        recorded = logger.daemon.call("record.start", name=f"kill{i}")["folder"]
-        logger.daemon.call("mark", text="before the end")
-        sent, arrived = b"", []
-        end = time.monotonic() + source.uniform(0.3, 0.8)
-        while time.monotonic() < end:
-            piece = source.randbytes(500)
-            device.write(piece)
-            sent += piece
-            arrived.append((len(sent), time.monotonic()))
-            time.sleep(0.005)
-            late.append(time.monotonic() - arrived[-1][1])
-        logger.process.kill()
-        killed = time.monotonic()
-        logger.process.wait()
+    with Lateness() as lateness:
+        missing = [kill(folder, number, lateness) for number in range(times)]
+    # What holds up a nap here holds up the logger too.
+    assert all(lost_s < 0.1 + 2 * late_s for lost_s, late_s in missing), missing
+    print(f"killed {times} times: at most the last {max(missing)[0] * 1e3:.0f} ms were missing; each sidecar was completed")
+
+
+def kill(folder, number, lateness):
+    """One kill: the seconds that are missing, and how late the machine was before it."""
+    link = os.path.join(folder, "device")
+    source = random.Random(number)
+    device = Device(link)
+    logger = Logger(folder, link)
+    logger.wait_open()
+    recorded = logger.daemon.call("record.start", name=f"kill{number}")["folder"]
+    logger.daemon.call("mark", text="before the end")
+    sent, arrived = b"", []
+    lateness.take_longest()
+    end = time.monotonic() + source.uniform(0.3, 0.8)
+    while time.monotonic() < end:
+        piece = source.randbytes(500)
+        device.write(piece)
+        sent += piece
+        arrived.append((len(sent), time.monotonic()))
+        time.sleep(0.005)
+    logger.process.kill()
+    killed = time.monotonic()
+    late = lateness.take_longest()
+    logger.process.wait()
+    device.pull()
+    raw = load(os.path.join(recorded, "seriallogger-dev.raw"))
+    assert sent.startswith(raw), "bytes were altered"
+    assert sidecar(recorded)["ended"] is None
+    device = Device(link)
+    logger = Logger(folder, link)
+    try:
+        wait_for("completion of the sidecar", lambda: sidecar(recorded)["ended"])
+    finally:
+        assert logger.stop() == 0, logger.last_words()
         device.pull()
-        raw = load(os.path.join(recorded, "seriallogger-dev.raw"))
-        assert sent.startswith(raw), "bytes were altered"
-        assert sidecar(recorded)["ended"] is None
-        device = Device(link)
-        logger = Logger(folder, link)
-        try:
-            wait_for("completion of the sidecar", lambda: sidecar(recorded)["ended"])
-        finally:
-            assert logger.stop() == 0, logger.last_words()
-            device.pull()
-        content = sidecar(recorded)
-        assert content["ended"] == "cut off" and not content["complete"], content
-        assert content["bytes"] == content["counts"]["bytes"] == len(raw), content
-        assert content["counts"]["marks"] == 1 and events(recorded)[0]["text"] == "before the end", content
-        read = list(chunks(os.path.join(recorded, "seriallogger-dev")))
-        assert b"".join(data for _, _, data in read) == raw and content["counts"]["chunks"] == len(read)
-        assert read[-1][0] == content["end"], (read[-1], content["end"])
-        lost_since = next((mono for size, mono in arrived if size > len(raw)), killed)
-        missing.append(killed - lost_since)
-    # What holds up a sleep of 5 ms here holds up the logger too.
-    assert max(missing) < 0.1 + 2 * max(late), f"{max(missing) * 1e3:.0f} ms are missing"
-    print(f"killed {times} times: at most the last {max(missing) * 1e3:.0f} ms were missing; each sidecar was completed")
+    content = sidecar(recorded)
+    assert content["ended"] == "cut off" and not content["complete"], content
+    assert content["bytes"] == content["counts"]["bytes"] == len(raw), content
+    assert content["counts"]["marks"] == 1 and events(recorded)[0]["text"] == "before the end", content
+    read = list(chunks(os.path.join(recorded, "seriallogger-dev")))
+    assert b"".join(data for _, _, data in read) == raw and content["counts"]["chunks"] == len(read)
+    assert read[-1][0] == content["end"], (read[-1], content["end"])
+    lost_since = next((mono for size, mono in arrived if size > len(raw)), killed)
+    return killed - lost_since, late
 
 
 def check_full_disk(folder):

@@ -88,8 +88,9 @@ class Sessions(unittest.TestCase):
         with open(os.path.join(self.records, name, logger + ".json"), encoding="utf-8") as file:
             return json.load(file)
 
-    def record(self, name):
-        """A session with packets and lines; gives how many data packets, position packets and bytes."""
+    def record(self, name, lines=None):
+        """A session with packets and lines, all of them heard by the reader of lines; gives how many data packets, position
+        packets and bytes."""
         self.ctl("record", "start", name)
         sender = self.lidar.send(PACKETS_HZ, SECONDS, 0)
         text = b""
@@ -99,6 +100,7 @@ class Sessions(unittest.TestCase):
             text += line
         data, position, _ = load.sent(sender)
         wait_for("the packets", lambda: self.lidar.daemon.call("record.status")["counts"]["packets"] == data + position)
+        wait_for("the lines live", lambda: lines is None or len(lines.messages) == text.count(b"\n"))
         return data, position, len(text)
 
     def test_record(self):
@@ -121,8 +123,10 @@ class Sessions(unittest.TestCase):
 
     def test_replay(self):
         lines, scans = self.read(self.serial, "lines"), self.read(self.lidar, "scan2d")
-        self.record("run1")
+        self.record("run1", lines)
         self.ctl("record", "stop")
+        live_turns = self.lidar.daemon.call("source.status")["turns"]
+        wait_for("the turns live", lambda: len(scans.messages) == live_turns)
         self.assertGreater(len(load.captures(os.path.join(self.records, "run1"))), 2)
         live_lines, live_scans = list(lines.messages), list(scans.messages)
         lines.messages.clear()
