@@ -1,3 +1,4 @@
+#include "NmeaText.h"
 #include "protocol/nmea/Gga.h"
 #include "protocol/nmea/Rmc.h"
 #include "protocol/nmea/SentenceParser.h"
@@ -11,27 +12,10 @@ using namespace hermes::nmea;
 
 namespace {
 
-const QByteArray realRmc("$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*05\r\n");
-const QByteArray usualGga("$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n");
-
-QByteArray toBytes(std::string_view text) {
-    return QByteArray(text.data(), int(text.size()));
-}
-
 /// The sentence with its checksum put right.
 QByteArray summed(const QByteArray &body) {
     const auto sum = checksum({body.constData(), std::size_t(body.size())});
     return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0') + "\r\n";
-}
-
-/// The bodies of the sentences in the bytes.
-QList<QByteArray> sentencesOf(SentenceParser &parser, const QByteArray &bytes) {
-    QList<QByteArray> bodies;
-    for (const char byte : bytes) {
-        if (parser.feed(byte) == SentenceParser::Result::Done)
-            bodies.append(toBytes(parser.sentence().body()));
-    }
-    return bodies;
 }
 
 template <typename Message>
@@ -53,15 +37,9 @@ QByteArray encoded(const Message &message, const Decimals &decimals = {}) {
 } // namespace
 
 /// The worked sentences are those of the published field lists; the first RMC comes from a real receiver.
-class TestNmea : public QObject {
+class TestNmeaMessages : public QObject {
     Q_OBJECT
 private Q_SLOTS:
-    void findsSentences_data();
-    void findsSentences();
-    void countsWhatItDrops();
-    void isInStepWhereverItBegins();
-    void withoutChecksumOnlyWhenLenient();
-    void splitsFields();
     void workedRmcIsReadAndWritten_data();
     void workedRmcIsReadAndWritten();
     void workedGgaIsReadAndWritten();
@@ -71,97 +49,10 @@ private Q_SLOTS:
     void anyTalkerIsRead();
     void roundingStaysInTheField();
     void doesNotWriteWhatDoesNotFit();
-    void stampsOfDates_data();
-    void stampsOfDates();
-    void stampsAndDatesAreInverse();
     void neverAllocates();
 };
 
-void TestNmea::findsSentences_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<QList<QByteArray>>("bodies");
-    const QList<QByteArray> one{"GPTXT,A"};
-    QTest::newRow("usual") << QByteArray("$GPTXT,A*22\r\n") << one;
-    QTest::newRow("lower case") << QByteArray("$GPTXT,o*0c\n") << QList<QByteArray>{"GPTXT,o"};
-    QTest::newRow("only LF") << QByteArray("$GPTXT,A*22\n") << one;
-    QTest::newRow("only CR") << QByteArray("$GPTXT,A*22\r") << one;
-    QTest::newRow("noise before") << QByteArray("xx\xff,4*1\r\n$GPTXT,A*22\r\n") << one;
-    QTest::newRow("cut short") << QByteArray("$GPTXT,$GPTXT,A*22\r\n") << one;
-    QTest::newRow("damaged") << QByteArray("$GPTXT,B*22\r\n$GPTXT,A*22\r\n") << one;
-    QTest::newRow("no end yet") << QByteArray("$GPTXT,A*22") << QList<QByteArray>();
-    QTest::newRow("one digit") << QByteArray("$GPTXT,A*2\r\n") << QList<QByteArray>();
-    QTest::newRow("three digits") << QByteArray("$GPTXT,A*220\r\n") << QList<QByteArray>();
-    QTest::newRow("no digits") << QByteArray("$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n")
-                               << QList<QByteArray>();
-    QTest::newRow("NUL inside") << QByteArray("$GPTXT,\0A*22\r\n", 14) << QList<QByteArray>();
-    QTest::newRow("encapsulated") << QByteArray("!AIVDM,A*3A\r\n") << QList<QByteArray>{"AIVDM,A"};
-    QTest::newRow("empty") << QByteArray("$*00\r\n$\r\n\r\n") << QList<QByteArray>{""};
-}
-
-void TestNmea::findsSentences() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(QList<QByteArray>, bodies);
-    SentenceParser parser;
-    QCOMPARE(sentencesOf(parser, bytes), bodies);
-    QCOMPARE(parser.counts().sentences, quint64(bodies.size()));
-}
-
-void TestNmea::countsWhatItDrops() {
-    SentenceParser parser;
-    const QByteArray endless = '$' + QByteArray(int(maxSentence) * 3, 'A');
-    QCOMPARE(sentencesOf(parser, endless + "\n$GPT\x80XT\n$GPT$GPTXT,A*23\n$GPTXT,A\n").size(), 0);
-    const SentenceParser::Counts &counts = parser.counts();
-    QCOMPARE(counts.tooLong, quint64(1));
-    QCOMPARE(counts.badByte, quint64(1));
-    QCOMPARE(counts.cutShort, quint64(1));
-    QCOMPARE(counts.badChecksum, quint64(1));
-    QCOMPARE(counts.noChecksum, quint64(1));
-    // The endless one is dropped with the byte that is too much; behind it and behind 0x80 all is noise.
-    QCOMPARE(counts.skippedBytes, quint64(endless.size()) - maxSentence - 1 + 2);
-    QCOMPARE(sentencesOf(parser, realRmc).size(), 1);
-}
-
-void TestNmea::isInStepWhereverItBegins() {
-    const QByteArray two = realRmc + usualGga;
-    for (int begin = 1; begin < realRmc.size(); ++begin) {
-        SentenceParser parser;
-        const auto bodies = sentencesOf(parser, two.mid(begin));
-        QCOMPARE(bodies.size(), 1);
-        QVERIFY(bodies[0].startsWith("GPGGA,"));
-    }
-    // Any single bit that is wrong costs that sentence at most, and never passes unseen.
-    for (int bit = 0; bit < realRmc.size() * 8; ++bit) {
-        QByteArray damaged = two;
-        damaged[bit / 8] = char(damaged[bit / 8] ^ (1 << bit % 8));
-        SentenceParser parser;
-        for (const QByteArray &body : sentencesOf(parser, damaged))
-            QVERIFY2(two.contains('$' + body + '*') || body.isEmpty(), body.constData());
-    }
-}
-
-void TestNmea::withoutChecksumOnlyWhenLenient() {
-    SentenceParser strict, lenient(ChecksumRule::Lenient);
-    const QByteArray bytes("$GPTXT,A\r\n$GPTXT,B*22\r\n");
-    QCOMPARE(sentencesOf(strict, bytes).size(), 0);
-    QCOMPARE(sentencesOf(lenient, bytes), QList<QByteArray>{"GPTXT,A"});
-    QCOMPARE(strict.counts().noChecksum, quint64(1));
-    QCOMPARE(lenient.counts().badChecksum, quint64(1)); // a wrong one is refused all the same
-}
-
-void TestNmea::splitsFields() {
-    const Sentence sentence("GNGSA,A,,3,");
-    QCOMPARE(toBytes(sentence.address()), QByteArray("GNGSA"));
-    QCOMPARE(toBytes(sentence.type()), QByteArray("GSA"));
-    QCOMPARE(sentence.fieldCount(), 4);
-    QCOMPARE(toBytes(sentence.field(1)), QByteArray("A"));
-    QCOMPARE(toBytes(sentence.field(3)), QByteArray("3"));
-    for (const int empty : {2, 4, 5, 100})
-        QVERIFY(sentence.field(empty).empty());
-    QVERIFY(Sentence("PMTK001,1").type().empty());
-    QVERIFY(Sentence("PGRME").type().empty());
-}
-
-void TestNmea::workedRmcIsReadAndWritten_data() {
+void TestNmeaMessages::workedRmcIsReadAndWritten_data() {
     QTest::addColumn<QByteArray>("text");
     QTest::addColumn<int>("minuteDecimals");
     QTest::addColumn<double>("latitude");
@@ -181,7 +72,7 @@ void TestNmea::workedRmcIsReadAndWritten_data() {
                             << 764426119.0;
 }
 
-void TestNmea::workedRmcIsReadAndWritten() {
+void TestNmeaMessages::workedRmcIsReadAndWritten() {
     QFETCH(QByteArray, text);
     QFETCH(int, minuteDecimals);
     QFETCH(double, latitude);
@@ -203,7 +94,7 @@ void TestNmea::workedRmcIsReadAndWritten() {
     QCOMPARE(encoded(rmc, {minuteDecimals, 0}), text);
 }
 
-void TestNmea::workedGgaIsReadAndWritten() {
+void TestNmeaMessages::workedGgaIsReadAndWritten() {
     Gga gga;
     const FieldFault fault = decodeText(usualGga, gga);
     QVERIFY2(!fault, fault.expected);
@@ -233,7 +124,7 @@ void TestNmea::workedGgaIsReadAndWritten() {
     QCOMPARE(again.time->second, 19.25);
 }
 
-void TestNmea::emptyFieldsAreUnknown() {
+void TestNmeaMessages::emptyFieldsAreUnknown() {
     Rmc rmc;
     QVERIFY(!decodeText(summed("GPRMC,,V,,,,,,,,,,N"), rmc));
     QVERIFY(!rmc.valid && !rmc.time && !rmc.date && !rmc.position && !rmc.speed && !rmc.course_deg);
@@ -250,7 +141,7 @@ void TestNmea::emptyFieldsAreUnknown() {
     QVERIFY(rmc.valid && rmc.position && !rmc.speed && !rmc.mode);
 }
 
-void TestNmea::wrongFieldsAreNamed_data() {
+void TestNmeaMessages::wrongFieldsAreNamed_data() {
     QTest::addColumn<QByteArray>("body");
     QTest::addColumn<int>("field");
     const auto rmc = [](const char *name, int field, const char *value) {
@@ -287,7 +178,7 @@ void TestNmea::wrongFieldsAreNamed_data() {
     QTest::newRow("another type") << QByteArray("GPGGA,,,,,,0,,,,M,,M,,") << 0;
 }
 
-void TestNmea::wrongFieldsAreNamed() {
+void TestNmeaMessages::wrongFieldsAreNamed() {
     QFETCH(QByteArray, body);
     QFETCH(int, field);
     Rmc rmc;
@@ -297,7 +188,7 @@ void TestNmea::wrongFieldsAreNamed() {
     QVERIFY(std::string_view(fault.expected).size() > 3);
 }
 
-void TestNmea::anyTalkerIsRead() {
+void TestNmeaMessages::anyTalkerIsRead() {
     for (const char *talker : {"GP", "GN", "GL", "GA", "GB", "BD"}) {
         Rmc rmc;
         QVERIFY(
@@ -308,7 +199,7 @@ void TestNmea::anyTalkerIsRead() {
     }
 }
 
-void TestNmea::roundingStaysInTheField() {
+void TestNmeaMessages::roundingStaysInTheField() {
     Rmc rmc;
     rmc.time = UtcTime{23, 59, 59.9999};
     rmc.position = Position{47.99999999999, -179.99999999999};
@@ -322,7 +213,7 @@ void TestNmea::roundingStaysInTheField() {
     QVERIFY(encoded(rmc, {4, 2}).startsWith("$GPRMC,010203.10,"));
 }
 
-void TestNmea::doesNotWriteWhatDoesNotFit() {
+void TestNmeaMessages::doesNotWriteWhatDoesNotFit() {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     Rmc good;
     QVERIFY(!decodeText(realRmc, good));
@@ -358,41 +249,7 @@ void TestNmea::doesNotWriteWhatDoesNotFit() {
     QVERIFY(!endless.finish() && endless.view().empty());
 }
 
-void TestNmea::stampsOfDates_data() {
-    QTest::addColumn<int>("year");
-    QTest::addColumn<int>("month");
-    QTest::addColumn<int>("day");
-    for (const int year : {1970, 1972, 1999, 2000, 2001, 2024, 2026, 2079, 2100, 2400, 9999}) {
-        for (const auto &[month, day] : {std::pair(1, 1), {2, 28}, {3, 1}, {12, 31}})
-            QTest::addRow("%d-%d-%d", year, month, day) << year << month << day;
-    }
-    QTest::newRow("leap day") << 2000 << 2 << 29;
-}
-
-void TestNmea::stampsOfDates() {
-    QFETCH(int, year);
-    QFETCH(int, month);
-    QFETCH(int, day);
-    const double expected =
-        double(QDateTime(QDate(year, month, day), QTime(1, 2, 3), Qt::UTC).toSecsSinceEpoch());
-    const double stamp = toStamp({year, month, day}, {1, 2, 3.5}).value();
-    QCOMPARE(stamp, expected + 0.5);
-    const Date date = dateOf(stamp).value();
-    QCOMPARE(date.year, year);
-    QCOMPARE(date.month, month);
-    QCOMPARE(date.day, day);
-}
-
-void TestNmea::stampsAndDatesAreInverse() {
-    for (double stamp = 0.25; stamp < 4e9; stamp += 86399.5 * 7)
-        QCOMPARE(toStamp(dateOf(stamp).value(), timeOf(stamp).value()).value(), stamp);
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const double wrong : {-1.0, nan, 1e300, 253402300800.0})
-        QVERIFY(!dateOf(wrong) && !timeOf(wrong));
-    QVERIFY(!toStamp({2015, 2, 29}, {0, 0, 0}) && !toStamp({2015, 2, 28}, {0, 0, nan}));
-}
-
-void TestNmea::neverAllocates() {
+void TestNmeaMessages::neverAllocates() {
     SentenceParser parser;
     Rmc rmc;
     const std::size_t before = allocations;
@@ -406,5 +263,5 @@ void TestNmea::neverAllocates() {
     QVERIFY(text && rmc.valid);
 }
 
-QTEST_APPLESS_MAIN(TestNmea)
-#include "TestNmea.moc"
+QTEST_APPLESS_MAIN(TestNmeaMessages)
+#include "TestNmeaMessages.moc"

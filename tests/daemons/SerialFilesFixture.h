@@ -1,0 +1,104 @@
+#pragma once
+
+#include "daemons/seriallogger/SerialExport.h"
+#include "daemons/seriallogger/SerialLogReader.h"
+#include "daemons/seriallogger/SerialRecorder.h"
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <csignal>
+#include <sys/resource.h>
+
+namespace hermes {
+
+inline const Arrival first{1700000000000000000, 5000000000};
+
+/// So many seconds after the first arrival; the stamp's clock may step on its own.
+inline Arrival after(double seconds, double step_s = 0) {
+    return {first.stamp_ns + std::int64_t((seconds + step_s) * 1e9),
+            first.mono_ns + std::int64_t(seconds * 1e9)};
+}
+
+inline void push(ChunkQueue &queue, const QByteArray &bytes, const Arrival &arrival) {
+    queue.push(bytes.constData(), std::size_t(bytes.size()), arrival);
+}
+
+inline QByteArray contentOf(const QString &path) {
+    QFile file(path);
+    return file.open(QIODevice::ReadOnly) ? file.readAll() : "unreadable: " + path.toUtf8();
+}
+
+inline void put(const QString &path, const QByteArray &bytes) {
+    QFile file(path);
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    QCOMPARE(file.write(bytes), qint64(bytes.size()));
+}
+
+inline QList<QJsonObject> eventsOf(const QString &folder) {
+    QList<QJsonObject> events;
+    for (const QByteArray &line : contentOf(folder + "/logger-events.jsonl").split('\n'))
+        if (!line.isEmpty())
+            events.append(QJsonDocument::fromJson(line).object());
+    return events;
+}
+
+/// All pieces, or what was wrong.
+inline Result<QList<SerialLogReader::Piece>> readAll(const QString &base) {
+    SerialLogReader reader;
+    if (const Result<void> opened = reader.open(base); !opened)
+        return opened.error();
+    QList<SerialLogReader::Piece> pieces;
+    for (;;) {
+        const auto piece = reader.next();
+        if (!piece)
+            return piece.error();
+        if (piece->bytes.isEmpty())
+            return pieces;
+        pieces.append(*piece);
+    }
+}
+
+/// No file of this process may become longer while this lives: as on a full disk, without needing one.
+class FileSizeLimit {
+public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        std::signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+private:
+    rlimit before_;
+};
+
+/// A folder with the recording of a logger "logger", and its port "a".
+class SerialFilesFixture {
+protected:
+    RecordingPlan plan() const { return {folder_->path(), "logger", 0, 0}; }
+    QString base() const { return folder_->filePath("logger-a"); }
+    /// The CSV without its header.
+    QList<QByteArray> exported(ExportRows rows);
+
+    std::unique_ptr<QTemporaryDir> folder_;
+};
+
+inline QList<QByteArray> SerialFilesFixture::exported(ExportRows rows) {
+    SerialExport job;
+    job.base = base();
+    job.target = base() + ".csv";
+    job.rows = rows;
+    const auto count = job.run(false);
+    if (!count)
+        return {count.error().message.toUtf8()};
+    QList<QByteArray> lines = contentOf(job.target).split('\n');
+    lines.removeFirst();
+    lines.removeLast();
+    if (lines.size() != *count)
+        return {"another number of rows was told"};
+    return lines;
+}
+
+} // namespace hermes

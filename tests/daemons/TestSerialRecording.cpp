@@ -1,0 +1,181 @@
+// The recordings of the serial logger: made, exported, replayed.
+#include "SerialLoggerFixture.h"
+#include "common/recording/Sidecar.h"
+#include "tests/support/FreePort.h"
+
+#include <QTcpServer>
+#include <QTcpSocket>
+#include <QUdpSocket>
+
+using namespace hermes;
+
+namespace {
+
+QByteArray contentOf(const QString &path) {
+    QFile file(path);
+    return file.open(QIODevice::ReadOnly) ? file.readAll() : "unreadable: " + path.toUtf8();
+}
+
+} // namespace
+
+class TestSerialRecording : public QObject, SerialLoggerFixture {
+    Q_OBJECT
+private Q_SLOTS:
+    void init() { setUp(); }
+    void cleanup() { tearDown(); }
+    void recordsASerialLine();
+    void recordsDatagramsAndStreams();
+    void marksNeedARecording();
+    void exportsToCsv();
+    void replaysARecording();
+};
+
+void TestSerialRecording::recordsASerialLine() {
+    launch({QJsonObject{{"name", "dev"}, {"url", deviceUrl()}, {"view", "none"}}});
+    QTRY_VERIFY(isOpen("dev"));
+    QCOMPARE(port("dev").value("device").toString(), device_->device());
+    device_->write("before");
+    QTRY_COMPARE(port("dev").value("bytes").toInt(), 6);
+    const QString folder = call("record.start", {{"name", "run"}}).toObject().value("folder").toString();
+    QByteArray all;
+    for (int i = 0; i < 256; ++i)
+        all += char(i);
+    device_->write(all);
+    call("mark", {{"text", "here"}});
+    QTRY_COMPARE(port("dev").value("bytes").toInt(), 6 + all.size());
+    const QJsonObject result = call("record.stop").toObject();
+    QCOMPARE(contentOf(folder + "/seriallogger-dev.raw"), all);
+    QCOMPARE(result.value("counts").toObject().value("bytes").toInt(), all.size());
+    QCOMPARE(result.value("counts").toObject().value("marks").toInt(), 1);
+    const auto sidecar = Sidecar::read(folder + "/seriallogger.json");
+    QVERIFY(sidecar.ok());
+    QCOMPARE(sidecar->value("ended").toString(), "stopped");
+    QCOMPARE(sidecar->value("files").toArray().at(0).toObject().value("url").toString(), deviceUrl());
+    QCOMPARE(healthItem("port dev").value("level").toString(), "ok");
+    QCOMPARE(call("record.list").toArray().size(), 1);
+}
+
+void TestSerialRecording::recordsDatagramsAndStreams() {
+    QTcpServer server;
+    QVERIFY(server.listen(QHostAddress::LocalHost));
+    const quint16 udpPort = reservePort();
+    launch({QJsonObject{{"name", "udp"}, {"url", QString("udp://127.0.0.1:%1").arg(udpPort)}},
+            QJsonObject{{"name", "tcp"}, {"url", QString("tcp://127.0.0.1:%1").arg(server.serverPort())}}});
+    QTRY_VERIFY(server.hasPendingConnections());
+    std::unique_ptr<QTcpSocket> peer(server.nextPendingConnection());
+    QTRY_VERIFY(isOpen("udp") && isOpen("tcp"));
+    const QString folder = call("record.start", {{"name", "net"}}).toObject().value("folder").toString();
+    QUdpSocket sender;
+    for (const char *datagram : {"one", "two"})
+        sender.writeDatagram(datagram, QHostAddress::LocalHost, udpPort);
+    peer->write("stream");
+    QTRY_COMPARE(port("udp").value("bytes").toInt(), 6);
+    QTRY_COMPARE(port("tcp").value("bytes").toInt(), 6);
+    peer->abort(); // the server goes; a new one is found
+    peer.reset();
+    QTRY_VERIFY(server.hasPendingConnections());
+    peer.reset(server.nextPendingConnection());
+    peer->write(" goes on");
+    QTRY_COMPARE(port("tcp").value("bytes").toInt(), 14);
+    call("record.stop");
+    QCOMPARE(contentOf(folder + "/seriallogger-udp.raw"), QByteArray("onetwo"));
+    QCOMPARE(contentOf(folder + "/seriallogger-tcp.raw"), QByteArray("stream goes on"));
+    QCOMPARE(QFileInfo(folder + "/seriallogger-udp.index").size(),
+             qint64(16 + 2 * 24)); // datagrams stay apart
+    QVERIFY(contentOf(folder + "/seriallogger-events.jsonl").contains("\"event\":\"closed\""));
+}
+
+void TestSerialRecording::marksNeedARecording() {
+    launch({});
+    QCOMPARE(failure("mark", {{"text", "lost"}}).code, int(ErrorCode::NotReady));
+    const QString folder = call("record.start", {{"name", "m"}}).toObject().value("folder").toString();
+    const double stamp = call("mark", {{"text", "kept"}}).toObject().value("stamp").toDouble();
+    call("record.stop");
+    const QJsonObject event =
+        QJsonDocument::fromJson(contentOf(folder + "/seriallogger-events.jsonl")).object();
+    QCOMPARE(event.value("text").toString(), "kept");
+    QCOMPARE(event.value("stamp").toDouble(), stamp);
+}
+
+void TestSerialRecording::exportsToCsv() {
+    launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}}});
+    QTRY_VERIFY(isOpen("gps"));
+    const QString folder = call("record.start", {{"name", "run"}}).toObject().value("folder").toString();
+    device_->write(rmc + gga);
+    QTRY_COMPARE(port("gps").value("bytes").toInt(), rmc.size() + gga.size());
+    call("record.stop");
+    const QJsonObject params{{"name", "run"}, {"port", "gps"}};
+    const QJsonObject result = call("record.export", params).toObject();
+    QCOMPARE(result.value("path").toString(), folder + "/seriallogger-gps-lines.csv");
+    QCOMPARE(result.value("rows").toInt(), 2);
+    QVERIFY(contentOf(result.value("path").toString()).contains(",\"$GPRMC,123519,A,"));
+    QCOMPARE(failure("record.export", params).code, int(ErrorCode::InputOutput)); // is there
+    QVERIFY(failure("record.export", params).message.contains("force"));
+    QJsonObject more = params;
+    more.insert("force", true);
+    QCOMPARE(call("record.export", more).toObject().value("rows").toInt(), 2);
+    more.insert("rows", "fixes");
+    QCOMPARE(call("record.export", more).toObject().value("rows").toInt(), 1);
+    QCOMPARE(failure("record.export", {{"name", "none"}, {"port", "gps"}}).code, int(ErrorCode::InputOutput));
+    for (const char *wrong : {"../run", ".", "a/b", ""}) {
+        QCOMPARE(failure("record.export", {{"name", wrong}, {"port", "gps"}}).code,
+                 int(ErrorCode::InvalidParams));
+        QCOMPARE(failure("record.export", {{"name", "run"}, {"port", wrong}}).code,
+                 int(ErrorCode::InvalidParams));
+    }
+}
+
+void TestSerialRecording::replaysARecording() {
+    launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}},
+            QJsonObject{{"name", "raw"},
+                        {"url", QString("udp://127.0.0.1:%1").arg(reservePort())},
+                        {"view", "none"}}});
+    QTRY_VERIFY(isOpen("gps"));
+    QJsonArray lines, fixes;
+    client_->subscribe("lines", {{"queue", 100}}, [&](const TopicUpdate &update) { lines << update.data; });
+    client_->subscribe("fix", {{"queue", 100}}, [&](const TopicUpdate &update) { fixes << update.data; });
+    QTRY_VERIFY(daemon_->hasSubscribers("lines") && daemon_->hasSubscribers("fix"));
+    call("record.start", {{"name", "run"}});
+    QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::NotReady)); // not ended
+    device_->write(rmc + gga);
+    QTRY_COMPARE(fixes.size(), 1);
+    QTest::qWait(300); // a gap in time, to be found again
+    device_->write("$GPTXT,1\r\nhalf a line");
+    QTRY_COMPARE(lines.size(), 3);
+    QTRY_COMPARE(port("gps").value("bytes").toInt(), rmc.size() + gga.size() + 21);
+    call("record.stop");
+    device_->write("\r\n");
+    QTRY_COMPARE(lines.size(), 4);
+    const QJsonArray liveLines = std::exchange(lines, {}), liveFixes = std::exchange(fixes, {});
+
+    QElapsedTimer timer;
+    QCOMPARE(
+        call("source.open", {{"recording", "run"}, {"paused", true}, {"delay_s", 0.1}})["paused"].toBool(),
+        true);
+    device_->write("not shown now\r\n");
+    timer.start();
+    call("source.pause", {{"paused", false}});
+    QTRY_COMPARE(call("source.status")["source"]["state"].toString(), "ended");
+    QTRY_COMPARE(lines, liveLines); // with their stamps
+    QTRY_COMPARE(fixes, liveFixes);
+    QVERIFY(timer.elapsed() >= 400);
+    QCOMPARE(healthItem("source").value("level").toString(), "ok");
+    QVERIFY(failure("source.pause").is(ErrorCode::NotReady));
+
+    QCOMPARE(call("source.open", {{"live", true}})["state"].toString(), "live");
+    device_->write("live again\r\n");
+    QTRY_COMPARE(lines.size(), 5);
+    QCOMPARE(lines.last()["text"].toString(), "live again");
+    QVERIFY(healthItem("source").isEmpty());
+
+    QVERIFY(failure("source.open").is(ErrorCode::InvalidParams));
+    QVERIFY(failure("source.open", {{"live", true}, {"recording", "run"}}).is(ErrorCode::InvalidParams));
+    QVERIFY(failure("source.open", {{"recording", "../run"}}).is(ErrorCode::InvalidParams));
+    QVERIFY(failure("source.open", {{"recording", "none"}}).is(ErrorCode::InputOutput));
+    QVERIFY(QFile::remove(folder_->filePath("recordings/run/seriallogger-gps.index")));
+    QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::InputOutput));
+    QCOMPARE(call("source.status")["source"]["state"].toString(), "live");
+}
+
+QTEST_GUILESS_MAIN(TestSerialRecording)
+#include "TestSerialRecording.moc"

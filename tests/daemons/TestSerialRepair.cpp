@@ -1,0 +1,108 @@
+// Recordings of the serial logger that were cut off or damaged, and how they are read.
+#include "SerialFilesFixture.h"
+#include "common/recording/Sidecar.h"
+
+#include <limits>
+
+using namespace hermes;
+
+class TestSerialRepair : public QObject, SerialFilesFixture {
+    Q_OBJECT
+private Q_SLOTS:
+    void init() { folder_ = std::make_unique<QTemporaryDir>(); }
+    void whatWasCutOffIsRepaired();
+    void damageIsNamed_data();
+    void damageIsNamed();
+    void longChunksComeInPieces();
+};
+
+void TestSerialRepair::whatWasCutOffIsRepaired() {
+    ChunkQueue a(1000), b(1000);
+    SerialRecorder recorder;
+    recorder.setPorts({{"a", "u", &a}, {"b", "v", &b}});
+    QVERIFY(recorder.begin(plan()).ok());
+    recorder.note("mark", {{"text", "here"}});
+    for (int i = 0; i < 10; ++i)
+        push(a, "0123456789", after(i));
+    recorder.end();
+    const RecordingState state = recorder.state();
+    QJsonObject sidecar{{"start", after(0).stamp()}, {"files", state.files}, {"bytes", 0}};
+    // Killed after the index was written, in the middle of the bytes, and in the middle of an event.
+    const QByteArray raw = contentOf(base() + ".raw").left(64);
+    put(base() + ".raw", raw);
+    put(base() + ".index", contentOf(base() + ".index") + "half a record");
+    const QString events = folder_->filePath("logger-events.jsonl");
+    put(events, contentOf(events) + "{\"event\":\"ma");
+    const auto repaired = recorder.repair(plan(), sidecar);
+    QVERIFY2(repaired.ok(), repaired.ok() ? "" : qPrintable(repaired.error().message));
+    QCOMPARE(contentOf(base() + ".raw"), raw);
+    QCOMPARE(QFileInfo(base() + ".index").size(), qint64(16 + 24 * 7));
+    QCOMPARE(readAll(base())->last().bytes, QByteArray("0123"));
+    QCOMPARE(eventsOf(folder_->path()).size(), 1);
+    QCOMPARE(sidecar.value("bytes").toInt(), 64);
+    QCOMPARE(sidecar.value("end").toDouble(), after(6).stamp());
+    QCOMPARE(sidecar.value("counts").toObject(),
+             (QJsonObject{{"bytes", 64}, {"chunks", 7}, {"events", 1}, {"marks", 1}}));
+    QCOMPARE(sidecar.value("files").toArray().at(0).toObject().value("bytes").toInt(), 64);
+    const QJsonObject again = sidecar;
+    QVERIFY(recorder.repair(plan(), sidecar).ok());
+    QCOMPARE(sidecar, again);
+}
+
+void TestSerialRepair::damageIsNamed_data() {
+    QTest::addColumn<QByteArray>("raw");
+    QTest::addColumn<QByteArray>("index");
+    QTest::addColumn<QString>("complaint");
+    const QByteArray header = "HERMESIX" + QByteArray::fromHex("0100000018000000");
+    const auto record = [](qint64 offset) {
+        QByteArray bytes(24, 0);
+        qToLittleEndian<qint64>(offset, bytes.data());
+        return bytes;
+    };
+    QTest::newRow("no header") << QByteArray("abc") << QByteArray() << "HERMESIX";
+    QTest::newRow("another file") << QByteArray("abc") << QByteArray(100, 'x') << "HERMESIX";
+    QTest::newRow("another version") << QByteArray("abc")
+                                     << "HERMESIX" + QByteArray::fromHex("0200000018000000") << "version 1";
+    QTest::newRow("no records") << QByteArray("abc") << header << "first record";
+    QTest::newRow("begins late") << QByteArray("abc") << header + record(1) << "first record";
+    QTest::newRow("turns back") << QByteArray("abcdef") << header + record(0) + record(3) + record(2)
+                                << "a record at byte 2 follows one at byte 3";
+    QTest::newRow("twice") << QByteArray("abcdef") << header + record(0) + record(0) << "at byte 0 follows";
+    QTest::newRow("negative") << QByteArray("abc") << header + record(-1) << "first record";
+}
+
+void TestSerialRepair::damageIsNamed() {
+    QFETCH(QByteArray, raw);
+    QFETCH(QByteArray, index);
+    QFETCH(QString, complaint);
+    put(base() + ".raw", raw);
+    put(base() + ".index", index);
+    const auto pieces = readAll(base());
+    QVERIFY(!pieces.ok());
+    QVERIFY2(pieces.error().message.contains(complaint) && pieces.error().message.contains("logger-a.index"),
+             qPrintable(pieces.error().message));
+    QCOMPARE(pieces.error().data.toObject().value("path").toString(), base() + ".index");
+    SerialExport job;
+    job.base = base();
+    job.target = base() + "-lines.csv";
+    QVERIFY(!job.run(false).ok() && !QFile::exists(job.target));
+}
+
+void TestSerialRepair::longChunksComeInPieces() {
+    ChunkQueue queue(1 << 20);
+    SerialRecorder recorder;
+    recorder.setPorts({{"a", "u", &queue}});
+    QVERIFY(recorder.begin(plan()).ok());
+    const QByteArray large(SerialLogReader::mostBytes + 5, 'x');
+    push(queue, large, after(1));
+    push(queue, "end", after(2));
+    recorder.end();
+    const auto pieces = readAll(base());
+    QCOMPARE(pieces->size(), 3);
+    QCOMPARE(pieces->at(1).bytes.size(), 5);
+    QCOMPARE(pieces->at(1).arrival.mono_ns, after(1).mono_ns);
+    QCOMPARE(pieces->at(2).offset, quint64(large.size()));
+}
+
+QTEST_GUILESS_MAIN(TestSerialRepair)
+#include "TestSerialRepair.moc"

@@ -1,0 +1,210 @@
+// What one packet says: its returns, angles and points.
+#include "protocol/velodyne/TurnAssembler.h"
+#include "tests/support/Sensor.h"
+
+#include <QtTest>
+
+#include <cmath>
+#include <random>
+
+using namespace hermes::velodyne;
+
+class TestPacketDecoder : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void elevationsAreMultiplesOfFourThirds();
+    void packetsComeBackToTheLastBit();
+    void faultsAreNamed_data();
+    void faultsAreNamed();
+    void pointsLieWhereTheFactSheetSays();
+    void azimuthsAreInterpolated();
+    void aBlockOfAVlp16HoldsTwoFirings();
+    void ringsCountFromTheLowest();
+    void dualReturns_data();
+    void dualReturns();
+};
+
+void TestPacketDecoder::elevationsAreMultiplesOfFourThirds() {
+    for (int laser = 0; laser < lasers; ++laser) {
+        const int ring = laser % 2 == 0 ? laser / 2 : 16 + (laser - 1) / 2;
+        QVERIFY(std::abs(elevation_deg[laser] - (ring - 23) * 4 / 3.0) < 0.0051);
+    }
+    QCOMPARE(elevation_deg[horizonLaser], 0.0);
+}
+
+void TestPacketDecoder::packetsComeBackToTheLastBit() {
+    const unsigned seed = std::random_device()();
+    qInfo("seed %u", seed);
+    std::mt19937 random(seed);
+    for (int round = 0; round < 50; ++round) {
+        DataPacketWriter writer;
+        std::vector<unsigned> written;
+        for (int block = 0; block < blocksPerPacket; ++block) {
+            written.push_back(random() % azimuthSteps);
+            writer.setAzimuth(block, std::uint16_t(written.back()));
+            for (int laser = 0; laser < lasers; ++laser) {
+                written.push_back(random() & 0xFFFF);
+                written.push_back(random() & 0xFF);
+                writer.setReturn(block, laser, std::uint16_t(written[written.size() - 2]),
+                                 std::uint8_t(written.back()));
+            }
+        }
+        written.push_back(unsigned(random() % stampPeriod_us));
+        writer.setTail(written.back());
+        QCOMPARE(DataPacket::check(writer.bytes().data(), packetSize), PacketFault::None);
+
+        const DataPacket packet(writer.bytes().data());
+        std::vector<unsigned> read;
+        for (int block = 0; block < blocksPerPacket; ++block) {
+            read.push_back(packet.azimuth(block));
+            for (int laser = 0; laser < lasers; ++laser) {
+                read.push_back(packet.distance(block, laser));
+                read.push_back(packet.intensity(block, laser));
+            }
+        }
+        read.push_back(packet.stamp_us());
+        QVERIFY(read == written);
+        QVERIFY(packet.returnMode() == ReturnMode::Strongest && packet.model() == Model::Hdl32e);
+    }
+}
+
+void TestPacketDecoder::faultsAreNamed_data() {
+    QTest::addColumn<int>("size");
+    QTest::addColumn<int>("offset");
+    QTest::addColumn<int>("value");
+    QTest::addColumn<int>("fault");
+    QTest::newRow("whole") << 1206 << -1 << 0 << int(PacketFault::None);
+    QTest::newRow("short") << 1205 << -1 << 0 << int(PacketFault::Size);
+    QTest::newRow("position packet") << 512 << -1 << 0 << int(PacketFault::Size);
+    QTest::newRow("empty") << 0 << -1 << 0 << int(PacketFault::Size);
+    QTest::newRow("first flag") << 1206 << 0 << 0xFE << int(PacketFault::Flag);
+    QTest::newRow("last flag") << 1206 << 1101 << 0 << int(PacketFault::Flag);
+    QTest::newRow("azimuth") << 1206 << 3 << 0x8D << int(PacketFault::Value);
+    QTest::newRow("stamp") << 1206 << 1203 << 0xFF << int(PacketFault::Value);
+    QTest::newRow("VLP-16") << 1206 << 1205 << 0x22 << int(PacketFault::None);
+    QTest::newRow("VLP-32C") << 1206 << 1205 << 0x28 << int(PacketFault::Model);
+    QTest::newRow("model without mode") << 1206 << 1204 << 0 << int(PacketFault::Model);
+    QTest::newRow("unknown mode") << 1206 << 1204 << 0x40 << int(PacketFault::Model);
+    QTest::newRow("dual") << 1206 << 1204 << 0x39 << int(PacketFault::None);
+}
+
+void TestPacketDecoder::faultsAreNamed() {
+    QFETCH(int, size);
+    QFETCH(int, offset);
+    QFETCH(int, value);
+    QFETCH(int, fault);
+    auto bytes = Sensor().packet(0);
+    if (offset >= 0)
+        bytes[std::size_t(offset)] = std::uint8_t(value);
+    QCOMPARE(int(DataPacket::check(bytes.data(), std::size_t(size))), fault);
+}
+
+void TestPacketDecoder::pointsLieWhereTheFactSheetSays() {
+    // Values of an independent decoder: 2500 counts straight ahead.
+    Sensor sensor;
+    auto bytes = sensor.packet(0);
+    bytes[2] = bytes[3] = bytes[102] = bytes[103] = 0; // no gap: every laser at azimuth 0
+    std::vector<Point> points;
+    PacketDecoder(hdl32e(), PacketDecoder::allLasers).decode(DataPacket(bytes.data()), 0, 0, 0, points);
+    QCOMPARE(points.size(), std::size_t(lasers));
+    QVERIFY(std::abs(points[0].x - 4.3008) < 5e-4 && points[0].y == 0 &&
+            std::abs(points[0].z + 2.5505) < 5e-4);
+    QCOMPARE(points[15].x, 5.0);
+    QCOMPARE(points[15].z, 0.0);
+    QCOMPARE(points[31].stamp_ns, std::int64_t(31 * 1152));
+    // A quarter turn clockwise is to the right: y is negative.
+    bytes[2] = bytes[102] = 9000 & 0xFF;
+    bytes[3] = bytes[103] = 9000 >> 8;
+    points.clear();
+    PacketDecoder(hdl32e()).decode(DataPacket(bytes.data()), 0, 0, 0, points);
+    QVERIFY(std::abs(points[0].x) < 1e-9 && std::abs(points[0].y + 5) < 1e-9);
+}
+
+void TestPacketDecoder::azimuthsAreInterpolated() {
+    DataPacketWriter writer;
+    for (int block = 0; block < blocksPerPacket; ++block) {
+        writer.setAzimuth(block, std::uint16_t((35990 + 16 * block) % azimuthSteps));
+        writer.setReturn(block, 15, 1000, 7);
+    }
+    std::vector<Point> points;
+    const DataPacket packet(writer.bytes().data());
+    for (int group = 0; group < blocksPerPacket; ++group)
+        PacketDecoder(hdl32e()).decode(packet, group, 0, 1000, points);
+    QCOMPARE(points.size(), std::size_t(12));
+    QVERIFY(std::abs(points[0].azimuth - (359.90 + 0.16 * 0.375)) < 1e-9);
+    QVERIFY(std::abs(points[1].azimuth - (0.06 + 0.16 * 0.375)) < 1e-9);
+    QVERIFY(std::abs(points[11].azimuth - (1.66 + 0.16 * 0.375)) < 1e-9); // by the gap before it
+    QCOMPARE(points[11].stamp_ns, std::int64_t(1000 + 11 * 46080 + 15 * 1152));
+    writer.setAzimuth(1, 5000); // a jump is no gap
+    QCOMPARE(azimuthGap(packet, 0), 0);
+}
+
+void TestPacketDecoder::aBlockOfAVlp16HoldsTwoFirings() {
+    DataPacketWriter writer;
+    for (int block = 0; block < blocksPerPacket; ++block)
+        writer.setAzimuth(block, std::uint16_t((35970 + 40 * block) % azimuthSteps));
+    writer.setReturn(0, 3, 1000, 1);   // laser 3 of the first firing
+    writer.setReturn(0, 19, 2000, 2);  // and of the second
+    writer.setReturn(11, 31, 3000, 3); // the last of all
+    writer.setTail(0, ReturnMode::Last, Model::Vlp16);
+    std::vector<Point> points;
+    const DataPacket packet(writer.bytes().data());
+    const PacketDecoder decoder(vlp16(), PacketDecoder::allLasers);
+    for (int group = 0; group < blocksPerPacket; ++group)
+        for (int firing = 0; firing < 2; ++firing)
+            decoder.decode(packet, group, firing, 500, points);
+    QCOMPARE(points.size(), std::size_t(3));
+    QCOMPARE(int(points[0].laser), 3);
+    QCOMPARE(points[0].stamp_ns, std::int64_t(500 + 3 * 2304));
+    QCOMPARE(points[0].azimuth, 359.725); // 359.70 + 0.40 * 3 / 48
+    QCOMPARE(points[0].z, 2 * std::sin(3 * 3.14159265358979323846 / 180));
+    QCOMPARE(int(points[1].laser), 3);
+    QCOMPARE(points[1].stamp_ns, std::int64_t(500 + 55296 + 3 * 2304));
+    QCOMPARE(points[1].azimuth, 359.925);
+    QCOMPARE(int(points[2].laser), 15);
+    QCOMPARE(points[2].stamp_ns, std::int64_t(500 + 11 * 110592 + 55296 + 15 * 2304));
+    QCOMPARE(points[2].azimuth, 4.425); // 4.10 + 0.40 * (1 / 2 + 15 / 48)
+}
+
+void TestPacketDecoder::ringsCountFromTheLowest() {
+    QCOMPARE(hdl32e().ring(0), 0);
+    QCOMPARE(hdl32e().ring(15), 23);
+    QCOMPARE(hdl32e().ring(31), 31);
+    QCOMPARE(vlp16().ring(0), 0);
+    QCOMPARE(vlp16().ring(1), 8);
+    QCOMPARE(vlp16().ring(15), 15);
+}
+
+void TestPacketDecoder::dualReturns_data() {
+    QTest::addColumn<int>("returns");
+    QTest::addColumn<bool>("same");
+    QTest::addColumn<QVector<double>>("ranges");
+    QTest::newRow("strongest") << int(Returns::Strongest) << false << QVector<double>{5.0};
+    QTest::newRow("last") << int(Returns::Last) << false << QVector<double>{5.2};
+    QTest::newRow("both") << int(Returns::Both) << false << QVector<double>{5.2, 5.0};
+    QTest::newRow("both the same") << int(Returns::Both) << true << QVector<double>{5.0};
+}
+
+void TestPacketDecoder::dualReturns() {
+    QFETCH(int, returns);
+    QFETCH(bool, same);
+    QFETCH(QVector<double>, ranges);
+    Sensor sensor;
+    sensor.dual = true;
+    auto bytes = sensor.packet(0);
+    const DataPacket packet(bytes.data());
+    QCOMPARE(packet.groups(), 6);
+    if (same)
+        std::copy(bytes.begin() + 104, bytes.begin() + 200, bytes.begin() + 4);
+    std::vector<Point> points;
+    PacketDecoder(hdl32e(), horizonLaser, Returns(returns)).decode(packet, 0, 0, 0, points);
+    QCOMPARE(int(points.size()), ranges.size());
+    for (int i = 0; i < ranges.size(); ++i)
+        QVERIFY(std::abs(points[std::size_t(i)].range - ranges[i]) < 1e-9);
+    points.clear();
+    PacketDecoder(hdl32e()).decode(packet, 5, 0, 0, points);
+    QCOMPARE(points[0].stamp_ns, std::int64_t(5 * 46080 + 15 * 1152));
+}
+
+QTEST_APPLESS_MAIN(TestPacketDecoder)
+#include "TestPacketDecoder.moc"

@@ -1,0 +1,118 @@
+#include "NmeaText.h"
+#include "protocol/nmea/SentenceParser.h"
+
+#include <QtTest>
+
+using namespace hermes::nmea;
+
+namespace {
+
+/// The bodies of the sentences in the bytes.
+QList<QByteArray> sentencesOf(SentenceParser &parser, const QByteArray &bytes) {
+    QList<QByteArray> bodies;
+    for (const char byte : bytes) {
+        if (parser.feed(byte) == SentenceParser::Result::Done)
+            bodies.append(toBytes(parser.sentence().body()));
+    }
+    return bodies;
+}
+
+} // namespace
+
+class TestSentenceParser : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void findsSentences_data();
+    void findsSentences();
+    void countsWhatItDrops();
+    void isInStepWhereverItBegins();
+    void withoutChecksumOnlyWhenLenient();
+    void splitsFields();
+};
+
+void TestSentenceParser::findsSentences_data() {
+    QTest::addColumn<QByteArray>("bytes");
+    QTest::addColumn<QList<QByteArray>>("bodies");
+    const QList<QByteArray> one{"GPTXT,A"};
+    QTest::newRow("usual") << QByteArray("$GPTXT,A*22\r\n") << one;
+    QTest::newRow("lower case") << QByteArray("$GPTXT,o*0c\n") << QList<QByteArray>{"GPTXT,o"};
+    QTest::newRow("only LF") << QByteArray("$GPTXT,A*22\n") << one;
+    QTest::newRow("only CR") << QByteArray("$GPTXT,A*22\r") << one;
+    QTest::newRow("noise before") << QByteArray("xx\xff,4*1\r\n$GPTXT,A*22\r\n") << one;
+    QTest::newRow("cut short") << QByteArray("$GPTXT,$GPTXT,A*22\r\n") << one;
+    QTest::newRow("damaged") << QByteArray("$GPTXT,B*22\r\n$GPTXT,A*22\r\n") << one;
+    QTest::newRow("no end yet") << QByteArray("$GPTXT,A*22") << QList<QByteArray>();
+    QTest::newRow("one digit") << QByteArray("$GPTXT,A*2\r\n") << QList<QByteArray>();
+    QTest::newRow("three digits") << QByteArray("$GPTXT,A*220\r\n") << QList<QByteArray>();
+    QTest::newRow("no digits") << QByteArray("$GPTXT,A*2G\r\n$GPTXT,A*G2\r\n$GPTXT,A*-2\r\n$*\r\n")
+                               << QList<QByteArray>();
+    QTest::newRow("NUL inside") << QByteArray("$GPTXT,\0A*22\r\n", 14) << QList<QByteArray>();
+    QTest::newRow("encapsulated") << QByteArray("!AIVDM,A*3A\r\n") << QList<QByteArray>{"AIVDM,A"};
+    QTest::newRow("empty") << QByteArray("$*00\r\n$\r\n\r\n") << QList<QByteArray>{""};
+}
+
+void TestSentenceParser::findsSentences() {
+    QFETCH(QByteArray, bytes);
+    QFETCH(QList<QByteArray>, bodies);
+    SentenceParser parser;
+    QCOMPARE(sentencesOf(parser, bytes), bodies);
+    QCOMPARE(parser.counts().sentences, quint64(bodies.size()));
+}
+
+void TestSentenceParser::countsWhatItDrops() {
+    SentenceParser parser;
+    const QByteArray endless = '$' + QByteArray(int(maxSentence) * 3, 'A');
+    QCOMPARE(sentencesOf(parser, endless + "\n$GPT\x80XT\n$GPT$GPTXT,A*23\n$GPTXT,A\n").size(), 0);
+    const SentenceParser::Counts &counts = parser.counts();
+    QCOMPARE(counts.tooLong, quint64(1));
+    QCOMPARE(counts.badByte, quint64(1));
+    QCOMPARE(counts.cutShort, quint64(1));
+    QCOMPARE(counts.badChecksum, quint64(1));
+    QCOMPARE(counts.noChecksum, quint64(1));
+    // The endless one is dropped with the byte that is too much; behind it and behind 0x80 all is noise.
+    QCOMPARE(counts.skippedBytes, quint64(endless.size()) - maxSentence - 1 + 2);
+    QCOMPARE(sentencesOf(parser, realRmc).size(), 1);
+}
+
+void TestSentenceParser::isInStepWhereverItBegins() {
+    const QByteArray two = realRmc + usualGga;
+    for (int begin = 1; begin < realRmc.size(); ++begin) {
+        SentenceParser parser;
+        const auto bodies = sentencesOf(parser, two.mid(begin));
+        QCOMPARE(bodies.size(), 1);
+        QVERIFY(bodies[0].startsWith("GPGGA,"));
+    }
+    // Any single bit that is wrong costs that sentence at most, and never passes unseen.
+    for (int bit = 0; bit < realRmc.size() * 8; ++bit) {
+        QByteArray damaged = two;
+        damaged[bit / 8] = char(damaged[bit / 8] ^ (1 << bit % 8));
+        SentenceParser parser;
+        for (const QByteArray &body : sentencesOf(parser, damaged))
+            QVERIFY2(two.contains('$' + body + '*') || body.isEmpty(), body.constData());
+    }
+}
+
+void TestSentenceParser::withoutChecksumOnlyWhenLenient() {
+    SentenceParser strict, lenient(ChecksumRule::Lenient);
+    const QByteArray bytes("$GPTXT,A\r\n$GPTXT,B*22\r\n");
+    QCOMPARE(sentencesOf(strict, bytes).size(), 0);
+    QCOMPARE(sentencesOf(lenient, bytes), QList<QByteArray>{"GPTXT,A"});
+    QCOMPARE(strict.counts().noChecksum, quint64(1));
+    QCOMPARE(lenient.counts().badChecksum, quint64(1)); // a wrong one is refused all the same
+}
+
+void TestSentenceParser::splitsFields() {
+    const Sentence sentence("GNGSA,A,,3,");
+    QCOMPARE(toBytes(sentence.address()), QByteArray("GNGSA"));
+    QCOMPARE(toBytes(sentence.type()), QByteArray("GSA"));
+    QCOMPARE(sentence.fieldCount(), 4);
+    QCOMPARE(toBytes(sentence.field(1)), QByteArray("A"));
+    QCOMPARE(toBytes(sentence.field(3)), QByteArray("3"));
+    for (const int empty : {2, 4, 5, 100})
+        QVERIFY(sentence.field(empty).empty());
+    QVERIFY(Sentence("PMTK001,1").type().empty());
+    QVERIFY(Sentence("PGRME").type().empty());
+}
+
+QTEST_APPLESS_MAIN(TestSentenceParser)
+#include "TestSentenceParser.moc"
