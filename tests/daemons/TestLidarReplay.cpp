@@ -1,0 +1,202 @@
+#include "LidarListener.h"
+#include "tests/support/RealData.h"
+
+#include <QFile>
+#include <QProcess>
+
+using namespace hermes;
+using velodyne::Turn;
+
+class TestLidarReplay : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void replayGivesWhatDirectDecodingGives_data();
+    void replayGivesWhatDirectDecodingGives();
+    void fastReplayWaitsForItsReader();
+    void replayKeepsItsPace();
+    void cutCaptureGivesAllBeforeTheCut();
+    void replayLoops();
+    void replaySeeks_data();
+    void replaySeeks();
+    void replayPauses();
+    void closingEndsAWaitingReplay();
+};
+
+void TestLidarReplay::replayGivesWhatDirectDecodingGives_data() {
+    QTest::addColumn<double>("speed");
+    QTest::newRow("as fast as possible") << 0.0;
+    QTest::newRow("real time") << 1.0;
+    QTest::newRow("threefold") << 3.0;
+}
+
+void TestLidarReplay::replayGivesWhatDirectDecodingGives() {
+    QFETCH(double, speed);
+    const QString path = realData(QStringLiteral("hdl32e-outdoor.pcap"));
+    if (path.isEmpty())
+        QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
+    LidarListener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), speed), std::string());
+    QVERIFY(listener.waitForEnd());
+    QCOMPARE(listener.error, std::string());
+    QVERIFY(listener.turns.size() >= 3);
+    QVERIFY(same(listener.turns, decode(path)));
+    QCOMPARE(listener.feed.counts().packets.packets, std::uint64_t(500));
+    QCOMPARE(listener.feed.counts().packets.lost, std::uint64_t(0));
+}
+
+void TestLidarReplay::fastReplayWaitsForItsReader() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 6000); // 34 turns
+    LidarListener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QTRY_COMPARE(listener.ready.load(), 16);                   // the queue is full
+    QCOMPARE(listener.feed.counts().turns, std::uint64_t(16)); // answers meanwhile
+    QVERIFY(!listener.ended);
+    QVERIFY(listener.waitForEnd());
+    QVERIFY(same(listener.turns, decode(path)));
+    QCOMPARE(listener.feed.counts().turnsDropped, std::uint64_t(0));
+}
+
+void TestLidarReplay::replayKeepsItsPace() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 1000); // 0.553 s
+    LidarListener listener;
+    QElapsedTimer timer;
+    timer.start();
+    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
+    QVERIFY(listener.waitForEnd());
+    QVERIFY(timer.elapsed() > 540);
+    QVERIFY(same(listener.turns, decode(path)));
+}
+
+void TestLidarReplay::cutCaptureGivesAllBeforeTheCut() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 500);
+    QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
+    LidarListener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QVERIFY(listener.waitForEnd());
+    QVERIFY2(listener.error.find(path.toStdString() + ": record 301 at byte 379224 cannot be read") == 0,
+             listener.error.c_str());
+    QCOMPARE(listener.feed.counts().packets.packets, std::uint64_t(300));
+    std::size_t points = 0;
+    for (const Turn &turn : listener.turns)
+        points += turn.points.size();
+    QCOMPARE(points, std::size_t(300 * 12));
+}
+
+void TestLidarReplay::replayLoops() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 500);
+    LidarListener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 0, true), std::string());
+    QTRY_VERIFY((listener.take(), listener.turns.size() >= 12));
+    QVERIFY(!listener.ended);
+    listener.feed.close();
+    // Each time the same four turns, numbered on; nothing counts as lost.
+    for (std::size_t i = 4; i < 12; ++i) {
+        QCOMPARE(listener.turns[i].number, std::uint64_t(i));
+        QCOMPARE(listener.turns[i].begin_ns, listener.turns[i % 4].begin_ns);
+        QCOMPARE(listener.turns[i].points.size(), listener.turns[i % 4].points.size());
+    }
+    const velodyne::PacketCounts counts = listener.feed.counts().packets;
+    QCOMPARE(counts.lost + counts.outOfOrder + counts.clockJumps, std::uint64_t(0));
+    QVERIFY(listener.feed.player().status().loops >= 2);
+    // A file that is cut is played to the cut, once.
+    QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
+    LidarListener cut;
+    QCOMPARE(cut.openPcap(path.toStdString(), 0, true), std::string());
+    QVERIFY(cut.waitForEnd());
+    QVERIFY(!cut.error.empty());
+    QCOMPARE(cut.feed.counts().packets.packets, std::uint64_t(300));
+}
+
+void TestLidarReplay::replaySeeks_data() {
+    QTest::addColumn<double>("target_s");
+    QTest::addColumn<bool>("pcapng");
+    QTest::addColumn<int>("first"); // packet played after it
+    QTest::newRow("to the beginning") << 0.0 << false << 0;
+    QTest::newRow("between two packets") << 0.0100 << false << 19;
+    QTest::newRow("behind the first mark") << 3.0 << false << 5426;
+    QTest::newRow("the last packet") << 11999 * 552.96e-6 << false << 11999;
+    QTest::newRow("pcapng") << 3.0 << true << 5426;
+}
+
+/// Paused, so that nothing but the target is played after the seek; from the front and from behind.
+void TestLidarReplay::replaySeeks() {
+    QFETCH(double, target_s);
+    QFETCH(bool, pcapng);
+    QFETCH(int, first);
+    QTemporaryDir folder;
+    QString path = makeCapture(folder, 12000);
+    if (pcapng) {
+        path = folder.filePath(QStringLiteral("made.pcapng"));
+        if (QProcess::execute(QStringLiteral("editcap"),
+                              {QStringLiteral("-F"), QStringLiteral("pcapng"),
+                               folder.filePath(QStringLiteral("made.pcap")), path}) != 0)
+            QSKIP("editcap is not installed");
+    }
+    for (const double from_s : {0.5, 5.0}) { // far from the end, at which nothing is left to seek
+        std::mutex mutex;
+        std::vector<std::int64_t> stamps;
+        std::atomic<int> jumps{0};
+        PcapPlayer player(
+            [&](const Datagram &datagram) {
+                const std::lock_guard<std::mutex> lock(mutex);
+                stamps.push_back(datagram.stamp_ns);
+            },
+            [&] { ++jumps; }, [](const std::string &) {});
+        const auto played = [&] {
+            const std::lock_guard<std::mutex> lock(mutex);
+            return stamps;
+        };
+        QCOMPARE(player.start({path.toStdString()}, {1, false}), std::string());
+        QTRY_VERIFY(player.status().duration_s.has_value());
+        QVERIFY(std::abs(*player.status().duration_s - 11999 * 552.96e-6) < 1e-5);
+        player.seek(from_s);
+        QTRY_VERIFY(jumps == 1 && !played().empty() && played().back() - Sensor().stamp(0) >= from_s * 1e9);
+        player.setPaused(true);
+        player.seek(target_s);
+        QTRY_COMPARE(jumps.load(), 2);
+        const std::size_t before = played().size();
+        player.setPaused(false);
+        QTRY_VERIFY(played().size() > before);
+        QCOMPARE(played()[before], Sensor().stamp(first));
+        QVERIFY(player.status().position_s >= first * 552.96e-6 - 1e-6);
+        player.stop();
+    }
+}
+
+void TestLidarReplay::replayPauses() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 3000); // 1.659 s
+    LidarListener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
+    QTRY_VERIFY(listener.feed.counts().packets.packets > 100);
+    listener.feed.player().setPaused(true);
+    std::uint64_t packets = 0; // one may be on its way
+    QTRY_VERIFY(packets == std::exchange(packets, listener.feed.counts().packets.packets));
+    QElapsedTimer timer;
+    timer.start();
+    while (timer.elapsed() < 700) // in which 1200 packets would have been played
+        QTest::qWait(10);
+    QCOMPARE(listener.feed.counts().packets.packets, packets);
+    QVERIFY(listener.feed.player().status().paused && !listener.ended);
+    listener.feed.player().setPaused(false);
+    QVERIFY(listener.waitForEnd()); // and does not hurry to catch up: the rest takes its time
+    QVERIFY(timer.elapsed() > 700 + qint64(double(3000 - packets) * 0.553) - 20);
+    QVERIFY(same(listener.turns, decode(path)));
+}
+
+void TestLidarReplay::closingEndsAWaitingReplay() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 6000);
+    LidarListener listener;
+    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QTRY_COMPARE(listener.ready.load(), 16);
+    listener.feed.close(); // does not hang
+    QVERIFY(!listener.ended);
+}
+
+QTEST_GUILESS_MAIN(TestLidarReplay)
+#include "TestLidarReplay.moc"
