@@ -1,0 +1,126 @@
+// Recordings that are refused, that the disk ends, and those that a process left unfinished.
+#include "LoggerFixture.h"
+
+using namespace hermes;
+
+namespace {
+
+/// What a process leaves that is killed while it records.
+QString copyUnfinished(const QString &folder, const QString &root) {
+    const QString copy = root + "/cut";
+    QDir(root).mkpath("cut");
+    for (const QString &name : QDir(folder).entryList(QDir::Files | QDir::Hidden))
+        QFile::copy(folder + '/' + name, copy + '/' + name);
+    return copy;
+}
+
+} // namespace
+
+class TestRecordingEnds : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void refusalsLeaveNothingBehind();
+    void lowSpaceIsToldAndEndsTheRecording();
+    void aFailedWriterEndsTheRecording();
+    void aRecordingThatWasCutOffIsCompleted();
+    void foreignSidecarsAreToldAndLeftAlone_data();
+    void foreignSidecarsAreToldAndLeftAlone();
+};
+
+void TestRecordingEnds::refusalsLeaveNothingBehind() {
+    QTemporaryDir root;
+    Logger logger(root.path());
+    logger.writer.refuse = true;
+    QCOMPARE(logger.call("record.start", {{"name", "a"}}).error().message, "refused");
+    QVERIFY(!QFile::exists(root.path() + "/a"));
+    logger.writer.refuse = false;
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+}
+
+void TestRecordingEnds::lowSpaceIsToldAndEndsTheRecording() {
+    QTemporaryDir root;
+    Logger logger(root.path());
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    QVERIFY(!logger.set("free_floor_bytes", 1)); // above free_warn_bytes
+    QVERIFY(logger.set("free_warn_bytes", 1e15));
+    QTRY_COMPARE(logger.level("disk"), "error");
+    QVERIFY(logger.recording.isActive());
+    QVERIFY(logger.set("free_floor_bytes", 1e15));
+    QTRY_VERIFY(!logger.recording.isActive());
+    const Result<QJsonValue> stopped = logger.call("record.stop");
+    QCOMPARE(stopped.error().code, int(ErrorCode::InputOutput));
+    QCOMPARE(stopped.error().data.toObject().value("path").toString(), root.path() + "/a");
+    QCOMPARE(logger.level("recording"), "error");
+    QCOMPARE(logger.recording.status().value("error").toObject().value("code").toInt(), -32008);
+    const QJsonObject sidecar = sidecarOf(root.path() + "/a");
+    QCOMPARE(sidecar.value("ended").toString(), "free space");
+    QVERIFY(sidecar.value("complete").toBool());
+    const Result<QJsonValue> refused = logger.call("record.start", {{"name", "b"}});
+    QCOMPARE(refused.error().code, int(ErrorCode::InputOutput));
+    QCOMPARE(refused.error().data.toObject().value("path").toString(), root.path() + "/b");
+    QVERIFY(!QFile::exists(root.path() + "/b"));
+}
+
+void TestRecordingEnds::aFailedWriterEndsTheRecording() {
+    QTemporaryDir root;
+    Logger logger(root.path());
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    RecordingState state;
+    state.error = Error(ErrorCode::InputOutput, "the stick was pulled");
+    logger.writer.setState(state);
+    QTRY_VERIFY(!logger.recording.isActive());
+    QCOMPARE(logger.call("record.stop").error().message, "the stick was pulled");
+    QCOMPARE(sidecarOf(root.path() + "/a").value("ended").toString(), "failed");
+    QVERIFY(!sidecarOf(root.path() + "/a").value("complete").toBool());
+    logger.writer.setState({});
+    QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
+    QCOMPARE(logger.level("recording"), "ok");
+}
+
+void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {
+    QTemporaryDir root, other;
+    Logger killed(root.path());
+    const QString folder = folderOf(killed.call("record.start", {{"name", "a"}}));
+    const QString cut = copyUnfinished(folder, other.path());
+    QVERIFY(QFile::exists(cut + "/.logger.reserve"));
+    Logger next(other.path());
+    QTRY_COMPARE(sidecarOf(cut).value("ended").toString(), "cut off");
+    const QJsonObject sidecar = sidecarOf(cut);
+    QVERIFY(!sidecar.value("complete").toBool());
+    QCOMPARE(sidecar.value("counts").toObject(), QJsonObject({{"lines", 2}}));
+    QCOMPARE(sidecar.value("end").toDouble(), sidecar.value("start").toDouble() + 1);
+    QCOMPARE(QDir(cut).entryList(QDir::Files | QDir::Hidden),
+             QStringList({"logger-0001.txt", "logger.json"}));
+    QCOMPARE(QFileInfo(cut + "/logger-0001.txt").size(), 8);
+    QCOMPARE(next.call("record.list")->toArray()[0].toObject().value("complete"), QJsonValue(false));
+}
+
+void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone_data() {
+    QTest::addColumn<QByteArray>("content");
+    QTest::newRow("empty") << QByteArray();
+    QTest::newRow("cut") << QByteArray("{\"format\": \"hermes rec");
+    QTest::newRow("array") << QByteArray("[1]");
+    QTest::newRow("another format") << QByteArray("{\"format\": \"hermes recording 2\"}");
+    QTest::newRow("binary") << QByteArray("\0\xff\xfe", 3);
+}
+
+void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone() {
+    QFETCH(QByteArray, content);
+    QTemporaryDir root;
+    QDir(root.path()).mkpath("a");
+    const QString path = root.path() + "/a/logger.json";
+    put(path, content);
+    Logger logger(root.path());
+    QTRY_COMPARE(logger.level("recording"), "warn");
+    QVERIFY(logger.item("recording").value("message").toString().contains(path));
+    const QJsonArray list = logger.call("record.list")->toArray();
+    QCOMPARE(list.size(), 1);
+    QVERIFY(list[0].toObject().value("error").toString().contains(path));
+    QVERIFY(!logger.call("record.start", {{"name", "a"}, {"session", "s"}}).ok());
+    QFile file(path);
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    QCOMPARE(file.readAll(), content);
+}
+
+QTEST_GUILESS_MAIN(TestRecordingEnds)
+#include "TestRecordingEnds.moc"
