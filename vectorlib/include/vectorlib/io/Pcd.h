@@ -17,7 +17,7 @@ struct PcdHeader {
 
 /// Reads the header up to and with its line DATA.
 inline Expected<PcdHeader> readPcdHeader(LineReader &lines) {
-    constexpr std::size_t limit = std::size_t(1) << 40;
+    constexpr std::size_t limit = std::size_t(1) << 30;
     PcdHeader header;
     std::vector<std::string> names;
     std::vector<std::size_t> counts;

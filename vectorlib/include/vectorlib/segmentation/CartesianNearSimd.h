@@ -73,28 +73,28 @@ VECTORLIB_AVX2 inline unsigned nearBits(const CartesianNearness<float> &n, std::
 }
 #elif defined(VECTORLIB_SIMD_NEON)
 /// A bit for each of eight lanes.
-inline std::uint64_t bitsOf(uint32x4_t low, uint32x4_t high) {
+VECTORLIB_NEON inline std::uint64_t bitsOf(uint32x4_t low, uint32x4_t high) {
     const uint8x8_t weights = vcreate_u8(0x8040201008040201);
     const uint8x8_t lanes = vmovn_u16(vcombine_u16(vmovn_u32(low), vmovn_u32(high)));
     return vget_lane_u64(vpaddl_u32(vpaddl_u16(vpaddl_u8(vand_u8(lanes, weights)))), 0);
 }
 
-inline float largest(float32x4_t v) {
+VECTORLIB_NEON inline float largest(float32x4_t v) {
     const float32x2_t two = vpmax_f32(vget_low_f32(v), vget_high_f32(v));
     return vget_lane_f32(vpmax_f32(two, two), 0);
 }
 
 /// x^2 + y^2 of four points.
-inline float32x4_t squaredNorms(float32x4x2_t p) {
+VECTORLIB_NEON inline float32x4_t squaredNorms(float32x4x2_t p) {
     return vaddq_f32(vmulq_f32(p.val[0], p.val[0]), vmulq_f32(p.val[1], p.val[1]));
 }
 
-inline float32x4x2_t differences(float32x4x2_t a, float32x4x2_t b) {
+VECTORLIB_NEON inline float32x4x2_t differences(float32x4x2_t a, float32x4x2_t b) {
     return {{vsubq_f32(a.val[0], b.val[0]), vsubq_f32(a.val[1], b.val[1])}};
 }
 
 /// NearThreshold of four ranges or of their squares; vmaxq and vminq treat NaN otherwise.
-inline float32x4_t limitsOf(float32x4_t ranges, const NearThreshold<float> &t) {
+VECTORLIB_NEON inline float32x4_t limitsOf(float32x4_t ranges, const NearThreshold<float> &t) {
     const float32x4_t least = vdupq_n_f32(t.least), most = vdupq_n_f32(t.most);
     const float32x4_t scaled = vmulq_f32(vdupq_n_f32(t.scale), ranges);
     const float32x4_t low = vbslq_f32(vcgtq_f32(scaled, least), scaled, least);
@@ -102,12 +102,13 @@ inline float32x4_t limitsOf(float32x4_t ranges, const NearThreshold<float> &t) {
 }
 
 /// The lanes where `is` is set, and 0 elsewhere.
-inline float32x4_t onlyWhere(uint32x4_t is, float32x4_t v) {
+VECTORLIB_NEON inline float32x4_t onlyWhere(uint32x4_t is, float32x4_t v) {
     return vreinterpretq_f32_u32(vandq_u32(is, vreinterpretq_u32_f32(v)));
 }
 
 /// Compares points 1 .. 8 * eights with their predecessors. ARMv7 takes denormal numbers for 0.
-inline void nearPredecessors(const CartesianNearness<float> &n, std::size_t eights, NearWord *words) {
+VECTORLIB_NEON inline void nearPredecessors(const CartesianNearness<float> &n, std::size_t eights,
+                                            NearWord *words) {
     const float *p = &n.points->x;
     for (; eights > 0; ++words) {
         const std::size_t here = std::min<std::size_t>(eights, 8);
@@ -129,8 +130,8 @@ inline void nearPredecessors(const CartesianNearness<float> &n, std::size_t eigh
 }
 
 /// Which of the points first .. first + 7 and point `other` are near; `later`: that is the later one.
-inline unsigned nearBits(const CartesianNearness<float> &n, std::size_t first, std::size_t other,
-                         bool later) {
+VECTORLIB_NEON inline unsigned nearBits(const CartesianNearness<float> &n, std::size_t first,
+                                        std::size_t other, bool later) {
     const float32x4x2_t origin = {{vdupq_n_f32(n.points[other].x), vdupq_n_f32(n.points[other].y)}};
     const float *p = &n.points[first].x;
     uint32x4_t is[2];

@@ -8,6 +8,15 @@
 
 namespace vectorlib {
 
+#if !defined(VECTORLIB_SIMD_AVX2) && !defined(VECTORLIB_SIMD_NEON)
+namespace simd { // for Comparison to name; never called
+template <typename Nearness>
+void nearPredecessors(const Nearness &, std::size_t, NearWord *);
+template <typename Nearness>
+unsigned nearBits(const Nearness &, std::size_t, std::size_t, bool);
+} // namespace simd
+#endif
+
 /// Compares the points of a scan by a `Nearness`, eight at a time where the processor and the type allow it.
 /// The result does not depend on that.
 template <typename Nearness>

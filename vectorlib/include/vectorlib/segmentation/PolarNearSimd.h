@@ -63,18 +63,19 @@ VECTORLIB_AVX2 inline unsigned nearBits(const PolarNearness &n, std::size_t firs
 }
 #elif defined(VECTORLIB_SIMD_NEON)
 /// Rays between each of four and another, the shorter way round.
-inline int32x4_t raysBetween(int32x4_t a, int32x4_t b, int turn) {
+VECTORLIB_NEON inline int32x4_t raysBetween(int32x4_t a, int32x4_t b, int turn) {
     const int32x4_t ahead = vabsq_s32(vsubq_s32(a, b));
     return vminq_s32(ahead, vsubq_s32(vdupq_n_s32(turn), ahead));
 }
 
 /// All bits of those of four ranges that differ by no more than their limit, and are not too many rays away.
-inline uint32x4_t nearLanes(float32x4_t differences, float32x4_t limits, int32x4_t between, int reach) {
+VECTORLIB_NEON inline uint32x4_t nearLanes(float32x4_t differences, float32x4_t limits, int32x4_t between,
+                                           int reach) {
     return vandq_u32(vcleq_f32(vabsq_f32(differences), limits), vcleq_s32(between, vdupq_n_s32(reach)));
 }
 
 /// Compares ranges 1 .. 8 * eights with their predecessors. The widest gaps are computed in float.
-inline void nearPredecessors(const PolarNearness &n, std::size_t eights, NearWord *words) {
+VECTORLIB_NEON inline void nearPredecessors(const PolarNearness &n, std::size_t eights, NearWord *words) {
     const float *ranges = n.ranges;
     const int *rays = n.rays;
     const float32x4_t step = vdupq_n_f32(static_cast<float>(n.step));
@@ -100,7 +101,8 @@ inline void nearPredecessors(const PolarNearness &n, std::size_t eights, NearWor
 }
 
 /// Which of the ranges first .. first + 7 and range `other` are near; `later`: that is the later one.
-inline unsigned nearBits(const PolarNearness &n, std::size_t first, std::size_t other, bool later) {
+VECTORLIB_NEON inline unsigned nearBits(const PolarNearness &n, std::size_t first, std::size_t other,
+                                        bool later) {
     uint32x4_t is[2];
     for (std::size_t half = 0; half < 2; ++half) {
         const float32x4_t ranges = vld1q_f32(n.ranges + first + 4 * half);

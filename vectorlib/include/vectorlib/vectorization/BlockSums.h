@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/PointSpan.h"
-#include "vectorlib/simd/SumBlocks.h"
+#include "vectorlib/simd/SumBlocksNeon.h"
 #include "vectorlib/vectorization/SumTable.h"
 
 #include <algorithm>
@@ -180,7 +180,7 @@ private:
     // Rows first + 1 .. first + 4, from row `first`.
     void sumFourBlocks(std::ptrdiff_t first, const Counts &counts) {
         const std::size_t at = static_cast<std::size_t>(first);
-        const simd::FourSums s = simd::sumFourBlocks(&points(at)->x);
+        const simd::FourSums s = simd::sumFourBlocks(&points(at)->x, level);
         SumRow rows[4];
         for (std::size_t b = 0; b < 4; ++b) {
             const Vector2D<double> o = Vector2D<double>(points(at + b)[block / 2]) - origin_;
