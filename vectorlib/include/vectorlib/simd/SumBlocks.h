@@ -45,6 +45,32 @@ inline FourSums sumFourBlocks(const float *points) {
     return sums;
 }
 
+/// The sums of each four points of a block.
+struct SumsOfFours {
+    float x[8], y[8], xx[8], yy[8], xy[8];
+};
+
+/// The same of a block, relative to its middle.
+inline SumsOfFours sumFours(const float *points) {
+    SumsOfFours sums;
+    for (int i = 0; i < 8; ++i) {
+        float x[4], y[4];
+        for (int k = 0; k < 4; ++k) {
+            x[k] = points[8 * i + 2 * k] - points[blockPoints];
+            y[k] = points[8 * i + 2 * k + 1] - points[blockPoints + 1];
+        }
+        const auto sum = [](const float *a, const float *b) {
+            return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
+        };
+        sums.x[i] = (x[0] + x[1]) + (x[2] + x[3]);
+        sums.y[i] = (y[0] + y[1]) + (y[2] + y[3]);
+        sums.xx[i] = sum(x, x);
+        sums.yy[i] = sum(y, y);
+        sums.xy[i] = sum(x, y);
+    }
+    return sums;
+}
+
 #if defined(VECTORLIB_SIMD_AVX2)
 /// Running sums of four values, the sum before them included.
 VECTORLIB_AVX2 VECTORLIB_INLINE __m256d runningAvx2(__m256d v, __m256d before) {

@@ -38,15 +38,41 @@ VECTORLIB_NEON inline FourSums sumFourBlocksNeon(const float *points) {
     return sums;
 }
 
+/// The twin of sumFours(). Eight points at a time: x and y of the even ones, x and y of the odd ones.
+VECTORLIB_NEON inline SumsOfFours sumFoursNeon(const float *points) {
+    SumsOfFours sums;
+    const float32x4_t mx = vdupq_n_f32(points[blockPoints]), my = vdupq_n_f32(points[blockPoints + 1]);
+    const auto store = [](float *to, float32x4_t pairs) VECTORLIB_NEON {
+        vst1_f32(to, vpadd_f32(vget_low_f32(pairs), vget_high_f32(pairs)));
+    };
+    for (int i = 0; i < 8; i += 2) {
+        const float32x4x4_t p = vld4q_f32(points + 8 * i);
+        const float32x4_t x = vsubq_f32(p.val[0], mx), y = vsubq_f32(p.val[1], my);
+        const float32x4_t nextX = vsubq_f32(p.val[2], mx), nextY = vsubq_f32(p.val[3], my);
+        store(sums.x + i, vaddq_f32(x, nextX));
+        store(sums.y + i, vaddq_f32(y, nextY));
+        store(sums.xx + i, vmlaq_f32(vmulq_f32(x, x), nextX, nextX));
+        store(sums.yy + i, vmlaq_f32(vmulq_f32(y, y), nextY, nextY));
+        store(sums.xy + i, vmlaq_f32(vmulq_f32(x, y), nextX, nextY));
+    }
+    return sums;
+}
 #endif
 
-/// By the instruction set to use; AVX2 has its own way.
+// By the instruction set to use; AVX2 has its own way.
 inline FourSums sumFourBlocks(const float *points, [[maybe_unused]] Level level) {
 #if defined(VECTORLIB_SIMD_NEON)
     if (level == Level::Neon)
         return sumFourBlocksNeon(points);
 #endif
     return sumFourBlocks(points);
+}
+inline SumsOfFours sumFours(const float *points, [[maybe_unused]] Level level) {
+#if defined(VECTORLIB_SIMD_NEON)
+    if (level == Level::Neon)
+        return sumFoursNeon(points);
+#endif
+    return sumFours(points);
 }
 
 } // namespace vectorlib::simd

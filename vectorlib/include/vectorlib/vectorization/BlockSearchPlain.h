@@ -46,16 +46,22 @@ Cut atLeastTwo(const BlockSums &sums, const Cut &from, const Cut &found) {
     return enough ? found : Cut{two, sums.row(two)};
 }
 
-/// Bit i: whether the interval between a cut and row k + i of the table fits.
-template <std::size_t stride>
+/// The farthest of bits 0 .. count - 1 of which the test holds, and no other.
+template <bool back, typename Test>
+unsigned farthestOnly(int count, Test test) {
+    for (int i = back ? 0 : count - 1; back ? i < count : i >= 0; i += back ? 1 : -1)
+        if (test(i))
+            return 1u << i;
+    return 0;
+}
+/// Bit i: whether the interval between a cut and row k + i of the table fits; of the farthest such row only.
+template <std::size_t stride, bool back>
 unsigned fittingRows(const BlockSums &sums, Index k, const Cut &from, double variance) {
-    unsigned bits = 0;
-    for (Index i = 0; i < 8; ++i) {
+    return farthestOnly<back>(8, [&](int i) {
         const Index index = std::clamp<Index>((k + i) * Index(stride), 0, Index(sums.size()));
         const double n = static_cast<double>(index - Index(from.index));
-        bits |= static_cast<unsigned>(fits(n, sums.table().row(k + i) - from.row, variance)) << i;
-    }
-    return bits;
+        return fits(n, sums.table().row(k + i) - from.row, variance);
+    });
 }
 
 /// Which of the points 0, 4, .., 28 of a block comes just before the end (ahead) or the begin (back) of an
@@ -77,31 +83,38 @@ Index choosePoint(unsigned bits, Index four, Index count, Index sure) {
 }
 
 /// From the border of block b into the block: ahead from its begin, or back from its end, which fits where
-/// the other end does not. Tests every fourth point, and then three between.
+/// the other end does not. Tests every fourth point, and then three between, on float sums of offsets from
+/// the block's middle.
 template <bool back>
 Cut intoBlock(const BlockSums &sums, Index b, const Cut &from, double variance) {
+    const BlockSums::Point *const points = sums.points(static_cast<std::size_t>(b));
+    const BlockSums::Point middle = points[BlockSums::block / 2];
+    const Vector2D<double> origin = Vector2D<double>(middle) - sums.origin();
     const Index begin = b * Index(BlockSums::block);
     const Index count = std::min<Index>(Index(sums.size()) - begin, BlockSums::block);
     const Index sure = sureIn<back>(begin, count, Index(from.index));
-    SumRow rows[BlockSums::block + 1];
-    rows[0] = sums.table().row(b);
-    for (Index i = 0; i < Index(BlockSums::block); ++i) {
+    const double n = static_cast<double>(begin - Index(from.index));
+
+    const simd::SumsOfFours s = simd::sumFours(&points->x, sums.level);
+    SumRow fours[9] = {(sums.table().row(b) - from.row).inFrame(n, origin)};
+    for (int i = 0; i < 8; ++i)
+        fours[i + 1] = fours[i] + SumRow{s.x[i], s.y[i], s.xx[i], s.yy[i], s.xy[i]};
+    const auto fourFits = [&](int i) { return fits(n + 4 * i + 4, fours[i + 1], variance); };
+    const Index four =
+        chooseFour<back>(farthestOnly<back>(back ? 7 : int(count - 1) / 4, fourFits), count, sure);
+
+    const double before = n + double(4 * four);
+    SumRow rows[5] = {fours[four]};
+    for (int i = 0; i < 4; ++i) {
+        const BlockSums::Point p = points[4 * four + i] - middle;
         rows[i + 1] = rows[i];
-        if (i < count)
-            sums.addTo(rows[i + 1], static_cast<std::size_t>(begin + i));
+        rows[i + 1].add(static_cast<double>(p.x), static_cast<double>(p.y));
     }
-    const auto fitting = [&](Index first, Index step, int bits) {
-        unsigned result = 0;
-        for (int i = 0; i < bits; ++i) {
-            const Index in = first + i * step;
-            const double n = double(begin + in) - double(from.index);
-            result |= static_cast<unsigned>(fits(n, rows[in] - from.row, variance)) << i;
-        }
-        return result;
-    };
-    const Index four = chooseFour<back>(fitting(4, 4, 8), count, sure);
-    const Index in = 4 * four + choosePoint<back>(fitting(4 * four + 1, 1, 4), four, count, sure);
-    return {static_cast<std::size_t>(begin + in), rows[in]};
+    const auto pointFits = [&](int i) { return fits(before + i + 1, rows[i + 1], variance); };
+    const int between = back ? 3 : int(std::min<Index>(count - 1 - 4 * four, 3));
+    const Index in = choosePoint<back>(farthestOnly<back>(between, pointFits), four, count, sure);
+    return {static_cast<std::size_t>(begin + 4 * four + in),
+            from.row + rows[in].inFrame(before + double(in), -origin)};
 }
 
 /// See BlockSearch.
@@ -112,7 +125,7 @@ Cut farthest(const BlockSums &sums, const Cut &from, double variance) {
     Index good = stride > 1 ? start : start + (back ? -2 : 2);
     for (Index k = back ? start - 8 : start + 1; back ? good > 0 && k > -8 : good < last && k <= last;
          k += back ? -8 : 8) {
-        const unsigned bits = fittingRows<stride>(sums, k, from, variance);
+        const unsigned bits = fittingRows<stride, back>(sums, k, from, variance);
         const Index row = k + farthestBit<back>(bits, good - k);
         good = back ? std::min(good, row) : std::max(good, row);
         if (isEnd<stride, back>(bits))

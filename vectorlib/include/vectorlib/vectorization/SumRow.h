@@ -17,6 +17,12 @@ struct SumRow {
         yy += py * py;
         xy += px * py;
     }
+    /// The same of these n points in the frame of `origin`.
+    SumRow inFrame(double n, Vector2D<double> origin) const {
+        const double px = x - n * origin.x, py = y - n * origin.y;
+        return {px, py, xx - origin.x * (x + px), yy - origin.y * (y + py),
+                xy - origin.x * y - origin.y * px};
+    }
     friend SumRow operator+(const SumRow &a, const SumRow &b) {
         return {a.x + b.x, a.y + b.y, a.xx + b.xx, a.yy + b.yy, a.xy + b.xy};
     }
