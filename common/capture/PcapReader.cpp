@@ -64,7 +64,7 @@ PcapReader::Next PcapReader::next(Datagram &datagram) {
     if (!pcap_)
         return error_.empty() ? Next::End : Next::Failed;
     for (;;) {
-        const long begin = std::ftell(pcap_file(pcap_.get()));
+        const std::int64_t begin = ::ftello(pcap_file(pcap_.get()));
         pcap_pkthdr *header = nullptr;
         const u_char *frame = nullptr;
         const int result = pcap_next_ex(pcap_.get(), &header, &frame);
@@ -102,14 +102,14 @@ PcapReader::Next PcapReader::next(Datagram &datagram) {
 }
 
 PcapReader::Place PcapReader::place() const {
-    return {pcap_ ? std::ftell(pcap_file(pcap_.get())) : 0, counts_.records};
+    return {pcap_ ? ::ftello(pcap_file(pcap_.get())) : 0, counts_.records};
 }
 
 bool PcapReader::seek(const Place &place) {
     if (place.offset == 0)
         return open(std::string(path_));
     if ((!pcap_ && !open(std::string(path_))) || !canSeek_ ||
-        std::fseek(pcap_file(pcap_.get()), place.offset, SEEK_SET) != 0) {
+        ::fseeko(pcap_file(pcap_.get()), off_t(place.offset), SEEK_SET) != 0) {
         if (error_.empty())
             error_ = path_ + ": cannot be read from byte " + std::to_string(place.offset) + " on";
         close();

@@ -25,7 +25,7 @@ public:
 
     /// Where a record begins.
     struct Place {
-        long offset = 0;           ///< in the file, bytes; 0: its beginning
+        std::int64_t offset = 0;   ///< in the file, bytes; 0: its beginning
         std::uint64_t records = 0; ///< before it
     };
 

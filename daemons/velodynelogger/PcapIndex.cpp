@@ -8,7 +8,7 @@ namespace {
 
 // Both are waited for, so that no capture, however its stamps lie, fills the memory: 40 bytes a mark.
 constexpr std::int64_t markTime_ns = 1000000000;
-constexpr long markBytes = 1 << 20;
+constexpr std::int64_t markBytes = 1 << 20;
 
 } // namespace
 

@@ -65,6 +65,7 @@ class TestCapture : public QObject {
 private Q_SLOTS:
     void checksumIsThatOfARealSensor();
     void readsWhatItWrote();
+    void readsBehindTwoGigabytes();
     void lengthOfUdpCounts();
     void tagsAreSteppedOver();
     void linkTypes_data();
@@ -114,6 +115,28 @@ void TestCapture::readsWhatItWrote() {
     QCOMPARE(reader.next(d), PcapReader::Next::End);
     QCOMPARE(reader.next(d), PcapReader::Next::End);
     QCOMPARE(reader.counts().datagrams, std::uint64_t(200));
+}
+
+// A quarter of an hour of an HDL-32E is more than a long of 32 bits can count. The file has a hole.
+void TestCapture::readsBehindTwoGigabytes() {
+    QTemporaryDir folder;
+    const std::string path = makeCapture(folder, 2);
+    QFile file(QString::fromStdString(path));
+    QVERIFY(file.open(QIODevice::ReadWrite));
+    const qint64 begin = qint64(PcapWriter::fileHeaderBytes), size = (file.size() - begin) / 2;
+    QVERIFY(file.seek(begin + size));
+    const QByteArray second = file.read(size);
+    constexpr qint64 far = qint64(3) << 30;
+    QVERIFY(file.seek(far));
+    QCOMPARE(file.write(second), size);
+    file.close();
+    PcapReader reader;
+    Datagram d;
+    QVERIFY2(reader.open(path), reader.error().c_str());
+    QVERIFY2(reader.seek({far, 2}), reader.error().c_str());
+    QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
+    QCOMPARE(int(d.payload[0]), 1);
+    QCOMPARE(qint64(reader.place().offset), far + size);
 }
 
 void TestCapture::lengthOfUdpCounts() {

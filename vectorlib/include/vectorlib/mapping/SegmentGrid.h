@@ -66,9 +66,15 @@ private:
         return static_cast<std::int64_t>((static_cast<std::uint64_t>(i) << 32) ^
                                          (static_cast<std::uint64_t>(j) & 0xffffffffu));
     }
+    // Of both halves of a key: std::hash of 32 bits takes the lower one.
+    struct Hash {
+        std::size_t operator()(std::int64_t key) const {
+            return static_cast<std::size_t>((static_cast<std::uint64_t>(key) * 0x9E3779B97F4A7C15u) >> 32);
+        }
+    };
 
     double cell_;
-    std::unordered_map<std::int64_t, std::vector<int>> cells_;
+    std::unordered_map<std::int64_t, std::vector<int>, Hash> cells_;
     std::vector<unsigned> mark_; // the last query that took each number
     unsigned query_ = 0;
 };

@@ -93,12 +93,17 @@ VECTORLIB_NEON inline float32x4x2_t differences(float32x4x2_t a, float32x4x2_t b
     return {{vsubq_f32(a.val[0], b.val[0]), vsubq_f32(a.val[1], b.val[1])}};
 }
 
-/// NearThreshold of four ranges or of their squares; vmaxq and vminq treat NaN otherwise.
+/// NearThreshold of four ranges or of their squares. Where a range is no number the limit is none either, and
+/// no distance within it.
 VECTORLIB_NEON inline float32x4_t limitsOf(float32x4_t ranges, const NearThreshold<float> &t) {
-    const float32x4_t least = vdupq_n_f32(t.least), most = vdupq_n_f32(t.most);
     const float32x4_t scaled = vmulq_f32(vdupq_n_f32(t.scale), ranges);
-    const float32x4_t low = vbslq_f32(vcgtq_f32(scaled, least), scaled, least);
-    return vbslq_f32(vcltq_f32(low, most), low, most);
+    return vminq_f32(vmaxq_f32(scaled, vdupq_n_f32(t.least)), vdupq_n_f32(t.most));
+}
+
+/// All bits of the lanes in which a distance or difference is within its limit, which is not negative: of
+/// vcleq_f32 GCC 12 makes scalar code for ARMv7.
+VECTORLIB_NEON inline uint32x4_t within(float32x4_t distances, float32x4_t limits) {
+    return vcaleq_f32(distances, limits);
 }
 
 /// The lanes where `is` is set, and 0 elsewhere.
@@ -119,7 +124,7 @@ VECTORLIB_NEON inline void nearPredecessors(const CartesianNearness<float> &n, s
             for (int half = 0; half < 2; ++half) {
                 const float32x4x2_t later = vld2q_f32(p + 8 * half + 2);
                 const float32x4_t gap = squaredNorms(differences(later, vld2q_f32(p + 8 * half)));
-                is[half] = vcleq_f32(gap, limitsOf(squaredNorms(later), n.threshold));
+                is[half] = within(gap, limitsOf(squaredNorms(later), n.threshold));
                 widest = vmaxq_f32(widest, onlyWhere(is[half], gap));
             }
             near |= bitsOf(is[0], is[1]) << (8 * e);
@@ -139,7 +144,7 @@ VECTORLIB_NEON inline unsigned nearBits(const CartesianNearness<float> &n, std::
         const float32x4x2_t four = vld2q_f32(p + 8 * half);
         const float32x4_t limits =
             later ? vdupq_n_f32(n.limit(other)) : limitsOf(squaredNorms(four), n.threshold);
-        is[half] = vcleq_f32(squaredNorms(differences(four, origin)), limits);
+        is[half] = within(squaredNorms(differences(four, origin)), limits);
     }
     return static_cast<unsigned>(bitsOf(is[0], is[1]));
 }

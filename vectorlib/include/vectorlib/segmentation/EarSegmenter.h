@@ -24,11 +24,10 @@ public:
     simd::Level level = simd::bestLevel(); ///< the instruction set to use
 
     const Segmentation &operator()(PointSpan<Scalar> points) {
-        const double k = thresholdPerMetre(points.size()), low = settings.minThreshold;
-        const double high = settings.maxThreshold;
-        const Scalar most = std::min(Scalar(high * high), std::numeric_limits<Scalar>::max());
+        const double k = thresholdPerMetre(points.size()), low = bounded(settings.minThreshold);
+        const double high = bounded(settings.maxThreshold);
         Comparison<CartesianNearness<Scalar>> comparison{
-            {points.begin(), points.size(), {Scalar(k * k), Scalar(low * low), most}}, level};
+            {points.begin(), points.size(), {Scalar(k * k), Scalar(low * low), Scalar(high * high)}}, level};
         runs_.split(comparison);
         if (allFinite(points))
             return join(comparison, points.size(), nullptr);
@@ -46,8 +45,8 @@ public:
     const Segmentation &operator()(const PolarScan<Range> &scan) {
         returns_.take(scan, level);
         const NearThreshold<float> threshold{static_cast<float>(thresholdPerMetre(scan.count)),
-                                             static_cast<float>(settings.minThreshold),
-                                             static_cast<float>(settings.maxThreshold)};
+                                             static_cast<float>(bounded(settings.minThreshold)),
+                                             static_cast<float>(bounded(settings.maxThreshold))};
         const Comparison<PolarNearness> comparison{{returns_.ranges.data(), returns_.rays.data(),
                                                     returns_.count, threshold, static_cast<int>(reach()),
                                                     settings.closed ? static_cast<int>(scan.count) : INT_MAX,
@@ -61,8 +60,10 @@ private:
     // Thesis (5.1) with erratum 14: K * F / N for each metre of range.
     double thresholdPerMetre(std::size_t count) const {
         const std::size_t rays = settings.nominalPoints ? settings.nominalPoints : count;
-        return rays ? settings.neighbours * settings.fieldOfView / static_cast<double>(rays) : 0;
+        return rays ? bounded(settings.neighbours * settings.fieldOfView / static_cast<double>(rays)) : 0;
     }
+    // A threshold whose square is a float; 0 for what is negative or no number.
+    static double bounded(double threshold) { return std::min(std::max(0.0, threshold), 1e9); }
     std::size_t reach() const { return static_cast<std::size_t>(std::max(1, settings.neighbours)); }
 
     // A point that is not finite is near no other: a run of its own.

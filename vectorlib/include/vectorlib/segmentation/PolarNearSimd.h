@@ -71,7 +71,7 @@ VECTORLIB_NEON inline int32x4_t raysBetween(int32x4_t a, int32x4_t b, int turn) 
 /// All bits of those of four ranges that differ by no more than their limit, and are not too many rays away.
 VECTORLIB_NEON inline uint32x4_t nearLanes(float32x4_t differences, float32x4_t limits, int32x4_t between,
                                            int reach) {
-    return vandq_u32(vcleq_f32(vabsq_f32(differences), limits), vcleq_s32(between, vdupq_n_s32(reach)));
+    return vandq_u32(within(differences, limits), vcleq_s32(between, vdupq_n_s32(reach)));
 }
 
 /// Compares ranges 1 .. 8 * eights with their predecessors. The widest gaps are computed in float.
