@@ -2,6 +2,7 @@
 
 #include "common/recording/Recording.h"
 #include "common/recording/Sidecar.h"
+#include "tests/support/Files.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
@@ -103,12 +104,6 @@ inline QString folderOf(const Result<QJsonValue> &answer) {
 inline QJsonObject sidecarOf(const QString &folder, const QString &logger = "logger") {
     const Result<QJsonObject> sidecar = Sidecar::read(Sidecar::path(folder, logger));
     return sidecar ? *sidecar : QJsonObject{{"unreadable", sidecar.error().message}};
-}
-
-inline void put(const QString &path, const QByteArray &bytes) {
-    QFile file(path);
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    QCOMPARE(file.write(bytes), qint64(bytes.size()));
 }
 
 } // namespace hermes

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/client/Client.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
+#include "tests/support/DaemonClient.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
@@ -50,19 +50,18 @@ inline vectorlib::Pose2D onTheWay(int i) {
 }
 
 /// A scan matcher with a source of scans and a client, all in the process of the test.
-class MatcherFixture {
+class MatcherFixture : protected DaemonClient {
 protected:
     void setUp();
     void tearDown();
     void startSource(quint16 port);
-    QJsonObject call(const QString &method, const QJsonObject &params = {});
-    Error failure(const QString &method, const QJsonObject &params);
-    QJsonObject healthItem(const QString &name);
+    QJsonObject call(const QString &method, const QJsonObject &params = {}) {
+        return DaemonClient::call(method, params).toObject();
+    }
 
     std::unique_ptr<QTemporaryDir> folder;
     std::unique_ptr<ScanSource> source;
     std::unique_ptr<ScanMatcher> matcher;
-    std::unique_ptr<Client> client;
     quint16 sourcePort = 0;
 };
 
@@ -83,38 +82,17 @@ inline void MatcherFixture::setUp() {
                                QString("source.address=127.0.0.1:%1").arg(sourcePort), "--set",
                                "map.folder=" + folder->path()}));
     QVERIFY(matcher->launch().ok());
-    client = std::make_unique<Client>();
-    QVERIFY(client->connectTo(matcher->server().addresses().value(0)).ok());
-    QVERIFY(client->waitConnected().ok());
+    connectTo(*matcher);
     QTRY_VERIFY(source->hasSubscribers("scan2d"));
 }
 
 inline void MatcherFixture::tearDown() {
-    client.reset();
+    client_.reset();
     matcher->shutDown();
     matcher.reset();
     if (source)
         source->shutDown();
     source.reset();
-}
-
-inline QJsonObject MatcherFixture::call(const QString &method, const QJsonObject &params) {
-    const auto result = client->callAndWait(method, params);
-    if (!result)
-        qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
-    return result ? result->toObject() : QJsonObject{{"failed", result.error().message}};
-}
-
-inline Error MatcherFixture::failure(const QString &method, const QJsonObject &params) {
-    const auto result = client->callAndWait(method, params);
-    return result ? Error(ErrorCode::InternalError, "succeeded, though it should not") : result.error();
-}
-
-inline QJsonObject MatcherFixture::healthItem(const QString &name) {
-    for (const QJsonValue &item : call("daemon.status")["health"].toArray())
-        if (item.toObject()["name"] == name)
-            return item.toObject();
-    return {};
 }
 
 } // namespace hermes

@@ -1,14 +1,14 @@
 #pragma once
 
 #include "RoboClawRig.h"
-#include "common/client/Client.h"
 #include "daemons/motorcontrol/MotorControl.h"
+#include "tests/support/DaemonClient.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
 
 /// A motor control in this process, two emulated controllers on one line, and a client.
-class MotorFixture {
+class MotorFixture : protected DaemonClient {
 protected:
     static constexpr double countsPerTurn = 38000, radius = 0.1; // m
 
@@ -48,7 +48,6 @@ protected:
 
     /// The client may be silent for 1 s, as it is when the machine stalls.
     void launch(const QStringList &settings = {}) {
-        client_ = std::make_unique<hermes::Client>();
         daemon_ = std::make_unique<hermes::MotorControl>();
         QStringList arguments{"motorcontrol",
                               "--listen",
@@ -64,28 +63,11 @@ protected:
         QVERIFY(!daemon_->prepare(arguments));
         const auto launched = daemon_->launch();
         QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
-        QVERIFY(client_->connectTo(address()).ok());
-        QVERIFY(client_->waitConnected().ok());
+        connectTo(*daemon_);
     }
 
     QJsonObject call(const QString &method, const QJsonObject &params = {}) {
-        const auto result = client_->callAndWait(method, params);
-        if (!result)
-            qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
-        return result ? result->toObject() : QJsonObject{{"failed", result.error().message}};
-    }
-
-    hermes::Error failure(const QString &method, const QJsonObject &params = {}) {
-        const auto result = client_->callAndWait(method, params);
-        return result ? hermes::Error(hermes::ErrorCode::InternalError, "succeeded, though it should not")
-                      : result.error();
-    }
-
-    QJsonObject healthItem(const QString &name) {
-        for (const QJsonValue &item : call("daemon.status")["health"].toArray())
-            if (item.toObject()["name"] == name)
-                return item.toObject();
-        return {};
+        return DaemonClient::call(method, params).toObject();
     }
 
     /// Waits until the drive loop went round so many times more: what was asked has then had its effect.
@@ -121,5 +103,4 @@ protected:
     std::unique_ptr<QTemporaryDir> folder_;
     std::unique_ptr<RoboClawRig> rig_;
     std::unique_ptr<hermes::MotorControl> daemon_;
-    std::unique_ptr<hermes::Client> client_;
 };

@@ -3,6 +3,7 @@
 #include "daemons/seriallogger/SerialExport.h"
 #include "daemons/seriallogger/SerialLogReader.h"
 #include "daemons/seriallogger/SerialRecorder.h"
+#include "tests/support/Files.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
@@ -22,17 +23,6 @@ inline Arrival after(double seconds, double step_s = 0) {
 
 inline void push(ChunkQueue &queue, const QByteArray &bytes, const Arrival &arrival) {
     queue.push(bytes.constData(), std::size_t(bytes.size()), arrival);
-}
-
-inline QByteArray contentOf(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : "unreadable: " + path.toUtf8();
-}
-
-inline void put(const QString &path, const QByteArray &bytes) {
-    QFile file(path);
-    QVERIFY(file.open(QIODevice::WriteOnly));
-    QCOMPARE(file.write(bytes), qint64(bytes.size()));
 }
 
 inline QList<QJsonObject> eventsOf(const QString &folder) {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "common/client/Client.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "common/interface/PtyInterface.h"
 #include "daemons/seriallogger/SerialLogger.h"
+#include "tests/support/DaemonClient.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
@@ -13,16 +13,13 @@ namespace hermes {
 inline const QByteArray rmc("$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n");
 inline const QByteArray gga("$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n");
 
-/// The daemon in the process of the test, a device on a pseudo-terminal, and a client.
-class SerialLoggerFixture {
+/// The daemon in the process of the test, and a device on a pseudo-terminal.
+class SerialLoggerFixture : protected DaemonClient {
 protected:
     void setUp();
     void tearDown();
     void launch(const QJsonArray &ports);
-    QJsonValue call(const QString &method, const QJsonObject &params = {});
-    Error failure(const QString &method, const QJsonObject &params = {});
     QJsonObject port(const QString &name);
-    QJsonObject healthItem(const QString &name);
     bool isOpen(const QString &name) { return port(name).value("state") == "open"; }
     QString deviceUrl() const { return "serial://" + folder_->filePath("device"); }
     void plug();
@@ -30,7 +27,6 @@ protected:
     std::unique_ptr<QTemporaryDir> folder_;
     std::unique_ptr<PtyInterface> device_;
     std::unique_ptr<SerialLogger> daemon_;
-    std::unique_ptr<Client> client_;
 };
 
 inline void SerialLoggerFixture::setUp() {
@@ -55,39 +51,18 @@ inline void SerialLoggerFixture::tearDown() {
 
 inline void SerialLoggerFixture::launch(const QJsonArray &ports) {
     daemon_ = std::make_unique<SerialLogger>();
-    client_ = std::make_unique<Client>();
     const QString text = QString::fromUtf8(QJsonDocument(ports).toJson(QJsonDocument::Compact));
     QVERIFY(!daemon_->prepare({"seriallogger", "--listen", "tcp://127.0.0.1:0", "--set", "ports=" + text,
                                "--set", "record.folder=" + folder_->filePath("recordings"), "--set",
                                "record.free_floor_bytes=0", "--set", "record.free_warn_bytes=0"}));
     QVERIFY(daemon_->launch().ok());
-    QVERIFY(client_->connectTo(daemon_->server().addresses().value(0)).ok());
-    QVERIFY(client_->waitConnected().ok());
-}
-
-inline QJsonValue SerialLoggerFixture::call(const QString &method, const QJsonObject &params) {
-    const auto result = client_->callAndWait(method, params);
-    if (!result)
-        qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
-    return result ? *result : QJsonValue();
-}
-
-inline Error SerialLoggerFixture::failure(const QString &method, const QJsonObject &params) {
-    const auto result = client_->callAndWait(method, params);
-    return result ? Error(ErrorCode::InternalError, "succeeded, though it should not") : result.error();
+    connectTo(*daemon_);
 }
 
 inline QJsonObject SerialLoggerFixture::port(const QString &name) {
     for (const QJsonValue &port : call("ports.list").toArray())
         if (port.toObject().value("name") == name)
             return port.toObject();
-    return {};
-}
-
-inline QJsonObject SerialLoggerFixture::healthItem(const QString &name) {
-    for (const QJsonValue &item : call("daemon.status").toObject().value("health").toArray())
-        if (item.toObject().value("name") == name)
-            return item.toObject();
     return {};
 }
 

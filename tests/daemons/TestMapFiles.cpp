@@ -1,6 +1,7 @@
 // Files of maps: large ones, a disk that takes its time, a matcher that is killed while it writes.
 #include "MatcherFixture.h"
 
+#include "tests/support/Files.h"
 #include "vectorlib/io/MapCsv.h"
 
 #include <QProcess>
@@ -64,11 +65,6 @@ void writeMap(const QString &path, int edges) {
     QVERIFY(out.flush().good());
 }
 
-QByteArray contentOf(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray("no file");
-}
-
 } // namespace
 
 class TestMapFiles : public QObject, MatcherFixture {
@@ -85,7 +81,7 @@ private:
     /// Calls, and waits in the event loop for the result.
     QJsonObject answer(const QString &method, const QJsonObject &params) {
         std::optional<Result<QJsonValue>> got;
-        client->call(method, params, [&](const Result<QJsonValue> &result) { got = result; });
+        client_->call(method, params, [&](const Result<QJsonValue> &result) { got = result; });
         if (!QTest::qWaitFor([&] { return got.has_value(); }, 60000) || !got->ok())
             qFatal("%s: %s", qPrintable(method), got ? qPrintable(got->error().message) : "no answer");
         return (*got)->toObject();
@@ -125,8 +121,8 @@ void TestMapFiles::aSlowDiskHoldsNothingUp() {
         QSKIP("the file system knows no leases");
     }
     std::optional<Result<QJsonValue>> loaded;
-    client->call("map.load", QJsonObject{{"path", "slow.csv"}},
-                 [&](const Result<QJsonValue> &result) { loaded = result; });
+    client_->call("map.load", QJsonObject{{"path", "slow.csv"}},
+                  [&](const Result<QJsonValue> &result) { loaded = result; });
     for (int i = 0; i < 20; ++i)
         QVERIFY(call("daemon.info").contains("name"));
     QVERIFY(!loaded);
@@ -141,7 +137,7 @@ void TestMapFiles::filesAreWrittenInTheOrderOfTheCommands() {
     writeMap(folder->filePath("ten.csv"), 10);
     writeMap(folder->filePath("five.csv"), 5);
     const auto send = [&](const char *method, const QJsonObject &params) {
-        client->call(method, params, [](const Result<QJsonValue> &) {});
+        client_->call(method, params, [](const Result<QJsonValue> &) {});
     };
     send("map.load", {{"path", "ten.csv"}});
     send("map.save", {{"path", "a.csv"}});

@@ -81,8 +81,8 @@ int TestMatcherOdometry::zigzagLost(bool byOdometry, int scans) {
     const Pose2D start = zigzag(0);
     call("pose.set", {{"x", start.x}, {"y", start.y}, {"theta", start.theta}});
     QJsonObject last;
-    const int handle = client->subscribe("pose", {{"queue", 100}},
-                                         [&](const TopicUpdate &update) { last = update.data.toObject(); });
+    const int handle = client_->subscribe("pose", {{"queue", 100}},
+                                          [&](const TopicUpdate &update) { last = update.data.toObject(); });
     for (int i = 0; i < scans; ++i) {
         Transformation2D motion;
         if (i > 0)
@@ -93,7 +93,7 @@ int TestMatcherOdometry::zigzagLost(bool byOdometry, int scans) {
         source->publish("scan2d", roomScan(zigzag(i), 1 + scanPeriod * i), 1 + scanPeriod * i);
         [&] { QTRY_COMPARE(call("matcher.state")["scans"].toInt(), i + 1); }();
     }
-    client->unsubscribe(handle);
+    client_->unsubscribe(handle);
     const Pose2D end = zigzag(scans - 1);
     const double error = std::hypot(last["x"].toDouble() - end.x, last["y"].toDouble() - end.y) +
                          std::abs(last["theta"].toDouble() - end.theta);

@@ -156,7 +156,7 @@ void TestRelocalization::findsTheKidnappedRobot() {
     for (const char *member : {"ambiguity", "discrepancy", "matched_share", "score", "ms"})
         QVERIFY2(found[member].isDouble(), member);
     QJsonObject next;
-    client->subscribe("pose", {}, [&](const TopicUpdate &update) { next = update.data.toObject(); });
+    client_->subscribe("pose", {}, [&](const TopicUpdate &update) { next = update.data.toObject(); });
     QTRY_VERIFY(matcher->hasSubscribers("pose"));
     const Pose2D then{pose.x + 0.05, pose.y, pose.theta + 0.02};
     scan(pillars(), then);
@@ -237,7 +237,7 @@ void TestRelocalization::recoversByItselfAfterLostScans() {
     QCOMPARE(state["matched"].toInt(), 2);
     QCOMPARE(state["recoveries"].toInt(), 1);
     QCOMPARE(state["recovered"].toInt(), 1);
-    const auto log = client->callAndWait("log.tail");
+    const auto log = client_->callAndWait("log.tail");
     QVERIFY(log.ok());
     const QByteArray text = QJsonDocument(QJsonArray{*log}).toJson();
     QVERIFY2(text.contains("found in the whole map after 4 lost scans"), text);

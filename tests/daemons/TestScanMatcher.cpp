@@ -68,8 +68,8 @@ void TestScanMatcher::parsesScans() {
 void TestScanMatcher::tracksAndMaps() {
     call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
     QJsonObject last;
-    client->subscribe("pose", {{"queue", 100}},
-                      [&](const TopicUpdate &update) { last = update.data.toObject(); });
+    client_->subscribe("pose", {{"queue", 100}},
+                       [&](const TopicUpdate &update) { last = update.data.toObject(); });
     QTRY_VERIFY(matcher->hasSubscribers("pose"));
     drive(0, 40);
     QTRY_COMPARE(last["scan"].toInt(), 39);
@@ -196,8 +196,8 @@ void TestScanMatcher::matchesTwoScans() {
 void TestScanMatcher::mapTopicBeginsWithTheFullMap() {
     drive(0, 5);
     QVector<QJsonObject> updates;
-    client->subscribe("map", {{"queue", 100}},
-                      [&](const TopicUpdate &update) { updates.append(update.data.toObject()); });
+    client_->subscribe("map", {{"queue", 100}},
+                       [&](const TopicUpdate &update) { updates.append(update.data.toObject()); });
     QTRY_COMPARE(updates.size(), 1);
     QVERIFY(updates[0]["cleared"].toBool());
     QCOMPARE(updates[0]["edges"].toArray().size(), updates[0]["size"].toInt());

@@ -1,6 +1,7 @@
 // The recordings of the serial logger: made, exported, replayed.
 #include "SerialLoggerFixture.h"
 #include "common/recording/Sidecar.h"
+#include "tests/support/Files.h"
 #include "tests/support/FreePort.h"
 
 #include <QTcpServer>
@@ -8,15 +9,6 @@
 #include <QUdpSocket>
 
 using namespace hermes;
-
-namespace {
-
-QByteArray contentOf(const QString &path) {
-    QFile file(path);
-    return file.open(QIODevice::ReadOnly) ? file.readAll() : "unreadable: " + path.toUtf8();
-}
-
-} // namespace
 
 class TestSerialRecording : public QObject, SerialLoggerFixture {
     Q_OBJECT

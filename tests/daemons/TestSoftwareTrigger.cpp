@@ -131,8 +131,8 @@ void TestSoftwareTrigger::logHasARowForEachAction() {
     QTRY_VERIFY(healthItem("targets")["level"] == "ok");
     const double stamp = fire("t")["stamp"].toDouble();
     fire("none");
-    QTRY_COMPARE(healthItem("firings_log")["values"]["rows"].toInt(), 2);
-    QFile file(healthItem("firings_log")["values"]["path"].toString());
+    QTRY_COMPARE(healthItem("firings_log")["values"].toObject()["rows"].toInt(), 2);
+    QFile file(healthItem("firings_log")["values"].toObject()["path"].toString());
     QVERIFY(file.open(QIODevice::ReadOnly));
     const QStringList rows = QString(file.readAll()).split('\n');
     QCOMPARE(rows.size(), 5); // the header, three rows, and nothing after the last line feed

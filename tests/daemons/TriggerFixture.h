@@ -1,9 +1,8 @@
 #pragma once
 
 #include "common/Time.h"
-#include "common/client/Client.h"
-#include "common/daemon/Daemon.h"
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
+#include "tests/support/DaemonClient.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
@@ -36,7 +35,7 @@ public:
 };
 
 /// A software trigger in this process, a daemon for it to work with, and a client that hears each firing.
-class TriggerFixture {
+class TriggerFixture : protected DaemonClient {
 protected:
     static QJsonObject period(double seconds) { return {{"kind", "period"}, {"period_s", seconds}}; }
     static QJsonObject after(const QString &id) { return {{"kind", "trigger"}, {"trigger", id}}; }
@@ -77,12 +76,10 @@ protected:
         QVERIFY(!trigger_->prepare(arguments));
         QVERIFY(trigger_->launch().ok());
         fired_.clear();
-        client_ = std::make_unique<hermes::Client>();
-        QVERIFY(client_->connectTo(trigger_->server().addresses().value(0)).ok());
+        connectTo(*trigger_);
         client_->subscribe("fired", {{"queue", 10000}}, [this](const hermes::TopicUpdate &update) {
             fired_[update.data["id"].toString()].append(update.data);
         });
-        QVERIFY(client_->waitConnected().ok());
     }
     void tearDown() {
         client_.reset();
@@ -94,17 +91,6 @@ protected:
         config_.clear();
     }
 
-    QJsonValue call(const QString &method, const QJsonObject &params = {}) {
-        const auto result = client_->callAndWait(method, params);
-        if (!result)
-            qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
-        return result ? *result : QJsonValue("failed: " + result.error().message);
-    }
-    hermes::Error failure(const QString &method, const QJsonObject &params) {
-        const auto result = client_->callAndWait(method, params);
-        return result ? hermes::Error(hermes::ErrorCode::InternalError, "succeeded, though it should not")
-                      : result.error();
-    }
     void define(const QString &id, const QJsonObject &when, const QJsonArray &actions = {}) {
         const auto result = client_->callAndWait(
             "trigger.define", QJsonObject{{"id", id}, {"when", when}, {"actions", actions}});
@@ -117,18 +103,11 @@ protected:
                 return one;
         return QJsonValue(QJsonValue::Undefined);
     }
-    QJsonValue healthItem(const QString &name) {
-        for (const QJsonValue &item : call("daemon.status")["health"].toArray())
-            if (item["name"] == name)
-                return item;
-        return QJsonValue(QJsonValue::Undefined);
-    }
     /// Until the trigger hears what the target publishes.
     void waitSubscribed(const QString &topic) { QTRY_VERIFY(target_->hasSubscribers(topic)); }
 
     std::unique_ptr<TargetDaemon> target_;
     QString targetAddress_, config_;
     std::unique_ptr<hermes::SoftwareTrigger> trigger_;
-    std::unique_ptr<hermes::Client> client_;
     QMap<QString, QList<QJsonValue>> fired_; ///< by id, in the order of their ends
 };

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "common/client/Client.h"
+#include "common/daemon/Daemon.h"
+
+#include <QtTest>
+
+/// A client of the daemon that a test runs in its own process: base of the fixtures.
+class DaemonClient {
+protected:
+    void connectTo(hermes::Daemon &daemon) {
+        client_ = std::make_unique<hermes::Client>();
+        QVERIFY(client_->connectTo(daemon.server().addresses().value(0)).ok());
+        QVERIFY(client_->waitConnected().ok());
+    }
+    /// The result; an error is printed, and is {failed: message}.
+    QJsonValue call(const QString &method, const QJsonObject &params = {}) {
+        const auto result = client_->callAndWait(method, params);
+        if (!result)
+            qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
+        return result ? *result : QJsonObject{{"failed", result.error().message}};
+    }
+    /// The error.
+    hermes::Error failure(const QString &method, const QJsonObject &params = {}) {
+        const auto result = client_->callAndWait(method, params);
+        return result ? hermes::Error(hermes::ErrorCode::InternalError, "succeeded, though it should not")
+                      : result.error();
+    }
+    /// {name, level, message, values, age_s}; empty when there is none of this name.
+    QJsonObject healthItem(const QString &name) {
+        for (const QJsonValue &item : DaemonClient::call("daemon.status")["health"].toArray())
+            if (item["name"] == name)
+                return item.toObject();
+        return {};
+    }
+
+    std::unique_ptr<hermes::Client> client_;
+};
