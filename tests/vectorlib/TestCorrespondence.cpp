@@ -52,7 +52,8 @@ void TestCorrespondence::findsThePoseOfRandomRooms() {
         QVERIFY2(off < 0.05, which);
         inexact += off > 1e-6;
     }
-    // In one room of some 20,000 a sliver of a wall also fits the next wall, which is nearly in line with it.
+    // In one room of some 100,000 a sliver of a wall also fits the next wall, which is nearly in line with
+    // it.
     QVERIFY2(inexact <= 2, qPrintable(QString::number(inexact)));
 }
 

@@ -32,6 +32,7 @@ private:
     }
     /// The velocity that motorcontrol has measured.
     double speed() const { return std::hypot(drive_->measured().vx, drive_->measured().vy); }
+    void awaitMotion() { QTRY_VERIFY2(speed() > 0.2, qPrintable(drive_->problem())); }
     QJsonObject state() {
         const auto result = client_->callAndWait("motor.state");
         return result ? result->toObject() : QJsonObject();
@@ -83,7 +84,7 @@ void TestDrivePanel::cleanup() {
 
 void TestDrivePanel::stickDrivesAndLettingGoStops() {
     press(0, 1);
-    QTRY_VERIFY(speed() > 0.2);
+    awaitMotion();
     QTRY_COMPARE(find<QLabel>("lease")->text(), QString("control: you"));
     QTRY_VERIFY(find<QLabel>("commanded0")->text().toDouble() > 0.3);
     letGo();
@@ -144,7 +145,7 @@ void TestDrivePanel::stopIsLatchedAndNeedsNoControl() {
 
 void TestDrivePanel::afterAReleaseTheStickMustBeCentred() {
     QTest::keyPress(window_.get(), Qt::Key_W);
-    QTRY_VERIFY(speed() > 0.2);
+    awaitMotion();
     drive_->stop();
     QTRY_VERIFY(drive_->isStopped());
     drive_->release();
@@ -160,7 +161,7 @@ void TestDrivePanel::afterAReleaseTheStickMustBeCentred() {
 
 void TestDrivePanel::losingTheFocusStops() {
     QTest::keyPress(window_.get(), Qt::Key_W);
-    QTRY_VERIFY(speed() > 0.2);
+    awaitMotion();
     QWidget other;
     other.show();
     other.activateWindow();
@@ -171,7 +172,7 @@ void TestDrivePanel::losingTheFocusStops() {
 
 void TestDrivePanel::closingTheWindowStops() {
     press(0, 1);
-    QTRY_VERIFY(speed() > 0.2);
+    awaitMotion();
     window_->close();
     QTRY_COMPARE(commanded("vx"), 0.0);
     QTRY_VERIFY(!state()["control"].toObject()["held"].toBool());
@@ -193,7 +194,7 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
 
 void TestDrivePanel::motorControlKilledAndRestarted() {
     press(0, 1);
-    QTRY_VERIFY(speed() > 0.2);
+    awaitMotion();
     robot_->kill("motorcontrol");
     QTRY_VERIFY(!drive_->isDriving());
     QTRY_COMPARE(find<QLabel>("lease")->text(), QString("nothing to drive"));
@@ -202,7 +203,7 @@ void TestDrivePanel::motorControlKilledAndRestarted() {
     QTRY_VERIFY_WITH_TIMEOUT(find<Stick>("stick")->isEnabled(), 10000);
     QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
     press(0, 1);
-    QTRY_VERIFY(speed() > 0.2);
+    awaitMotion();
     letGo();
 }
 
