@@ -4,11 +4,7 @@ import json
 import os
 import sys
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-os.environ.setdefault("HERMES_SOURCE", ROOT)
-os.environ.setdefault("HERMES_BUILD", os.path.join(ROOT, "build", "release"))
-os.environ.setdefault("HERMES_BIN", os.path.join(os.environ["HERMES_BUILD"], "bin"))
-sys.path.insert(0, os.path.join(ROOT, "tests", "system"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "system"))
 import recording_load  # noqa: E402
 
 if __name__ == "__main__":

@@ -13,9 +13,9 @@ import time
 import unittest
 import uuid
 
-SOURCE = os.environ["HERMES_SOURCE"]
+from support import DATA, SOURCE
+
 RUN = os.path.join(SOURCE, "deploy", "demo", "run.py")
-DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 
 
 def marked(mark):

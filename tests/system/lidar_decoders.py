@@ -9,10 +9,9 @@ import subprocess
 import sys
 import tempfile
 
+from support import BINARIES, DATA
 import velodyne_reference as reference
 
-SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
-DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 HOUR_US = 3600 * 10**6
 
 

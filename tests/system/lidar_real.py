@@ -10,10 +10,9 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, SOURCE, Daemon, Process, free_port
+from support import BINARIES, DATA, Daemon, Process, free_port
 import velodyne_reference as reference
 
-DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 CAPTURE = os.path.join(DATA, "hdl32e-outdoor.pcap")
 HOUR_S = 3600
 

@@ -9,9 +9,8 @@ import sys
 import tempfile
 import time
 
-from support import BINARIES, Process, free_port, wait_for
+from support import BINARIES, BUILD, Process, free_port, wait_for
 
-BUILD = os.environ["HERMES_BUILD"]
 NOMINAL_HZ, BURST_HZ = 1810, 20000
 RECORD, DATA, POSITION = struct.Struct("<IIII"), 1206, 512
 

@@ -73,7 +73,7 @@ def main():
         delays = check_times(base, sent, times)
         print(f"{len(sent)} bytes in {SECONDS:.0f} s, none lost, none altered; {result['counts']['chunks']:.0f} chunks; "
               f"stamped {statistics.median(delays) * 1e3:.2f} ms after they were sent (median, "
-              f"{max(delays) * 1e3:.0f} ms at most); {ticks / os.sysconf('SC_CLK_TCK') / SECONDS * 100:.1f} % of a core")
+              f"{max(delays) * 1e3:.1f} ms at most); {ticks / os.sysconf('SC_CLK_TCK') / SECONDS * 100:.1f} % of a core")
 
 
 if __name__ == "__main__":

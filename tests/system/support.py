@@ -4,7 +4,11 @@ import sys
 import time
 import tty
 
-SOURCE, BINARIES = os.environ["HERMES_SOURCE"], os.environ["HERMES_BIN"]
+# As ctest tells them, else those of the preset release; DATA are recordings of real sensors, which may be absent.
+SOURCE = os.environ.get("HERMES_SOURCE", os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..")))
+BUILD = os.environ.get("HERMES_BUILD", os.path.join(SOURCE, "build", "release"))
+BINARIES = os.environ.get("HERMES_BIN", os.path.join(BUILD, "bin"))
+DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
 from processes import Daemon, DaemonError, Process, free_port  # noqa: E402, F401
 
