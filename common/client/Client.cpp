@@ -2,8 +2,18 @@
 
 #include <QEventLoop>
 #include <QTimer>
+#include <cmath>
 
 namespace hermes {
+namespace {
+
+/// A whole number from 0 to 2^53; negative: it is none.
+qint64 toCount(const QJsonValue &value) {
+    const double number = value.toDouble(-1);
+    return number >= 0 && number <= 9007199254740992.0 && number == std::floor(number) ? qint64(number) : -1;
+}
+
+} // namespace
 
 Client::Client(QObject *parent)
     : QObject(parent) {}
@@ -26,11 +36,18 @@ void Client::connectTo(Channel *newChannel) {
     channel = newChannel;
     channel->setParent(this);
     channel->interface().setReconnecting(true);
-    channel->codec().setFrameLimit(frameLimit);
+    channel->codec().setFrameLimit(frameBytes);
     connect(channel, &Channel::opened, this, &Client::onOpened);
     connect(channel, &Channel::closed, this, &Client::onClosed);
     connect(channel, &Channel::message, this, &Client::onMessage);
+    connect(channel, &Channel::malformed, this, &Client::refuse);
     channel->open();
+}
+
+void Client::setFrameLimit(int bytes) {
+    frameBytes = bytes;
+    if (channel)
+        channel->codec().setFrameLimit(bytes);
 }
 
 void Client::close() {
@@ -132,7 +149,7 @@ void Client::sendSubscription(int handle) {
     QJsonObject params = subscription.options;
     params.insert(QStringLiteral("topic"), subscription.topic);
     call(QStringLiteral("topics.subscribe"), params, [this, handle](const Result<QJsonValue> &result) {
-        const qint64 id = result ? qint64((*result)[QStringLiteral("subscription")].toDouble()) : 0;
+        const qint64 id = result ? qMax<qint64>(0, toCount((*result)[QStringLiteral("subscription")])) : 0;
         const auto found = subscriptions.find(handle);
         if (found == subscriptions.end()) {
             if (result) // ended here before the daemon answered
@@ -151,6 +168,7 @@ void Client::sendSubscription(int handle) {
 
 void Client::onOpened() {
     failure.clear();
+    refused = {};
     for (const auto &subscription : subscriptions)
         sendSubscription(subscription.first);
     Q_EMIT connected();
@@ -172,14 +190,24 @@ void Client::onMessage(const QJsonValue &message) {
             onResponse(*response);
         else if (const auto *request = std::get_if<RpcRequest>(&one))
             onNotification(*request);
+        else
+            refuse(std::get<RpcInvalid>(one).error);
     }
 }
 
+void Client::refuse(const RpcError &error) {
+    ++refused.unreadable;
+    refused.last = error.message;
+}
+
 void Client::onResponse(const RpcResponse &response) {
-    if (response.failed)
-        finish(qint64(response.id.toDouble()), response.error);
+    const qint64 id = toCount(response.id);
+    if (!waiting.contains(id))
+        ++refused.unasked;
+    else if (response.failed)
+        finish(id, response.error);
     else
-        finish(qint64(response.id.toDouble()), response.result);
+        finish(id, response.result);
 }
 
 void Client::finish(qint64 id, const Result<QJsonValue> &result) {
@@ -188,22 +216,21 @@ void Client::finish(qint64 id, const Result<QJsonValue> &result) {
 }
 
 void Client::onNotification(const RpcRequest &notification) {
-    if (notification.method != QStringLiteral("topic"))
-        return;
     const QJsonObject params = notification.params.toObject();
-    const qint64 id = qint64(params.value(QStringLiteral("subscription")).toDouble());
-    for (const auto &subscription : subscriptions) {
-        if (subscription.second.id == id)
-            return deliver(subscription.first, params);
-    }
+    const qint64 id = toCount(params.value(QStringLiteral("subscription")));
+    if (notification.method == QStringLiteral("topic") && id > 0) // 0: not subscribed as yet
+        for (const auto &subscription : subscriptions)
+            if (subscription.second.id == id)
+                return deliver(subscription.first, params);
+    ++refused.unasked;
 }
 
 void Client::deliver(int handle, const QJsonObject &params) {
     TopicUpdate update;
     update.handle = handle;
     update.topic = params.value(QStringLiteral("topic")).toString();
-    update.seq = quint64(params.value(QStringLiteral("seq")).toDouble());
-    update.dropped = quint64(params.value(QStringLiteral("dropped")).toDouble());
+    update.seq = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("seq")))));
+    update.dropped = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("dropped")))));
     update.stamp = params.value(QStringLiteral("stamp")).toDouble();
     update.data = params.value(QStringLiteral("data"));
     const auto found = subscriptions.find(handle);

@@ -43,6 +43,15 @@ public:
     void close();
     bool isConnected() const { return channel && channel->isOpen(); }
     QString address() const;
+    /// What came over this connection and could not be used.
+    struct Rejected {
+        quint64 unreadable = 0; ///< no JSON, no JSON-RPC, or larger than the limit
+        quint64 unasked = 0; ///< replies that nobody waits for (any more), topics that nobody subscribed to
+        QString last;        ///< what was wrong with the last unreadable one
+    };
+    const Rejected &rejected() const { return refused; }
+    /// Of messages from now on, in bytes.
+    void setFrameLimit(int bytes);
     /// Why the last attempt or connection ended.
     const QString &lastError() const { return failure; }
 
@@ -82,6 +91,7 @@ private:
     void onOpened();
     void onClosed(const QString &reason);
     void onMessage(const QJsonValue &message);
+    void refuse(const RpcError &error);
     void onResponse(const RpcResponse &response);
     void onNotification(const RpcRequest &notification);
     void deliver(int handle, const QJsonObject &params);
@@ -90,6 +100,8 @@ private:
 
     Channel *channel = nullptr;
     QString failure;
+    Rejected refused;
+    int frameBytes = frameLimit;
     qint64 lastId = 0;
     QHash<qint64, Callback> waiting;
     int lastHandle = 0;

@@ -8,13 +8,22 @@
 namespace hermes {
 namespace {
 
+/// Of alternatives, so many are named.
+constexpr int mostNamed = 100;
+
+template <typename Text>
+QStringList named(const QJsonArray &alternatives, const Text &textOf) {
+    QStringList texts;
+    for (int i = 0; i < alternatives.size() && i < mostNamed; ++i)
+        texts.append(textOf(alternatives.at(i)));
+    if (alternatives.size() > mostNamed)
+        texts.append(QStringLiteral("%1 more").arg(alternatives.size() - mostNamed));
+    return texts;
+}
+
 QString typeName(const QJsonValue &type) {
-    if (type.isArray()) {
-        QStringList names;
-        for (const QJsonValue &one : type.toArray())
-            names.append(typeName(one));
-        return names.join(QStringLiteral(" or "));
-    }
+    if (type.isArray())
+        return named(type.toArray(), typeName).join(QStringLiteral(" or "));
     const QString name = type.toString();
     if (name.isEmpty())
         return QStringLiteral("a value");
@@ -50,12 +59,8 @@ QString sizes(const QJsonObject &schema, const char *least, const char *most, co
 
 QString expectation(const QJsonObject &schema) {
     const QJsonArray choices = schema.value(QStringLiteral("enum")).toArray();
-    if (!choices.isEmpty()) {
-        QStringList texts;
-        for (const QJsonValue &choice : choices)
-            texts.append(shown(choice));
-        return QStringLiteral("one of ") + texts.join(QStringLiteral(", "));
-    }
+    if (!choices.isEmpty())
+        return QStringLiteral("one of ") + named(choices, shown).join(QStringLiteral(", "));
     QString text = typeName(schema.value(QStringLiteral("type"))) + limits(schema);
     text += sizes(schema, "minItems", "maxItems", QStringLiteral("elements"));
     text += sizes(schema, "minLength", "maxLength", QStringLiteral("characters"));

@@ -1,10 +1,15 @@
 #include "common/schema/SchemaValidator.h"
 
+#include "common/schema/CheckableSchema.h"
 #include "common/schema/SchemaText.h"
 
+#include <QRegularExpression>
 #include <QStringList>
 #include <algorithm>
 #include <cmath>
+
+// Without it valijson ends the program at a schema that it refuses.
+#define VALIJSON_USE_EXCEPTIONS 1
 #include <valijson/adapters/qtjson_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -15,37 +20,45 @@ namespace {
 
 const QString typeKey = QStringLiteral("type");
 const QString itemsKey = QStringLiteral("items");
+const QString patternKey = QStringLiteral("pattern");
 const QString propertiesKey = QStringLiteral("properties");
 
 QString joined(const QString &path, const QString &key) {
     return path.isEmpty() ? key : path + QLatin1Char('.') + key;
 }
 
-// valijson on QJson takes only numbers of 32 bits for integers: whole numbers are checked in checkStructure.
-QJsonValue withoutIntegers(const QJsonValue &node) {
-    if (node.isArray()) {
-        QJsonArray result;
-        for (const QJsonValue &element : node.toArray())
-            result.append(withoutIntegers(element));
-        return result;
+// "$" of a JSON Schema is the very end, not before a last line feed as well.
+QString withStrictEnd(const QString &pattern) {
+    QString strict;
+    bool isClass = false;
+    for (int i = 0; i < pattern.size(); ++i) {
+        const QChar c = pattern[i];
+        isClass = c == QLatin1Char('[') || (isClass && c != QLatin1Char(']'));
+        if (c == QLatin1Char('$') && !isClass)
+            strict += QStringLiteral("\\z");
+        else
+            strict += c;
+        if (c == QLatin1Char('\\') && ++i < pattern.size())
+            strict += pattern[i];
     }
-    if (!node.isObject())
-        return node;
-    QJsonObject result;
-    const QJsonObject object = node.toObject();
-    for (auto member = object.begin(); member != object.end(); ++member) {
-        const bool integer = member.key() == typeKey && member.value() == QStringLiteral("integer");
-        result.insert(member.key(),
-                      integer ? QJsonValue(QStringLiteral("number")) : withoutIntegers(member.value()));
-    }
-    return result;
+    return strict;
 }
 
-// Missing and unknown members, and numbers that should be whole, each named by its own path.
+// What the expression cannot decide within its limit is left to whoever applies the value.
+bool isMatch(const QString &pattern, const QString &text) {
+    const QRegularExpression expression(QStringLiteral("(*LIMIT_MATCH=100000)") + withStrictEnd(pattern));
+    const QRegularExpressionMatch match = expression.match(text);
+    return match.hasMatch() || !match.isValid();
+}
+
+// Missing and unknown members, numbers that should be whole and patterns, each named by its own path.
 void checkStructure(const QJsonObject &schema, const QJsonValue &value, const QString &path,
                     std::vector<SchemaViolation> &found) {
     if (schema.value(typeKey) == QStringLiteral("integer") && value.isDouble() &&
         value.toDouble() != std::floor(value.toDouble()))
+        found.push_back({path, value, expectation(schema)});
+    if (schema.contains(patternKey) && value.isString() &&
+        !isMatch(schema.value(patternKey).toString(), value.toString()))
         found.push_back({path, value, expectation(schema)});
     if (value.isArray() && schema.value(itemsKey).isObject()) {
         const QJsonArray array = value.toArray();
@@ -109,9 +122,20 @@ struct SchemaValidator::Compiled {
 SchemaValidator::SchemaValidator(const QJsonObject &schema)
     : compiled(new Compiled) {
     compiled->source = schema;
-    const QJsonValue adapted = withoutIntegers(schema);
+    const QJsonValue adapted = checkable(schema).schema;
     valijson::SchemaParser parser;
     parser.populateSchema(valijson::adapters::QtJsonAdapter(adapted), compiled->schema);
+}
+
+Result<SchemaValidator> SchemaValidator::make(const QJsonObject &schema) {
+    const QString problem = checkable(schema).problem;
+    if (!problem.isEmpty())
+        return Error(ErrorCode::InvalidParams, problem);
+    try {
+        return SchemaValidator(schema);
+    } catch (const std::exception &error) {
+        return Error(ErrorCode::InvalidParams, QString::fromUtf8(error.what()));
+    }
 }
 
 SchemaValidator::~SchemaValidator() = default;

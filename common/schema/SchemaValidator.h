@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/Result.h"
+
 #include <QJsonArray>
 #include <QJsonObject>
 #include <QString>
@@ -23,7 +25,10 @@ struct SchemaViolation {
 /// A JSON Schema made ready to check values against.
 class SchemaValidator {
 public:
+    /// Of a schema of one's own: a wrong one is an exception.
     explicit SchemaValidator(const QJsonObject &schema);
+    /// Of a schema that came from elsewhere. Error: why it cannot be checked.
+    static Result<SchemaValidator> make(const QJsonObject &schema);
     ~SchemaValidator();
     SchemaValidator(SchemaValidator &&) noexcept;
     SchemaValidator &operator=(SchemaValidator &&) noexcept;

@@ -1,0 +1,97 @@
+#include "common/schema/CheckableSchema.h"
+#include "common/schema/SchemaValidator.h"
+
+#include <QJsonDocument>
+#include <QtTest>
+
+using namespace hermes;
+
+/// Schemas that come from elsewhere.
+class TestSchemaValidator : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void refused_data();
+    void refused();
+    void patterns_data();
+    void patterns();
+    void costIsBounded();
+
+private:
+    static QJsonObject object(const char *json) { return QJsonDocument::fromJson(json).object(); }
+};
+
+void TestSchemaValidator::refused_data() {
+    QTest::addColumn<QString>("schema");
+    QTest::addColumn<QString>("why");
+    QTest::newRow("type") << R"({"type":5})"
+                          << "string";
+    QTest::newRow("inner type") << R"({"properties":{"a":{"type":5}}})"
+                                << "string";
+    QTest::newRow("properties") << R"({"properties":5})"
+                                << "object";
+    QTest::newRow("minimum") << R"({"properties":{"a":{"minimum":"x"}}})"
+                             << "minimum";
+    QTest::newRow("length") << R"({"minLength":1e300})"
+                            << "minLength";
+    QTest::newRow("enum") << R"({"enum":5})"
+                          << "array";
+    QTest::newRow("expression") << R"({"properties":{"a":{"pattern":"("}}})"
+                                << "a: pattern";
+    QTest::newRow("far reference") << R"({"$ref":"http://far/away"})"
+                                   << "$ref";
+    QTest::newRow("circle") << R"({"items":{"anyOf":[{"$ref":"#"}]}})"
+                            << "$ref";
+    QTest::newRow("multiple of nothing") << R"({"properties":{"a":{"multipleOf":0.0}}})"
+                                         << "a: multipleOf";
+    QTest::newRow("unique") << R"({"uniqueItems":true})"
+                            << "uniqueItems";
+}
+
+void TestSchemaValidator::refused() {
+    QFETCH(QString, schema);
+    QFETCH(QString, why);
+    const auto made = SchemaValidator::make(object(schema.toUtf8()));
+    QVERIFY(!made);
+    QVERIFY2(made.error().message.contains(why), qPrintable(made.error().message));
+}
+
+void TestSchemaValidator::patterns_data() {
+    QTest::addColumn<QString>("pattern");
+    QTest::addColumn<QString>("text");
+    QTest::addColumn<bool>("isRight");
+    QTest::newRow("right") << "^[a-z]{1,3}$"
+                           << "abc" << true;
+    QTest::newRow("wrong") << "^[a-z]{1,3}$"
+                           << "abcd" << false;
+    QTest::newRow("anywhere") << "b"
+                              << "abc" << true;
+    QTest::newRow("ends with a line feed") << "^[a-z]+$"
+                                           << "abc\n"
+                                           << false;
+    QTest::newRow("dollar") << "^[$]\\$$"
+                            << "$$" << true;
+    QTest::newRow("a long text") << "^(.|\\n)*$" << QString(1000000, 'a') << true;
+    // Too much to be decided: whoever applies the value decides.
+    QTest::newRow("without end") << "^(a+)+$" << QString(100, 'a') + 'b' << true;
+}
+
+void TestSchemaValidator::patterns() {
+    QFETCH(QString, pattern);
+    QFETCH(QString, text);
+    QFETCH(bool, isRight);
+    const auto made = SchemaValidator::make({{"type", "string"}, {"pattern", pattern}});
+    QVERIFY(made);
+    QCOMPARE(made->check(text).empty(), isRight);
+}
+
+void TestSchemaValidator::costIsBounded() {
+    const QJsonObject schema = object(R"({"type":"array","items":{"anyOf":[{"minimum":1},{"maximum":-1}]}})");
+    QJsonArray values;
+    for (int i = 0; i < 1000; ++i)
+        values.append(i + 1);
+    QVERIFY(isCheapToCheck(schema, values, 100000));
+    QVERIFY(!isCheapToCheck(schema, values, 1000));
+}
+
+QTEST_APPLESS_MAIN(TestSchemaValidator)
+#include "TestSchemaValidator.moc"
