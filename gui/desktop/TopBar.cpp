@@ -1,14 +1,18 @@
 #include "gui/desktop/TopBar.h"
 
-#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QJsonArray>
-#include <QLabel>
 #include <QPushButton>
 
 namespace hermes {
+namespace {
+
+constexpr int longestName = 30; // nothing pushes STOP out of sight
+
+} // namespace
 
 TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     : QWidget(parent)
@@ -17,9 +21,9 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     , powerFeed_(
           fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
     , robots_(new QComboBox)
-    , link_(new QLabel)
-    , control_(new QLabel)
-    , power_(new QLabel)
+    , link_(new PlainLabel)
+    , control_(new PlainLabel)
+    , power_(new PlainLabel)
     , release_(new QPushButton(tr("&Release")))
     , stop_(new QPushButton(tr("STOP"))) {
     robots_->setObjectName("robots");
@@ -46,7 +50,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
         "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
 
     auto *const layout = new QHBoxLayout(this);
-    auto *const label = new QLabel(tr("Ro&bot"));
+    auto *const label = new PlainLabel(tr("Ro&bot"));
     label->setBuddy(robots_);
     layout->addWidget(label);
     layout->addWidget(robots_);
@@ -102,7 +106,7 @@ void TopBar::updateDrive() {
     const QString holder = drive_.holder();
     control_->setText(!drive_.isPossible() ? tr("nothing to drive")
                       : holder.isEmpty()   ? tr("control free")
-                                           : tr("control: %1").arg(holder));
+                                           : tr("control: %1").arg(shortLine(holder, longestName)));
     release_->setVisible(drive_.isStopped());
     stop_->setText(drive_.isStopped() ? tr("STOPPED") : tr("STOP"));
 }
@@ -118,11 +122,10 @@ void TopBar::showPower(const QJsonValue &power) {
         for (const QJsonValue &current : controller["current_a"].toArray())
             amperes += std::abs(current.toDouble());
     }
-    power_->setText(hottest < -273 ? QString()
-                                   : tr("battery %1 V   %2 A   %3 °C")
-                                         .arg(volts, 0, 'f', 1)
-                                         .arg(amperes, 0, 'f', 1)
-                                         .arg(hottest, 0, 'f', 0));
+    power_->setText(hottest < -273
+                        ? QString()
+                        : tr("battery %1 V   %2 A   %3 °C")
+                              .arg(shortNumber(volts, 1), shortNumber(amperes, 1), shortNumber(hottest, 0)));
 }
 
 } // namespace hermes

@@ -5,10 +5,11 @@
 #include <QWidget>
 
 class QComboBox;
-class QLabel;
 class QPushButton;
 
 namespace hermes {
+
+class PlainLabel;
 
 /// What is always in sight: which robot, how good its link is, who has the control, battery, currents and
 /// temperature, STOP.
@@ -27,7 +28,7 @@ private:
     DriveControl &drive_;
     TopicFeed powerFeed_;
     QComboBox *robots_;
-    QLabel *link_, *control_, *power_;
+    PlainLabel *link_, *control_, *power_;
     QPushButton *release_, *stop_;
 };
 

@@ -25,15 +25,16 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
           [this](const TopicUpdate &update) {
               const QJsonValue twist = update.data["twist"];
               measured_ = {twist["vx"].toDouble(), twist["vy"].toDouble(), twist["omega"].toDouble()};
-              const double latency_ms = motors_ ? motors_->latency_ms() : 0;
-              clock_.add(update.stamp, stampNow(), latency_ms / 1000);
+              if (odometry_.source() == motors_) // no other clock is asked for
+                  clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);
               Q_EMIT changed();
           },
           this) {
+    stopLine_.setFrameLimit(DaemonLink::usualFrame);
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
     connect(&pollTimer_, &QTimer::timeout, this, &DriveControl::poll);
-    connect(&stopTimer_, &QTimer::timeout, this, &DriveControl::stop);
+    connect(&stopTimer_, &QTimer::timeout, this, &DriveControl::repeatStop);
     connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
     connect(&fleet, &Fleet::robotChosen, this, &DriveControl::follow);
     timer_.start(period);
@@ -42,7 +43,13 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
 }
 
 DaemonLink *DriveControl::motors() const {
-    return fleet_.robot() ? fleet_.robot()->withMethod("motor.drive") : nullptr;
+    if (!fleet_.robot())
+        return nullptr;
+    const auto found = fleet_.robot()->allWithMethod("motor.drive");
+    if (found.empty())
+        return nullptr;
+    // Who is driven stays so, whoever else appears.
+    return std::find(found.begin(), found.end(), motors_) == found.end() ? found.front() : motors_.data();
 }
 
 void DriveControl::follow() {
@@ -62,8 +69,10 @@ void DriveControl::follow() {
     tell({});
     stopLine_.connectTo(found->address());
     found->call("settings.get", {{"path", "motion"}}, this, [this](const Result<QJsonValue> &motion) {
-        if (motion && (*motion)["vx"].isDouble())
-            most_ = {(*motion)["vx"].toDouble(), (*motion)["vy"].toDouble(), (*motion)["omega"].toDouble()};
+        const auto most = [&](const char *name, double usual) { // m/s or rad/s
+            return qBound(0.0, motion ? (*motion)[QLatin1String(name)].toDouble(usual) : usual, 100.0);
+        };
+        most_ = {most("vx", most_.vx), most("vy", most_.vy), most("omega", most_.omega)};
     });
     poll();
 }
@@ -162,25 +171,42 @@ void DriveControl::stop() {
     commanded_ = {};
     isDriving_ = isHolding_ = false;
     mustCentre_ = isAnyHeld();
-    if (!motors_)
+    unstopped_.clear();
+    if (fleet_.robot())
+        for (DaemonLink *daemon : fleet_.robot()->allWithMethod("motor.estop"))
+            unstopped_.push_back(daemon);
+    if (unstopped_.empty())
         return tell(tr("STOP: no robot that can drive is connected."));
-    if (!stopTimer_.isActive())
-        stopTries_ = 0;
+    stopTries_ = 0;
+    repeatStop();
+    Q_EMIT changed();
+}
+
+void DriveControl::repeatStop() {
+    const auto isGone = [](const auto &daemon) { return !daemon; };
+    unstopped_.erase(std::remove_if(unstopped_.begin(), unstopped_.end(), isGone), unstopped_.end());
+    if (unstopped_.empty())
+        return stopTimer_.stop();
     if (++stopTries_ > stopMost) {
         stopTimer_.stop();
-        return tell(tr("STOP was not answered: %1").arg(motors_->client().lastError()));
+        return tell(tr("STOP was not answered by %1: %2")
+                        .arg(unstopped_.front()->name(), unstopped_.front()->client().lastError()));
     }
     stopTimer_.start(stopRepeat);
-    const auto answered = [this](const Result<QJsonValue> &result) {
-        if (!result)
-            return;
-        stopTimer_.stop();
-        poll();
-    };
-    motors_->call("motor.estop", {}, this, answered);
-    if (stopLine_.isConnected())
-        stopLine_.call("motor.estop", QJsonObject(), answered);
-    Q_EMIT changed();
+    const auto daemons = unstopped_;
+    for (const QPointer<DaemonLink> &daemon : daemons) {
+        const auto answered = [this, daemon](const Result<QJsonValue> &result) {
+            if (!result)
+                return;
+            unstopped_.erase(std::remove(unstopped_.begin(), unstopped_.end(), daemon), unstopped_.end());
+            if (unstopped_.empty())
+                stopTimer_.stop();
+            poll();
+        };
+        daemon->call("motor.estop", {}, this, answered);
+        if (daemon == motors_ && stopLine_.isConnected())
+            stopLine_.call("motor.estop", QJsonObject(), answered);
+    }
 }
 
 void DriveControl::release() {

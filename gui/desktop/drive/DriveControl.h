@@ -31,7 +31,8 @@ public:
     /// The share of the largest speed that the whole stick means, 0.05 to 1.
     void setLimit(double share);
     double limit() const { return limit_; }
-    /// The emergency stop of the robot: at once, without the control, latched until release().
+    /// The emergency stop of the robot: at once, without the control, latched until release(). It goes to
+    /// every daemon that has one.
     void stop();
     /// Ends driving softly; the control is given back.
     void halt();
@@ -67,6 +68,7 @@ private:
     void follow();
     void tick();
     void acquire(bool takeOver);
+    void repeatStop();
     void send();
     void poll();
     void onState(const QJsonObject &state);
@@ -87,6 +89,7 @@ private:
     double limit_ = 0.4;
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;
     int stopTries_ = 0;
+    std::vector<QPointer<DaemonLink>> unstopped_; // have not answered a STOP as yet
     QString problem_;
 };
 

@@ -1,6 +1,7 @@
 #include "gui/desktop/model/DaemonLink.h"
 
 #include "common/Project.h"
+#include "gui/desktop/widgets/ForeignText.h"
 
 #include <QElapsedTimer>
 #include <QJsonArray>
@@ -9,12 +10,8 @@
 namespace hermes {
 namespace {
 
-QJsonObject named(const QJsonValue &list, const QString &name) {
-    for (const QJsonValue &entry : list.toArray())
-        if (entry["name"].toString() == name)
-            return entry.toObject();
-    return {};
-}
+constexpr int longestName = 40;
+constexpr double usualRate_hz = 100;
 
 int severity(const QJsonValue &item) {
     const QString level = item["level"].toString();
@@ -34,6 +31,7 @@ QJsonObject worstItem(const QJsonObject &status) {
 DaemonLink::DaemonLink(const QString &address, QObject *parent)
     : QObject(parent)
     , address_(address) {
+    client_.setFrameLimit(usualFrame);
     connect(&client_, &Client::connected, this, &DaemonLink::onConnected);
     connect(&client_, &Client::disconnected, this, [this] {
         isPolling_ = false;
@@ -42,12 +40,14 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
     connect(&timer_, &QTimer::timeout, this, &DaemonLink::poll);
     timer_.start(pollPeriod);
     client_.connectTo(address);
-    client_.subscribe("status", {}, [this](const TopicUpdate &update) { onStatus(update.data.toObject()); });
+    subscribe("status", {{"max_rate_hz", 10}},
+              [this](const TopicUpdate &update) { onStatus(update.data.toObject()); });
 }
 
 QString DaemonLink::name() const {
-    if (isKnown())
-        return info_["name"].toString();
+    const QString name = shortLine(info_["name"].toString(), longestName);
+    if (!name.isEmpty())
+        return name;
     const quint16 port = address_.section(':', -1).toUShort();
     for (const QString &known : daemonNames())
         if (defaultPort(known) == port)
@@ -56,7 +56,7 @@ QString DaemonLink::name() const {
 }
 
 QString DaemonLink::title() const {
-    const QString title = info_["title"].toString();
+    const QString title = shortLine(info_["title"].toString());
     return title.isEmpty() ? name() : title;
 }
 
@@ -64,7 +64,7 @@ Condition DaemonLink::condition() const {
     if (!isConnected())
         return Condition::Unreachable;
     const QString state = status_["state"].toString();
-    const int worst = severity(worstItem(status_));
+    const int worst = qMax(severity(worst_), isUnderstood() ? 0 : 1);
     if (state == "fault" || worst == 3)
         return Condition::Fault;
     if (state == "degraded" || worst > 0)
@@ -76,7 +76,7 @@ QString DaemonLink::conditionWord() const {
     const Condition now = condition();
     if (now == Condition::Unreachable)
         return tr("unreachable");
-    const QString state = status_["state"].toString();
+    const QString state = shortLine(status_["state"].toString(), longestName);
     if (now == Condition::Warning && state != "degraded")
         return tr("warning");
     if (now == Condition::Fault && state != "fault")
@@ -87,23 +87,22 @@ QString DaemonLink::conditionWord() const {
 QString DaemonLink::reason() const {
     if (!isConnected())
         return client_.lastError();
-    const QJsonObject item = worstItem(status_);
-    return item.isEmpty() ? QString() : item["name"].toString() + ": " + item["message"].toString();
+    QStringList lines;
+    if (!worst_.isEmpty())
+        lines.append(shortLine(worst_["name"].toString() + ": " + worst_["message"].toString()));
+    if (!nonsense_.isEmpty())
+        lines.append(nonsense_);
+    const Client::Rejected &rejected = client_.rejected();
+    if (rejected.unreadable > 0)
+        lines.append(
+            tr("%1 messages could not be read: %2").arg(rejected.unreadable).arg(shortLine(rejected.last)));
+    if (rejected.unasked > 0)
+        lines.append(tr("%1 messages that nobody waits for").arg(rejected.unasked));
+    return lines.join('\n');
 }
 
-QJsonObject DaemonLink::method(const QString &name) const {
-    return named(description_["methods"], name);
-}
-
-bool DaemonLink::hasTopic(const QString &name) const {
-    return !named(description_["x-topics"], name).isEmpty();
-}
-
-QStringList DaemonLink::topics() const {
-    QStringList names;
-    for (const QJsonValue &topic : description_["x-topics"].toArray())
-        names.append(topic["name"].toString());
-    return names;
+bool DaemonLink::isUnderstood() const {
+    return nonsense_.isEmpty() && client_.rejected().unreadable == 0;
 }
 
 void DaemonLink::call(const QString &method, const QJsonObject &params, QObject *context,
@@ -114,11 +113,48 @@ void DaemonLink::call(const QString &method, const QJsonObject &params, QObject 
     });
 }
 
+void DaemonLink::callForMuch(const QString &method, const QJsonObject &params, QObject *context,
+                             const Client::Callback &done) {
+    ++largeCalls_;
+    client_.setFrameLimit(largeFrame);
+    client_.call(method, params, [=, guard = QPointer<QObject>(context)](const auto &result) {
+        if (--largeCalls_ == 0)
+            client_.setFrameLimit(usualFrame);
+        if (guard)
+            done(result);
+    });
+}
+
+int DaemonLink::subscribe(const QString &topic, const QJsonObject &options,
+                          const Client::TopicCallback &callback) {
+    if (options.contains("queue"))
+        return client_.subscribe(topic, options, callback);
+    const double rate_hz = options["max_rate_hz"].toDouble(usualRate_hz);
+    // Half of the time between: what comes a little early is not to wait for the next period.
+    auto *const gate = new NewestOnly(std::chrono::milliseconds(int(500 / rate_hz)), callback, this);
+    const int handle =
+        client_.subscribe(topic, options, [gate](const TopicUpdate &update) { gate->take(update); });
+    gates_.insert(handle, gate);
+    return handle;
+}
+
+void DaemonLink::unsubscribe(int handle) {
+    client_.unsubscribe(handle);
+    if (NewestOnly *const gate = gates_.take(handle)) {
+        gate->close();
+        gate->deleteLater(); // it may be passing a message on
+    }
+}
+
 void DaemonLink::onConnected() {
     poll();
+    nonsense_.clear();
     call("daemon.info", {}, this, [this](const Result<QJsonValue> &info) {
-        if (!info)
-            return;
+        if (!info || !info->isObject()) {
+            nonsense_ =
+                info ? tr("daemon.info is no object") : "daemon.info: " + shortLine(info.error().message);
+            return Q_EMIT changed();
+        }
         const bool isSame = !description_.isEmpty() &&
                             (*info)["description_hash"] == info_["description_hash"] &&
                             info_.contains("description_hash");
@@ -129,21 +165,45 @@ void DaemonLink::onConnected() {
             return;
         }
         call("rpc.discover", {}, this, [this](const Result<QJsonValue> &description) {
-            if (!description)
-                return;
-            description_ = description->toObject();
-            Q_EMIT described();
-            Q_EMIT ready();
+            if (description)
+                return onDescription(*description);
+            nonsense_ = "rpc.discover: " + shortLine(description.error().message);
+            Q_EMIT changed();
         });
     });
 }
 
+void DaemonLink::onDescription(const QJsonValue &description) {
+    description_ = description.toObject();
+    const QJsonValue methods = description_["methods"], topics = description_["x-topics"];
+    if (!methods.isArray())
+        nonsense_ = tr("rpc.discover describes no methods");
+    methods_.clear();
+    topics_.clear();
+    topicNames_.clear();
+    for (const QJsonValue &method : methods.toArray())
+        if (const QString name = method["name"].toString(); !name.isEmpty())
+            methods_.insert(name, method.toObject());
+    for (const QJsonValue &topic : topics.toArray())
+        if (const QString name = topic["name"].toString(); !name.isEmpty() && !topics_.contains(name)) {
+            topics_.insert(name);
+            topicNames_.append(name);
+        }
+    Q_EMIT described();
+    Q_EMIT ready();
+}
+
 void DaemonLink::onStatus(const QJsonObject &status) {
     status_ = status;
+    worst_ = worstItem(status);
     Q_EMIT changed();
 }
 
 void DaemonLink::poll() {
+    if (const quint64 unreadable = client_.rejected().unreadable; unreadable != shownUnreadable_) {
+        shownUnreadable_ = unreadable;
+        Q_EMIT changed();
+    }
     if (!isConnected() || isPolling_)
         return;
     isPolling_ = true;
@@ -154,6 +214,8 @@ void DaemonLink::poll() {
         if (!status)
             return;
         latency_ms_ = double(time.nsecsElapsed()) * 1e-6;
+        if (!status->isObject())
+            nonsense_ = tr("daemon.status is no object");
         onStatus(status->toObject());
     });
 }

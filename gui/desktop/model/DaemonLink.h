@@ -1,9 +1,11 @@
 #pragma once
 
-#include "common/client/Client.h"
+#include "gui/desktop/model/NewestOnly.h"
 
+#include <QHash>
 #include <QJsonObject>
 #include <QObject>
+#include <QSet>
 #include <QTimer>
 
 namespace hermes {
@@ -13,11 +15,15 @@ enum class Condition { Ready, Busy, Warning, Fault, Unreachable };
 
 /// One daemon as the operator's program knows it: the connection, and what the daemon says of itself. It
 /// keeps connecting, reads the description again when its hash changes, and asks for the status each second,
-/// which also measures the link. Nothing here blocks, and nothing is known beforehand of any daemon.
+/// which also measures the link. Nothing here blocks, nothing is known beforehand of any daemon, and nothing
+/// that it says is trusted to make sense.
 class DaemonLink : public QObject {
     Q_OBJECT
 public:
     static constexpr std::chrono::milliseconds pollPeriod{1000};
+    /// Of messages that come by themselves, and of answers that may be large: what takes longer to read than
+    /// the event loop may be busy is refused.
+    static constexpr int usualFrame = 320 << 10, largeFrame = 4 << 20;
 
     /// address: "HOST:PORT".
     explicit DaemonLink(const QString &address, QObject *parent = nullptr);
@@ -44,16 +50,23 @@ public:
     /// OpenRPC, with "x-topics".
     const QJsonObject &description() const { return description_; }
     /// The description of a method; empty when the daemon does not have it.
-    QJsonObject method(const QString &name) const;
-    bool hasMethod(const QString &name) const { return !method(name).isEmpty(); }
-    bool hasTopic(const QString &name) const;
-    /// The names of the topics.
-    QStringList topics() const;
+    QJsonObject method(const QString &name) const { return methods_.value(name); }
+    bool hasMethod(const QString &name) const { return methods_.contains(name); }
+    bool hasTopic(const QString &name) const { return topics_.contains(name); }
+    /// The names of the topics, in the order of the description.
+    const QStringList &topics() const { return topicNames_; }
 
     Client &client() { return client_; }
     /// Calls a method; the callback is dropped with the context.
     void call(const QString &method, const QJsonObject &params, QObject *context,
               const Client::Callback &done);
+    /// The same for an answer of up to largeFrame.
+    void callForMuch(const QString &method, const QJsonObject &params, QObject *context,
+                     const Client::Callback &done);
+    /// As Client::subscribe. Without "queue" in the options only the newest message counts, and no more of
+    /// them come than "max_rate_hz" allows, or 100 a second, whatever the daemon sends.
+    int subscribe(const QString &topic, const QJsonObject &options, const Client::TopicCallback &callback);
+    void unsubscribe(int handle);
 
 Q_SIGNALS:
     /// Connection, state, health or latency.
@@ -65,13 +78,23 @@ Q_SIGNALS:
 
 private:
     void onConnected();
+    void onDescription(const QJsonValue &description);
     void onStatus(const QJsonObject &status);
+    bool isUnderstood() const;
     void poll();
 
     const QString address_;
     Client client_;
     QTimer timer_;
     QJsonObject info_, status_, description_;
+    QJsonObject worst_; // health item
+    QHash<QString, QJsonObject> methods_;
+    QSet<QString> topics_;
+    QStringList topicNames_;
+    QHash<int, NewestOnly *> gates_; // by the handle of their subscription
+    QString nonsense_;               // what it said of itself that cannot be used
+    int largeCalls_ = 0;
+    quint64 shownUnreadable_ = 0;
     double latency_ms_ = -1;
     bool isPolling_ = false;
 };

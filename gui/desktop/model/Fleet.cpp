@@ -4,6 +4,13 @@
 
 namespace hermes {
 
+Fleet::Fleet(QObject *parent)
+    : QObject(parent) {
+    changes_.setSingleShot(true);
+    changes_.setInterval(10);
+    connect(&changes_, &QTimer::timeout, this, &Fleet::changed);
+}
+
 Result<void> Fleet::add(const QString &address) {
     const bool hasPort = address.contains(':') && !address.endsWith(']');
     const auto url = InterfaceUrl::parse(hasPort ? address : address + ":1");
@@ -29,7 +36,10 @@ Robot &Fleet::robotAt(const QString &host) {
             return *robot;
     robots_.push_back(std::make_unique<Robot>(host));
     Robot *const robot = robots_.back().get();
-    connect(robot, &Robot::changed, this, &Fleet::changed);
+    connect(robot, &Robot::changed, &changes_, [this] {
+        if (!changes_.isActive())
+            changes_.start();
+    });
     Q_EMIT changed();
     return *robot;
 }

@@ -25,6 +25,8 @@ public:
     std::vector<DaemonLink *> daemons() const;
     /// The first connected daemon that has the method or the topic; null: none.
     DaemonLink *withMethod(const QString &method) const;
+    /// All connected daemons that have the method.
+    std::vector<DaemonLink *> allWithMethod(const QString &method) const;
     DaemonLink *withTopic(const QString &topic) const;
     DaemonLink *withName(const QString &name) const;
     /// The entry of the supervisor for a daemon: {name, state, pid, cpu, memory_bytes, ...}; empty: none.
@@ -32,6 +34,8 @@ public:
     /// All processes that the supervisor has.
     const QJsonArray &processes() const { return processes_; }
     DaemonLink *supervisor() const;
+    /// What of the supervisor's list cannot be shown; empty: all is.
+    const QString &problem() const { return problem_; }
 
     /// Looks for daemons at all usual ports.
     void search();
@@ -51,10 +55,11 @@ private:
         bool isExpected;
     };
 
+    DaemonLink *found(quint16 port, bool isExpected);
     void followSupervisor(DaemonLink *link);
 
     const QString host_;
-    QString name_;
+    QString name_, problem_;
     std::map<quint16, Entry> entries_;
     QJsonArray processes_;
     QPointer<DaemonLink> followed_;
@@ -64,8 +69,7 @@ private:
 class Fleet : public QObject {
     Q_OBJECT
 public:
-    explicit Fleet(QObject *parent = nullptr)
-        : QObject(parent) {}
+    explicit Fleet(QObject *parent = nullptr);
 
     /// "HOST": every daemon found there; "HOST:PORT": that one, and all others when it is a supervisor.
     /// Error: it is no address.
@@ -86,6 +90,7 @@ Q_SIGNALS:
 private:
     Robot &robotAt(const QString &host);
 
+    QTimer changes_; // many that come together are told once
     std::vector<std::unique_ptr<Robot>> robots_;
     Robot *robot_ = nullptr;
     QPointer<DaemonLink> daemon_;

@@ -1,9 +1,16 @@
 #include "common/Project.h"
 #include "gui/desktop/model/Fleet.h"
+#include "gui/desktop/widgets/ForeignText.h"
 
 #include <QJsonArray>
 
 namespace hermes {
+namespace {
+
+constexpr int longestName = 30;
+constexpr int mostDaemons = 100; // of one robot, as far as its supervisor names them
+
+} // namespace
 
 Robot::Robot(const QString &host, QObject *parent)
     : QObject(parent)
@@ -26,6 +33,14 @@ DaemonLink *Robot::withMethod(const QString &method) const {
         if (entry.link->isConnected() && entry.link->hasMethod(method))
             return entry.link.get();
     return nullptr;
+}
+
+std::vector<DaemonLink *> Robot::allWithMethod(const QString &method) const {
+    std::vector<DaemonLink *> found;
+    for (const auto &[port, entry] : entries_)
+        if (entry.link->isConnected() && entry.link->hasMethod(method))
+            found.push_back(entry.link.get());
+    return found;
 }
 
 DaemonLink *Robot::withTopic(const QString &topic) const {
@@ -59,6 +74,14 @@ void Robot::search() {
 }
 
 DaemonLink *Robot::add(quint16 port, bool isExpected) {
+    const std::size_t before = entries_.size();
+    DaemonLink *const link = found(port, isExpected);
+    if (entries_.size() > before)
+        Q_EMIT changed();
+    return link;
+}
+
+DaemonLink *Robot::found(quint16 port, bool isExpected) {
     const auto known = entries_.find(port);
     if (known != entries_.end()) {
         known->second.isExpected = known->second.isExpected || isExpected;
@@ -78,7 +101,6 @@ DaemonLink *Robot::add(quint16 port, bool isExpected) {
         if (link->isKnown())
             Q_EMIT capabilitiesChanged();
     });
-    Q_EMIT changed();
     return link;
 }
 
@@ -99,12 +121,18 @@ void Robot::followSupervisor(DaemonLink *link) {
         return;
     followed_ = link;
     search();
-    link->client().subscribe("processes", {}, [this](const TopicUpdate &update) {
-        name_ = update.data["robot"].toString();
-        processes_ = update.data["processes"].toArray();
+    link->subscribe("processes", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) {
+        name_ = shortLine(update.data["robot"].toString(), longestName);
+        const QJsonArray listed = update.data["processes"].toArray();
+        processes_ = {};
+        for (int i = 0; i < listed.size() && i < mostDaemons; ++i)
+            processes_.append(listed[i]);
         for (const QJsonValue &process : qAsConst(processes_))
-            if (const int port = process["port"].toInt(); port > 0 && port < 65536)
-                add(quint16(port), true);
+            if (const int port = process["port"].toInt();
+                port > 0 && port < 65536 && int(entries_.size()) < mostDaemons)
+                found(quint16(port), true);
+        const int left = listed.size() - processes_.size();
+        problem_ = left > 0 ? tr("%1 more processes of the supervisor are not shown").arg(left) : QString();
         Q_EMIT changed();
     });
 }

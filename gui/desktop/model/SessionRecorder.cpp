@@ -24,6 +24,19 @@ QJsonObject merged(QJsonObject session, const QJsonObject &recording, const QStr
             {"parts", parts}};
 }
 
+/// Those that began last, at most so many.
+std::vector<QJsonValue> newest(const QJsonArray &recordings, int most) {
+    std::vector<std::pair<double, int>> starts;
+    for (int i = 0; i < recordings.size(); ++i)
+        starts.emplace_back(-recordings[i]["start"].toDouble(), i);
+    const auto end = starts.begin() + std::min(int(starts.size()), most);
+    std::partial_sort(starts.begin(), end, starts.end());
+    std::vector<QJsonValue> result;
+    for (auto one = starts.begin(); one != end; ++one)
+        result.push_back(recordings[one->second]);
+    return result;
+}
+
 } // namespace
 
 double SessionRecorder::Logger::losses() const {
@@ -182,14 +195,17 @@ void SessionRecorder::stop() {
 
 void SessionRecorder::list() {
     const auto found = std::make_shared<QMap<QString, QJsonObject>>();
+    unlisted_ = 0;
     for (const Logger &logger : loggers_) {
         if (!logger.daemon)
             continue;
         const QString loggerName = logger.daemon->name();
-        logger.daemon->call("record.list", {}, this, [=](const Result<QJsonValue> &result) {
+        logger.daemon->callForMuch("record.list", {}, this, [=](const Result<QJsonValue> &result) {
             if (!result)
                 return;
-            for (const QJsonValue &recording : result->toArray()) {
+            const std::vector<QJsonValue> recordings = newest(result->toArray(), mostRecordings);
+            unlisted_ += result->toArray().size() - int(recordings.size());
+            for (const QJsonValue &recording : recordings) {
                 const QString key = recording["session"].toString() + recording["name"].toString();
                 (*found)[key] = merged(found->value(key), recording.toObject(), loggerName);
             }

@@ -13,6 +13,9 @@ namespace hermes {
 class SessionRecorder : public QObject {
     Q_OBJECT
 public:
+    /// Of each logger, the newest so many recordings are listed.
+    static constexpr int mostRecordings = 200;
+
     explicit SessionRecorder(Fleet &fleet, QObject *parent = nullptr);
 
     /// One logger: its daemon and what record.status says.
@@ -28,6 +31,8 @@ public:
     /// Recordings of all loggers, the latest first: {name, start, end, bytes, complete, parts: [{logger,
     /// folder, files}]}.
     const QJsonArray &sessions() const { return sessions_; }
+    /// Older recordings than the newest of a logger that are in the list.
+    int unlisted() const { return unlisted_; }
 
     bool isRecording() const;
     QString name() const;
@@ -57,6 +62,7 @@ private:
     QTimer timer_;
     std::vector<Logger> loggers_;
     QJsonArray sessions_;
+    int unlisted_ = 0;
     std::deque<std::pair<double, double>> progress_; // monotonic seconds, bytes
 };
 

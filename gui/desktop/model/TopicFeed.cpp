@@ -9,13 +9,16 @@ TopicFeed::TopicFeed(Fleet &fleet, const QString &topic, const QJsonObject &opti
     , topic_(topic)
     , options_(options)
     , callback_(callback) {
+    renewal_.setSingleShot(true);
+    renewal_.setInterval(renewPause);
+    connect(&renewal_, &QTimer::timeout, this, &TopicFeed::subscribeAnew);
     connect(&fleet, &Fleet::robotChosen, this, &TopicFeed::follow);
     follow(fleet.robot());
 }
 
 TopicFeed::~TopicFeed() {
     if (source_)
-        source_->client().unsubscribe(handle_);
+        source_->unsubscribe(handle_);
 }
 
 void TopicFeed::setEnabled(bool isEnabled) {
@@ -24,10 +27,16 @@ void TopicFeed::setEnabled(bool isEnabled) {
 }
 
 void TopicFeed::renew() {
+    if (renewal_.isActive())
+        return;
+    renewal_.start();
+}
+
+void TopicFeed::subscribeAnew() {
     if (!source_)
         return;
-    source_->client().unsubscribe(handle_);
-    handle_ = source_->client().subscribe(topic_, options_, callback_);
+    source_->unsubscribe(handle_);
+    handle_ = source_->subscribe(topic_, options_, callback_);
 }
 
 void TopicFeed::follow(Robot *robot) {
@@ -47,10 +56,10 @@ void TopicFeed::update() {
     if (found == source_ || isAway)
         return;
     if (source_)
-        source_->client().unsubscribe(handle_);
+        source_->unsubscribe(handle_);
     source_ = found;
     if (found)
-        handle_ = found->client().subscribe(topic_, options_, callback_);
+        handle_ = found->subscribe(topic_, options_, callback_);
     Q_EMIT sourceChanged();
 }
 

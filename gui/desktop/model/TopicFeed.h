@@ -9,6 +9,8 @@ namespace hermes {
 class TopicFeed : public QObject {
     Q_OBJECT
 public:
+    static constexpr std::chrono::milliseconds renewPause{200};
+
     /// options: as topics.subscribe takes them.
     TopicFeed(Fleet &fleet, const QString &topic, const QJsonObject &options,
               const Client::TopicCallback &callback, QObject *parent);
@@ -18,7 +20,8 @@ public:
     DaemonLink *source() const { return source_; }
     /// Switched off it costs nothing on the link.
     void setEnabled(bool isEnabled);
-    /// Subscribes anew, for the snapshot with which the topic begins.
+    /// Subscribes anew, for the snapshot with which the topic begins; a little later, however often it is
+    /// asked for.
     void renew();
 
 Q_SIGNALS:
@@ -28,6 +31,7 @@ Q_SIGNALS:
 private:
     void follow(Robot *robot);
     void update();
+    void subscribeAnew();
 
     Fleet &fleet_;
     const QString topic_;
@@ -36,6 +40,7 @@ private:
     QPointer<Robot> robot_;
     QPointer<DaemonLink> source_;
     int handle_ = 0;
+    QTimer renewal_;
     bool isEnabled_ = true;
 };
 

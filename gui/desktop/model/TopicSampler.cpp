@@ -1,6 +1,7 @@
 #include "gui/desktop/model/TopicSampler.h"
 
 #include <QJsonArray>
+#include <cmath>
 
 namespace hermes {
 namespace {
@@ -8,26 +9,28 @@ namespace {
 /// Longer lists are no set of numbers to choose from: a scan has thousands.
 constexpr int longestList = 16;
 
-void collect(const QJsonValue &value, const QString &prefix, QStringList &paths) {
+void collect(const QJsonValue &value, const QString &prefix, int most, QStringList &paths) {
+    if (paths.size() >= most)
+        return;
     const auto inner = [&](const QString &name) { return prefix.isEmpty() ? name : prefix + "." + name; };
     if (value.isDouble() || value.isBool()) {
         paths.append(prefix);
     } else if (value.isObject()) {
         const QJsonObject object = value.toObject();
         for (auto member = object.begin(); member != object.end(); ++member)
-            collect(member.value(), inner(member.key()), paths);
+            collect(member.value(), inner(member.key()), most, paths);
     } else if (value.isArray() && value.toArray().size() <= longestList) {
         const QJsonArray array = value.toArray();
         for (int i = 0; i < array.size(); ++i)
-            collect(array[i], inner(QString::number(i)), paths);
+            collect(array[i], inner(QString::number(i)), most, paths);
     }
 }
 
 } // namespace
 
-QStringList numericPaths(const QJsonValue &message) {
+QStringList numericPaths(const QJsonValue &message, int most) {
     QStringList paths;
-    collect(message, {}, paths);
+    collect(message, {}, most, paths);
     return paths;
 }
 
@@ -43,7 +46,7 @@ QJsonValue fieldAt(const QJsonValue &message, const QString &path) {
 TopicSampler::~TopicSampler() {
     for (const auto &[topic, source] : sources_)
         if (source.daemon)
-            source.daemon->client().unsubscribe(source.handle);
+            source.daemon->unsubscribe(source.handle);
 }
 
 void TopicSampler::add(DaemonLink *daemon, const FieldId &field) {
@@ -54,9 +57,8 @@ void TopicSampler::add(DaemonLink *daemon, const FieldId &field) {
     if (source.daemon)
         return;
     source.daemon = daemon;
-    source.handle =
-        daemon->client().subscribe(field.topic, {{"max_rate_hz", maxRate_hz}},
-                                   [this, topic](const TopicUpdate &update) { take(topic, update); });
+    source.handle = daemon->subscribe(field.topic, {{"max_rate_hz", maxRate_hz}},
+                                      [this, topic](const TopicUpdate &update) { take(topic, update); });
 }
 
 void TopicSampler::remove(const FieldId &field) {
@@ -69,7 +71,7 @@ void TopicSampler::remove(const FieldId &field) {
     if (source == sources_.end())
         return;
     if (source->second.daemon)
-        source->second.daemon->client().unsubscribe(source->second.handle);
+        source->second.daemon->unsubscribe(source->second.handle);
     sources_.erase(source);
 }
 
@@ -84,12 +86,15 @@ void TopicSampler::take(const TopicId &topic, const TopicUpdate &update) {
         if (TopicId(field.address, field.topic) != topic)
             continue;
         const QJsonValue value = fieldAt(update.data, field.path);
-        if (!value.isDouble() && !value.isBool())
+        const double number = value.isBool() ? double(value.toBool()) : value.toDouble(2 * largest);
+        if (!(std::abs(number) <= largest && std::abs(update.stamp) <= largest)) {
+            ++unusable_;
             continue;
+        }
         if (!samples.empty() && update.stamp < samples.back().x())
             samples.clear(); // the daemon's clock was set back
-        samples.push_back({update.stamp, value.isBool() ? double(value.toBool()) : value.toDouble()});
-        while (samples.front().x() < update.stamp - keep_s)
+        samples.push_back({update.stamp, number});
+        while (samples.front().x() < update.stamp - keep_s || samples.size() > mostSamples)
             samples.pop_front();
     }
 }

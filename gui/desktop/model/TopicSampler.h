@@ -18,8 +18,9 @@ struct FieldId {
     }
 };
 
-/// The dotted paths of all numbers in a message, those in short lists too ("current_a.0").
-QStringList numericPaths(const QJsonValue &message);
+/// The dotted paths of the numbers in a message, those in short lists too ("current_a.0"); no more than so
+/// many.
+QStringList numericPaths(const QJsonValue &message, int most);
 /// The value at such a path; undefined where there is none.
 QJsonValue fieldAt(const QJsonValue &message, const QString &path);
 
@@ -29,6 +30,9 @@ class TopicSampler : public QObject {
 public:
     static constexpr double keep_s = 600;
     static constexpr double maxRate_hz = 20;
+    static constexpr std::size_t mostSamples = std::size_t(2 * keep_s * maxRate_hz);
+    /// Beyond it a value is not kept: no axis can show it.
+    static constexpr double largest = 1e15;
 
     using QObject::QObject;
     ~TopicSampler() override;
@@ -38,6 +42,8 @@ public:
     /// {stamp, value}, oldest first.
     const std::deque<QPointF> &samples(const FieldId &field) const;
     const std::map<FieldId, std::deque<QPointF>> &all() const { return fields_; }
+    /// Values or stamps beyond `largest`, and messages without a number at a chosen field.
+    quint64 unusable() const { return unusable_; }
 
 private:
     struct Source {
@@ -50,6 +56,7 @@ private:
 
     std::map<FieldId, std::deque<QPointF>> fields_;
     std::map<TopicId, Source> sources_;
+    quint64 unusable_ = 0;
 };
 
 } // namespace hermes

@@ -1,13 +1,13 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
 #include <QElapsedTimer>
 #include <QHBoxLayout>
 #include <QJsonArray>
 #include <QJsonDocument>
-#include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
 #include <QPlainTextEdit>
@@ -37,12 +37,31 @@ QJsonObject parametersOf(const QJsonObject &method) {
     return schema;
 }
 
-QString readable(const QJsonValue &value) {
+constexpr int longestName = 80, longestLine = 500, longestAnswer = 100000, mostMethods = 1000;
+
+QString text(const QJsonValue &value) {
     if (value.isObject())
         return QString::fromUtf8(QJsonDocument(value.toObject()).toJson());
     if (value.isArray())
         return QString::fromUtf8(QJsonDocument(value.toArray()).toJson());
     return value.isString() ? value.toString() : value.isNull() ? "null" : value.toVariant().toString();
+}
+
+/// A line without end would be laid out for seconds.
+QString folded(const QString &text) {
+    QStringList lines;
+    for (const QString &line : text.split('\n'))
+        for (int i = 0; i == 0 || i < line.size(); i += longestLine)
+            lines.append(line.mid(i, longestLine));
+    return lines.join('\n');
+}
+
+QString readable(const QJsonValue &value) {
+    const QString all = text(value);
+    const QString shown = folded(all.left(longestAnswer));
+    return all.size() <= longestAnswer
+               ? shown
+               : shown + CommandsPanel::tr("\n... and %1 more characters").arg(all.size() - longestAnswer);
 }
 
 } // namespace
@@ -71,7 +90,7 @@ QWidget *CommandsPanel::makeMethods() {
     auto *const column = new QWidget;
     auto *const layout = new QVBoxLayout(column);
     layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(title_ = new QLabel);
+    layout->addWidget(title_ = new PlainLabel);
     layout->addWidget(filter_ = new QLineEdit);
     layout->addWidget(methods_ = new QListWidget, 1);
     title_->setObjectName("title");
@@ -81,7 +100,9 @@ QWidget *CommandsPanel::makeMethods() {
     filter_->setClearButtonEnabled(true);
     methods_->setObjectName("methods");
     connect(filter_, &QLineEdit::textChanged, this, &CommandsPanel::listMethods);
-    connect(methods_, &QListWidget::currentTextChanged, this, &CommandsPanel::showMethod);
+    connect(methods_, &QListWidget::currentItemChanged, this, [this](const QListWidgetItem *item) {
+        showMethod(item ? item->data(Qt::UserRole).toString() : QString());
+    });
     return column;
 }
 
@@ -92,7 +113,7 @@ QWidget *CommandsPanel::makeCall() {
     auto *const method = new QWidget;
     auto *const rows = new QVBoxLayout(method);
     rows->setContentsMargins(0, 0, 0, 0);
-    rows->addWidget(summary_ = new QLabel);
+    rows->addWidget(summary_ = new PlainLabel);
     rows->addWidget(form_ = new SchemaForm, 1);
     auto *const scroll = new QScrollArea;
     scroll->setWidget(method);
@@ -101,6 +122,7 @@ QWidget *CommandsPanel::makeCall() {
     layout->addWidget(scroll, 1);
     layout->addWidget(call_ = new QPushButton(theme::icon("call"), tr("Ru&n")));
     summary_->setWordWrap(true);
+    summary_->setMinimumWidth(1);
     summary_->setObjectName("summary");
     call_->setObjectName("call");
     connect(form_, &SchemaForm::edited, this, &CommandsPanel::update);
@@ -123,16 +145,24 @@ void CommandsPanel::follow(DaemonLink *daemon) {
 void CommandsPanel::listMethods() {
     const QString chosen = method_;
     methods_->clear();
+    int unlisted = 0;
     if (daemon_)
         for (const QJsonValue &method : daemon_->description()["methods"].toArray()) {
             const QString name = method["name"].toString();
             if (!(name + method["summary"].toString()).contains(filter_->text(), Qt::CaseInsensitive))
                 continue;
-            auto *const item = new QListWidgetItem(name, methods_);
-            item->setToolTip(method["summary"].toString());
+            if (methods_->count() >= mostMethods) {
+                ++unlisted;
+                continue;
+            }
+            auto *const item = new QListWidgetItem(shortLine(name, longestName), methods_);
+            item->setData(Qt::UserRole, name);
+            item->setToolTip(toolTipOf(method["summary"].toString()));
             if (name == chosen)
                 methods_->setCurrentItem(item);
         }
+    filter_->setPlaceholderText(unlisted == 0 ? tr("Find a command")
+                                              : tr("Find one of %1 more").arg(unlisted));
     if (!methods_->currentItem() && methods_->count() > 0)
         methods_->setCurrentRow(0);
     if (methods_->count() == 0)
@@ -156,9 +186,10 @@ void CommandsPanel::call() {
     const QString method = method_;
     QElapsedTimer time;
     time.start();
-    answer_->setPlainText(tr("%1 ...").arg(method));
-    daemon_->call(method, form_->values(), this, [this, method, time](const Result<QJsonValue> &result) {
-        const QString took = tr("%1: %2 ms").arg(method).arg(double(time.nsecsElapsed()) * 1e-6, 0, 'f', 1);
+    answer_->setPlainText(tr("%1 ...").arg(shortLine(method)));
+    daemon_->callForMuch(method, form_->values(), this, [=](const Result<QJsonValue> &result) {
+        const QString took =
+            tr("%1: %2 ms").arg(shortLine(method)).arg(double(time.nsecsElapsed()) * 1e-6, 0, 'f', 1);
         if (result)
             return answer_->setPlainText(took + "\n" + readable(*result));
         const Error &error = result.error();
@@ -166,14 +197,15 @@ void CommandsPanel::call() {
             tr("%1\nError %2: %3\n%4")
                 .arg(took)
                 .arg(error.code)
-                .arg(error.message, error.data.isUndefined() ? QString() : readable(error.data)));
-        form_->showErrors(error.data.toObject()["errors"].toArray());
+                .arg(shortText(error.message), error.data.isUndefined() ? QString() : readable(error.data)));
+        if (method == method_)
+            form_->showErrors(error.data.toObject()["errors"].toArray());
     });
 }
 
 void CommandsPanel::update() {
-    title_->setText(daemon_ ? "<b>" + daemon_->name().toHtmlEscaped() + "</b>"
-                            : tr("Choose a daemon to see its commands."));
+    title_->setBold(daemon_);
+    title_->setText(daemon_ ? daemon_->name() : tr("Choose a daemon to see its commands."));
     call_->setEnabled(daemon_ && daemon_->isConnected() && !method_.isEmpty() && form_->isValid());
 }
 

@@ -5,7 +5,6 @@
 #include <QPointer>
 #include <QWidget>
 
-class QLabel;
 class QLineEdit;
 class QListWidget;
 class QPlainTextEdit;
@@ -13,6 +12,7 @@ class QPushButton;
 
 namespace hermes {
 
+class PlainLabel;
 class SchemaForm;
 
 /// Any method of the chosen daemon: a form for its parameters, a call, the answer.
@@ -31,7 +31,7 @@ private:
     QWidget *makeCall();
 
     QPointer<DaemonLink> daemon_;
-    QLabel *title_, *summary_;
+    PlainLabel *title_, *summary_;
     QLineEdit *filter_;
     QListWidget *methods_;
     SchemaForm *form_;

@@ -1,11 +1,11 @@
 #include "gui/desktop/panels/DaemonsPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QJsonArray>
-#include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QTreeWidget>
@@ -17,6 +17,8 @@ namespace {
 
 enum Column { NameColumn, StateColumn };
 
+constexpr int longestName = 60, longestWord = 20, mostHealthItems = 50;
+
 Condition conditionOf(const QString &level) {
     return level == "ok" ? Condition::Ready : level == "error" ? Condition::Fault : Condition::Warning;
 }
@@ -27,8 +29,8 @@ void setText(QTreeWidgetItem &item, const QString &name, const QString &state, C
     item.setText(StateColumn, state);
     item.setIcon(StateColumn, theme::icon(condition));
     item.setForeground(StateColumn, theme::colour(condition));
-    item.setToolTip(NameColumn, toolTip);
-    item.setToolTip(StateColumn, toolTip);
+    for (const Column column : {NameColumn, StateColumn})
+        item.setToolTip(column, toolTipOf(toolTip));
 }
 
 /// What the supervisor says of a process: share of a core, memory, restarts.
@@ -36,8 +38,8 @@ QString usage(const QJsonObject &process) {
     if (process["pid"].toInt() == 0)
         return {};
     return DaemonsPanel::tr("%1 % of a core, %2 MB, %3 restarts")
-        .arg(100 * process["cpu"].toDouble(), 0, 'f', 1)
-        .arg(process["memory_bytes"].toDouble() / 1e6, 0, 'f', 1)
+        .arg(shortNumber(100 * process["cpu"].toDouble(), 1),
+             shortNumber(process["memory_bytes"].toDouble() / 1e6, 1))
         .arg(process["restarts"].toInt());
 }
 
@@ -48,9 +50,9 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     , fleet_(fleet)
     , address_(new QLineEdit)
     , tree_(new QTreeWidget)
-    , hint_(new QLabel(tr("No daemon found yet. Add one by its address, for example 192.168.1.20 or "
-                          "127.0.0.1:7450, or start the simulator with ./demo.")))
-    , message_(new QLabel) {
+    , hint_(new PlainLabel(tr("No daemon found yet. Add one by its address, for example 192.168.1.20 or "
+                              "127.0.0.1:7450, or start the simulator with ./demo.")))
+    , message_(new MessageLabel) {
     tree_->setObjectName("tree");
     tree_->setColumnCount(2);
     tree_->setHeaderLabels({tr("Daemon"), tr("State")});
@@ -59,9 +61,6 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     tree_->header()->setStretchLastSection(false);
     tree_->setUniformRowHeights(true);
     hint_->setWordWrap(true);
-    message_->setObjectName("message");
-    message_->setWordWrap(true);
-    message_->hide();
 
     address_->setObjectName("address");
     address_->setPlaceholderText(tr("HOST or HOST:PORT"));
@@ -111,13 +110,15 @@ void DaemonsPanel::updateTree() {
         QTreeWidgetItem *item = items_.take(robot.get());
         if (!item) {
             item = new QTreeWidgetItem;
-            item->setIcon(NameColumn, theme::icon("robot"));
             tree_->insertTopLevelItem(robotRow, item);
             item->setExpanded(true);
             item->setFirstColumnSpanned(true);
         }
         ++robotRow;
         item->setText(NameColumn, robot->name());
+        item->setToolTip(NameColumn, toolTipOf(robot->problem()));
+        item->setIcon(NameColumn,
+                      robot->problem().isEmpty() ? theme::icon("robot") : theme::icon(Condition::Warning));
         present.insert(robot.get(), item);
         int row = 0;
         for (DaemonLink *daemon : robot->daemons()) {
@@ -143,7 +144,7 @@ void DaemonsPanel::updateTree() {
 
 void DaemonsPanel::showDaemon(QTreeWidgetItem &item, const Robot &robot, const DaemonLink &daemon) {
     const QJsonObject process = robot.process(daemon);
-    const QString processState = process["state"].toString();
+    const QString processState = shortLine(process["state"].toString(), longestWord);
     const bool isStopped = !daemon.isConnected() && !processState.isEmpty() && processState != "running";
     QStringList toolTip{daemon.title() + ", " + daemon.address(), daemon.reason(), usage(process)};
     toolTip.removeAll(QString());
@@ -151,15 +152,19 @@ void DaemonsPanel::showDaemon(QTreeWidgetItem &item, const Robot &robot, const D
             toolTip.join('\n'));
 
     const QJsonArray health = daemon.isConnected() ? daemon.status()["health"].toArray() : QJsonArray();
-    while (item.childCount() > health.size())
+    const int shown = qMin(health.size(), mostHealthItems);
+    const int rows = shown + (health.size() > shown ? 1 : 0);
+    while (item.childCount() > rows)
         delete item.takeChild(item.childCount() - 1);
-    while (item.childCount() < health.size())
+    while (item.childCount() < rows)
         item.addChild(new QTreeWidgetItem);
-    for (int i = 0; i < health.size(); ++i) {
-        const QString level = health[i]["level"].toString();
-        setText(*item.child(i), health[i]["name"].toString(), level, conditionOf(level),
-                health[i]["message"].toString());
+    for (int i = 0; i < shown; ++i) {
+        const QString level = shortLine(health[i]["level"].toString(), longestWord);
+        setText(*item.child(i), shortLine(health[i]["name"].toString(), longestName), level,
+                conditionOf(level), health[i]["message"].toString());
     }
+    if (rows > shown)
+        setText(*item.child(shown), tr("%1 more").arg(health.size() - shown), {}, Condition::Warning, {});
 }
 
 void DaemonsPanel::showChosen() {
@@ -195,7 +200,7 @@ void DaemonsPanel::updateButtons() {
 void DaemonsPanel::addAddress() {
     const auto added = fleet_.add(address_->text().trimmed());
     if (!added)
-        return tell(added.error().message);
+        return message_->tell(added.error().message, true);
     address_->clear();
     message_->hide();
 }
@@ -209,13 +214,8 @@ void DaemonsPanel::ask(const QString &method) {
         if (done)
             message_->hide();
         else
-            tell(done.error().message);
+            message_->tell(done.error().message, true);
     });
-}
-
-void DaemonsPanel::tell(const QString &text) {
-    message_->setText(text);
-    message_->show();
 }
 
 } // namespace hermes

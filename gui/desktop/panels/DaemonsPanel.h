@@ -5,13 +5,15 @@
 #include <QHash>
 #include <QWidget>
 
-class QLabel;
 class QLineEdit;
 class QPushButton;
 class QTreeWidget;
 class QTreeWidgetItem;
 
 namespace hermes {
+
+class MessageLabel;
+class PlainLabel;
 
 /// The tree of robots, their daemons and what these say of their health. Adds daemons by address; starts,
 /// stops and restarts those that a supervisor runs.
@@ -28,14 +30,13 @@ private:
     void addAddress();
     /// process.start, process.stop or process.restart of the chosen daemon.
     void ask(const QString &method);
-    void tell(const QString &text);
     QWidget *makeButtons();
 
     Fleet &fleet_;
     QLineEdit *address_;
     QTreeWidget *tree_;
-    QLabel *hint_;
-    QLabel *message_;
+    PlainLabel *hint_;
+    MessageLabel *message_;
     QPushButton *start_, *stop_, *restart_;
     QHash<const void *, QTreeWidgetItem *> items_; // by Robot or DaemonLink
     bool isUpdating_ = false;

@@ -1,10 +1,9 @@
 #include "gui/desktop/panels/DrivePanel.h"
 
-#include "gui/desktop/Theme.h"
 #include "gui/desktop/drive/Stick.h"
+#include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QGridLayout>
-#include <QLabel>
 #include <QPushButton>
 #include <QSlider>
 #include <QVBoxLayout>
@@ -16,9 +15,9 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     , drive_(drive)
     , stick_(new Stick)
     , limit_(new QSlider(Qt::Horizontal))
-    , limitText_(new QLabel)
-    , control_(new QLabel)
-    , problem_(new QLabel)
+    , limitText_(new PlainLabel)
+    , control_(new PlainLabel)
+    , problem_(new MessageLabel)
     , takeOver_(new QPushButton(tr("Ta&ke over"))) {
     stick_->setObjectName("stick");
     limit_->setObjectName("limit");
@@ -27,12 +26,12 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     limit_->setToolTip(tr("What the whole stick means, as a share of the robot's largest speed"));
     control_->setObjectName("control");
     control_->setWordWrap(true);
+    control_->setMinimumWidth(1);
     problem_->setObjectName("problem");
-    problem_->setWordWrap(true);
     takeOver_->setObjectName("takeOver");
     takeOver_->setToolTip(tr("Takes the control from the other client; the robot stops first"));
 
-    auto *const limitLabel = new QLabel(tr("Speed li&mit"));
+    auto *const limitLabel = new PlainLabel(tr("Speed li&mit"));
     limitLabel->setBuddy(limit_);
     auto *const speed = new QHBoxLayout;
     speed->addWidget(limitLabel);
@@ -61,12 +60,12 @@ QWidget *DrivePanel::makeNumbers() {
     auto *const grid = new QGridLayout(table);
     grid->setContentsMargins(0, 0, 0, 0);
     const QStringList names{tr("ahead\nm/s"), tr("left\nm/s"), tr("turn\nrad/s")};
-    grid->addWidget(new QLabel(tr("commanded")), 1, 0);
-    grid->addWidget(new QLabel(tr("measured")), 2, 0);
+    grid->addWidget(new PlainLabel(tr("commanded")), 1, 0);
+    grid->addWidget(new PlainLabel(tr("measured")), 2, 0);
     for (int i = 0; i < 3; ++i) {
-        grid->addWidget(new QLabel(names[i]), 0, i + 1, Qt::AlignRight);
-        grid->addWidget(commanded_[i] = new QLabel, 1, i + 1, Qt::AlignRight);
-        grid->addWidget(measured_[i] = new QLabel, 2, i + 1, Qt::AlignRight);
+        grid->addWidget(new PlainLabel(names[i]), 0, i + 1, Qt::AlignRight);
+        grid->addWidget(commanded_[i] = new PlainLabel, 1, i + 1, Qt::AlignRight);
+        grid->addWidget(measured_[i] = new PlainLabel, 2, i + 1, Qt::AlignRight);
         measured_[i]->setObjectName(QString("measured%1").arg(i));
         commanded_[i]->setObjectName(QString("commanded%1").arg(i));
     }
@@ -74,10 +73,10 @@ QWidget *DrivePanel::makeNumbers() {
 }
 
 void DrivePanel::update() {
-    const auto show = [](QLabel *const(&labels)[3], const Velocity &velocity) {
+    const auto show = [](PlainLabel *const(&labels)[3], const Velocity &velocity) {
         const double values[]{velocity.vx, velocity.vy, velocity.omega};
         for (int i = 0; i < 3; ++i)
-            labels[i]->setText(QString::number(values[i] + 0.0, 'f', 2).replace("-0.00", "0.00"));
+            labels[i]->setText(shortNumber(values[i], 2).replace("-0.00", "0.00"));
     };
     show(commanded_, drive_.commanded());
     show(measured_, drive_.measured());
@@ -96,10 +95,7 @@ void DrivePanel::update() {
             reasons.append(cause.value().toString());
         problem = tr("Stopped: %1. Release it above.").arg(reasons.join("; "));
     }
-    QPalette palette;
-    palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    problem_->setPalette(palette);
-    problem_->setText(problem);
+    problem_->tell(problem, true);
 }
 
 } // namespace hermes

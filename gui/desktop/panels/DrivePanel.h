@@ -4,12 +4,13 @@
 
 #include <QWidget>
 
-class QLabel;
 class QPushButton;
 class QSlider;
 
 namespace hermes {
 
+class MessageLabel;
+class PlainLabel;
 class Stick;
 
 /// Drives by hand: stick, speed limit, the velocity that is commanded and the one that is measured, who has
@@ -26,8 +27,9 @@ private:
     DriveControl &drive_;
     Stick *stick_;
     QSlider *limit_;
-    QLabel *limitText_, *control_, *problem_;
-    QLabel *commanded_[3], *measured_[3];
+    PlainLabel *limitText_, *control_;
+    MessageLabel *problem_;
+    PlainLabel *commanded_[3], *measured_[3];
     QPushButton *takeOver_;
 };
 

@@ -1,11 +1,12 @@
 #include "gui/desktop/panels/LogPanel.h"
 
+#include "common/Time.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QComboBox>
 #include <QDateTime>
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QScrollBar>
@@ -18,6 +19,8 @@ namespace hermes {
 namespace {
 
 const QStringList levels{"debug", "info", "warning", "error"};
+constexpr int usualLevel = 1;
+constexpr int longestText = 500;
 
 QBrush colourOf(int level) {
     return level == 3   ? QBrush(theme::colour(Condition::Fault))
@@ -48,7 +51,7 @@ LogPanel::LogPanel(Fleet &fleet, QWidget *parent)
     view_->setPlaceholderText(tr("What the daemons log appears here."));
 
     auto *const top = new QHBoxLayout;
-    auto *const label = new QLabel(tr("Sho&w"));
+    auto *const label = new PlainLabel(tr("Sho&w"));
     label->setBuddy(level_);
     top->addWidget(label);
     top->addWidget(level_);
@@ -75,7 +78,7 @@ void LogPanel::followAll() {
 void LogPanel::follow(DaemonLink *daemon) {
     followed_.insert(daemon);
     connect(daemon, &QObject::destroyed, this, [this, daemon] { followed_.remove(daemon); });
-    daemon->client().subscribe("log", {{"queue", 100}}, [this, daemon](const TopicUpdate &update) {
+    daemon->subscribe("log", {{"queue", 100}}, [this, daemon](const TopicUpdate &update) {
         add(daemon->name(), update.data.toObject());
     });
     daemon->call("log.tail", {{"count", 100}}, this, [this, name = daemon->name()](const auto &tail) {
@@ -87,8 +90,13 @@ void LogPanel::follow(DaemonLink *daemon) {
 }
 
 void LogPanel::add(const QString &daemon, const QJsonObject &record) {
-    const Record made{record["stamp"].toDouble(), daemon, levels.indexOf(record["level"].toString()),
-                      record["source"].toString() + ": " + record["text"].toString()};
+    // Sorted by the time at which it came, and with a level that is shown, where it has none that makes
+    // sense.
+    const double stamp = record["stamp"].toDouble(-1);
+    const int level = levels.indexOf(record["level"].toString());
+    const QString text = record["source"].toString() + ": " + record["text"].toString();
+    const Record made{timeOf(stamp) ? stamp : stampNow(), daemon, level < 0 ? usualLevel : level,
+                      shortLine(text, longestText)};
     isUnsorted_ = isUnsorted_ || (!records_.empty() && made.stamp < records_.back().stamp);
     records_.push_back(made);
     ++newRecords_;
@@ -134,7 +142,7 @@ void LogPanel::append(const std::vector<const Record *> &records) {
         QTextCharFormat format;
         if (const QBrush colour = colourOf(record.level); colour != Qt::NoBrush)
             format.setForeground(colour);
-        const QDateTime time = QDateTime::fromMSecsSinceEpoch(qint64(record.stamp * 1000));
+        const QDateTime time = timeOf(record.stamp).value_or(QDateTime());
         cursor.insertText(QString("%1  %2  %3  %4")
                               .arg(time.toString("HH:mm:ss.zzz"), record.daemon.leftJustified(15),
                                    levels.value(record.level, "?").leftJustified(7), record.text),

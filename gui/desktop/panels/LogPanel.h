@@ -22,7 +22,7 @@ class LogPanel : public QWidget {
 public:
     static constexpr std::size_t maxRecords = 5000;
     /// Of those that pass the filter, the newest are shown.
-    static constexpr std::size_t maxLines = 1000;
+    static constexpr std::size_t maxLines = 500;
     static constexpr std::chrono::milliseconds refreshPeriod{100};
 
     explicit LogPanel(Fleet &fleet, QWidget *parent = nullptr);

@@ -1,9 +1,9 @@
 #include "gui/desktop/panels/MapPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QFileDialog>
-#include <QLabel>
 #include <QMenu>
 #include <QPainter>
 #include <QSvgGenerator>
@@ -18,7 +18,7 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , model_(fleet)
     , view_(new MapView(model_))
-    , message_(new QLabel) {
+    , message_(new MessageLabel) {
     auto *const bar = new QToolBar;
     bar->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     bar->setIconSize({16, 16});
@@ -28,7 +28,6 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     for (auto *const button : bar->findChildren<QToolButton *>())
         button->setFocusPolicy(Qt::TabFocus); // within reach of the keyboard
     view_->setObjectName("map");
-    message_->setObjectName("message");
     message_->setMargin(4);
     auto *const layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
@@ -36,14 +35,13 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     layout->addWidget(bar);
     layout->addWidget(view_, 1);
     layout->addWidget(message_);
-    message_->hide();
     setFocusProxy(view_);
 
     connect(&fleet, &Fleet::changed, this, &MapPanel::updateTools);
     connect(view_, &MapView::followingChanged, follow_, &QAction::setChecked);
     connect(view_, &MapView::toolChanged, this, &MapPanel::updateTools);
     connect(view_, &MapView::measured, this,
-            [this](double distance) { tell(tr("%1 m").arg(distance, 0, 'f', 3)); });
+            [this](double distance) { message_->tell(tr("%1 m").arg(distance, 0, 'f', 3)); });
     connect(view_, &MapView::placed, this, [this](const MapPose &pose) {
         ask("pose.set", {{"x", pose.x}, {"y", pose.y}, {"theta", pose.theta}},
             tr("Placed at %1 m, %2 m, %3°")
@@ -115,7 +113,7 @@ void MapPanel::askFile() {
     dialog->setAcceptMode(QFileDialog::AcceptSave);
     connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
         const auto done = exportTo(file);
-        tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
+        message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
     });
     dialog->open(); // not modal for the rest of the program: STOP stays in reach
 }
@@ -145,10 +143,10 @@ Result<void> MapPanel::exportTo(const QString &file) {
 void MapPanel::ask(const QString &method, const QJsonObject &params, const QString &done) {
     DaemonLink *const matcher = model_.matcher();
     if (!matcher)
-        return tell(tr("No scan matcher is connected."), true);
-    tell(tr("%1 ...").arg(method));
+        return message_->tell(tr("No scan matcher is connected."), true);
+    message_->tell(tr("%1 ...").arg(method));
     matcher->call(method, params, this, [this, done](const Result<QJsonValue> &result) {
-        tell(result ? done : result.error().message, !result);
+        message_->tell(result ? done : result.error().message, !result);
     });
 }
 
@@ -159,15 +157,6 @@ void MapPanel::updateTools() {
     place_->setChecked(view_->tool() == MapView::Tool::Place);
     place_->setEnabled(isThere && matcher->hasMethod("pose.set"));
     relocalize_->setEnabled(isThere && matcher->hasMethod("pose.relocalize"));
-}
-
-void MapPanel::tell(const QString &text, bool isError) {
-    QPalette palette;
-    if (isError)
-        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    message_->setPalette(palette);
-    message_->setText(text);
-    message_->show();
 }
 
 } // namespace hermes

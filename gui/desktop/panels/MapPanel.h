@@ -3,10 +3,11 @@
 #include "gui/desktop/view/MapView.h"
 
 class QAction;
-class QLabel;
 class QToolBar;
 
 namespace hermes {
+
+class MessageLabel;
 
 /// The map view with its tools: follow, fit, measure, place, relocalize, layers, export.
 class MapPanel : public QWidget {
@@ -26,11 +27,10 @@ private:
     /// A command of the matcher; tells how it ended.
     void ask(const QString &method, const QJsonObject &params, const QString &done);
     void updateTools();
-    void tell(const QString &text, bool isError = false);
 
     MapModel model_;
     MapView *view_;
-    QLabel *message_;
+    MessageLabel *message_;
     QAction *follow_, *measure_, *place_, *relocalize_;
 };
 

@@ -1,11 +1,11 @@
 #include "gui/desktop/panels/PlotsPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QFileDialog>
 #include <QGraphicsLayout>
 #include <QHBoxLayout>
-#include <QLabel>
 #include <QPushButton>
 #include <QSaveFile>
 #include <QSplitter>
@@ -23,6 +23,8 @@ namespace hermes {
 using namespace QtCharts;
 
 namespace {
+
+constexpr int longestName = 60, mostTopics = 200, mostFields = 200;
 
 enum Role { AddressRole = Qt::UserRole, TopicRole, PathRole, DaemonRole };
 
@@ -45,7 +47,7 @@ PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
     , chartView_(new QChartView(chart_))
     , time_(new QValueAxis)
     , value_(new QValueAxis)
-    , message_(new QLabel(tr("Open a topic and tick a number to plot it."))) {
+    , message_(new MessageLabel) {
     tree_->setObjectName("topics");
     tree_->setHeaderHidden(true);
     tree_->setUniformRowHeights(true);
@@ -65,7 +67,7 @@ PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
     chart_->addAxis(time_, Qt::AlignBottom);
     chart_->addAxis(value_, Qt::AlignLeft);
     chartView_->setMinimumHeight(80);
-    message_->setWordWrap(true);
+    message_->tell(tr("Open a topic and tick a number to plot it."));
 
     auto *const left = new QWidget;
     auto *const column = new QVBoxLayout(left);
@@ -123,17 +125,24 @@ void PlotsPanel::listTopics() {
                 item->setData(0, DaemonRole, QVariant::fromValue(QPointer<QObject>(daemon)));
                 item->setToolTip(0, daemon->address());
             }
-            QStringList listed;
+            QSet<QString> listed;
             for (int i = 0; i < item->childCount(); ++i)
-                listed.append(item->child(i)->text(0));
+                listed.insert(item->child(i)->data(0, TopicRole).toString());
             for (const QString &topic : daemon->topics()) {
+                if (item->childCount() >= mostTopics)
+                    break;
                 if (listed.contains(topic) || topic == "log" || topic == "settings")
                     continue;
-                auto *const child = new QTreeWidgetItem(item, {topic});
+                auto *const child = new QTreeWidgetItem(item, {shortLine(topic, longestName)});
                 child->setData(0, TopicRole, topic);
                 child->setData(0, DaemonRole, item->data(0, DaemonRole));
                 child->setChildIndicatorPolicy(QTreeWidgetItem::ShowIndicator);
             }
+            if (daemon->topics().size() > mostTopics)
+                item->setText(0, tr("%1 (%2 topics, of which %3 are listed)")
+                                     .arg(daemon->name())
+                                     .arg(daemon->topics().size())
+                                     .arg(mostTopics));
         }
     isListing_ = false;
 }
@@ -142,20 +151,23 @@ void PlotsPanel::listTopics() {
 void PlotsPanel::listFields(DaemonLink *daemon, const QString &topic) {
     if (!daemon)
         return;
-    message_->setText(tr("Waiting for a message of %1 ...").arg(topic));
+    message_->tell(tr("Waiting for a message of %1 ...").arg(shortLine(topic)));
     const auto handle = std::make_shared<int>(0);
-    *handle = daemon->client().subscribe(
+    *handle = daemon->subscribe(
         topic, {}, [this, daemon = QPointer<DaemonLink>(daemon), topic, handle](const TopicUpdate &update) {
             if (!daemon)
                 return;
-            daemon->client().unsubscribe(*handle);
+            daemon->unsubscribe(*handle);
             isListing_ = true;
-            const auto topics = tree_->findItems(topic, Qt::MatchExactly | Qt::MatchRecursive);
-            for (QTreeWidgetItem *item : topics) {
-                if (daemonOf(*item) != daemon || item->childCount() > 0)
+            const QStringList paths = numericPaths(update.data, mostFields);
+            for (QTreeWidgetItemIterator i(tree_); *i; ++i) {
+                QTreeWidgetItem *const item = *i;
+                if (item->data(0, TopicRole) != topic || item->data(0, PathRole).isValid() ||
+                    daemonOf(*item) != daemon || item->childCount() > 0)
                     continue;
-                for (const QString &path : numericPaths(update.data)) {
-                    auto *const child = new QTreeWidgetItem(item, {path.isEmpty() ? topic : path});
+                for (const QString &path : paths) {
+                    auto *const child =
+                        new QTreeWidgetItem(item, {shortLine(path.isEmpty() ? topic : path, longestName)});
                     child->setData(0, AddressRole, daemon->address());
                     child->setData(0, TopicRole, topic);
                     child->setData(0, PathRole, path);
@@ -164,7 +176,8 @@ void PlotsPanel::listFields(DaemonLink *daemon, const QString &topic) {
                 }
             }
             isListing_ = false;
-            message_->setText(tr("Tick a number to plot it."));
+            message_->tell(paths.isEmpty() ? tr("%1 has no number to plot.").arg(shortLine(topic))
+                                           : tr("Tick a number to plot it."));
         });
 }
 
@@ -175,7 +188,7 @@ void PlotsPanel::onItemChanged(QTreeWidgetItem *item) {
     DaemonLink *const daemon = daemonOf(*item);
     if (item->checkState(0) == Qt::Checked && daemon) {
         auto *const series = new QLineSeries;
-        series->setName(field.topic + " " + field.path);
+        series->setName(shortLine(field.topic + " " + field.path, longestName).toHtmlEscaped());
         chart_->addSeries(series);
         series->attachAxis(time_);
         series->attachAxis(value_);
@@ -208,6 +221,8 @@ void PlotsPanel::redraw() {
         }
         series->replace(points);
     }
+    if (sampler_.unusable() > 0)
+        message_->tell(tr("%1 values cannot be plotted: no numbers, or too large.").arg(sampler_.unusable()));
     if (least > most)
         return;
     const double margin = std::max(0.05 * (most - least), 1e-3 * std::max(1.0, std::abs(most)));
@@ -222,7 +237,7 @@ void PlotsPanel::askFile() {
     dialog->setAcceptMode(QFileDialog::AcceptSave);
     connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
         const auto done = exportTo(file);
-        message_->setText(done ? tr("Wrote %1").arg(file) : done.error().message);
+        message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
     });
     dialog->open();
 }

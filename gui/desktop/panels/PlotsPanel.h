@@ -12,12 +12,13 @@ class QChartView;
 class QLineSeries;
 class QValueAxis;
 QT_CHARTS_END_NAMESPACE
-class QLabel;
 class QPushButton;
 class QTreeWidget;
 class QTreeWidgetItem;
 
 namespace hermes {
+
+class MessageLabel;
 
 /// Curves of any numeric field of any topic over time, chosen by a click; with pause and CSV.
 class PlotsPanel : public QWidget {
@@ -44,7 +45,7 @@ private:
     QtCharts::QChart *chart_;
     QtCharts::QChartView *chartView_;
     QtCharts::QValueAxis *time_, *value_;
-    QLabel *message_;
+    MessageLabel *message_;
     QPushButton *pause_;
     QTimer timer_;
     std::map<FieldId, QtCharts::QLineSeries *> curves_;

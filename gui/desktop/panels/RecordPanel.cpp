@@ -1,11 +1,11 @@
 #include "gui/desktop/panels/RecordPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QDateTime>
 #include <QHBoxLayout>
 #include <QHeaderView>
-#include <QLabel>
 #include <QLineEdit>
 #include <QLocale>
 #include <QPushButton>
@@ -15,6 +15,8 @@
 namespace hermes {
 namespace {
 
+constexpr int longestName = 60;
+
 QString bytesText(double bytes) {
     const char *const units[]{"B", "kB", "MB", "GB", "TB"};
     int unit = 0;
@@ -22,14 +24,23 @@ QString bytesText(double bytes) {
         bytes /= 1000;
         ++unit;
     }
-    return QString("%1 %2").arg(bytes, 0, 'f', unit == 0 ? 0 : 1).arg(units[unit]);
+    return shortNumber(bytes, unit == 0 ? 0 : 1) + ' ' + units[unit];
 }
 
 QString timeText(double seconds) {
+    constexpr double century_s = 3.2e9;
+    if (!(seconds >= 0 && seconds < century_s))
+        return RecordPanel::tr("%1 s").arg(shortNumber(seconds, 0));
     const qint64 s = qint64(seconds);
     if (s >= 3600)
         return RecordPanel::tr("%1 h %2 min").arg(s / 3600).arg(s / 60 % 60);
     return s >= 60 ? RecordPanel::tr("%1 min %2 s").arg(s / 60).arg(s % 60) : RecordPanel::tr("%1 s").arg(s);
+}
+
+QString startText(double stamp) {
+    const auto start = timeOf(stamp);
+    return start ? QLocale().toString(*start, QLocale::ShortFormat)
+                 : RecordPanel::tr("at an impossible time: %1").arg(stamp);
 }
 
 } // namespace
@@ -42,8 +53,8 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     , record_(new QPushButton)
     , replay_(new QPushButton(theme::icon("start"), tr("Repla&y")))
     , live_(new QPushButton(tr("&Live")))
-    , amount_(new QLabel)
-    , message_(new QLabel)
+    , amount_(new PlainLabel)
+    , message_(new MessageLabel)
     , sessions_(new QTreeWidget) {
     name_->setObjectName("name");
     name_->setToolTip(tr("Of the folder in which all loggers record"));
@@ -54,8 +65,7 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     live_->setToolTip(tr("Ends the replay"));
     amount_->setObjectName("amount");
     amount_->setWordWrap(true);
-    message_->setObjectName("message");
-    message_->setWordWrap(true);
+    amount_->setMinimumWidth(1);
     sessions_->setObjectName("sessions");
     sessions_->setHeaderLabels({tr("Recording"), tr("Size")});
     sessions_->header()->setStretchLastSection(false);
@@ -91,9 +101,9 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     connect(live_, &QPushButton::clicked, &player_, &SessionPlayer::live);
     connect(sessions_, &QTreeWidget::currentItemChanged, this, &RecordPanel::update);
     connect(&recorder_, &SessionRecorder::changed, this, &RecordPanel::update);
-    connect(&recorder_, &SessionRecorder::told, this, &RecordPanel::tell);
+    connect(&recorder_, &SessionRecorder::told, message_, &MessageLabel::tell);
     connect(&player_, &SessionPlayer::changed, this, &RecordPanel::update);
-    connect(&player_, &SessionPlayer::told, this, &RecordPanel::tell);
+    connect(&player_, &SessionPlayer::told, message_, &MessageLabel::tell);
     update();
 }
 
@@ -117,10 +127,14 @@ void RecordPanel::showAmount() {
         for (const SessionRecorder::Logger &logger : recorder_.loggers())
             if (logger.daemon)
                 names.append(logger.daemon->name());
-        return amount_->setText(tr("Records with %1.").arg(names.join(", ")));
+        QString text = tr("Records with %1.").arg(names.join(", "));
+        if (recorder_.unlisted() > 0)
+            text += ' ' + tr("%1 older recordings are not listed.").arg(recorder_.unlisted());
+        return amount_->setText(text);
     }
-    QString text =
-        tr("%1: %2, %3").arg(recorder_.name(), timeText(recorder_.seconds()), bytesText(recorder_.bytes()));
+    QString text = tr("%1: %2, %3")
+                       .arg(shortLine(recorder_.name(), longestName), timeText(recorder_.seconds()),
+                            bytesText(recorder_.bytes()));
     if (recorder_.secondsLeft() > 0)
         text += tr(", the disk will do for %1").arg(timeText(recorder_.secondsLeft()));
     for (const SessionRecorder::Logger &logger : recorder_.loggers())
@@ -143,26 +157,18 @@ void RecordPanel::showSessions() {
         for (const QJsonValue &part : session["parts"].toArray())
             loggers.append(part["logger"].toString());
         QTreeWidgetItem *const item = sessions_->topLevelItem(i);
-        item->setText(0, session["name"].toString());
+        item->setText(0, shortLine(session["name"].toString(), longestName));
         item->setText(1, bytesText(session["bytes"].toDouble()));
         item->setIcon(0, theme::icon(isComplete ? Condition::Ready
                                      : goesOn   ? Condition::Busy
                                                 : Condition::Warning));
-        const QDateTime start = QDateTime::fromMSecsSinceEpoch(qint64(1000 * session["start"].toDouble()));
-        item->setToolTip(0, tr("%1\n%2\n%3")
-                                .arg(QLocale().toString(start, QLocale::ShortFormat), loggers.join(", "),
-                                     isComplete ? tr("complete")
-                                     : goesOn   ? tr("going on")
-                                                : tr("not complete: cut off, or ended by an error")));
+        item->setToolTip(0,
+                         toolTipOf(tr("%1\n%2\n%3")
+                                       .arg(startText(session["start"].toDouble()), loggers.join(", "),
+                                            isComplete ? tr("complete")
+                                            : goesOn   ? tr("going on")
+                                                       : tr("not complete: cut off, or ended by an error"))));
     }
-}
-
-void RecordPanel::tell(const QString &text, bool isError) {
-    QPalette palette;
-    if (isError)
-        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    message_->setPalette(palette);
-    message_->setText(text);
 }
 
 } // namespace hermes

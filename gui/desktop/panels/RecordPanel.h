@@ -5,12 +5,14 @@
 
 #include <QWidget>
 
-class QLabel;
 class QLineEdit;
 class QPushButton;
 class QTreeWidget;
 
 namespace hermes {
+
+class MessageLabel;
+class PlainLabel;
 
 /// Records with all loggers of the robot under one name, shows how much and how long the disk will do, and
 /// lists what was recorded.
@@ -23,13 +25,13 @@ private:
     void update();
     void showAmount();
     void showSessions();
-    void tell(const QString &text, bool isError);
 
     SessionRecorder recorder_;
     SessionPlayer player_;
     QLineEdit *name_;
     QPushButton *record_, *replay_, *live_;
-    QLabel *amount_, *message_;
+    PlainLabel *amount_;
+    MessageLabel *message_;
     QTreeWidget *sessions_;
 };
 

@@ -2,11 +2,11 @@
 
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
 #include <QHBoxLayout>
 #include <QJsonArray>
-#include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QScrollArea>
@@ -16,13 +16,11 @@ namespace hermes {
 
 SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
-    , title_(new QLabel)
-    , message_(new QLabel)
+    , title_(new PlainLabel)
+    , message_(new MessageLabel)
     , filter_(new QLineEdit)
     , form_(new SchemaForm) {
     title_->setObjectName("title");
-    message_->setObjectName("message");
-    message_->setWordWrap(true);
     filter_->setObjectName("filter");
     filter_->setPlaceholderText(tr("Find a setting"));
     filter_->setClearButtonEnabled(true);
@@ -79,7 +77,7 @@ QWidget *SettingsPanel::makeButtons() {
 void SettingsPanel::follow(DaemonLink *daemon) {
     if (daemon_) {
         daemon_->disconnect(this);
-        daemon_->client().unsubscribe(handle_);
+        daemon_->unsubscribe(handle_);
     }
     daemon_ = daemon;
     form_->setSchema({}, {});
@@ -87,7 +85,7 @@ void SettingsPanel::follow(DaemonLink *daemon) {
     if (daemon) {
         connect(daemon, &DaemonLink::ready, this, &SettingsPanel::load);
         connect(daemon, &DaemonLink::changed, this, &SettingsPanel::update);
-        handle_ = daemon->client().subscribe("settings", {}, [this](const TopicUpdate &update) {
+        handle_ = daemon->subscribe("settings", {{"max_rate_hz", 5}}, [this](const TopicUpdate &update) {
             form_->setBaseline(update.data.toObject());
             this->update();
         });
@@ -100,12 +98,17 @@ void SettingsPanel::follow(DaemonLink *daemon) {
 void SettingsPanel::load() {
     DaemonLink *const daemon = daemon_;
     daemon->call("settings.schema", {}, this, [this, daemon](const Result<QJsonValue> &schema) {
-        if (daemon != daemon_ || !schema)
+        if (daemon != daemon_)
             return;
+        if (!schema || !schema->isObject())
+            return message_->tell(schema ? tr("settings.schema is no object") : schema.error().message, true);
         const QJsonObject found = schema->toObject();
         daemon->call("settings.get", {}, this, [this, daemon, found](const Result<QJsonValue> &values) {
-            if (daemon != daemon_ || !values)
+            if (daemon != daemon_)
                 return;
+            if (!values || !values->isObject())
+                return message_->tell(values ? tr("settings.get is no object") : values.error().message,
+                                      true);
             form_->setSchema(found, values->toObject());
             form_->setFilter(filter_->text());
             update();
@@ -121,14 +124,15 @@ void SettingsPanel::apply() {
             return;
         if (!done) {
             form_->showErrors(done.error().data.toObject()["errors"].toArray());
-            return tell(done.error().message, true);
+            return message_->tell(done.error().message, true);
         }
         QStringList restart;
         for (const QJsonValue &path : (*done)["restart"].toArray())
             restart.append(path.toString());
-        tell(restart.isEmpty() ? tr("Applied.")
-                               : tr("Applied. Needs a restart of the daemon: %1").arg(restart.join(", ")),
-             false);
+        message_->tell(restart.isEmpty()
+                           ? tr("Applied.")
+                           : tr("Applied. Needs a restart of the daemon: %1").arg(restart.join(", ")),
+                       false);
         load();
     });
 }
@@ -136,16 +140,16 @@ void SettingsPanel::apply() {
 void SettingsPanel::save() {
     daemon_->call("settings.save", {}, this, [this](const Result<QJsonValue> &done) {
         if (done)
-            tell(tr("Saved: the daemon begins with these settings the next time."), false);
+            message_->tell(tr("Saved: the daemon begins with these settings the next time."), false);
         else
-            tell(done.error().message, true);
+            message_->tell(done.error().message, true);
     });
 }
 
 void SettingsPanel::update() {
     const bool isThere = daemon_ && daemon_->isConnected();
-    title_->setText(daemon_ ? "<b>" + daemon_->name().toHtmlEscaped() + "</b>"
-                            : tr("Choose a daemon to see its settings."));
+    title_->setBold(daemon_);
+    title_->setText(daemon_ ? daemon_->name() : tr("Choose a daemon to see its settings."));
     const int changed = leafPaths(form_->changes()).size();
     apply_->setText(changed == 0 ? tr("A&pply") : tr("A&pply %n change(s)", nullptr, changed));
     apply_->setEnabled(isThere && changed > 0 && form_->isValid());
@@ -153,15 +157,6 @@ void SettingsPanel::update() {
     defaults_->setEnabled(isThere);
     save_->setEnabled(isThere);
     form_->setEnabled(isThere);
-}
-
-void SettingsPanel::tell(const QString &text, bool isError) {
-    QPalette palette;
-    if (isError)
-        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
-    message_->setPalette(palette);
-    message_->setText(text);
-    message_->show();
 }
 
 } // namespace hermes

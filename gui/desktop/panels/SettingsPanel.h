@@ -5,13 +5,13 @@
 #include <QPointer>
 #include <QWidget>
 
-class QComboBox;
-class QLabel;
 class QLineEdit;
 class QPushButton;
 
 namespace hermes {
 
+class MessageLabel;
+class PlainLabel;
 class SchemaForm;
 
 /// The settings of the chosen daemon, made from its own schema: apply, revert, defaults, save.
@@ -26,12 +26,12 @@ private:
     void apply();
     void save();
     void update();
-    void tell(const QString &text, bool isError);
     QWidget *makeButtons();
 
     QPointer<DaemonLink> daemon_;
     int handle_ = 0; // subscription to the topic "settings"
-    QLabel *title_, *message_;
+    PlainLabel *title_;
+    MessageLabel *message_;
     QLineEdit *filter_;
     SchemaForm *form_;
     QPushButton *apply_, *revert_, *defaults_, *save_;

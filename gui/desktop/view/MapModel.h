@@ -24,6 +24,9 @@ struct MapPose {
 class MapModel : public QObject {
     Q_OBJECT
 public:
+    static constexpr double farthest_m = 1e6;
+    static constexpr int mostEdges = 200000;
+
     explicit MapModel(Fleet &fleet, QObject *parent = nullptr);
 
     /// The edges of the map, free space on their left.
@@ -53,6 +56,10 @@ public:
     /// Forgets the paths.
     void clearPaths();
 
+    /// What came and is not shown: values that are no numbers or beyond any place on Earth (farthest_m),
+    /// edges beyond mostEdges.
+    quint64 ignored() const { return ignored_; }
+
     /// All edges; null rectangle without any.
     QRectF bounds() const;
     /// Who has the topics pose and map; null: nobody.
@@ -75,6 +82,8 @@ private:
     void onMatch(const QJsonValue &data);
     void onSegments(const QJsonValue &data);
     void onScan(const QJsonValue &data);
+    void addEdge(const QJsonValue &edge);
+    void removeEdge(qint64 id);
     void follow(Path &path, const QJsonValue &pose);
     void placeScan();
 
@@ -91,6 +100,7 @@ private:
     std::optional<std::array<double, 9>> covariance_;
     QString outcome_;
     QVector<QPair<qint64, int>> pairs_; // edge, segment
+    quint64 ignored_ = 0;
     double reliability_ = 0, ambiguity_ = 0;
     Path matched_, odometry_, truth_;
     TopicFeed maps_, poses_, matches_, segmentFeed_, scans_, odometryFeed_, truthFeed_;

@@ -1,6 +1,7 @@
 #include "gui/desktop/view/MapPainter.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/view/Clipping.h"
 
 #include <QPainter>
 #include <QPainterPath>
@@ -27,6 +28,8 @@ Colours colours() {
 
 /// One pixel lines are fast without smoothing; beyond so many lines nobody sees the difference.
 constexpr int smoothUpTo = 2000;
+/// Pixels of lines that are drawn smoothly, and at all: a picture is not to take longer than 50 ms.
+constexpr double longestSmooth = 2e5, longestDrawn = 1e6;
 
 } // namespace
 
@@ -44,14 +47,15 @@ void MapPainter::paint(QPainter &painter) const {
     painter.fillRect(QRect({}, size_), c.background);
     if (layers_.grid)
         paintGrid(painter);
+    int leftOut = 0;
     if (layers_.map)
-        paintLines(painter, model_.edges(), c.map, model_.edges().size() > smoothUpTo ? 1 : 2);
+        leftOut += paintLines(painter, onScreen(model_.edges()), c.map, 2);
     if (layers_.scan)
         paintScan(painter);
     if (layers_.correspondences)
-        paintCorrespondences(painter);
+        leftOut += paintCorrespondences(painter);
     if (layers_.segments)
-        paintLines(painter, model_.segments(), c.accent, 2);
+        leftOut += paintLines(painter, onScreen(model_.segments()), c.accent, 2);
     if (layers_.paths) {
         paintPath(painter, model_.truthPath(), c.truth, Qt::DotLine);
         paintPath(painter, model_.odometryPath(), c.odometry, Qt::DashLine);
@@ -65,6 +69,7 @@ void MapPainter::paint(QPainter &painter) const {
         paintScaleBar(painter, gridStep_m(scale()));
     if (model_.pose())
         paintMatch(painter);
+    paintNotice(painter, leftOut);
 }
 
 void MapPainter::paintGrid(QPainter &painter) const {
@@ -77,27 +82,41 @@ void MapPainter::paintGrid(QPainter &painter) const {
         painter.drawLine(transform_.map(isVertical ? QLineF(at, world.top(), at, world.bottom())
                                                    : QLineF(world.left(), at, world.right(), at)));
     };
-    for (double x = std::ceil(world.left() / step) * step; x <= world.right(); x += step)
-        line(x, true);
-    for (double y = std::ceil(world.top() / step) * step; y <= world.bottom(); y += step)
-        line(y, false);
+    // Counted, for far away the next double may be more than a step off.
+    const double left = std::ceil(world.left() / step), top = std::ceil(world.top() / step);
+    for (int i = 0; i <= int(world.width() / step); ++i)
+        line((left + i) * step, true);
+    for (int i = 0; i <= int(world.height() / step); ++i)
+        line((top + i) * step, false);
 }
 
-void MapPainter::paintLines(QPainter &painter, const QVector<QLineF> &lines, const QColor &colour,
-                            double width) const {
+int MapPainter::paintLines(QPainter &painter, const QVector<QLineF> &lines, const QColor &colour,
+                           double width) const {
     const QRectF seen = QRectF(QPointF(), size_).adjusted(-5, -5, 5, 5);
     QVector<QLineF> shown;
     shown.reserve(lines.size());
+    double length = 0;
+    int leftOut = 0;
     for (const QLineF &line : lines) {
-        const QLineF mapped = transform_.map(line);
-        // A level line has no area, which QRectF::intersects() asks for.
-        if (qMax(mapped.x1(), mapped.x2()) >= seen.left() && qMin(mapped.x1(), mapped.x2()) <= seen.right() &&
-            qMax(mapped.y1(), mapped.y2()) >= seen.top() && qMin(mapped.y1(), mapped.y2()) <= seen.bottom())
-            shown.append(mapped);
+        const auto part = clipped(line, seen);
+        if (part && length < longestDrawn)
+            shown.append(*part);
+        leftOut += part && length >= longestDrawn;
+        length += part ? part->length() : 0;
     }
-    painter.setRenderHint(QPainter::Antialiasing, shown.size() <= smoothUpTo);
-    painter.setPen(QPen(colour, width));
+    const bool isSmooth = shown.size() <= smoothUpTo && length <= longestSmooth;
+    painter.setRenderHint(QPainter::Antialiasing, isSmooth);
+    painter.setPen(QPen(colour, isSmooth ? width : 1));
     painter.drawLines(shown);
+    return leftOut;
+}
+
+QVector<QLineF> MapPainter::onScreen(const QVector<QLineF> &lines) const {
+    QVector<QLineF> mapped;
+    mapped.reserve(lines.size());
+    for (const QLineF &line : lines)
+        mapped.append(transform_.map(line));
+    return mapped;
 }
 
 void MapPainter::paintScan(QPainter &painter) const {
@@ -106,7 +125,7 @@ void MapPainter::paintScan(QPainter &painter) const {
     painter.drawPoints(transform_.map(model_.scan()));
 }
 
-void MapPainter::paintCorrespondences(QPainter &painter) const {
+int MapPainter::paintCorrespondences(QPainter &painter) const {
     QVector<QLineF> arrows;
     for (const QLineF &pair : model_.correspondences()) {
         const QLineF line = transform_.map(pair);
@@ -120,16 +139,14 @@ void MapPainter::paintCorrespondences(QPainter &painter) const {
             arrows.append(head);
         }
     }
-    painter.setRenderHint(QPainter::Antialiasing, true);
-    painter.setPen(QPen(colours().correspondence, 1));
-    painter.drawLines(arrows);
+    return paintLines(painter, arrows, colours().correspondence, 1);
 }
 
 void MapPainter::paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour,
                            Qt::PenStyle style) const {
     painter.setRenderHint(QPainter::Antialiasing, path.size() <= smoothUpTo);
     painter.setPen(QPen(colour, 1.5, style));
-    painter.drawPolyline(transform_.map(path));
+    painter.drawPolyline(recent(transform_.map(path), QRectF(QPointF(), size_), longestSmooth));
 }
 
 // The ellipse and the pie hold the pose with 95 %, and are drawn ten times their size: on a good day
@@ -140,8 +157,9 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
     constexpr double enlarged = 10, chi95 = 2.4477, normal95 = 1.96;
     const auto &c = *model_.covariance();
     const double mean = (c[0] + c[4]) / 2, root = std::hypot((c[0] - c[4]) / 2, c[1]);
-    const double a = chi95 * enlarged * std::sqrt(qMax(0.0, mean + root)) * scale();
-    const double b = chi95 * enlarged * std::sqrt(qMax(0.0, mean - root)) * scale();
+    const auto axis = [&](double variance) { // no longer than anything that can be seen
+        return qMin(chi95 * enlarged * std::sqrt(qMax(0.0, variance)) * scale(), 1e5);
+    };
     QColor fill = colours().path;
     fill.setAlpha(50);
     painter.save();
@@ -154,7 +172,7 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
     painter.drawPie(QRectF(-radius, -radius, 2 * radius, 2 * radius), qRound(16 * (heading - spread)),
                     qRound(16 * 2 * spread));
     painter.rotate(-qRadiansToDegrees(std::atan2(2 * c[1], c[0] - c[4]) / 2));
-    painter.drawEllipse(QPointF(), a, b);
+    painter.drawEllipse(QPointF(), axis(mean + root), axis(mean - root));
     painter.restore();
 }
 
@@ -183,6 +201,17 @@ void MapPainter::paintScaleBar(QPainter &painter, double step_m) const {
         painter.drawLine(end - QPointF(0, 4), end);
     painter.drawText(QRectF(left - QPointF(20, 26), QSizeF(length + 40, 20)), Qt::AlignCenter,
                      step_m < 1 ? QObject::tr("%1 cm").arg(100 * step_m) : QObject::tr("%1 m").arg(step_m));
+}
+
+void MapPainter::paintNotice(QPainter &painter, int leftOut) const {
+    QStringList lines;
+    if (model_.ignored() > 0)
+        lines.append(QObject::tr("%1 impossible values are not shown").arg(model_.ignored()));
+    if (leftOut > 0)
+        lines.append(QObject::tr("%1 more lines are not drawn").arg(leftOut));
+    painter.setPen(theme::colour(Condition::Warning));
+    painter.drawText(QRectF(12, 0, size_.width() / 2.0, size_.height() - 12), Qt::AlignLeft | Qt::AlignBottom,
+                     lines.join('\n'));
 }
 
 // How far to trust the pose: numbers with a bar whose colour and length say the same.

@@ -31,15 +31,17 @@ public:
 private:
     double scale() const { return transform_.m11(); } // pixels a metre
     void paintGrid(QPainter &painter) const;
-    void paintLines(QPainter &painter, const QVector<QLineF> &lines, const QColor &colour,
-                    double width) const;
+    QVector<QLineF> onScreen(const QVector<QLineF> &lines) const;
+    /// Lines on the screen; gives how many were left out, for they would take too long.
+    int paintLines(QPainter &painter, const QVector<QLineF> &lines, const QColor &colour, double width) const;
     void paintScan(QPainter &painter) const;
-    void paintCorrespondences(QPainter &painter) const;
+    int paintCorrespondences(QPainter &painter) const;
     void paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour, Qt::PenStyle style) const;
     void paintUncertainty(QPainter &painter) const;
     void paintRobot(QPainter &painter) const;
     void paintScaleBar(QPainter &painter, double step_m) const;
     void paintMatch(QPainter &painter) const;
+    void paintNotice(QPainter &painter, int leftOut) const;
 
     const MapModel &model_;
     const MapLayers layers_;

@@ -1,20 +1,25 @@
 #include "gui/desktop/widgets/SchemaForm.h"
 
+#include "common/schema/CheckableSchema.h"
 #include "common/schema/SchemaText.h"
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/ValueEditor.h"
 
 #include <QGridLayout>
-#include <QLabel>
 #include <QRegularExpression>
 #include <QSet>
+#include <QVBoxLayout>
 #include <algorithm>
 
 namespace hermes {
 namespace {
 
 enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn };
+
+constexpr int longestTitle = 60, longestUnit = 20, longestNote = 120;
+constexpr int mostSteps = 10000; // of a check, which runs with each key
 
 /// The title, or words made of the path: "safety.command_timeout_s" in "s" reads "command timeout".
 QString titleOf(const QString &path, const QJsonObject &schema) {
@@ -37,7 +42,7 @@ QString limitsOf(const QJsonObject &schema) {
     return most.isDouble() ? SchemaForm::tr("at most %1").arg(most.toDouble()) : QString();
 }
 
-QString toolTipOf(const QString &path, const QJsonObject &schema) {
+QString explanation(const QString &path, const QJsonObject &schema) {
     QStringList lines{schema["description"].toString(), path + ": " + expectation(schema)};
     if (schema.contains("default"))
         lines.append(SchemaForm::tr("default %1").arg(shown(schema["default"])));
@@ -49,28 +54,33 @@ QString toolTipOf(const QString &path, const QJsonObject &schema) {
 } // namespace
 
 SchemaForm::SchemaForm(QWidget *parent)
-    : QWidget(parent) {
-    auto *const grid = new QGridLayout(this);
-    grid->setColumnStretch(EditorColumn, 2);
-    grid->setColumnStretch(NoteColumn, 3);
-    grid->setVerticalSpacing(4);
+    : QWidget(parent)
+    , notice_(new PlainLabel) {
+    auto *const column = new QVBoxLayout(this);
+    column->addWidget(notice_);
+    notice_->setObjectName("notice");
+    notice_->setWordWrap(true);
+    notice_->setMinimumWidth(1);
+    QPalette warning;
+    warning.setColor(QPalette::WindowText, theme::colour(Condition::Warning));
+    notice_->setPalette(warning);
 }
 
 void SchemaForm::setSchema(const QJsonObject &schema, const QJsonObject &values) {
-    for (auto &[path, row] : rows_)
-        for (QWidget *widget : row.widgets)
-            delete widget;
-    qDeleteAll(headings_);
+    delete page_;
+    page_ = new QWidget;
     rows_.clear();
     order_.clear();
     headings_.clear();
     errors_.clear();
     schema_ = schema;
     baseline_ = values;
-    validator_.emplace(schema);
+    unshown_ = 0;
     addRows(schema, {});
+    prepareCheck();
     arrange();
     revert();
+    layout()->addWidget(page_); // laid out once, when it is whole
 }
 
 void SchemaForm::addRows(const QJsonObject &schema, const QString &prefix) {
@@ -78,10 +88,24 @@ void SchemaForm::addRows(const QJsonObject &schema, const QString &prefix) {
     for (auto property = properties.begin(); property != properties.end(); ++property) {
         const QString path = prefix.isEmpty() ? property.key() : prefix + "." + property.key();
         const QJsonObject inner = property.value().toObject();
-        if (inner.contains("properties"))
+        if (inner["properties"].isObject())
             addRows(inner, path);
-        else
+        else if (int(order_.size()) < mostRows && rows_.count(path) == 0)
             addRow(path, inner);
+        else
+            ++unshown_;
+    }
+}
+
+void SchemaForm::prepareCheck() {
+    validator_.reset();
+    hindrance_.clear();
+    if (unshown_ > 0) {
+        hindrance_ = tr("%1 more values are not shown").arg(unshown_);
+    } else if (auto made = SchemaValidator::make(schema_)) {
+        validator_.emplace(made.take());
+    } else {
+        hindrance_ = made.error().message;
     }
 }
 
@@ -91,15 +115,17 @@ void SchemaForm::addRow(const QString &path, const QJsonObject &schema) {
     row.group = schema["group"].toString();
     if (row.group.isEmpty())
         row.group = path.contains('.') ? path.section('.', 0, 0) : QString();
-    row.title = new QLabel(titleOf(path, schema));
+    row.title = new PlainLabel(shortLine(titleOf(path, schema), longestTitle).replace('&', "&&"));
     row.editor = new ValueEditor(schema);
     row.editor->setObjectName(path);
     row.title->setBuddy(row.editor);
-    row.note = new QLabel;
+    row.note = new PlainLabel;
     row.note->setObjectName(path + "/note");
-    row.widgets = {row.title, row.editor, new QLabel(schema["unit"].toString()), row.note};
+    row.widgets = {row.title, row.editor, new PlainLabel(shortLine(schema["unit"].toString(), longestUnit)),
+                   row.note};
+    const QString toolTip = toolTipOf(explanation(path, schema));
     for (QWidget *widget : row.widgets)
-        widget->setToolTip(toolTipOf(path, schema));
+        widget->setToolTip(toolTip);
     connect(row.editor, &ValueEditor::edited, this, [this, path] {
         errors_.erase(path);
         check();
@@ -116,10 +142,15 @@ void SchemaForm::arrange() {
         if (const QString &group = rows_.at(path).group;
             std::find(groups.begin(), groups.end(), group) == groups.end())
             groups.push_back(group);
-    auto *const grid = static_cast<QGridLayout *>(layout());
+    auto *const grid = new QGridLayout(page_);
+    grid->setContentsMargins({});
+    grid->setColumnStretch(EditorColumn, 2);
+    grid->setColumnStretch(NoteColumn, 3);
+    grid->setVerticalSpacing(4);
     int line = 0;
     for (const QString &group : groups) {
-        auto *const heading = new QLabel("<b>" + group.toHtmlEscaped() + "</b>");
+        auto *const heading = new PlainLabel(shortLine(group, longestTitle));
+        heading->setBold(true);
         headings_.push_back(heading);
         grid->addWidget(heading, line++, 0, 1, 4);
         heading->setVisible(!group.isEmpty());
@@ -130,8 +161,7 @@ void SchemaForm::arrange() {
                 ++line;
             }
     }
-    for (int i = 0; i < grid->rowCount(); ++i)
-        grid->setRowStretch(i, i == line ? 1 : 0);
+    grid->setRowStretch(line, 1);
     QWidget *before = nullptr;
     for (const QString &path : order_) {
         if (before)
@@ -179,27 +209,51 @@ QJsonObject SchemaForm::changes() const {
 void SchemaForm::showErrors(const QJsonArray &errors) {
     for (const QJsonValue &error : errors)
         errors_[error["path"].toString()] = error["expected"].toString();
-    for (auto &[path, row] : rows_)
-        mark(path, row);
+    markAll();
 }
 
 void SchemaForm::check() {
     errors_.clear();
-    for (const SchemaViolation &violation : validator_->check(values()))
-        errors_[violation.path] = violation.expected;
+    const QJsonObject now = values();
+    const bool isCheap = isCheapToCheck(schema_, now, mostSteps);
+    if (validator_ && isCheap)
+        for (const SchemaViolation &violation : validator_->check(now))
+            errors_[violation.path] = violation.expected;
+    if (validator_)
+        hindrance_ = isCheap ? QString() : tr("there are too many values");
     for (const auto &[path, row] : rows_) // what has a value cannot be left without one
         if (row.editor->value().isUndefined() && !valueAt(baseline_, path).isUndefined())
             errors_[path] = expectation(row.schema);
+    markAll();
+}
+
+bool SchemaForm::hasRow(const QString &path) const {
+    for (QString place = path; !place.isEmpty(); place.truncate(qMax(0, place.lastIndexOf('.'))))
+        if (rows_.count(place.section('[', 0, 0)) > 0)
+            return true;
+    return false;
+}
+
+void SchemaForm::markAll() {
     for (auto &[path, row] : rows_)
         mark(path, row);
+    QStringList lines;
+    if (!hindrance_.isEmpty())
+        lines.append(tr("The values cannot be checked here: %1").arg(hindrance_));
+    for (const auto &[path, expected] : errors_)
+        if (lines.size() < 5 && !hasRow(path))
+            lines.append(tr("%1: expected %2").arg(path.isEmpty() ? tr("all together") : path, expected));
+    notice_->setText(lines.join('\n'));
+    notice_->setVisible(!lines.isEmpty());
 }
 
 void SchemaForm::mark(const QString &path, Row &row) {
     // An array's element that is wrong is a mistake of the array.
-    const auto error = std::find_if(errors_.begin(), errors_.end(), [&](const auto &entry) {
-        return entry.first == path || entry.first.startsWith(path + ".") ||
-               entry.first.startsWith(path + "[");
-    });
+    auto error = errors_.find(path);
+    for (const char *const inner : {".", "["})
+        if (const auto next = errors_.lower_bound(path + inner);
+            error == errors_.end() && next != errors_.end() && next->first.startsWith(path + inner))
+            error = next;
     const bool isWrong = error != errors_.end();
     const QJsonValue before = valueAt(baseline_, path);
     const bool isChanged = row.editor->value() != (before.isUndefined() ? row.schema["default"] : before);
@@ -209,7 +263,7 @@ void SchemaForm::mark(const QString &path, Row &row) {
                    : isChanged && needsRestart ? tr("changed, needs a restart")
                    : isChanged                 ? tr("changed")
                                                : limitsOf(row.schema);
-    row.note->setText(note);
+    row.note->setText(shortLine(note, longestNote));
     QPalette palette;
     if (isWrong || isChanged)
         palette.setColor(QPalette::WindowText, theme::colour(isWrong ? Condition::Fault : Condition::Busy));
@@ -224,8 +278,8 @@ void SchemaForm::setFilter(const QString &text) {
         for (QWidget *widget : row.widgets)
             widget->setVisible(isShown);
     }
-    for (QLabel *heading : headings_)
-        heading->setVisible(text.isEmpty() && heading->text() != "<b></b>");
+    for (PlainLabel *heading : headings_)
+        heading->setVisible(text.isEmpty() && !heading->text().isEmpty());
 }
 
 } // namespace hermes

@@ -6,18 +6,21 @@
 #include <map>
 #include <optional>
 
-class QLabel;
-
 namespace hermes {
 
+class PlainLabel;
 class ValueEditor;
 
 /// A form for an object, made from its JSON Schema: one row a value with its title, input, unit and limits,
 /// under the heading of its group. Every edit is checked against the schema at once; what is wrong stands
-/// beside its input.
+/// beside its input. What cannot be checked or shown here is said above; the values can be edited all the
+/// same, and whoever applies them checks.
 class SchemaForm : public QWidget {
     Q_OBJECT
 public:
+    /// More rows than this are no form; the rest is counted.
+    static constexpr int mostRows = 120;
+
     explicit SchemaForm(QWidget *parent = nullptr);
 
     /// Builds the rows anew. values are what the rows show and what counts as unchanged;
@@ -46,7 +49,7 @@ Q_SIGNALS:
 private:
     struct Row {
         QJsonObject schema;
-        QLabel *title, *note;
+        PlainLabel *title, *note;
         ValueEditor *editor;
         std::vector<QWidget *> widgets;
         QString group;
@@ -55,14 +58,21 @@ private:
     void addRows(const QJsonObject &schema, const QString &prefix);
     void addRow(const QString &path, const QJsonObject &schema);
     void arrange();
+    void prepareCheck();
     void check();
+    bool hasRow(const QString &path) const;
+    void markAll();
     void mark(const QString &path, Row &row);
 
     QJsonObject schema_, baseline_;
-    std::optional<SchemaValidator> validator_;
-    std::map<QString, Row> rows_; // by dotted path
+    PlainLabel *notice_;
+    QWidget *page_ = nullptr;                  // of the rows
+    std::optional<SchemaValidator> validator_; // none: cannot be checked
+    QString hindrance_;                        // why not
+    int unshown_ = 0;                          // values beyond mostRows
+    std::map<QString, Row> rows_;              // by dotted path
     std::vector<QString> order_;
-    std::vector<QLabel *> headings_;
+    std::vector<PlainLabel *> headings_;
     std::map<QString, QString> errors_; // expected, by dotted path
 };
 

@@ -1,6 +1,7 @@
 #include "gui/desktop/widgets/ValueEditor.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/ForeignText.h"
 
 #include <QCheckBox>
 #include <QComboBox>
@@ -9,10 +10,13 @@
 #include <QJsonDocument>
 #include <QKeyEvent>
 #include <QLineEdit>
+#include <algorithm>
 #include <cmath>
 
 namespace hermes {
 namespace {
+
+constexpr int longestText = 10000, longestChoice = 100, mostChoices = 1000;
 
 QString jsonText(const QJsonValue &value) {
     const QByteArray list = QJsonDocument(QJsonArray{value}).toJson(QJsonDocument::Compact);
@@ -41,15 +45,17 @@ ValueEditor::ValueEditor(const QJsonObject &schema, QWidget *parent)
     if (type_ == "boolean") {
         editor = check_ = new QCheckBox;
         connect(check_, &QCheckBox::clicked, this, &ValueEditor::edited);
-    } else if (schema.contains("enum")) {
+    } else if (const QJsonArray choices = schema["enum"].toArray();
+               !choices.isEmpty() && choices.size() <= mostChoices) {
         editor = choice_ = new QComboBox;
-        for (const QJsonValue &allowed : schema["enum"].toArray())
-            choice_->addItem(shownText(allowed), allowed);
+        choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        for (const QJsonValue &allowed : choices)
+            choice_->addItem(shortLine(shownText(allowed), longestChoice), allowed);
         choice_->setCurrentIndex(-1);
         connect(choice_, QOverload<int>::of(&QComboBox::activated), this, &ValueEditor::edited);
     } else {
         editor = text_ = new QLineEdit;
-        text_->setPlaceholderText(shownText(schema["default"]));
+        text_->setPlaceholderText(shortLine(shownText(schema["default"])));
         text_->installEventFilter(this);
         connect(text_, &QLineEdit::textEdited, this, &ValueEditor::edited);
     }
@@ -64,6 +70,8 @@ QJsonValue ValueEditor::value() const {
     if (choice_)
         return choice_->currentIndex() < 0 ? QJsonValue(QJsonValue::Undefined)
                                            : choice_->currentData().toJsonValue();
+    if (!longValue_.isUndefined())
+        return longValue_;
     const QString text = text_->text().trimmed();
     if (type_ == "string")
         return text_->text().isEmpty() && !schema_.contains("default") ? QJsonValue(QJsonValue::Undefined)
@@ -78,9 +86,25 @@ void ValueEditor::setValue(const QJsonValue &value) {
     if (check_)
         check_->setChecked(value.toBool());
     else if (choice_)
-        choice_->setCurrentIndex(choice_->findText(shownText(value), Qt::MatchExactly));
-    else if (text_->text() != shownText(value))
-        text_->setText(shownText(value));
+        choose(value);
+    else
+        showText(value);
+}
+
+void ValueEditor::choose(const QJsonValue &value) {
+    const QJsonArray choices = schema_["enum"].toArray();
+    const auto found = std::find(choices.begin(), choices.end(), value);
+    choice_->setCurrentIndex(found == choices.end() ? -1 : int(found - choices.begin()));
+}
+
+void ValueEditor::showText(const QJsonValue &value) {
+    const QString text = shownText(value);
+    const bool isLong = text.size() > longestText;
+    longValue_ = isLong ? value : QJsonValue(QJsonValue::Undefined);
+    text_->setReadOnly(isLong);
+    const QString shown = isLong ? tr("too long to be edited here: %1").arg(shortLine(text)) : text;
+    if (text_->text() != shown)
+        text_->setText(shown);
 }
 
 void ValueEditor::setWrong(bool isWrong) {
@@ -106,7 +130,9 @@ void ValueEditor::step(int count) {
     const QJsonValue now = value().isUndefined() ? schema_["default"] : value();
     if (!now.isDouble() && !now.isUndefined())
         return;
-    const double increment = schema_["multipleOf"].toDouble(type_ == "integer" ? 1 : 0.1);
+    double increment = schema_["increment"].toDouble(schema_["multipleOf"].toDouble());
+    if (!(increment > 0))
+        increment = type_ == "integer" ? 1 : 0.1;
     const double next = std::round(now.toDouble() / increment + count) * increment;
     setValue(qBound(schema_["minimum"].toDouble(next), next, schema_["maximum"].toDouble(next)));
     Q_EMIT edited();

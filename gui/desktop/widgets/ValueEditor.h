@@ -10,7 +10,8 @@ class QLineEdit;
 namespace hermes {
 
 /// The input for one value of a JSON Schema: a check box, a choice, or a line of text. Numbers go up and down
-/// by their step with the arrow keys; arrays and objects are written as JSON.
+/// by their step with the arrow keys; arrays and objects are written as JSON. A value too long for a line
+/// stays as it is.
 class ValueEditor : public QWidget {
     Q_OBJECT
 public:
@@ -32,12 +33,15 @@ protected:
 
 private:
     void step(int count);
+    void choose(const QJsonValue &value);
+    void showText(const QJsonValue &value);
 
     const QJsonObject schema_;
     const QString type_;
     QCheckBox *check_ = nullptr;
     QComboBox *choice_ = nullptr;
     QLineEdit *text_ = nullptr;
+    QJsonValue longValue_{QJsonValue::Undefined}; // not editable here
 };
 
 } // namespace hermes

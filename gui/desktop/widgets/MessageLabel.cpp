@@ -1,0 +1,24 @@
+#include "gui/desktop/widgets/MessageLabel.h"
+
+#include "gui/desktop/Theme.h"
+
+namespace hermes {
+
+MessageLabel::MessageLabel(QWidget *parent)
+    : PlainLabel(QString(), parent) {
+    setObjectName("message");
+    setWordWrap(true);
+    setMinimumWidth(1); // a word without end widens no panel
+    hide();
+}
+
+void MessageLabel::tell(const QString &text, bool isError) {
+    QPalette palette;
+    if (isError)
+        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
+    setPalette(palette);
+    setText(text);
+    show();
+}
+
+} // namespace hermes

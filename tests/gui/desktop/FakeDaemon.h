@@ -1,0 +1,169 @@
+#pragma once
+
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QMap>
+#include <QMutex>
+#include <QTcpServer>
+#include <QTcpSocket>
+#include <QThread>
+#include <QTimer>
+
+namespace hermes {
+
+/// What a fake daemon says where it differs from a good one, all as JSON text.
+struct Mischief {
+    QMap<QString, QByteArray> results; ///< by method
+    QMap<QString, QByteArray> topics;  ///< the data of their messages; %1 counts them
+    int messages = 1;                  ///< of each topic; negative: without end
+    QByteArray stamp = "1718000000";   ///< of the messages
+    QByteArray reply = "{\"jsonrpc\":\"2.0\",\"id\":%1,\"result\":%2}\n";
+    QByteArray noise;       ///< sent in place of replies
+    bool isEndless = false; ///< the noise goes on and on
+    bool closes = false;    ///< after the noise
+    bool hasTopics = true;
+    bool isMotors = false; ///< has the methods of a motor control
+};
+
+/// A daemon that says whatever a test wants, in a thread of its own, so that its work is not the window's.
+class FakeDaemon : public QObject {
+public:
+    explicit FakeDaemon(const Mischief &mischief)
+        : mischief_(mischief) {
+        moveToThread(&thread_);
+        thread_.start();
+        QMetaObject::invokeMethod(
+            this, [this] { listen(); }, Qt::BlockingQueuedConnection);
+    }
+    ~FakeDaemon() override {
+        QMetaObject::invokeMethod(
+            this, [this] { delete server_; }, Qt::BlockingQueuedConnection);
+        thread_.quit();
+        thread_.wait();
+    }
+
+    quint16 port() const { return port_; }
+    /// How often a method was called.
+    int calls(const QString &method) const {
+        const QMutexLocker lock(&mutex_);
+        return calls_.value(method);
+    }
+    int subscriptions(const QString &topic) const { return calls("topics.subscribe " + topic); }
+
+private:
+    static constexpr qint64 mostWaiting = 1 << 20; // bytes
+
+    void listen() {
+        server_ = new QTcpServer;
+        server_->listen(QHostAddress::LocalHost);
+        port_ = server_->serverPort();
+        connect(server_, &QTcpServer::newConnection, server_, [this] {
+            QTcpSocket *const client = server_->nextPendingConnection();
+            connect(client, &QTcpSocket::disconnected, client, &QObject::deleteLater);
+            connect(client, &QTcpSocket::readyRead, client, [this, client] {
+                while (client->canReadLine())
+                    answer(*client, QJsonDocument::fromJson(client->readLine()).object());
+            });
+        });
+    }
+    void answer(QTcpSocket &client, const QJsonObject &request) {
+        const QString method = request["method"].toString();
+        const QString topic =
+            method == "topics.subscribe" ? request["params"]["topic"].toString() : QString();
+        {
+            const QMutexLocker lock(&mutex_);
+            ++calls_[method];
+            ++calls_[method + ' ' + topic];
+        }
+        if (!mischief_.noise.isEmpty())
+            return makeNoise(client);
+        if (!request.contains("id"))
+            return;
+        const int subscription = ++lastSubscription_;
+        const QByteArray usual = topic.isEmpty()
+                                     ? QByteArray("null")
+                                     : "{\"subscription\":" + QByteArray::number(subscription) + '}';
+        QByteArray reply = mischief_.reply;
+        client.write(reply.replace("%1", QByteArray::number(request["id"].toInt()))
+                         .replace("%2", mischief_.results.value(method, good(method, usual))));
+        if (mischief_.topics.contains(topic))
+            publish(client, topic, subscription);
+    }
+    void makeNoise(QTcpSocket &client) {
+        client.write(mischief_.noise);
+        if (mischief_.closes)
+            return client.disconnectFromHost();
+        if (mischief_.isEndless)
+            keepBusy(client, [this, &client] { client.write(mischief_.noise); });
+    }
+    void publish(QTcpSocket &client, const QString &topic, int subscription) {
+        const auto one = [this, &client, topic, subscription, count = 0]() mutable {
+            QByteArray data = mischief_.topics.value(topic);
+            client.write("{\"jsonrpc\":\"2.0\",\"method\":\"topic\",\"params\":{\"subscription\":" +
+                         QByteArray::number(subscription) + ",\"topic\":\"" + topic.toUtf8() + "\",\"seq\":" +
+                         QByteArray::number(count) + ",\"dropped\":0,\"stamp\":" + mischief_.stamp +
+                         ",\"data\":" + data.replace("%1", QByteArray::number(count)) + "}}\n");
+            ++count;
+        };
+        if (mischief_.messages < 0)
+            return keepBusy(client, one);
+        auto next = one;
+        for (int i = 0; i < mischief_.messages; ++i)
+            next();
+    }
+    /// As much as the client takes.
+    template <typename Write>
+    void keepBusy(QTcpSocket &client, Write write) {
+        auto *const timer = new QTimer(&client);
+        connect(timer, &QTimer::timeout, &client, [&client, write]() mutable {
+            for (int i = 0; i < 200 && client.bytesToWrite() < mostWaiting; ++i)
+                write();
+        });
+        timer->start(1);
+    }
+    QByteArray good(const QString &method, const QByteArray &usual) const {
+        static const QMap<QString, QByteArray> results{
+            {"daemon.info", "{\"name\":\"fake\",\"title\":\"Fake\",\"description_hash\":\"1\"}"},
+            {"daemon.status", "{\"state\":\"running\",\"health\":[]}"},
+            {"settings.schema", "{\"type\":\"object\",\"properties\":{\"a\":{\"type\":\"number\"}}}"},
+            {"settings.get", "{\"a\":1}"},
+            {"record.status", "{\"recording\":false}"},
+            {"record.list", "[]"},
+            {"log.tail", "[]"},
+            {"motor.state", "{\"latched\":{},\"control\":{\"held\":false}}"}};
+        return method == "rpc.discover" ? description() : results.value(method, usual);
+    }
+    /// The methods and topics of all daemons in one.
+    QByteArray description() const {
+        QStringList methods{"fake.call",    "daemon.info",   "settings.schema", "record.start", "record.list",
+                            "process.list", "process.start", "source.open",     "pose.set"};
+        if (mischief_.isMotors)
+            methods << "motor.drive"
+                    << "motor.estop"
+                    << "motor.state";
+        QStringList topics{"map",   "pose",   "match",    "segments", "scan2d",    "odometry", "truth",
+                           "power", "status", "settings", "log",      "processes", "free"};
+        if (!mischief_.hasTopics)
+            topics.clear();
+        return "{\"openrpc\":\"1.2.6\",\"methods\":" + named(methods) + ",\"x-topics\":" + named(topics) +
+               '}';
+    }
+    static QByteArray named(const QStringList &names) {
+        QByteArray list = "[";
+        for (const QString &name : names)
+            list += (list.size() == 1 ? "" : ",") + ("{\"name\":\"" + name.toUtf8() + "\",\"params\":[]}");
+        return list + ']';
+    }
+
+    const Mischief mischief_;
+    QThread thread_;
+    QTcpServer *server_ = nullptr;
+    quint16 port_ = 0;
+    int lastSubscription_ = 0;
+    mutable QMutex mutex_;
+    QMap<QString, int> calls_;
+};
+
+} // namespace hermes
+
+Q_DECLARE_METATYPE(hermes::Mischief)
