@@ -1,10 +1,12 @@
 #include "common/interface/TcpInterface.h"
 
+#include <QPointer>
+
 namespace hermes {
 namespace {
 
 constexpr int receiveBufferBytes = 256 << 10; // what is not read stays with the sender
-constexpr int readAtOnceBytes = 64 << 10;     // then others get their turn
+constexpr int readAtOnceBytes = 32 << 10;     // then others get their turn
 
 } // namespace
 
@@ -38,6 +40,11 @@ void TcpInterface::prepare() {
     connect(socket, &QTcpSocket::bytesWritten, this, &Interface::drained);
     connect(socket, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
         const bool peerClosed = error == QAbstractSocket::RemoteHostClosedError;
+        const QPointer<TcpInterface> alive(this);
+        if (const QByteArray rest = socket->readAll(); !rest.isEmpty())
+            nowReceived(rest); // what it said before it closed
+        if (!alive)
+            return;
         const QString reason = peerClosed ? QStringLiteral("closed by the peer") : socket->errorString();
         socket->abort();
         nowClosed(QStringLiteral("%1: %2").arg(name(), reason), !peerClosed);
@@ -45,9 +52,17 @@ void TcpInterface::prepare() {
 }
 
 void TcpInterface::readSome() {
+    if (readsOn)
+        return;
     const QByteArray bytes = socket->read(readAtOnceBytes);
-    if (socket->bytesAvailable() > 0)
-        QMetaObject::invokeMethod(this, &TcpInterface::readSome, Qt::QueuedConnection);
+    if (socket->bytesAvailable() > 0) {
+        readsOn = true;
+        const auto readOn = [this] {
+            readsOn = false;
+            readSome();
+        };
+        QMetaObject::invokeMethod(this, readOn, Qt::QueuedConnection);
+    }
     if (!bytes.isEmpty())
         nowReceived(bytes);
 }

@@ -31,6 +31,7 @@ private:
 
     InterfaceUrl url;
     QTcpSocket *socket;
+    bool readsOn = false; // the rest is read when others have had their turn
 };
 
 } // namespace hermes
