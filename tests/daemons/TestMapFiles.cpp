@@ -2,51 +2,18 @@
 #include "MatcherFixture.h"
 
 #include "tests/support/Files.h"
+#include "tests/support/LoopWatch.h"
 #include "vectorlib/io/MapCsv.h"
 
 #include <QProcess>
 #include <QRegularExpression>
 #include <csignal>
-#include <ctime>
 #include <fcntl.h>
 #include <fstream>
 
 using namespace hermes;
 
 namespace {
-
-/// The longest that the thread worked between two rounds of its event loop, in its own time: what others do
-/// on the machine does not count.
-class LoopWatch {
-public:
-    LoopWatch() {
-        QObject::connect(&timer_, &QTimer::timeout, [this] { note(); });
-        timer_.start(0);
-    }
-    void restart() {
-        last_ = now();
-        longest_ms_ = 0;
-    }
-    double longest_ms() {
-        note();
-        return longest_ms_;
-    }
-
-private:
-    static double now() {
-        timespec t{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-        return 1e3 * double(t.tv_sec) + 1e-6 * double(t.tv_nsec);
-    }
-    void note() {
-        const double t = now();
-        longest_ms_ = std::max(longest_ms_, t - last_);
-        last_ = t;
-    }
-
-    QTimer timer_;
-    double last_ = now(), longest_ms_ = 0;
-};
 
 void writeMap(const QString &path, int edges) {
     std::vector<vectorlib::MapEdge> map;
@@ -93,7 +60,7 @@ void TestMapFiles::largeMapsHoldNothingUp() {
     writeMap(folder->filePath("large.csv"), edges);
     LoopWatch loop;
     const auto within = [&](const char *what) {
-        const double ms = loop.longest_ms();
+        const double ms = loop.longestCpu_ms();
         qInfo("%s of %d edges: the event loop was busy for at most %.1f ms", what, edges, ms);
         loop.restart();
         return ms < 50;

@@ -55,6 +55,7 @@ public:
     void startMotors(const QStringList &simulator = {}) {
         const QString world = qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json";
         start("simulator", QStringList{"world=" + world, "motors.link=" + motorLink()} + simulator);
+        daemons_.at("simulator").process->goBeforeOthers(); // else its controllers may answer too late
         startMotorControl();
     }
     /// Its client may be silent for 1 s, as it is when the machine stalls.
@@ -62,6 +63,7 @@ public:
         const QString url = "serial://" + motorLink() + "?baud=115200";
         start("motorcontrol",
               {"controllers.1.url=" + url, "controllers.2.url=" + url, "safety.command_timeout_s=1"});
+        daemons_.at("motorcontrol").process->goBeforeOthers();
     }
     void signal(const QString &name, int number) {
         ::kill(pid_t(daemons_.at(name).process->processId()), number);

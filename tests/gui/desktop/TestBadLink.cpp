@@ -1,7 +1,7 @@
 #include "tests/daemons/RoboClawRig.h"
-#include "tests/gui/desktop/LoopWatch.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/gui/desktop/SlowLink.h"
+#include "tests/support/LoopWatch.h"
 
 using namespace hermes;
 

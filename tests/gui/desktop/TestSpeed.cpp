@@ -1,7 +1,7 @@
 #include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
-#include "tests/gui/desktop/LoopWatch.h"
 #include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/LoopWatch.h"
 
 #include <QPlainTextEdit>
 #include <QTcpServer>
