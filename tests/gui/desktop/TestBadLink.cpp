@@ -60,27 +60,27 @@ void TestBadLink::stopReachesTheWire() {
     window.activateWindow();
     QVERIFY(QTest::qWaitForWindowActive(&window));
     QVERIFY(fleet.add(QString("%1:7410").arg(SlowLink::farHost)).ok());
-    QTRY_VERIFY_WITH_TIMEOUT(drive.isPossible(), 15000);
+    QTRY_VERIFY_WITH_TIMEOUT(drive.isPossible(), 60000);
     link_.set(0.3, 0.3, 0.05);
-    QTRY_VERIFY_WITH_TIMEOUT(fleet.robot()->withName("motorcontrol")->latency_ms() > 500, 15000);
+    QTRY_VERIFY_WITH_TIMEOUT(fleet.robot()->withName("motorcontrol")->latency_ms() > 500, 60000);
 
     std::vector<double> times_s, busy_ms, busyCpu_ms;
     LoopWatch watch;
     while (int(times_s.size()) < trials()) {
         watch.restart();
         QTest::keyPress(&window, Qt::Key_W);
-        QTRY_VERIFY2_WITH_TIMEOUT(rig.rimSpeed() > 0.15, qPrintable(drive.problem()), 15000);
+        QTRY_VERIFY2_WITH_TIMEOUT(rig.rimSpeed() > 0.15, qPrintable(drive.problem()), 60000);
         QTest::qWait(int(times_s.size()) * 13 % 50); // not in step with its commands
         const double pressed = RoboClawRig::now();
         QTest::keyClick(&window, Qt::Key_Space);
-        QTRY_VERIFY_WITH_TIMEOUT(drive.isStopped(), 15000);
+        QTRY_VERIFY_WITH_TIMEOUT(drive.isStopped(), 60000);
         QTest::keyRelease(&window, Qt::Key_W);
         QTRY_VERIFY_WITH_TIMEOUT(rig.rimSpeed() < 0.01, 5000);
         times_s.push_back(rig.zeroSince() - pressed);
         busy_ms.push_back(watch.longest_ms());
         busyCpu_ms.push_back(watch.longestCpu_ms());
         drive.release();
-        QTRY_VERIFY_WITH_TIMEOUT(!drive.isStopped(), 15000);
+        QTRY_VERIFY_WITH_TIMEOUT(!drive.isStopped(), 60000);
     }
     const double slowest = *std::max_element(times_s.begin(), times_s.end());
     const double busiest = *std::max_element(busyCpu_ms.begin(), busyCpu_ms.end());
