@@ -1,6 +1,6 @@
 #include "gui/desktop/MainWindow.h"
 #include "tests/gui/desktop/FakeDaemon.h"
-#include "tests/gui/desktop/LoopWatch.h"
+#include "tests/support/LoopWatch.h"
 
 #include <QDockWidget>
 #include <QFile>
