@@ -126,7 +126,8 @@ def send(client, message):
 
 
 def answer(client, line):
-    request = {}
+    """The reply to a request; None: it is a notification."""
+    request = {"id": None}
     try:
         request = json.loads(line)
         if request["method"] not in METHODS:
@@ -137,9 +138,13 @@ def answer(client, line):
         reply = {"result": function(client, **values)}
     except Refusal as error:
         reply = {"error": dict(zip(("code", "message", "data"), error.args))}
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+        reply = {"error": {"code": -32700, "message": f"no JSON: {error}"}}
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
         reply = {"error": {"code": -32600, "message": f"not a request: {error!r}"}}
-    return {"id": request.get("id") if isinstance(request, dict) else None, **reply}
+    if isinstance(request, dict) and "id" not in request:
+        return None
+    return {"id": request["id"] if isinstance(request, dict) else None, **reply}
 
 
 async def serve(reader, client):
@@ -149,7 +154,8 @@ async def serve(reader, client):
             line = await reader.readline()
         except (OSError, ValueError, asyncio.CancelledError):  # gone, a line beyond the limit, the end
             break
-        if line.strip() and not send(client, answer(client, line)):
+        reply = answer(client, line) if line.strip() else None
+        if reply and not send(client, reply):
             client.transport.abort()  # does not read its replies
     for number in [n for n, s in subscriptions.items() if s["client"] is client]:
         del subscriptions[number]
