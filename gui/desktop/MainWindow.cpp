@@ -78,7 +78,7 @@ void MainWindow::addPanel(Qt::DockWidgetArea area, QWidget *panel, const QString
 
 void MainWindow::restoreLayout() {
     resize(1280, 720);
-    resizeDocks({docks_.front(), findChild<QDockWidget *>("drive")}, {315, 240}, Qt::Horizontal);
+    resizeDocks({docks_.front(), findChild<QDockWidget *>("drive")}, {300, 240}, Qt::Horizontal);
     resizeDocks({docks_[1]}, {220}, Qt::Vertical);
     docks_[0]->raise();
     docks_[1]->raise();

@@ -64,8 +64,12 @@ QWidget *DrivePanel::makeNumbers() {
     grid->addWidget(new PlainLabel(tr("measured")), 2, 0);
     for (int i = 0; i < 3; ++i) {
         grid->addWidget(new PlainLabel(names[i]), 0, i + 1, Qt::AlignRight);
-        grid->addWidget(commanded_[i] = new PlainLabel, 1, i + 1, Qt::AlignRight);
-        grid->addWidget(measured_[i] = new PlainLabel, 2, i + 1, Qt::AlignRight);
+        grid->addWidget(commanded_[i] = new PlainLabel, 1, i + 1);
+        grid->addWidget(measured_[i] = new PlainLabel, 2, i + 1);
+        for (PlainLabel *const number : {commanded_[i], measured_[i]}) {
+            number->setAlignment(Qt::AlignRight);
+            number->setMinimumWidth(fontMetrics().horizontalAdvance("-0.00")); // nothing jumps at a minus
+        }
         measured_[i]->setObjectName(QString("measured%1").arg(i));
         commanded_[i]->setObjectName(QString("commanded%1").arg(i));
     }
