@@ -96,7 +96,8 @@ Cut intoBlock(const BlockSums &sums, Index b, const Cut &from, double variance) 
     const double n = static_cast<double>(begin - Index(from.index));
 
     const simd::SumsOfFours s = simd::sumFours(&points->x, sums.level);
-    SumRow fours[9] = {(sums.table().row(b) - from.row).inFrame(n, origin)};
+    SumRow fours[9];
+    fours[0] = (sums.table().row(b) - from.row).inFrame(n, origin);
     for (int i = 0; i < 8; ++i)
         fours[i + 1] = fours[i] + SumRow{s.x[i], s.y[i], s.xx[i], s.yy[i], s.xy[i]};
     const auto fourFits = [&](int i) { return fits(n + 4 * i + 4, fours[i + 1], variance); };
@@ -104,7 +105,8 @@ Cut intoBlock(const BlockSums &sums, Index b, const Cut &from, double variance) 
         chooseFour<back>(farthestOnly<back>(back ? 7 : int(count - 1) / 4, fourFits), count, sure);
 
     const double before = n + double(4 * four);
-    SumRow rows[5] = {fours[four]};
+    SumRow rows[5];
+    rows[0] = fours[four];
     for (int i = 0; i < 4; ++i) {
         const BlockSums::Point p = points[4 * four + i] - middle;
         rows[i + 1] = rows[i];
