@@ -30,8 +30,11 @@ VelodyneLogger::VelodyneLogger()
               "Receives an HDL-32E or VLP-16 or replays a capture of one, publishes its horizontal ring as "
               "scans and thinned clouds of all lasers, records pcap"})
     , feed_(recorder_, [this] {
-        QMetaObject::invokeMethod(
-            this, [this] { publishTurns(); }, Qt::QueuedConnection);
+        const auto wake = [this] {
+            if (!retry_.isActive())
+                retry_.start(0);
+        };
+        QMetaObject::invokeMethod(this, wake, Qt::QueuedConnection);
     }) {
     declareSettings();
     declareTopics();
@@ -246,24 +249,25 @@ bool VelodyneLogger::mayPublish() {
     return !patient || (hasRoom("scan2d") && hasRoom("cloud")) || sincePublished_.elapsed() >= patience_ms;
 }
 
+/// One turn, and the next after whatever else waits in the event loop: on a slow machine a message may take
+/// longer to make than a turn of the sensor.
 void VelodyneLogger::publishTurns() {
     updateClouds();
-    for (;;) {
-        if (!mayPublish()) {
-            retry_.start(retry_ms);
-            return;
-        }
-        const LidarFeed::Turn turn = feed_.takeTurn(), cloud = feed_.takeCloud();
-        if (!turn && !cloud)
-            break;
+    if (!mayPublish()) {
+        retry_.start(retry_ms);
+        return;
+    }
+    const LidarFeed::Turn turn = feed_.takeTurn(), cloud = feed_.takeCloud();
+    if (turn || cloud) {
         sincePublished_.start();
         if (turn && hasSubscribers("scan2d"))
             publish("scan2d", toScanMessage(*turn), double(turn->begin_ns) * 1e-9);
         if (cloud && hasSubscribers("cloud"))
             publish("cloud", toCloudMessage(*cloud), double(cloud->begin_ns) * 1e-9);
-    }
-    if (replayEnd_)
+        retry_.start(0);
+    } else if (replayEnd_) {
         replayEnded(*replayEnd_);
+    }
 }
 
 void VelodyneLogger::tick() {

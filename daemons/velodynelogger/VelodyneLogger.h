@@ -64,7 +64,7 @@ private:
     RecordFolder folder_;
     LidarFeed feed_;
     QTimer second_;
-    QTimer retry_; ///< of publishing what a reader had no room for
+    QTimer retry_; ///< of publishing: the next turn, or what a reader had no room for
     QElapsedTimer sincePublished_;
     bool cloudsWanted_ = false;
     QElapsedTimer sinceCapture_;       ///< since the last capture.turn

@@ -188,6 +188,15 @@ def check_replay(logger, port, capture):
     refused(-32005, logger, "capture.turn", name="late")
 
 
+def check_overload(logger, port, capture):
+    """Turns come faster than messages can be made of them, as on a slow machine: the logger still answers, and tells the loss."""
+    clouds = Reader(port, "cloud")
+    logger.call("source.open", pcap=capture, speed=1000, loop=True)
+    wait_for("turns that were passed over", lambda: logger.call("source.status")["clouds_dropped"] > 100)
+    clouds.wait(20)
+    logger.call("source.close")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         process = Process(BINARIES, "velodynelogger", free_port(0), folder,
@@ -203,6 +212,7 @@ def main():
                 check_captures(logger, folder, capture, model)
                 check_replay(logger, process.port, capture)
             check_slow_reader(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
+            check_overload(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
         finally:
             status = process.stop()
         assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
