@@ -29,10 +29,8 @@ std::vector<DaemonLink *> Robot::daemons() const {
 }
 
 DaemonLink *Robot::withMethod(const QString &method) const {
-    for (const auto &[port, entry] : entries_)
-        if (entry.link->isConnected() && entry.link->hasMethod(method))
-            return entry.link.get();
-    return nullptr;
+    const std::vector<DaemonLink *> all = allWithMethod(method);
+    return all.empty() ? nullptr : all.front();
 }
 
 std::vector<DaemonLink *> Robot::allWithMethod(const QString &method) const {
