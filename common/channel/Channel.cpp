@@ -1,21 +1,34 @@
 #include "common/channel/Channel.h"
 
+#include "common/Time.h"
 #include "common/interface/InterfaceRegistry.h"
 
 #include <QPointer>
 
 namespace hermes {
+namespace {
+
+constexpr double longestTurn_s = 0.001; // then other channels get theirs
+
+} // namespace
 
 Channel::Channel(Interface *interface, std::unique_ptr<Codec> codec, QObject *parent)
     : QObject(parent)
     , carrier(interface)
-    , framing(std::move(codec)) {
+    , framing(std::move(codec))
+    , canWait(interface->setReceiving(true)) {
     carrier->setParent(this);
     connect(carrier, &Interface::opened, this, [this] {
         framing->reset();
+        waiting.clear();
         Q_EMIT opened();
     });
-    connect(carrier, &Interface::closed, this, &Channel::closed);
+    connect(carrier, &Interface::closed, this, [this](const QString &reason) {
+        const QPointer<Channel> alive(this);
+        deliverAll();
+        if (alive)
+            Q_EMIT closed(reason);
+    });
     connect(carrier, &Interface::received, this, &Channel::receive);
 }
 
@@ -48,16 +61,59 @@ Result<void> Channel::send(const QJsonValue &message) {
     return {};
 }
 
-void Channel::receive(const QByteArray &bytes) {
-    const QPointer<Channel> alive(this);
-    for (const CodecItem &item : framing->feed(bytes)) {
-        if (!alive || !isOpen())
-            return; // a message before closed the channel
-        if (item.error)
-            Q_EMIT malformed(*item.error);
-        else
-            Q_EMIT message(item.message);
+void Channel::close(const QString &reason) {
+    waiting.clear(); // nobody wants them
+    carrier->close(reason);
+}
+
+void Channel::setReceiving(bool on) {
+    if (on == receiving)
+        return;
+    receiving = on;
+    if (on && !willDeliver) {
+        willDeliver = true;
+        QMetaObject::invokeMethod(this, &Channel::deliver, Qt::QueuedConnection);
     }
+}
+
+void Channel::receive(const QByteArray &bytes) {
+    for (CodecItem &item : framing->feed(bytes))
+        waiting.push_back(std::move(item));
+    if (!canWait)
+        deliverAll();
+    else if (!willDeliver)
+        deliver();
+}
+
+void Channel::deliver() {
+    willDeliver = false;
+    const QPointer<Channel> alive(this);
+    const double end = monotonicNow() + longestTurn_s;
+    while (receiving && !waiting.empty() && monotonicNow() < end) {
+        deliverNext();
+        if (!alive)
+            return;
+    }
+    carrier->setReceiving(receiving && waiting.empty());
+    if (receiving && !waiting.empty()) {
+        willDeliver = true;
+        QMetaObject::invokeMethod(this, &Channel::deliver, Qt::QueuedConnection);
+    }
+}
+
+void Channel::deliverAll() {
+    const QPointer<Channel> alive(this);
+    while (alive && !waiting.empty())
+        deliverNext();
+}
+
+void Channel::deliverNext() {
+    const CodecItem item = std::move(waiting.front());
+    waiting.pop_front();
+    if (item.error)
+        Q_EMIT malformed(*item.error);
+    else
+        Q_EMIT message(item.message);
 }
 
 } // namespace hermes

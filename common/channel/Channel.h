@@ -5,6 +5,7 @@
 #include "protocol/jsonrpc/Codec.h"
 
 #include <QObject>
+#include <deque>
 #include <memory>
 
 namespace hermes {
@@ -20,12 +21,15 @@ public:
     static Result<Channel *> make(const QString &url, QObject *parent);
 
     void open() { carrier->open(); }
-    void close(const QString &reason) { carrier->close(reason); }
+    void close(const QString &reason);
     bool isOpen() const { return carrier->isOpen(); }
 
     /// Encodes and writes. Error when the message cannot be encoded, the channel is not open, or too much
     /// waits to be sent.
     Result<void> send(const QJsonValue &message);
+
+    /// Lets messages wait, and their sender, where the interface can; others come at once all the same.
+    void setReceiving(bool on);
 
     Interface &interface() { return *carrier; }
     Codec &codec() { return *framing; }
@@ -39,9 +43,16 @@ Q_SIGNALS:
 
 private:
     void receive(const QByteArray &bytes);
+    void deliver();
+    void deliverAll();
+    void deliverNext();
 
     Interface *carrier;
     std::unique_ptr<Codec> framing;
+    std::deque<CodecItem> waiting;
+    const bool canWait;
+    bool receiving = true;
+    bool willDeliver = false; // a call is in the event queue
 };
 
 } // namespace hermes

@@ -52,6 +52,12 @@ void Daemon::declareCommonSettings() {
                    .range(1, 100000)
                    .group(limitGroup)
                    .byDefault(1000));
+    addSetting(
+        Field::integer(QStringLiteral("limits.pending"),
+                       QStringLiteral("Unanswered requests of a new client, then its further ones wait"))
+            .range(1, 10000)
+            .group(limitGroup)
+            .byDefault(32));
     addSetting(Field::number(QStringLiteral("limits.idle_s"),
                              QStringLiteral(
                                  "A new client without subscriptions is closed after this silence; 0: never"))
@@ -76,6 +82,7 @@ void Daemon::applyCommonSettings() {
     limits.topicBytes = configuration.integer(QStringLiteral("limits.topic_bytes"));
     limits.replyBytes = configuration.integer(QStringLiteral("limits.reply_bytes"));
     limits.batch = configuration.integer(QStringLiteral("limits.batch"));
+    limits.pending = configuration.integer(QStringLiteral("limits.pending"));
     limits.idle_s = configuration.number(QStringLiteral("limits.idle_s"));
     channels.setLimits(limits, configuration.integer(QStringLiteral("limits.clients")));
     Log::instance().setMinimumLevel(

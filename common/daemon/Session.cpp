@@ -112,12 +112,16 @@ void Session::run(const RpcRequest &request, const Answer &answer) {
     const Reply reply([this, alive, id = request.id, answer](const Result<QJsonValue> &result) {
         if (!alive)
             return;
+        --pending;
+        channel->setReceiving(pending < limits.pending);
         counts.errors += !result.ok();
         if (id.isUndefined())
             answer(QJsonValue::Undefined);
         else
             answer(result ? makeResult(id, *result) : makeError(id, result.error()));
     });
+    ++pending;
+    channel->setReceiving(pending < limits.pending);
     commands.execute(request, call, reply);
 }
 

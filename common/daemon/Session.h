@@ -14,6 +14,7 @@ struct SessionLimits {
     qint64 topicBytes = 256 << 10; ///< unsent topic data, then the oldest is dropped
     qint64 replyBytes = 2 << 20;   ///< unsent replies, then the client is closed
     int batch = 1000;              ///< messages in a batch
+    int pending = 32;              ///< requests not yet answered, then further ones wait
     double idle_s = 900;           ///< without a sign of life, then the client is closed
 };
 
@@ -64,6 +65,7 @@ private:
     TopicQueue queue;
     SessionCounters counts;
     double lastSign = 0; // monotonic: bytes came or went
+    int pending = 0;     // requests not yet answered
 };
 
 } // namespace hermes

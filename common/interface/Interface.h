@@ -45,6 +45,11 @@ public:
     /// Bytes taken by write() and not yet given to the system.
     virtual qint64 bytesToWrite() const = 0;
     const InterfaceCounters &counters() const { return counts; }
+    /// Stops receiving, and goes on: meanwhile the sender waits. False: this carrier cannot.
+    virtual bool setReceiving(bool on) {
+        Q_UNUSED(on)
+        return false;
+    }
     /// What the system says it lost or found damaged since the opening, by kind; empty where it does not
     /// tell.
     virtual QMap<QString, quint64> systemErrors() const { return {}; }

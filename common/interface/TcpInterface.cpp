@@ -1,12 +1,13 @@
 #include "common/interface/TcpInterface.h"
 
 #include <QPointer>
+#include <utility>
 
 namespace hermes {
 namespace {
 
-constexpr int receiveBufferBytes = 256 << 10; // what is not read stays with the sender
-constexpr int readAtOnceBytes = 32 << 10;     // then others get their turn
+constexpr int receiveBufferBytes = 64 << 10; // what is not read stays with the sender
+constexpr int readAtOnceBytes = 4 << 10;     // some dozens of requests; then others get their turn
 
 } // namespace
 
@@ -51,20 +52,31 @@ void TcpInterface::prepare() {
     });
 }
 
+bool TcpInterface::setReceiving(bool on) {
+    if (on && !receiving)
+        readLater();
+    receiving = on;
+    return true;
+}
+
 void TcpInterface::readSome() {
-    if (readsOn)
+    if (readsOn || !receiving || !isOpen())
         return;
     const QByteArray bytes = socket->read(readAtOnceBytes);
-    if (socket->bytesAvailable() > 0) {
-        readsOn = true;
-        const auto readOn = [this] {
-            readsOn = false;
-            readSome();
-        };
-        QMetaObject::invokeMethod(this, readOn, Qt::QueuedConnection);
-    }
+    if (socket->bytesAvailable() > 0)
+        readLater();
     if (!bytes.isEmpty())
         nowReceived(bytes);
+}
+
+void TcpInterface::readLater() {
+    if (std::exchange(readsOn, true))
+        return;
+    const auto readOn = [this] {
+        readsOn = false;
+        readSome();
+    };
+    QMetaObject::invokeMethod(this, readOn, Qt::QueuedConnection);
 }
 
 QString TcpInterface::name() const {
@@ -76,6 +88,7 @@ qint64 TcpInterface::bytesToWrite() const {
 }
 
 void TcpInterface::doOpen() {
+    receiving = true;
     if (socket->state() == QAbstractSocket::ConnectedState)
         nowOpen(); // a peer of a server
     else

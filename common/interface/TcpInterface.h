@@ -19,6 +19,7 @@ public:
     QString name() const override;
     void flush() override { socket->flush(); }
     qint64 bytesToWrite() const override;
+    bool setReceiving(bool on) override;
 
 protected:
     void doOpen() override;
@@ -28,10 +29,12 @@ protected:
 private:
     void prepare();
     void readSome();
+    void readLater();
 
     InterfaceUrl url;
     QTcpSocket *socket;
     bool readsOn = false; // the rest is read when others have had their turn
+    bool receiving = true;
 };
 
 } // namespace hermes

@@ -77,13 +77,15 @@ void DriveLoop::shutDown(std::function<void()> done) {
 }
 
 void DriveLoop::doJobs() {
-    for (DriveMail::Job *job : mail_.asked.take()) {
+    const auto &jobs = mail_.asked.take();
+    for (DriveMail::Job *job : jobs) {
         job->result = job->work(*this);
         if (engine_.obey())
             wakeLines();
-        ++mail_.finished;
-        report();
     }
+    mail_.finished += jobs.size();
+    if (!jobs.empty())
+        report();
 }
 
 void DriveLoop::cycle() {

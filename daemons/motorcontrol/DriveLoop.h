@@ -16,7 +16,7 @@ class DriveLoop : public QObject {
 public:
     static constexpr std::chrono::milliseconds period{20};
 
-    /// Reports after each cycle and after each job of the mail, which must outlive it.
+    /// Reports after each cycle and after the jobs of the mail, which must outlive it.
     DriveLoop(const MotorSettings &settings, DriveMail &mail);
 
     /// Opens the lines and begins. Error: a URL that names no line, no timer.

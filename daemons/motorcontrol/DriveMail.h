@@ -21,12 +21,12 @@ struct DriveMail {
         Reply reply;
         Result<QJsonValue> result = QJsonValue();
     };
-    static constexpr std::size_t capacity = 64;
+    static constexpr std::size_t capacity = 64, jobs = 256;
 
-    Mailbox<Job *> asked{capacity}; ///< for the loop; the daemon keeps them
+    Mailbox<Job *> asked{jobs}; ///< for the loop; the daemon keeps them
     std::atomic<std::size_t> finished{
         0}; ///< jobs, in the order in which they were asked, since the daemon looked
-    Mailbox<Telemetry> reports{capacity}; ///< for the daemon; comes after each job too
+    Mailbox<Telemetry> reports{capacity}; ///< for the daemon; comes after jobs too
 };
 
 } // namespace hermes
