@@ -5,14 +5,16 @@
 #include <QJsonObject>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <string_view>
 #include <vector>
 
 namespace hermes {
 namespace {
 
-// Looks once over the text for what Qt's parser lets pass: keys that occur twice and deep nesting. Takes no
-// offence at anything else; Qt's parser does that afterwards.
+// Looks once over the text for what Qt's parser lets pass: keys that occur twice, deep nesting, control
+// characters and unknown escapes in strings, numbers like .5 and 1. without a digit on both sides of the
+// point. Takes no offence at anything else; Qt's parser does that afterwards.
 class Scanner {
 public:
     Scanner(const QByteArray &jsonText, int depthLimit)
@@ -24,6 +26,9 @@ public:
             const char c = text[i];
             if (c == '"') {
                 const int end = stringEnd(i);
+                if (const int bad = badCharacter(i, end); bad < end)
+                    return fail(error, bad,
+                                QStringLiteral("a control character or an unknown escape in a string"));
                 if (!open.empty() && isKey(end))
                     open.back().push_back(text.mid(i, end - i + 1));
                 i = end;
@@ -36,6 +41,8 @@ public:
                     return fail(error, i,
                                 QStringLiteral("the key %1 occurs twice in one object").arg(*twice));
                 open.pop_back();
+            } else if (c == '.' && !(isDigit(i - 1) && isDigit(i + 1))) {
+                return fail(error, i, QStringLiteral("illegal number"));
             }
         }
         return true;
@@ -51,6 +58,18 @@ private:
         }
         return text.size() - 1;
     }
+
+    int badCharacter(int start, int end) const {
+        for (int i = start + 1; i < end; ++i) {
+            if (uchar(text[i]) < ' ')
+                return i;
+            if (text[i] == '\\' && !std::strchr("\"\\/bfnrtu", text[++i]))
+                return i;
+        }
+        return end;
+    }
+
+    bool isDigit(int i) const { return i >= 0 && i < text.size() && text[i] >= '0' && text[i] <= '9'; }
 
     bool isKey(int stringEnd) const {
         int i = stringEnd + 1;

@@ -77,6 +77,10 @@ void TestJsonCodec::refuses_data() {
     QTest::newRow("NUL") << QByteArray("{\"a\":\0}", 7);
     QTest::newRow("NaN") << QByteArray("[NaN]");
     QTest::newRow("number too large") << QByteArray("[1e999]");
+    QTest::newRow("control character in a string") << QByteArray("\"a\tb\"");
+    QTest::newRow("unknown escape") << QByteArray("\"a\\x\"");
+    QTest::newRow("no digit before the point") << QByteArray(".5");
+    QTest::newRow("no digit after the point") << QByteArray("[1.]");
     QTest::newRow("nested 101") << QByteArray(101, '[') + QByteArray(101, ']');
     QTest::newRow("nested 100000") << QByteArray(100000, '[');
     QTest::newRow("closing only") << QByteArray("]]]]");
