@@ -10,11 +10,6 @@ namespace {
 const QString nameKey = QStringLiteral("name");
 const QString schemaKey = QStringLiteral("schema");
 
-Error invalidParams(const std::vector<SchemaViolation> &violations) {
-    return Error(ErrorCode::InvalidParams, QStringLiteral("invalid params: ") + toString(violations),
-                 QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
-}
-
 } // namespace
 
 Command::Command(const QString &name, const QString &text)

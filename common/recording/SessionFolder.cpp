@@ -2,6 +2,7 @@
 
 #include "common/recording/DiskError.h"
 #include "common/recording/Sidecar.h"
+#include "common/schema/SchemaValidator.h"
 
 #include <QDir>
 
@@ -54,9 +55,9 @@ Result<void> checkName(const QString &what, const QString &name) {
     const QString expected =
         QString("1 to %1 bytes without '/' and control characters, not beginning with a dot")
             .arg(longestName);
-    return Error(ErrorCode::InvalidParams,
-                 QString("%1: found \"%2\", expected %3").arg(what, name.left(longestName), expected),
-                 QJsonObject{{what, expected}});
+    return invalidParams(
+        {{what, name, expected}},
+        QString("%1: found \"%2\", expected %3").arg(what, name.left(longestName), expected));
 }
 
 QString reservePath(const QString &folder, const QString &logger) {

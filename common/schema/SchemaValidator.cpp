@@ -196,4 +196,10 @@ QJsonArray toJson(const std::vector<SchemaViolation> &violations) {
     return array;
 }
 
+Error invalidParams(const std::vector<SchemaViolation> &violations, const QString &message) {
+    return Error(ErrorCode::InvalidParams,
+                 message.isEmpty() ? QStringLiteral("invalid params: ") + toString(violations) : message,
+                 QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
+}
+
 } // namespace hermes

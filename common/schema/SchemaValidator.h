@@ -44,5 +44,7 @@ private:
 /// All violations as one text, separated by "; ".
 QString toString(const std::vector<SchemaViolation> &violations);
 QJsonArray toJson(const std::vector<SchemaViolation> &violations);
+/// InvalidParams with all violations in `data.errors`; the message is theirs where none is given.
+Error invalidParams(const std::vector<SchemaViolation> &violations, const QString &message = QString());
 
 } // namespace hermes

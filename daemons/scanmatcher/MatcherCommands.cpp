@@ -25,7 +25,8 @@ Result<Scan> scanParameter(const Call &call, const char *name) {
         data["stamp"] = 0;
     auto scan = parseScan(data);
     if (!scan)
-        return Error(ErrorCode::InvalidParams, QString("%1: %2").arg(name, scan.error().message));
+        return invalidParams({{name, QJsonValue::Undefined, "a scan {x: [], y: []}"}},
+                             QString("%1: %2").arg(name, scan.error().message));
     return scan;
 }
 

@@ -15,10 +15,8 @@ namespace {
 constexpr int viewPeriod_ms = 20; // rather than to wake up for each byte
 
 Error wrongParameter(const QString &name, const QString &found, const QString &expected) {
-    return Error(
-        ErrorCode::InvalidParams, QString("%1: found \"%2\", expected %3").arg(name, found, expected),
-        QJsonObject{
-            {"errors", QJsonArray{QJsonObject{{"path", name}, {"value", found}, {"expected", expected}}}}});
+    return invalidParams({{name, found, expected}},
+                         QString("%1: found \"%2\", expected %3").arg(name, found, expected));
 }
 
 } // namespace

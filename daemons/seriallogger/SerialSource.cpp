@@ -8,9 +8,9 @@ namespace hermes {
 Result<QJsonValue> SerialLogger::openSource(const Call &call) {
     const bool live = call.has("live") && call.flag("live");
     if (live == call.has("recording"))
-        return Error(
-            ErrorCode::InvalidParams, "either live: true or recording: NAME expected",
-            QJsonObject{{"live", "true, without recording"}, {"recording", "the name of one, without live"}});
+        return invalidParams({{"live", call.value("live"), "true, without recording"},
+                              {"recording", call.value("recording"), "the name of one, without live"}},
+                             "either live: true or recording: NAME expected");
     if (live) {
         endReplay();
         openViews();

@@ -259,7 +259,7 @@ Result<QJsonValue> Simulator::setNoise(const Call &call) {
 
 Result<QJsonValue> Simulator::setFault(const Call &call) {
     if (const QString wrong = faultMismatch(call.text("device"), call.text("kind")); !wrong.isEmpty())
-        return Error(ErrorCode::InvalidParams, wrong);
+        return invalidParams({{"kind", call.value("kind"), "a fault of this device"}}, wrong);
     if (call.text("device") == "gps")
         return setGpsFault(call);
     if (call.text("device") != "lidar")

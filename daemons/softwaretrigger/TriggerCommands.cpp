@@ -82,8 +82,7 @@ Result<int> SoftwareTrigger::indexOf(const QString &id) {
     }
     const SchemaViolation unknown{
         "id", id, known.isEmpty() ? QString("a trigger; there is none") : "one of " + known.join(", ")};
-    return Error(ErrorCode::InvalidParams, "invalid params: " + unknown.toString(),
-                 QJsonObject{{"errors", QJsonArray{unknown.toJson()}}});
+    return invalidParams({unknown});
 }
 
 // edited: the element that a command changed; what is wrong with it is told by its own path.

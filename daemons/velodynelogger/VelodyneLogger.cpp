@@ -141,10 +141,10 @@ void VelodyneLogger::opened(Source source, const QString &name, const PcapPlayer
 Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
     const bool live = call.has("live") && call.flag("live");
     if (live + call.has("pcap") + call.has("recording") != 1)
-        return Error(ErrorCode::InvalidParams, "one of live: true, pcap: FILE and recording: NAME expected",
-                     QJsonObject{{"live", "true, without the others"},
-                                 {"pcap", "a capture file, without the others"},
-                                 {"recording", "the name of one, without the others"}});
+        return invalidParams({{"live", call.value("live"), "true, without the others"},
+                              {"pcap", call.value("pcap"), "a capture file, without the others"},
+                              {"recording", call.value("recording"), "the name of one, without the others"}},
+                             "one of live: true, pcap: FILE and recording: NAME expected");
     const QString pcap = call.text("pcap");
     const Result<void> result = live                    ? openLive()
                                 : call.has("recording") ? openRecording(call)
