@@ -160,11 +160,15 @@ void Recording::check() {
     checking_ = true;
     const bool active = phase_ == Phase::Recording;
     const bool refresh = active && ++checks_ % refreshEvery == 0;
-    run([this, refresh, path = active ? folder_ : options().root]() -> Done {
+    run([this, refresh, active, path = active ? folder_ : options().root]() -> Done {
         const Result<void> refreshed = refresh && session_.isOpen() ? session_.refresh() : Result<void>();
+        const bool gone = active && !QDir(path).exists();
         const Result<double> room = freeBytes(path);
-        return [this, room, refreshed] {
+        return [this, gone, room, refreshed] {
             checking_ = false;
+            if (gone && phase_ == Phase::Recording)
+                end(RecordingEnd::Failed,
+                    diskError(folder_ + ": the folder of the recording was removed or moved away", folder_));
             checked(room, refreshed);
         };
     });

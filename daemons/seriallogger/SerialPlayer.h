@@ -60,6 +60,7 @@ private:
     std::vector<std::unique_ptr<Track>> tracks_;
     Filled filled_;
     End end_;
+    Result<void> missing_; // what a file had when it was recorded, and has no more
     PlayClock clock_;
 
     std::thread thread_;

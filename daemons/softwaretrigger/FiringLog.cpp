@@ -6,6 +6,8 @@
 #include <QDir>
 #include <QFileInfo>
 
+#include <sys/stat.h>
+
 namespace hermes {
 namespace {
 
@@ -50,7 +52,7 @@ void FiringLog::append(const QByteArray &row) {
 // In the thread of the disk.
 void FiringLog::write(const QByteArray &row) {
     QString error;
-    if (!file_.isOpen() || double(file_.size() + row.size()) > fileBytes_)
+    if (!file_.isOpen() || isRemoved() || double(file_.size() + row.size()) > fileBytes_)
         error = begin();
     if (error.isEmpty()) {
         const qint64 whole = file_.size();
@@ -67,6 +69,12 @@ void FiringLog::write(const QByteArray &row) {
         logError("log of firings", error);
     error_ = error;
     path_ = file_.fileName();
+}
+
+// Somebody has removed it, or its folder: rows in it would be lost.
+bool FiringLog::isRemoved() const {
+    struct stat status {};
+    return ::fstat(file_.handle(), &status) != 0 || status.st_nlink == 0;
 }
 
 // A new file with its header; gives what is wrong.

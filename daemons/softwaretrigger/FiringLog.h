@@ -30,6 +30,7 @@ public:
 private:
     void write(const QByteArray &row);
     QString begin();
+    bool isRemoved() const;
 
     const QString folder_;
     const double fileBytes_;

@@ -22,6 +22,7 @@ private Q_SLOTS:
     void refusalsLeaveNothingBehind();
     void lowSpaceIsToldAndEndsTheRecording();
     void aFailedWriterEndsTheRecording();
+    void aFolderThatIsRemovedEndsTheRecording();
     void aRecordingThatWasCutOffIsCompleted();
     void foreignSidecarsAreToldAndLeftAlone_data();
     void foreignSidecarsAreToldAndLeftAlone();
@@ -75,6 +76,19 @@ void TestRecordingEnds::aFailedWriterEndsTheRecording() {
     logger.writer.setState({});
     QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
     QCOMPARE(logger.level("recording"), "ok");
+}
+
+void TestRecordingEnds::aFolderThatIsRemovedEndsTheRecording() {
+    QTemporaryDir root;
+    Logger logger(root.path());
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    QVERIFY(QFile::rename(root.path() + "/a", root.path() + "/moved"));
+    QTRY_VERIFY(!logger.recording.isActive());
+    const Result<QJsonValue> stopped = logger.call("record.stop");
+    QCOMPARE(stopped.error().code, int(ErrorCode::InputOutput));
+    QCOMPARE(stopped.error().data.toObject().value("path").toString(), root.path() + "/a");
+    QCOMPARE(logger.level("recording"), "error");
+    QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
 }
 
 void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {

@@ -164,6 +164,15 @@ void TestSerialRecording::replaysARecording() {
     QVERIFY(failure("source.open", {{"live", true}, {"recording", "run"}}).is(ErrorCode::InvalidParams));
     QVERIFY(failure("source.open", {{"recording", "../run"}}).is(ErrorCode::InvalidParams));
     QVERIFY(failure("source.open", {{"recording", "none"}}).is(ErrorCode::InputOutput));
+
+    QFile raw(folder_->filePath("recordings/run/seriallogger-gps.raw"));
+    QVERIFY(raw.resize(raw.size() - 5));
+    call("source.open", {{"recording", "run"}, {"speed", 1000}});
+    QTRY_COMPARE(call("source.status")["source"]["state"].toString(), "ended");
+    const QString missing = call("source.status")["source"]["error"].toString();
+    QVERIFY2(missing.contains(raw.fileName()), qPrintable(missing));
+    QCOMPARE(healthItem("source").value("level").toString(), "error");
+    call("source.open", {{"live", true}});
     QVERIFY(QFile::remove(folder_->filePath("recordings/run/seriallogger-gps.index")));
     QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::InputOutput));
     QCOMPARE(call("source.status")["source"]["state"].toString(), "live");

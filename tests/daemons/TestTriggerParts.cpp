@@ -50,6 +50,7 @@ private Q_SLOTS:
     void scheduleCanBeChangedFromItsFunctions();
     void logNeverOverwrites();
     void logGoesOnInNewFiles();
+    void logThatIsRemovedBeginsAnew();
     void logCountsWhatTheDiskRefuses();
     void jitterOfTheLastThousand();
 };
@@ -299,6 +300,20 @@ void TestTriggerParts::logGoesOnInNewFiles() {
     QCOMPARE(files.size(), 10);
     for (const QFileInfo &file : files)
         QCOMPARE(file.size(), 85);
+}
+
+void TestTriggerParts::logThatIsRemovedBeginsAnew() {
+    QTemporaryDir folder;
+    FiringLog log(folder.filePath("log"), 1e6, "head\n");
+    log.append("row 1\n");
+    log.flush();
+    QVERIFY(QDir(folder.filePath("log")).removeRecursively());
+    log.append("row 2\n");
+    log.flush();
+    QCOMPARE(log.toJson()["rows"].toInt(), 2);
+    QFile file(log.toJson()["path"].toString());
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    QCOMPARE(file.readAll(), QByteArray("head\nrow 2\n"));
 }
 
 void TestTriggerParts::logCountsWhatTheDiskRefuses() {
