@@ -40,6 +40,7 @@ QString toString(SupervisedProcess::State state) {
 }
 
 void SupervisedProcess::Child::setupChildProcess() {
+    ::setpgid(0, 0); // those that it starts are of its group
     prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 
@@ -58,7 +59,8 @@ SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
     connect(&process_, &QProcess::started, this, [this] {
         logInfo("process",
                 QString("%1: started with process id %2").arg(entry_.name).arg(process_.processId()));
-        setState(State::Running);
+        group_ = pid_t(process_.processId());
+        Q_EMIT changed();
     });
     retry_.setSingleShot(true);
     connect(&retry_, &QTimer::timeout, this, [this] {
@@ -82,14 +84,22 @@ SupervisedProcess::~SupervisedProcess() {
     if (!process_.waitForFinished(int(killAfter.count())))
         process_.kill();
     process_.waitForFinished(1000);
+    endGroup();
+}
+
+void SupervisedProcess::endGroup() {
+    if (group_ > 1)
+        ::kill(-group_, SIGKILL);
+    group_ = 0;
 }
 
 void SupervisedProcess::start() {
     retry_.stop();
-    if (state_ == State::Stopping)
-        startAfterStop_ = true;
-    if (isAlive())
+    if (isAlive()) {
+        startAfterStop_ = state_ == State::Stopping;
         return;
+    }
+    state_ = State::Running; // at once: a stop may come before the news that it has started
     started_ = measured_ = monotonicNow();
     used_s_ = cpu_ = 0;
     process_.start(found(entry_.program), entry_.arguments);
@@ -114,6 +124,7 @@ void SupervisedProcess::restart() {
 
 void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
     kill_.stop();
+    endGroup();
     readOutput();
     lastExit_ =
         status == QProcess::NormalExit ? QString("exit status %1").arg(code) : QString("killed by a signal");
@@ -152,7 +163,8 @@ void SupervisedProcess::readOutput() {
             end = longestLine;
         if (end < 0)
             return;
-        lines_.push_back(QString::fromUtf8(partialLine_.left(int(std::min<qsizetype>(end, longestLine)))));
+        lines_.push_back(
+            QString::fromUtf8(partialLine_.constData(), int(std::min<qsizetype>(end, longestLine))));
         partialLine_.remove(0, int(end) + (partialLine_[int(end)] == '\n' ? 1 : 0));
         if (lines_.size() > keptLines)
             lines_.pop_front();

@@ -6,6 +6,7 @@
 #include <QStringList>
 #include <QTimer>
 #include <deque>
+#include <sys/types.h>
 
 namespace hermes {
 
@@ -72,11 +73,14 @@ private:
     void onFailedToStart();
     void retryLater();
     void readOutput();
+    /// Those that it started and left behind.
+    void endGroup();
     void setState(State state);
 
     ProcessEntry entry_;
     Child process_;
     State state_ = State::Stopped;
+    pid_t group_ = 0;
     QTimer retry_, kill_;
     std::chrono::milliseconds backOff_ = firstBackOff;
     int restarts_ = 0;

@@ -36,6 +36,10 @@ ProcessEntry toEntry(const QJsonObject &json) {
     return entry;
 }
 
+Error noProcess(const QString &name) {
+    return invalidParams({{"name", name, "the name of a process"}}, QString("no process \"%1\"").arg(name));
+}
+
 /// Its health item.
 QString itemOf(const SupervisedProcess &process) {
     return "process " + process.entry().name;
@@ -111,8 +115,7 @@ void Supervisor::declareCommands() {
             .handler([this](const Call &call) -> Result<QJsonValue> {
                 const SupervisedProcess *const process = find(call.text("name"));
                 if (!process)
-                    return Error(ErrorCode::InvalidParams,
-                                 QString("no process \"%1\"").arg(call.text("name")));
+                    return noProcess(call.text("name"));
                 return QJsonValue(QJsonArray::fromStringList(process->output(call.integer("lines"))));
             }));
     addCommand(
@@ -142,7 +145,7 @@ Command Supervisor::processCommand(const QString &name, const QString &summary,
         .handler([this, action](const Call &call) -> Result<QJsonValue> {
             SupervisedProcess *const process = find(call.text("name"));
             if (!process)
-                return Error(ErrorCode::InvalidParams, QString("no process \"%1\"").arg(call.text("name")));
+                return noProcess(call.text("name"));
             (process->*action)();
             return QJsonValue();
         });
@@ -215,7 +218,7 @@ Result<QJsonValue> Supervisor::remove(const QString &name) {
             entries.removeAt(i);
             return setEntries(entries);
         }
-    return Error(ErrorCode::InvalidParams, QString("no process \"%1\"").arg(name));
+    return noProcess(name);
 }
 
 Result<QJsonValue> Supervisor::setEntries(const QJsonArray &entries) {

@@ -19,6 +19,8 @@ private Q_SLOTS:
     void wrongCommandLineIsNotTriedAgain();
     void missingProgramIsTold();
     void stubbornProcessIsKilled();
+    void whatAProcessLeavesBehindIsKilled();
+    void restartsInAStormEndInOneProcess();
     void keepsTheLastOutput();
     void reportsUse();
     void addAndRemove();
@@ -150,6 +152,30 @@ void TestSupervisor::stubbornProcessIsKilled() {
     QVERIFY(call("process.stop", {{"name", "one"}}).ok());
     QCOMPARE(stateOf("one"), QString("stopping"));
     QTRY_COMPARE_WITH_TIMEOUT(stateOf("one"), QString("stopped"), 8000);
+}
+
+void TestSupervisor::whatAProcessLeavesBehindIsKilled() {
+    launch({shell("one", "sleep 600 & echo $!; wait")});
+    const auto output = [this] { return call("process.output", {{"name", "one"}})->toArray(); };
+    QTRY_COMPARE(output().size(), 1);
+    const pid_t left = output()[0].toString().toInt();
+    QVERIFY(left > 1 && ::kill(left, 0) == 0);
+    QVERIFY(call("process.stop", {{"name", "one"}}).ok());
+    QTRY_COMPARE(stateOf("one"), QString("stopped"));
+    const auto isGone = [left] { // or is dead and was not collected
+        QFile file(QString("/proc/%1/stat").arg(left));
+        return !file.open(QFile::ReadOnly) || file.readAll().contains(") Z");
+    };
+    QTRY_VERIFY(isGone());
+}
+
+void TestSupervisor::restartsInAStormEndInOneProcess() {
+    launch({shell("one", "exec sleep 600")});
+    for (int i = 0; i < 50; ++i)
+        QVERIFY(call("process.restart", {{"name", "one"}}).ok());
+    QTRY_COMPARE(stateOf("one"), QString("running"));
+    QVERIFY(call("process.stop", {{"name", "one"}}).ok());
+    QTRY_COMPARE(stateOf("one"), QString("stopped"));
 }
 
 void TestSupervisor::keepsTheLastOutput() {
