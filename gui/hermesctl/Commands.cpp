@@ -10,7 +10,10 @@
 #include <QDateTime>
 #include <QEventLoop>
 #include <QJsonDocument>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 namespace hermes {
 namespace {
@@ -53,9 +56,16 @@ QString logLine(const QJsonValue &record) {
 
 } // namespace
 
+void checkOutput() {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+        return;
+    std::fprintf(stderr, "hermesctl: stdout cannot be written: %s\n", std::strerror(errno));
+    std::_Exit(1);
+}
+
 void printLine(const QString &text) {
     std::fputs((text + QLatin1Char('\n')).toUtf8().constData(), stdout);
-    std::fflush(stdout);
+    checkOutput();
 }
 
 Result<void> listDaemons(const Arguments &arguments) {

@@ -32,6 +32,9 @@ Result<void> document(Client &client, const Arguments &arguments);
 /// Prints a topic until the count is reached, as one JSON object a line or as CSV.
 Result<void> watch(Client &client, const Arguments &arguments);
 
+/// Ends the program with status 1, and says why, when stdout did not take what was printed.
+void checkOutput();
+
 /// Prints a line to stdout at once.
 void printLine(const QString &text);
 

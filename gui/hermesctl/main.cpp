@@ -152,11 +152,15 @@ int main(int argc, char **argv) {
     const auto arguments = Arguments::parse(QCoreApplication::arguments().mid(1));
     if (!arguments)
         return usageError(arguments.error().message);
+    int status = 0;
     if (arguments->help)
-        return std::fputs(helpText, stdout) < 0;
-    if (arguments->version)
-        return std::printf("hermesctl %s\n", qPrintable(projectVersion())) < 0;
-    if (arguments->command.isEmpty())
-        return usageError(QStringLiteral("a command is missing"));
-    return run(*arguments);
+        std::fputs(helpText, stdout);
+    else if (arguments->version)
+        std::printf("hermesctl %s\n", qPrintable(projectVersion()));
+    else if (arguments->command.isEmpty())
+        status = usageError(QStringLiteral("a command is missing"));
+    else
+        status = run(*arguments);
+    checkOutput();
+    return status;
 }

@@ -86,6 +86,14 @@ class Hermesctl(unittest.TestCase):
         self.assertEqual(shown.returncode, 1)
         self.assertIn("refused", shown.stderr)
 
+    def test_output_that_cannot_be_written(self):
+        for arguments in (["--help"], ["doc", self.address], ["call", self.address, "daemon.info"],
+                          ["watch", self.address, "temperature"]):
+            with open("/dev/full", "wb") as full:
+                done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, timeout=30)
+            self.assertEqual(done.returncode, 1, arguments)
+            self.assertIn(b"stdout cannot be written", done.stderr)
+
     def test_help_and_version(self):
         self.assertIn("watch D TOPIC", self.ok("--help"))
         self.assertRegex(self.ok("--version"), r"^hermesctl \d")
