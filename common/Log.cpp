@@ -5,10 +5,23 @@
 #include <QDateTime>
 #include <QMutexLocker>
 #include <algorithm>
-#include <cstdio>
+#include <climits>
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
 
 namespace hermes {
 namespace {
+
+// Begun without standard streams, the first device that is opened would be "stderr" and get the log. Before
+// main(), as Qt opens files of its own.
+const bool hasStandardStreams = [] {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+        if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != stream)
+            return false;
+    }
+    return true;
+}();
 
 void fromQt(QtMsgType type, const QMessageLogContext &context, const QString &text) {
     const LogLevel level = type == QtDebugMsg     ? LogLevel::Debug
@@ -44,6 +57,25 @@ Log &Log::instance() {
     return log;
 }
 
+// Never waits for whoever reads stderr: a terminal that was stopped must not stop the daemon.
+void Log::writeToStderr(QByteArray bytes) {
+    if (lostLines > 0)
+        bytes.prepend(
+            QStringLiteral("(%1 lines of the log are not here: nobody took them)\n").arg(lostLines).toUtf8());
+    while (!bytes.isEmpty()) {
+        pollfd output{STDERR_FILENO, POLLOUT, 0};
+        const bool ready = ::poll(&output, 1, 0) == 1 && (output.revents & POLLOUT);
+        const size_t size = std::min(size_t(bytes.size()), size_t(PIPE_BUF)); // so much is written at once
+        const ssize_t written = ready ? ::write(STDERR_FILENO, bytes.constData(), size) : -1;
+        if (written <= 0) {
+            ++lostLines;
+            return;
+        }
+        bytes.remove(0, int(written));
+    }
+    lostLines = 0;
+}
+
 Log::Log() {
     qRegisterMetaType<LogRecord>();
 }
@@ -57,9 +89,8 @@ void Log::write(LogLevel level, const QString &source, const QString &text) {
         records.push_back(record);
         while (int(records.size()) > capacity)
             records.pop_front();
-        if (toStderr) {
-            const QByteArray bytes = line(record);
-            std::fwrite(bytes.constData(), 1, size_t(bytes.size()), stderr);
+        if (toStderr && hasStandardStreams) {
+            writeToStderr(line(record));
         }
     }
     Q_EMIT written(record);

@@ -23,8 +23,9 @@ struct LogRecord {
     QJsonObject toJson() const;
 };
 
-/// The log of this process: keeps the last records in memory, writes them to stderr with their stamp, tells
-/// listeners. Any thread may write. Qt's own messages (qWarning ...) arrive here after captureQtMessages().
+/// The log of this process: keeps the last records in memory, writes them to stderr with their stamp as far
+/// as it takes them, tells listeners. Any thread may write. Qt's own messages (qWarning ...) arrive here
+/// after captureQtMessages().
 class Log : public QObject {
     Q_OBJECT
 public:
@@ -46,12 +47,14 @@ Q_SIGNALS:
 
 private:
     Log();
+    void writeToStderr(QByteArray bytes);
 
     mutable QMutex mutex;
     std::deque<LogRecord> records;
     int capacity = 1000;
     LogLevel minimum = LogLevel::Info;
     bool toStderr = true;
+    quint64 lostLines = 0; // not taken by stderr since the last one that was
 };
 
 /// Shorthands: `logWarning("sensor", "no packet for 2 s")`.

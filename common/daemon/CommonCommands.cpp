@@ -8,6 +8,8 @@
 namespace hermes {
 namespace {
 
+constexpr std::size_t mostSubscriptions = 100; // of a client
+
 QJsonObject type(const char *name) {
     return {{QStringLiteral("type"), QLatin1String(name)}};
 }
@@ -141,6 +143,10 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
                 Session *session = daemon.server().session(call.client);
                 if (!session)
                     return Error(ErrorCode::NotReady, QStringLiteral("the client is gone"));
+                if (session->topics().size() >= mostSubscriptions)
+                    return Error(
+                        ErrorCode::OverLimit,
+                        QStringLiteral("a client has at most %1 subscriptions").arg(mostSubscriptions));
                 const auto id =
                     topics.subscribe(call.text("topic"), {call.number("max_rate_hz"), call.integer("queue")},
                                      &session->topics());
@@ -152,7 +158,7 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
         Command(QStringLiteral("topics.unsubscribe"), QStringLiteral("Ends a subscription of this client"))
             .param(
                 Field::integer(QStringLiteral("subscription"), QStringLiteral("What topics.subscribe gave"))
-                    .minimum(1))
+                    .range(1, 9007199254740992.0))
             .returnsNull()
             .handler([&daemon, &topics](const Call &call) -> Result<QJsonValue> {
                 Session *session = daemon.server().session(call.client);

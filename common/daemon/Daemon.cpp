@@ -23,6 +23,15 @@ void print(FILE *stream, const QString &text) {
     std::fputs(text.toUtf8().constData(), stream);
 }
 
+/// The exit status of a program that had nothing to do but to print this.
+int printed(const QString &text) {
+    print(stdout, text);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
+        return 0;
+    print(stderr, QStringLiteral("stdout cannot be written: %1\n").arg(qt_error_string()));
+    return 1;
+}
+
 } // namespace
 
 QString toString(DaemonState state) {
@@ -53,8 +62,6 @@ Daemon::Daemon(const DaemonIdentity &identity)
     connect(&configuration, &Settings::changed, this, [this](const QStringList &paths) {
         if (!launched)
             return;
-        restartPaths += configuration.needRestart(paths);
-        restartPaths.removeDuplicates();
         applyCommonSettings();
         settingsChanged(paths);
         publish(QStringLiteral("settings"), configuration.values());
@@ -91,12 +98,10 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
         return 2;
     }
     if (line->action == CommandLine::Action::Help) {
-        print(stdout, helpText());
-        return 0;
+        return printed(helpText());
     }
     if (line->action == CommandLine::Action::Version) {
-        print(stdout, QStringLiteral("%1 %2\n").arg(program, projectVersion()));
-        return 0;
+        return printed(QStringLiteral("%1 %2\n").arg(program, projectVersion()));
     }
     const auto configured = configure(*line);
     if (!configured) {
@@ -104,12 +109,10 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
         return configured.error().is(ErrorCode::InvalidParams) ? 2 : 1;
     }
     if (line->action == CommandLine::Action::PrintSettings) {
-        print(stdout, QString::fromUtf8(QJsonDocument(configuration.values()).toJson()));
-        return 0;
+        return printed(QString::fromUtf8(QJsonDocument(configuration.values()).toJson()));
     }
     if (line->action == CommandLine::Action::Check) {
-        print(stdout, QStringLiteral("%1: the settings are valid\n").arg(program));
-        return 0;
+        return printed(QStringLiteral("%1: the settings are valid\n").arg(program));
     }
     return std::nullopt;
 }
@@ -150,6 +153,7 @@ Result<void> Daemon::launch() {
                            "there (setting \"insecure\")"));
     }
     launched = true;
+    startedWith = configuration.values();
     const auto starting = start();
     if (!starting) {
         logError(self.name, starting.error().message);
@@ -189,8 +193,8 @@ DaemonState Daemon::state() const {
 }
 
 void Daemon::setState(DaemonState state) {
-    if (state == ownState)
-        return;
+    if (state == ownState || ownState == DaemonState::Stopping)
+        return; // news that came too late
     ownState = state;
     logInfo(self.name, toString(state));
     publishStatus();
@@ -239,7 +243,8 @@ QJsonObject Daemon::status() {
     const QJsonArray items = healthItems.toJson();
     return {{QStringLiteral("state"), toString(state())},
             {QStringLiteral("health"), items},
-            {QStringLiteral("restart_for"), QJsonArray::fromStringList(restartPaths)}};
+            {QStringLiteral("restart_for"), QJsonArray::fromStringList(configuration.needRestart(leafPaths(
+                                                difference(configuration.values(), startedWith))))}};
 }
 
 void Daemon::publishStatus() {

@@ -114,8 +114,8 @@ private:
     Health healthItems;
     Server channels;
     DaemonState ownState = DaemonState::Starting;
-    QStringList restartPaths; // changed settings that wait for a restart
-    double started = 0;       // stamp
+    QJsonObject startedWith; // the settings
+    double started = 0;      // stamp
     double startedMono = 0;
     bool launched = false;
     bool watchdogByHand = false;

@@ -1,11 +1,42 @@
 #include "common/Log.h"
 #include "common/daemon/Daemon.h"
+#include "common/interface/InterfaceRegistry.h"
+#include "protocol/jsonrpc/Codec.h"
 
 namespace hermes {
 namespace {
 
 const QStringList levels{QStringLiteral("debug"), QStringLiteral("info"), QStringLiteral("warning"),
                          QStringLiteral("error")};
+
+// What is wrong with an address to listen at; nothing: empty.
+QString wrongListen(const QString &text, bool fromNetwork) {
+    const auto url = InterfaceUrl::parse(text);
+    if (!url)
+        return QStringLiteral("a URL like tcp://127.0.0.1:7410?protocol=json");
+    if (!interfaceSchemes().contains(url->scheme))
+        return QStringLiteral("one of the schemes ") + interfaceSchemes().join(QStringLiteral(", "));
+    if (!codecNames().contains(url->protocol()))
+        return QStringLiteral("one of the protocols ") + codecNames().join(QStringLiteral(", "));
+    if (!isLocalOnly(*url) && !fromNetwork)
+        return QStringLiteral(
+            "an address that only this computer reaches, as 127.0.0.1: in plain text others on "
+            "the network could command this daemon; \"insecure\": true accepts that "
+            "(--set insecure=true)");
+    return {};
+}
+
+// With addresses that cannot work the daemon would not start again.
+std::vector<SchemaViolation> checkListen(const QJsonObject &settings, bool fromNetwork) {
+    const QJsonArray listen = settings.value(QStringLiteral("listen")).toArray();
+    std::vector<SchemaViolation> wrong;
+    for (int i = 0; i < listen.size(); ++i) {
+        const QString expected = wrongListen(listen.at(i).toString(), fromNetwork);
+        if (!expected.isEmpty())
+            wrong.push_back({QStringLiteral("listen.%1").arg(i), listen.at(i), expected});
+    }
+    return wrong;
+}
 
 } // namespace
 
@@ -17,9 +48,14 @@ void Daemon::declareCommonSettings() {
     const QString address = QStringLiteral("tcp://127.0.0.1:%1?protocol=json").arg(self.port);
     addSetting(Field::array(QStringLiteral("listen"), QStringLiteral("URLs at which commands are accepted"),
                             {{QStringLiteral("type"), QStringLiteral("string")}})
+                   .with(QStringLiteral("minItems"), 1)
                    .group(channelGroup)
                    .byDefault(QJsonArray{address})
                    .appliesOnRestart());
+    configuration.addRule([this](const QJsonObject &settings) {
+        // At the start launch() says it, when all settings are known.
+        return checkListen(settings, !launched || settings.value(QStringLiteral("insecure")).toBool());
+    });
     addSetting(Field::boolean(
                    QStringLiteral("insecure"),
                    QStringLiteral("Accept commands in plain text from the network, not only from this host"))

@@ -8,9 +8,18 @@
 namespace hermes {
 namespace {
 
+constexpr int ends[] = {SIGINT, SIGTERM, SIGHUP}; // SIGHUP: its terminal was closed
+
 int pipeEnds[2] = {-1, -1}; // a handler may only write() to it
 
+pid_t owner = 0;
+
 void handle(int number) {
+    if (::getpid() != owner) { // a child between fork() and exec(): the signal is for it alone
+        std::signal(number, SIG_DFL);
+        ::raise(number);
+        return;
+    }
     const char byte = char(number);
     if (::write(pipeEnds[1], &byte, 1) < 0) {
         // The pipe is full of the same news.
@@ -27,16 +36,19 @@ SignalWatcher::SignalWatcher(QObject *parent)
     connect(notifier, &QSocketNotifier::activated, this, [this] {
         char byte = 0;
         if (::read(pipeEnds[0], &byte, 1) == 1)
-            Q_EMIT received(byte == SIGINT ? QStringLiteral("SIGINT") : QStringLiteral("SIGTERM"));
+            Q_EMIT received(byte == SIGINT   ? QStringLiteral("SIGINT")
+                            : byte == SIGHUP ? QStringLiteral("SIGHUP")
+                                             : QStringLiteral("SIGTERM"));
     });
-    std::signal(SIGINT, handle);
-    std::signal(SIGTERM, handle);
+    owner = ::getpid();
+    for (const int number : ends)
+        std::signal(number, handle);
     std::signal(SIGPIPE, SIG_IGN);
 }
 
 SignalWatcher::~SignalWatcher() {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    for (const int number : ends)
+        std::signal(number, SIG_DFL);
     ::close(pipeEnds[0]);
     ::close(pipeEnds[1]);
 }

@@ -4,7 +4,7 @@
 
 namespace hermes {
 
-/// Brings SIGINT and SIGTERM into the event loop. One at a time.
+/// Brings SIGINT, SIGTERM and SIGHUP into the event loop. One at a time.
 class SignalWatcher : public QObject {
     Q_OBJECT
 public:
@@ -12,7 +12,7 @@ public:
     ~SignalWatcher() override;
 
 Q_SIGNALS:
-    /// name: "SIGTERM" or "SIGINT".
+    /// name: "SIGTERM", "SIGINT" or "SIGHUP".
     void received(const QString &name);
 };
 

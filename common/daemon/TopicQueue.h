@@ -43,6 +43,7 @@ public:
     /// False while messages wait for a reader of this topic who asked for a queue longer than one.
     bool hasRoom(const QString &topic) const;
     bool isEmpty() const { return subscriptions.empty(); }
+    std::size_t size() const { return subscriptions.size(); } ///< subscriptions
     /// To every subscription of this topic; or to one of them.
     void offer(const TopicMessage &message, quint64 onlyTo = 0);
     /// A series to every subscription of this topic, or to one of them; in place of one that is on its way.

@@ -1,8 +1,23 @@
 #include "common/interface/TcpServerInterface.h"
 
+#include "common/Log.h"
 #include "common/interface/TcpInterface.h"
 
+#include <sys/resource.h>
+
 namespace hermes {
+namespace {
+
+// Descriptors that clients leave for files and devices. With none left accept() fails, and the event loop
+// spins.
+constexpr rlim_t spareDescriptors = 8;
+
+bool isScarce(qintptr descriptor) {
+    rlimit limit{};
+    return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 && rlim_t(descriptor) + spareDescriptors >= limit.rlim_cur;
+}
+
+} // namespace
 
 TcpServerInterface::TcpServerInterface(const InterfaceUrl &address, QObject *parent)
     : Listener(parent)
@@ -43,6 +58,12 @@ QString TcpServerInterface::address() const {
 
 void TcpServerInterface::takePeers() {
     while (QTcpSocket *socket = server.nextPendingConnection()) {
+        if (isScarce(socket->socketDescriptor())) {
+            logWarning(QStringLiteral("server"),
+                       QStringLiteral("a client is turned away: the file descriptors are nearly used up"));
+            delete socket;
+            continue;
+        }
         auto *peer = new TcpInterface(socket, this);
         peer->open();
         Q_EMIT accepted(peer);

@@ -100,9 +100,9 @@ void MotorControl::declareMotorCommands() {
                         loop.odometry().reset({call.number("x"), call.number("y"), call.number("theta")});
                         return QJsonValue();
                     })
-            .param(Field::number("x", "Position").unit("m").byDefault(0))
-            .param(Field::number("y", "Position").unit("m").byDefault(0))
-            .param(Field::number("theta", "Heading").unit("rad").byDefault(0)));
+            .param(Field::number("x", "Position").unit("m").range(-1e6, 1e6).byDefault(0))
+            .param(Field::number("y", "Position").unit("m").range(-1e6, 1e6).byDefault(0))
+            .param(Field::number("theta", "Heading").unit("rad").range(-1e3, 1e3).byDefault(0)));
 }
 
 void MotorControl::declareControlCommands() {
@@ -122,7 +122,8 @@ void MotorControl::declareControlCommands() {
                             return acquired.error();
                         return loop.drive().lease().state(now);
                     })
-            .param(Field::text("client", "Name of the client, for others").byDefault(""))
+            .param(
+                Field::text("client", "Name of the client, for others").with("maxLength", 100).byDefault(""))
             .param(Field::number("timeout_s", "Without a motion command for so long the control ends")
                        .unit("s")
                        .range(0.1, 60)
