@@ -15,7 +15,11 @@ inline unsigned highestBit(unsigned bits) {
 }
 /// The number of the lowest bit that is set; bits is not 0.
 inline unsigned lowestBit(unsigned bits) {
+#if defined(__GNUC__)
+    return static_cast<unsigned>(__builtin_ctz(bits));
+#else
     return highestBit(bits & (0 - bits));
+#endif
 }
 
 } // namespace vectorlib::simd

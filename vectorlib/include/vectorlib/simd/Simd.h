@@ -7,7 +7,7 @@
 #if defined(VECTORLIB_PLAIN)
 #elif (defined(__x86_64__) || defined(__i386__)) && defined(__GNUC__)
 #define VECTORLIB_SIMD_AVX2 1
-#define VECTORLIB_AVX2 __attribute__((target("avx2")))
+#define VECTORLIB_AVX2 __attribute__((target("avx2,fma")))
 #include <immintrin.h>
 #elif defined(__ARM_NEON) // for the whole program, as always on AArch64
 #define VECTORLIB_SIMD_NEON 1
@@ -42,7 +42,8 @@ enum class Level { Scalar, Neon, Avx2 };
 /// The best that this processor and this build can do.
 inline Level bestLevel() {
 #if defined(VECTORLIB_SIMD_AVX2)
-    static const Level level = __builtin_cpu_supports("avx2") ? Level::Avx2 : Level::Scalar;
+    static const Level level =
+        __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? Level::Avx2 : Level::Scalar;
     return level;
 #elif defined(VECTORLIB_NEON_AT_RUN_TIME)
     static const Level level = getauxval(AT_HWCAP) & HWCAP_NEON ? Level::Neon : Level::Scalar;

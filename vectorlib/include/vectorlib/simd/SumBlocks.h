@@ -2,47 +2,47 @@
 
 #include "vectorlib/simd/Simd.h"
 
-/// The sums of blocks of points: offsets from the middle of each block are added up in float. Four blocks at
-/// a time, because the sums of four blocks make one register.
+#include <initializer_list>
+
+/// The sums of blocks of points, in float: of offsets from the middle of each block.
 namespace vectorlib::simd {
 
 constexpr std::size_t blockPoints = 32;
 
-/// The local sums of four blocks.
-struct FourSums {
-    double x[4], y[4], xx[4], yy[4], xy[4];
+/// The sums of a block's points relative to its middle (point 16). Those of the products are left in four
+/// parts: who adds up four blocks does that at once.
+struct BlockSum {
+    float x, y, xx, yy;
+    float xy[4];
 };
 
-/// The sums of the points of four blocks relative to the middle of their block (point 16). The points are
-/// given as x, y, x, y, ...
-inline FourSums sumFourBlocks(const float *points) {
-    FourSums sums;
-    for (int b = 0; b < 4; ++b, points += 2 * blockPoints) {
-        // Eight lanes, as AVX2 has them.
-        float s[8] = {}, squares[8] = {}, products[8] = {};
-        for (std::size_t i = 0; i < 2 * blockPoints; i += 16) {
-            float c[8], d[8];
-            for (std::size_t l = 0; l < 8; ++l) {
-                c[l] = points[i + l] - points[blockPoints + l % 2];
-                d[l] = points[i + 8 + l] - points[blockPoints + l % 2];
-                s[l] = (s[l] + c[l]) + d[l];
-                squares[l] = (squares[l] + c[l] * c[l]) + d[l] * d[l];
-            }
-            for (std::size_t l = 0; l < 2; ++l) {
-                products[l] += c[2 * l] * c[2 * l + 1];
-                products[l + 2] += d[2 * l] * d[2 * l + 1];
-                products[l + 4] += c[2 * l + 4] * c[2 * l + 5];
-                products[l + 6] += d[2 * l + 4] * d[2 * l + 5];
-            }
+/// The points are given as x, y, x, y, ...
+inline BlockSum sumBlock(const float *points) {
+    // Eight lanes, as AVX2 has them, of eight points each.
+    float s[4][8], squares[4][8], products[4][8];
+    for (std::size_t i = 0; i < 4; ++i) {
+        float c[8], d[8];
+        for (std::size_t l = 0; l < 8; ++l) {
+            c[l] = points[16 * i + l] - points[blockPoints + l % 2];
+            d[l] = points[16 * i + 8 + l] - points[blockPoints + l % 2];
+            s[i][l] = c[l] + d[l];
+            squares[i][l] = c[l] * c[l] + d[l] * d[l];
         }
-        const auto total = [](const float *v) { return double((v[0] + v[2]) + (v[4] + v[6])); };
-        sums.x[b] = total(s);
-        sums.y[b] = total(s + 1);
-        sums.xx[b] = total(squares);
-        sums.yy[b] = total(squares + 1);
-        sums.xy[b] = total(products) + total(products + 1);
+        for (std::size_t l = 0; l < 2; ++l) {
+            products[i][l] = c[2 * l] * c[2 * l + 1];
+            products[i][l + 2] = d[2 * l] * d[2 * l + 1];
+            products[i][l + 4] = c[2 * l + 4] * c[2 * l + 5];
+            products[i][l + 6] = d[2 * l + 4] * d[2 * l + 5];
+        }
     }
-    return sums;
+    for (std::size_t l = 0; l < 8; ++l)
+        for (auto *v : {s, squares, products})
+            v[0][l] = (v[0][l] + v[1][l]) + (v[2][l] + v[3][l]);
+    const auto total = [](const float *v) { return (v[0] + v[2]) + (v[4] + v[6]); };
+    BlockSum sum{total(s[0]), total(s[0] + 1), total(squares[0]), total(squares[0] + 1), {}};
+    for (std::size_t l = 0; l < 4; ++l)
+        sum.xy[l] = products[0][l] + products[0][l + 4];
+    return sum;
 }
 
 /// The sums of each four points of a block.
@@ -78,55 +78,52 @@ VECTORLIB_AVX2 VECTORLIB_INLINE __m256d runningAvx2(__m256d v, __m256d before) {
     return _mm256_add_pd(_mm256_add_pd(v, _mm256_permute2f128_pd(v, v, 0x08)), before);
 }
 
-VECTORLIB_AVX2 VECTORLIB_INLINE __m256 addPairsAvx2(__m256 a, __m256 b) {
-    const __m256d c = _mm256_castps_pd(a), d = _mm256_castps_pd(b);
-    return _mm256_add_ps(_mm256_castpd_ps(_mm256_unpacklo_pd(c, d)),
-                         _mm256_castpd_ps(_mm256_unpackhi_pd(c, d)));
+VECTORLIB_AVX2 VECTORLIB_INLINE __m128 addHalvesAvx2(__m256 v) {
+    return _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
 }
-
-/// The sums of x and y, of their squares and of their products (of even and of odd points) in a block: two
-/// pairs of lanes to be added up.
-struct LaneSums {
-    __m256 sums, squares, products;
-};
-VECTORLIB_AVX2 VECTORLIB_INLINE LaneSums sumBlockAvx2(const float *points) {
+VECTORLIB_AVX2 VECTORLIB_INLINE __m256 totalAvx2(const __m256 *v) {
+    return (v[0] + v[1]) + (v[2] + v[3]);
+}
+/// The twin of sumBlock(). The differences come from the units for products, which have less to do than those
+/// for sums: the same bits.
+VECTORLIB_AVX2 VECTORLIB_INLINE void sumBlockAvx2(const float *points, BlockSum &sum) {
+    const __m256 one = _mm256_set1_ps(1);
     const __m256 middle =
         _mm256_castpd_ps(_mm256_broadcast_sd(reinterpret_cast<const double *>(points + blockPoints)));
-    LaneSums s;
+    __m256 s[4], squares[4], products[4];
     for (int i = 0; i < 4; ++i) {
-        const __m256 c = _mm256_loadu_ps(points + 16 * i) - middle;
-        const __m256 d = _mm256_loadu_ps(points + 16 * i + 8) - middle;
-        const __m256 product = _mm256_shuffle_ps(c, d, 0x88) * _mm256_shuffle_ps(c, d, 0xdd);
-        s.sums = (i == 0 ? c : s.sums + c) + d;
-        s.squares = (i == 0 ? c * c : s.squares + c * c) + d * d;
-        s.products = i == 0 ? product : s.products + product;
+        const __m256 c = _mm256_fmsub_ps(_mm256_loadu_ps(points + 16 * i), one, middle);
+        const __m256 d = _mm256_fmsub_ps(_mm256_loadu_ps(points + 16 * i + 8), one, middle);
+        s[i] = c + d;
+        squares[i] = c * c + d * d;
+        products[i] = _mm256_shuffle_ps(c, d, 0x88) * _mm256_shuffle_ps(c, d, 0xdd);
     }
-    return s;
-}
-VECTORLIB_AVX2 VECTORLIB_INLINE LaneSums addPairsAvx2(const LaneSums &a, const LaneSums &b) {
-    return {addPairsAvx2(a.sums, b.sums), addPairsAvx2(a.squares, b.squares),
-            addPairsAvx2(a.products, b.products)};
-}
-/// Pairs of x and y, two a block, of blocks 0 and 1 and of blocks 2 and 3, to the four sums of x and the four
-/// of y.
-VECTORLIB_AVX2 VECTORLIB_INLINE void addHalvesAvx2(__m256 a, __m256 b, __m256d &x, __m256d &y) {
-    const __m256 s = _mm256_permute2f128_ps(a, b, 0x20) + _mm256_permute2f128_ps(a, b, 0x31);
-    const __m128 low = _mm256_castps256_ps128(s), high = _mm256_extractf128_ps(s, 1);
-    x = _mm256_cvtps_pd(_mm_shuffle_ps(low, high, 0x88));
-    y = _mm256_cvtps_pd(_mm_shuffle_ps(low, high, 0xdd));
+    const __m256d a = _mm256_castps_pd(totalAvx2(s)), b = _mm256_castps_pd(totalAvx2(squares));
+    _mm_storeu_ps(&sum.x, addHalvesAvx2(_mm256_castpd_ps(_mm256_unpacklo_pd(a, b)) +
+                                        _mm256_castpd_ps(_mm256_unpackhi_pd(a, b))));
+    _mm_storeu_ps(sum.xy, addHalvesAvx2(totalAvx2(products)));
 }
 
-/// The twin of sumFourBlocks().
-VECTORLIB_AVX2 VECTORLIB_INLINE void sumFourBlocksAvx2(const float *points, __m256d &x, __m256d &y,
-                                                       __m256d &xx, __m256d &yy, __m256d &xy) {
-    constexpr std::size_t next = 2 * blockPoints;
-    const LaneSums a = addPairsAvx2(sumBlockAvx2(points), sumBlockAvx2(points + next));
-    const LaneSums b = addPairsAvx2(sumBlockAvx2(points + 2 * next), sumBlockAvx2(points + 3 * next));
-    __m256d even, odd;
-    addHalvesAvx2(a.sums, b.sums, x, y);
-    addHalvesAvx2(a.squares, b.squares, xx, yy);
-    addHalvesAvx2(a.products, b.products, even, odd);
-    xy = even + odd;
+/// Two points.
+VECTORLIB_AVX2 VECTORLIB_INLINE __m128 loadTwoAvx2(const float *a, const float *b) {
+    return _mm_castpd_ps(
+        _mm_loadh_pd(_mm_load_sd(reinterpret_cast<const double *>(a)), reinterpret_cast<const double *>(b)));
+}
+/// The sums of four blocks as doubles.
+struct FourBlockSums {
+    __m256d x, y, xx, yy, xy;
+};
+VECTORLIB_AVX2 VECTORLIB_INLINE FourBlockSums loadFourAvx2(const BlockSum *b) {
+    __m128 x = _mm_loadu_ps(&b[0].x), y = _mm_loadu_ps(&b[1].x), xx = _mm_loadu_ps(&b[2].x),
+           yy = _mm_loadu_ps(&b[3].x);
+    _MM_TRANSPOSE4_PS(x, y, xx, yy);
+    const auto addPairs = [](__m128 i, __m128 j) VECTORLIB_AVX2 {
+        return _mm_add_ps(_mm_shuffle_ps(i, j, 0x88), _mm_shuffle_ps(i, j, 0xdd));
+    };
+    const __m128 xy = addPairs(addPairs(_mm_loadu_ps(b[0].xy), _mm_loadu_ps(b[1].xy)),
+                               addPairs(_mm_loadu_ps(b[2].xy), _mm_loadu_ps(b[3].xy)));
+    return {_mm256_cvtps_pd(x), _mm256_cvtps_pd(y), _mm256_cvtps_pd(xx), _mm256_cvtps_pd(yy),
+            _mm256_cvtps_pd(xy)};
 }
 #endif
 

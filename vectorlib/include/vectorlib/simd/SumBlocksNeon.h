@@ -5,37 +5,35 @@
 namespace vectorlib::simd {
 
 #if defined(VECTORLIB_SIMD_NEON)
-VECTORLIB_NEON VECTORLIB_INLINE double totalNeon(float32x4_t v) {
-    const float32x2_t pairs = vpadd_f32(vget_low_f32(v), vget_high_f32(v));
+VECTORLIB_NEON VECTORLIB_INLINE float32x4_t addFourNeon(const float32x4_t *v) {
+    return vaddq_f32(vaddq_f32(v[0], v[1]), vaddq_f32(v[2], v[3]));
+}
+VECTORLIB_NEON VECTORLIB_INLINE float totalNeon(const float32x4_t *v) {
+    const float32x4_t four = addFourNeon(v);
+    const float32x2_t pairs = vpadd_f32(vget_low_f32(four), vget_high_f32(four));
     return vget_lane_f32(vpadd_f32(pairs, pairs), 0);
 }
 
-/// The twin of sumFourBlocks(). Its lanes 0, 2, 4 and 6 are those of x here, the others those of y.
-VECTORLIB_NEON inline FourSums sumFourBlocksNeon(const float *points) {
-    FourSums sums;
-    const float32x4_t zero = vdupq_n_f32(0);
-    for (int b = 0; b < 4; ++b, points += 2 * blockPoints) {
-        const float32x4_t mx = vdupq_n_f32(points[blockPoints]), my = vdupq_n_f32(points[blockPoints + 1]);
-        float32x4_t sx = zero, sy = zero, sxx = zero, syy = zero, products[2] = {zero, zero};
-        for (std::size_t i = 0; i < 2 * blockPoints; i += 16)
-            for (std::size_t half = 0; half < 2; ++half) {
-                const float32x4x2_t p = vld2q_f32(points + i + 8 * half);
-                const float32x4_t dx = vsubq_f32(p.val[0], mx), dy = vsubq_f32(p.val[1], my);
-                sx = vaddq_f32(sx, dx);
-                sy = vaddq_f32(sy, dy);
-                sxx = vmlaq_f32(sxx, dx, dx); // on ARMv7 the product is rounded, too
-                syy = vmlaq_f32(syy, dy, dy);
-                products[half] = vmlaq_f32(products[half], dx, dy);
-            }
-        const float32x4_t four = vaddq_f32(products[0], products[1]);
-        const float32x2_t two = vadd_f32(vget_low_f32(four), vget_high_f32(four));
-        sums.x[b] = totalNeon(sx);
-        sums.y[b] = totalNeon(sy);
-        sums.xx[b] = totalNeon(sxx);
-        sums.yy[b] = totalNeon(syy);
-        sums.xy[b] = double(vget_lane_f32(two, 0)) + double(vget_lane_f32(two, 1));
+/// The twin of sumBlock(). Its lanes 0, 2, 4 and 6 are those of x here, the others those of y.
+VECTORLIB_NEON inline BlockSum sumBlockNeon(const float *points) {
+    const float32x4_t mx = vdupq_n_f32(points[blockPoints]), my = vdupq_n_f32(points[blockPoints + 1]);
+    float32x4_t x[4], y[4], xx[4], yy[4], even[4], odd[4];
+    for (int i = 0; i < 4; ++i) {
+        const float32x4x2_t p = vld2q_f32(points + 16 * i), q = vld2q_f32(points + 16 * i + 8);
+        const float32x4_t px = vsubq_f32(p.val[0], mx), py = vsubq_f32(p.val[1], my);
+        const float32x4_t qx = vsubq_f32(q.val[0], mx), qy = vsubq_f32(q.val[1], my);
+        x[i] = vaddq_f32(px, qx);
+        y[i] = vaddq_f32(py, qy);
+        xx[i] = vmlaq_f32(vmulq_f32(px, px), qx, qx); // on ARMv7 the product is rounded, too
+        yy[i] = vmlaq_f32(vmulq_f32(py, py), qy, qy);
+        even[i] = vmulq_f32(px, py);
+        odd[i] = vmulq_f32(qx, qy);
     }
-    return sums;
+    BlockSum sum{totalNeon(x), totalNeon(y), totalNeon(xx), totalNeon(yy), {}};
+    const float32x4_t c = addFourNeon(even), d = addFourNeon(odd);
+    vst1_f32(sum.xy, vadd_f32(vget_low_f32(c), vget_high_f32(c)));
+    vst1_f32(sum.xy + 2, vadd_f32(vget_low_f32(d), vget_high_f32(d)));
+    return sum;
 }
 
 /// The twin of sumFours(). Eight points at a time: x and y of the even ones, x and y of the odd ones.
@@ -60,12 +58,12 @@ VECTORLIB_NEON inline SumsOfFours sumFoursNeon(const float *points) {
 #endif
 
 // By the instruction set to use; AVX2 has its own way.
-inline FourSums sumFourBlocks(const float *points, [[maybe_unused]] Level level) {
+inline BlockSum sumBlock(const float *points, [[maybe_unused]] Level level) {
 #if defined(VECTORLIB_SIMD_NEON)
     if (level == Level::Neon)
-        return sumFourBlocksNeon(points);
+        return sumBlockNeon(points);
 #endif
-    return sumFourBlocks(points);
+    return sumBlock(points);
 }
 inline SumsOfFours sumFours(const float *points, [[maybe_unused]] Level level) {
 #if defined(VECTORLIB_SIMD_NEON)

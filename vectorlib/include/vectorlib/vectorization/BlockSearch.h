@@ -24,22 +24,24 @@ public:
         return sums_.fits(first.index, first.row, end.index, end.row, variance_);
     }
 
-    /// The end of the longest interval that begins at `first`.
-    Cut ahead(const Cut &first) const { return farthest<false>(first); }
-    /// The begin of the longest interval that ends before `end`; reversed points give reversed intervals.
-    Cut back(const Cut &end) const { return farthest<true>(end); }
+    /// The end of the longest interval that begins at `first`, and the begin of the longest that ends before
+    /// `end`; reversed points give reversed intervals.
+    void findEnds(const Cut &first, const Cut &end, Cut &ahead, Cut &back) const {
+        if (sums_.stride() == 1)
+            find<1>(first, end, ahead, back);
+        else
+            find<BlockSums::block>(first, end, ahead, back);
+    }
 
 private:
-    template <bool back>
-    Cut farthest(const Cut &from) const {
-        const bool isEveryPoint = sums_.stride() == 1;
+    template <std::size_t stride>
+    void find(const Cut &first, const Cut &end, Cut &ahead, Cut &back) const {
 #if defined(VECTORLIB_SIMD_AVX2)
         if (level == simd::Level::Avx2)
-            return isEveryPoint ? blocks::farthestAvx2<1, back>(sums_, from, variance_)
-                                : blocks::farthestAvx2<BlockSums::block, back>(sums_, from, variance_);
+            return blocks::findEndsAvx2<stride>(sums_, first, end, variance_, ahead, back);
 #endif
-        return isEveryPoint ? blocks::farthest<1, back>(sums_, from, variance_)
-                            : blocks::farthest<BlockSums::block, back>(sums_, from, variance_);
+        ahead = blocks::farthest<stride, false>(sums_, first, variance_);
+        back = blocks::farthest<stride, true>(sums_, end, variance_);
     }
 
     BlockSums sums_;

@@ -37,13 +37,17 @@ Index sureIn(Index begin, Index count, Index from) {
     return back ? std::clamp<Index>(from - 2 - begin, 0, count)
                 : std::clamp<Index>(from + 2 - begin, 0, count - 1);
 }
-/// The end that was found, or two points where there are numbers so large that no test tells.
+/// Where two points end.
 template <bool back>
-Cut atLeastTwo(const BlockSums &sums, const Cut &from, const Cut &found) {
-    const std::size_t two =
-        back ? from.index - std::min<std::size_t>(from.index, 2) : std::min(from.index + 2, sums.size());
-    const bool enough = back ? found.index <= two : found.index >= two;
-    return enough ? found : Cut{two, sums.row(two)};
+std::size_t two(const BlockSums &sums, const Cut &from) {
+    return back ? from.index - std::min<std::size_t>(from.index, 2) : std::min(from.index + 2, sums.size());
+}
+/// Gives an interval two points where there are numbers so large that no test tells.
+template <bool back>
+VECTORLIB_INLINE void giveTwo(const BlockSums &sums, const Cut &from, Cut &cut) {
+    const std::size_t least = two<back>(sums, from);
+    if (back ? cut.index > least : cut.index < least)
+        cut = {least, sums.row(least)};
 }
 
 /// The farthest of bits 0 .. count - 1 of which the test holds, and no other.
@@ -69,14 +73,14 @@ unsigned fittingRows(const BlockSums &sums, Index k, const Cut &from, double var
 template <bool back>
 Index chooseFour(unsigned bits, Index count, Index sure) {
     if (back)
-        return std::min(farthestBit<true>(bits & 0x7f, 7), sure / 4);
+        return std::min(farthestBit<true>(bits & 0x7f, 7), std::max<Index>(sure - 1, 0) / 4);
     return std::max(farthestBit<false>(bits & ((1u << ((count - 1) / 4)) - 1), -1) + 1, sure / 4);
 }
-/// How many points behind that: bit i tells of the (i + 1)-th.
+/// How many points behind that, up to 3 ahead, and from 1 back: bit i tells of the (i + 1)-th.
 template <bool back>
 Index choosePoint(unsigned bits, Index four, Index count, Index sure) {
     if (back)
-        return std::min(farthestBit<true>(bits & 7, 3) + 1, sure - 4 * four);
+        return std::clamp<Index>(sure - 4 * four, 1, farthestBit<true>(bits & 7, 3) + 1);
     return std::max(
         farthestBit<false>(bits & 7 & ((1u << std::min<Index>(count - 1 - 4 * four, 3)) - 1), -1) + 1,
         sure - 4 * four);
@@ -135,9 +139,12 @@ Cut farthest(const BlockSums &sums, const Cut &from, double variance) {
     }
     if (back ? good <= 0 : good >= last)
         return back ? Cut{0, SumRow{}} : Cut{sums.size(), sums.table().row(last)};
-    if (stride > 1)
-        return atLeastTwo<back>(sums, from, intoBlock<back>(sums, back ? good - 1 : good, from, variance));
-    return {static_cast<std::size_t>(good), sums.table().row(good)};
+    Cut cut{static_cast<std::size_t>(good), sums.table().row(good)};
+    if (stride > 1) {
+        cut = intoBlock<back>(sums, back ? good - 1 : good, from, variance);
+        giveTwo<back>(sums, from, cut);
+    }
+    return cut;
 }
 
 } // namespace vectorlib::blocks

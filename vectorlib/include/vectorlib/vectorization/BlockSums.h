@@ -2,10 +2,10 @@
 
 #include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/simd/SumBlocksNeon.h"
+#include "vectorlib/vectorization/Cut.h"
 #include "vectorlib/vectorization/SumTable.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace vectorlib {
@@ -46,10 +46,7 @@ public:
             sumPoints();
         else
             sumBlocks(last);
-        // Whoever reads eight rows at a time finds the last one again behind it.
-        const SumRow all = table_.row(last_);
-        for (std::ptrdiff_t i = 1; i <= SumTable::margin; ++i)
-            table_.set(last_ + i, all);
+        table_.repeat(last_);
     }
 
     std::size_t size() const { return points_.size(); }
@@ -62,7 +59,7 @@ public:
     std::ptrdiff_t lastRow() const { return last_; }
     /// The points of block b; where it is not full its middle follows again and again.
     const Point *points(std::size_t b) const {
-        return b < copied_ ? points_.begin() + b * block : lastBlocks_ + (b - copied_) * block;
+        return b < points_.size() / block ? points_.begin() + b * block : lastBlock_;
     }
 
     /// The sums before point i.
@@ -71,6 +68,14 @@ public:
         for (std::size_t k = i / stride_ * stride_; k < i; ++k)
             addTo(row, k);
         return row;
+    }
+    /// The same cut at another place.
+    Cut moved(const Cut &cut, std::size_t to) const {
+        const std::size_t from = std::min(to, cut.index), end = std::max(to, cut.index);
+        if (stride_ == 1 || end - from > block / 2)
+            return {to, row(to)};
+        const SumRow between = exactRow(from, end);
+        return {to, to > cut.index ? cut.row + between : cut.row - between};
     }
     /// Adds point i to the sums before it.
     void addTo(SumRow &row, std::size_t i) const {
@@ -103,7 +108,9 @@ public:
     }
     /// What the moments of an interval may be off because of points being local to their blocks; m^2.
     double localError(std::size_t first, std::size_t end) const {
-        return stride_ == 1 ? 0 : error_[(end + block - 1) / block] - error_[first / block];
+        return stride_ == 1
+                   ? 0
+                   : 37 * relativeError * (scatter_[(end + block - 1) / block] - scatter_[first / block]);
     }
     /// A bound of how far the moments of sums(first, end) may be off; m^2.
     double rounding(std::size_t first, std::size_t end) const {
@@ -112,8 +119,6 @@ public:
     }
 
 private:
-    using Counts = std::array<double, 4>; // points that count in each of four blocks
-
     SumRow exactRow(std::size_t first, std::size_t end) const {
         SumRow row{};
         for (std::size_t i = first; i < end; ++i)
@@ -151,45 +156,43 @@ private:
         table_.set(before + 4, ((sums[3] + sums[2]) + pair) + row);
     }
     void sumBlocks(std::size_t blocks) {
-        error_.resize(blocks + 4);
-        error_[0] = 0;
-        copied_ = points_.size() / (4 * block) * 4;
-        const Counts full{block, block, block, block}, last = copied_ < blocks ? copyLastBlocks() : full;
+        local_.resize(blocks + 3);
+        scatter_.resize(blocks + 4);
+        scatter_[0] = 0;
+        fillLastBlock();
+        std::fill_n(local_.begin() + static_cast<std::ptrdiff_t>(blocks), 3, simd::BlockSum{});
 #if defined(VECTORLIB_SIMD_AVX2)
         if (level == simd::Level::Avx2)
-            return sumBlocksAvx2(blocks, last);
+            return sumBlocksAvx2(blocks);
 #endif
+        for (std::size_t b = 0; b < blocks; ++b)
+            local_[b] = simd::sumBlock(&points(b)->x, level);
         for (std::size_t b = 0; b < blocks; b += 4)
-            sumFourBlocks(static_cast<std::ptrdiff_t>(b), b < copied_ ? full : last);
+            sumFourBlocks(b);
     }
-    // The points after the last four full blocks, filled up with points that add nothing: each block's
-    // middle. Returns how many count in each block.
-    Counts copyLastBlocks() {
-        Counts counts{};
-        const Point *from = points_.begin() + copied_ * block;
-        for (std::size_t b = 0; b < 4; ++b) {
-            Point *const to = lastBlocks_ + b * block;
-            const std::size_t count = std::min<std::size_t>(points_.end() - from, block);
-            const Point middle = count == 0 ? points_.back() : from[std::min(count / 2, block / 2)];
-            std::fill(std::copy(from, from + count, to), to + block, middle);
-            counts[b] = static_cast<double>(count);
-            from += count;
-        }
-        return counts;
+    // A copy of the points after the last full block, filled up with points that add nothing: its middle.
+    void fillLastBlock() {
+        const std::size_t count = points_.size() % block;
+        const Point *from = points_.end() - count;
+        const Point middle = count == 0 ? points_.back() : from[std::min(count / 2, block / 2)];
+        std::fill(std::copy(from, points_.end(), lastBlock_), lastBlock_ + block, middle);
     }
-    // Rows first + 1 .. first + 4, from row `first`.
-    void sumFourBlocks(std::ptrdiff_t first, const Counts &counts) {
-        const std::size_t at = static_cast<std::size_t>(first);
-        const simd::FourSums s = simd::sumFourBlocks(&points(at)->x, level);
+    double pointsIn(std::size_t b) const {
+        const std::size_t full = points_.size() / block;
+        return b < full ? block : b == full ? static_cast<double>(points_.size() % block) : 0;
+    }
+    // Rows b + 1 .. b + 4, from row b.
+    void sumFourBlocks(std::size_t b) {
         SumRow rows[4];
-        for (std::size_t b = 0; b < 4; ++b) {
-            const Vector2D<double> o = Vector2D<double>(points(at + b)[block / 2]) - origin_;
-            const double nx = counts[b] * o.x, ny = counts[b] * o.y;
-            rows[b] = {s.x[b] + nx, s.y[b] + ny, s.xx[b] + o.x * (2 * s.x[b] + nx),
-                       s.yy[b] + o.y * (2 * s.y[b] + ny), (s.xy[b] + o.x * (s.y[b] + ny)) + o.y * s.x[b]};
-            error_[at + b + 1] = error_[at + b] + 37 * relativeError * (s.xx[b] + s.yy[b]);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const simd::BlockSum &s = local_[b + i];
+            const Vector2D<double> o = Vector2D<double>(points(b + i)[block / 2]) - origin_;
+            const double n = pointsIn(b + i), x = s.x, y = s.y, mx = x + n * o.x, my = y + n * o.y;
+            const double xy = (s.xy[0] + s.xy[1]) + (s.xy[2] + s.xy[3]);
+            rows[i] = {mx, my, s.xx + o.x * (x + mx), s.yy + o.y * (y + my), (xy + o.x * my) + o.y * x};
+            scatter_[b + i + 1] = scatter_[b + i] + (double(s.xx) + double(s.yy));
         }
-        setRunning(first, rows);
+        setRunning(static_cast<std::ptrdiff_t>(b), rows);
     }
 #if defined(VECTORLIB_SIMD_AVX2)
     // The rows of all points but the last three at most; returns how many.
@@ -212,45 +215,57 @@ private:
         }
         return count;
     }
-    // Puts the running sums of four values behind column[0], the sum before them.
-    VECTORLIB_AVX2 VECTORLIB_INLINE static void putRunning(double *column, __m256d v) {
-        _mm256_storeu_pd(column + 1, simd::runningAvx2(v, _mm256_broadcast_sd(column)));
+    // In three steps, so that the processor always finds work that does not wait for other work.
+    VECTORLIB_AVX2 void sumBlocksAvx2(std::size_t blocks) {
+        const std::size_t full = points_.size() / block;
+        for (std::size_t b = 0; b < full; ++b)
+            simd::sumBlockAvx2(&points_[b * block].x, local_[b]);
+        if (full < blocks)
+            simd::sumBlockAvx2(&lastBlock_[0].x, local_[full]);
+        double *const columns[6] = {table_.x(),  table_.y(),  table_.xx(),
+                                    table_.yy(), table_.xy(), scatter_.data()};
+        std::size_t b = 0;
+        for (; b + 4 <= full; b += 4)
+            moveFourBlocksAvx2<true>(b, columns);
+        if (b < blocks)
+            moveFourBlocksAvx2<false>(b, columns);
+        __m256d sums[6] = {};
+        for (b = 1; b <= blocks; b += 4)
+            for (int q = 0; q < 6; ++q) {
+                sums[q] =
+                    simd::runningAvx2(_mm256_loadu_pd(columns[q] + b), _mm256_permute4x64_pd(sums[q], 0xff));
+                _mm256_storeu_pd(columns[q] + b, sums[q]);
+            }
     }
-    VECTORLIB_AVX2 void sumBlocksAvx2(std::size_t blocks, const Counts &last) {
-        double *const columns[5] = {table_.x(), table_.y(), table_.xx(), table_.yy(), table_.xy()};
-        double *const error = error_.data();
-        const __m256d originX = _mm256_set1_pd(origin_.x), originY = _mm256_set1_pd(origin_.y);
-        constexpr std::size_t stride = 2 * block;
-        for (std::size_t b = 0; b < blocks; b += 4) {
-            const bool isFull = b < copied_;
-            const float *const p = &points(b)->x;
-            const double *const m = reinterpret_cast<const double *>(p + block); // a point in a double
-            const __m256d n = isFull ? _mm256_set1_pd(block) : _mm256_loadu_pd(last.data());
-            __m256d x, y, xx, yy, xy;
-            simd::sumFourBlocksAvx2(p, x, y, xx, yy, xy);
-            const __m128 i = _mm_castpd_ps(_mm_loadh_pd(_mm_load_sd(m), m + stride / 2));
-            const __m128 j = _mm_castpd_ps(_mm_loadh_pd(_mm_load_sd(m + stride), m + 3 * stride / 2));
-            const __m256d ox = _mm256_cvtps_pd(_mm_shuffle_ps(i, j, 0x88)) - originX;
-            const __m256d oy = _mm256_cvtps_pd(_mm_shuffle_ps(i, j, 0xdd)) - originY;
-            const __m256d nx = n * ox, ny = n * oy;
-            putRunning(columns[0] + b, x + nx);
-            putRunning(columns[1] + b, y + ny);
-            putRunning(columns[2] + b, xx + ox * (x + x + nx));
-            putRunning(columns[3] + b, yy + oy * (y + y + ny));
-            putRunning(columns[4] + b, (xy + ox * (y + ny)) + oy * x);
-            putRunning(error + b, _mm256_set1_pd(37 * relativeError) * (xx + yy));
-        }
+    // Puts the sums of four blocks, moved to the origin, where their running sums will be.
+    template <bool areFull>
+    VECTORLIB_AVX2 VECTORLIB_INLINE void moveFourBlocksAvx2(std::size_t b, double *const *columns) const {
+        const Point *p[4];
+        for (std::size_t i = 0; i < 4; ++i)
+            p[i] = (areFull ? points_.begin() + (b + i) * block : points(b + i)) + block / 2;
+        const __m128 i = simd::loadTwoAvx2(&p[0]->x, &p[1]->x), j = simd::loadTwoAvx2(&p[2]->x, &p[3]->x);
+        const __m256d ox = _mm256_cvtps_pd(_mm_shuffle_ps(i, j, 0x88)) - _mm256_set1_pd(origin_.x);
+        const __m256d oy = _mm256_cvtps_pd(_mm_shuffle_ps(i, j, 0xdd)) - _mm256_set1_pd(origin_.y);
+        const __m256d n =
+            areFull ? _mm256_set1_pd(block)
+                    : _mm256_setr_pd(pointsIn(b), pointsIn(b + 1), pointsIn(b + 2), pointsIn(b + 3));
+        const simd::FourBlockSums s = simd::loadFourAvx2(&local_[b]);
+        const __m256d mx = s.x + n * ox, my = s.y + n * oy;
+        const __m256d values[6] = {
+            mx, my, s.xx + ox * (s.x + mx), s.yy + oy * (s.y + my), (s.xy + ox * my) + oy * s.x, s.xx + s.yy};
+        for (int q = 0; q < 6; ++q)
+            _mm256_storeu_pd(columns[q] + b + 1, values[q]);
     }
 #endif
 
     PointSpan<float> points_;
     Vector2D<double> origin_;
     SumTable table_;
-    std::vector<double> error_; // of each row of blocks: how far the moments may be off; m^2
+    std::vector<simd::BlockSum> local_; // of each block
+    std::vector<double> scatter_;       // before each block: squares of offsets from the blocks' middles; m^2
     std::size_t stride_ = 1;
     std::ptrdiff_t last_ = 0; // the number of the last row
-    std::size_t copied_ = 0;  // blocks from here on are in lastBlocks_
-    Point lastBlocks_[4 * block];
+    Point lastBlock_[block];
 };
 
 } // namespace vectorlib

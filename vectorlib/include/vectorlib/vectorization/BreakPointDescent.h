@@ -2,10 +2,10 @@
 
 #include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/vectorization/BreakPointErrors.h"
-
-#include <Eigen/Core>
+#include "vectorlib/vectorization/BreakPointStepAvx2.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 namespace vectorlib {
@@ -21,22 +21,29 @@ public:
     /// Cuts of the points, the first and the last included, with rows as `sums` (PrefixSums or BlockSums) has
     /// them.
     template <typename Scalar, typename Sums>
-    void operator()(PointSpan<Scalar> points, const Sums &sums, simd::Level level, std::vector<Cut> &cuts) {
-        moved_.assign(cuts.size(), 1); // moved_[i]: cut i, when last looked at
-        moved_.front() = moved_.back() = 0;
+    void operator()([[maybe_unused]] PointSpan<Scalar> points, const Sums &sums, simd::Level level,
+                    std::vector<Cut> &cuts) {
+        states_.resize(cuts.size());
+        for (std::size_t i = 1; i + 1 < cuts.size(); ++i)
+            states_[i] = begin(&cuts[i], 0);
+        states_.front().moved = states_.back().moved = false;
+        stepAll<4>(points, sums, level, cuts);
+        stepAll<1>(points, sums, level, cuts);
         for (int round = 0; round < rounds; ++round) {
             bool any = false;
             for (std::size_t i = 1; i + 1 < cuts.size(); ++i) {
                 // Only what changed beside a cut can move it again.
-                if (round > 0 && !moved_[i - 1] && !moved_[i + 1])
+                if (round > 0 && !states_[i - 1].moved && !states_[i + 1].moved)
                     continue;
-                const std::size_t before = cuts[i].index;
-                const std::size_t smaller = std::min(before - cuts[i - 1].index, cuts[i + 1].index - before);
-                improve(points, sums, level, &cuts[i],
-                        round == 0 ? std::max<std::size_t>(smaller / 40, 4) : 1);
-                const std::size_t now = cuts[i].index, move = std::max(before, now) - std::min(before, now);
-                moved_[i] = move * 3 > smaller; // less hardly turns a line
-                any = any || moved_[i];
+                State &state = states_[i];
+                if (round > 0)
+                    state = begin(&cuts[i], 1);
+                if (state.stride > 0)
+                    improve(sums, level, &cuts[i], state.stride);
+                const std::size_t now = cuts[i].index;
+                const std::size_t move = std::max(state.index, now) - std::min(state.index, now);
+                state.moved = move * 3 > state.room; // less hardly turns a line
+                any = any || state.moved;
             }
             if (!any)
                 return;
@@ -44,60 +51,97 @@ public:
     }
 
 private:
-    // Looks at three places on both sides, `stride` points apart, goes to the best, and again with a smaller
-    // stride.
-    template <typename Scalar, typename Sums>
-    static void improve(PointSpan<Scalar> points, const Sums &sums, simd::Level level, Cut *cut,
-                        std::size_t stride) {
-        constexpr int reach = 3;
-        const std::size_t lowest = cut[-1].index + 2, highest = cut[1].index - 2;
-        if (lowest > highest)
-            return;
-        const Vector2D<double> origin = sums.origin();
-        for (;;) {
-            // The middle is the first place, so that it wins where nothing is better.
-            Cut places[8];
-            places[0] = *cut;
-            for (int i = 1; i <= reach; ++i) {
-                const std::size_t back = static_cast<std::size_t>(i) * stride;
-                const std::size_t low =
-                    cut->index >= lowest + back ? cut->index - back : std::min(lowest, cut->index);
-                const std::size_t high = std::max(cut->index, std::min(cut->index + back, highest));
-                places[i] = moved(points, sums, origin, i == 1 ? *cut : places[i - 1], low);
-                places[reach + i] = moved(points, sums, origin, i == 1 ? *cut : places[reach + i - 1], high);
-            }
-            places[7] = *cut;
-            const std::size_t best = bestPlace(cut[-1], cut[1], places, level);
-            *cut = places[best];
-            if (best == reach || best == 2 * reach)
-                continue; // the best is at the border of what was looked at
-            if (stride == 1)
-                return;
-            stride = std::max<std::size_t>(stride / 6, 1);
-        }
+    // A cut when last looked at.
+    struct State {
+        std::size_t index;
+        std::size_t room;   // points of the shorter line beside it
+        std::size_t stride; // where it is to be looked at, 0: settled
+        bool moved;
+    };
+
+    static std::size_t room(const Cut *cut) {
+        return std::min(cut->index - cut[-1].index, cut[1].index - cut->index);
     }
-    // The same cut at another place.
-    template <typename Scalar, typename Sums>
-    static Cut moved(PointSpan<Scalar> points, const Sums &sums, Vector2D<double> origin, Cut cut,
-                     std::size_t to) {
-        const std::size_t far = to > cut.index ? to - cut.index : cut.index - to;
-        if (sums.stride() == 1 || far > sums.stride() / 2)
-            return {to, sums.row(to)};
-        using Pair = Eigen::Array2d;
-        const Pair shift(origin.x, origin.y);
-        Pair sums1 = Pair::Zero(), squares = sums1;
-        double products = 0;
-        for (std::size_t i = std::min(to, cut.index); i < std::max(to, cut.index); ++i) {
-            const Pair p = Pair(points[i].x, points[i].y) - shift;
-            sums1 += p;
-            squares += p * p;
-            products += p.x() * p.y();
-        }
-        const SumRow between{sums1.x(), sums1.y(), squares.x(), squares.y(), products};
-        return {to, to > cut.index ? cut.row + between : cut.row - between};
+    // stride 0: the first one.
+    static State begin(const Cut *cut, std::size_t stride) {
+        const std::size_t r = room(cut);
+        return {cut->index, r, stride > 0 ? stride : r < 320 ? 4 : r / 40, true};
+    }
+    static std::size_t smaller(std::size_t stride) {
+        return stride >= 48 ? stride / 6 : stride > 4 ? 4 : stride == 4;
     }
 
-    std::vector<char> moved_;
+    // One step of every cut that looks at this stride and has room: every second one, two at a time, and then
+    // the others.
+    template <int stride, typename Scalar, typename Sums>
+    void stepAll([[maybe_unused]] PointSpan<Scalar> points, const Sums &sums, simd::Level level,
+                 std::vector<Cut> &cuts) {
+        const auto steps = [&](std::size_t i) {
+            return i + 1 < cuts.size() && states_[i].stride == stride && room(&cuts[i]) > 4 * stride;
+        };
+        const auto settle = [&](std::size_t i, bool isSettled) {
+            if (isSettled)
+                states_[i].stride = smaller(stride);
+        };
+        for (const std::size_t first : {1, 2})
+            for (std::size_t i = first; i + 1 < cuts.size(); i += 4) {
+#if defined(VECTORLIB_SIMD_AVX2)
+                if constexpr (std::is_same_v<Scalar, float>)
+                    if (level == simd::Level::Avx2 && steps(i) && steps(i + 2)) {
+                        const auto [a, b] = stepAvx2<stride>(points, sums.origin(), &cuts[i], &cuts[i + 2]);
+                        settle(i, a);
+                        settle(i + 2, b);
+                        continue;
+                    }
+#endif
+                for (const std::size_t k : {i, i + 2})
+                    if (steps(k))
+                        settle(k, stepOne<stride>(points, sums, level, &cuts[k]));
+            }
+    }
+    template <int stride, typename Scalar, typename Sums>
+    static bool stepOne([[maybe_unused]] PointSpan<Scalar> points, const Sums &sums, simd::Level level,
+                        Cut *cut) {
+#if defined(VECTORLIB_SIMD_AVX2)
+        if constexpr (std::is_same_v<Scalar, float>)
+            if (level == simd::Level::Avx2)
+                return stepAvx2<stride>(points, sums.origin(), cut);
+#endif
+        return step(sums, level, cut, stride);
+    }
+    // Steps with smaller and smaller strides.
+    template <typename Sums>
+    static void improve(const Sums &sums, simd::Level level, Cut *cut, std::size_t stride) {
+        if (cut[-1].index + 4 > cut[1].index)
+            return;
+        while (stride > 0)
+            if (step(sums, level, cut, stride))
+                stride = smaller(stride);
+    }
+    // Looks at three places on both sides, `stride` points apart, and goes to the best. False when that is at
+    // the border of what was looked at.
+    template <typename Sums>
+    static bool step(const Sums &sums, simd::Level level, Cut *cut, std::size_t stride) {
+        constexpr int reach = 3;
+        const std::size_t lowest = cut[-1].index + 2, highest = cut[1].index - 2;
+        // The middle is the first place, so that it wins where nothing is better.
+        Cut places[8];
+        places[0] = *cut;
+        for (int i = 1; i <= reach; ++i) {
+            const std::size_t back = static_cast<std::size_t>(i) * stride;
+            const std::size_t low =
+                cut->index >= lowest + back ? cut->index - back : std::min(lowest, cut->index);
+            const std::size_t high = std::max(cut->index, std::min(cut->index + back, highest));
+            places[i] = sums.moved(i == 1 ? *cut : places[i - 1], low);
+            places[reach + i] = sums.moved(i == 1 ? *cut : places[reach + i - 1], high);
+        }
+        places[7] = *cut;
+        const std::size_t best = bestPlace(cut[-1], cut[1], places, level);
+        *cut = places[best];
+        return best != reach && best != 2 * reach;
+    }
+
+    std::vector<State> states_;
 };
 
 } // namespace vectorlib

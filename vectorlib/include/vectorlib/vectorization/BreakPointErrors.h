@@ -46,6 +46,14 @@ VECTORLIB_AVX2 VECTORLIB_INLINE __m256d sumOfSquaresAvx2(__m256d n, __m256d x, _
     return _mm256_set1_pd(0.5) *
            (a + b - _mm256_sqrt_pd(difference * difference + _mm256_set1_pd(4) * c * c));
 }
+/// Bit i: whether value i is the least of eight.
+VECTORLIB_AVX2 VECTORLIB_INLINE unsigned leastOfEightAvx2(__m256d low, __m256d high) {
+    __m256d least = _mm256_min_pd(low, high);
+    least = _mm256_min_pd(least, _mm256_permute2f128_pd(least, least, 1));
+    least = _mm256_min_pd(least, _mm256_permute_pd(least, 5));
+    return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(low, least, _CMP_EQ_OQ)) |
+                                 _mm256_movemask_pd(_mm256_cmp_pd(high, least, _CMP_EQ_OQ)) << 4);
+}
 VECTORLIB_AVX2 inline std::size_t bestPlaceAvx2(const Cut &first, const Cut &end, const Cut *places) {
     __m256d squares[2];
     for (int k = 0; k < 2; ++k, places += 4) {
@@ -67,12 +75,8 @@ VECTORLIB_AVX2 inline std::size_t bestPlaceAvx2(const Cut &first, const Cut &end
                              _mm256_set1_pd(end.row.yy) - yy, _mm256_set1_pd(end.row.xy) - xy);
         squares[k] = left + right;
     }
-    __m256d least = _mm256_min_pd(squares[0], squares[1]);
-    least = _mm256_min_pd(least, _mm256_permute2f128_pd(least, least, 1));
-    least = _mm256_min_pd(least, _mm256_permute_pd(least, 5));
-    const int bits = _mm256_movemask_pd(_mm256_cmp_pd(squares[0], least, _CMP_EQ_OQ)) |
-                     _mm256_movemask_pd(_mm256_cmp_pd(squares[1], least, _CMP_EQ_OQ)) << 4;
-    return bits == 0 ? 0 : simd::lowestBit(static_cast<unsigned>(bits)); // none where a point is not finite
+    const unsigned bits = leastOfEightAvx2(squares[0], squares[1]);
+    return bits == 0 ? 0 : simd::lowestBit(bits); // none where a point is not finite
 }
 #endif
 

@@ -23,26 +23,7 @@ public:
         search.assign(points, variance);
         cuts_.assign(1, search.at(0));
         tail_.assign(1, search.at(points.size()));
-        for (;;) {
-            const Cut first = cuts_.back(), end = tail_.back();
-            const Cut ahead = search.ahead(first);
-            if (ahead.index >= end.index) {
-                if (search.fits(first, end))
-                    break; // one interval is left
-                cuts_.push_back(shorter(first, end));
-                continue;
-            }
-            const Cut back = search.back(end);
-            if (back.index > ahead.index) {
-                cuts_.push_back(ahead);
-                tail_.push_back(back);
-            } else if (cutBetween(first, back, ahead, end)) {
-                break;
-            } else if (back.index <= first.index || ahead.index - first.index >= end.index - back.index) {
-                cuts_.push_back(ahead);
-            } else {
-                tail_.push_back(back);
-            }
+        while (!search.fits(cuts_.back(), tail_.back()) && cut()) {
         }
         if (tail_.back().index - cuts_.back().index == 1)
             giveSinglePoint();
@@ -51,23 +32,45 @@ public:
     }
 
 private:
+    // Cuts off an interval at one or both ends. False when nothing is left between them.
+    bool cut() {
+        cuts_.emplace_back();
+        tail_.emplace_back();
+        const Cut &first = cuts_.end()[-2], &end = tail_.end()[-2];
+        Cut &ahead = cuts_.back(), &back = tail_.back();
+        search.findEnds(first, end, ahead, back);
+        if (back.index > ahead.index)
+            return true;
+        if (ahead.index >= end.index) {
+            ahead = shorter(first, end);
+            tail_.pop_back();
+            return true;
+        }
+        const bool isOne = end.index - first.index < 4, isTwo = !isOne && meet(first, back, end, ahead);
+        const bool keepsAhead =
+            back.index <= first.index || ahead.index - first.index >= end.index - back.index;
+        if (isOne || isTwo || keepsAhead)
+            tail_.pop_back();
+        if (isOne || !(isTwo || keepsAhead))
+            cuts_.pop_back();
+        return !isOne && !isTwo;
+    }
     // Two intervals are left, which may meet anywhere from `back` to `ahead`: half way, where both fit. False
-    // when they do not: a part of an interval need not fit.
-    bool cutBetween(const Cut &first, const Cut &back, const Cut &ahead, const Cut &end) {
-        if (end.index - first.index < 4)
-            return true; // one interval
+    // when they do not: a part of an interval need not fit. Moves `ahead` there.
+    bool meet(const Cut &first, const Cut &back, const Cut &end, Cut &ahead) {
         const std::size_t low = std::max(back.index, first.index + 2),
                           high = std::min(ahead.index, end.index - 2);
-        return cutThere(first, search.at((low + high) / 2), search.at((low + high + 1) / 2), end) ||
-               cutThere(first, search.at(low), search.at(high), end);
+        const Cut a = search.sums().moved(ahead, (low + high) / 2),
+                  b = (low + high) % 2 == 0 ? a : search.sums().moved(a, a.index + 1);
+        return meetAt(first, a, b, end, ahead) || meetAt(first, search.at(low), search.at(high), end, ahead);
     }
     // At a or b, where less error is left, if both intervals fit.
-    bool cutThere(const Cut &first, const Cut &a, const Cut &b, const Cut &end) {
+    bool meetAt(const Cut &first, const Cut &a, const Cut &b, const Cut &end, Cut &ahead) {
         const auto error = [&](const Cut &cut) { return squares(first, cut) + squares(cut, end); };
         const Cut &cut = a.index == b.index || error(a) <= error(b) ? a : b;
         if (!search.fits(first, cut) || !search.fits(cut, end))
             return false;
-        cuts_.push_back(cut);
+        ahead = cut;
         return true;
     }
     // The end of an interval from `first` that fits, before `end`.

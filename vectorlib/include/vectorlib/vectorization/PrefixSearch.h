@@ -25,22 +25,27 @@ public:
         return end.index <= first.index + 2 || sums_.fitWithin(first.index, end.index, variance_);
     }
 
-    /// The end of the longest interval that begins at `first`.
-    Cut ahead(const Cut &first) const {
+    /// The end of the longest interval that begins at `first`, and the begin of the longest that ends before
+    /// `end`; reversed points give reversed intervals.
+    void findEnds(const Cut &first, const Cut &end, Cut &ahead, Cut &back) const {
+        ahead = endFrom(first);
+        back = beginFrom(end);
+    }
+
+private:
+    Cut endFrom(const Cut &first) const {
         std::size_t good = std::min(first.index + 2, count_), bad = count_ + 1;
         for (std::size_t next = count_; bad - good > 1; next = good + (bad - good) / 2)
             (sums_.fitWithin(first.index, next, variance_) ? good : bad) = next;
         return at(good);
     }
-    /// The begin of the longest interval that ends before `end`; reversed points give reversed intervals.
-    Cut back(const Cut &end) const {
+    Cut beginFrom(const Cut &end) const {
         std::size_t good = std::min<std::size_t>(2, end.index), bad = end.index + 1; // points
         for (std::size_t next = end.index; bad - good > 1; next = good + (bad - good) / 2)
             (sums_.fitWithin(end.index - next, end.index, variance_) ? good : bad) = next;
         return at(end.index - good);
     }
 
-private:
     PrefixSums sums_;
     std::size_t count_ = 0;
     double variance_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/PointSpan.h"
-#include "vectorlib/vectorization/SumRow.h"
+#include "vectorlib/vectorization/Cut.h"
 
 #include <vector>
 
@@ -26,6 +26,8 @@ public:
     }
     /// The sums before point i, relative to the first point.
     const SumRow &row(std::size_t i) const { return rows_[i]; }
+    /// The same cut at another place.
+    Cut moved(const Cut &, std::size_t to) const { return {to, rows_[to]}; }
     Vector2D<double> origin() const { return origin_; }
     /// How many points there are between two rows.
     static constexpr std::size_t stride() { return 1; }

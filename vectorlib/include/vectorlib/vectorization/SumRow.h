@@ -1,6 +1,9 @@
 #pragma once
 
+#include "vectorlib/simd/Simd.h"
 #include "vectorlib/tls/TlsSums.h"
+
+#include <cmath>
 
 namespace vectorlib {
 
@@ -30,6 +33,19 @@ struct SumRow {
         return {a.x - b.x, a.y - b.y, a.xx - b.xx, a.yy - b.yy, a.xy - b.xy};
     }
 };
+
+#if defined(VECTORLIB_SIMD_AVX2)
+/// Four rows, and how many points each stands for.
+struct FourRows {
+    __m256d n, x, y, xx, yy, xy;
+};
+/// SumRow::inFrame().
+VECTORLIB_AVX2 VECTORLIB_INLINE SumRow inFrameAvx2(const SumRow &s, double n, double x, double y) {
+    const double sx = std::fma(-n, x, s.x), sy = std::fma(-n, y, s.y);
+    return {sx, sy, std::fma(-x, s.x + sx, s.xx), std::fma(-y, s.y + sy, s.yy),
+            std::fma(-x, s.y, std::fma(-y, sx, s.xy))};
+}
+#endif
 
 /// The threshold test of n points with these sums: whether they lie within the root of `variance` of their
 /// line, that is whether the smaller eigenvalue of their scatter about the mean (thesis 6.22) is at most n

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "vectorlib/simd/Simd.h"
 #include "vectorlib/vectorization/SumRow.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -41,7 +43,14 @@ public:
         yy()[i] = sums.yy;
         xy()[i] = sums.xy;
     }
-    SumRow row(std::ptrdiff_t i) const { return {x()[i], y()[i], xx()[i], yy()[i], xy()[i]}; }
+    /// Row i once more for all that follow: whoever reads eight rows at a time finds the last one again.
+    void repeat(std::ptrdiff_t i) {
+        for (double *column : {x(), y(), xx(), yy(), xy()})
+            std::fill_n(column + i + 1, margin, column[i]);
+    }
+    VECTORLIB_INLINE SumRow row(std::ptrdiff_t i) const {
+        return {x()[i], y()[i], xx()[i], yy()[i], xy()[i]};
+    }
 
 private:
     std::vector<double> memory_;
