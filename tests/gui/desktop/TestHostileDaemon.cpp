@@ -1,5 +1,4 @@
 #include "gui/desktop/MainWindow.h"
-#include "tests/daemons/MachineStalls.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/support/LoopWatch.h"
 
@@ -34,8 +33,6 @@ private:
         toolTip.remove("<span style='white-space: pre-wrap'>").remove("</span>");
         return !toolTip.contains('<');
     }
-
-    MachineStalls stalls_;
 };
 
 void TestHostileDaemon::initTestCase() {
@@ -344,7 +341,6 @@ void TestHostileDaemon::survives() {
     if (!mischief.isMotors) // else those are driven that come first
         QTRY_VERIFY(add(fleet, good)->hasMethod("motor.estop"));
 
-    stalls_.takeLongest();
     LoopWatch watch;
     DaemonLink *const daemon = add(fleet, hostile);
     QTRY_VERIFY(hostile.calls("daemon.info") > 0);
@@ -362,8 +358,7 @@ void TestHostileDaemon::survives() {
     QTest::qWait(80); // what comes all the time goes on
     if (mischief.isMotors)
         QTRY_VERIFY(add(fleet, good)->hasMethod("motor.estop"));
-    // A processor of a virtual machine that stands still counts as busy.
-    const double stall_ms = 1000 * stalls_.takeLongest(), busy_ms = watch.longestCpu_ms();
+    const double busy_ms = watch.longestCpu_ms();
 
     QPushButton *const stop = stopButton(window);
     QVERIFY(window.isVisible() && stop->isVisible() && stop->isEnabled());
@@ -381,8 +376,8 @@ void TestHostileDaemon::survives() {
         for (QTreeWidgetItemIterator i(tree); *i; ++i)
             QVERIFY2(isPlain((*i)->toolTip(0)), qPrintable((*i)->toolTip(0).left(200)));
     QVERIFY2(resident_mb() - before_mb < 60, qPrintable(QString::number(resident_mb() - before_mb)));
-    qInfo("busy %.1f ms (stall %.1f ms), %.1f MB", busy_ms, stall_ms, resident_mb() - before_mb);
-    QVERIFY2(busy_ms - stall_ms < busyMost_ms, qPrintable(QString::number(busy_ms)));
+    qInfo("busy %.1f ms, %.1f MB", busy_ms, resident_mb() - before_mb);
+    QVERIFY2(busy_ms < busyMost_ms, qPrintable(QString::number(busy_ms)));
 }
 
 QTEST_MAIN(TestHostileDaemon)
