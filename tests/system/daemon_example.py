@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""docs/examples/daemon.py: every command that a daemon has, bad requests, a client that does not read, the end."""
+"""docs/examples/daemon.py and hermes_daemon.py: every command that a daemon has, bad requests, a client that does not read, the end."""
 import json
 import os
 import socket

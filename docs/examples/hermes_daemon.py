@@ -1,0 +1,205 @@
+"""What every Hermes daemon has, in plain Python 3: the commands, topics and rules of docs/protocol.md, without batches and
+positional parameters. daemon.py is a daemon made of it."""
+import argparse
+import asyncio
+import itertools
+import json
+import os
+import signal
+import socket
+import time
+
+COMMON_TOPICS = {"log": "Each record", "status": "State and health", "settings": "After a change"}
+TYPES = {"number": (int, float), "integer": int, "string": str, "boolean": bool, "array": list, "object": dict}
+
+
+class Refusal(Exception):
+    """An error that the client gets: code, message, data."""
+
+
+class Daemon:
+    def __init__(self, name, title, settings, topics, version="1.0"):
+        self.name, self.title, self.version = name, title, version
+        self.schemas, self.topics = settings, {**topics, **COMMON_TOPICS}
+        self.settings = {name: schema["default"] for name, schema in settings.items()}
+        self.health, self.records, self.methods = {}, [], {}
+        self.subscriptions, self.numbers = {}, itertools.count(1)
+        self.started, self.ending, self.client = time.time(), asyncio.Event(), None
+        for function, summary, parameters in (
+                (self.rpc_discover, "This description", {}),
+                (self.daemon_info, "Who this daemon is", {}),
+                (self.daemon_status, "Its state and health", {}),
+                (self.daemon_shutdown, "Ends it in order", {}),
+                (self.settings_schema, "The schema of the settings", {}),
+                (self.settings_get, "All settings, or the one at a path", {"path": {"type": "string", "default": ""}}),
+                (self.settings_set, "Changes all of these or none", {"values": {"type": "object"}}),
+                (self.settings_reset, "Back to the defaults, these or all", {"paths": {"type": "array", "default": []}}),
+                (self.settings_save, "Writes what differs from the defaults to the file of --config", {}),
+                (self.topics_list, "What can be subscribed to", {}),
+                (self.topics_subscribe, "Sends a topic to this client", {
+                    "topic": {"type": "string"}, "queue": {"type": "integer", "default": 1},
+                    "max_rate_hz": {"type": "number", "minimum": 0, "default": 0}}),
+                (self.topics_unsubscribe, "Ends a subscription", {"subscription": {"type": "integer"}}),
+                (self.log_tail, "The last records", {"count": {"type": "integer", "minimum": 1, "default": 100}})):
+            self.methods[function.__name__.replace("_", ".", 1)] = (summary, parameters, function)
+
+    def method(self, name, summary, **parameters):
+        """Makes a function a command; its parameters are described by JSON schemas."""
+        def add(function):
+            self.methods[name] = (summary, parameters, function)
+            return function
+        return add
+
+    def log(self, text, level="info"):
+        self.records = self.records[-999:] + [{"stamp": time.time(), "level": level, "source": self.name, "text": text}]
+        self.publish("log", self.records[-1])
+
+    def set_health(self, item, level, message):
+        """The level is ok, warn or error."""
+        state = {"name": item, "level": level, "message": message, "values": {}}
+        if self.health.get(item) != state:
+            self.health[item] = state
+            self.publish("status", self.daemon_status())
+
+    def publish(self, topic, data):
+        now = time.time()
+        for number, s in self.subscriptions.items():
+            s["seq"] += s["topic"] == topic
+            if s["topic"] == topic and now >= s["due"]:
+                s["due"] = now + s["pause"]
+                s["dropped"] += not send(s["client"], {"method": "topic", "params": {
+                    "subscription": number, "topic": topic, "seq": s["seq"], "dropped": s["dropped"], "stamp": now, "data": data}})
+
+    def run(self, work, port):
+        """Serves until SIGTERM or daemon.shutdown; `work` is called every settings["period_s"] seconds."""
+        parser = argparse.ArgumentParser(description=self.title)
+        parser.add_argument("--port", type=int, default=port)
+        parser.add_argument("--config", default="", help="file of settings, for settings.save")
+        self.options = parser.parse_args()
+        if os.path.exists(self.options.config):
+            with open(self.options.config, encoding="utf-8") as kept:
+                self.settings_set(json.load(kept))
+        asyncio.run(self._run(work))
+
+    async def _run(self, work):
+        asyncio.get_running_loop().add_signal_handler(signal.SIGTERM, self.ending.set)
+        await asyncio.start_server(self._serve, "127.0.0.1", self.options.port, limit=1 << 20)
+        while not self.ending.is_set():
+            work()
+            try:
+                await asyncio.wait_for(self.ending.wait(), self.settings["period_s"])
+            except asyncio.TimeoutError:
+                pass
+
+    async def _serve(self, reader, client):
+        line = b"\n"
+        while line and not client.transport.is_closing():
+            try:
+                line = await reader.readline()
+            except (OSError, ValueError, asyncio.CancelledError):  # gone, a line beyond the limit, the end
+                break
+            self.client = client
+            reply = self._answer(line) if line.strip() else None
+            if reply and not send(client, reply):
+                client.transport.abort()  # does not read its replies
+        for number in [n for n, s in self.subscriptions.items() if s["client"] is client]:
+            del self.subscriptions[number]
+        client.close()
+
+    def _answer(self, line):
+        """The reply to a request; None: it is a notification."""
+        request = None
+        try:
+            request = json.loads(line)
+            if request["method"] not in self.methods:
+                raise Refusal(-32601, f"no method {request['method']}")
+            _, schemas, function = self.methods[request["method"]]
+            values = {**{n: s["default"] for n, s in schemas.items() if "default" in s}, **request.get("params", {})}
+            check(schemas, values, -32602)
+            reply = {"result": function(**values)}
+        except Refusal as error:
+            reply = {"error": dict(zip(("code", "message", "data"), error.args))}
+        except (json.JSONDecodeError, UnicodeDecodeError, RecursionError) as error:
+            reply = {"error": {"code": -32700, "message": f"no JSON: {error}"}}
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            reply = {"error": {"code": -32600, "message": f"not a request: {error!r}"}}
+        if isinstance(request, dict) and "id" not in request:
+            return None
+        return {"id": request["id"] if isinstance(request, dict) else None, **reply}
+
+    def rpc_discover(self):
+        methods = [{"name": name, "summary": summary, "result": {"name": "result", "schema": {}},
+                    "params": [{"name": n, "required": "default" not in s, "schema": s} for n, s in schemas.items()]}
+                   for name, (summary, schemas, _) in self.methods.items()]
+        return {"openrpc": "1.2.6", "info": {"title": self.title, "version": self.version}, "methods": methods,
+                "x-topics": self.topics_list()}
+
+    def daemon_info(self):
+        return {"name": self.name, "title": self.title, "version": self.version, "host": socket.gethostname(), "pid": os.getpid(),
+                "started": self.started, "uptime_s": time.time() - self.started, "description_hash": str(self.started)}
+
+    def daemon_status(self):
+        return {"state": "running", "restart_for": [], "health": list(self.health.values())}
+
+    def daemon_shutdown(self):
+        self.ending.set()
+
+    def settings_schema(self):
+        return {"type": "object", "properties": self.schemas}
+
+    def settings_get(self, path):
+        return self.settings[path] if path else self.settings
+
+    def settings_set(self, values):
+        check(self.schemas, values, -32003)
+        changed = [name for name, value in values.items() if self.settings[name] != value]
+        self.settings.update(values)
+        self.publish("settings", self.settings)
+        return {"changed": changed, "restart": []}
+
+    def settings_reset(self, paths):
+        return self.settings_set({name: self.schemas[name]["default"] for name in paths or self.schemas})
+
+    def settings_save(self):
+        kept = {name: value for name, value in self.settings.items() if value != self.schemas[name]["default"]}
+        try:
+            with open(self.options.config, "w", encoding="utf-8") as file:
+                json.dump(kept, file)
+        except OSError as error:
+            raise Refusal(-32008, str(error), {"path": self.options.config}) from error
+        return {"path": self.options.config}
+
+    def topics_list(self):
+        return [{"name": name, "summary": summary, "schema": {}, "snapshot": False} for name, summary in self.topics.items()]
+
+    def topics_subscribe(self, topic, queue, max_rate_hz):  # a queue of one: the newest
+        if topic not in self.topics:
+            raise Refusal(-32006, f"no topic {topic}")
+        number, pause = next(self.numbers), 0.9 / max_rate_hz if max_rate_hz else 0
+        self.subscriptions[number] = {"client": self.client, "topic": topic, "pause": pause, "due": 0, "seq": 0, "dropped": 0}
+        return {"subscription": number}
+
+    def topics_unsubscribe(self, subscription):
+        if self.subscriptions.get(subscription, {}).get("client") is self.client:
+            del self.subscriptions[subscription]
+
+    def log_tail(self, count):
+        return self.records[-count:]
+
+
+def check(schemas, values, code):
+    """Refuses values that are unknown, of another type or beyond their limits."""
+    for name, value in values.items():
+        schema = schemas.get(name, {"type": "nothing of this name"})
+        right = isinstance(value, TYPES.get(schema["type"], ())) and isinstance(value, bool) == (schema["type"] == "boolean")
+        if not right or "minimum" in schema and not schema["minimum"] <= value <= schema.get("maximum", 1e9):
+            expected = f"{schema['type']} {schema.get('minimum', '')} to {schema.get('maximum', '')}"
+            raise Refusal(code, f"{name}: expected {expected}", {"errors": [{"path": name, "value": value, "expected": expected}]})
+
+
+def send(client, message):
+    """Not to a client that leaves 256 KiB unread: nobody waits for it."""
+    if client.transport.get_write_buffer_size() > 1 << 18:
+        return False
+    client.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
+    return True
