@@ -64,6 +64,7 @@ private Q_SLOTS:
     void intervalsFitAndAreLongest();
     void doublesToo();
     void everyLevelFindsTheSameLines();
+    void smallClustersAreTheSameWhateverIsRounded();
     void linesAreThoseOfMakeLine();
     void aftlsOfEveryLevel();
     void sameIntervalsInReverse();
@@ -216,6 +217,30 @@ void TestBlockSums::everyLevelFindsTheSameLines() {
     }
     const int allowed = simd::bestLevel() == simd::Level::Avx2 ? 3 : 0;
     QVERIFY2(different <= allowed, qPrintable(QString("%1 of 3000").arg(different)));
+}
+
+// In small clusters every point has a row: no level may tell otherwise, not even where rounding alone tells
+// whether points on a line fit.
+void TestBlockSums::smallClustersAreTheSameWhateverIsRounded() {
+    for (unsigned seed = 1; seed <= 3000; ++seed) {
+        std::mt19937 random(seed);
+        std::vector<Vector2D<float>> points{{1, 2}};
+        float dx = 0, dy = 0;
+        while (points.size() < 20 + seed % 200) {
+            if (random() % 16 == 0 || dx == 0) {
+                dx = 0.01f * float(1 + random() % 9);
+                dy = 0.01f * float(random() % 9);
+            }
+            points.push_back({points.back().x + dx, points.back().y + dy});
+        }
+        const double sigma = 1e-7 * double(random() % 4);
+        auto scalar = ftls<float>(simd::Level::Scalar, sigma), best = ftls<float>(simd::bestLevel(), sigma);
+        const auto &expected = scalar(points), &lines = best(points);
+        QCOMPARE(lines.size(), expected.size());
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            QVERIFY2(lines[i].last == expected[i].last && lines[i].sigma == expected[i].sigma,
+                     qPrintable(QString("seed %1, line %2").arg(seed).arg(i)));
+    }
 }
 
 // Lines are made four at a time, with the results of one at a time.

@@ -7,12 +7,20 @@
 
 namespace vectorlib::blocks {
 
+/// a b - c, rounded once where sums of blocks in float are tested, which carry larger errors; else twice, as
+/// fits() does: the same intervals fit then.
+template <bool once>
+VECTORLIB_AVX2 VECTORLIB_INLINE __m256d minusAvx2(__m256d a, __m256d b, __m256d c) {
+    return once ? _mm256_fmsub_pd(a, b, c) : a * b - c;
+}
 /// Bit i: whether interval i fits.
+template <bool once>
 VECTORLIB_AVX2 VECTORLIB_INLINE unsigned fittingAvx2(const FourRows &s, double variance) {
-    const __m256d v = _mm256_set1_pd(variance);
-    const __m256d a = _mm256_fmsub_pd(s.n, _mm256_fnmadd_pd(s.n, v, s.xx), s.x * s.x);
-    const __m256d b = _mm256_fmsub_pd(s.n, _mm256_fnmadd_pd(s.n, v, s.yy), s.y * s.y);
-    const __m256d c = _mm256_fmsub_pd(s.n, s.xy, s.x * s.y);
+    const __m256d v = _mm256_set1_pd(variance), limit = s.n * v;
+    const __m256d xx = once ? _mm256_fnmadd_pd(s.n, v, s.xx) : s.xx - limit;
+    const __m256d yy = once ? _mm256_fnmadd_pd(s.n, v, s.yy) : s.yy - limit;
+    const __m256d a = minusAvx2<once>(s.n, xx, s.x * s.x), b = minusAvx2<once>(s.n, yy, s.y * s.y);
+    const __m256d c = minusAvx2<once>(s.n, s.xy, s.x * s.y);
     const __m256d exceeds = _mm256_and_pd(_mm256_cmp_pd(b, _mm256_setzero_pd(), _CMP_GT_OQ),
                                           _mm256_cmp_pd(a * b, c * c, _CMP_GT_OQ));
     return static_cast<unsigned>(_mm256_movemask_pd(exceeds)) ^ 15u;
@@ -34,10 +42,10 @@ VECTORLIB_AVX2 VECTORLIB_INLINE unsigned fittingRowsAvx2(const BlockSums &sums, 
     for (unsigned i = 0; i < 8; i += 4, k += 4, index = index + _mm256_set1_pd(4 * stride)) {
         const __m256d n =
             at - (back ? _mm256_max_pd(index, _mm256_setzero_pd()) : _mm256_min_pd(index, last));
-        bits |= fittingAvx2({n, sumsTo(from.row.x, t.x() + k), sumsTo(from.row.y, t.y() + k),
-                             sumsTo(from.row.xx, t.xx() + k), sumsTo(from.row.yy, t.yy() + k),
-                             sumsTo(from.row.xy, t.xy() + k)},
-                            variance)
+        bits |= fittingAvx2<(stride > 1)>({n, sumsTo(from.row.x, t.x() + k), sumsTo(from.row.y, t.y() + k),
+                                           sumsTo(from.row.xx, t.xx() + k), sumsTo(from.row.yy, t.yy() + k),
+                                           sumsTo(from.row.xy, t.xy() + k)},
+                                          variance)
                 << i;
     }
     return bits;
@@ -71,8 +79,8 @@ public:
     }
     /// Finds the four points in which the interval ends.
     VECTORLIB_AVX2 VECTORLIB_INLINE void findFour(double variance) {
-        four_ = chooseFour<back>(fittingAvx2(four(1), variance) | fittingAvx2(four(5), variance) << 4, count_,
-                                 sure_);
+        four_ = chooseFour<back>(
+            fittingAvx2<true>(four(1), variance) | fittingAvx2<true>(four(5), variance) << 4, count_, sure_);
     }
     /// Goes through them one after the other; the cut in the frame of the cluster.
     VECTORLIB_AVX2 VECTORLIB_INLINE void findPoint(double variance, Cut &cut) const {
@@ -90,7 +98,7 @@ public:
             _mm256_set1_pd(n_ + double(4 * g)) + _mm256_setr_pd(back, 1 + back, 2 + back, 3 + back);
         const __m256d x = running(dx, x_), y = running(dy, y_), xx = running(dx * dx, xx_),
                       yy = running(dy * dy, yy_), xy = running(dx * dy, xy_);
-        const unsigned bits = fittingAvx2({n, x, y, xx, yy, xy}, variance);
+        const unsigned bits = fittingAvx2<true>({n, x, y, xx, yy, xy}, variance);
         const Index k = choosePoint<back>(back ? bits : bits >> 1, g, count_, sure_);
         const __m256d ox = _mm256_set1_pd(ox_), oy = _mm256_set1_pd(oy_);
         const __m256d cx = _mm256_fmadd_pd(n, ox, x), cy = _mm256_fmadd_pd(n, oy, y);
