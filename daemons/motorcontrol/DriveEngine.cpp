@@ -13,7 +13,11 @@ constexpr double overspeed = 1.5; // times full duty: faster no wheel turns
 
 DriveEngine::DriveEngine(const MotorSettings &settings) {
     for (int i = 0; i < controllerCount; ++i) {
-        controllers_.push_back(std::make_unique<MotorController>(i + 1, settings.controllers[i]));
+        const auto onLine =
+            std::count_if(settings.controllers.begin(), settings.controllers.end(),
+                          [&](const auto &c) { return c.url == settings.controllers[i].url; });
+        controllers_.push_back(
+            std::make_unique<MotorController>(i + 1, settings.controllers[i], int(onLine)));
         telemetry_.controllers[i].name = controllers_.back()->name();
     }
     configure(settings);
@@ -51,12 +55,13 @@ void DriveEngine::cycle(double now) {
     takeReadings();
     trackWheels(now);
     faults_.judgeControllers(telemetry_, drive_, now);
+    judgeObedience();
     command(drive_.step(now));
 }
 
 bool DriveEngine::hasObeyed() const {
     return std::all_of(controllers_.begin(), controllers_.end(),
-                       [](const auto &c) { return !c->isReady() || c->hasObeyed(); });
+                       [](const auto &c) { return c->hasObeyed(); });
 }
 
 void DriveEngine::updateReadiness() {
@@ -65,8 +70,20 @@ void DriveEngine::updateReadiness() {
     for (const auto &controller : controllers_) {
         if (!controller->isReady())
             return drive_.setNotReady(controller->name() + ": " + controller->error());
+        if (controller->isTooSlow())
+            return drive_.setNotReady(controller->name() +
+                                      QString(": its line gives less than %1 set-points a second")
+                                          .arg(MotorController::leastRate_Hz));
     }
     drive_.setReady();
+}
+
+void DriveEngine::judgeObedience() {
+    for (int i = 0; i < controllerCount; ++i) {
+        const QString disobedience = controllers_[i]->takeDisobedience();
+        if (!disobedience.isEmpty())
+            drive_.fault(QString("controller_%1").arg(i + 1), controllers_[i]->name() + ": " + disobedience);
+    }
 }
 
 void DriveEngine::takeReadings() {
@@ -76,6 +93,7 @@ void DriveEngine::takeReadings() {
         told.error = controller.error();
         told.version = controller.version();
         told.ready = controller.isReady();
+        told.rate_Hz = controller.rate_Hz().value_or(0);
         told.readings = controller.readings();
         told.overruns = controller.overruns();
     }
@@ -105,8 +123,6 @@ void DriveEngine::trackWheels(double now) {
 
 void DriveEngine::command(const WheelValues &setPoint) {
     const double countsPerRadian = settings_.countsPerTurn / (2 * pi);
-    const auto acceleration =
-        quint32(std::llround(settings_.emergencyDeceleration / settings_.wheelRadius * countsPerRadian));
     std::array<std::array<qint32, 2>, controllerCount> speeds{};
     for (int i = 0; i < wheelCount; ++i) {
         const WheelMount &wheel = settings_.wheels[i];
@@ -114,11 +130,13 @@ void DriveEngine::command(const WheelValues &setPoint) {
             qint32(std::lround(wheel.sign * setPoint[i] * countsPerRadian));
     }
     for (int i = 0; i < controllerCount; ++i)
-        controllers_[i]->command(speeds[i], acceleration);
+        controllers_[i]->command(speeds[i]);
     sent_ = setPoint;
 }
 
 Telemetry &DriveEngine::report() {
+    for (int i = 0; i < controllerCount; ++i)
+        telemetry_.controllers[i].stands = controllers_[i]->stands();
     telemetry_.pose = odometry_.pose();
     telemetry_.covariance = odometry_.covariance();
     telemetry_.target = drive_.target();

@@ -23,7 +23,7 @@ public:
     bool obey();
     /// Gives a stand to the controllers, whatever they were told before.
     void stand() { command({}); }
-    /// All that are ready have acknowledged their set-point.
+    /// All that are ready have acknowledged their set-point, and the others were told to stand.
     bool hasObeyed() const;
 
     Drive &drive() { return drive_; }
@@ -35,6 +35,7 @@ public:
 
 private:
     void updateReadiness();
+    void judgeObedience();
     void takeReadings();
     void trackWheels(double now);
     void command(const WheelValues &setPoint);

@@ -29,6 +29,7 @@ public:
     /// What jobs act upon. A halt goes out when the job ends, without waiting for the next cycle.
     Drive &drive() { return engine_.drive(); }
     Odometry &odometry() { return engine_.odometry(); }
+    const Telemetry &telemetry() { return engine_.report(); }
 
 private:
     Result<void> openLines();

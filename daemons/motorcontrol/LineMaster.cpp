@@ -1,9 +1,11 @@
 #include "daemons/motorcontrol/LineMaster.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace hermes {
 
 using roboclaw::Bus;
-using Task = MotorController::Task;
 
 namespace {
 
@@ -17,8 +19,9 @@ Bus::Options withoutRepetition() {
 } // namespace
 
 LineMaster::LineMaster(std::vector<MotorController *> controllers)
-    : controllers_(std::move(controllers))
-    , bus_(withoutRepetition()) {
+    : bus_(withoutRepetition()) {
+    for (MotorController *controller : controllers)
+        places_.push_back({controller, {}});
     bus_.setOpen(false);
 }
 
@@ -28,17 +31,37 @@ void LineMaster::setOpen() {
 
 void LineMaster::setClosed(const QString &reason) {
     bus_.setOpen(false);
-    for (MotorController *controller : controllers_)
-        controller->lineClosed(reason);
+    for (const Place &place : places_)
+        place.controller->lineClosed(reason);
+}
+
+double LineMaster::busyUntil() const {
+    double until = bus_.quietUntil();
+    for (const Place &place : places_)
+        until = std::max(until, place.controller->silentUntil());
+    return until;
+}
+
+double LineMaster::deadline() const {
+    if (!bus_.isIdle())
+        return bus_.deadline();
+    return busyUntil() > now_ ? busyUntil() : std::numeric_limits<double>::infinity();
 }
 
 const roboclaw::Bytes *LineMaster::poll(double now) {
     now_ = now;
-    bus_.cancel();  // what was not sent yet is chosen anew
     bus_.poll(now); // ends what is late
-    if (bus_.isIdle())
+    if (bus_.isIdle() && now >= busyUntil())
         submitNext();
-    return bus_.poll(now);
+    const roboclaw::Bytes *out = bus_.poll(now);
+    tellWhetherHeld(now);
+    return out;
+}
+
+void LineMaster::tellWhetherHeld(double now) {
+    const bool held = bus_.isIdle() ? now < busyUntil() : waitsPatiently_;
+    for (const Place &place : places_)
+        place.controller->setLineHeld(held);
 }
 
 void LineMaster::feed(const std::uint8_t *data, std::size_t size, double now) {
@@ -47,25 +70,55 @@ void LineMaster::feed(const std::uint8_t *data, std::size_t size, double now) {
 }
 
 void LineMaster::submitNext() {
-    // One that does not answer waits until the others have what they need: each failure takes 40 ms.
-    for (const bool failing : {false, true}) {
-        for (int task = 0; task < MotorController::taskCount; ++task) {
-            for (MotorController *controller : controllers_) {
-                if (controller->isFailing() == failing && submit(*controller, Task(task)))
-                    return;
-            }
-        }
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        if (places_[i].controller->isToStop() && submit(i, Task::SetPoint))
+            return;
     }
+    if (submitInRound())
+        return;
+    for (Place &place : places_) // the next round
+        place.served = {};
+    submitInRound();
 }
 
-bool LineMaster::submit(MotorController &controller, Task task) {
-    const auto request = controller.next(task, now_);
-    if (request)
-        bus_.submit(*request,
-                    [this, &controller, task](const roboclaw::Request &, const Bus::Outcome &outcome) {
-                        controller.finished(task, outcome, now_);
-                    });
-    return request.has_value();
+bool LineMaster::submitInRound() {
+    for (int task = 0; task < MotorController::taskCount; ++task) {
+        for (std::size_t k = 0; k < places_.size(); ++k) {
+            const std::size_t i = (first_ + k) % places_.size();
+            if (!places_[i].served[std::size_t(task)] && submit(i, Task(task)))
+                return true;
+        }
+    }
+    return false;
+}
+
+bool LineMaster::submit(std::size_t place, Task task) {
+    const auto asked = places_[place].controller->next(task, now_);
+    if (!asked)
+        return false;
+    waitsPatiently_ = asked->isPatient();
+    return bus_.submit(
+        asked->request,
+        [this, place, task](const roboclaw::Request &, const Bus::Outcome &outcome) {
+            finished(place, task, outcome);
+        },
+        Bus::Urgency::Normal, asked->patience_s);
+}
+
+void LineMaster::finished(std::size_t place, Task task, const Bus::Outcome &outcome) {
+    MotorController &controller = *places_[place].controller;
+    controller.finished(outcome, now_);
+    if (task == Task::Background) { // one in a round for the whole line; then it is the next one's turn
+        for (Place &each : places_)
+            each.served[std::size_t(task)] = true;
+        first_ = (place + 1) % places_.size();
+    }
+    // A byte may be damaged on any line, that is asked again at once. One that does not answer waits until
+    // the others have what they need: each failure takes 40 ms or more.
+    if (controller.isFailing())
+        places_[place].served.fill(true);
+    else
+        places_[place].served[std::size_t(task)] = outcome.result == Bus::Result::Done;
 }
 
 } // namespace hermes

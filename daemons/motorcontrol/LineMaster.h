@@ -6,9 +6,11 @@
 
 namespace hermes {
 
-/// What goes over a line with one or more controllers on it, one request at a time, the most urgent one
-/// first: each is made when the line is free, so that no outdated set-point waits in a queue. Knows no clock
-/// and no line: the caller gives the time (monotonic), writes what poll() gives and feeds what it reads.
+/// What goes over a line with one or more controllers on it, one request at a time. Each is made when the
+/// line is free, so that no outdated set-point waits in a queue. Stops go before everything; else the
+/// controllers have turns: in each round, a set-point and the encoders of each, and one slow reading or
+/// request of a set-up. So however late answers come, each gets its share. Knows no clock and no line: the
+/// caller gives the time (monotonic), writes what poll() gives and feeds what it reads.
 class LineMaster {
 public:
     /// The controllers must outlive it. The line is closed.
@@ -21,7 +23,7 @@ public:
     const roboclaw::Bytes *poll(double now);
     void feed(const std::uint8_t *data, std::size_t size, double now);
     /// When poll() has to be called at the latest; infinite when nothing is pending.
-    double deadline() const { return bus_.deadline(); }
+    double deadline() const;
 
     const roboclaw::Bus::Counts &counts(const MotorController &controller) const {
         return bus_.counts(controller.address());
@@ -29,11 +31,26 @@ public:
     quint64 strayBytes() const { return bus_.strayBytes(); }
 
 private:
-    void submitNext();
-    bool submit(MotorController &controller, MotorController::Task task);
+    using Task = MotorController::Task;
+    /// A controller, and which tasks it had a turn for in this round.
+    struct Place {
+        MotorController *controller;
+        std::array<bool, MotorController::taskCount> served{};
+    };
 
-    std::vector<MotorController *> controllers_;
+    /// Nothing is sent before: the line is quiet after a failure, or silent until a controller stops by
+    /// itself.
+    double busyUntil() const;
+    void submitNext();
+    bool submitInRound();
+    bool submit(std::size_t place, Task task);
+    void finished(std::size_t place, Task task, const roboclaw::Bus::Outcome &outcome);
+    void tellWhetherHeld(double now);
+
+    std::vector<Place> places_;
+    std::size_t first_ = 0; // whose turn it is to go first
     roboclaw::Bus bus_;
+    bool waitsPatiently_ = false;
     double now_ = 0;
 };
 

@@ -35,6 +35,31 @@ Command MotorControl::loopCommand(const QString &name, const QString &summary,
         });
 }
 
+Command MotorControl::stopCommand(const QString &name, const QString &summary,
+                                  const std::function<void(const Call &, Drive &)> &stop) {
+    return Command(name, summary + ". Tells which controllers have confirmed that they stand: a set-point of "
+                                   "zero acknowledged, and since then no motion of the encoders")
+        .param(Field::number("wait_s",
+                             "Answers when all have confirmed, after this time at the latest; 0: at once")
+                   .unit("s")
+                   .range(0, 10)
+                   .byDefault(0))
+        .returns(object)
+        .asyncHandler([this, stop](const Call &call, const Reply &reply) {
+            const double until = monotonicNow() + call.number("wait_s");
+            inLoop(
+                [call, stop](DriveLoop &loop) -> Result<QJsonValue> {
+                    stop(call, loop.drive());
+                    return QJsonValue(standingJson(loop.telemetry()));
+                },
+                Reply([this, reply, until](const Result<QJsonValue> &result) {
+                    if (!result || monotonicNow() >= until || (*result)["confirmed"].toBool())
+                        return reply.give(result);
+                    stops_.push_back({reply, until});
+                }));
+        });
+}
+
 void MotorControl::declareMotorCommands() {
     addCommand(
         loopCommand("motor.drive",
@@ -66,22 +91,15 @@ void MotorControl::declareMotorCommands() {
             Field::number(name, "Positive turns drive the robot forward").unit("rad/s").byDefault(0));
     addCommand(
         wheels.param(stampField()).with("x-needs-lease", true).example({{"front_left", 1}}, QJsonValue()));
-    addCommand(loopCommand(
-        "motor.stop",
-        "Stops with the emergency deceleration; anyone may. When another client holds the control "
-        "it loses it",
-        [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
-            loop.drive().stop(call.client, call.clientName);
-            return QJsonValue();
-        }));
-    addCommand(loopCommand(
-        "motor.estop",
-        "Stops with the emergency deceleration, and stays stopped until motor.reset_estop; anyone "
-        "may. No substitute for a hard-wired device",
-        [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
-            loop.drive().emergencyStop(call.clientName);
-            return QJsonValue();
-        }));
+    addCommand(stopCommand("motor.stop",
+                           "Stops with the emergency deceleration; anyone may. When another client holds the "
+                           "control it loses it",
+                           [](const Call &call, Drive &drive) { drive.stop(call.client, call.clientName); }));
+    addCommand(
+        stopCommand("motor.estop",
+                    "Stops with the emergency deceleration, and stays stopped until motor.reset_estop; "
+                    "anyone may. No substitute for a hard-wired device",
+                    [](const Call &call, Drive &drive) { drive.emergencyStop(call.clientName); }));
     addCommand(
         loopCommand("motor.reset_estop",
                     "Releases the emergency stop and latched faults; the robot stays where it is until a "

@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/MotorControl.h"
 
 #include "common/Log.h"
+#include "common/Time.h"
 #include "daemons/motorcontrol/MotorJson.h"
 
 #include <QSocketNotifier>
@@ -101,6 +102,8 @@ void MotorControl::stop() {
     thread_.wait();
     loop_ = nullptr;
     answerJobs(mail_.finished.exchange(0));
+    for (const WaitingStop &stop : std::exchange(stops_, {}))
+        stop.reply.give(QJsonValue(standingJson(told_)));
     for (const DriveMail::Job &job : std::exchange(jobs_, {}))
         job.reply.error(Error(ErrorCode::NotReady, "the daemon is stopping"));
 }
@@ -154,10 +157,21 @@ void MotorControl::takeReports() {
     answerJobs(finished);
 }
 
+void MotorControl::answerStops() {
+    const double now = monotonicNow();
+    const auto isDue = [&](const WaitingStop &stop) { return allStand(told_) || now >= stop.until; };
+    for (const WaitingStop &stop : stops_) {
+        if (isDue(stop))
+            stop.reply.give(QJsonValue(standingJson(told_)));
+    }
+    stops_.erase(std::remove_if(stops_.begin(), stops_.end(), isDue), stops_.end());
+}
+
 void MotorControl::show(const Telemetry &telemetry) {
     if (telemetry.counterJumps != told_.counterJumps)
         logWarning("drive", "a controller has lost its counts; the odometry goes on from where it was");
     told_ = telemetry;
+    answerStops();
     if (!telemetry.moved && cycles_ == telemetry.cycle.cycles)
         return; // a report between two cycles
     cycles_ = telemetry.cycle.cycles;

@@ -27,6 +27,10 @@ private:
     void declareTopics();
     void declareMotorCommands();
     void declareControlCommands();
+    /// A stop: answers what is confirmed to stand, at once or when all is, after wait_s at the latest.
+    Command stopCommand(const QString &name, const QString &summary,
+                        const std::function<void(const Call &, Drive &)> &stop);
+    void answerStops();
 
     /// Runs in the loop's thread, sends what follows from it at once, and gives the reply.
     void inLoop(const Work &work, const Reply &reply);
@@ -39,6 +43,7 @@ private:
     void answerJobs(std::size_t count);
     void show(const Telemetry &telemetry);
     void updateHealth();
+    bool isReady() const;
     QJsonObject state() const;
 
     DriveMail mail_;
@@ -48,6 +53,11 @@ private:
     DriveLoop *loop_ = nullptr; // lives in thread_
     MotorSettings active_;      // what the loop works with
     Telemetry told_;
+    struct WaitingStop {
+        Reply reply;
+        double until; // monotonic
+    };
+    std::vector<WaitingStop> stops_;
     std::array<QString, controllerCount> logged_; // how the controllers are
     quint64 cycles_ = 0;
 };

@@ -1,7 +1,5 @@
 #include "daemons/motorcontrol/MotorController.h"
 
-#include "protocol/roboclaw/Status.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,235 +12,343 @@ using roboclaw::Request;
 
 namespace {
 
-constexpr double setupPause_s = 0.25; // between attempts at a controller that does not answer
-
+constexpr double pi = 3.14159265358979323846;
+constexpr double setupPause_s = 0.25;       // between attempts at a controller that cannot be set up
+constexpr double setupPatience_s = 0.25;    // a set-up waits for slow adapters, to tell how slow they are
+constexpr double shortestPatience_s = 0.03; // FTDI adapters hold bytes for up to 16 ms
+constexpr double timeoutMargin_s = 0.1;     // of the controllers' own clock
+constexpr double readingPause_s = 0.02;     // while it is seen to stand
+constexpr double standMargin_s = 0.2;       // and half of the time of braking more: motors lag behind
 constexpr double longestStep_s = 0.04; // a cycle that came later: this program stood still, and asked nothing
 
-constexpr Command setPids[] = {Command::SetVelocityPidM1, Command::SetVelocityPidM2};
-constexpr Command readPids[] = {Command::ReadVelocityPidM1, Command::ReadVelocityPidM2};
+constexpr std::array<qint32, 2> zero{};
 
-// 16.16 fixed point
-qint64 fixedPoint(double value) {
-    return std::llround(value * 65536);
-}
-
-QString toText(Bus::Result result) {
-    switch (result) {
-    case Bus::Result::BadCrc:
-        return "answers with a wrong checksum";
-    case Bus::Result::Unexpected:
-        return "answers with something unexpected";
-    case Bus::Result::LineClosed:
-        return "has no line";
+QString nameOf(Command command) {
+    switch (command) {
+    case Command::SpeedAccel:
+        return "40 (speeds)";
+    case Command::Duty:
+        return "34 (duties)";
+    case Command::SetSerialTimeout:
+        return "14 (set serial time-out)";
+    case Command::ReadSerialTimeout:
+        return "15 (serial time-out)";
+    case Command::ReadEncoders:
+        return "78 (encoders)";
+    case Command::ReadVersion:
+        return "21 (version)";
+    case Command::ReadStatus:
+        return "90 (status)";
+    case Command::ReadCurrents:
+        return "49 (currents)";
+    case Command::ReadMainBattery:
+        return "24 (main battery)";
+    case Command::ReadLogicBattery:
+        return "25 (logic battery)";
+    case Command::ReadTemperature:
+        return "82 (temperature)";
     default:
-        return "does not answer";
+        return QString("%1 (velocity PID)").arg(int(command));
     }
 }
 
 } // namespace
 
-MotorController::MotorController(int number, const ControllerAddress &address)
+MotorController::MotorController(int number, const ControllerAddress &address, int onLine)
     : place_(address)
-    , name_(QString("controller %1 (0x%2 on %3)").arg(number).arg(address.address, 0, 16).arg(address.url)) {}
+    , name_(QString("controller %1 (0x%2 on %3)").arg(number).arg(address.address, 0, 16).arg(address.url))
+    , onLine_(onLine) {}
 
 void MotorController::configure(const MotorSettings &settings) {
-    const int tenths = std::max(1, int(std::lround(10 * settings.serialTimeout_s)));
-    if (pid_ == settings.pid && timeoutTenths_ == tenths)
+    const double countsPerRadian = settings.countsPerTurn / (2 * pi);
+    deceleration_ = std::max(
+        1u, quint32(std::llround(settings.emergencyDeceleration / settings.wheelRadius * countsPerRadian)));
+    watch_.setThreshold(settings.encoder.moving * countsPerRadian);
+    disobeyAfter_s_ = settings.encoder.hold_s;
+    if (!setup_.differs(settings))
         return;
-    pid_ = settings.pid;
-    timeoutTenths_ = tenths;
-    if (isReady())
+    setup_.configure(settings);
+    timeoutAtMost_s_ = std::max(timeoutAtMost_s_, setup_.timeout_s());
+    if (state_ != State::Stopping)
         lose("is being set up with new settings");
 }
 
 void MotorController::lineClosed(const QString &reason) {
+    heard_ = false;
     lose(reason);
-    nextAttempt_ = 0;
+    silentUntil_ = nextSetup_ = 0;
 }
 
 void MotorController::lose(const QString &reason) {
-    step_ = 0;
+    state_ = State::Stopping;
     error_ = reason;
+    attempts_ = 0;
+    stopAcknowledged_ = false;
+    nextAttempt_ = 0;
+    watch_.doubt();
+    rate_.restart();
     readings_.countsTime = 0;
     readings_.complete = false;
-    awaits_ = wantsEncoders_ = wantsSlow_ = false;
-    obeyed_ = commanded_;
+    asked_.reset();
+    wantsEncoders_ = wantsSlow_ = false;
 }
 
-void MotorController::command(const std::array<qint32, 2> &speeds, quint32 acceleration) {
+double MotorController::silence_s() const {
+    return timeoutAtMost_s_ + timeoutMargin_s;
+}
+
+void MotorController::command(const std::array<qint32, 2> &speeds) {
     if (!isReady())
         return;
+    if (speeds != zero)
+        watch_.doubt();
+    else if (speeds_ != zero)
+        standBy_ = clock_ + standMargin_s + 1.5 * watch_.speed() / deceleration_ +
+                   3 / rate_Hz().value_or(1 / longestStep_s);
     speeds_ = speeds;
-    acceleration_ = std::max(1u, acceleration);
     ++commanded_;
 }
 
 void MotorController::beginCycle(double now) {
-    const double step = std::min(now - std::exchange(lastCycle_, now), longestStep_s);
+    const double step = std::clamp(now - std::exchange(lastCycle_, now), 0.0, longestStep_s);
+    if (!lineHeld_)
+        clock_ += step;
+    if (isReady())
+        watchAnswers();
+    if (isReady())
+        watchStandstill();
     if (!isReady())
         return;
-    sinceObeyed_ += step;
-    sinceCounts_ += step;
-    if (std::max(sinceObeyed_, sinceCounts_) > lostAfter_s)
-        return lose(error_.isEmpty() ? "was not heard" : error_);
     overruns_ += wantsEncoders_;
     wantsEncoders_ = wantsSlow_ = true;
 }
 
-Request MotorController::request(Command command, const roboclaw::Values &values) const {
-    return *Request::make(address(), command, values);
+void MotorController::watchAnswers() {
+    if (clock_ - lastAnswer_ > lostAfter_s)
+        heard_ = false;
+    if (clock_ - lastObeyed_ > lostAfter_s)
+        lose(failureOf(Command::SpeedAccel));
+    else if (clock_ - lastCounts_ > lostAfter_s)
+        lose(failureOf(Command::ReadEncoders));
+    else if (clock_ - lastSlow_ > slowLostAfter_s)
+        lose(failureOf(ControllerReadings::slowCommand(slow_)));
 }
 
-std::optional<Request> MotorController::next(Task task, double now) {
-    const auto request = due(task, now);
-    if (request) {
-        awaits_ = true;
+void MotorController::watchStandstill() {
+    if (speeds_ != zero)
+        return;
+    if (watch_.stands())
+        standBy_ = clock_ + disobeyAfter_s_ + timeoutMargin_s; // a push is no disobedience
+    if (clock_ <= standBy_)
+        return;
+    disobedience_ =
+        "was told to stand and turned on; its line fell silent, so that it stopped by its own time-out";
+    lose("was told to stand and turned on");
+}
+
+bool MotorController::isToStop() const {
+    if (state_ == State::Stopping)
+        return attempts_ == 0;
+    return isReady() && toldToTurn_ && speeds_ == zero;
+}
+
+MotorController::Ask MotorController::ask(Command command, double patience_s,
+                                          const roboclaw::Values &values) const {
+    return {*Request::make(address(), command, values), patience_s};
+}
+
+std::optional<MotorController::Ask> MotorController::next(Task task, double now) {
+    const auto asked = due(task, now);
+    if (!asked)
+        return asked;
+    asked_ = asked->request.command;
+    if (*asked_ == Command::SpeedAccel || *asked_ == Command::Duty) {
         sent_ = commanded_;
+        toldToTurn_ = isReady() && speeds_ != zero;
+        if (!isReady())
+            ++attempts_;
     }
-    return request;
+    return asked;
 }
 
-std::optional<Request> MotorController::due(Task task, double now) const {
+std::optional<MotorController::Ask> MotorController::due(Task task, double now) const {
+    const bool first = attempts_ == 0;
+    switch (state_) {
+    case State::Stopping:
+        // First with the ramp, and not waiting for long; then by taking the power away, and in silence.
+        if (task == Task::SetPoint && first)
+            return ask(Command::SpeedAccel, shortestPatience_s, {deceleration_, 0, 0});
+        if (task != Task::Background || first || now < nextAttempt_)
+            return std::nullopt;
+        return stopAcknowledged_ ? ask(Command::ReadEncoders, silence_s())
+                                 : ask(Command::Duty, silence_s(), {0, 0});
+    case State::SetUp:
+        if (task != Task::Background)
+            return std::nullopt;
+        return Ask{setup_.request(address()), setupPatience_s};
+    case State::Ready:
+        break;
+    }
+    return dueReady(task);
+}
+
+std::optional<MotorController::Ask> MotorController::dueReady(Task task) const {
     switch (task) {
     case Task::SetPoint:
         if (obeyed_ != commanded_)
-            return request(Command::SpeedAccel, {acceleration_, speeds_[0], speeds_[1]});
+            return ask(Command::SpeedAccel, patience_s_, {deceleration_, speeds_[0], speeds_[1]});
         break;
     case Task::Encoders:
         if (wantsEncoders_)
-            return request(Command::ReadEncoders);
+            return ask(Command::ReadEncoders, patience_s_);
         break;
     case Task::Background:
-        if (!isReady() && now >= nextAttempt_)
-            return setupRequest();
-        if (isReady() && wantsSlow_)
-            return slowRequest();
+        if (wantsSlow_)
+            return ask(ControllerReadings::slowCommand(slow_), patience_s_);
         break;
     }
     return std::nullopt;
 }
 
-Request MotorController::setupRequest() const {
-    const int motor = step_ >= 5;
-    switch (step_) {
-    case 0:
-        return request(Command::ReadVersion);
-    case 1:
-        return request(Command::SetSerialTimeout, {timeoutTenths_});
-    case 2:
-        return request(Command::ReadSerialTimeout);
-    case 3:
-    case 5:
-        return request(setPids[motor],
-                       {fixedPoint(pid_.d), fixedPoint(pid_.p), fixedPoint(pid_.i), pid_.qpps});
+QString MotorController::failureOf(Command command) const {
+    switch (failure_) {
+    case Bus::Result::BadCrc:
+        return "answers with a wrong checksum";
+    case Bus::Result::Unexpected:
+        return QString("answers command %1 with something unexpected").arg(nameOf(command));
+    case Bus::Result::LineClosed:
+        return "has no line";
     default:
-        return request(readPids[motor]);
-    }
-}
-
-QString MotorController::setupFault(const roboclaw::Reply &reply) const {
-    if (step_ == 0 && !QString::fromLatin1(reply.text.data()).contains("roboclaw", Qt::CaseInsensitive))
-        return QString("tells its version as \"%1\", expected that of a RoboClaw")
-            .arg(QString::fromLatin1(reply.text.data()));
-    if (step_ == 2 && reply[0] != timeoutTenths_)
-        return QString("has a time-out of %1 s, expected the %2 s that were written")
-            .arg(double(reply[0]) / 10)
-            .arg(timeoutTenths_ / 10.0);
-    if (step_ == 4 || step_ == 6) {
-        const qint64 expected[] = {fixedPoint(pid_.p), fixedPoint(pid_.i), fixedPoint(pid_.d), pid_.qpps};
-        const char *const names[] = {"P", "I", "D", "QPPS"};
-        for (int i = 0; i < 4; ++i) {
-            if (reply[size_t(i)] != expected[i])
-                return QString("has %1 = %2 for M%3, expected the %4 that was written")
-                    .arg(names[i])
-                    .arg(i < 3 ? double(reply[size_t(i)]) / 65536 : double(reply[size_t(i)]))
-                    .arg(step_ == 4 ? 1 : 2)
-                    .arg(i < 3 ? double(expected[i]) / 65536 : double(expected[i]));
-        }
-    }
-    return {};
-}
-
-void MotorController::takeSetup(const Bus::Outcome &outcome, double now) {
-    if (outcome.result == Bus::Result::Done) {
-        const QString fault = setupFault(outcome.reply);
-        if (!fault.isEmpty()) {
-            lose(fault);
-            nextAttempt_ = now + setupPause_s;
-            return;
-        }
-        if (step_ == 0)
-            version_ = QString::fromLatin1(outcome.reply.text.data());
-        if (++step_ == setupSteps) {
-            sinceObeyed_ = sinceCounts_ = 0;
-            ++readings_.setups;
-            error_.clear();
-        }
-        return;
-    }
-    lose(toText(outcome.result));
-    nextAttempt_ = now + setupPause_s;
-}
-
-Request MotorController::slowRequest() const {
-    static constexpr Command readings[slowReadings] = {Command::ReadStatus, Command::ReadCurrents,
-                                                       Command::ReadMainBattery, Command::ReadTemperature,
-                                                       Command::ReadLogicBattery};
-    return request(readings[slow_]);
-}
-
-void MotorController::takeSlow(const Bus::Outcome &outcome) {
-    const roboclaw::Reply &reply = outcome.reply;
-    switch (slow_) {
-    case 0:
-        readings_.status = roboclaw::statusOf(reply, outcome.dialect);
-        break;
-    case 1:
-        readings_.current_a = {double(reply[0]) / 100, double(reply[1]) / 100};
-        break;
-    case 2:
-        readings_.battery_v = double(reply[0]) / 10;
-        break;
-    case 3:
-        readings_.temperature_c = double(reply[0]) / 10;
-        break;
-    case 4:
-        readings_.logic_v = double(reply[0]) / 10;
-        readings_.complete = true;
         break;
     }
-    slow_ = (slow_ + 1) % slowReadings;
+    if (!heard_)
+        return "does not answer";
+    const QString text = QString("answers, but not command %1").arg(nameOf(command));
+    return command == Command::SetSerialTimeout
+               ? text + ": its firmware may be older than that command, and it would not stop by itself"
+               : text;
 }
 
-void MotorController::finished(Task task, const Bus::Outcome &outcome, double now) {
-    if (!awaits_)
+void MotorController::finished(const Bus::Outcome &outcome, double now) {
+    if (!asked_)
         return; // lost, or to be set up anew, in between
-    awaits_ = false;
-    if (outcome.result == Bus::Result::Cancelled)
-        return; // never sent
-    failures_ = outcome.result == Bus::Result::Done ? 0 : std::min(failures_ + 1, 2);
-    if (!isReady())
-        return takeSetup(outcome, now);
+    const Command command = *asked_;
+    asked_.reset();
+    const bool done = outcome.result == Bus::Result::Done;
+    failures_ = done ? 0 : std::min(failures_ + 1, 2);
+    heard_ = done || (heard_ && !isFailing());
+    if (done)
+        lastAnswer_ = clock_;
+    else
+        failure_ = outcome.result;
+    switch (state_) {
+    case State::Stopping:
+        return stopAnswered(command, outcome, now);
+    case State::SetUp:
+        return setupAnswered(command, outcome, now);
+    case State::Ready:
+        return readyAnswered(command, outcome);
+    }
+}
+
+void MotorController::keepSilent(const Bus::Outcome &outcome) {
+    stopAcknowledged_ = false;
+    silentUntil_ = outcome.sent + silence_s();
+}
+
+void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome, double now) {
     if (outcome.result != Bus::Result::Done) {
-        error_ = toText(outcome.result); // repeated with what is then due
+        error_ = failureOf(command);
+        watch_.doubt();
+        if (attempts_ > 1) // what came in spite of it may be late, or another one's
+            keepSilent(outcome);
         return;
     }
-    switch (task) {
-    case Task::SetPoint:
-        sinceObeyed_ = 0;
+    if (command != Command::ReadEncoders) {
+        stopAcknowledged_ = true;
+        return watch_.acknowledged();
+    }
+    watch_.read({quint32(outcome.reply[0]), quint32(outcome.reply[1])}, outcome.received);
+    nextAttempt_ = now + readingPause_s;
+    if (watch_.isMoving()) {
+        error_ = "was told to stand and its wheels turn";
+        return keepSilent(outcome);
+    }
+    if (!watch_.stands() || now < nextSetup_)
+        return;
+    state_ = State::SetUp;
+    setup_.restart();
+    replySum_ = replies_ = 0;
+}
+
+void MotorController::failSetup(const QString &reason, double now) {
+    lose(reason);
+    nextSetup_ = now + setupPause_s;
+}
+
+void MotorController::setupAnswered(Command command, const Bus::Outcome &outcome, double now) {
+    if (outcome.result != Bus::Result::Done)
+        return failSetup(failureOf(command), now);
+    replySum_ += outcome.received - outcome.sent;
+    ++replies_;
+    const QString fault = setup_.take(outcome, readings_);
+    if (!fault.isEmpty())
+        return failSetup(fault, now);
+    if (!setup_.isDone())
+        return;
+    // A round of the line: set-point and encoders of each, and a slow reading.
+    const double reply = replySum_ / replies_, round = reply * (2 * onLine_ + 1);
+    if (round * leastRate_Hz > 1)
+        return failSetup(
+            QString("answers after %1 ms on average; its line gives %2 Hz then, at least %3 are needed")
+                .arg(1000 * reply, 0, 'f', 0)
+                .arg(1 / round, 0, 'f', 1)
+                .arg(leastRate_Hz),
+            now);
+    patience_s_ = std::clamp(3 * reply, shortestPatience_s, longestDrivingPatience_s);
+    becomeReady();
+}
+
+void MotorController::becomeReady() {
+    state_ = State::Ready;
+    error_.clear();
+    timeoutAtMost_s_ = setup_.timeout_s(); // was read back
+    lastAnswer_ = lastObeyed_ = lastCounts_ = lastSlow_ = clock_;
+    speeds_ = zero;
+    toldToTurn_ = false;
+    standBy_ = clock_ + disobeyAfter_s_ + timeoutMargin_s;
+    ++commanded_;
+    ++readings_.setups;
+    slow_ = 0;
+}
+
+void MotorController::readyAnswered(Command command, const Bus::Outcome &outcome) {
+    if (outcome.result != Bus::Result::Done)
+        return; // repeated with what is then due
+    if (command == Command::SpeedAccel) {
+        lastObeyed_ = clock_;
         obeyed_ = sent_;
-        break;
-    case Task::Encoders:
+        if (!toldToTurn_)
+            watch_.acknowledged();
+        return;
+    }
+    if (command == Command::ReadEncoders) {
         readings_.counts = {quint32(outcome.reply[0]), quint32(outcome.reply[1])};
         readings_.countsTime = outcome.received;
-        sinceCounts_ = 0;
+        watch_.read(readings_.counts, outcome.received);
+        lastCounts_ = clock_;
+        rate_.add(clock_);
         wantsEncoders_ = false;
-        error_.clear();
-        break;
-    case Task::Background:
-        takeSlow(outcome);
-        wantsSlow_ = false;
-        break;
+        return;
+    }
+    readings_.takeSlow(slow_, outcome);
+    wantsSlow_ = false;
+    slow_ = (slow_ + 1) % ControllerReadings::slowCount;
+    if (slow_ == 0) {
+        lastSlow_ = clock_;
+        const QString fault = setup_.timeoutFault(readings_.timeoutTenths);
+        if (!fault.isEmpty())
+            lose(fault + "; it was without power, or somebody else has set it");
     }
 }
 

@@ -1,100 +1,147 @@
 #pragma once
 
-#include "daemons/motorcontrol/MotorSettings.h"
-#include "protocol/roboclaw/Bus.h"
+#include "daemons/motorcontrol/ControllerReadings.h"
+#include "daemons/motorcontrol/ControllerSetup.h"
+#include "daemons/motorcontrol/ReadingRate.h"
+#include "daemons/motorcontrol/StandstillWatch.h"
 
 #include <optional>
 
 namespace hermes {
 
-/// What a controller has told last.
-struct ControllerReadings {
-    std::array<quint32, 2> counts{}; ///< of the encoders of M1 and M2, modulo 2^32
-    double countsTime = 0;           ///< monotonic; 0: none since it was set up
-    double battery_v = 0, logic_v = 0;
-    std::array<double, 2> current_a{};
-    double temperature_c = 0;
-    quint32 status = 0;    ///< bits of roboclaw::StatusBit
-    bool complete = false; ///< each of the slow ones has been read since it was set up
-    int setups = 0;        ///< times it was set up: it may have been without power in between
-};
-
-/// One RoboClaw: set up with time-out and PID, which are read back; then set-points out and readings in.
-/// Decides what to ask, never sends: its line calls next() when it is free, and finished() with the answer.
-/// A controller that falls silent is set up again when it answers.
+/// One RoboClaw. Decides what to ask, never sends: its line calls next() when it is free, and finished() with
+/// the answer.
+///
+/// Whatever may turn its motors is stopped first: a controller that is new, was lost, or does not stand
+/// though it was told to, is sent nothing but set-points of zero until it has acknowledged one and its
+/// encoders show that it stands. Where it does not, its line is silent after each attempt for longer than the
+/// controller's own time-out. Only then it is set up, and only then it gets other set-points.
 class MotorController {
 public:
     /// In the order of precedence on the line.
     enum class Task { SetPoint, Encoders, Background };
     static constexpr int taskCount = 3;
-    static constexpr double lostAfter_s = 0.25; ///< without answers
+    static constexpr double lostAfter_s = 0.25;  ///< without answers
+    static constexpr double slowLostAfter_s = 3; ///< without one of the slow readings
+    static constexpr double longestTimeout_s =
+        0.5; ///< that the settings allow; what a controller may have from before
+    static constexpr double leastRate_Hz = 10; ///< of set-points and readings: slower nothing is driven
 
-    MotorController(int number, const ControllerAddress &address);
+    /// A request, and how long its answer is waited for (seconds). For one that is patient nothing else is
+    /// driven.
+    struct Ask {
+        roboclaw::Request request;
+        double patience_s;
+        bool isPatient() const { return patience_s > longestDrivingPatience_s; }
+    };
+
+    /// onLine: controllers that share its line.
+    MotorController(int number, const ControllerAddress &address, int onLine);
 
     /// Sets it up anew when PID or time-out differ.
     void configure(const MotorSettings &settings);
     void lineClosed(const QString &reason);
+    /// While another one on the line is waited for, or the line is kept silent, it is not this one's fault
+    /// that it is not heard.
+    void setLineHeld(bool held) { lineHeld_ = held; }
 
-    /// New speeds (counts/s) of M1 and M2, to be sent at once with this acceleration (counts/s^2).
-    void command(const std::array<qint32, 2> &speeds, quint32 acceleration);
+    /// New speeds (counts/s) of M1 and M2, to be sent at once.
+    void command(const std::array<qint32, 2> &speeds);
     /// The encoders shall be read, and one of the slow readings.
     void beginCycle(double now);
+    /// It has to be told to stand before anything else is sent to anyone.
+    bool isToStop() const;
     /// The request that is due for this task, if any.
-    std::optional<roboclaw::Request> next(Task task, double now);
-    void finished(Task task, const roboclaw::Bus::Outcome &outcome, double now);
+    std::optional<Ask> next(Task task, double now);
+    void finished(const roboclaw::Bus::Outcome &outcome, double now);
+    /// Nothing may be sent on its line before: it stops by its own time-out.
+    double silentUntil() const { return silentUntil_; }
 
     /// Set up, and answers.
-    bool isReady() const { return step_ == setupSteps; }
+    bool isReady() const { return state_ == State::Ready; }
+    /// Has acknowledged that it shall stand, and its encoders say that it does.
+    bool stands() const { return watch_.stands(); }
+    /// Its line gives fewer set-points than leastRate_Hz.
+    bool isTooSlow() const { return rate_.isBelow(); }
+    /// How often its encoders are read; nothing until that is known.
+    std::optional<double> rate_Hz() const { return rate_.perSecond(); }
     /// Its last requests were not answered as they should; one alone may be damaged on any line.
     bool isFailing() const { return failures_ > 1; }
-    /// The last command was acknowledged.
-    bool hasObeyed() const { return isReady() && obeyed_ == commanded_; }
+    /// The last command was acknowledged, or, where it is not ready, that it shall stand was said.
+    bool hasObeyed() const { return isReady() ? obeyed_ == commanded_ : attempts_ > 0; }
+    /// What it did though it was told to stand; empty when nothing. Asking forgets it.
+    QString takeDisobedience() { return std::exchange(disobedience_, QString()); }
     /// "controller 1 (0x80 on serial:///dev/ttyS1)"
     const QString &name() const { return name_; }
     quint8 address() const { return quint8(place_.address); }
     const QString &url() const { return place_.url; }
     /// Why it is not ready.
     const QString &error() const { return error_; }
-    const QString &version() const { return version_; }
+    const QString &version() const { return setup_.version(); }
     const ControllerReadings &readings() const { return readings_; }
     /// Cycles whose encoders were not read in time.
     quint64 overruns() const { return overruns_; }
 
 private:
-    // Version, then time-out and the PID of both motors, each written and read back.
-    static constexpr int setupSteps = 7;
-    static constexpr int slowReadings = 5;
+    enum class State { Stopping, SetUp, Ready };
+    static constexpr double longestDrivingPatience_s = 0.06;
 
-    std::optional<roboclaw::Request> due(Task task, double now) const;
-    roboclaw::Request setupRequest() const;
-    /// Empty when the answer to the current step is as expected.
-    QString setupFault(const roboclaw::Reply &reply) const;
-    roboclaw::Request slowRequest() const;
-    void takeSlow(const roboclaw::Bus::Outcome &outcome);
-    void takeSetup(const roboclaw::Bus::Outcome &outcome, double now);
+    std::optional<Ask> due(Task task, double now) const;
+    std::optional<Ask> dueReady(Task task) const;
+    void stopAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
+    void setupAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
+    void readyAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome);
+    void becomeReady();
+    void keepSilent(const roboclaw::Bus::Outcome &outcome);
+    void watchStandstill();
+    void watchAnswers();
     void lose(const QString &reason);
-    roboclaw::Request request(roboclaw::Command command, const roboclaw::Values &values = {}) const;
+    void failSetup(const QString &reason, double now);
+    QString failureOf(roboclaw::Command command) const;
+    Ask ask(roboclaw::Command command, double patience_s, const roboclaw::Values &values = {}) const;
+    /// Longer than the controller's own time-out.
+    double silence_s() const;
 
     ControllerAddress place_;
     QString name_;
-    VelocityPid pid_;
-    int timeoutTenths_ = 2;
+    int onLine_;
+    ControllerSetup setup_;
+    StandstillWatch watch_;
+    ReadingRate rate_{leastRate_Hz};
+    quint32 deceleration_ = 1; // counts/s^2
+    double disobeyAfter_s_ = 0.7;
 
-    int step_ = 0; // of the set-up
-    double nextAttempt_ = 0;
+    State state_ = State::Stopping;
     QString error_ = "has not answered yet";
-    QString version_;
+    QString disobedience_;
+    bool lineHeld_ = false;
+    double lastCycle_ = 0; // monotonic
+    double clock_ = 0;     // seconds of cycles in which it could be asked
 
-    int failures_ = 0;    // in a row
-    bool awaits_ = false; // the answer to a request that is still wanted
+    // Stopping and set-up.
+    int attempts_ = 0;                                         // set-points of zero since it was lost
+    bool stopAcknowledged_ = false;                            // the last one was
+    double timeoutAtMost_s_ = longestTimeout_s;                // that it may have
+    double silentUntil_ = 0, nextAttempt_ = 0, nextSetup_ = 0; // monotonic
+    double replySum_ = 0;
+    int replies_ = 0;
+
+    // What is asked, and since when nothing was heard; by clock_.
+    std::optional<roboclaw::Command> asked_;                      // while the answer is still wanted
+    int failures_ = 0;                                            // in a row
+    roboclaw::Bus::Result failure_ = roboclaw::Bus::Result::Done; // the last one
+    bool heard_ = false; // it has answered something since it was silent
+    double lastAnswer_ = 0, lastObeyed_ = 0, lastCounts_ = 0, lastSlow_ = 0;
+
+    // Ready.
+    double patience_s_ = 0;
     bool wantsEncoders_ = false, wantsSlow_ = false;
     quint64 commanded_ = 0, sent_ = 0, obeyed_ = 0; // set-points, counted
+    bool toldToTurn_ = false;                       // by the last one that was sent
     std::array<qint32, 2> speeds_{};
-    quint32 acceleration_ = 1;
+    double standBy_ = 0; // by clock_: until then it must stand; while its set-point is zero
     int slow_ = 0;
     ControllerReadings readings_;
-    double lastCycle_ = 0;                     // monotonic
-    double sinceObeyed_ = 0, sinceCounts_ = 0; // seconds of cycles
     quint64 overruns_ = 0;
 };
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double period_s = std::chrono::duration<double>(DriveLoop::period).count();
 constexpr double lateness_s = 0.005; // more of it is worth a look
+constexpr double slowRate_Hz = 40;   // less of what a line should give at 50 Hz, too
 
 HealthLevel toHealth(Threshold::Level level) {
     switch (level) {
@@ -61,29 +62,43 @@ void MotorControl::updateHealth() {
 
     const CycleStatistics &cycle = told_.cycle;
     const bool late = cycle.worstLateness_s > lateness_s;
-    health().set("cycle", late ? HealthLevel::Warn : HealthLevel::Ok,
-                 QString("50 Hz, at worst %1 ms late in the last second, %2 cycles missed")
-                     .arg(1000 * cycle.worstLateness_s, 0, 'f', 2)
-                     .arg(cycle.missed),
+    QString text = QString("50 Hz, at worst %1 ms late in the last second, %2 cycles missed")
+                       .arg(1000 * cycle.worstLateness_s, 0, 'f', 2)
+                       .arg(cycle.missed);
+    bool slow = false;
+    for (const Telemetry::Controller &c : told_.controllers) {
+        if (!c.ready || c.rate_Hz == 0 || c.rate_Hz > slowRate_Hz)
+            continue;
+        slow = true;
+        text += QString("; the line of %1 gives %2 Hz: its answers come late")
+                    .arg(c.name)
+                    .arg(c.rate_Hz, 0, 'f', 1);
+    }
+    health().set("cycle", late || slow ? HealthLevel::Warn : HealthLevel::Ok, text,
                  cycleJson(told_, period_s));
 
     const bool latched = told_.latch.isSet();
     const QJsonObject causes = told_.latch.toJson();
-    health().set("stop", latched ? HealthLevel::Failed : HealthLevel::Ok,
-                 latched ? told_.latch.text() : QString("not latched"), causes);
+    QStringList texts{latched ? told_.latch.text() : QString("not latched")};
+    const bool lost = !isReady() && !allStand(told_); // while it brakes it is ready
+    if (lost)
+        texts.append(notConfirmedText(told_));
+    health().set("stop", latched || lost ? HealthLevel::Failed : HealthLevel::Ok, texts.join("; "), causes);
     const bool fault = causes.size() > int(told_.latch.has(Drive::emergencyCause));
-    const bool ready = std::all_of(told_.controllers.begin(), told_.controllers.end(),
-                                   [](const Telemetry::Controller &c) { return c.ready; });
-    setState(fault ? DaemonState::Fault : ready && !latched ? DaemonState::Running : DaemonState::Ready);
+    setState(fault ? DaemonState::Fault : isReady() && !latched ? DaemonState::Running : DaemonState::Ready);
+}
+
+bool MotorControl::isReady() const {
+    return std::all_of(told_.controllers.begin(), told_.controllers.end(),
+                       [](const Telemetry::Controller &c) { return c.ready; });
 }
 
 QJsonObject MotorControl::state() const {
     QJsonArray controllers;
     for (const Telemetry::Controller &controller : told_.controllers)
         controllers.append(controllerJson(controller));
-    const bool ready = std::all_of(told_.controllers.begin(), told_.controllers.end(),
-                                   [](const Telemetry::Controller &c) { return c.ready; });
-    return {{"ready", ready},
+    return {{"ready", isReady()},
+            {"standing", standingJson(told_)},
             {"estop", told_.latch.has(Drive::emergencyCause)},
             {"latched", told_.latch.toJson()},
             {"halted", told_.haltReason},

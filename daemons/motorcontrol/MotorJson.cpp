@@ -3,8 +3,20 @@
 #include "protocol/roboclaw/Status.h"
 
 #include <QJsonArray>
+#include <algorithm>
 
 namespace hermes {
+namespace {
+
+QString notStanding(const Telemetry::Controller &c) {
+    return c.error.isEmpty() ? QString("its wheels turn, or it has not answered yet") : c.error;
+}
+
+} // namespace
+
+bool allStand(const Telemetry &t) {
+    return std::all_of(t.controllers.begin(), t.controllers.end(), [](const auto &c) { return c.stands; });
+}
 
 QJsonObject toJson(const Pose &pose) {
     return {{"x", pose.x}, {"y", pose.y}, {"theta", pose.theta}};
@@ -55,6 +67,7 @@ QJsonObject powerJson(const Telemetry &t) {
 QJsonObject controllerJson(const Telemetry::Controller &c) {
     return {{"name", c.name},
             {"ready", c.ready},
+            {"confirmed", c.stands},
             {"error", c.error},
             {"version", c.version},
             {"requests", double(c.counts.sent)},
@@ -63,7 +76,17 @@ QJsonObject controllerJson(const Telemetry::Controller &c) {
             {"crc_errors", double(c.counts.crcErrors)},
             {"unexpected", double(c.counts.unexpected)},
             {"stray_bytes", double(c.strayBytes)},
+            {"rate_hz", c.rate_Hz},
             {"overruns", double(c.overruns)}};
+}
+
+QString notConfirmedText(const Telemetry &t) {
+    QStringList texts;
+    for (const Telemetry::Controller &c : t.controllers) {
+        if (!c.stands)
+            texts.append(c.name + " is not confirmed to stand: " + notStanding(c));
+    }
+    return texts.join("; ");
 }
 
 QJsonObject cycleJson(const Telemetry &telemetry, double period_s) {
@@ -75,6 +98,14 @@ QJsonObject cycleJson(const Telemetry &telemetry, double period_s) {
             {"worst_lateness_s", cycle.worstLateness_s},
             {"unread", double(telemetry.unread)},
             {"realtime", telemetry.realtime}};
+}
+
+QJsonObject standingJson(const Telemetry &t) {
+    QJsonArray controllers;
+    for (const Telemetry::Controller &c : t.controllers)
+        controllers.append(QJsonObject{
+            {"name", c.name}, {"confirmed", c.stands}, {"reason", c.stands ? QString() : notStanding(c)}});
+    return {{"confirmed", allStand(t)}, {"text", notConfirmedText(t)}, {"controllers", controllers}};
 }
 
 } // namespace hermes

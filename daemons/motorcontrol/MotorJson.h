@@ -17,4 +17,11 @@ QJsonObject cycleJson(const Telemetry &telemetry, double period_s);
 QJsonObject toJson(const Pose &pose);
 QJsonObject toJson(const Twist &twist);
 
+/// Whether every controller has confirmed that it stands.
+bool allStand(const Telemetry &t);
+/// {confirmed, text, controllers: [{name, confirmed, reason}]}: the answer to a stop.
+QJsonObject standingJson(const Telemetry &t);
+/// Which controllers have not confirmed that they stand, and why; empty when all have.
+QString notConfirmedText(const Telemetry &t);
+
 } // namespace hermes

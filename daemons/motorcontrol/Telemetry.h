@@ -12,6 +12,8 @@ struct Telemetry {
     struct Controller {
         QString name, error, version, interface;
         bool ready = false;
+        bool stands = false; ///< has confirmed it: MotorController::stands()
+        double rate_Hz = 0;  ///< of readings; 0: not known
         ControllerReadings readings;
         roboclaw::Bus::Counts counts;
         quint64 strayBytes = 0; ///< on its line: they came when none was awaited

@@ -13,11 +13,12 @@ constexpr int longestQuiet = 5; // times the option, when bytes keep coming
 
 } // namespace
 
-bool Bus::submit(const Request &request, Handler handler, Urgency urgency) {
+bool Bus::submit(const Request &request, Handler handler, Urgency urgency, double replyTimeout) {
     if (queue_.size() >= options_.queue)
         return false;
     const auto place = urgency == Urgency::First ? behindUrgent() : queue_.end();
-    queue_.insert(place, Entry{request, std::move(handler), urgency, 0});
+    queue_.insert(place, Entry{request, std::move(handler), urgency,
+                               replyTimeout > 0 ? replyTimeout : options_.replyTimeout, 0});
     return true;
 }
 
@@ -61,7 +62,7 @@ const Bytes *Bus::poll(double now) {
         lastByte_ = never; // once for each silence
         attemptEnded(parser_.silence(), now);
     }
-    if (awaiting_ && now - sent_ >= options_.replyTimeout)
+    if (awaiting_ && now - sent_ >= current_.replyTimeout)
         attemptFailed(Result::TimedOut, now);
     if (awaiting_ || queue_.empty() || now < resume_)
         return nullptr;
@@ -123,7 +124,7 @@ void Bus::attemptFailed(Result result, double now) {
 double Bus::deadline() const {
     if (!awaiting_)
         return queue_.empty() ? never : resume_;
-    const double timeout = sent_ + options_.replyTimeout;
+    const double timeout = sent_ + current_.replyTimeout;
     return parser_.received() > 0 ? std::min(timeout, lastByte_ + options_.quiet) : timeout;
 }
 

@@ -49,7 +49,9 @@ public:
 
     /// Queues a request; handler is called once, from feed(), poll(), cancel() or setOpen(). False, and
     /// handler is not called, when too many wait. First goes before all that are not, and their repetitions.
-    bool submit(const Request &request, Handler handler = {}, Urgency urgency = Urgency::Normal);
+    /// replyTimeout: seconds; that of the options when it is 0.
+    bool submit(const Request &request, Handler handler = {}, Urgency urgency = Urgency::Normal,
+                double replyTimeout = 0);
     /// Ends all that wait with Cancelled. The one that awaits its answer goes on, without further attempts.
     void cancel();
     /// A closed line ends everything with LineClosed, also what is submitted while it is closed.
@@ -62,6 +64,8 @@ public:
     double deadline() const;
 
     bool isIdle() const { return !awaiting_ && queue_.empty(); }
+    /// Nothing is sent before: the line has to be quiet after a failure.
+    double quietUntil() const { return resume_; }
     /// Requests to one address, 0x80 to 0x87.
     const Counts &counts(std::uint8_t address) const { return counts_[address % 8]; }
     /// Bytes that came when none was awaited.
@@ -72,6 +76,7 @@ private:
         Request request;
         Handler handler;
         Urgency urgency = Urgency::Normal;
+        double replyTimeout = 0;
         int attempts = 0;
     };
 

@@ -73,6 +73,7 @@ struct Request {
 struct Reply {
     Values values;
     std::array<char, maxText> text{}; ///< ReadVersion, ended by NUL, without the line feed
+    bool endsWithLineFeed = false;    ///< the text did, as the manual has it
 
     std::int64_t operator[](std::size_t i) const { return values[i]; }
 };

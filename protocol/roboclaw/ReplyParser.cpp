@@ -48,12 +48,11 @@ ReplyParser::Result ReplyParser::silence() {
 ReplyParser::Result ReplyParser::feedText() {
     const std::size_t size = bytes_.size();
     if (size > crcSize && bytes_[size - crcSize - 1] == 0) { // the first NUL ends the text
-        const std::size_t textSize = size - crcSize;
-        if (textSize < 2 || bytes_[textSize - 2] != '\n')
-            return Result::Unexpected;
+        const std::size_t textSize = size - crcSize;         // with its NUL
         if (!crcFits(textSize))
             return Result::BadCrc;
-        std::copy_n(bytes_.data(), textSize - 2, reply_.text.begin());
+        reply_.endsWithLineFeed = textSize > 1 && bytes_[textSize - 2] == '\n';
+        std::copy_n(bytes_.data(), textSize - 1 - reply_.endsWithLineFeed, reply_.text.begin());
         return Result::Done;
     }
     return size < maxText + crcSize ? Result::Incomplete : Result::Unexpected;

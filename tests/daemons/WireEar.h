@@ -73,6 +73,8 @@ private:
         case 28:
         case 29:
             return 20;
+        case 34:
+            return 8;
         case 40:
             return 16;
         case 15:

@@ -1,5 +1,6 @@
 // What the parsers of both ends make of whole, damaged and foreign bytes.
 #include "RoboClawBytes.h"
+#include "protocol/roboclaw/Crc16.h"
 #include "protocol/roboclaw/RequestParser.h"
 #include "protocol/roboclaw/Status.h"
 
@@ -69,7 +70,14 @@ void TestRoboClawParsers::versionIsText() {
     damaged[3] = 'x';
     QCOMPARE(parse(damaged).first, ReplyParser::Result::BadCrc);
     QCOMPARE(parse(QByteArray(int(maxText) + 2, 'x')).first, ReplyParser::Result::Unexpected);
-    QCOMPARE(parse(QByteArray("a\0\0\0", 4)).first, ReplyParser::Result::Unexpected); // no line feed
+    QCOMPARE(parse(QByteArray("a\0\0\0", 4)).first, ReplyParser::Result::BadCrc);
+    // Without the line feed that the manual has; its checksum fits.
+    QByteArray bare("RoboClaw\0", 9);
+    const auto *raw = reinterpret_cast<const std::uint8_t *>(bare.constData());
+    const std::uint16_t crc =
+        crc16(raw, std::size_t(bare.size()), crc16(request->bytes.data(), request->bytes.size()));
+    bare.append(char(crc >> 8)).append(char(crc));
+    QCOMPARE(parse(bare), std::make_pair(ReplyParser::Result::Done, QByteArray("RoboClaw")));
     QCOMPARE(parse(bytesOf(encodeText(*request, ""))).first, ReplyParser::Result::Done);
     const QByteArray longest = bytesOf(encodeText(*request, std::string(100, 'v')));
     QCOMPARE(parse(longest), std::make_pair(ReplyParser::Result::Done, QByteArray(46, 'v')));

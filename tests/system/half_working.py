@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""Controllers that hear but are not heard: answers lost, damaged or late, of one or both, on one line or two, with short and
+long time-outs of their own. Within 0.6 s after the last command that was accepted, or after the emergency stop, all wheels
+stand and stay; the emergency stop tells what is not confirmed, and when the answers come again it is confirmed.
+
+HERMES_HALF_WORKING=all makes all 96 combinations; otherwise eight of them."""
+import itertools
+import json
+import os
+import random
+import socket
+import tempfile
+import time
+
+from lateness import Lateness
+from support import BINARIES, DaemonError, Process, free_port, wait_for
+
+LIMIT_S = 0.6
+SPEED = 0.5  # m/s
+FAULTS = {"mute": {"kind": "loss", "share": 1}, "corrupt": {"kind": "corrupt", "share": 1}, "slow": {"kind": "slow", "delay_s": 0.1}}
+
+
+def fastest_wheel(simulator):
+    return max(abs(speed) for speed in simulator.call("sim.state")["motors"]["wheels_rps"])
+
+
+class Drive:
+    """A client that drives at 20 Hz and remembers when a command was accepted last."""
+
+    def __init__(self, motors):
+        self.motors, self.accepted, self.next = motors, 0, 0
+
+    def go_on(self):
+        if time.monotonic() < self.next:
+            return
+        self.next = time.monotonic() + 0.05
+        began = time.monotonic()
+        try:
+            self.motors.call("motor.drive", vx=SPEED)
+            self.accepted = began
+        except DaemonError:
+            pass
+
+
+def stand_since(simulator, drive, until):
+    """Since when all wheels stood, watched for a second beyond until; drives meanwhile where there is a drive."""
+    moved = time.monotonic()
+    while time.monotonic() < until + 1 or time.monotonic() - moved < 1:
+        if drive:
+            drive.go_on()
+        if fastest_wheel(simulator) > 0.05:
+            moved = time.monotonic()
+        assert time.monotonic() < until + 10, "the wheels turn without end"
+        time.sleep(0.002)
+    return moved
+
+
+def is_ready(motors):
+    state = motors.call("motor.state")
+    return state["ready"] and state["standing"]["confirmed"]
+
+
+def trial(simulator, motors, fault, devices, ending, drives_on_s):
+    """Seconds from the last accepted command, or the emergency stop, until all wheels stood for good."""
+    motors.call("motor.reset_estop")
+    wait_for("readiness", lambda: is_ready(motors), 20)
+    motors.call("control.acquire", timeout_s=10)
+    drive = Drive(motors)
+
+    def goes():
+        drive.go_on()
+        time.sleep(0.01)
+        return fastest_wheel(simulator) > 0.95 * SPEED / 0.1
+
+    wait_for("driving", goes, 10)
+    for device in devices:
+        simulator.call("sim.fault", device=device, **FAULTS[fault])
+    end = time.monotonic() + drives_on_s
+    while time.monotonic() < end:
+        drive.go_on()
+        time.sleep(0.002)
+    justified = drive.accepted
+    if ending == "estop":
+        justified = min(time.monotonic(), drive.accepted + 0.25)
+        told = motors.call("motor.estop")
+        if drives_on_s == 0:
+            assert not told["confirmed"], told
+        justified = max(justified, drive.accepted)
+    stood = stand_since(simulator, None, justified) - justified
+    state = motors.call("motor.state")
+    for number, controller in enumerate(state["standing"]["controllers"], 1):
+        broken = f"controller{number}" in devices
+        if broken and fault != "slow":  # what is late is heard when it is waited for
+            assert not controller["confirmed"], state["standing"]
+            assert f"controller {number} " in state["standing"]["text"], state["standing"]
+    for device in devices:
+        simulator.call("sim.fault", device=device, kind="none")
+    confirmed = motors.call("motor.estop", wait_s=5)
+    assert confirmed["confirmed"], confirmed
+    return stood
+
+
+def run_group(lines, timeout_s, trials):
+    with tempfile.TemporaryDirectory() as folder:
+        links, world = [os.path.join(folder, f"line{i}") for i in range(lines)], os.path.join(folder, "hall.json")
+        with open(world, "w", encoding="utf-8") as file:
+            json.dump({"name": "hall", "edges": [[-90, -9, 90, -9], [90, -9, 90, 9], [90, 9, -90, 9], [-90, 9, -90, -9]],
+                       "poses": [[0, 0, 0]]}, file)
+        settings = {"motors.link": links[0], "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)}
+        if lines == 2:
+            settings["motors.link2"] = links[1]
+        simulated = Process(BINARIES, "simulator", free_port(0), folder, settings)
+        try:
+            simulator = simulated.connect()
+            driven = Process(BINARIES, "motorcontrol", free_port(0), folder, {
+                "controllers.1.url": f"serial://{links[0]}", "controllers.2.url": f"serial://{links[-1]}",
+                "controllers.timeout_s": timeout_s})
+            try:
+                motors = driven.connect()
+                with Lateness() as lateness:
+                    for fault, devices, ending, drives_on_s in trials:
+                        for attempt in range(3):
+                            simulator.call("sim.place", x=0, y=0, theta=0)
+                            lateness.take_longest()
+                            stood = trial(simulator, motors, fault, devices, ending, drives_on_s)
+                            late = lateness.take_longest()
+                            if stood < LIMIT_S or late < 0.02:
+                                break
+                        name = f"{fault} {'+'.join(devices)}, {lines} line(s), time-out {timeout_s} s, {ending} after {drives_on_s} s"
+                        assert stood < LIMIT_S, f"{name}: the wheels stood only after {stood:.3f} s ({late:.3f} s late)"
+                        print(f"{stood:.3f} s  {name}", flush=True)
+                        yield stood
+            finally:
+                driven.stop()
+        finally:
+            simulated.stop()
+
+
+def main():
+    share = 1 if os.environ.get("HERMES_HALF_WORKING") == "all" else 12
+    devices = [["controller1"], ["controller1", "controller2"]]
+    every = list(itertools.product([1, 2], [0.2, 0.5], FAULTS, devices, ["silence", "estop"], [0, 2]))
+    chosen = every if share == 1 else random.Random(4).sample(every, len(every) // share)
+    stood = []
+    for group in itertools.product([1, 2], [0.2, 0.5]):
+        trials = [c[2:] for c in chosen if c[:2] == group]
+        stood += run_group(*group, trials)
+    print(f"{len(stood)} of {len(chosen)} stood within {LIMIT_S} s; median {sorted(stood)[len(stood) // 2]:.3f}, worst {max(stood):.3f} s")
+    assert len(stood) == len(chosen)
+
+
+if __name__ == "__main__":
+    main()
