@@ -21,7 +21,7 @@ Bus::Options withoutRepetition() {
 LineMaster::LineMaster(std::vector<MotorController *> controllers)
     : bus_(withoutRepetition()) {
     for (MotorController *controller : controllers)
-        places_.push_back({controller, {}});
+        places_.push_back({controller, {}, 0});
     bus_.setOpen(false);
 }
 
@@ -35,11 +35,15 @@ void LineMaster::setClosed(const QString &reason) {
         place.controller->lineClosed(reason);
 }
 
-double LineMaster::busyUntil() const {
-    double until = bus_.quietUntil();
+double LineMaster::silentUntil() const {
+    double until = 0;
     for (const Place &place : places_)
         until = std::max(until, place.controller->silentUntil());
     return until;
+}
+
+double LineMaster::busyUntil() const {
+    return std::max(bus_.quietUntil(), silentUntil());
 }
 
 double LineMaster::deadline() const {
@@ -59,7 +63,7 @@ const roboclaw::Bytes *LineMaster::poll(double now) {
 }
 
 void LineMaster::tellWhetherHeld(double now) {
-    const bool held = bus_.isIdle() ? now < busyUntil() : waitsPatiently_;
+    const bool held = bus_.isIdle() ? now < silentUntil() : waitsPatiently_;
     for (const Place &place : places_)
         place.controller->setLineHeld(held);
 }
@@ -85,7 +89,22 @@ bool LineMaster::submitInRound() {
     for (int task = 0; task < MotorController::taskCount; ++task) {
         for (std::size_t k = 0; k < places_.size(); ++k) {
             const std::size_t i = (first_ + k) % places_.size();
-            if (!places_[i].served[std::size_t(task)] && submit(i, Task(task)))
+            const bool served = places_[i].served[std::size_t(task)] || places_[i].controller->isFailing();
+            if (!served && submit(i, Task(task)))
+                return true;
+        }
+    }
+    return submitToFailing();
+}
+
+// One that does not answer waits until the others have what they need, each failure takes 40 ms or more; then
+// it has one request in a round, each time another one.
+bool LineMaster::submitToFailing() {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        Place &place = places_[i];
+        for (int k = 0; k < MotorController::taskCount && place.controller->isFailing(); ++k) {
+            const int task = (place.failed + 1 + k) % MotorController::taskCount;
+            if (!place.served[std::size_t(task)] && submit(i, Task(task)))
                 return true;
         }
     }
@@ -113,12 +132,13 @@ void LineMaster::finished(std::size_t place, Task task, const Bus::Outcome &outc
             each.served[std::size_t(task)] = true;
         first_ = (place + 1) % places_.size();
     }
-    // A byte may be damaged on any line, that is asked again at once. One that does not answer waits until
-    // the others have what they need: each failure takes 40 ms or more.
+    Place &served = places_[place];
+    if (outcome.result != Bus::Result::Done)
+        served.failed = int(task);
     if (controller.isFailing())
-        places_[place].served.fill(true);
-    else
-        places_[place].served[std::size_t(task)] = outcome.result == Bus::Result::Done;
+        served.served.fill(true);
+    else // a byte may be damaged on any line: that is asked again at once
+        served.served[std::size_t(task)] = outcome.result == Bus::Result::Done;
 }
 
 } // namespace hermes

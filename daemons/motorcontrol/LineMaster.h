@@ -36,13 +36,16 @@ private:
     struct Place {
         MotorController *controller;
         std::array<bool, MotorController::taskCount> served{};
+        int failed = 0; ///< the task that was not answered last
     };
 
-    /// Nothing is sent before: the line is quiet after a failure, or silent until a controller stops by
-    /// itself.
+    /// The line is silent until a controller has stopped by itself.
+    double silentUntil() const;
+    /// Nothing is sent before; a line is quiet for a moment after each failure, too.
     double busyUntil() const;
     void submitNext();
     bool submitInRound();
+    bool submitToFailing();
     bool submit(std::size_t place, Task task);
     void finished(std::size_t place, Task task, const roboclaw::Bus::Outcome &outcome);
     void tellWhetherHeld(double now);

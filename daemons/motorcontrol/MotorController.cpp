@@ -111,7 +111,7 @@ void MotorController::command(const std::array<qint32, 2> &speeds) {
 
 void MotorController::beginCycle(double now) {
     const double step = std::clamp(now - std::exchange(lastCycle_, now), 0.0, longestStep_s);
-    if (!lineHeld_)
+    if (!lineHeld_ || isFailing())
         clock_ += step;
     if (isReady())
         watchAnswers();
@@ -236,7 +236,7 @@ void MotorController::finished(const Bus::Outcome &outcome, double now) {
     asked_.reset();
     const bool done = outcome.result == Bus::Result::Done;
     failures_ = done ? 0 : std::min(failures_ + 1, 2);
-    heard_ = done || (heard_ && !isFailing());
+    heard_ = done || (heard_ && (isReady() || !isFailing()));
     if (done)
         lastAnswer_ = clock_;
     else
@@ -252,17 +252,17 @@ void MotorController::finished(const Bus::Outcome &outcome, double now) {
 }
 
 void MotorController::keepSilent(const Bus::Outcome &outcome) {
-    stopAcknowledged_ = false;
     silentUntil_ = outcome.sent + silence_s();
 }
 
 void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome, double now) {
     if (outcome.result != Bus::Result::Done) {
-        error_ = failureOf(command);
         watch_.doubt();
-        if (attempts_ > 1) // what came in spite of it may be late, or another one's
-            keepSilent(outcome);
-        return;
+        stopAcknowledged_ = false;
+        if (attempts_ == 1) // that was not waited for long
+            return;
+        error_ = failureOf(command);
+        return keepSilent(outcome); // what came in spite of it may be late, or another one's
     }
     if (command != Command::ReadEncoders) {
         stopAcknowledged_ = true;
@@ -272,6 +272,7 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
     nextAttempt_ = now + readingPause_s;
     if (watch_.isMoving()) {
         error_ = "was told to stand and its wheels turn";
+        stopAcknowledged_ = false;
         return keepSilent(outcome);
     }
     if (!watch_.stands() || now < nextSetup_)

@@ -28,7 +28,7 @@ class Drive:
     """A client that drives at 20 Hz and remembers when a command was accepted last."""
 
     def __init__(self, motors):
-        self.motors, self.accepted, self.next = motors, 0, 0
+        self.motors, self.accepted, self.next, self.refusal = motors, 0, 0, None
 
     def go_on(self):
         if time.monotonic() < self.next:
@@ -38,21 +38,29 @@ class Drive:
         try:
             self.motors.call("motor.drive", vx=SPEED)
             self.accepted = began
-        except DaemonError:
-            pass
+            self.refusal = None
+        except DaemonError as error:
+            self.refusal = str(error)
 
 
-def stand_since(simulator, drive, until):
-    """Since when all wheels stood, watched for a second beyond until; drives meanwhile where there is a drive."""
-    moved = time.monotonic()
-    while time.monotonic() < until + 1 or time.monotonic() - moved < 1:
-        if drive:
-            drive.go_on()
-        if fastest_wheel(simulator) > 0.05:
-            moved = time.monotonic()
-        assert time.monotonic() < until + 10, "the wheels turn without end"
+class Watch:
+    """When a wheel turned last."""
+
+    def __init__(self, simulator):
+        self.simulator, self.moved = simulator, time.monotonic()
+
+    def look(self):
+        if fastest_wheel(self.simulator) > 0.05:
+            self.moved = time.monotonic()
         time.sleep(0.002)
-    return moved
+
+    def stood(self):
+        """The same, when none has turned for a second."""
+        deadline = time.monotonic() + 10
+        while time.monotonic() - self.moved < 1:
+            self.look()
+            assert time.monotonic() < deadline, "the wheels turn without end"
+        return self.moved
 
 
 def is_ready(motors):
@@ -72,21 +80,25 @@ def trial(simulator, motors, fault, devices, ending, drives_on_s):
         time.sleep(0.01)
         return fastest_wheel(simulator) > 0.95 * SPEED / 0.1
 
-    wait_for("driving", goes, 10)
+    try:
+        wait_for("driving", goes, 10)
+    except AssertionError as error:
+        raise AssertionError(f"{error}: {drive.refusal}, {motors.call('motor.state')}, {simulator.call('sim.state')}") from None
     for device in devices:
         simulator.call("sim.fault", device=device, **FAULTS[fault])
-    end = time.monotonic() + drives_on_s
+    watch, end = Watch(simulator), time.monotonic() + drives_on_s
     while time.monotonic() < end:
         drive.go_on()
-        time.sleep(0.002)
+        watch.look()
     justified = drive.accepted
     if ending == "estop":
-        justified = min(time.monotonic(), drive.accepted + 0.25)
+        pressed = time.monotonic()
         told = motors.call("motor.estop")
+        assert told["confirmed"] == all(controller["confirmed"] for controller in told["controllers"]), told
         if drives_on_s == 0:
             assert not told["confirmed"], told
-        justified = max(justified, drive.accepted)
-    stood = stand_since(simulator, None, justified) - justified
+            justified = pressed
+    stood = watch.stood() - justified
     state = motors.call("motor.state")
     for number, controller in enumerate(state["standing"]["controllers"], 1):
         broken = f"controller{number}" in devices

@@ -1,0 +1,364 @@
+// What goes over the line of the motor controllers when they do not answer as they should: stops first, stops
+// until they stand, silence in between; fair turns at any latency; what it takes to be ready.
+#include "ControllerBench.h"
+#include "daemons/motorcontrol/StandstillWatch.h"
+#include "protocol/roboclaw/Crc16.h"
+
+#include <QtTest>
+
+using namespace hermes;
+using roboclaw::Command;
+
+Q_DECLARE_METATYPE(decltype(ControllerBench::passes))
+Q_DECLARE_METATYPE(roboclaw::Command)
+
+class TestControllerStops : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void standsByAcknowledgementAndReadings();
+    void standsByCoarseEncodersAfterLonger();
+    void nothingButStopsBeforeItStands();
+    void stopsGoBeforeAllElse();
+    void whoIsNotHeardIsStoppedInSilence_data();
+    void whoIsNotHeardIsStoppedInSilence();
+    void whoKeepsItsSetPointIsStoppedBySilence();
+    void theOtherOneOnTheLineStaysReady();
+    void lateAnswersSlowTheCycleDown_data();
+    void lateAnswersSlowTheCycleDown();
+    void tooLateAnswersAreRefused();
+    void readyMeansThatEverythingWasRead_data();
+    void readyMeansThatEverythingWasRead();
+    void whatIsAnsweredNoMoreIsNamed_data();
+    void whatIsAnsweredNoMoreIsNamed();
+    void versionWithoutLineFeedIsTold();
+    void lostTimeoutIsSetAnew();
+
+private:
+    static constexpr qint32 fast = 30000; // counts/s: half a metre a second
+    static constexpr double silence_s = 0.3;
+
+    static void driveOff(ControllerBench &bench);
+    static QString rowOf(Command command);
+};
+
+void TestControllerStops::driveOff(ControllerBench &bench) {
+    QVERIFY2(bench.runUntil([&] { return bench.areReady(); }), qPrintable(bench.controller(0).error()));
+    bench.speed = fast;
+    QVERIFY(bench.runUntil([&] { return bench.fastest() > 0.95 * fast; }));
+    bench.sent.clear();
+}
+
+void TestControllerStops::standsByAcknowledgementAndReadings() {
+    StandstillWatch watch;
+    watch.setThreshold(1500);
+    watch.read({1000, 0}, 1);
+    watch.read({1000, 0}, 2);
+    QVERIFY(!watch.stands()); // not acknowledged
+    watch.acknowledged();
+    watch.read({1000, 0}, 2.02);
+    QVERIFY(!watch.stands()); // what was read before does not count
+    watch.read({1001, quint32(-1)}, 2.04);
+    QVERIFY(!watch.stands());
+    watch.read({1001, quint32(-1)}, 2.07); // jitter, also across zero
+    QVERIFY(watch.stands());
+    watch.read({1100, 0}, 2.09);
+    QVERIFY(!watch.stands() && watch.isMoving());
+    QVERIFY(std::abs(watch.speed() - 99 / 0.02) < 1);
+    watch.read({1100, 0}, 2.15);
+    QVERIFY(watch.stands());
+    watch.doubt();
+    watch.read({1100, 0}, 2.2);
+    watch.read({1100, 0}, 2.3);
+    QVERIFY(!watch.stands());
+}
+
+// 100 counts a turn: in 50 ms a wheel at the threshold shows a fifth of a count.
+void TestControllerStops::standsByCoarseEncodersAfterLonger() {
+    StandstillWatch watch;
+    watch.setThreshold(4);
+    watch.acknowledged();
+    for (double time = 1; time < 1.49; time += 0.02) {
+        watch.read({7, 7}, time);
+        QVERIFY(!watch.stands());
+    }
+    watch.read({7, 7}, 1.51);
+    QVERIFY(watch.stands());
+}
+
+void TestControllerStops::nothingButStopsBeforeItStands() {
+    ControllerBench bench;
+    bench.emulator(1).channel(0).driveSpeed(
+        fast); // from a program that ran before, which a new one must not feed
+    bench.emulator(1).channel(0).setPid({1, 0.5, 0.25, 150000});
+    bench.runUntil([&] { return bench.areReady(); });
+    QVERIFY(bench.areReady());
+    for (int i = 0; i < 2; ++i) {
+        QVERIFY(bench.controller(i).stands());
+        bool stopped = false, asked = false;
+        for (const auto &packet : bench.sent) {
+            if (packet.controller != i)
+                continue;
+            stopped = stopped || packet.isStop();
+            asked = asked || (stopped && packet.command() == Command::ReadVersion);
+            QVERIFY(asked || packet.isStop() || packet.command() == Command::ReadEncoders);
+        }
+    }
+    QCOMPARE(bench.fastest(), 0.0);
+}
+
+void TestControllerStops::stopsGoBeforeAllElse() {
+    ControllerBench bench;
+    bench.latency = 0.015;
+    driveOff(bench);
+    bench.speed = 0;
+    bench.run(0.05); // the next cycle, and the answer that is waited for
+    int before = 0;
+    for (int i = 0; i < 2; ++i) {
+        const auto stop = std::find_if(bench.sent.begin(), bench.sent.end(),
+                                       [i](const auto &p) { return p.controller == i && p.isStop(); });
+        QVERIFY(stop != bench.sent.end());
+        before = std::max(before, int(stop - bench.sent.begin()));
+    }
+    QVERIFY2(before <= 3, qPrintable(QString::number(before))); // in 20 ms two others fit
+}
+
+void TestControllerStops::whoIsNotHeardIsStoppedInSilence_data() {
+    using Passes = decltype(ControllerBench::passes);
+    QTest::addColumn<Passes>("passes");
+    QTest::addColumn<double>("latency");
+    QTest::addColumn<double>("timeout_s");
+    const Passes nothing = [](const auto &, const auto &) { return std::nullopt; };
+    const Passes damaged = [](const auto &, const auto &bytes) {
+        ControllerBench::Bytes wrong;
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+            wrong.push(std::uint8_t(bytes[i] ^ (i == 0 ? 4 : 0)));
+        return std::optional(wrong);
+    };
+    for (const double timeout_s : {0.2, 0.5}) {
+        const QByteArray name = ", " + QByteArray::number(timeout_s);
+        QTest::newRow("mute" + name) << nothing << 0.0 << timeout_s;
+        QTest::newRow("damaged" + name) << damaged << 0.0 << timeout_s;
+        QTest::newRow("late" + name) << Passes([](const auto &, const auto &b) { return std::optional(b); })
+                                     << 0.1 << timeout_s;
+    }
+}
+
+void TestControllerStops::whoIsNotHeardIsStoppedInSilence() {
+    QFETCH(decltype(ControllerBench::passes), passes);
+    QFETCH(double, latency);
+    QFETCH(double, timeout_s);
+    ControllerBench bench(2, timeout_s);
+    driveOff(bench);
+    bench.passes = passes;
+    bench.latency = latency;
+    QVERIFY(
+        bench.runUntil([&] { return !bench.controller(0).isReady() && !bench.controller(1).isReady(); }, 1));
+    QVERIFY(bench.runUntil([&] { return bench.fastest() == 0; }, 0.4)); // they hear
+    QVERIFY(!bench.controller(0).stands() && !bench.controller(1).stands());
+    const double lost = bench.now();
+    bench.speed = fast; // whoever asks
+    bench.run(3);
+    QCOMPARE(bench.fastest(), 0.0);
+    double last = lost, pause = 0, shortest = 10;
+    for (const auto &packet : bench.sent) {
+        if (packet.time <= lost)
+            continue;
+        QVERIFY2(latency > 0 || packet.isStop(), qPrintable(rowOf(packet.command())));
+        pause = packet.time - last;
+        shortest = last > lost ? std::min(shortest, pause) : shortest;
+        last = packet.time;
+    }
+    if (latency == 0)
+        QVERIFY2(shortest > timeout_s + 0.05, qPrintable(QString::number(shortest)));
+    bench.speed = 0;
+    bench.passes = ControllerBench().passes;
+    bench.latency = 0;
+    QVERIFY(bench.runUntil([&] { return bench.areReady(); }, 4));
+}
+
+void TestControllerStops::whoKeepsItsSetPointIsStoppedBySilence() {
+    ControllerBench bench;
+    driveOff(bench);
+    bool latched = true;
+    bench.hears = [&](const auto &packet) {
+        return !latched || packet.controller != 0 ||
+               (packet.command() != Command::SpeedAccel && packet.command() != Command::Duty);
+    };
+    // It acknowledges all the same, and its time-out hears the bytes: so it hears another command instead.
+    bench.passes = [](const auto &, const auto &bytes) { return std::optional(bytes); };
+    auto &emulator = bench.emulator(0);
+    bench.hears = [&](const ControllerBench::Packet &packet) {
+        if (packet.controller == 0 && (packet.isStop() || packet.isSetPoint())) {
+            const auto harmless = roboclaw::Request::make(0x80, Command::SetSerialTimeout, {2})->bytes;
+            for (std::size_t i = 0; i < harmless.size(); ++i)
+                emulator.receive(harmless[i], packet.time);
+            const std::uint8_t ack = 0xFF;
+            bench.line->feed(&ack, 1, packet.time);
+            return false;
+        }
+        return true;
+    };
+    bench.speed = 0;
+    const double told = bench.now();
+    QVERIFY(bench.runUntil([&] { return bench.fastest() == 0; }, 2));
+    const double took = bench.now() - told;
+    // Braking from 0.5 m/s and half of it more, 0.2 s and three readings, the time-out and 0.1 s.
+    QVERIFY2(took < 0.19 + 0.26 + 0.3 + 0.05, qPrintable(QString::number(took)));
+    QVERIFY(!bench.controller(0).takeDisobedience().isEmpty());
+    QVERIFY(bench.controller(0).takeDisobedience().isEmpty());
+    bench.run(3);
+    QCOMPARE(bench.fastest(), 0.0);
+}
+
+// While the line is silent for the first one, the second one is not lost.
+void TestControllerStops::theOtherOneOnTheLineStaysReady() {
+    ControllerBench bench;
+    driveOff(bench);
+    bench.hears = [](const auto &packet) { return packet.controller != 0; };
+    bench.speed = 0;
+    QVERIFY(bench.runUntil([&] { return !bench.controller(0).isReady(); }, 1));
+    for (int i = 0; i < 300; ++i) {
+        bench.run(0.01);
+        QVERIFY2(bench.controller(1).isReady(), qPrintable(bench.controller(1).error()));
+    }
+    QCOMPARE(bench.controller(0).error(), QString("does not answer"));
+    QVERIFY(bench.controller(1).stands());
+}
+
+void TestControllerStops::lateAnswersSlowTheCycleDown_data() {
+    QTest::addColumn<int>("controllers");
+    QTest::addColumn<double>("latency");
+    QTest::addColumn<double>("least");
+    QTest::newRow("10 ms, two") << 2 << 0.010 << 15.0;
+    QTest::newRow("16 ms, two") << 2 << 0.016 << 10.0;
+    QTest::newRow("16 ms, one") << 1 << 0.016 << 17.0;
+    QTest::newRow("30 ms, one") << 1 << 0.030 << 10.0;
+}
+
+void TestControllerStops::lateAnswersSlowTheCycleDown() {
+    QFETCH(int, controllers);
+    QFETCH(double, latency);
+    QFETCH(double, least);
+    ControllerBench bench(controllers);
+    bench.latency = latency;
+    QVERIFY2(bench.runUntil([&] { return bench.areReady(); }, 5), qPrintable(bench.controller(0).error()));
+    bench.speed = fast;
+    bench.run(1);
+    bench.sent.clear();
+    bench.run(10);
+    QVERIFY(bench.areReady());
+    std::map<int, std::map<Command, int>> counts;
+    for (const auto &packet : bench.sent)
+        ++counts[packet.controller][packet.command()];
+    for (int i = 0; i < controllers; ++i) {
+        QVERIFY(!bench.controller(i).isTooSlow());
+        QVERIFY2(*bench.controller(i).rate_Hz() >= least,
+                 qPrintable(QString::number(*bench.controller(i).rate_Hz())));
+        for (const Command command : {Command::SpeedAccel, Command::ReadEncoders})
+            QVERIFY(counts[i][command] >= int(10 * least) - 2);
+        QVERIFY(counts[i][Command::ReadStatus] >= 5);
+    }
+}
+
+void TestControllerStops::tooLateAnswersAreRefused() {
+    ControllerBench bench;
+    bench.latency = 0.03;
+    bench.speed = fast;
+    bench.run(5);
+    for (int i = 0; i < 2; ++i) {
+        QVERIFY(!bench.controller(i).isReady());
+        const QString error = bench.controller(i).error();
+        QVERIFY2(error.contains("31 ms") && error.contains("6.5 Hz") && error.contains("at least 10"),
+                 qPrintable(error));
+        QVERIFY(bench.runUntil([&] { return bench.controller(i).stands(); }, 1)); // is known in spite of it
+    }
+    QVERIFY(std::none_of(bench.sent.begin(), bench.sent.end(), [](const auto &p) { return p.isSetPoint(); }));
+}
+
+QString TestControllerStops::rowOf(Command command) {
+    return QString("command %1").arg(int(command));
+}
+
+void TestControllerStops::readyMeansThatEverythingWasRead_data() {
+    QTest::addColumn<Command>("missing");
+    for (const Command command :
+         {Command::ReadVersion, Command::SetSerialTimeout, Command::ReadSerialTimeout,
+          Command::SetVelocityPidM1, Command::ReadVelocityPidM2, Command::ReadEncoders, Command::ReadStatus,
+          Command::ReadCurrents, Command::ReadMainBattery, Command::ReadLogicBattery,
+          Command::ReadTemperature})
+        QTest::newRow(qPrintable(rowOf(command))) << command;
+}
+
+void TestControllerStops::readyMeansThatEverythingWasRead() {
+    QFETCH(Command, missing);
+    ControllerBench bench;
+    bench.hears = [=](const auto &packet) { return packet.controller != 1 || packet.command() != missing; };
+    bool ready = false;
+    bench.runUntil([&] { return ready = ready || bench.controller(1).isReady(); }, 8);
+    QVERIFY(!ready);
+    const QString says = QString("answers, but not command %1 (").arg(int(missing));
+    QVERIFY2(bench.runUntil([&] { return bench.controller(1).error().contains(says); }, 2),
+             qPrintable(bench.controller(1).error()));
+    if (missing == Command::SetSerialTimeout)
+        QVERIFY2(bench.controller(1).error().contains("would not stop by itself"),
+                 qPrintable(bench.controller(1).error()));
+}
+
+void TestControllerStops::whatIsAnsweredNoMoreIsNamed_data() {
+    QTest::addColumn<Command>("missing");
+    QTest::addColumn<double>("after_s");
+    for (const Command command : {Command::SpeedAccel, Command::ReadEncoders})
+        QTest::newRow(qPrintable(rowOf(command))) << command << 0.35;
+    for (const Command command : {Command::ReadStatus, Command::ReadTemperature, Command::ReadSerialTimeout})
+        QTest::newRow(qPrintable(rowOf(command))) << command << 3.5;
+}
+
+void TestControllerStops::whatIsAnsweredNoMoreIsNamed() {
+    QFETCH(Command, missing);
+    QFETCH(double, after_s);
+    ControllerBench bench;
+    driveOff(bench);
+    bench.passes = [=](const auto &packet, const auto &bytes) {
+        return packet.controller == 1 && packet.command() == missing ? std::nullopt : std::optional(bytes);
+    };
+    QVERIFY(bench.runUntil([&] { return !bench.controller(1).isReady(); }, after_s));
+    const QString says = QString("answers, but not command %1 (").arg(int(missing));
+    QVERIFY2(bench.controller(1).error().contains(says), qPrintable(bench.controller(1).error()));
+    bench.speed = 0; // as the drive does when one is not ready
+    QVERIFY(bench.runUntil([&] { return bench.fastest() == 0; }, 0.3));
+}
+
+void TestControllerStops::versionWithoutLineFeedIsTold() {
+    ControllerBench bench(1);
+    bench.passes = [](const ControllerBench::Packet &packet, const ControllerBench::Bytes &bytes) {
+        if (packet.command() != Command::ReadVersion)
+            return std::optional(bytes);
+        ControllerBench::Bytes bare;
+        for (const char c : {'R', 'o', 'b', 'o', 'C', 'l', 'a', 'w', '\0'})
+            bare.push(std::uint8_t(c));
+        const auto start = roboclaw::crc16(packet.bytes.data(), packet.bytes.size());
+        bare.push16(roboclaw::crc16(bare.data(), bare.size(), start));
+        return std::optional(bare);
+    };
+    QVERIFY2(bench.runUntil([&] { return bench.areReady(); }), qPrintable(bench.controller(0).error()));
+    QCOMPARE(bench.controller(0).version(), QString("RoboClaw (without the line feed that should end it)"));
+}
+
+// A controller that was without power for a moment would not stop by itself any more.
+void TestControllerStops::lostTimeoutIsSetAnew() {
+    ControllerBench bench;
+    driveOff(bench);
+    const auto forget = roboclaw::Request::make(0x81, Command::SetSerialTimeout, {0})->bytes;
+    for (std::size_t i = 0; i < forget.size(); ++i)
+        bench.emulator(1).receive(forget[i], bench.now());
+    QVERIFY(bench.runUntil([&] { return !bench.controller(1).isReady(); }, 0.5));
+    QVERIFY2(
+        bench.controller(1).error().startsWith("has a time-out of 0 s, expected the 0.2 s that were written"),
+        qPrintable(bench.controller(1).error()));
+    bench.speed = 0;
+    QVERIFY(bench.runUntil([&] { return bench.areReady(); }, 3));
+    QCOMPARE(bench.emulator(1).serialTimeout(), 0.2);
+}
+
+QTEST_GUILESS_MAIN(TestControllerStops)
+#include "TestControllerStops.moc"
