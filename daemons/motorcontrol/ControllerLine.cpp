@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/ControllerLine.h"
 
 #include "common/Time.h"
+#include "common/interface/AdapterLatency.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,8 @@ constexpr std::chrono::milliseconds longestRetry{250}; // the robot stands until
 
 } // namespace
 
-ControllerLine::ControllerLine(Interface *interface, std::vector<MotorController *> controllers,
-                               QObject *parent)
+ControllerLine::ControllerLine(Interface *interface, const QString &device,
+                               std::vector<MotorController *> controllers, QObject *parent)
     : QObject(parent)
     , interface_(interface)
     , master_(std::move(controllers)) {
@@ -24,7 +25,8 @@ ControllerLine::ControllerLine(Interface *interface, std::vector<MotorController
     deadline_.setSingleShot(true);
     connect(&deadline_, &QTimer::timeout, this, &ControllerLine::wake);
     connect(interface_, &Interface::received, this, &ControllerLine::receive);
-    connect(interface_, &Interface::opened, this, [this] {
+    connect(interface_, &Interface::opened, this, [this, device] {
+        advice_ = device.isEmpty() ? QString() : AdapterLatency::lower(device).advice;
         master_.setOpen();
         wake();
     });

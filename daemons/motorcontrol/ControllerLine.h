@@ -12,13 +12,16 @@ class ControllerLine : public QObject {
     Q_OBJECT
 public:
     /// Takes over the interface. The controllers must outlive the line.
-    ControllerLine(Interface *interface, std::vector<MotorController *> controllers, QObject *parent);
+    /// device: of a serial line; empty: it is another one.
+    ControllerLine(Interface *interface, const QString &device, std::vector<MotorController *> controllers,
+                   QObject *parent);
 
     void open() { interface_->open(); }
     /// Sends what is due, if the line is free. To be called when a controller wants something.
     void wake();
     const LineMaster &master() const { return master_; }
-    const Interface &interface() const { return *interface_; }
+    /// What a person should do about the adapter of the line; empty when nothing.
+    const QString &advice() const { return advice_; }
 
 private:
     void receive(const QByteArray &bytes);
@@ -26,6 +29,7 @@ private:
     Interface *interface_;
     LineMaster master_;
     QTimer deadline_;
+    QString advice_;
 };
 
 } // namespace hermes

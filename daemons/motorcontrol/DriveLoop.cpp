@@ -55,7 +55,8 @@ Result<void> DriveLoop::openLines() {
             if (settings_.controllers[k].url == url)
                 onLine.push_back(&engine_.controller(k));
         }
-        lines_.push_back(new ControllerLine(*interface, onLine, this));
+        const QString device = parsed->scheme == "serial" ? parsed->path : QString();
+        lines_.push_back(new ControllerLine(*interface, device, onLine, this));
         for (int k = i; k < controllerCount; ++k) {
             if (settings_.controllers[k].url != url)
                 continue;
@@ -110,6 +111,7 @@ void DriveLoop::report() {
         const LineMaster &line = lineOf_[i]->master();
         telemetry.controllers[i].counts = line.counts(engine_.controller(i));
         telemetry.controllers[i].strayBytes = line.strayBytes();
+        telemetry.controllers[i].advice = lineOf_[i]->advice();
     }
     telemetry.stamp = stampNow() - (monotonicNow() - telemetry.mono);
     telemetry.cycle = timer_.statistics();

@@ -31,9 +31,12 @@ HealthLevel toHealth(Threshold::Level level) {
 void MotorControl::updateHealth() {
     for (int i = 0; i < controllerCount; ++i) {
         const Telemetry::Controller &c = told_.controllers[i];
-        const QString text = c.name + ": " + (c.ready ? c.version : c.error);
-        health().set(QString("controller_%1").arg(i + 1), c.ready ? HealthLevel::Ok : HealthLevel::Failed,
-                     text, controllerJson(c));
+        const QString advice = c.advice.isEmpty() ? QString() : "; " + c.advice;
+        const QString text = c.name + ": " + (c.ready ? c.version : c.error) + advice;
+        const HealthLevel level = !c.ready             ? HealthLevel::Failed
+                                  : c.advice.isEmpty() ? HealthLevel::Ok
+                                                       : HealthLevel::Warn;
+        health().set(QString("controller_%1").arg(i + 1), level, text, controllerJson(c));
         if (text != logged_[i])
             c.ready ? logInfo("controllers", text) : logWarning("controllers", text);
         logged_[i] = text;

@@ -11,6 +11,7 @@ namespace hermes {
 struct Telemetry {
     struct Controller {
         QString name, error, version, interface;
+        QString advice; ///< what a person should do about its line; empty when nothing
         bool ready = false;
         bool stands = false; ///< has confirmed it: MotorController::stands()
         double rate_Hz = 0;  ///< of readings; 0: not known

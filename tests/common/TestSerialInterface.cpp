@@ -1,3 +1,4 @@
+#include "common/interface/AdapterLatency.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "common/interface/PtyInterface.h"
 #include "common/interface/SerialInterface.h"
@@ -23,6 +24,8 @@ InterfaceUrl urlOf(const QString &text) {
 class TestSerialInterface : public QObject {
     Q_OBJECT
 private Q_SLOTS:
+    void latencyOfAnAdapterIsLowered();
+    void latencyThatMayNotBeLoweredIsTold();
     void init();
     void carriesBothWays();
     void carriesEveryByteInOrder();
@@ -258,6 +261,41 @@ void TestSerialInterface::registryKnowsBoth() {
     QVERIFY(qobject_cast<SerialInterface *>(*serial));
     QVERIFY(isLocalOnly(urlOf("serial:///dev/ttyS99")));
     QVERIFY(interfaceSchemes().contains("serial") && interfaceSchemes().contains("pty"));
+}
+
+// A folder as sysfs has it, and a device that is a link to its port.
+static void makeAdapter(const QTemporaryDir &system, const QByteArray &milliseconds) {
+    QVERIFY(QDir(system.path()).mkpath("class/tty/ttyUSB7/device"));
+    for (const auto &[name, text] : {std::pair("class/tty/ttyUSB7/device/latency_timer", milliseconds),
+                                     std::pair("ttyUSB7", QByteArray())}) {
+        QFile file(system.filePath(name));
+        QVERIFY(file.open(QIODevice::WriteOnly));
+        file.write(text);
+    }
+    QVERIFY(QFile::link(system.filePath("ttyUSB7"), system.filePath("motors")));
+}
+
+void TestSerialInterface::latencyOfAnAdapterIsLowered() {
+    const QTemporaryDir system;
+    makeAdapter(system, "16\n");
+    const AdapterLatency latency = AdapterLatency::lower(system.filePath("motors"), system.path());
+    QCOMPARE(latency.milliseconds, 1);
+    QCOMPARE(latency.advice, QString());
+    QCOMPARE(AdapterLatency::lower(system.filePath("absent"), system.path()).milliseconds, 0);
+    QCOMPARE(AdapterLatency::lower("/dev/null", system.path()).milliseconds, 0);
+}
+
+void TestSerialInterface::latencyThatMayNotBeLoweredIsTold() {
+    const QTemporaryDir system;
+    makeAdapter(system, "16\n");
+    const QString timer = system.filePath("class/tty/ttyUSB7/device/latency_timer");
+    QFile::remove(timer);
+    QVERIFY(QFile::link("/proc/sys/kernel/ngroups_max", timer)); // a number that not even root may write
+    const AdapterLatency latency = AdapterLatency::lower(system.filePath("motors"), system.path());
+    QCOMPARE(latency.milliseconds, 65536);
+    QVERIFY2(latency.advice.contains("holds bytes for 65536 ms") && latency.advice.contains(timer) &&
+                 latency.advice.contains("udev"),
+             qPrintable(latency.advice));
 }
 
 QTEST_GUILESS_MAIN(TestSerialInterface)
