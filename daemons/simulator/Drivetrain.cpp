@@ -30,11 +30,29 @@ std::vector<RoboClawEmulator::Answer> Drivetrain::receive(int line, const std::u
         for (int number = 0; number < controllers; ++number) {
             if (line != (options_.ownLines ? number : 0))
                 continue;
-            if (const auto answer = controller(number).receive(data[i], now))
-                answers.push_back(*answer);
+            for (RoboClawEmulator::Answer &answer : controller(number).receive(data[i], now)) {
+                delayAnswer(answer, line, now);
+                answers.push_back(answer);
+            }
         }
     }
     return answers;
+}
+
+void Drivetrain::delayAnswer(RoboClawEmulator::Answer &answer, int line, double now) {
+    const double latency = latency_[std::size_t(line)];
+    if (!(latency > 0))
+        return;
+    double &end = bunchEnds_[std::size_t(line)];
+    const double arrives = now + answer.delay;
+    if (arrives > end || end > arrives + latency) // the second: another clock
+        end = arrives + latency;
+    answer.delay = end - now;
+}
+
+void Drivetrain::setSwapped(bool swapped) {
+    for (std::size_t i = 0; i < controllers_.size(); ++i)
+        controllers_[i].setAddress(options_.controller[swapped ? 1 - i : i].address);
 }
 
 Twist Drivetrain::advance(double seconds) {

@@ -44,16 +44,23 @@ public:
     Battery &battery() { return battery_; }
     const Battery &battery() const { return battery_; }
     void setSlip(double share) { options_.slip = share; }
+    /// The controllers have exchanged their addresses.
+    void setSwapped(bool swapped);
+    /// The host's adapter of a line (0 or 1) hands on what it receives in bunches, each so many seconds after
+    /// its first byte, as the latency timer of an FTDI chip does.
+    void setLatency(int line, double seconds) { latency_[std::size_t(line)] = seconds; }
     /// rad/s, positive forward.
     std::array<double, 4> wheelSpeeds() const;
     bool isMoving() const;
 
 private:
+    void delayAnswer(RoboClawEmulator::Answer &answer, int line, double now);
     static std::array<RoboClawEmulator::Options, controllers> twoAddresses();
 
     Options options_;
     std::array<RoboClawEmulator, controllers> controllers_;
     Battery battery_;
+    std::array<double, 2> latency_{}, bunchEnds_{}; // of each line; seconds
 };
 
 } // namespace hermes

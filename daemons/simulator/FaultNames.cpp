@@ -7,8 +7,11 @@ namespace hermes {
 namespace {
 
 constexpr std::array<const char *, 4> wheels{"front_left", "front_right", "rear_left", "rear_right"};
-const QStringList ofController{"silence",          "loss",         "corrupt", "slow", "emergency_stop",
-                               "over_temperature", "over_current", "driver"};
+const QStringList ofController{"silence",       "loss",     "corrupt",        "slow",
+                               "deaf",          "mute",     "latched",        "echo",
+                               "stuck_timeout", "brownout", "emergency_stop", "over_temperature",
+                               "over_current",  "driver"};
+const QStringList ofWheel{"blocked", "encoder", "jump", "backward"};
 
 struct Device {
     QString name;
@@ -16,16 +19,17 @@ struct Device {
 };
 const QList<Device> devices{{"lidar", {"silence", "loss"}},
                             {"gps", {"silence", "no_fix", "corrupt", "pulled"}},
-                            {"line1", {"pulled"}},
-                            {"line2", {"pulled"}},
+                            {"line1", {"pulled", "adapter"}},
+                            {"line2", {"pulled", "adapter"}},
                             {"controller1", ofController},
                             {"controller2", ofController},
+                            {"controllers", {"swapped"}},
                             {"battery", {"charge"}},
                             {"wheels", {"slip"}},
-                            {wheels[0], {"blocked", "encoder"}},
-                            {wheels[1], {"blocked", "encoder"}},
-                            {wheels[2], {"blocked", "encoder"}},
-                            {wheels[3], {"blocked", "encoder"}}};
+                            {wheels[0], ofWheel},
+                            {wheels[1], ofWheel},
+                            {wheels[2], ofWheel},
+                            {wheels[3], ofWheel}};
 
 } // namespace
 

@@ -9,8 +9,9 @@ namespace {
 
 constexpr double controlPeriod = 1.0 / 300; // seconds: the controller measures speed 300 times a second
 constexpr double integralRate = 100;
-constexpr double approach = 10;    // 1/s: the last bit of the way to a position
-constexpr double arrived = 1;      // count
+constexpr double approach = 10; // 1/s: the last bit of the way to a position
+constexpr double arrived = 1;   // count
+constexpr int underflow = 1, overflow = 4;
 constexpr double standing = 0.004; // of the full speed; below it friction holds a motor that is not driven
 
 } // namespace
@@ -131,8 +132,15 @@ void MotorChannel::turn(double seconds, double voltage, bool powered) {
                 : 0;
     const double travelled = (before + speed_) / 2 * seconds;
     if (!encoderBroken_)
-        count_ += travelled;
+        countOn(encoderBackward_ ? -travelled : travelled);
     followMove(travelled);
+}
+
+void MotorChannel::countOn(double counts) {
+    const auto round = [this] { return count() >> 32; }; // how often the counter has gone round
+    const std::int64_t before = round();
+    count_ += counts;
+    wraps_ |= round() < before ? underflow : round() > before ? overflow : 0;
 }
 
 std::int64_t MotorChannel::count() const {

@@ -4,6 +4,7 @@
 #include <deque>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace hermes {
 
@@ -57,15 +58,23 @@ public:
     void setBlocked(bool blocked) { blocked_ = blocked; }
     /// The encoder's cable is off: counts and measured speed stand still.
     void setEncoderBroken(bool broken) { encoderBroken_ = broken; }
+    /// The encoder's two signals are exchanged: it counts backward, and the velocity control pushes the wrong
+    /// way.
+    void setEncoderBackward(bool backward) { encoderBackward_ = backward; }
+    /// The counter leaps, the wheel does not.
+    void jump(std::int64_t counts) { countOn(double(counts)); }
     void setCurrentLimit(double amperes) { currentLimit_ = amperes; }
 
     /// voltage: of the battery; powered: false while the bridge is off and the motor rolls freely.
     void advance(double seconds, double voltage, bool powered);
 
-    double target() const { return target_; }                            ///< as last asked: duty or counts/s
-    double speed() const { return speed_; }                              ///< of the shaft
-    double measuredSpeed() const { return encoderBroken_ ? 0 : speed_; } ///< as the encoder tells it
+    double target() const { return target_; } ///< as last asked: duty or counts/s
+    double speed() const { return speed_; }   ///< of the shaft
+    /// As the encoder tells it.
+    double measuredSpeed() const { return encoderBroken_ ? 0 : encoderBackward_ ? -speed_ : speed_; }
     std::int64_t count() const;
+    /// Since it was asked last the counter of 32 bits ran below 0 (1), over its end (4), both (5).
+    int takeWraps() { return std::exchange(wraps_, 0); }
     double duty() const { return duty_; }
     double current() const { return current_; } ///< A; negative while it feeds back
     bool isLimited() const { return limited_; } ///< by the limit of the current
@@ -83,6 +92,7 @@ private:
     void ramp(double seconds);
     void control();
     void turn(double seconds, double voltage, bool powered);
+    void countOn(double counts);
 
     Motor motor_;
     Pid pid_;
@@ -105,6 +115,8 @@ private:
     bool limited_ = false;
     bool blocked_ = false;
     bool encoderBroken_ = false;
+    bool encoderBackward_ = false;
+    int wraps_ = 0; // as takeWraps() tells them
 };
 
 } // namespace hermes

@@ -10,6 +10,7 @@ using namespace roboclaw;
 namespace {
 
 constexpr double longestGap = 0.010;          // seconds between the bytes of one packet
+constexpr double eepromTime = 0.005;          // until a written cell is acknowledged; seconds
 constexpr double tenths = 10;                 // of a volt, of a degree
 constexpr double warmth = 0.03, cooling = 60; // degrees for each A^2 at last, with this time constant (s)
 constexpr double hot = 85, tooHot = 100;      // data sheet: the current falls from 85 degrees, to none at 100
@@ -18,29 +19,66 @@ constexpr double hot = 85, tooHot = 100;      // data sheet: the current falls f
 
 RoboClawEmulator::RoboClawEmulator(const Options &options)
     : options_(options)
+    , parser_(options.dialect)
     , channels_{MotorChannel(options.motor), MotorChannel(options.motor)}
     , random_(options.seed) {}
 
-std::optional<RoboClawEmulator::Answer> RoboClawEmulator::receive(std::uint8_t byte, double now) {
+void RoboClawEmulator::Options::setFirmware(const std::string &number) {
+    version = "RoboClaw 2x45A v" + number;
+    status = number == "4.1.28" ? Dialect::Other : Dialect::Usual;
+    dialect = number == "4.3.6" ? Dialect::Other : Dialect::Usual;
+    unknown.clear();
+    const auto forget = [this](int first, int last) {
+        for (int command = first; command <= last; ++command)
+            unknown.insert(Command(command));
+    };
+    if (number == "4.1.28") { // its manual does not list them
+        forget(70, 72);
+        forget(105, 107);
+        forget(109, 118);
+        forget(252, 253);
+    }
+    if (number == "4.3.6") { // no answer is reported to the first; the others have a new meaning
+        forget(0, 13);
+        forget(100, 107);
+    }
+}
+
+std::vector<RoboClawEmulator::Answer> RoboClawEmulator::receive(std::uint8_t byte, double now) {
     if (now - lastByte_ > longestGap)
         parser_.silence();
     lastByte_ = now;
-    if (faults_.silent)
-        return {};
+    std::vector<Answer> answers;
+    if (faults_.echo) {
+        answers.emplace_back();
+        answers.back().bytes.push(byte);
+    }
+    if (isDead() || faults_.deaf)
+        return answers;
     silence_ = 0;
     const RequestParser::Result result = parser_.feed(byte);
     counts_.crcErrors += result == RequestParser::Result::BadCrc;
     counts_.unknown += result == RequestParser::Result::Unknown;
     if (result != RequestParser::Result::Done)
-        return {};
+        return answers;
     const Request &request = parser_.request();
     if (request.address != options_.address && !options_.anyAddress)
-        return {};
+        return answers;
     const std::optional<Bytes> bytes = execute(request);
     if (!bytes)
-        return {};
+        return answers;
     ++counts_.requests;
-    return damaged(*bytes);
+    if (const auto answer = damaged(*bytes))
+        answers.push_back(*answer);
+    if (request.command == Command::WriteEeprom) {
+        Bytes written;
+        written.push(eepromWritten);
+        if (auto answer = damaged(written)) {
+            answer->delay += eepromTime;
+            answers.push_back(*answer);
+        }
+    }
+    return answers;
 }
 
 std::optional<RoboClawEmulator::Answer> RoboClawEmulator::damaged(const Bytes &bytes) {
@@ -62,18 +100,30 @@ bool RoboClawEmulator::chance(double probability) {
 void RoboClawEmulator::advance(double seconds, double voltage, double ambient) {
     voltage_ = voltage;
     silence_ += seconds;
-    const bool timedOut = timeoutTenths_ > 0 && silence_ >= serialTimeout();
+    startsIn_ = std::max(0.0, startsIn_ - seconds);
+    const bool timedOut = timeoutTenths_ > 0 && !faults_.stuckTimeout && silence_ >= serialTimeout();
     if (timedOut && silence_ - seconds < serialTimeout())
         ++counts_.timeouts;
-    const bool powered = !faults_.silent && !(status() & MainVoltageLowError);
+    const bool powered = !isDead() && !(status() & MainVoltageLowError);
     double heat = 0;
     for (MotorChannel &channel : channels_) {
-        if (timedOut || isStopped() || faults_.silent)
+        if (timedOut || isStopped() || isDead())
             channel.stop();
         channel.advance(seconds, voltage, powered);
         heat += channel.current() * channel.current() * warmth;
     }
     temperature_ += (ambient + heat - temperature_) * (1 - std::exp(-seconds / cooling));
+}
+
+void RoboClawEmulator::restart(double seconds) {
+    restoreDefaults();
+    parser_.silence();
+    mixedDrive_ = mixedTurn_ = std::nullopt;
+    for (MotorChannel &channel : channels_) {
+        channel.stop();
+        channel.setCount(0);
+    }
+    startsIn_ = seconds;
 }
 
 bool RoboClawEmulator::isStopped() const {
@@ -94,18 +144,27 @@ std::uint32_t RoboClawEmulator::status() const {
 }
 
 std::optional<Bytes> RoboClawEmulator::execute(const Request &request) {
-    if (!request.isRead()) {
+    if (options_.unknown.count(request.command) > 0) {
+        ++counts_.unknown;
+        return {};
+    }
+    if (request.isRead())
+        return answerTo(request);
+    if (!(faults_.latched && turnsMotors(request.command))) {
         const bool drives = drive(request) || driveDistance(request) || drivePosition(request);
         if (drives)
             mixedDrive_ = mixedTurn_ = std::nullopt;
         if (!drives && !driveMixed(request) && !store(request))
             return {};
-        Bytes answer;
-        answer.push(acknowledgement);
-        return answer;
     }
+    Bytes answer;
+    answer.push(acknowledgement);
+    return answer;
+}
+
+std::optional<Bytes> RoboClawEmulator::answerTo(const Request &request) {
     if (request.command == Command::ReadVersion)
-        return encodeText(request, options_.version);
+        return encodeText(request, options_.version, options_.versionLineFeed);
     if (request.command == Command::ReadStatus) {
         const bool old = options_.status == Dialect::Other;
         return encodeReply(request, {old ? oldStatusOf(status()) : status()}, options_.status);
@@ -113,7 +172,7 @@ std::optional<Bytes> RoboClawEmulator::execute(const Request &request) {
     auto values = read(request.command);
     if (!values)
         values = readStored(request.command, request.values);
-    return values ? encodeReply(request, *values) : std::nullopt;
+    return values ? encodeReply(request, *values, options_.dialect) : std::nullopt;
 }
 
 } // namespace hermes

@@ -7,7 +7,9 @@
 #include <map>
 #include <optional>
 #include <random>
+#include <set>
 #include <string>
+#include <vector>
 
 namespace hermes {
 
@@ -19,17 +21,29 @@ public:
         std::uint8_t address = roboclaw::firstAddress;
         bool anyAddress = false; ///< as on USB, where each of 0x80 to 0x87 is answered
         std::string version = "RoboClaw 2x45A v4.2.8";
-        roboclaw::Dialect status = roboclaw::Dialect::Usual; ///< Other: status of 16 bits
+        bool versionLineFeed = true;                          ///< the version's text ends with one
+        roboclaw::Dialect status = roboclaw::Dialect::Usual;  ///< Other: status of 16 bits
+        roboclaw::Dialect dialect = roboclaw::Dialect::Usual; ///< of all other commands; Other: as of 4.3
+        std::set<roboclaw::Command> unknown;                  ///< commands that the firmware does not know
         MotorChannel::Motor motor;
         std::uint64_t seed = 1; ///< of the faults
+
+        /// Version, status, dialect and unknown commands of one of firmwareVersions.
+        void setFirmware(const std::string &number);
     };
+    static constexpr std::array<const char *, 3> firmwareVersions{"4.1.28", "4.2.8", "4.3.6"};
+
     /// What it does wrong.
     struct Faults {
-        bool silent = false;      ///< dead: hears nothing, does nothing, motors off
-        double drop = 0;          ///< share of the answers that are not sent
-        double corrupt = 0;       ///< share of the answers with one bit flipped
-        double delay = 0;         ///< seconds by which each answer is late
-        std::uint32_t status = 0; ///< bits that are set besides its own; EmergencyStop stops it too
+        bool silent = false;       ///< dead: hears nothing, does nothing, motors off
+        bool deaf = false;         ///< hears nothing; drives on until its own time-out
+        bool latched = false;      ///< acknowledges new set-points, but keeps the last one
+        bool stuckTimeout = false; ///< its own time-out does not work
+        bool echo = false;         ///< what it receives comes back before its answers
+        double drop = 0;           ///< share of the answers that are not sent; 1: mute
+        double corrupt = 0;        ///< share of the answers with one bit flipped
+        double delay = 0;          ///< seconds by which each answer is late
+        std::uint32_t status = 0;  ///< bits that are set besides its own; EmergencyStop stops it too
     };
     struct Answer {
         roboclaw::Bytes bytes;
@@ -47,11 +61,17 @@ public:
     explicit RoboClawEmulator(const Options &options);
 
     /// One byte from the line, now: seconds of any clock, to know the gaps between bytes.
-    std::optional<Answer> receive(std::uint8_t byte, double now);
+    std::vector<Answer> receive(std::uint8_t byte, double now);
     /// Lets time pass. voltage: of the main battery; ambient: degrees Celsius.
     void advance(double seconds, double voltage, double ambient = 25);
 
+    /// As after a brown-out: for so many seconds it is dead, then it answers with the settings of the factory
+    /// and counts of 0. What WriteEeprom wrote stays.
+    void restart(double seconds);
+
     Faults &faults() { return faults_; }
+    std::uint8_t address() const { return options_.address; }
+    void setAddress(std::uint8_t address) { options_.address = address; }
     MotorChannel &channel(int motor) { return channels_[std::size_t(motor)]; }
     const MotorChannel &channel(int motor) const { return channels_[std::size_t(motor)]; }
     std::uint32_t status() const;
@@ -64,16 +84,21 @@ private:
     using Command = roboclaw::Command;
 
     std::optional<roboclaw::Bytes> execute(const Request &request);
+    std::optional<roboclaw::Bytes> answerTo(const Request &request);
+    static bool turnsMotors(Command command);
     bool drive(const Request &request);
     bool driveDistance(const Request &request);
     bool drivePosition(const Request &request);
     /// A drive and a turn value must have come before the motors turn.
     bool driveMixed(const Request &request);
     bool store(const Request &request);
+    void setLimit(Command write, Command read, std::size_t index, double volts);
+    void restoreDefaults();
     std::optional<roboclaw::Values> read(Command command);
     std::optional<roboclaw::Values> readStored(Command command, const roboclaw::Values &asked) const;
     std::optional<Answer> damaged(const roboclaw::Bytes &bytes);
     bool isStopped() const;
+    bool isDead() const { return faults_.silent || startsIn_ > 0; }
     bool chance(double probability);
 
     Options options_;
@@ -87,6 +112,7 @@ private:
     double lastByte_ = 0;
     double silence_ = 0;
     int timeoutTenths_ = 0; ///< 0: none
+    double startsIn_ = 0;   ///< seconds
     double voltage_ = 24;
     double temperature_ = 25;
 };

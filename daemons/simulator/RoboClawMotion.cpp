@@ -12,6 +12,12 @@ constexpr double fullDuty = 32767;
 
 // How the emulator obeys commands that turn motors.
 
+bool RoboClawEmulator::turnsMotors(Command command) {
+    const int number = int(command);
+    return number <= 1 || (number >= 4 && number <= 13) || (number >= 32 && number <= 46) ||
+           (number >= 50 && number <= 54) || (number >= 65 && number <= 67);
+}
+
 bool RoboClawEmulator::drive(const Request &request) {
     const Values &v = request.values;
     auto &[m1, m2] = channels_;

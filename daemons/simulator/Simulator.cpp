@@ -140,10 +140,12 @@ void Simulator::declareCommands() {
                                  "of the way that slip loses; of the charge that is left")
                        .range(0, 1)
                        .byDefault(0.1))
-            .param(Field::number("delay_s", "By which slow answers are late")
+            .param(Field::number("delay_s", "By which slow answers are late; that an adapter waits for more "
+                                            "bytes; that a brownout lasts")
                        .unit("s")
                        .range(0, 10)
                        .byDefault(0.05))
+            .param(Field::integer("counts", "By which an encoder jumps").range(-1e9, 1e9).byDefault(100000))
             .returnsNull()
             .example({{"device", "lidar"}, {"kind", "loss"}, {"share", 0.05}}, QJsonValue())
             .handler([this](const Call &call) { return setFault(call); }));

@@ -6,7 +6,8 @@ namespace hermes {
 
 namespace {
 
-void applyFault(RoboClawEmulator::Faults &faults, const Call &call) {
+void applyFault(RoboClawEmulator &controller, const Call &call) {
+    RoboClawEmulator::Faults &faults = controller.faults();
     const QString kind = call.text("kind");
     if (kind == "none")
         faults = {};
@@ -18,6 +19,18 @@ void applyFault(RoboClawEmulator::Faults &faults, const Call &call) {
         faults.corrupt = call.number("share");
     else if (kind == "slow")
         faults.delay = call.number("delay_s");
+    else if (kind == "deaf")
+        faults.deaf = true;
+    else if (kind == "mute")
+        faults.drop = 1;
+    else if (kind == "latched")
+        faults.latched = true;
+    else if (kind == "echo")
+        faults.echo = true;
+    else if (kind == "stuck_timeout")
+        faults.stuckTimeout = true;
+    else if (kind == "brownout")
+        controller.restart(call.number("delay_s"));
     else if (kind == "emergency_stop")
         faults.status |= roboclaw::EmergencyStop;
     else if (kind == "over_temperature")
@@ -28,9 +41,13 @@ void applyFault(RoboClawEmulator::Faults &faults, const Call &call) {
         faults.status |= roboclaw::DriverFaultM1;
 }
 
-void applyFault(MotorChannel &motor, const QString &kind) {
+void applyFault(MotorChannel &motor, const Call &call) {
+    const QString kind = call.text("kind");
+    if (kind == "jump")
+        return motor.jump(call.integer("counts"));
     motor.setBlocked(kind == "blocked");
     motor.setEncoderBroken(kind == "encoder");
+    motor.setEncoderBackward(kind == "backward");
 }
 
 } // namespace
@@ -56,9 +73,12 @@ void Simulator::declareMotorSettings() {
                 .group("Motors"));
     }
     addSetting(
-        Field::integer("motors.status_bits", "Width of the status that the controllers' firmware tells")
-            .with("enum", QJsonArray{16, 32})
-            .byDefault(32)
+        Field::text(
+            "motors.firmware",
+            "Of the controllers: 4.1.28 tells its status in 16 bits, 4.3.6 does not know commands 0 to 13")
+            .choices(QStringList(RoboClawEmulator::firmwareVersions.begin(),
+                                 RoboClawEmulator::firmwareVersions.end()))
+            .byDefault("4.2.8")
             .appliesOnRestart()
             .group("Motors"));
     addNumber("Motors", "motors.full_speed", "Encoder counts a second at full duty and 24 V", "1/s", 100, 2e7,
@@ -96,8 +116,7 @@ Drivetrain::Options Simulator::drivetrainOptions() {
     for (std::size_t i = 0; i < options.controller.size(); ++i) {
         RoboClawEmulator::Options &controller = options.controller[i];
         controller.address = std::uint8_t(values.integer(QString("motors.address%1").arg(i + 1)));
-        controller.status =
-            values.integer("motors.status_bits") == 16 ? roboclaw::Dialect::Other : roboclaw::Dialect::Usual;
+        controller.setFirmware(values.text("motors.firmware").toStdString());
         controller.motor.fullSpeed = values.number("motors.full_speed");
         controller.motor.lag = values.number("motors.lag_s");
         controller.seed = std::uint64_t(values.number("seed")) + i;
@@ -112,20 +131,25 @@ Result<QJsonValue> Simulator::setMotorFault(const Call &call) {
         if (second && lines_.count() < 2)
             return Error(ErrorCode::NotReady,
                          "both controllers share line1; motors.link2 makes a second one");
-        lines_.setPulled(second, kind == "pulled");
+        if (kind != "adapter")
+            lines_.setPulled(second, kind == "pulled");
     } else if (worldPath_.isEmpty()) {
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
     }
     pump_.with([&](Simulation &simulation) {
         Drivetrain &drivetrain = simulation.drivetrain();
-        if (device.startsWith("controller"))
-            applyFault(drivetrain.controller(second).faults(), call);
+        if (device.startsWith("line"))
+            drivetrain.setLatency(second, kind == "adapter" ? call.number("delay_s") : 0);
+        else if (device == "controllers")
+            drivetrain.setSwapped(kind == "swapped");
+        else if (device.startsWith("controller"))
+            applyFault(drivetrain.controller(second), call);
         else if (device == "battery")
             drivetrain.battery().setCharge(kind == "none" ? 1 : call.number("share"));
         else if (device == "wheels")
             drivetrain.setSlip(kind == "none" ? settings().number("frame.slip") : call.number("share"));
         else if (const int wheel = wheelNumber(device); wheel >= 0)
-            applyFault(drivetrain.wheel(wheel), kind);
+            applyFault(drivetrain.wheel(wheel), call);
     });
     logInfo("simulator", QString("fault of %1: %2").arg(device, kind));
     return QJsonValue();

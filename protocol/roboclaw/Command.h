@@ -81,8 +81,11 @@ enum class Command : std::uint8_t {
     SetDefaultAccelM2 = 69,
     SetDefaultSpeedM1 = 70,
     SetDefaultSpeedM2 = 71,
+    ReadDefaultSpeeds = 72,
     SetPinModes = 74,
     ReadPinModes = 75,
+    SetDeadBand = 76, ///< 0.1 %, backward and forward
+    ReadDeadBand = 77,
     ReadEncoders = 78, ///< both counts
     ReadRawSpeeds = 79,
     RestoreDefaults = 80,
@@ -97,11 +100,23 @@ enum class Command : std::uint8_t {
     ReloadSettings = 95,
     SetConfig = 98,
     ReadConfig = 99,
+    SetOutputModes = 100, ///< of the outputs CTRL1 and CTRL2; 4.3.6 takes 100 and 101 for something else
+    ReadOutputModes = 101,
+    SetOutput1 = 102, ///< 0 to 65535 for 0 to 100 %
+    SetOutput2 = 103,
+    ReadOutputs = 104,
+    SetHomingM1 = 105, ///< duty or share of QPPS, time-out in 1/300 s
+    SetHomingM2 = 106,
+    ReadHoming = 107, ///< of both motors; the manual's answer shows one
     ReadAverageSpeeds = 108,
     SetSpeedErrorLimits = 109,
     ReadSpeedErrorLimits = 110,
     SetPositionErrorLimits = 112,
     ReadPositionErrorLimits = 113,
+    SetVoltageOffsets = 115, ///< 0.1 V, two's complement, of the main and the logic battery
+    ReadVoltageOffsets = 116,
+    SetCurrentBlanking = 117, ///< duty below which no current is told
+    ReadCurrentBlanking = 118,
     SetMaxCurrentM1 = 133, ///< 10 mA; maximum, minimum (0)
     SetMaxCurrentM2 = 134,
     ReadMaxCurrentM1 = 135,
@@ -109,10 +124,11 @@ enum class Command : std::uint8_t {
     SetPwmMode = 148,
     ReadPwmMode = 149,
     ReadEeprom = 252,
-    WriteEeprom = 253,
+    WriteEeprom = 253, ///< acknowledged twice: at once, and by eepromWritten
 };
 
 constexpr std::uint32_t writeSettingsKey = 0xE22EAB7A;
+constexpr std::uint8_t eepromWritten = 0xAA;
 constexpr std::uint8_t firstAddress = 0x80, lastAddress = 0x87;
 
 /// How a command looks on the wire. Fields are letters as in Python's struct: B u8, H u16, h i16, I u32,

@@ -93,11 +93,12 @@ std::optional<Bytes> encodeReply(const Request &request, const Values &values, D
     return reply;
 }
 
-Bytes encodeText(const Request &request, std::string_view text) {
+Bytes encodeText(const Request &request, std::string_view text, bool lineFeed) {
     Bytes reply;
     for (const char c : text.substr(0, maxText - 2))
         reply.push(std::uint8_t(c));
-    reply.push('\n');
+    if (lineFeed)
+        reply.push('\n');
     reply.push(0);
     appendCrc(request, reply);
     return reply;

@@ -83,8 +83,9 @@ enum class Dialect { Usual, Other }; ///< which fields of a Layout
 /// The answer to a read, as a controller sends it. Nothing when the values do not fit the fields.
 std::optional<Bytes> encodeReply(const Request &request, const Values &values,
                                  Dialect dialect = Dialect::Usual);
-/// The answer to ReadVersion: text, LF, NUL and CRC. Longer text is cut to 46 characters.
-Bytes encodeText(const Request &request, std::string_view text);
+/// The answer to ReadVersion: text, LF, NUL and CRC. Longer text is cut to 46 characters. Some firmware
+/// leaves the line feed out.
+Bytes encodeText(const Request &request, std::string_view text, bool lineFeed = true);
 constexpr std::uint8_t acknowledgement = 0xFF;
 
 /// Puts the numbers behind the bytes. False when they are not as many as the fields, or one does not fit.

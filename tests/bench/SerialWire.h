@@ -108,9 +108,9 @@ private:
             hear_ = std::max(hear_, now()) + byte_s_; // the last bit of this byte
             overhear(bytes[i]);
             for (auto &emulator : emulators_) {
-                if (const auto answer = emulator.receive(bytes[i], hear_)) {
-                    tell_ = std::max(tell_, hear_) + double(answer->bytes.size()) * byte_s_;
-                    answers_.push_back({tell_, answer->bytes});
+                for (const auto &answer : emulator.receive(bytes[i], hear_)) {
+                    tell_ = std::max(tell_, hear_) + double(answer.bytes.size()) * byte_s_;
+                    answers_.push_back({tell_, answer.bytes});
                 }
             }
         }

@@ -221,15 +221,15 @@ private:
     void hand(std::size_t number, quint8 byte, double time) {
         Emulator &emulator = emulators_[number];
         const auto before = emulator.counts().requests;
-        const auto answer = emulator.receive(byte, time);
+        const auto answers = emulator.receive(byte, time);
         if (emulator.counts().requests != before)
-            judge(number, answer && answer->bytes.size() == 1, time);
-        if (!answer)
-            return;
-        hermes::roboclaw::Bytes bytes;
-        for (std::size_t i = 0; i < answer->bytes.size(); ++i)
-            bytes.push(noisy(answer->bytes[i]));
-        late_.push_back({time + answer->delay, bytes});
+            judge(number, !answers.empty() && answers.back().bytes.size() == 1, time);
+        for (const Emulator::Answer &answer : answers) {
+            hermes::roboclaw::Bytes bytes;
+            for (std::size_t i = 0; i < answer.bytes.size(); ++i)
+                bytes.push(noisy(answer.bytes[i]));
+            late_.push_back({time + answer.delay, bytes});
+        }
     }
     // After a command that was executed the motors are told what the host has sent, or stopped by themselves.
     void judge(std::size_t number, bool acknowledged, double time) {

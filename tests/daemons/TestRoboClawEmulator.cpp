@@ -16,6 +16,14 @@ private Q_SLOTS:
     void settingsAreKept();
     void faultsOfTheLine();
     void statusBitsOfBothWidths();
+    void oldCommandsSetTheLimits();
+    void encoderStatusTellsWraps();
+    void writtenCellIsAcknowledgedTwice();
+    void firmwareKnowsItsCommands_data();
+    void firmwareKnowsItsCommands();
+    void newFirmwareHasItsOwnFields();
+    void commandsCanBeUnknown();
+    void versionWithoutLineFeed();
 };
 
 void TestRoboClawEmulator::answersAsPublished_data() {
@@ -34,7 +42,7 @@ void TestRoboClawEmulator::answersAsPublished_data() {
     row("counts", "804E", "0000000000000000C89A");
     row("buffers", "802F", "8080FDDF");
     row("wrong CRC", "802500000000000000003405", "");
-    row("no such command", "8048", "");
+    row("no such command", "8049", "");
     row("another address",
         "82250000000000000000"
         "EA8E",
@@ -103,11 +111,11 @@ void TestRoboClawEmulator::gapsAndDamageAreSilent() {
 void TestRoboClawEmulator::everyReadAnswers() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
-    const QMap<int, int> sizes{{15, 1},  {16, 5},  {17, 5},  {18, 5},  {19, 5}, {24, 2},  {25, 2},
-                               {30, 5},  {31, 5},  {47, 2},  {48, 4},  {49, 4}, {55, 16}, {56, 16},
-                               {59, 4},  {60, 4},  {63, 28}, {64, 28}, {75, 3}, {78, 8},  {79, 8},
-                               {81, 8},  {82, 2},  {83, 2},  {90, 4},  {91, 2}, {99, 2},  {108, 8},
-                               {110, 8}, {113, 8}, {135, 8}, {136, 8}, {149, 1}};
+    const QMap<int, int> sizes{
+        {15, 1},  {16, 5},   {17, 5},  {18, 5},  {19, 5},  {24, 2},  {25, 2},  {30, 5},  {31, 5},  {47, 2},
+        {48, 4},  {49, 4},   {55, 16}, {56, 16}, {59, 4},  {60, 4},  {63, 28}, {64, 28}, {72, 4},  {75, 3},
+        {77, 2},  {78, 8},   {79, 8},  {81, 8},  {82, 2},  {83, 2},  {90, 4},  {91, 2},  {99, 2},  {101, 2},
+        {104, 4}, {107, 12}, {108, 8}, {110, 8}, {113, 8}, {116, 2}, {118, 4}, {135, 8}, {136, 8}, {149, 1}};
     for (auto entry = sizes.begin(); entry != sizes.end(); ++entry) {
         const QByteArray data = client.read(0x80, entry.key());
         QVERIFY2(data.size() == entry.value() && data != "silent",
@@ -120,12 +128,13 @@ void TestRoboClawEmulator::everyReadAnswers() {
 void TestRoboClawEmulator::everyWriteIsAcknowledged() {
     Drivetrain drivetrain;
     RoboClawClient client(drivetrain);
-    QMap<int, int> sizes{
-        {14, 1},  {20, 0},  {22, 4},  {23, 4},  {28, 16}, {29, 16}, {32, 2},  {33, 2},  {34, 4},  {35, 4},
-        {36, 4},  {37, 8},  {38, 8},  {39, 8},  {40, 12}, {41, 9},  {42, 9},  {43, 17}, {44, 13}, {45, 13},
-        {46, 21}, {50, 16}, {51, 25}, {52, 6},  {53, 6},  {54, 12}, {57, 4},  {58, 4},  {61, 28}, {62, 28},
-        {65, 17}, {66, 17}, {67, 33}, {68, 4},  {69, 4},  {70, 2},  {71, 2},  {74, 3},  {80, 0},  {92, 1},
-        {93, 1},  {95, 0},  {98, 2},  {109, 8}, {112, 8}, {133, 8}, {134, 8}, {148, 1}, {253, 3}};
+    QMap<int, int> sizes{{14, 1},  {20, 0},  {22, 4},  {23, 4},  {28, 16}, {29, 16}, {32, 2},  {33, 2},
+                         {34, 4},  {35, 4},  {36, 4},  {37, 8},  {38, 8},  {39, 8},  {40, 12}, {41, 9},
+                         {42, 9},  {43, 17}, {44, 13}, {45, 13}, {46, 21}, {50, 16}, {51, 25}, {52, 6},
+                         {53, 6},  {54, 12}, {57, 4},  {58, 4},  {61, 28}, {62, 28}, {65, 17}, {66, 17},
+                         {67, 33}, {68, 4},  {69, 4},  {70, 2},  {71, 2},  {74, 3},  {80, 0},  {92, 1},
+                         {93, 1},  {95, 0},  {98, 2},  {109, 8}, {112, 8}, {133, 8}, {134, 8}, {148, 1},
+                         {76, 2},  {100, 2}, {102, 2}, {103, 2}, {105, 6}, {106, 6}, {115, 2}, {117, 4}};
     for (int command = 0; command <= 13; ++command)
         sizes[command] = 1;
     sizes[26] = sizes[27] = 1;
@@ -157,9 +166,27 @@ void TestRoboClawEmulator::settingsAreKept() {
     QVERIFY(client.read(0x80, 56) != pid);
     QVERIFY(client.write(0x80, 57, RoboClawClient::number(0x00960104, 4)));
     QCOMPARE(client.read(0x80, 59), RoboClawClient::number(0x00960104, 4));
-    QVERIFY(client.write(0x80, 253, RoboClawClient::number(0x05ABCD, 3)));
+    client.write(0x80, 253, RoboClawClient::number(0x05ABCD, 3));
     QCOMPARE(client.read(0x80, 252, RoboClawClient::number(5, 1)), RoboClawClient::number(0xABCD, 2));
     QCOMPARE(client.read(0x80, 252, RoboClawClient::number(6, 1)), RoboClawClient::number(0, 2));
+    for (const auto &[write, read] : std::vector<std::pair<int, int>>{{76, 77}, {100, 101}, {117, 118}}) {
+        const QByteArray data = RoboClawClient::number(0x01020304, read == 118 ? 4 : 2);
+        QVERIFY(client.write(0x80, write, data));
+        QCOMPARE(client.read(0x80, read), data);
+    }
+    QVERIFY(client.write(0x80, 70, RoboClawClient::number(1111, 2)));
+    QVERIFY(client.write(0x80, 71, RoboClawClient::number(2222, 2)));
+    QCOMPARE(client.read(0x80, 72), RoboClawClient::number(1111, 2) + RoboClawClient::number(2222, 2));
+    QVERIFY(client.write(0x80, 103, RoboClawClient::number(65535, 2)));
+    QCOMPARE(client.read(0x80, 104), RoboClawClient::number(0xFFFF, 4));
+    QVERIFY(client.write(0x80, 105, RoboClawClient::number(8000, 2) + RoboClawClient::number(3000, 4)));
+    QCOMPARE(client.read(0x80, 107), RoboClawClient::number(8000, 2) + RoboClawClient::number(3000, 4) +
+                                         RoboClawClient::number(0, 6));
+    const auto volts = RoboClawClient::integer(client.read(0x80, 24), 0, 2);
+    QVERIFY(client.write(0x80, 115, RoboClawClient::number(-10, 1) + RoboClawClient::number(3, 1)));
+    QCOMPARE(client.read(0x80, 116).toHex(), QByteArray("f603"));
+    QCOMPARE(RoboClawClient::integer(client.read(0x80, 24), 0, 2), volts - 10);
+    QCOMPARE(RoboClawClient::integer(client.read(0x80, 25), 0, 2), std::int64_t(53));
     QVERIFY(client.write(0x80, 93, RoboClawClient::number(0x20, 1)));
     QCOMPARE(client.read(0x80, 91), RoboClawClient::number(0x0020, 2));
     QVERIFY(!client.write(0x80, 94, RoboClawClient::number(1, 4))); // not the key
@@ -209,6 +236,131 @@ void TestRoboClawEmulator::statusBitsOfBothWidths() {
         drivetrain.controller(number).faults().status = 0x00080001;
     QCOMPARE(client.read(0x80, 90).toHex(), QByteArray("00080001"));
     QCOMPARE(client.read(0x81, 90).toHex(), QByteArray("0804"));
+}
+
+void TestRoboClawEmulator::oldCommandsSetTheLimits() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    const auto set = [&](int command, int value) {
+        QVERIFY(client.write(0x80, command, RoboClawClient::number(value, 1)));
+    };
+    const auto limits = [&](int command) {
+        const QByteArray told = client.read(0x80, command);
+        return QPair<int, int>(int(RoboClawClient::integer(told, 0, 2)),
+                               int(RoboClawClient::integer(told, 2, 2)));
+    };
+    const auto logic = limits(60);
+    set(2, 25); // (11 V - 6 V) * 5
+    QCOMPARE(limits(59), qMakePair(110, 340));
+    set(3, 128); // 25 V * 5.12
+    QCOMPARE(limits(59), qMakePair(110, 250));
+    QCOMPARE(limits(60), logic);
+    set(26, 10); // 8 V
+    set(27, 92); // 18 V
+    QCOMPARE(limits(60), qMakePair(80, 180));
+    QCOMPARE(limits(59), qMakePair(110, 250));
+    set(2, 140); // 34 V
+    pass(drivetrain, 0.01);
+    QVERIFY(RoboClawClient::integer(client.read(0x80, 90), 0, 4) & 0x4000);
+}
+
+void TestRoboClawEmulator::encoderStatusTellsWraps() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    setQpps(client, 150000);
+    const auto status = [&](int command) { return int(quint8(client.read(0x80, command)[4])); };
+    const auto drive = [&](int m1, int m2) {
+        QVERIFY(client.speeds(0x80, m1, m2, 1000000));
+        pass(drivetrain, 0.1);
+    };
+    QCOMPARE(status(16), 0);
+    QVERIFY(client.write(0x80, 22, RoboClawClient::number(-5, 4)));
+    QCOMPARE(status(16), 0); // what is set is no wrap
+    drive(10000, -10000);
+    QCOMPARE(status(16), 4);     // over the end of 32 bits
+    QCOMPARE(status(16), 0);     // it clears on reading
+    QCOMPARE(status(17), 2 | 1); // below 0, and backward
+    QCOMPARE(status(17), 2);
+    drive(-20000, 0);
+    QCOMPARE(status(16), 2 | 1);
+    QCOMPARE(client.read(0x80, 78).size(), 8); // tells no status and clears none
+    drive(20000, 0);
+    drive(20000, 0);
+    QCOMPARE(status(16), 4);
+}
+
+// The manual tells 0xFF; a public client of the maker waits for one byte more.
+void TestRoboClawEmulator::writtenCellIsAcknowledgedTwice() {
+    Drivetrain drivetrain;
+    RoboClawClient client(drivetrain);
+    QByteArray packet = QByteArray::fromHex("80FD05ABCD");
+    packet += RoboClawClient::number(RoboClawClient::crcOf(packet), 2);
+    QCOMPARE(client.send(packet).toHex(), QByteArray("ffaa"));
+    QCOMPARE(client.delay, 0.005); // of the second: once the first was read
+    QCOMPARE(client.read(0x80, 252, RoboClawClient::number(5, 1)), RoboClawClient::number(0xABCD, 2));
+}
+
+void TestRoboClawEmulator::firmwareKnowsItsCommands_data() {
+    QTest::addColumn<QString>("firmware");
+    QTest::addColumn<int>("statusSize");
+    QTest::addColumn<QList<int>>("unknown");
+    QTest::newRow("16 bits") << "4.1.28" << 2 << QList<int>{72, 107, 110, 113, 116, 118};
+    QTest::newRow("usual") << "4.2.8" << 4 << QList<int>{};
+    QTest::newRow("new") << "4.3.6" << 4 << QList<int>{101, 104, 107};
+}
+
+void TestRoboClawEmulator::firmwareKnowsItsCommands() {
+    QFETCH(QString, firmware);
+    QFETCH(int, statusSize);
+    QFETCH(QList<int>, unknown);
+    Drivetrain::Options options;
+    options.controller[0].setFirmware(firmware.toStdString());
+    Drivetrain drivetrain(options);
+    RoboClawClient client(drivetrain);
+    QCOMPARE(client.read(0x80, 21), ("RoboClaw 2x45A v" + firmware + "\n").toLatin1() + '\0');
+    QCOMPARE(client.read(0x80, 90).size(), statusSize);
+    for (const int command : {15, 24, 49, 72, 77, 78, 101, 104, 107, 110, 113, 116, 118})
+        QCOMPARE(client.read(0x80, command) == "silent", unknown.contains(command));
+    const bool knowsOld = firmware != "4.3.6";
+    QCOMPARE(client.write(0x80, 0, RoboClawClient::number(127, 1)), knowsOld);
+    pass(drivetrain, 0.2);
+    QCOMPARE(drivetrain.isMoving(), knowsOld);
+}
+
+void TestRoboClawEmulator::newFirmwareHasItsOwnFields() {
+    Drivetrain::Options options;
+    options.controller[0].setFirmware("4.3.6");
+    Drivetrain drivetrain(options);
+    RoboClawClient client(drivetrain);
+    QCOMPARE(client.read(0x80, 59).toHex(), QByteArray("003c015400"));
+    QVERIFY(!client.write(0x80, 57, QByteArray::fromHex("00640104")));
+    pass(drivetrain, 0.02);
+    QVERIFY(client.write(0x80, 57, QByteArray::fromHex("0064010401")));
+    QCOMPARE(client.read(0x80, 59).toHex(), QByteArray("0064010401"));
+    QVERIFY(client.write(0x80, 68, RoboClawClient::number(1000, 4) + RoboClawClient::number(2000, 4)));
+    QCOMPARE(client.read(0x80, 81), RoboClawClient::number(1000, 4) + RoboClawClient::number(0, 4));
+    QVERIFY(client.write(0x80, 74, QByteArray::fromHex("0102030405")));
+    QCOMPARE(client.read(0x80, 75).toHex(), QByteArray("010203"));
+    QVERIFY(client.write(0x80, 148, QByteArray::fromHex("0101")));
+    QCOMPARE(client.read(0x80, 149).toHex(), QByteArray("01"));
+}
+
+void TestRoboClawEmulator::commandsCanBeUnknown() {
+    Drivetrain::Options options;
+    options.controller[0].unknown = {roboclaw::Command::SetSerialTimeout};
+    Drivetrain drivetrain(options);
+    RoboClawClient client(drivetrain);
+    QVERIFY(!client.write(0x80, 14, RoboClawClient::number(2, 1)));
+    QVERIFY(client.write(0x81, 14, RoboClawClient::number(2, 1)));
+    QCOMPARE(client.read(0x80, 15), RoboClawClient::number(0, 1));
+    QCOMPARE(drivetrain.controller(0).counts().unknown, std::uint64_t(1));
+}
+
+void TestRoboClawEmulator::versionWithoutLineFeed() {
+    Drivetrain::Options options;
+    options.controller[0].versionLineFeed = false;
+    Drivetrain drivetrain(options);
+    QCOMPARE(RoboClawClient(drivetrain).read(0x80, 21), QByteArray("RoboClaw 2x45A v4.2.8\0", 22));
 }
 
 QTEST_GUILESS_MAIN(TestRoboClawEmulator)

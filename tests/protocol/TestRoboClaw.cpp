@@ -160,7 +160,7 @@ void TestRoboClaw::refusesWhatDoesNotFit_data() {
     QTest::addColumn<Values>("values");
     QTest::newRow("address below") << 0x7F << 37 << Values{0, 0};
     QTest::newRow("address above") << 0x88 << 37 << Values{0, 0};
-    QTest::newRow("no command") << 0x80 << 72 << Values{};
+    QTest::newRow("no command") << 0x80 << 73 << Values{};
     QTest::newRow("too few") << 0x80 << 37 << Values{0};
     QTest::newRow("too many") << 0x80 << 37 << Values{0, 0, 0};
     QTest::newRow("far too many") << 0x80 << 37 << Values{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};

@@ -120,7 +120,7 @@ void TestRoboClawParsers::statusOfBothWidths() {
 
 void TestRoboClawParsers::everyCommandPassesBothWays() {
     std::mt19937 random(1);
-    QCOMPARE(int(everyCommand().size()), 101);
+    QCOMPARE(int(everyCommand().size()), 116);
     for (const std::uint8_t command : everyCommand()) {
         for (int round = 0; round < 20; ++round) {
             const Layout &layout = *layoutOf(command);
@@ -180,7 +180,7 @@ void TestRoboClawParsers::deviceDropsPartsAndStrangers() {
     RequestParser device;
     QCOMPARE(device.feed(0x12), RequestParser::Result::Unknown);
     QCOMPARE(device.feed(0x80), RequestParser::Result::Incomplete);
-    QCOMPARE(device.feed(72), RequestParser::Result::Unknown);
+    QCOMPARE(device.feed(73), RequestParser::Result::Unknown);
     QCOMPARE(device.feed(0x80), RequestParser::Result::Incomplete);
     QCOMPARE(device.feed(37), RequestParser::Result::Incomplete);
     QCOMPARE(device.pending(), std::size_t(2));

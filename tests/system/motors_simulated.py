@@ -95,8 +95,31 @@ def check_faults(simulator, client, link):
     fault("battery", "charge", share=0)
     wait_for("an empty battery", lambda: client.read(0x80, 24, "H")[0] <= 200)
     fault("battery", "none")
-    for kind in ("blocked", "encoder", "none"):
+    for kind in ("blocked", "encoder", "backward", "none"):
         fault("rear_left", kind)
+    for kind in ("deaf", "mute"):
+        fault("controller1", kind)
+        assert client.read(0x80, 24, "H", 0.1) is None and client.read(0x81, 24, "H")
+        fault("controller1", "none")
+    fault("controller1", "echo")
+    assert client.exchange(b"\x80\x18", 6)[:2] == b"\x80\x18"
+    fault("controller1", "none")
+    for kind in ("latched", "stuck_timeout", "none"):
+        fault("controller1", kind)
+    before = client.read(0x80, 78, "II")[0]
+    fault("front_left", "jump", counts=-123456)
+    assert client.read(0x80, 78, "II")[0] == (before - 123456) % 2**32
+    fault("controllers", "swapped")
+    assert client.read(0x81, 78, "II")[0] == (before - 123456) % 2**32
+    fault("controllers", "none")
+    fault("line1", "adapter", delay_s=0.1)
+    began = time.monotonic()
+    assert client.read(0x80, 24, "H") and time.monotonic() - began > 0.09
+    fault("line1", "none")
+    fault("controller2", "brownout", delay_s=0.2)
+    assert client.read(0x81, 24, "H", 0.05) is None
+    wait_for("the restarted controller", lambda: client.read(0x81, 15, "B", 0.1) == (0,))
+    refused(simulator, "controllers has no fault deaf", device="controllers", kind="deaf")
     refused(simulator, "lidar has no fault blocked; it has: none, silence, loss", device="lidar", kind="blocked")
     refused(simulator, "share line1", device="line2", kind="pulled")
 
