@@ -1,5 +1,7 @@
 #include "daemons/motorcontrol/MotorController.h"
 
+#include "daemons/motorcontrol/FailureText.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -22,35 +24,6 @@ constexpr double standMargin_s = 0.2;       // and half of the time of braking m
 constexpr double longestStep_s = 0.04; // a cycle that came later: this program stood still, and asked nothing
 
 constexpr std::array<qint32, 2> zero{};
-
-QString nameOf(Command command) {
-    switch (command) {
-    case Command::SpeedAccel:
-        return "40 (speeds)";
-    case Command::Duty:
-        return "34 (duties)";
-    case Command::SetSerialTimeout:
-        return "14 (set serial time-out)";
-    case Command::ReadSerialTimeout:
-        return "15 (serial time-out)";
-    case Command::ReadEncoders:
-        return "78 (encoders)";
-    case Command::ReadVersion:
-        return "21 (version)";
-    case Command::ReadStatus:
-        return "90 (status)";
-    case Command::ReadCurrents:
-        return "49 (currents)";
-    case Command::ReadMainBattery:
-        return "24 (main battery)";
-    case Command::ReadLogicBattery:
-        return "25 (logic battery)";
-    case Command::ReadTemperature:
-        return "82 (temperature)";
-    default:
-        return QString("%1 (velocity PID)").arg(int(command));
-    }
-}
 
 } // namespace
 
@@ -127,11 +100,11 @@ void MotorController::watchAnswers() {
     if (clock_ - lastAnswer_ > lostAfter_s)
         heard_ = false;
     if (clock_ - lastObeyed_ > lostAfter_s)
-        lose(failureOf(Command::SpeedAccel));
+        lose(failureText(Command::SpeedAccel, failure_, heard_));
     else if (clock_ - lastCounts_ > lostAfter_s)
-        lose(failureOf(Command::ReadEncoders));
+        lose(failureText(Command::ReadEncoders, failure_, heard_));
     else if (clock_ - lastSlow_ > slowLostAfter_s)
-        lose(failureOf(ControllerReadings::slowCommand(slow_)));
+        lose(failureText(ControllerReadings::slowCommand(slow_), failure_, heard_));
 }
 
 void MotorController::watchStandstill() {
@@ -210,25 +183,6 @@ std::optional<MotorController::Ask> MotorController::dueReady(Task task) const {
     return std::nullopt;
 }
 
-QString MotorController::failureOf(Command command) const {
-    switch (failure_) {
-    case Bus::Result::BadCrc:
-        return "answers with a wrong checksum";
-    case Bus::Result::Unexpected:
-        return QString("answers command %1 with something unexpected").arg(nameOf(command));
-    case Bus::Result::LineClosed:
-        return "has no line";
-    default:
-        break;
-    }
-    if (!heard_)
-        return "does not answer";
-    const QString text = QString("answers, but not command %1").arg(nameOf(command));
-    return command == Command::SetSerialTimeout
-               ? text + ": its firmware may be older than that command, and it would not stop by itself"
-               : text;
-}
-
 void MotorController::finished(const Bus::Outcome &outcome, double now) {
     if (!asked_)
         return; // lost, or to be set up anew, in between
@@ -261,7 +215,7 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
         stopAcknowledged_ = false;
         if (attempts_ == 1) // that was not waited for long
             return;
-        error_ = failureOf(command);
+        error_ = failureText(command, failure_, heard_);
         return keepSilent(outcome); // what came in spite of it may be late, or another one's
     }
     if (command != Command::ReadEncoders) {
@@ -289,7 +243,7 @@ void MotorController::failSetup(const QString &reason, double now) {
 
 void MotorController::setupAnswered(Command command, const Bus::Outcome &outcome, double now) {
     if (outcome.result != Bus::Result::Done)
-        return failSetup(failureOf(command), now);
+        return failSetup(failureText(command, failure_, heard_), now);
     replySum_ += outcome.received - outcome.sent;
     ++replies_;
     const QString fault = setup_.take(outcome, readings_);

@@ -97,7 +97,6 @@ private:
     void watchAnswers();
     void lose(const QString &reason);
     void failSetup(const QString &reason, double now);
-    QString failureOf(roboclaw::Command command) const;
     Ask ask(roboclaw::Command command, double patience_s, const roboclaw::Values &values = {}) const;
     /// Longer than the controller's own time-out.
     double silence_s() const;
