@@ -14,7 +14,7 @@ public:
     /// Of a recording of a known length that begins at a stamp: time delay_ns is there, and only steps longer
     /// than the recording are a clock that was set.
     PlayTime(std::int64_t start_ns, std::int64_t length_ns, std::int64_t delay_ns)
-        : longest_ns_(std::max(longest_ns_, length_ns))
+        : longest_ns_(std::max(minute_ns, length_ns))
         , started_(true)
         , last_ns_(start_ns)
         , now_ns_(delay_ns) {}
@@ -33,7 +33,8 @@ public:
     static constexpr std::int64_t end_ns = 1000000000000000000; ///< 30 years: time stands still there
 
 private:
-    std::int64_t longest_ns_ = 60000000000;
+    static constexpr std::int64_t minute_ns = 60000000000;
+    std::int64_t longest_ns_ = minute_ns;
     bool started_ = false;
     std::int64_t last_ns_ = 0; ///< stamp
     std::int64_t now_ns_ = 0;
