@@ -59,6 +59,7 @@ private Q_SLOTS:
     void theTwinGivesTheSameBits();
     void denormalNumbersMayBeLost();
     void anyInterval();
+    void theLastRowIsOfAllPoints();
     void edgeOfTheThreshold();
     void intervalsFitAndAreLongest_data();
     void intervalsFitAndAreLongest();
@@ -124,6 +125,25 @@ void TestBlockSums::anyInterval() {
         QVERIFY(blocks.rounding(first, end) < 1e-4 * (exact.xx + exact.yy) + 1e-2);
         if (end > first + 2)
             QCOMPARE(blocks.fitWithin(first, end, 1e-4), plain.fitWithin(first, end, 1e-4));
+    }
+}
+
+// However many points are behind the last full block.
+void TestBlockSums::theLastRowIsOfAllPoints() {
+    std::mt19937 random(4);
+    for (const simd::Level level : {simd::Level::Scalar, simd::bestLevel()}) {
+        for (std::size_t count = 640; count <= 640 + BlockSums::block; ++count) {
+            std::vector<Vector2D<float>> points;
+            for (std::size_t i = 0; i < count; ++i)
+                points.emplace_back(0.02f * float(i), float(random() % 1000) / 1000);
+            BlockSums sums;
+            sums.level = level;
+            sums.assign(points);
+            const SumRow &last = sums.table().row(sums.lastRow());
+            QVERIFY2(withinRounding(sums.tls(0, count, last), exactSums(points, 0, count),
+                                    sums.rounding(0, count)),
+                     qPrintable(QString("%1 points").arg(count)));
+        }
     }
 }
 

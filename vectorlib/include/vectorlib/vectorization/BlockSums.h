@@ -170,11 +170,12 @@ private:
         for (std::size_t b = 0; b < blocks; b += 4)
             sumFourBlocks(b);
     }
-    // A copy of the points after the last full block, filled up with points that add nothing: its middle.
+    // A copy of the points after the last full block, filled up with points that add nothing: its middle,
+    // which is one of them where they do not reach it.
     void fillLastBlock() {
         const std::size_t count = points_.size() % block;
         const Point *from = points_.end() - count;
-        const Point middle = count == 0 ? points_.back() : from[std::min(count / 2, block / 2)];
+        const Point middle = count == 0 ? points_.back() : from[count > block / 2 ? block / 2 : count / 2];
         std::fill(std::copy(from, points_.end(), lastBlock_), lastBlock_ + block, middle);
     }
     double pointsIn(std::size_t b) const {
