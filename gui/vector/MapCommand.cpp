@@ -45,8 +45,9 @@ struct MapCommand {
         const vectorlib::MapDrawing drawing = {title(run), run.segments(), run.trajectory(), run.reference()};
         if (mapFile)
             mapFile->write(drawing);
+        vectorlib::StampMend mend;
         if (trajectoryFile)
-            vectorlib::writeTum(*trajectoryFile, run.trajectory());
+            mend = vectorlib::writeTum(*trajectoryFile, run.trajectory());
         if (svgFile)
             drawMap(*svgFile, drawing);
 
@@ -58,6 +59,8 @@ struct MapCommand {
             std::cerr << "hermes-vector: left out " << report.damagedLines
                       << " damaged line(s), the first: " << report.firstDamage << '\n';
         }
+        if (mend.moved > 0)
+            json["moved_stamps"] = tell(mend);
         json["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         summaryFile << json.dump(2) << '\n';
         files.commit();
@@ -69,6 +72,16 @@ struct MapCommand {
             run.take(scan);
             progress.update(number + 1, total);
         });
+    }
+    static nlohmann::ordered_json tell(const vectorlib::StampMend &mend) {
+        std::cerr << "hermes-vector: moved " << mend.moved
+                  << " stamp(s) of the trajectory so that they ascend, the farthest by "
+                  << vectorlib::Fixed{mend.farthest, 6} << " s: those of the scans have " << mend.ties
+                  << " tie(s) and " << mend.stepsBack << " step(s) back\n";
+        return {{"stamps", mend.moved},
+                {"ties", mend.ties},
+                {"steps_back", mend.stepsBack},
+                {"farthest_s", mend.farthest}};
     }
     std::string title(const MapRun &run) const {
         return std::filesystem::path(source.path).filename().string() + ": map of " +
@@ -104,7 +117,8 @@ void addMapCommand(CLI::App &app) {
             ""))
         ->type_name("FILE");
     sub->add_option("--out-trajectory", command->outTrajectory,
-                    "The sensor's poses, TUM format: stamp x y z qx qy qz qw")
+                    "The sensor's poses, TUM format: stamp x y z qx qy qz qw; a stamp that is not later than "
+                    "the one before is moved to a microsecond behind it")
         ->type_name("FILE");
     sub->add_option("--summary,--out", command->summary, "The summary; standard output when not given")
         ->type_name("FILE");

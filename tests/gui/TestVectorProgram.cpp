@@ -149,6 +149,63 @@ private Q_SLOTS:
         QVERIFY(contents(path("m.yaml")).contains("image: m.pgm"));
     }
 
+    /// As logs have them that were rounded, or put together in another order than measured.
+    void trajectoriesAscendWhereTheLogDoesNot() {
+        const QList<QByteArray> stamps{"0", "1", "1", "1", "4", "2", "3", "7"};
+        QList<QByteArray> lines = contents(data("corrected.log")).split('\n');
+        int scan = 0;
+        for (QByteArray &line : lines) {
+            QList<QByteArray> fields = line.simplified().split(' ');
+            if (fields[0] != "FLASER")
+                continue;
+            fields[fields.size() - 3] = stamps[scan++];
+            line = fields.join(' ');
+        }
+        QCOMPARE(scan, stamps.size());
+        write(path("in.log"), lines.join('\n'));
+        const Result r = run({"map", path("in.log"), "--corrected", "--out-trajectory", path("t.tum")});
+        QCOMPARE(r.status, 0);
+        QList<QByteArray> written;
+        for (const QByteArray &line : contents(path("t.tum")).trimmed().split('\n'))
+            written << line.split(' ')[0];
+        QCOMPARE(written,
+                 (QList<QByteArray>{"0", "1", "1.000001", "1.000002", "4", "4.000001", "4.000002", "7"}));
+        const QJsonObject mended = json(r.out)["moved_stamps"].toObject();
+        QCOMPARE(mended["stamps"].toInt(), 4);
+        QCOMPARE(mended["ties"].toInt(), 2);
+        QCOMPARE(mended["steps_back"].toInt(), 1);
+        QVERIFY(std::abs(mended["farthest_s"].toDouble() - 2.000001) < 1e-9);
+        QVERIFY2(r.err.contains("moved 4 stamp(s)") && r.err.contains("2 tie(s)") &&
+                     r.err.contains("1 step(s) back"),
+                 r.err.constData());
+        // Nothing is said where nothing was written.
+        QCOMPARE(run({"map", path("in.log"), "--corrected"}).err, QByteArray());
+    }
+
+    /// Of the public logs one steps back, two lost the digits of their stamps.
+    void trajectoriesOfRealLogsAscend_data() {
+        QTest::addColumn<int>("ties");
+        QTest::addColumn<int>("stepsBack");
+        QTest::newRow("intel") << 0 << 4;
+        QTest::newRow("belgioioso") << 394 << 0;
+        QTest::newRow("orebro") << 236 << 0;
+    }
+    void trajectoriesOfRealLogsAscend() {
+        const QString log = realData(QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
+        if (log.isEmpty())
+            QSKIP("the logs of real robots are not here; HERMES_DATA names their folder");
+        const Result r = run({"map", log, "--corrected", "--out-trajectory", path("t.tum")});
+        QCOMPARE(r.status, 0);
+        double last = -INFINITY;
+        for (const QByteArray &line : contents(path("t.tum")).trimmed().split('\n')) {
+            QVERIFY(line.split(' ')[0].toDouble() > last);
+            last = line.split(' ')[0].toDouble();
+        }
+        const QJsonObject mended = json(r.out)["moved_stamps"].toObject();
+        QTEST(mended["ties"].toInt(), "ties");
+        QTEST(mended["steps_back"].toInt(), "stepsBack");
+    }
+
     void mapOfAFolder() {
         QVERIFY(QDir(path("")).mkpath("scans"));
         for (int i = 0; i < 3; ++i)

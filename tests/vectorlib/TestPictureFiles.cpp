@@ -102,6 +102,61 @@ private Q_SLOTS:
                  QByteArray("1234567890.125 1 -2.5 0 0 0 1 6."));
     }
 
+    void tumStampsAscend_data() {
+        QTest::addColumn<QList<double>>("stamps");
+        QTest::addColumn<QList<QByteArray>>("written");
+        QTest::addColumn<int>("ties");
+        QTest::addColumn<int>("stepsBack");
+        QTest::addColumn<double>("farthest");
+        QTest::newRow("none") << QList<double>{} << QList<QByteArray>{} << 0 << 0 << 0.0;
+        QTest::newRow("ascending") << QList<double>{-1, 0, 0.25, 7}
+                                   << QList<QByteArray>{"-1", "0", "0.25", "7"} << 0 << 0 << 0.0;
+        QTest::newRow("tie") << QList<double>{0, 1, 1, 2} << QList<QByteArray>{"0", "1", "1.000001", "2"} << 1
+                             << 0 << 1e-6;
+        QTest::newRow("step back") << QList<double>{0, 4, 2, 3, 3, 7}
+                                   << QList<QByteArray>{"0", "4", "4.000001", "4.000002", "4.000003", "7"}
+                                   << 1 << 1 << 2.000001;
+        QTest::newRow("a mended one is passed again")
+            << QList<double>{1, 1, 1.0000005, 1.000003}
+            << QList<QByteArray>{"1", "1.000001", "1.000002", "1.000003"} << 1 << 0 << 1.5e-6;
+    }
+    void tumStampsAscend() {
+        QFETCH(QList<double>, stamps);
+        std::vector<StampedPose> trajectory;
+        for (const double stamp : stamps)
+            trajectory.push_back({stamp, {}});
+        std::ostringstream out;
+        const StampMend mend = writeTum(out, trajectory);
+        QList<QByteArray> written;
+        for (const QByteArray &line : QByteArray::fromStdString(out.str()).split('\n'))
+            if (!line.isEmpty())
+                written << line.split(' ')[0];
+        QTEST(written, "written");
+        QTEST(int(mend.ties), "ties");
+        QTEST(int(mend.stepsBack), "stepsBack");
+        QFETCH(double, farthest);
+        QVERIFY(std::abs(mend.farthest - farthest) < 1e-9);
+        int moved = 0;
+        for (int i = 0; i < stamps.size(); ++i)
+            moved += written[i].toDouble() != stamps[i];
+        QCOMPARE(int(mend.moved), moved);
+    }
+    /// A log that lost its digits; and one whose stamps are so far out that a microsecond is no number.
+    void tumStampsAscendInAnyDigits() {
+        for (const double stamp : {0.0, 1.01893e9, 1234567890.1234567, -3e15, 9e17}) {
+            std::ostringstream out;
+            QCOMPARE(writeTum(out, std::vector<StampedPose>(3000, {stamp, {}})).ties, std::size_t(2999));
+            double last = -INFINITY;
+            QSet<QByteArray> microseconds;
+            for (const QByteArray &line : QByteArray::fromStdString(out.str()).trimmed().split('\n')) {
+                QVERIFY(line.split(' ')[0].toDouble() > last);
+                last = line.split(' ')[0].toDouble();
+                microseconds.insert(QByteArray::number(last, 'f', 6));
+            }
+            QCOMPARE(microseconds.size(), 3000); // for programs that round to them
+        }
+    }
+
     void occupancy() {
         const auto picture = OccupancyPicture::draw(corner(), {{0, {1, 0.5, 0}}, {1, {1, 1, 0}}}, 0.1);
         QVERIFY(picture.has_value());
