@@ -60,6 +60,15 @@ std::optional<double> FieldReader::number(int field, double least, double most, 
     return std::nullopt;
 }
 
+std::optional<int> FieldReader::whole(int field, int least, int most, const char *expected) {
+    const std::optional<double> value = number(field, least, most, expected);
+    if (!value)
+        return std::nullopt;
+    if (*value != int(*value))
+        fail(field, expected);
+    return int(*value);
+}
+
 std::optional<char> FieldReader::letter(int field, std::string_view choices, const char *expected) {
     const std::string_view text = sentence_.field(field);
     if (text.empty())
@@ -100,13 +109,11 @@ std::optional<Date> FieldReader::date(int field) {
 }
 
 std::optional<Position> FieldReader::position(int field) {
-    int empty = 0;
-    for (int i = 0; i < 4; ++i)
-        empty += sentence_.field(field + i).empty();
-    if (empty == 4)
+    if (sentence_.field(field).empty() && sentence_.field(field + 2).empty())
         return std::nullopt;
-    if (empty > 0)
-        fail(field, "latitude, N or S, longitude, E or W: all four, or none");
+    for (int i = 0; i < 4; ++i)
+        if (sentence_.field(field + i).empty())
+            fail(field, "latitude, N or S, longitude, E or W: all four, or none");
     const auto latitude = angle(field, 2, 90, "NS", "a latitude to 90 degrees, ddmm.mmmm, and N or S");
     const auto longitude =
         angle(field + 2, 3, 180, "EW", "a longitude to 180 degrees, dddmm.mmmm, and E or W");

@@ -13,6 +13,12 @@ struct Position {
     double longitude_deg = 0;
 };
 
+constexpr double knot = 1852.0 / 3600; ///< m/s
+constexpr double mostKnots = 9999;     ///< of a speed
+constexpr double mostMetres = 1e6;     ///< of an altitude
+constexpr double mostHdop = 9999;      ///< some write 99.99 or 9999 for none
+constexpr int mostSatellites = 999;
+
 /// What is wrong with a sentence; false when nothing is.
 struct FieldFault {
     int field = 0; ///< which, from 1; 0: their number or the address
@@ -39,13 +45,16 @@ public:
 
     /// A decimal number within the limits. Exponents, infinity and NaN are no such numbers.
     std::optional<double> number(int field, double least, double most, const char *expected);
+    /// One without decimals.
+    std::optional<int> whole(int field, int least, int most, const char *expected);
     /// One of the characters of choices.
     std::optional<char> letter(int field, std::string_view choices, const char *expected);
     /// hhmmss with any decimals.
     std::optional<UtcTime> time(int field);
     /// ddmmyy; years from 80 on are of the 20th century.
     std::optional<Date> date(int field);
-    /// Four fields: ddmm.mmmm, N or S, dddmm.mmmm, E or W. All of them, or none.
+    /// Four fields: ddmm.mmmm, N or S, dddmm.mmmm, E or W. All of them, or none; receivers without a fix
+    /// leave the letters.
     std::optional<Position> position(int field);
 
 private:

@@ -4,21 +4,9 @@ namespace hermes::nmea {
 
 namespace {
 
-constexpr double mostMetres = 1e6;
-constexpr double mostHdop = 9999;
 constexpr double mostAge_s = 1e6;
-constexpr int mostSatellites = 999;
 constexpr int mostStation = 9999;
 constexpr int leastFields = 9; // up to the altitude
-
-std::optional<int> wholeNumber(FieldReader &read, int field, int most, const char *expected) {
-    const std::optional<double> value = read.number(field, 0, most, expected);
-    if (!value)
-        return std::nullopt;
-    if (*value != int(*value))
-        read.fail(field, expected);
-    return int(*value);
-}
 
 } // namespace
 
@@ -29,13 +17,14 @@ FieldFault decode(const Sentence &sentence, Gga &gga) {
     gga = Gga();
     gga.time = read.time(1);
     gga.position = read.position(2);
-    gga.quality = wholeNumber(read, 6, 9, "the quality, 0 to 9").value_or(0);
-    gga.satellites = wholeNumber(read, 7, mostSatellites, "a number of satellites");
+    gga.quality = read.whole(6, 0, 9, "the quality, 0 to 9").value_or(0);
+    gga.satellites = read.whole(7, 0, mostSatellites, "a number of satellites");
     gga.hdop = read.number(8, 0, mostHdop, "an HDOP from 0 to 9999");
     gga.altitude = read.number(9, -mostMetres, mostMetres, "an altitude in metres");
-    gga.separation = read.number(11, -mostMetres, mostMetres, "a geoid separation in metres");
-    gga.age_s = read.number(13, 0, mostAge_s, "an age in seconds");
-    gga.station = wholeNumber(read, 14, mostStation, "a station, 0 to 9999");
+    FieldReader aside(sentence); // the fix does not depend on these
+    gga.separation = aside.number(11, -mostMetres, mostMetres, "a geoid separation in metres");
+    gga.age_s = aside.number(13, 0, mostAge_s, "an age in seconds");
+    gga.station = aside.whole(14, 0, mostStation, "a station, 0 to 9999");
     return read.fault();
 }
 

@@ -17,7 +17,7 @@ struct Gga {
     std::optional<int> station;       ///< that sent the differential data
 };
 
-/// Reads a sentence of type GGA of any talker.
+/// Reads a sentence of type GGA of any talker. What is wrong behind the altitude reads as unknown.
 FieldFault decode(const Sentence &sentence, Gga &gga);
 
 /// The whole sentence with CR LF. talker: two capital letters. Nothing when a value is no number or does not

@@ -6,8 +6,6 @@ namespace hermes::nmea {
 
 namespace {
 
-constexpr double knot = 1852.0 / 3600; // m/s
-constexpr double mostKnots = 9999;
 constexpr int leastFields = 9; // up to the date
 
 } // namespace
@@ -28,13 +26,11 @@ FieldFault decode(const Sentence &sentence, Rmc &rmc) {
         rmc.speed = *rmc.speed * knot;
     rmc.course_deg = read.number(8, 0, 360, "a course from 0 to 360 degrees");
     rmc.date = read.date(9);
-    rmc.variation_deg = read.number(10, 0, 180, "a magnetic variation from 0 to 180 degrees");
-    const std::optional<char> side = read.letter(11, "EW", "E or W");
-    if (rmc.variation_deg && !side)
-        read.fail(11, "E or W");
-    if (rmc.variation_deg && side == 'W')
-        rmc.variation_deg = -*rmc.variation_deg;
-    rmc.mode = read.letter(12, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", "the mode, a letter");
+    FieldReader aside(sentence); // the fix does not depend on these
+    const auto variation = aside.number(10, 0, 180, "a magnetic variation from 0 to 180 degrees");
+    if (const auto side = aside.letter(11, "EW", "E or W"); variation && side)
+        rmc.variation_deg = side == 'W' ? -*variation : *variation;
+    rmc.mode = aside.letter(12, "ABCDEFGHIJKLMNOPQRSTUVWXYZ", "the mode, a letter");
     return read.fault();
 }
 

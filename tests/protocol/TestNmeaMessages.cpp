@@ -46,6 +46,8 @@ private Q_SLOTS:
     void emptyFieldsAreUnknown();
     void wrongFieldsAreNamed_data();
     void wrongFieldsAreNamed();
+    void fieldsThatAreNotUsedRefuseNothing_data();
+    void fieldsThatAreNotUsedRefuseNothing();
     void anyTalkerIsRead();
     void roundingStaysInTheField();
     void doesNotWriteWhatDoesNotFit();
@@ -139,6 +141,9 @@ void TestNmeaMessages::emptyFieldsAreUnknown() {
     QCOMPARE(rmc.time->second, 12.5);
     QCOMPARE(rmc.date->year, 2003);
     QVERIFY(rmc.valid && rmc.position && !rmc.speed && !rmc.mode);
+    // Without a fix some leave the letters.
+    QVERIFY(!decodeText(summed("GPRMC,101112,V,,N,,E,,,010203"), rmc));
+    QVERIFY(rmc.time && !rmc.position);
 }
 
 void TestNmeaMessages::wrongFieldsAreNamed_data() {
@@ -170,10 +175,6 @@ void TestNmeaMessages::wrongFieldsAreNamed_data() {
     rmc("day 0", 9, "000715");
     rmc("month 13", 9, "011315");
     rmc("short date", 9, "23071");
-    rmc("variation", 10, "181");
-    rmc("side", 11, "N");
-    rmc("no side", 11, "");
-    rmc("mode", 12, "d");
     QTest::newRow("too few fields") << QByteArray("GPRMC,214106,A") << 0;
     QTest::newRow("another type") << QByteArray("GPGGA,,,,,,0,,,,M,,M,,") << 0;
 }
@@ -186,6 +187,35 @@ void TestNmeaMessages::wrongFieldsAreNamed() {
     QVERIFY(fault);
     QCOMPARE(fault.field, field);
     QVERIFY(std::string_view(fault.expected).size() > 3);
+}
+
+/// As receivers send them: no variation is 999.9 or 0.0 without a side.
+void TestNmeaMessages::fieldsThatAreNotUsedRefuseNothing_data() {
+    QTest::addColumn<QByteArray>("tail");
+    for (const char *tail :
+         {"999.9,E,A", "999.9,,D", "13.8,,A", ",W,A", "181,E,A", "-1.0,E,A", "13.8,N,A", "x,E,A", "13.8,E,d",
+          "13.8,E,A,V", "13.8,E,A,", "13.8,E", "13.8", "", "a,b,c,d,e,f"})
+        QTest::newRow(tail) << QByteArray(tail);
+}
+
+void TestNmeaMessages::fieldsThatAreNotUsedRefuseNothing() {
+    QFETCH(QByteArray, tail);
+    Rmc rmc;
+    const FieldFault fault =
+        decodeText(summed("GPRMC,214106.25,A,3707.8178,N,12139.2690,W,010.3,188.2,230715," + tail), rmc);
+    QVERIFY2(!fault, fault.expected);
+    QVERIFY(rmc.valid && rmc.position && rmc.time->second == 6.25 && rmc.date->day == 23);
+    QCOMPARE(*rmc.course_deg, 188.2);
+    QCOMPARE(rmc.variation_deg.has_value(), tail.startsWith("13.8,E"));
+    QVERIFY(!encoded(rmc).isEmpty());
+    for (const char *end : {"M,-,M,,", "M,46.9,M,x,0138", "M,1e3,M,-1,99999", "M,,,,TSTR", ""}) {
+        Gga gga;
+        const FieldFault ggaFault = decodeText(
+            summed(QByteArray("GNGGA,214106,3707.8178,N,12139.2690,W,4,08,0.9,545.4,") + end), gga);
+        QVERIFY2(!ggaFault, ggaFault.expected);
+        QVERIFY(gga.position && gga.quality == 4 && *gga.altitude == 545.4);
+        QVERIFY(!encoded(gga).isEmpty());
+    }
 }
 
 void TestNmeaMessages::anyTalkerIsRead() {

@@ -18,6 +18,11 @@ constexpr std::int64_t second_ns = 1000000000;
 const char *const valid = "$GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*05";
 constexpr std::int64_t rmcTime_s = 1437687666; // 2015-07-23 21:41:06 UTC
 
+QByteArray summed(const QByteArray &body) {
+    const auto sum = nmea::checksum({body.constData(), std::size_t(body.size())});
+    return '$' + body + '*' + QByteArray::number(sum, 16).rightJustified(2, '0');
+}
+
 Bytes packet(std::uint32_t stamp_us, std::uint8_t pps, const char *text) {
     Bytes bytes{};
     for (int i = 0; i < 4; ++i)
@@ -109,6 +114,8 @@ void TestPosition::theHourIsTrusted_data() {
     QTest::newRow("warning")
         << 2 << QByteArray("$GPRMC,214106,V,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D*12")
         << false << false;
+    QTest::newRow("no variation")
+        << 2 << summed("GPRMC,214106,A,3707.8178,N,12139.2690,W,010.3,188.2,230715,999.9,,D") << true << true;
     QTest::newRow("no date") << 2 << QByteArray("$GPRMC,214106,A,,,,,,,,,*26") << true << false;
     QTest::newRow("another sentence")
         << 2 << QByteArray("$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47") << false
@@ -141,8 +148,8 @@ void TestPosition::theHourAtItsEdges() {
     QFETCH(QByteArray, time);
     QFETCH(qint64, stamp_us);
     QFETCH(qint64, ofDay_s);
-    QByteArray text = "$GPRMC," + time + ",A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D";
-    text += '*' + QByteArray::number(nmea::checksum(text.mid(1).toStdString()), 16).rightJustified(2, '0');
+    const QByteArray text =
+        summed("GPRMC," + time + ",A,3707.8178,N,12139.2690,W,010.3,188.2,230715,013.8,E,D");
     const GpsReader gps = read(packet(std::uint32_t(stamp_us), 2, text.constData()));
     QVERIFY(gps.state().utc_ns.has_value());
     const std::int64_t day_s = rmcTime_s / 86400 * 86400;
