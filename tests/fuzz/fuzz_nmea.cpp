@@ -1,8 +1,12 @@
 #include "tests/fuzz/FuzzInput.h"
 
 #include "protocol/nmea/Gga.h"
+#include "protocol/nmea/Gll.h"
+#include "protocol/nmea/Gns.h"
 #include "protocol/nmea/Rmc.h"
 #include "protocol/nmea/SentenceParser.h"
+#include "protocol/nmea/Vtg.h"
+#include "protocol/nmea/Zda.h"
 
 using namespace hermes::nmea;
 
@@ -11,6 +15,27 @@ namespace {
 void requireSound(const std::optional<Position> &position) {
     FUZZ_REQUIRE(!position ||
                  (std::abs(position->latitude_deg) <= 90 && std::abs(position->longitude_deg) <= 180));
+}
+
+/// What is only read.
+void requireWithinLimits(const Sentence &sentence) {
+    Gll gll;
+    if (!decode(sentence, gll))
+        requireSound(gll.position);
+    Gns gns;
+    if (!decode(sentence, gns)) {
+        requireSound(gns.position);
+        FUZZ_REQUIRE(!gns.quality || (*gns.quality >= 0 && *gns.quality <= 8));
+        FUZZ_REQUIRE(!gns.altitude || std::abs(*gns.altitude) <= mostMetres);
+    }
+    Vtg vtg;
+    if (!decode(sentence, vtg)) {
+        FUZZ_REQUIRE(!vtg.speed || (*vtg.speed >= 0 && *vtg.speed < 1e4));
+        FUZZ_REQUIRE(!vtg.course_deg || (*vtg.course_deg >= 0 && *vtg.course_deg <= 360));
+    }
+    Zda zda;
+    if (!decode(sentence, zda))
+        FUZZ_REQUIRE(!zda.date || isValid(*zda.date));
 }
 
 /// What was read can be written, and reads back as the same.
@@ -55,6 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
         Gga gga;
         if (!decode(parser.sentence(), gga))
             requireReadable(gga, decimals);
+        requireWithinLimits(parser.sentence());
     }
     const SentenceParser::Counts &counts = parser.counts();
     FUZZ_REQUIRE(ended == counts.sentences + counts.badChecksum + counts.noChecksum + counts.tooLong +

@@ -1,0 +1,28 @@
+#include "protocol/nmea/Zda.h"
+
+namespace hermes::nmea {
+
+namespace {
+
+constexpr int leastFields = 4; // up to the year
+constexpr const char *dateExpected = "day, month and year as numbers: all three, or none";
+
+} // namespace
+
+FieldFault decode(const Sentence &sentence, Zda &zda) {
+    if (sentence.type() != "ZDA" || sentence.fieldCount() < leastFields)
+        return {0, "ZDA with 4 fields or more"};
+    FieldReader read(sentence);
+    zda = Zda();
+    zda.time = read.time(1);
+    const std::optional<int> day = read.whole(2, 1, 31, dateExpected);
+    const std::optional<int> month = read.whole(3, 1, 12, dateExpected);
+    const std::optional<int> year = read.whole(4, 1970, 9999, dateExpected);
+    if (day && month && year && isValid(Date{*year, *month, *day}))
+        zda.date = Date{*year, *month, *day};
+    else if (day || month || year)
+        read.fail(2, dateExpected);
+    return read.fault();
+}
+
+} // namespace hermes::nmea
