@@ -1,5 +1,8 @@
 #include "common/capture/Frame.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace hermes {
 
 namespace {
@@ -8,6 +11,22 @@ constexpr std::uint16_t etherTypeIpv4 = 0x0800;
 constexpr std::uint16_t etherTypeVlan = 0x8100;
 constexpr std::uint16_t etherTypeProviderVlan = 0x88A8;
 constexpr std::uint8_t protocolUdp = 17;
+
+struct Link {
+    LinkType type;
+    const char *name;
+};
+constexpr Link knownLinks[] = {
+    {LinkType::Null, "BSD loopback"},
+    {LinkType::Ethernet, "Ethernet"},
+    {LinkType::RawLinux, "raw IP"},
+    {LinkType::RawOpenBsd, "raw IP"},
+    {LinkType::Raw, "raw IP"},
+    {LinkType::Loop, "OpenBSD loopback"},
+    {LinkType::LinuxCooked, "Linux cooked"},
+    {LinkType::Ipv4, "raw IPv4"},
+    {LinkType::LinuxCooked2, "Linux cooked v2"},
+};
 
 std::uint16_t word(const std::uint8_t *bytes) {
     return std::uint16_t(bytes[0] << 8 | bytes[1]);
@@ -31,13 +50,17 @@ void setLongWord(std::uint8_t *bytes, std::uint32_t value) {
 FrameFault skipLink(LinkType link, const std::uint8_t *frame, std::size_t size, std::size_t &offset) {
     std::size_t typeAt = 0; // where the EtherType stands
     switch (link) {
+    case LinkType::RawLinux:
+    case LinkType::RawOpenBsd:
     case LinkType::Raw:
     case LinkType::Ipv4:
         offset = 0;
         return FrameFault::None;
     case LinkType::Null:
-        offset =
-            4; // the address family, in the byte order of the capturing host; IPv4 shows by its version below
+    case LinkType::Loop:
+        // The address family, in the byte order of the capturing host or the network's; IPv4 shows by its
+        // version below.
+        offset = 4;
         return size < offset ? FrameFault::Short : FrameFault::None;
     case LinkType::Ethernet:
         typeAt = 12;
@@ -76,16 +99,16 @@ std::uint16_t headerChecksum(const std::uint8_t *header) {
 } // namespace
 
 bool isKnownLinkType(int linkType) {
-    switch (LinkType(linkType)) {
-    case LinkType::Null:
-    case LinkType::Ethernet:
-    case LinkType::Raw:
-    case LinkType::LinuxCooked:
-    case LinkType::Ipv4:
-    case LinkType::LinuxCooked2:
-        return true;
-    }
-    return false;
+    return std::any_of(std::begin(knownLinks), std::end(knownLinks),
+                       [linkType](const Link &link) { return int(link.type) == linkType; });
+}
+
+std::string knownLinkTypes() {
+    std::string text;
+    for (const Link &link : knownLinks)
+        text +=
+            (text.empty() ? "" : ", ") + std::string(link.name) + " (" + std::to_string(int(link.type)) + ")";
+    return text;
 }
 
 FrameFault parseFrame(LinkType link, const std::uint8_t *frame, std::size_t size, Datagram &datagram) {

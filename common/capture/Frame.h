@@ -3,15 +3,19 @@
 #include "common/capture/Datagram.h"
 
 #include <array>
+#include <string>
 
 namespace hermes {
 
 /// What the link layer of a capture is, as far as it is understood. The values are those of tcpdump.org's
-/// registry.
+/// registry; libpcap tells raw IP by the numbers that systems give it, not by that of the file.
 enum class LinkType : int {
     Null = 0, ///< BSD loopback
     Ethernet = 1,
+    RawLinux = 12,
+    RawOpenBsd = 14,
     Raw = 101,
+    Loop = 108, ///< OpenBSD loopback
     LinuxCooked = 113,
     Ipv4 = 228,
     LinuxCooked2 = 276,
@@ -26,6 +30,8 @@ enum class FrameFault {
 };
 
 bool isKnownLinkType(int linkType);
+/// All of them by name and number, for messages.
+std::string knownLinkTypes();
 
 /// Finds the datagram in a frame; its payload points into the frame. 802.1Q and 802.1ad tags are stepped
 /// over. The UDP length and the captured length count: the position packets of real sensors carry a wrong

@@ -52,8 +52,7 @@ bool PcapReader::open(const std::string &path) {
     if (!isKnownLinkType(linkType_)) {
         const char *name = pcap_datalink_val_to_name(linkType_);
         error_ = path + ": link type " + std::to_string(linkType_) +
-                 (name ? std::string(" (") + name + ")" : "") +
-                 " is not supported, Ethernet, raw IPv4, Linux cooked or BSD loopback expected";
+                 (name ? std::string(" (") + name + ")" : "") + " is not read; read are " + knownLinkTypes();
         close();
         return false;
     }

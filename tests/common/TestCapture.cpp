@@ -68,8 +68,6 @@ private Q_SLOTS:
     void readsBehindTwoGigabytes();
     void lengthOfUdpCounts();
     void tagsAreSteppedOver();
-    void linkTypes_data();
-    void linkTypes();
     void otherFramesAreTold_data();
     void otherFramesAreTold();
     void randomFramesDoNoHarm();
@@ -79,7 +77,6 @@ private Q_SLOTS:
     void cutFilesNameRecordAndByte();
     void filesThatAreNoCapture_data();
     void filesThatAreNoCapture();
-    void unknownLinkTypeIsRefused();
     void stampsBeyondNanosecondsAreRefused();
     void tsharkReadsIt();
     void realRecording();
@@ -158,27 +155,6 @@ void TestCapture::tagsAreSteppedOver() {
     frame.insert(12, QByteArray::fromHex("88a8000b"));
     QCOMPARE(parse(frame, d), FrameFault::None);
     QCOMPARE(d.size, std::size_t(7));
-}
-
-void TestCapture::linkTypes_data() {
-    QTest::addColumn<int>("link");
-    QTest::addColumn<QByteArray>("header");
-    QTest::newRow("raw") << int(LinkType::Raw) << QByteArray();
-    QTest::newRow("IPv4") << int(LinkType::Ipv4) << QByteArray();
-    QTest::newRow("loopback") << int(LinkType::Null) << QByteArray::fromHex("02000000");
-    QTest::newRow("cooked") << int(LinkType::LinuxCooked)
-                            << QByteArray(14, '\0') + QByteArray::fromHex("0800");
-    QTest::newRow("cooked 2") << int(LinkType::LinuxCooked2)
-                              << QByteArray::fromHex("0800") + QByteArray(18, '\0');
-}
-
-void TestCapture::linkTypes() {
-    QFETCH(int, link);
-    QFETCH(QByteArray, header);
-    Datagram d;
-    QCOMPARE(parse(header + frameOf(datagram("payload")).mid(14), d, LinkType(link)), FrameFault::None);
-    QCOMPARE(d.size, std::size_t(7));
-    QVERIFY(isKnownLinkType(link));
 }
 
 void TestCapture::otherFramesAreTold_data() {
@@ -302,20 +278,6 @@ void TestCapture::filesThatAreNoCapture() {
              QByteArray("/nonexistent/c.pcap: cannot be opened: No such file or directory"));
     Datagram d;
     QCOMPARE(reader.next(d), PcapReader::Next::Failed);
-}
-
-void TestCapture::unknownLinkTypeIsRefused() {
-    QTemporaryDir folder;
-    const std::string path = makeCapture(folder, 1);
-    QFile file(QString::fromStdString(path));
-    QVERIFY(file.open(QIODevice::ReadWrite));
-    file.seek(20);
-    file.write("\x69", 1); // 105: IEEE 802.11
-    file.close();
-    PcapReader reader;
-    QVERIFY(!reader.open(path));
-    QVERIFY2(reader.error().find("link type 105 (IEEE802_11) is not supported") != std::string::npos,
-             reader.error().c_str());
 }
 
 /// pcapng: a section, an Ethernet interface whose stamps count seconds, and a datagram far in the future.
