@@ -16,13 +16,14 @@ constexpr std::uint8_t floorIntensity = 40;
 struct Beam {
     double cosine;
     double tangent; ///< of the elevation
+    double offset;  ///< of the laser above the sensor's origin; metres
 };
 
 std::array<Beam, velodyne::lasers> makeBeams() {
     std::array<Beam, velodyne::lasers> beams;
     for (int laser = 0; laser < velodyne::lasers; ++laser) {
         const double elevation = velodyne::elevation_deg[laser] * degree;
-        beams[laser] = {std::cos(elevation), std::tan(elevation)};
+        beams[laser] = {std::cos(elevation), std::tan(elevation), velodyne::verticalOffset_mm[laser] / 1000};
     }
     return beams;
 }
@@ -74,12 +75,13 @@ bool LidarModel::chance(double share) {
 
 void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block) {
     const Beam &beam = beams[laser];
+    const double height = options_.sensorHeight + beam.offset;
     double horizontal = wallDistance;
     std::uint8_t intensity = wallIntensity;
-    if (beam.tangent < 0 && options_.sensorHeight / -beam.tangent < wallDistance) {
-        horizontal = options_.sensorHeight / -beam.tangent;
+    if (beam.tangent < 0 && height / -beam.tangent < wallDistance) {
+        horizontal = height / -beam.tangent;
         intensity = floorIntensity;
-    } else if (options_.sensorHeight + wallDistance * beam.tangent > options_.wallHeight) {
+    } else if (height + wallDistance * beam.tangent > options_.wallHeight) {
         horizontal = vectorlib::noHit;
     }
     double range = horizontal / beam.cosine;

@@ -15,7 +15,7 @@ class LidarModel {
 public:
     struct Options {
         double sigma = 0.01;       ///< standard deviation of the range; metres
-        double sensorHeight = 0.5; ///< above the floor; metres
+        double sensorHeight = 0.5; ///< of its origin above the floor; metres
         double wallHeight = 2.5;   ///< beams above it return nothing; metres
         double minRange = 0.05;    ///< metres. Manual: data range 5 cm to 100 m
         double maxRange = 100;     ///< metres

@@ -89,6 +89,7 @@ LidarFeed::Assembler LidarFeed::makeAssembler(int laser, velodyne::TurnAssembler
     options.laser = laser;
     options.model = options_.model;
     options.returns = options_.returns;
+    options.verticalOffsets = options_.verticalOffsets;
     options.stampOffset_ns = options_.stampOffset_ns;
     options.firstNumber = ring_ ? ring_->turnNumber() : 0;
     auto assembler = std::make_unique<velodyne::TurnAssembler>(options, std::move(sink));

@@ -16,6 +16,7 @@ public:
         int laser = velodyne::PacketDecoder::levelLaser;
         velodyne::Model model = velodyne::Model::Blank; ///< Blank: as the packets say
         velodyne::Returns returns = velodyne::Returns::Strongest;
+        bool verticalOffsets = true; ///< the lasers' own heights are added to z
         std::int64_t stampOffset_ns = 0;
         std::uint16_t dataPort =
             velodyne::dataPort;         ///< of other ports only datagrams of the right size are decoded

@@ -58,6 +58,12 @@ void VelodyneLogger::declareSettings() {
                    .byDefault("strongest")
                    .appliesOnRestart()
                    .group("Decoding"));
+    addSetting(Field::boolean("decode.vertical_offsets",
+                              "Each laser's own height, as its sensor's documents tell it, is in z; false: "
+                              "all lasers lie in the sensor's origin")
+                   .byDefault(true)
+                   .appliesOnRestart()
+                   .group("Decoding"));
     addSetting(Field::number("decode.stamp_offset_s", "Added to the sensor's stamps")
                    .unit("s")
                    .range(-3600, 3600)

@@ -71,6 +71,7 @@ LidarFeed::Options VelodyneLogger::options() {
     options.laser = laser < 0 ? velodyne::PacketDecoder::levelLaser : laser;
     options.model = velodyne::modelFromText(settings().text("decode.model").toStdString());
     options.returns = velodyne::returnsFromText(settings().text("decode.returns").toStdString());
+    options.verticalOffsets = settings().flag("decode.vertical_offsets");
     options.stampOffset_ns = std::int64_t(settings().number("decode.stamp_offset_s") * 1e9);
     options.dataPort = quint16(settings().integer("source.port"));
     options.positionPort = quint16(settings().integer("source.position_port"));

@@ -31,6 +31,7 @@ struct RingCommand {
     std::int64_t turn = -1; ///< -1: every turn
     std::string returns = "strongest";
     bool all = false;
+    bool noVerticalOffsets = false;
     OutputOptions output;
 
     void run() const {
@@ -44,6 +45,7 @@ struct RingCommand {
         options.laser = all ? velodyne::PacketDecoder::allLasers : laser;
         options.model = velodyne::modelFromText(model);
         options.returns = velodyne::returnsFromText(returns);
+        options.verticalOffsets = !noVerticalOffsets;
         std::uint64_t turns = 0;
         velodyne::TurnAssembler assembler(options, [&](const velodyne::Turn &t) {
             ++turns;
@@ -138,7 +140,11 @@ void addRingCommand(CLI::App &app) {
     sub->add_option("--turn", command->turn, "This turn only, from 0; the first and the last may be partial")
         ->check(between(0, 1e15))
         ->type_name("N");
-    sub->add_flag("--all", command->all, "Every laser; adds the columns laser and z")->excludes(laser);
+    CLI::Option *all =
+        sub->add_flag("--all", command->all, "Every laser; adds the columns laser and z")->excludes(laser);
+    sub->add_flag("--no-vertical-offsets", command->noVerticalOffsets,
+                  "Of z leave out the lasers' own heights above the sensor's origin")
+        ->needs(all);
     command->output.addTo(*sub, false);
     sub->footer(example("hermes-vector ring drive.pcap --turn 3 --out ring.csv"));
     sub->callback([command] { command->run(); });

@@ -43,6 +43,14 @@ constexpr std::array<double, lasers> elevation_deg = {
     -2.67,  -22.67, -1.33,  -21.33, 0.00,   -20.00, 1.33,   -18.67, 2.67,   -17.33, 4.00,
     -16.00, 5.33,   -14.67, 6.67,   -13.33, 8.00,   -12.00, 9.33,   -10.67, 10.67};
 
+/// How far above the sensor's origin each laser lies, on the axis of the head; millimetres. Envelope drawing
+/// 86-0106 B, as velodyne_decoder 3.0 tells it: no second source was found. All are -28.954 mm times the
+/// tangent of the elevation to their last digit: the beams meet in one point that far ahead of the axis.
+constexpr std::array<double, lasers> verticalOffset_mm = {
+    17.17, 4.76,  16.27, 4.07,  15.40, 3.38,  14.54, 2.70,  13.71, 2.02, 12.89,
+    1.35,  12.09, 0.67,  11.31, 0,     10.54, -0.67, 9.78,  -1.35, 9.04, -2.02,
+    8.30,  -2.70, 7.58,  -3.38, 6.86,  -4.07, 6.15,  -4.76, 5.45,  -5.45};
+
 /// Byte 1204 of a packet. Blank in firmware before 2.2.20.0 (2016), then zero.
 enum class ReturnMode : std::uint8_t { Blank = 0, Strongest = 0x37, Last = 0x38, Dual = 0x39 };
 

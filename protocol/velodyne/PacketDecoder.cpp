@@ -15,13 +15,14 @@ Returns returnsFromText(std::string_view text) {
     return text == "last" ? Returns::Last : text == "both" ? Returns::Both : Returns::Strongest;
 }
 
-PacketDecoder::PacketDecoder(const SensorModel &model, int laser, Returns returns)
+PacketDecoder::PacketDecoder(const SensorModel &model, int laser, Returns returns, bool verticalOffsets)
     : model_(&model)
     , laser_(laser == levelLaser ? model.horizonLaser : laser)
     , returns_(returns) {
     for (int i = 0; i < model.lasers; ++i) {
         cosElevation_[i] = std::cos(model.elevation_deg[i] * degree);
         sinElevation_[i] = std::sin(model.elevation_deg[i] * degree);
+        height_[i] = verticalOffsets ? model.verticalOffset_mm[i] / 1000 : 0;
     }
 }
 
@@ -52,7 +53,7 @@ void PacketDecoder::decode(const DataPacket &packet, int group, int firing, std:
             const double horizontal = point.range * cosElevation_[laser];
             point.x = horizontal * std::cos(point.azimuth * degree);
             point.y = -horizontal * std::sin(point.azimuth * degree); // the sensor counts clockwise
-            point.z = point.range * sinElevation_[laser];
+            point.z = point.range * sinElevation_[laser] + height_[laser];
             point.laser = std::uint8_t(laser);
             point.intensity = packet.intensity(block, slot);
             points.push_back(point);

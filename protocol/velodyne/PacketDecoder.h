@@ -10,7 +10,7 @@ namespace hermes::velodyne {
 struct Point {
     std::int64_t stamp_ns = 0; ///< since the Unix epoch
     double azimuth = 0;        ///< degrees, clockwise seen from above, in [0, 360)
-    double range = 0;          ///< metres from the sensor's centre
+    double range = 0;          ///< metres from the laser, which lies in or near the sensor's origin
     double x = 0;
     double y = 0;
     double z = 0;
@@ -34,8 +34,10 @@ public:
     static constexpr int levelLaser = -2;
 
     /// laser: a number, allLasers or levelLaser. A number that the sensor has not gives no points.
+    /// verticalOffsets: each laser lies where the model says, else all in the sensor's origin; that is in z
+    /// alone.
     explicit PacketDecoder(const SensorModel &model, int laser = levelLaser,
-                           Returns returns = Returns::Strongest);
+                           Returns returns = Returns::Strongest, bool verticalOffsets = true);
 
     /// Appends the points of a firing of a group of blocks (0 to packet.groups() - 1, each with
     /// model.firingsPerBlock firings) in the order in which the lasers fired. Points without return are left
@@ -53,6 +55,7 @@ private:
     Returns returns_;
     std::array<double, lasers> cosElevation_{};
     std::array<double, lasers> sinElevation_{};
+    std::array<double, lasers> height_{}; ///< of the laser above the sensor's origin; metres
 };
 
 /// How far the head turned during a group of blocks: to the next block's azimuth; for the last group of a

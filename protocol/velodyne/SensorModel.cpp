@@ -7,12 +7,17 @@ namespace {
 /// VLP-16 manual, table of vertical angles by laser id.
 constexpr std::array<double, 16> vlp16Elevation_deg = {-15, 1, -13, 3,  -11, 5,  -9, 7,
                                                        -7,  9, -5,  11, -3,  13, -1, 15};
+/// VLP-16 manual, table of vertical angles: "vertical correction (mm)", to be added to z.
+constexpr std::array<double, 16> vlp16VerticalOffset_mm = {11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1,
+                                                           5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
 constexpr std::int64_t vlp16LaserPeriod_ns = 2304;
 constexpr std::int64_t vlp16FiringPeriod_ns = 16 * vlp16LaserPeriod_ns + 18432;
 static_assert(2 * vlp16FiringPeriod_ns == 110592, "of a block; 753.5 packets a second");
 
-constexpr SensorModel hdl32eModel = {Model::Hdl32e,  "HDL-32E",       lasers,       1,
-                                     laserPeriod_ns, firingPeriod_ns, horizonLaser, elevation_deg.data()};
+constexpr SensorModel hdl32eModel = {
+    Model::Hdl32e,           "HDL-32E",       lasers,       1,
+    laserPeriod_ns,          firingPeriod_ns, horizonLaser, elevation_deg.data(),
+    verticalOffset_mm.data()};
 constexpr SensorModel vlp16Model = {Model::Vlp16,
                                     "VLP-16",
                                     16,
@@ -20,7 +25,8 @@ constexpr SensorModel vlp16Model = {Model::Vlp16,
                                     vlp16LaserPeriod_ns,
                                     vlp16FiringPeriod_ns,
                                     1, // +1 degree; 14 looks as far down
-                                    vlp16Elevation_deg.data()};
+                                    vlp16Elevation_deg.data(),
+                                    vlp16VerticalOffset_mm.data()};
 
 } // namespace
 

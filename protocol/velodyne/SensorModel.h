@@ -11,11 +11,12 @@ struct SensorModel {
     Model model;
     const char *name; ///< as people write it: "HDL-32E"
     int lasers;
-    int firingsPerBlock;          ///< each of all lasers; their returns follow each other in the block
-    std::int64_t laserPeriod_ns;  ///< between two lasers of a firing
-    std::int64_t firingPeriod_ns; ///< between two firings, with the time to recharge
-    int horizonLaser;             ///< the one that looks nearest to the horizon
-    const double *elevation_deg;  ///< of each laser in the order of firing; degrees above the horizon
+    int firingsPerBlock;             ///< each of all lasers; their returns follow each other in the block
+    std::int64_t laserPeriod_ns;     ///< between two lasers of a firing
+    std::int64_t firingPeriod_ns;    ///< between two firings, with the time to recharge
+    int horizonLaser;                ///< the one that looks nearest to the horizon
+    const double *elevation_deg;     ///< of each laser in the order of firing; degrees above the horizon
+    const double *verticalOffset_mm; ///< of each laser: how far it lies above the sensor's origin
 
     std::int64_t blockPeriod_ns() const { return firingsPerBlock * firingPeriod_ns; }
     /// Firings in a second.

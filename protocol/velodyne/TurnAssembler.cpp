@@ -59,7 +59,7 @@ bool TurnAssembler::isOfModel(const DataPacket &packet, std::int64_t receive_ns)
         return false;
     if (decoder_)
         jump();
-    decoder_.emplace(*model, options_.laser, options_.returns);
+    decoder_.emplace(*model, options_.laser, options_.returns, options_.verticalOffsets);
     turn_.model = model;
     turn_.laser = decoder_->laser();
     return true;

@@ -42,6 +42,7 @@ public:
     struct Options {
         int laser = PacketDecoder::levelLaser; ///< a number, levelLaser or allLasers
         Returns returns = Returns::Strongest;
+        bool verticalOffsets = true;     ///< the lasers' own heights are added to z
         std::int64_t stampOffset_ns = 0; ///< added to every stamp
         Model model = Model::Blank;      ///< the sensor; Blank: as the packets say
         std::uint32_t firingStep = 1;    ///< of each turn every n-th firing is decoded

@@ -17,6 +17,8 @@ private Q_SLOTS:
     void faultsAreNamed_data();
     void faultsAreNamed();
     void pointsLieWhereTheFactSheetSays();
+    void lasersLieAtTheirDocumentedHeights_data();
+    void lasersLieAtTheirDocumentedHeights();
     void azimuthsAreInterpolated();
     void aBlockOfAVlp16HoldsTwoFirings();
     void ringsCountFromTheLowest();
@@ -100,12 +102,14 @@ void TestPacketDecoder::faultsAreNamed() {
 }
 
 void TestPacketDecoder::pointsLieWhereTheFactSheetSays() {
-    // Values of an independent decoder: 2500 counts straight ahead.
+    // Values of an independent decoder, which has all lasers in the sensor's origin: 2500 counts straight
+    // ahead.
     Sensor sensor;
     auto bytes = sensor.packet(0);
     bytes[2] = bytes[3] = bytes[102] = bytes[103] = 0; // no gap: every laser at azimuth 0
     std::vector<Point> points;
-    PacketDecoder(hdl32e(), PacketDecoder::allLasers).decode(DataPacket(bytes.data()), 0, 0, 0, points);
+    PacketDecoder(hdl32e(), PacketDecoder::allLasers, Returns::Strongest, false)
+        .decode(DataPacket(bytes.data()), 0, 0, 0, points);
     QCOMPARE(points.size(), std::size_t(lasers));
     QVERIFY(std::abs(points[0].x - 4.3008) < 5e-4 && points[0].y == 0 &&
             std::abs(points[0].z + 2.5505) < 5e-4);
@@ -118,6 +122,36 @@ void TestPacketDecoder::pointsLieWhereTheFactSheetSays() {
     points.clear();
     PacketDecoder(hdl32e()).decode(DataPacket(bytes.data()), 0, 0, 0, points);
     QVERIFY(std::abs(points[0].x) < 1e-9 && std::abs(points[0].y + 5) < 1e-9);
+}
+
+void TestPacketDecoder::lasersLieAtTheirDocumentedHeights_data() {
+    QTest::addColumn<int>("model");
+    QTest::addColumn<int>("laser");
+    QTest::addColumn<double>("height_mm");
+    QTest::newRow("VLP-16, the lowest") << int(Model::Vlp16) << 0 << 11.2;
+    QTest::newRow("VLP-16, +1 degree") << int(Model::Vlp16) << 1 << -0.7;
+    QTest::newRow("VLP-16, -1 degree") << int(Model::Vlp16) << 14 << 0.7;
+    QTest::newRow("VLP-16, the highest") << int(Model::Vlp16) << 15 << -11.2;
+    QTest::newRow("HDL-32E, the lowest") << int(Model::Hdl32e) << 0 << 17.17;
+    QTest::newRow("HDL-32E, the horizon") << int(Model::Hdl32e) << 15 << 0.0;
+    QTest::newRow("HDL-32E, the highest") << int(Model::Hdl32e) << 31 << -5.45;
+}
+
+/// The manual of the VLP-16: "After computing X,Y,Z, apply the vertical correction".
+void TestPacketDecoder::lasersLieAtTheirDocumentedHeights() {
+    QFETCH(int, model);
+    QFETCH(int, laser);
+    QFETCH(double, height_mm);
+    Sensor sensor;
+    sensor.model = findSensorModel(Model(model));
+    const auto bytes = sensor.packet(0);
+    std::vector<Point> with, without;
+    for (const bool offsets : {true, false})
+        PacketDecoder(*sensor.model, laser, Returns::Strongest, offsets)
+            .decode(DataPacket(bytes.data()), 0, 0, 0, offsets ? with : without);
+    QCOMPARE(with.size(), std::size_t(1));
+    QVERIFY(std::abs((with[0].z - without[0].z) * 1000 - height_mm) < 1e-9);
+    QVERIFY(with[0].x == without[0].x && with[0].y == without[0].y && with[0].range == without[0].range);
 }
 
 void TestPacketDecoder::azimuthsAreInterpolated() {
@@ -149,7 +183,7 @@ void TestPacketDecoder::aBlockOfAVlp16HoldsTwoFirings() {
     writer.setTail(0, ReturnMode::Last, Model::Vlp16);
     std::vector<Point> points;
     const DataPacket packet(writer.bytes().data());
-    const PacketDecoder decoder(vlp16(), PacketDecoder::allLasers);
+    const PacketDecoder decoder(vlp16(), PacketDecoder::allLasers, Returns::Strongest, false);
     for (int group = 0; group < blocksPerPacket; ++group)
         for (int firing = 0; firing < 2; ++firing)
             decoder.decode(packet, group, firing, 500, points);

@@ -97,6 +97,7 @@ def check_clouds(logger, port, capture, name):
     status = logger.call("source.status")
     assert cloud["model"] == status["model"] and cloud["frame"] == "lidar", (cloud["model"], status)
     for x, y, z, laser in zip(*(cloud[name] for name in ("x", "y", "z", "laser"))):
+        z -= model.offsets[laser] / 1000
         far = math.hypot(x, y, z)
         assert far < 0.1 or abs(math.asin(z / far) - math.radians(model.elevations[laser])) < 0.002 / far, (x, y, z, laser)
     # Settings apply at once.
@@ -197,12 +198,28 @@ def check_overload(logger, port, capture):
     logger.call("source.close")
 
 
+def start_logger(folder, **settings):
+    return Process(BINARIES, "velodynelogger", free_port(0), folder,
+                   {"source.port": free_port(0, socket.SOCK_DGRAM), "source.address": "127.0.0.1", "record.folder": folder,
+                    **settings})
+
+
+def check_without_offsets(folder, capture):
+    """decode.vertical_offsets: false leaves all lasers in the sensor's origin."""
+    process = start_logger(folder, **{"decode.vertical_offsets": "false"})
+    try:
+        logger = process.connect()
+        logger.call("source.open", pcap=capture, speed=1, loop=True)
+        check_csv(logger.call("capture.turn", name="no-offsets")["path"], reference.turns(capture, "all", offsets=False))
+    finally:
+        status = process.stop()
+    assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
-        process = Process(BINARIES, "velodynelogger", free_port(0), folder,
-                          {"source.port": free_port(0, socket.SOCK_DGRAM), "source.address": "127.0.0.1",
-                           "record.folder": folder, "cloud.max_points": 2000,
-                           "limits.topic_bytes": 2 << 20})  # so that a busy machine costs a reader nothing
+        process = start_logger(folder, **{"cloud.max_points": 2000,
+                                          "limits.topic_bytes": 2 << 20})  # so that a busy machine costs a reader nothing
         try:
             logger = process.connect()
             for model, product in (("hdl32e", 0x21), ("vlp16", 0x22)):
@@ -216,6 +233,7 @@ def main():
         finally:
             status = process.stop()
         assert status == 0, f"the logger ended with status {status}: {process.last_words()}"
+        check_without_offsets(folder, os.path.join(folder, "made-vlp16.pcap"))
     print("clouds, captured turns and replays of both sensors are as they should be")
     return 0
 

@@ -5,12 +5,16 @@ import math
 import struct
 
 Point = collections.namedtuple("Point", "stamp_ns laser azimuth range intensity x y z")
-# lasers, ns between two of them, ns of a firing, firings a block, the laser nearest to the horizon, elevations in degrees
-Model = collections.namedtuple("Model", "lasers laser_ns firing_ns firings level elevations")
+# lasers, ns between two of them, ns of a firing, firings a block, the laser nearest to the horizon, elevations in degrees, how
+# far above the sensor's origin each laser lies, in mm
+Model = collections.namedtuple("Model", "lasers laser_ns firing_ns firings level elevations offsets")
 HDL32E = Model(32, 1152, 46080, 1, 15, [
     -30.67, -9.33, -29.33, -8.00, -28.00, -6.67, -26.67, -5.33, -25.33, -4.00, -24.00, -2.67, -22.67, -1.33, -21.33, 0.00,
-    -20.00, 1.33, -18.67, 2.67, -17.33, 4.00, -16.00, 5.33, -14.67, 6.67, -13.33, 8.00, -12.00, 9.33, -10.67, 10.67])
-VLP16 = Model(16, 2304, 55296, 2, 1, [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15])
+    -20.00, 1.33, -18.67, 2.67, -17.33, 4.00, -16.00, 5.33, -14.67, 6.67, -13.33, 8.00, -12.00, 9.33, -10.67, 10.67], [
+        17.17, 4.76, 16.27, 4.07, 15.40, 3.38, 14.54, 2.70, 13.71, 2.02, 12.89, 1.35, 12.09, 0.67, 11.31, 0.00,
+        10.54, -0.67, 9.78, -1.35, 9.04, -2.02, 8.30, -2.70, 7.58, -3.38, 6.86, -4.07, 6.15, -4.76, 5.45, -5.45])
+VLP16 = Model(16, 2304, 55296, 2, 1, [-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15],
+              [11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1, 5.1, -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2])
 MODELS = {0x00: HDL32E, 0x21: HDL32E, 0x22: VLP16}
 DUAL = 0x39
 
@@ -49,14 +53,15 @@ def groups(payload, returns):
         yield azimuth, gap, [start + block for block in chosen]
 
 
-def turns(path, lasers="level", returns="strongest"):
+def turns(path, lasers="level", returns="strongest", offsets=True):
     """The points, turn by turn, in the order of measuring; the first and the last turn may be partial. lasers: "level", "all" or
-    a number."""
+    a number. offsets: the lasers' own heights are added to z."""
     result, last_azimuth = [[]], None
     for receive_ns, payload in datagrams(path):
         if len(payload) != 1206:
             continue
         model = MODELS[payload[1205]]
+        model = model if offsets else model._replace(offsets=[0.0] * model.lasers)
         wanted = {"level": [model.level], "all": range(model.lasers)}.get(lasers, [lasers])
         base = absolute(struct.unpack_from("<I", payload, 1200)[0], receive_ns)
         for azimuth, gap, blocks in groups(payload, returns):
@@ -82,5 +87,5 @@ def returned(payload, model, base, azimuth_gap, blocks, firing, laser):
             seen.add(distance)
             metres, az, el = distance / 500, math.radians(degrees), math.radians(model.elevations[laser])
             points.append(Point(base + after_ns, laser, degrees, metres, intensity, metres * math.cos(el) * math.cos(az),
-                                -metres * math.cos(el) * math.sin(az), metres * math.sin(el)))
+                                -metres * math.cos(el) * math.sin(az), metres * math.sin(el) + model.offsets[laser] / 1000))
     return points
