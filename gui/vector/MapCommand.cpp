@@ -61,6 +61,8 @@ struct MapCommand {
         }
         if (mend.moved > 0)
             json["moved_stamps"] = tell(mend);
+        if (!report.otherSensors.empty())
+            std::cerr << "hermes-vector: " << report.otherSensors << '\n';
         json["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         summaryFile << json.dump(2) << '\n';
         files.commit();
@@ -139,6 +141,7 @@ void addMapCommand(CLI::App &app) {
         ->capture_default_str();
     sub->add_flag("--skip-damaged", command->source.skipDamaged,
                   "Count damaged lines of a log and go on instead of stopping at the first");
+    command->source.sensor.addTo(*sub);
     sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")
         ->check(aboveZero())
         ->type_name("M")

@@ -1,10 +1,8 @@
 #include "gui/vector/MapSource.h"
 
-#include "common/capture/PcapReader.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
 #include "gui/vector/Points.h"
-#include "protocol/velodyne/TurnAssembler.h"
 #include "vectorlib/io/CarmenLog.h"
 
 #include <algorithm>
@@ -61,10 +59,6 @@ void takeTurn(const velodyne::Turn &turn, MapScan &scan) {
 }
 
 MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &sink) {
-    const PlainFile file(options.path);
-    PcapReader reader;
-    if (!reader.open(file.path()))
-        throw Failure(file.inWordsOfOriginal(reader.error()));
     MapScan scan;
     std::size_t turns = 0;
     velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
@@ -73,18 +67,9 @@ MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &
         takeTurn(turn, scan);
         sink(scan, (turns - 1) / options.every, 0);
     });
-    Datagram datagram;
-    PcapReader::Next next;
-    while ((next = reader.next(datagram)) == PcapReader::Next::Datagram)
-        if (datagram.destinationPort == velodyne::dataPort)
-            assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
-    if (next == PcapReader::Next::Failed)
-        throw Failure(file.inWordsOfOriginal(reader.error()));
-    assembler.finish();
-    if (turns == 0)
-        throw Failure(options.path + ": found no data packet of an HDL-32E or VLP-16, expected UDP datagrams "
-                                     "of 1206 bytes to port 2368");
-    return {};
+    MapSourceReport report;
+    report.otherSensors = LidarCapture(options.path, options.sensor).read(assembler);
+    return report;
 }
 
 MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &sink) {

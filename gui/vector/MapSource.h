@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/LidarCapture.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
@@ -31,12 +32,14 @@ struct MapSourceOptions {
     bool corrected = false;   ///< a CARMEN log's scan poses are a reference, not odometry
     bool skipDamaged = false; ///< count damaged lines of a CARMEN log instead of failing
     bool open = false;        ///< scans of a folder are less than a full turn
+    SensorOptions sensor;     ///< of a capture
 };
 
 /// What was met beside the scans.
 struct MapSourceReport {
     std::size_t damagedLines = 0;
     std::string firstDamage;
+    std::string otherSensors; ///< a message about those in a capture that were not read, or nothing
 };
 
 /// Takes a scan, how many were delivered before it and how many there are in all (0 when not known).

@@ -1,10 +1,7 @@
-#include "common/capture/PcapReader.h"
 #include "gui/vector/Failure.h"
-#include "gui/vector/Input.h"
+#include "gui/vector/LidarCapture.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
-#include "protocol/velodyne/GpsReader.h"
-#include "protocol/velodyne/TurnAssembler.h"
 #include "vectorlib/io/Number.h"
 
 #include <iostream>
@@ -26,6 +23,7 @@ void writeSeconds(std::ostream &out, std::int64_t ns) {
 
 struct RingCommand {
     std::string in;
+    SensorOptions sensor;
     int laser = velodyne::PacketDecoder::levelLaser;
     std::string model = "auto";
     std::int64_t turn = -1; ///< -1: every turn
@@ -35,12 +33,9 @@ struct RingCommand {
     OutputOptions output;
 
     void run() const {
-        const PlainFile file(in);
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        PcapReader reader;
-        if (!reader.open(file.path()))
-            throw Failure(file.inWordsOfOriginal(reader.error()));
+        LidarCapture capture(in, sensor, velodyne::modelFromText(model));
         velodyne::TurnAssembler::Options options;
         options.laser = all ? velodyne::PacketDecoder::allLasers : laser;
         options.model = velodyne::modelFromText(model);
@@ -54,36 +49,20 @@ struct RingCommand {
         });
         out << (all ? "turn,stamp,laser,azimuth,range,intensity,x,y,z\n"
                     : "turn,stamp,azimuth,range,intensity,x,y\n");
-        if (!readAll(reader, assembler))
-            throw Failure(file.inWordsOfOriginal(reader.error()));
-        assembler.finish();
+        const std::string otherSensors = read(capture, assembler);
+        if (!otherSensors.empty())
+            std::cerr << "hermes-vector: " << otherSensors << '\n';
         report(assembler, turns);
         files.commit();
     }
 
-    static bool readAll(PcapReader &reader, velodyne::TurnAssembler &assembler) {
+    static std::string read(LidarCapture &capture, velodyne::TurnAssembler &assembler) {
         Progress progress("packet");
-        velodyne::GpsReader gps;
-        Datagram datagram;
-        PcapReader::Next next;
-        while ((next = reader.next(datagram)) == PcapReader::Next::Datagram) {
-            if (datagram.destinationPort == velodyne::dataPort)
-                assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
-            else if (datagram.destinationPort == velodyne::positionPort &&
-                     gps.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
-                assembler.follow(gps.state().utc_ns);
-            progress.update(reader.counts().records, 0);
-        }
-        return next == PcapReader::Next::End;
+        return capture.read(assembler, [&](std::uint64_t records) { progress.update(records, 0); });
     }
 
     void report(const velodyne::TurnAssembler &assembler, std::uint64_t turns) const {
         const velodyne::PacketCounts &counts = assembler.counts();
-        if (counts.packets == 0 || turns == 0)
-            throw Failure(
-                in + ": found " +
-                (counts.otherModel > 0 ? "only packets of another sensor or return mode" : "no data packet") +
-                ", expected data packets of an HDL-32E or VLP-16 (UDP, 1206 bytes, port 2368)");
         if (laser >= assembler.model()->lasers)
             throw Failure(in + ": found a " + assembler.model()->name + ", expected a laser from 0 to " +
                           std::to_string(assembler.model()->lasers - 1) + " for --laser, not " +
@@ -122,6 +101,7 @@ void addRingCommand(CLI::App &app) {
         app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an HDL-32E or VLP-16 "
                                    "(CSV turn,stamp,azimuth,range,intensity,x,y)");
     sub->add_option("PCAP", command->in, "Capture, pcap or pcapng")->required();
+    command->sensor.addTo(*sub);
     CLI::Option *laser = sub->add_option("--laser", command->laser,
                                          "Which laser, else the one that looks nearest to the horizon: "
                                          "15 of an HDL-32E, 1 of a VLP-16")

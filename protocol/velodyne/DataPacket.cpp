@@ -31,7 +31,7 @@ const char *describe(PacketFault fault) {
     return "unknown fault";
 }
 
-PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size) {
+PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size, Model expected) {
     if (size != packetSize)
         return PacketFault::Size;
     const DataPacket packet(bytes);
@@ -43,7 +43,9 @@ PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size) {
     }
     if (packet.stamp_us() >= stampPeriod_us)
         return PacketFault::Value;
-    return isDecoded(packet.returnMode(), packet.model()) ? PacketFault::None : PacketFault::Model;
+    const Model model = packet.model();
+    const bool isExpected = expected == Model::Blank || model == Model::Blank || model == expected;
+    return isExpected && isDecoded(packet.returnMode(), model) ? PacketFault::None : PacketFault::Model;
 }
 
 DataPacketWriter::DataPacketWriter() {

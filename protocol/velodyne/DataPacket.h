@@ -22,8 +22,8 @@ const char *describe(PacketFault fault);
 class DataPacket {
 public:
     /// Checks length, flags, azimuths, stamp, mode and model. Only bytes without fault may be read by a
-    /// DataPacket.
-    static PacketFault check(const std::uint8_t *bytes, std::size_t size);
+    /// DataPacket. expected: the sensor; Blank for any.
+    static PacketFault check(const std::uint8_t *bytes, std::size_t size, Model expected = Model::Blank);
 
     explicit DataPacket(const std::uint8_t *bytes)
         : bytes_(bytes) {}

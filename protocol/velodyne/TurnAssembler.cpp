@@ -29,7 +29,7 @@ TurnAssembler::TurnAssembler(const Options &options, Sink sink)
 }
 
 PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std::int64_t receive_ns) {
-    PacketFault fault = DataPacket::check(bytes, size);
+    PacketFault fault = DataPacket::check(bytes, size, options_.model);
     if (fault == PacketFault::None && !isOfModel(DataPacket(bytes), receive_ns))
         fault = PacketFault::Model;
     count(counts_, fault);
@@ -49,8 +49,6 @@ PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std
 
 bool TurnAssembler::isOfModel(const DataPacket &packet, std::int64_t receive_ns) {
     const bool named = packet.model() != Model::Blank;
-    if (options_.model != Model::Blank && named && packet.model() != options_.model)
-        return false;
     const SensorModel *model = findSensorModel(named ? packet.model() : options_.model);
     if (decoder_ && model == &decoder_->model())
         return true;

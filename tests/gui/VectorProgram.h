@@ -50,8 +50,18 @@ inline QJsonObject json(const QByteArray &text) {
     return QJsonDocument::fromJson(text).object();
 }
 
-/// A capture of `packets` data packets, 10 turns a second, a wall 5 m away all around on every laser.
-inline void writeCapture(const QString &path, int packets) {
+/// Who sends to which port, and how far it sees.
+struct CapturedSensor {
+    std::uint32_t address = 0xC0A801C9; ///< 192.168.1.201
+    std::uint16_t port = hermes::velodyne::dataPort;
+    double range = 5; ///< of the wall all around; metres
+    hermes::velodyne::Model model = hermes::velodyne::Model::Hdl32e;
+};
+
+/// A capture of `packets` data packets of each sensor in turn, 10 turns a second, a wall all around on every
+/// laser.
+inline void writeCapture(const QString &path, int packets,
+                         const std::vector<CapturedSensor> &sensors = {CapturedSensor()}) {
     using namespace hermes;
     PcapWriter writer;
     if (!writer.open(path.toStdString(), true))
@@ -59,19 +69,21 @@ inline void writeCapture(const QString &path, int packets) {
     int azimuth = 18000;
     for (int p = 0; p < packets; ++p) {
         velodyne::DataPacketWriter packet;
-        for (int block = 0; block < velodyne::blocksPerPacket; ++block, azimuth = (azimuth + 17) % 36000) {
+        for (int block = 0; block < velodyne::blocksPerPacket; ++block, azimuth = (azimuth + 17) % 36000)
             packet.setAzimuth(block, std::uint16_t(azimuth));
-            for (int laser = 0; laser < velodyne::lasers; ++laser)
-                packet.setReturn(block, laser, velodyne::toDistanceCounts(5), 100);
-        }
-        const std::int64_t stamp = 1000000000 + p * velodyne::packetPeriod_ns;
-        packet.setTail(std::uint32_t(stamp / 1000));
         Datagram d;
-        d.stamp_ns = stamp;
-        d.sourcePort = d.destinationPort = velodyne::dataPort;
+        d.stamp_ns = 1000000000 + p * velodyne::packetPeriod_ns;
         d.payload = packet.bytes().data();
         d.size = packet.bytes().size();
-        writer.write(d);
+        for (const CapturedSensor &sensor : sensors) {
+            for (int block = 0; block < velodyne::blocksPerPacket; ++block)
+                for (int slot = 0; slot < velodyne::slotsPerBlock; ++slot)
+                    packet.setReturn(block, slot, velodyne::toDistanceCounts(sensor.range), 100);
+            packet.setTail(std::uint32_t(d.stamp_ns / 1000), velodyne::ReturnMode::Strongest, sensor.model);
+            d.source = sensor.address;
+            d.sourcePort = d.destinationPort = sensor.port;
+            writer.write(d);
+        }
     }
     if (!writer.close())
         qFatal("%s", writer.error().c_str());

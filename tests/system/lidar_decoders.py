@@ -17,11 +17,11 @@ HOUR_US = 3600 * 10**6
 
 
 def write_capture(path, seed, product, mode, packets):
-    """Random returns of a head that turns unevenly, over the end of an hour."""
+    """Random returns of a head that turns unevenly, over the end of an hour, to one port or another."""
     rng = random.Random(seed)
     model = reference.MODELS[product]
     size = 2 if mode == reference.DUAL else 1
-    azimuth, stamp_us = rng.randrange(36000), HOUR_US - 20000
+    azimuth, stamp_us, port = rng.randrange(36000), HOUR_US - 20000, rng.choice((2368, 2369, 40000))
     with open(path, "wb") as file:
         file.write(struct.pack("<IHHIIII", 0xA1B23C4D, 2, 4, 0, 0, 65535, 1))
         for _ in range(packets):
@@ -37,7 +37,7 @@ def write_capture(path, seed, product, mode, packets):
             payload += struct.pack("<IBB", stamp_us % HOUR_US, mode, product)
             receive_ns = 1700002800 * 10**9 - HOUR_US * 1000 + stamp_us * 1000 + rng.randrange(200000)
             frame = (bytes(12) + b"\x08\x00\x45\x00" + struct.pack(">H", 1234) + bytes(4) + b"\x40\x11" + bytes(10) +
-                     struct.pack(">HHHH", 2368, 2368, 1214, 0) + payload)
+                     struct.pack(">HHHH", port, port, 1214, 0) + payload)
             file.write(struct.pack("<IIII", receive_ns // 10**9, receive_ns % 10**9, len(frame), len(frame)) + frame)
             stamp_us += 12 // size * model.firings * model.firing_ns // 1000
 

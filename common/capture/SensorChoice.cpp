@@ -1,0 +1,71 @@
+#include "common/capture/SensorChoice.h"
+
+#include <cstdlib>
+
+namespace hermes {
+
+namespace {
+
+/// Noise that looks like packets of ever more sensors must not fill the memory.
+constexpr std::size_t mostSensors = 16;
+
+bool isOf(const SensorChoice::Sensor &sensor, const Datagram &datagram) {
+    return sensor.address == datagram.source && sensor.port == datagram.destinationPort;
+}
+
+} // namespace
+
+bool SensorChoice::takes(const Datagram &packet) {
+    const std::size_t found = find(packet);
+    ++sensors_[found].packets;
+    if (!isWanted(packet))
+        return false;
+    if (taken_ && taken_ != found) {
+        if (!lastTaken_ns_)
+            lastTaken_ns_ = packet.stamp_ns;
+        if (!options_.patience_ns || std::abs(packet.stamp_ns - *lastTaken_ns_) <= *options_.patience_ns)
+            return false;
+    }
+    taken_ = found;
+    lastTaken_ns_ = packet.stamp_ns;
+    return true;
+}
+
+bool SensorChoice::mayTake(const Datagram &datagram) const {
+    return isWanted(datagram) && (!taken_ || isOf(sensors_[*taken_], datagram));
+}
+
+bool SensorChoice::isFromTaken(const Datagram &datagram) const {
+    return !taken_ || sensors_[*taken_].address == datagram.source;
+}
+
+std::size_t SensorChoice::find(const Datagram &packet) {
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        if (isOf(sensors_[i], packet))
+            return i;
+    }
+    if (sensors_.size() < mostSensors)
+        sensors_.emplace_back();
+    const std::size_t last = sensors_.size() - 1;
+    const std::size_t place = taken_ == last ? last - 1 : last;
+    sensors_[place] = {packet.source, packet.destinationPort, 0};
+    return place;
+}
+
+bool SensorChoice::isWanted(const Datagram &datagram) const {
+    return options_.port.value_or(datagram.destinationPort) == datagram.destinationPort &&
+           options_.address.value_or(datagram.source) == datagram.source;
+}
+
+std::string addressText(std::uint32_t address) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8)
+        text += std::to_string(address >> shift & 0xFF) + (shift > 0 ? "." : "");
+    return text;
+}
+
+std::string toText(const SensorChoice::Sensor &sensor) {
+    return addressText(sensor.address) + " to port " + std::to_string(sensor.port);
+}
+
+} // namespace hermes

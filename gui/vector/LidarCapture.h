@@ -1,0 +1,51 @@
+#pragma once
+
+#include "common/capture/PcapReader.h"
+#include "common/capture/SensorChoice.h"
+#include "gui/vector/Input.h"
+#include "protocol/velodyne/GpsReader.h"
+#include "protocol/velodyne/TurnAssembler.h"
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace hermes {
+
+/// Which of the sensors in a capture is read: the first, or the first that meets what is given.
+struct SensorOptions {
+    std::optional<std::uint16_t> port; ///< to which it sends its data packets
+    std::string sender;                ///< its IPv4 address, or empty
+
+    void addTo(CLI::App &sub);
+};
+
+/// The data packets of one sensor in a capture, whatever port they went to.
+class LidarCapture {
+public:
+    /// model: the sensor's; Blank for any. Throws Failure when the file is no capture that can be read.
+    LidarCapture(const std::string &path, const SensorOptions &options,
+                 velodyne::Model model = velodyne::Model::Blank);
+
+    /// Feeds all of them to an assembler and lets the sensor's position packets tell the hour; progress gets
+    /// the number of records read. Gives a message about who else sent data packets, or nothing. Throws
+    /// Failure where the capture is damaged, after feeding what came before, and when the sensor is not in
+    /// it.
+    std::string read(velodyne::TurnAssembler &assembler,
+                     const std::function<void(std::uint64_t)> &progress = {});
+
+private:
+    void take(const Datagram &datagram, velodyne::TurnAssembler &assembler);
+    bool isDamaged(const Datagram &datagram, velodyne::PacketFault fault) const;
+    std::string notice(const velodyne::PacketCounts &counts) const;
+
+    std::string path_;
+    SensorOptions options_;
+    velodyne::Model model_;
+    PlainFile file_;
+    PcapReader reader_;
+    velodyne::GpsReader gps_;
+    SensorChoice choice_;
+};
+
+} // namespace hermes

@@ -1,0 +1,131 @@
+// hermes-vector ring and map find the data packets of a capture by what they are, and take those of one
+// sensor.
+#include "VectorProgram.h"
+
+using hermes::velodyne::Model;
+
+namespace {
+
+/// The ranges that ring printed, each once.
+QSet<double> rangesOf(const QByteArray &csv) {
+    QSet<double> ranges;
+    for (const QByteArray &line : csv.trimmed().split('\n').mid(1))
+        ranges.insert(line.split(',').at(3).toDouble());
+    return ranges;
+}
+
+/// A datagram of other programs, of the size of a data packet.
+void appendForeign(const QString &path, quint16 port) {
+    using namespace hermes;
+    PcapWriter writer;
+    const QString copy = path + ".copy";
+    const QByteArray payload(int(velodyne::packetSize), 'x');
+    Datagram d;
+    d.stamp_ns = 2000000000;
+    d.source = 0xC0A80105;
+    d.sourcePort = d.destinationPort = port;
+    d.payload = reinterpret_cast<const std::uint8_t *>(payload.constData());
+    d.size = std::size_t(payload.size());
+    if (!writer.open(copy.toStdString()) || !writer.write(d) || !writer.close())
+        qFatal("%s", writer.error().c_str());
+    const QByteArray record = contents(copy).mid(int(PcapWriter::fileHeaderBytes));
+    QFile::remove(copy);
+    write(path, contents(path) + record);
+}
+
+} // namespace
+
+class TestVectorCaptures : public QObject {
+    Q_OBJECT
+    TestFolder folder_;
+    QString path(const char *name) const { return folder_.path(name); }
+
+private Q_SLOTS:
+    void initTestCase() { QVERIFY(folder_.isValid()); }
+    void init() { folder_.empty(); }
+
+    void anyPortIsRead() {
+        writeCapture(path("usual.pcap"), 400);
+        writeCapture(path("other.pcap"), 400, {{0xC0A801C9, 4711}});
+        appendForeign(path("other.pcap"), 5000);
+        const Result usual = run({"ring", path("usual.pcap")}), other = run({"ring", path("other.pcap")});
+        QCOMPARE(other.err, QByteArray());
+        QCOMPARE(other.status, 0);
+        QCOMPARE(other.out, usual.out);
+        const Result map = run({"map", path("other.pcap")});
+        QVERIFY2(map.status == 0, map.err.constData());
+        QCOMPARE(json(map.out)["scans"].toInt(), 3);
+    }
+
+    void oneSensorOfSeveralIsTaken_data() {
+        QTest::addColumn<QStringList>("options");
+        QTest::addColumn<double>("range");
+        QTest::newRow("the first") << QStringList() << 5.0;
+        QTest::newRow("by its port") << QStringList{"--port", "2369"} << 6.0;
+        QTest::newRow("by its address") << QStringList{"--sender", "192.168.1.203"} << 7.0;
+        QTest::newRow("by both") << QStringList{"--port", "2368", "--sender", "192.168.1.203"} << 7.0;
+    }
+    void oneSensorOfSeveralIsTaken() {
+        QFETCH(QStringList, options);
+        QFETCH(double, range);
+        writeCapture(path("c.pcap"), 400,
+                     {{0xC0A801C9, 2368, 5}, {0xC0A801CA, 2369, 6}, {0xC0A801CB, 2368, 7}});
+        const Result ring = run(QStringList{"ring", path("c.pcap")} + options);
+        QCOMPARE(ring.status, 0);
+        QCOMPARE(rangesOf(ring.out), QSet<double>{range});
+        QCOMPARE(ring.out.count('\n'), 4801);
+        for (const char *told :
+             {"192.168.1.201 to port 2368 (400 packets)", "192.168.1.202 to port 2369 (400 packets)",
+              "192.168.1.203 to port 2368 (400 packets)", "--port", "--sender"})
+            QVERIFY2(ring.err.contains(told), ring.err.constData());
+        const Result map = run(QStringList{"map", path("c.pcap"), "--out-map", path("m.csv")} + options);
+        QVERIFY2(map.status == 0, map.err.constData());
+        QCOMPARE(json(map.out)["scans"].toInt(), 3);
+        QVERIFY2(map.err.contains("read 192.168.1.20"), map.err.constData());
+        for (const QByteArray &line : contents(path("m.csv")).trimmed().split('\n').mid(1)) {
+            const QList<QByteArray> edge = line.split(',');
+            QVERIFY2(std::abs(std::hypot(edge[1].toDouble(), edge[2].toDouble()) - range) < 0.1, line);
+        }
+    }
+
+    void ofTwoModelsTheOneAskedForIsTaken() {
+        writeCapture(path("c.pcap"), 400,
+                     {{0xC0A801C9, 2368, 5, Model::Hdl32e}, {0xC0A801CA, 2368, 6, Model::Vlp16}});
+        QCOMPARE(rangesOf(run({"ring", path("c.pcap"), "--model", "vlp16"}).out), QSet<double>{6});
+        QCOMPARE(rangesOf(run({"ring", path("c.pcap")}).out), QSet<double>{5});
+    }
+
+    void whatIsMissingIsTold_data() {
+        QTest::addColumn<QStringList>("options");
+        QTest::addColumn<QByteArray>("told");
+        QTest::newRow("port") << QStringList{"--port", "2370"}
+                              << QByteArray("found data packets of 192.168.1.201 to port 4711 (400 packets) "
+                                            "only, expected some to port 2370");
+        QTest::newRow("sender") << QStringList{"--sender", "10.0.0.1"}
+                                << QByteArray("only, expected some from 10.0.0.1");
+    }
+    void whatIsMissingIsTold() {
+        QFETCH(QStringList, options);
+        QFETCH(QByteArray, told);
+        writeCapture(path("c.pcap"), 400, {{0xC0A801C9, 4711}});
+        for (const char *command : {"ring", "map"}) {
+            const Result r = run(QStringList{command, path("c.pcap"), "--out", path("out")} + options);
+            QCOMPARE(r.status, 1);
+            QVERIFY2(r.err.contains(told), r.err.constData());
+            QCOMPARE(folder_.files(), QStringList{"c.pcap"});
+        }
+    }
+
+    void capturesWithoutDataPacketsAreRefused() {
+        writeCapture(path("c.pcap"), 0);
+        appendForeign(path("c.pcap"), 2368);
+        for (const char *command : {"ring", "map"}) {
+            const Result r = run({command, path("c.pcap")});
+            QCOMPARE(r.status, 1);
+            QVERIFY2(r.err.contains("1206 bytes whose blocks begin with FF EE"), r.err.constData());
+        }
+    }
+};
+
+QTEST_GUILESS_MAIN(TestVectorCaptures)
+#include "TestVectorCaptures.moc"
