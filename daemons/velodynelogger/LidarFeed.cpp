@@ -6,6 +6,9 @@ namespace hermes {
 
 namespace {
 
+/// So long may a sensor be silent before another is decoded.
+constexpr std::int64_t patience_ns = 1000000000;
+
 /// Every how many firings are taken so that a turn of so many has no more points than are wanted.
 std::uint32_t firingStep(const velodyne::SensorModel &model, std::int64_t firings, std::uint32_t wanted) {
     const std::int64_t taken = std::max<std::int64_t>(1, wanted / model.lasers);
@@ -48,6 +51,7 @@ std::string LidarFeed::openPcap(const std::vector<std::string> &paths, const Pca
 void LidarFeed::begin(const Options &options) {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
     options_ = options;
+    choice_ = SensorChoice({options.onlyPort, {}, patience_ns});
     gps_.reset();
     ring_.reset(); // numbers begin anew
     ring_ = makeAssembler(options.laser, [this](const velodyne::Turn &turn) { takeOver(turn); });
@@ -81,6 +85,7 @@ void LidarFeed::finish() {
 
 void LidarFeed::jump() {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
+    choice_.jump();
     forAssemblers([](velodyne::TurnAssembler &assembler) { assembler.jump(); });
 }
 
@@ -125,13 +130,20 @@ void LidarFeed::play(const Datagram &datagram) {
 void LidarFeed::decode(const Datagram &datagram) {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
     if (datagram.size == velodyne::positionPacketSize) {
-        if (gps_.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
+        if (choice_.isFromTaken(datagram) &&
+            gps_.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
             forAssemblers(
                 [this](velodyne::TurnAssembler &assembler) { assembler.follow(gps_.state().utc_ns); });
         return;
     }
     if (datagram.size != velodyne::packetSize && datagram.destinationPort != options_.dataPort) {
         ++counts_.other;
+        return;
+    }
+    if (velodyne::DataPacket::check(datagram.payload, datagram.size, options_.model) ==
+            velodyne::PacketFault::None &&
+        !choice_.takes(datagram)) {
+        ++counts_.otherSensors;
         return;
     }
     forAssemblers([&datagram](velodyne::TurnAssembler &assembler) {
@@ -220,6 +232,9 @@ LidarFeed::Counts LidarFeed::counts() const {
         counts.rpm = ring_->rpm();
         counts.model = ring_->model();
     }
+    counts.sensors = choice_.sensors();
+    if (choice_.taken())
+        counts.decoded = *choice_.taken();
     counts.gps = gps_.counts();
     counts.udp = live_.counts();
     const std::lock_guard<std::mutex> queueLock(queueMutex_);

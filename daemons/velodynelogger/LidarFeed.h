@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/capture/SensorChoice.h"
 #include "daemons/velodynelogger/LiveSource.h"
 #include "daemons/velodynelogger/PcapPlayer.h"
 #include "daemons/velodynelogger/TurnQueue.h"
@@ -21,6 +22,7 @@ public:
         std::uint16_t dataPort =
             velodyne::dataPort;         ///< of other ports only datagrams of the right size are decoded
         std::uint16_t positionPort = 0; ///< received live as well; 0: none
+        std::optional<std::uint16_t> onlyPort{}; ///< only a sensor that sends to it is decoded
     };
     /// How turns of all lasers are thinned.
     struct Thinning {
@@ -30,10 +32,13 @@ public:
     struct Counts {
         velodyne::PacketCounts packets;
         LiveSource::Counts udp;
-        velodyne::GpsReader::Counts gps; ///< of position packets
-        std::uint64_t other = 0;         ///< of another port and another size
-        std::uint64_t turns = 0;         ///< finished
-        std::uint64_t turnsDropped = 0;  ///< finished, but nobody took them in time
+        velodyne::GpsReader::Counts gps;             ///< of position packets
+        std::uint64_t other = 0;                     ///< of another port and another size
+        std::uint64_t otherSensors = 0;              ///< data packets of sensors that are not decoded
+        std::vector<SensorChoice::Sensor> sensors;   ///< that sent data packets, the decoded one among them
+        std::optional<SensorChoice::Sensor> decoded; ///< of these; nothing before the first
+        std::uint64_t turns = 0;                     ///< finished
+        std::uint64_t turnsDropped = 0;              ///< finished, but nobody took them in time
         std::uint64_t cloudsDropped = 0;
         double rpm = 0;
         const velodyne::SensorModel *model = nullptr; ///< null before the first packet
@@ -102,6 +107,7 @@ private:
     mutable std::mutex decoderMutex_; // guards what follows
     Options options_;
     std::optional<Thinning> thinning_;
+    SensorChoice choice_;
     velodyne::GpsReader gps_;
     Assembler ring_;
     Assembler cloud_;   ///< while clouds are wanted

@@ -3,6 +3,24 @@
 
 namespace hermes {
 
+namespace {
+
+QString textOf(const SensorChoice::Sensor &sensor) {
+    return QString::fromStdString(toText(sensor));
+}
+
+/// Which sensors are not decoded.
+QString otherSensors(const LidarFeed::Counts &counts) {
+    QStringList others;
+    for (const SensorChoice::Sensor &sensor : counts.sensors) {
+        if (!counts.decoded || toText(sensor) != toText(*counts.decoded))
+            others += textOf(sensor);
+    }
+    return others.join(", ");
+}
+
+} // namespace
+
 QString VelodyneLogger::toText(Source source) {
     switch (source) {
     case Source::None:
@@ -60,6 +78,7 @@ QJsonObject VelodyneLogger::lidarState() {
     const velodyne::PacketCounts &packets = counts.packets;
     return {{"source", sourceState()},
             {"model", counts.model ? QJsonValue(counts.model->name) : QJsonValue()},
+            {"sensor", counts.decoded ? QJsonValue(textOf(*counts.decoded)) : QJsonValue()},
             {"rpm", counts.rpm},
             {"packet_rate_hz", packetRate_},
             {"gps", gpsState()},
@@ -73,6 +92,7 @@ QJsonObject VelodyneLogger::lidarState() {
             {"wrong_flag", double(packets.wrongFlag)},
             {"wrong_value", double(packets.wrongValue)},
             {"other_model", double(packets.otherModel)},
+            {"other_sensors", double(counts.otherSensors)},
             {"position_packets", double(counts.gps.packets)},
             {"other_datagrams", double(counts.other + counts.udp.tooLong)},
             {"kernel_drops", double(counts.udp.kernelDrops)},
@@ -122,6 +142,10 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
             QString("no packet on %1 for %2 s").arg(sourceName_).arg(sincePacket_.elapsed() / 1000));
     else if (packets.otherModel > 0)
         set(HealthLevel::Warn, velodyne::describe(velodyne::PacketFault::Model));
+    else if (counts.otherSensors > 0)
+        set(HealthLevel::Warn,
+            (counts.decoded ? textOf(*counts.decoded) + " is decoded, " : "nothing is decoded, ") +
+                "data packets come from " + otherSensors(counts) + " too");
     else if (wrong > 0)
         set(HealthLevel::Warn, QString("%1 packets were no data packets of an HDL-32E or VLP-16").arg(wrong));
     else if (counts.model && settings().integer("decode.laser") >= counts.model->lasers)

@@ -53,7 +53,8 @@ Result<void> VelodyneLogger::start() {
     const Result<void> result =
         pcap.isEmpty()
             ? openLive()
-            : openPcap(pcap, {pcap}, {settings().number("source.speed"), settings().flag("source.loop")});
+            : openPcap(pcap, {pcap}, {settings().number("source.speed"), settings().flag("source.loop")},
+                       options());
     updateHealth();
     return result;
 }
@@ -78,6 +79,13 @@ LidarFeed::Options VelodyneLogger::options() {
     return options;
 }
 
+LidarFeed::Options VelodyneLogger::replayedOptions(const Call &call) {
+    LidarFeed::Options replayed = options();
+    if (call.has("port"))
+        replayed.onlyPort = quint16(call.integer("port"));
+    return replayed;
+}
+
 Result<void> VelodyneLogger::openLive() {
     const QString address = settings().text("source.address");
     const int port = settings().integer("source.port");
@@ -95,7 +103,7 @@ Result<void> VelodyneLogger::openLive() {
 }
 
 Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &paths,
-                                      const PcapPlayer::Options &play) {
+                                      const PcapPlayer::Options &play, const LidarFeed::Options &options) {
     std::vector<std::string> files;
     for (const QString &path : paths) {
         PcapReader probe; // a wrong name does not close what is open
@@ -114,7 +122,7 @@ Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &pa
         };
         QMetaObject::invokeMethod(this, tell, Qt::QueuedConnection);
     };
-    const std::string error = feed_.openPcap(files, play, options(), ended);
+    const std::string error = feed_.openPcap(files, play, options, ended);
     if (!error.empty()) {
         opened(Source::None, {}, {});
         return diskError(QString::fromStdString(error), name);
@@ -146,10 +154,15 @@ Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
                               {"pcap", call.value("pcap"), "a capture file, without the others"},
                               {"recording", call.value("recording"), "the name of one, without the others"}},
                              "one of live: true, pcap: FILE and recording: NAME expected");
+    if (live && call.has("port"))
+        return invalidParams(
+            {{"port", call.value("port"), "only of a replay; live it is the setting source.port"}},
+            "port is of a replay, live it is the setting source.port");
     const QString pcap = call.text("pcap");
-    const Result<void> result = live                    ? openLive()
-                                : call.has("recording") ? openRecording(call)
-                                                        : openPcap(pcap, {pcap}, replayOptions(call));
+    const Result<void> result = live ? openLive()
+                                : call.has("recording")
+                                    ? openRecording(call)
+                                    : openPcap(pcap, {pcap}, replayOptions(call), replayedOptions(call));
     updateHealth();
     if (!result)
         return result.error();
@@ -172,7 +185,7 @@ Result<void> VelodyneLogger::openRecording(const Call &call) {
     PcapPlayer::Options play = replayOptions(call);
     play.begin = PlayTime(std::int64_t(stored->start_s * 1e9), std::int64_t(stored->length_s * 1e9),
                           std::int64_t(call.number("delay_s") * 1e9));
-    return openPcap(stored->folder, *files, play);
+    return openPcap(stored->folder, *files, play, replayedOptions(call));
 }
 
 void VelodyneLogger::replayEnded(QString error) {

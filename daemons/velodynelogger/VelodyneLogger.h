@@ -31,8 +31,10 @@ private:
     void declareRecordCommands();
 
     LidarFeed::Options options();
+    LidarFeed::Options replayedOptions(const Call &call);
     Result<void> openLive();
-    Result<void> openPcap(const QString &name, const QStringList &paths, const PcapPlayer::Options &play);
+    Result<void> openPcap(const QString &name, const QStringList &paths, const PcapPlayer::Options &play,
+                          const LidarFeed::Options &options);
     Result<void> openRecording(const Call &call);
     Result<QJsonValue> openSource(const Call &call);
     void replayEnded(QString error);

@@ -5,6 +5,8 @@
 
 #include <QUdpSocket>
 
+#include <set>
+
 using namespace hermes;
 using velodyne::Turn;
 
@@ -22,6 +24,29 @@ std::vector<std::uint8_t> positionPacket(std::int64_t stamp_ns, const std::strin
         QByteArray::number(nmea::checksum(sentence.substr(1)), 16).rightJustified(2, '0').toUpper() + "\r\n";
     std::copy(text.begin(), text.end(), bytes.begin() + 0xCE);
     return bytes;
+}
+
+/// A packet of a sensor like Sensor that sees a wall 6 m away.
+std::array<std::uint8_t, velodyne::packetSize> farPacket(int number) {
+    auto bytes = Sensor().packet(number);
+    for (std::size_t block = 0; block < velodyne::blocksPerPacket; ++block) {
+        for (std::size_t slot = 0; slot < velodyne::slotsPerBlock; ++slot) {
+            const std::size_t at = block * velodyne::blockSize + 4 + 3 * slot;
+            bytes[at] = 3000 & 0xFF;
+            bytes[at + 1] = 3000 >> 8;
+        }
+    }
+    return bytes;
+}
+
+/// The ranges of all points, each once.
+std::set<double> rangesOf(const std::vector<Turn> &turns) {
+    std::set<double> ranges;
+    for (const Turn &turn : turns) {
+        for (const velodyne::Point &point : turn.points)
+            ranges.insert(point.range);
+    }
+    return ranges;
 }
 
 /// Sends every datagram of a capture to a local port, at the pace at which they were received.
@@ -53,6 +78,9 @@ private Q_SLOTS:
     void slowReadersLoseTurnsAndAreTold();
     void foreignDatagramsAreCounted();
     void positionPacketsTellTheHour();
+    void ofSeveralSensorsInACaptureOneIsDecoded_data();
+    void ofSeveralSensorsInACaptureOneIsDecoded();
+    void ofSeveralSensorsOnOnePortOneIsDecoded();
 };
 
 void TestLidarFeed::liveGivesWhatDirectDecodingGives() {
@@ -155,6 +183,72 @@ void TestLidarFeed::positionPacketsTellTheHour() {
     QVERIFY(std::abs(gps.position->latitude_deg - 37.13030) < 1e-4);
     QCOMPARE(listener.feed.counts().gps.packets, std::uint64_t(8));
     QCOMPARE(listener.feed.counts().packets.clockJumps, std::uint64_t(0));
+}
+
+void TestLidarFeed::ofSeveralSensorsInACaptureOneIsDecoded_data() {
+    QTest::addColumn<int>("port"); // of the second
+    QTest::addColumn<int>("only");
+    QTest::addColumn<double>("range");
+    QTest::newRow("to one port") << 2368 << 0 << 5.0;
+    QTest::newRow("to two ports") << 4711 << 0 << 5.0;
+    QTest::newRow("to two ports, the second") << 4711 << 4711 << 6.0;
+}
+
+void TestLidarFeed::ofSeveralSensorsInACaptureOneIsDecoded() {
+    QFETCH(int, port);
+    QFETCH(int, only);
+    QFETCH(double, range);
+    const Sensor sensor;
+    QTemporaryDir folder;
+    const std::string path = folder.filePath("two.pcap").toStdString();
+    PcapWriter writer;
+    QVERIFY(writer.open(path));
+    for (int i = 0; i < 500; ++i) {
+        writer.write(sensorDatagram(sensor.packet(i), sensor.stamp(i)));
+        const auto far = farPacket(i);
+        Datagram second = sensorDatagram(far, sensor.stamp(i) + 1000);
+        second.source += 1;
+        second.destinationPort = std::uint16_t(port);
+        writer.write(second);
+    }
+    QVERIFY(writer.close());
+    LidarListener listener;
+    LidarFeed::Options options;
+    if (only > 0)
+        options.onlyPort = std::uint16_t(only);
+    const auto ended = [&listener](const std::string &) { listener.ended = true; };
+    QCOMPARE(listener.feed.openPcap({path}, {0}, options, ended), std::string());
+    QVERIFY(listener.waitForEnd());
+    QCOMPARE(rangesOf(listener.turns), std::set<double>{range});
+    const LidarFeed::Counts counts = listener.feed.counts();
+    QCOMPARE(counts.packets.packets, std::uint64_t(500));
+    QCOMPARE(counts.otherSensors, std::uint64_t(500));
+    QCOMPARE(counts.packets.lost + counts.packets.outOfOrder + counts.packets.clockJumps, std::uint64_t(0));
+    QCOMPARE(counts.sensors.size(), std::size_t(2));
+    QCOMPARE(int(counts.decoded->port), only > 0 ? only : 2368);
+}
+
+void TestLidarFeed::ofSeveralSensorsOnOnePortOneIsDecoded() {
+    LidarListener listener;
+    QCOMPARE(listener.feed.openLive("0.0.0.0", 0, 4 << 20, {}), std::string());
+    const Sensor sensor;
+    QUdpSocket near, far;
+    QVERIFY(near.bind(QHostAddress("127.0.0.1"), 0) && far.bind(QHostAddress("127.0.0.2"), 0));
+    const auto send = [&](QUdpSocket &socket, const auto &bytes) {
+        socket.writeDatagram(reinterpret_cast<const char *>(bytes.data()), qint64(bytes.size()),
+                             QHostAddress::LocalHost, listener.feed.port());
+    };
+    for (int i = 0; i < 20; ++i) {
+        send(near, sensor.packet(i));
+        send(far, farPacket(i));
+    }
+    QTRY_COMPARE(listener.feed.counts().udp.received, std::uint64_t(40));
+    const std::string sensorText = "127.0.0.1 to port " + std::to_string(listener.feed.port());
+    listener.feed.close();
+    listener.take();
+    QCOMPARE(rangesOf(listener.turns), std::set<double>{5.0});
+    QCOMPARE(listener.feed.counts().otherSensors, std::uint64_t(20));
+    QCOMPARE(toText(*listener.feed.counts().decoded), sensorText);
 }
 
 QTEST_GUILESS_MAIN(TestLidarFeed)

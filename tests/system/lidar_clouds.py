@@ -189,6 +189,19 @@ def check_replay(logger, port, capture):
     refused(-32005, logger, "capture.turn", name="late")
 
 
+def check_sensors(logger, capture):
+    """Packets are found whatever port they went to, and of a port that is asked for only."""
+    port = next(reference.ports(capture))
+    status = lambda: logger.call("source.status")  # noqa: E731
+    logger.call("source.open", pcap=capture, speed=0)
+    wait_for("the end", lambda: status()["source"]["state"] == "ended")
+    assert status()["packets"] == PACKETS and status()["sensor"].endswith(f" to port {port}"), status()
+    logger.call("source.open", pcap=capture, speed=0, port=1)
+    wait_for("the end", lambda: status()["source"]["state"] == "ended")
+    assert (status()["packets"], status()["other_sensors"], status()["sensor"]) == (0, PACKETS, None), status()
+    refused(-32602, logger, "source.open", live=True, port=1)
+
+
 def check_overload(logger, port, capture):
     """Turns come faster than messages can be made of them, as on a slow machine: the logger still answers, and tells the loss."""
     clouds = Reader(port, "cloud")
@@ -228,6 +241,7 @@ def main():
                 check_clouds(logger, process.port, capture, model)
                 check_captures(logger, folder, capture, model)
                 check_replay(logger, process.port, capture)
+                check_sensors(logger, capture)
             check_slow_reader(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
             check_overload(logger, process.port, os.path.join(folder, "made-hdl32e.pcap"))
         finally:

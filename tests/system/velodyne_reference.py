@@ -35,6 +35,14 @@ def datagrams(path):
             yield seconds * 10**9 + fraction * unit, frame[42:42 + struct.unpack(">H", frame[38:40])[0] - 8]
 
 
+def ports(path):
+    """The destination port of each datagram of such a pcap."""
+    with open(path, "rb") as file:
+        file.seek(24)
+        while header := file.read(16):
+            yield struct.unpack(">H", file.read(struct.unpack("<8xI4x", header)[0])[36:38])[0]
+
+
 def absolute(microseconds, receive_ns):
     """The time with these microseconds of the hour that is nearest to the receive time; ns."""
     hour = 3600 * 10**9
