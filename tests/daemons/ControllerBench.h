@@ -134,10 +134,10 @@ private:
             if (int(e) == packet.controller && !heard)
                 continue;
             for (std::size_t i = 0; i < bytes.size(); ++i) {
-                const auto answer = emulators_[e].receive(bytes[i], now_);
-                const auto arrives = answer ? passes(packet, answer->bytes) : std::nullopt;
-                if (arrives)
-                    answers_.push_back({now_ + tick + latency + answer->delay, *arrives});
+                for (const auto &answer : emulators_[e].receive(bytes[i], now_)) {
+                    if (const auto arrives = passes(packet, answer.bytes))
+                        answers_.push_back({now_ + tick + latency + answer.delay, *arrives});
+                }
             }
         }
     }
