@@ -1,0 +1,206 @@
+#include "StandJudge.h"
+
+#include <cmath>
+#include <cstdarg>
+
+namespace campaign {
+
+namespace {
+
+constexpr double radius = 0.1; // of a wheel
+const char *const wheelNames[] = {"front_left", "front_right", "rear_left", "rear_right"};
+
+std::string print(const char *format, ...) {
+    char text[400];
+    va_list values;
+    va_start(values, format);
+    std::vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    return text;
+}
+
+std::string controllerName(int number) {
+    return "controller" + std::to_string(number + 1);
+}
+
+} // namespace
+
+void StandJudge::configure(double deceleration, double commandTimeout_s) {
+    deceleration_ = deceleration;
+    commandTimeout_ = commandTimeout_s;
+}
+
+void StandJudge::begin(const Fault &fault) {
+    active_[{fault.device, fault.kind}] = time();
+}
+
+void StandJudge::end(const Fault &fault) {
+    active_.erase({fault.device, fault.kind});
+}
+
+void StandJudge::setStalled(bool stalled) {
+    if (stalled)
+        stalledSince_ = time();
+    else
+        stalledSince_.reset(), resumed_ = time();
+}
+
+double StandJudge::rim(int wheel) const {
+    return std::abs(robot_.robot.wheelSpeeds()[std::size_t(wheel)]) * radius;
+}
+
+double StandJudge::fastest() const {
+    double most = 0;
+    for (const double speed : robot_.robot.wheelSpeeds())
+        most = std::max(most, std::abs(speed) * radius);
+    return most;
+}
+
+void StandJudge::justify(double made) {
+    if (time() >= made + commandTimeout_)
+        return;
+    justified_ = true;
+    until_ = made + commandTimeout_;
+}
+
+void StandJudge::endJustification(const std::string &why) {
+    if (!justified_)
+        return;
+    justified_ = false;
+    why_ = why;
+    ended_ = std::min(time(), until_);
+    speedAtEnd_ = fastest();
+    excuse_ = "obeys";
+    deadline_.fill(ended_ + reaction + braking());
+}
+
+std::optional<double> StandJudge::sinceOf(const std::string &device, const std::string &kind) const {
+    const auto found = active_.find({device, kind});
+    return found == active_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<double> StandJudge::unreachableSince(int controller) const {
+    std::optional<double> since = stalledSince_;
+    const auto take = [&](const std::optional<double> &other) {
+        if (other && (!since || *other < *since))
+            since = other;
+    };
+    take(sinceOf(controllerName(controller), "deaf"));
+    take(sinceOf("line" + std::to_string(robot_.lineOf(controller) + 1), "pulled"));
+    return since;
+}
+
+std::optional<double> StandJudge::disobedientSince(int controller) const {
+    std::optional<double> since = sinceOf(controllerName(controller), "latched");
+    for (int wheel = 2 * controller; wheel < 2 * controller + 2; ++wheel) {
+        const auto backward = sinceOf(wheelNames[wheel], "backward");
+        since = since ? since : backward;
+    }
+    if (!since && robot_.lines() > 1) // what is sent to it is for another address
+        since = sinceOf("controllers", "swapped");
+    return since;
+}
+
+std::optional<double> StandJudge::unheardSince(int controller) const {
+    std::optional<double> since = unreachableSince(controller);
+    for (const char *kind : {"mute", "silence"}) {
+        const auto other = sinceOf(controllerName(controller), kind);
+        since = since ? since : other;
+    }
+    return since;
+}
+
+bool StandJudge::isGuarded(int controller) const {
+    return robot_.robot.controller(controller).serialTimeout() > 0 &&
+           !sinceOf(controllerName(controller), "stuck_timeout");
+}
+
+// How much longer the wheels of a controller may turn, as it is now.
+void StandJudge::extend(int controller) {
+    double &deadline = deadline_[std::size_t(controller)];
+    const double now = time(), timeout = robot_.robot.controller(controller).serialTimeout();
+    const auto allow = [&](double until, const char *excuse) {
+        if (until > deadline) {
+            deadline = until;
+            excuse_ = excuse;
+        }
+    };
+    for (const char *kind : {"silence", "brownout"}) {
+        if (const auto since = sinceOf(controllerName(controller), kind); since && *since + rolling > now)
+            allow(std::max(ended_, *since) + rolling, "rolls without power");
+    }
+    const auto unreachable = unreachableSince(controller), disobedient = disobedientSince(controller);
+    if (!unreachable && !disobedient)
+        return;
+    // It is unreachable: its time-out runs. It disobeys: first that must be seen, and then its line falls
+    // silent.
+    const bool times = isGuarded(controller);
+    const double runs = unreachable ? *unreachable + timeout + margin : 0;
+    const double seen = disobedient ? std::max(ended_, *disobedient) + 2 * reaction + 1.5 * braking() +
+                                          2 * timeout + 2 * margin
+                                    : 0;
+    if (!times && rim(2 * controller) + rim(2 * controller + 1) > standing) {
+        if (now > std::max(runs, seen) && now > deadline)
+            beyond_.insert(unreachable ? "cannot be reached and has no time-out"
+                                       : "disobeys and has no time-out");
+        allow(now + reaction + braking(), "beyond");
+    } else if (now < std::max(runs, seen)) {
+        allow(now + reaction + braking(), "its own time-out");
+    }
+}
+
+void StandJudge::watch() {
+    const double now = time();
+    if (justified_ && !robot_.engine.drive().haltReason().isEmpty() && !stalledSince_)
+        endJustification("the motor control halted: " + robot_.engine.drive().haltReason().toStdString());
+    watchLost();
+    if (justified_ && now >= until_)
+        endJustification("no command came");
+    watchGuard();
+    last_ = now;
+    if (justified_)
+        return;
+    for (int controller = 0; controller < 2; ++controller) {
+        extend(controller);
+        for (int wheel = 2 * controller; wheel < 2 * controller + 2; ++wheel) {
+            if (rim(wheel) <= standing)
+                continue;
+            double &slowest = slowest_[excuse_];
+            slowest = std::max(slowest, now - ended_ - braking());
+            if (now > deadline_[std::size_t(controller)])
+                fail(print("%s turns with %.2f m/s at %.2f s; no longer justified from %.2f s on (%s), it "
+                           "should have stood by %.2f s",
+                           wheelNames[wheel], rim(wheel), now, ended_, why_.c_str(),
+                           deadline_[std::size_t(controller)]));
+        }
+    }
+}
+
+// Of a controller that is not heard nobody knows what it does: to drive on is not justified.
+void StandJudge::watchLost() {
+    if (!justified_ || stalledSince_)
+        return;
+    for (int controller = 0; controller < 2; ++controller) {
+        const auto since = unheardSince(controller);
+        if (since && time() > std::max(*since, resumed_) + lost)
+            endJustification(controllerName(controller) + " has not been heard for " + print("%g s", lost));
+    }
+}
+
+void StandJudge::watchGuard() {
+    for (int controller = 0; controller < 2; ++controller) {
+        const bool guarded = robot_.robot.controller(controller).serialTimeout() > 0;
+        const bool ready = robot_.engine.controller(controller).isReady();
+        double &seconds = unguardedFor_[std::size_t(controller)];
+        seconds = guarded || !ready || stalledSince_ ? 0 : seconds + time() - last_;
+        if (seconds > unguarded)
+            fail(controllerName(controller) + " is ready without a time-out of its own");
+    }
+}
+
+void StandJudge::fail(const std::string &what) {
+    if (failure_.empty())
+        failure_ = what;
+}
+
+} // namespace campaign

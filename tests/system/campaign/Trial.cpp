@@ -1,0 +1,302 @@
+#include "Trial.h"
+
+#include "StandJudge.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace campaign {
+
+using namespace hermes;
+
+namespace {
+
+constexpr double start = 1; // on the clock of the robot
+constexpr double commandPeriod = 0.05;
+constexpr double recovery = 8;  // once all is mended, the robot drives within
+constexpr double readiness = 3; // undisturbed, it drives within
+constexpr double slow = 0.05;   // m/s: slower it does not drive
+
+/// Settings with their defaults where the case says nothing.
+MotorSettings settingsOf(const Case &c, QJsonObject more = {}) {
+    Settings settings;
+    declareMotorSettings([&](const Field &field) { settings.declare(field); });
+    settings.addRule(checkMotorSettings);
+    QJsonObject all = c.settings;
+    QJsonObject controllers = all["controllers"].toObject();
+    if (c.twoLines)
+        controllers["2"] = QJsonObject{{"url", "serial:///dev/ttyACM1?baud=115200"}};
+    for (auto entry = more.begin(); entry != more.end(); ++entry)
+        controllers[entry.key()] = entry.value();
+    all["controllers"] = controllers;
+    const auto set = settings.set(all);
+    if (!set)
+        throw std::runtime_error("seed " + std::to_string(c.seed) + ": " + set.error().message.toStdString());
+    return MotorSettings::from(settings);
+}
+
+Drivetrain::Options drivetrainOf(const Case &c) {
+    Drivetrain::Options options;
+    const bool mecanum = c.settings["frame"].toObject()["layout"].toString() != "differential";
+    options.base.kind = mecanum ? WheelBase::Kind::Mecanum : WheelBase::Kind::Differential;
+    options.ownLines = c.twoLines;
+    for (std::size_t i = 0; i < options.controller.size(); ++i) {
+        options.controller[i].setFirmware(c.firmware);
+        options.controller[i].seed = c.seed * 2 + i;
+    }
+    return options;
+}
+
+int wheelNumber(const std::string &device) {
+    const std::string names[] = {"front_left", "front_right", "rear_left", "rear_right"};
+    for (int i = 0; i < 4; ++i) {
+        if (names[i] == device)
+            return i;
+    }
+    return -1;
+}
+
+class Trial {
+public:
+    explicit Trial(const Case &c)
+        : case_(c)
+        , settings_(settingsOf(c))
+        , robot_(settings_, drivetrainOf(c))
+        , judge_(robot_, start) {
+        judge_.configure(settings_.emergencyDeceleration, settings_.drive.commandTimeout_s);
+        if (c.movesAtFirst) {
+            for (int i = 0; i < 4; ++i)
+                robot_.robot.wheel(i).driveSpeed(20000);
+        }
+    }
+
+    Outcome run() {
+        plan();
+        while (!events_.empty() && judge_.failure().empty()) {
+            const auto event = events_.begin();
+            goTo(event->first);
+            const std::function<void()> happens = event->second;
+            events_.erase(event);
+            happens();
+        }
+        goTo(case_.duration);
+        if (judge_.failure().empty())
+            recover();
+        Outcome outcome{judge_.failure().empty() ? failure_ : judge_.failure(), judge_.beyond(),
+                        judge_.slowest(), stops_};
+        return outcome;
+    }
+
+private:
+    double time() const { return robot_.now() - start; }
+
+    void plan() {
+        for (const Fault &fault : case_.faults) {
+            events_.emplace(fault.begin, [this, fault] { begin(fault); });
+            events_.emplace(std::min(fault.end, case_.duration), [this, fault] { end(fault); });
+        }
+        for (const Step &step : case_.steps)
+            events_.emplace(step.time, [this, step] { act(step); });
+    }
+
+    // The client's commands on the way, too.
+    void goTo(double until) {
+        while (robot_.now() < start + until && judge_.failure().empty()) {
+            robot_.run(start + std::min(until, nextCommand_), [this] { watch(); });
+            if (robot_.now() >= start + nextCommand_) {
+                if (time() >= silentUntil_)
+                    command(time());
+                nextCommand_ += commandPeriod;
+            }
+        }
+    }
+    void watch() {
+        const bool before = judge_.isJustified();
+        judge_.watch();
+        stops_ += before && !judge_.isJustified();
+        if (!case_.isUndisturbed())
+            return;
+        drivesSince_ = judge_.fastest() > slow ? drivesSince_ : time();
+        if (time() > readiness && time() - drivesSince_ > 0.1 && failure_.empty())
+            failure_ = "it does not drive though nothing is wrong: " + reason();
+    }
+    std::string reason() {
+        return (robot_.engine.drive().haltReason() + "; " + robot_.engine.controller(0).error() + "; " +
+                robot_.engine.controller(1).error())
+            .toStdString();
+    }
+
+    /// One command of the client, made then.
+    void command(double made) {
+        Drive &drive = robot_.engine.drive();
+        const double now = robot_.now();
+        if (!drive.lease().isHeldBy(client_)) {
+            if (case_.resets || recovers_)
+                drive.resetEmergencyStop();
+            if (!drive.acquire(client_, "driver", case_.lease_s, now))
+                return robot_.obey();
+            judge_.endJustification("the control was acquired anew");
+        }
+        const Twist twist{case_.vx, case_.vy, case_.omega};
+        const double age = case_.stamps ? time() - made : 0;
+        if (drive.driveTwist(client_, twist, age, now))
+            judge_.justify(made);
+        robot_.obey();
+    }
+
+    void act(const Step &step) {
+        Drive &drive = robot_.engine.drive();
+        const std::string &a = step.action;
+        const auto ends = [&] { judge_.endJustification(a); };
+        if (a == "falls silent") {
+            silentUntil_ = time() + step.amount;
+        } else if (a == "stops") {
+            drive.stop(client_, "driver");
+            silentUntil_ = time() + step.amount;
+            ends();
+        } else if (a == "is stopped by another") {
+            drive.stop(77, "bystander");
+            ends();
+        } else if (a == "emergency stop") {
+            drive.emergencyStop("bystander");
+            ends();
+            events_.emplace(time() + step.amount, [this] { robot_.engine.drive().resetEmergencyStop(); });
+        } else if (a == "loses its connection") {
+            drive.clientGone(client_);
+            ++client_;
+            silentUntil_ = step.amount > 1 ? time() + step.amount : 0;
+            ends();
+        } else if (a == "gives the control back") {
+            drive.release(client_);
+            silentUntil_ = time() + step.amount;
+            ends();
+        } else if (a == "is taken over") {
+            takeOver(step);
+        } else if (a == "changes settings") {
+            change(step);
+            ends();
+        } else {
+            return stall(step.amount);
+        }
+        robot_.obey();
+    }
+    void takeOver(const Step &step) {
+        ++client_;
+        if (robot_.engine.drive().takeOver(client_, "another", case_.lease_s, robot_.now())) {
+            judge_.endJustification("is taken over");
+            silentUntil_ = time() + step.amount / 4;
+        }
+    }
+    void change(const Step &step) {
+        const double timeout = std::ceil(step.amount * 2.5) / 10; // 0.1 to 0.5 s
+        const MotorSettings changed = settingsOf(case_, {{"timeout_s", timeout}});
+        robot_.engine.configure(changed);
+    }
+    // What the client sends meanwhile waits in the socket.
+    void stall(double seconds) {
+        judge_.setStalled(true);
+        robot_.stall(robot_.now() + seconds, [this] { watch(); });
+        judge_.setStalled(false);
+        const double end = time();
+        for (; nextCommand_ <= end; nextCommand_ += commandPeriod) {
+            if (nextCommand_ >= silentUntil_)
+                command(nextCommand_);
+        }
+    }
+
+    void begin(const Fault &fault) {
+        judge_.begin(fault);
+        set(fault, true);
+    }
+    void end(const Fault &fault) {
+        judge_.end(fault);
+        set(fault, false);
+    }
+    void set(const Fault &fault, bool on) {
+        const int second = fault.device.back() == '2';
+        if (const int wheel = wheelNumber(fault.device); wheel >= 0)
+            return setWheel(robot_.robot.wheel(wheel), fault, on);
+        if (fault.device == "controllers")
+            return robot_.robot.setSwapped(on);
+        if (fault.device == "battery")
+            return robot_.robot.battery().setCharge(on ? 0 : 1);
+        if (fault.kind == "pulled")
+            return robot_.setPulled(second, on);
+        if (fault.kind == "adapter")
+            return robot_.robot.setLatency(second, on ? fault.amount : 0);
+        setController(robot_.robot.controller(second), fault, on);
+    }
+    static void setWheel(MotorChannel &motor, const Fault &fault, bool on) {
+        if (fault.kind == "blocked")
+            motor.setBlocked(on);
+        else if (fault.kind == "encoder")
+            motor.setEncoderBroken(on);
+        else if (fault.kind == "backward")
+            motor.setEncoderBackward(on);
+        else if (on)
+            motor.jump(std::int64_t(fault.amount));
+    }
+    static void setController(RoboClawEmulator &controller, const Fault &fault, bool on) {
+        RoboClawEmulator::Faults &faults = controller.faults();
+        const std::map<std::string, std::uint32_t> bits{
+            {"emergency_stop", roboclaw::EmergencyStop},
+            {"driver", roboclaw::DriverFaultM1},
+            {"over_temperature", roboclaw::TemperatureError},
+            {"over_current", roboclaw::OverCurrentWarningM1 | roboclaw::OverCurrentWarningM2}};
+        if (const auto bit = bits.find(fault.kind); bit != bits.end())
+            faults.status = on ? faults.status | bit->second : faults.status & ~bit->second;
+        else if (fault.kind == "mute" || fault.kind == "loss")
+            faults.drop = !on ? 0 : fault.kind == "mute" ? 1 : fault.amount;
+        else if (fault.kind == "corrupt")
+            faults.corrupt = on ? fault.amount : 0;
+        else if (fault.kind == "slow")
+            faults.delay = on ? fault.amount : 0;
+        else if (fault.kind == "brownout" && on)
+            controller.restart(fault.amount);
+        else if (bool *flag = flagOf(faults, fault.kind))
+            *flag = on;
+    }
+    static bool *flagOf(RoboClawEmulator::Faults &faults, const std::string &kind) {
+        return kind == "deaf"            ? &faults.deaf
+               : kind == "latched"       ? &faults.latched
+               : kind == "echo"          ? &faults.echo
+               : kind == "stuck_timeout" ? &faults.stuckTimeout
+               : kind == "silence"       ? &faults.silent
+                                         : nullptr;
+    }
+
+    // All is mended: the robot must not stay where it is for ever.
+    void recover() {
+        recovers_ = true;
+        silentUntil_ = 0;
+        robot_.robot.battery().setCharge(1);
+        const double until = time() + recovery;
+        while (time() < until && judge_.failure().empty()) {
+            goTo(std::min(until, time() + 0.1));
+            if (judge_.isJustified() && judge_.fastest() > slow)
+                return;
+        }
+        if (failure_.empty())
+            failure_ = "it does not drive again though all is mended: " + reason();
+    }
+
+    const Case &case_;
+    MotorSettings settings_;
+    VirtualRobot robot_;
+    StandJudge judge_;
+    std::multimap<double, std::function<void()>> events_;
+    quint64 client_ = 1;
+    double nextCommand_ = 0, silentUntil_ = 0, drivesSince_ = 0;
+    bool recovers_ = false;
+    int stops_ = 0;
+    std::string failure_;
+};
+
+} // namespace
+
+Outcome run(const Case &c) {
+    return Trial(c).run();
+}
+
+} // namespace campaign

@@ -1,0 +1,143 @@
+#pragma once
+
+#include "daemons/motorcontrol/DriveEngine.h"
+#include "daemons/motorcontrol/LineMaster.h"
+#include "daemons/simulator/Drivetrain.h"
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <limits>
+
+namespace campaign {
+
+/// The motor control without its thread on a clock of its own, with one line of 115,200 baud or two to
+/// emulated controllers.
+class VirtualRobot {
+public:
+    /// Called after each step of at most a millisecond.
+    using Watch = std::function<void()>;
+
+    VirtualRobot(const hermes::MotorSettings &settings, const hermes::Drivetrain::Options &options)
+        : engine(settings)
+        , robot(options) {
+        if (options.ownLines) {
+            lines_.emplace_back(std::vector{&engine.controller(0)});
+            lines_.emplace_back(std::vector{&engine.controller(1)});
+        } else {
+            lines_.emplace_back(std::vector{&engine.controller(0), &engine.controller(1)});
+        }
+        for (Line &line : lines_)
+            line.master.setOpen();
+    }
+
+    double now() const { return now_; }
+    int lineOf(int controller) const { return lines_.size() > 1 ? controller : 0; }
+    int lines() const { return int(lines_.size()); }
+
+    /// From event to event.
+    void run(double until, const Watch &watch) {
+        while (now_ < until) {
+            const double next = std::min(until, nextEvent());
+            pass(next, watch);
+            if (now_ >= nextCycle_) {
+                nextCycle_ += period;
+                engine.cycle(now_);
+            }
+            exchange();
+        }
+    }
+    /// The process stands still, the robot does not. What came meanwhile is there when it goes on.
+    void stall(double until, const Watch &watch) {
+        pass(until, watch);
+        nextCycle_ = now_;
+    }
+    /// After a command, as the drive loop does it.
+    void obey() {
+        engine.obey();
+        exchange();
+    }
+    /// The host finds a line again a quarter of a second after it came back, at the latest.
+    void setPulled(int line, bool pulled) {
+        Line &l = lines_[std::size_t(line)];
+        l.answers.clear();
+        l.pulled = pulled;
+        if (pulled)
+            l.master.setClosed("the line is gone");
+        else
+            l.master.setOpen();
+    }
+    bool isPulled(int line) const { return lines_[std::size_t(line)].pulled; }
+
+    hermes::DriveEngine engine;
+    hermes::Drivetrain robot;
+
+private:
+    static constexpr double period = 0.02, byteTime = 1 / 11520.0, longestStep = 0.001; // seconds
+
+    struct Late {
+        double due;
+        hermes::roboclaw::Bytes bytes;
+    };
+    struct Line {
+        explicit Line(const std::vector<hermes::MotorController *> &controllers)
+            : master(controllers) {}
+        hermes::LineMaster master;
+        std::vector<Late> answers;
+        bool pulled = false;
+    };
+
+    double nextEvent() const {
+        double next = nextCycle_;
+        for (const Line &line : lines_) {
+            if (line.pulled)
+                continue;
+            next = std::min(next, line.master.deadline());
+            for (const Late &late : line.answers)
+                next = std::min(next, late.due);
+        }
+        return std::max(now_ + 1e-6, next);
+    }
+    void pass(double until, const Watch &watch) {
+        while (now_ < until) {
+            const double step = std::min(longestStep, until - now_);
+            robot.advance(step);
+            now_ = step < longestStep ? until : now_ + step;
+            watch();
+        }
+    }
+    void exchange() {
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            Line &line = lines_[i];
+            if (line.pulled)
+                continue;
+            take(line);
+            while (const hermes::roboclaw::Bytes *packet = line.master.poll(now_))
+                deliver(int(i), *packet);
+        }
+    }
+    void take(Line &line) {
+        for (;;) {
+            const auto first = std::min_element(line.answers.begin(), line.answers.end(),
+                                                [](const Late &a, const Late &b) { return a.due < b.due; });
+            if (first == line.answers.end() || first->due > now_)
+                return;
+            const hermes::roboclaw::Bytes bytes = first->bytes;
+            line.answers.erase(first);
+            line.master.feed(bytes.data(), bytes.size(), now_);
+        }
+    }
+    void deliver(int number, const hermes::roboclaw::Bytes &packet) {
+        const double arrived = now_ + byteTime * double(packet.size());
+        double end = arrived;
+        for (const auto &answer : robot.receive(number, packet.data(), packet.size(), arrived)) {
+            end = std::max(end, arrived + answer.delay) + byteTime * double(answer.bytes.size());
+            lines_[std::size_t(number)].answers.push_back({end, answer.bytes});
+        }
+    }
+
+    std::deque<Line> lines_;
+    double now_ = 1, nextCycle_ = 1;
+};
+
+} // namespace campaign
