@@ -168,6 +168,11 @@ Case Case::draw(std::uint64_t seed) {
         Step step{dice.between(0.8, 5.2), dice.of(actions), dice.between(0.05, 2)};
         c.steps.push_back(step);
     }
+    c.faults.erase(std::remove_if(c.faults.begin(), c.faults.end(),
+                                  [&](const Fault &f) { return f.begin >= c.duration; }),
+                   c.faults.end());
+    for (Fault &fault : c.faults)
+        fault.end = std::min(fault.end, c.duration);
     std::sort(c.steps.begin(), c.steps.end(), [](const Step &a, const Step &b) { return a.time < b.time; });
     return c;
 }

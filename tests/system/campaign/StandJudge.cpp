@@ -66,9 +66,15 @@ void StandJudge::justify(double made) {
 void StandJudge::endJustification(const std::string &why) {
     if (!justified_)
         return;
+    beginUnjustified(why);
+    ended_ = std::min(time(), until_);
+    deadline_.fill(ended_ + reaction + braking());
+}
+
+void StandJudge::beginUnjustified(const std::string &why) {
     justified_ = false;
     why_ = why;
-    ended_ = std::min(time(), until_);
+    ended_ = time();
     speedAtEnd_ = fastest();
     excuse_ = "obeys";
     deadline_.fill(ended_ + reaction + braking());

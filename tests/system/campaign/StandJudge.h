@@ -33,6 +33,8 @@ public:
     /// A command that was made then was accepted.
     void justify(double made);
     void endJustification(const std::string &why);
+    /// The wheels turn already.
+    void beginUnjustified(const std::string &why);
     /// After each step.
     void watch();
 

@@ -68,6 +68,9 @@ public:
         if (c.movesAtFirst) {
             for (int i = 0; i < 4; ++i)
                 robot_.robot.wheel(i).driveSpeed(20000);
+            for (int i = 0; i < 300; ++i)
+                robot_.robot.advance(0.001);
+            judge_.beginUnjustified("somebody else has set the wheels going");
         }
     }
 
@@ -94,7 +97,7 @@ private:
     void plan() {
         for (const Fault &fault : case_.faults) {
             events_.emplace(fault.begin, [this, fault] { begin(fault); });
-            events_.emplace(std::min(fault.end, case_.duration), [this, fault] { end(fault); });
+            events_.emplace(fault.end, [this, fault] { end(fault); });
         }
         for (const Step &step : case_.steps)
             events_.emplace(step.time, [this, step] { act(step); });
@@ -117,8 +120,8 @@ private:
         stops_ += before && !judge_.isJustified();
         if (!case_.isUndisturbed())
             return;
-        drivesSince_ = judge_.fastest() > slow ? drivesSince_ : time();
-        if (time() > readiness && time() - drivesSince_ > 0.1 && failure_.empty())
+        drove_ = judge_.fastest() > slow ? time() : std::max(drove_, readiness);
+        if (time() > drove_ + 0.1 && failure_.empty())
             failure_ = "it does not drive though nothing is wrong: " + reason();
     }
     std::string reason() {
@@ -287,7 +290,7 @@ private:
     StandJudge judge_;
     std::multimap<double, std::function<void()>> events_;
     quint64 client_ = 1;
-    double nextCommand_ = 0, silentUntil_ = 0, drivesSince_ = 0;
+    double nextCommand_ = 0, silentUntil_ = 0, drove_ = 0;
     bool recovers_ = false;
     int stops_ = 0;
     std::string failure_;
