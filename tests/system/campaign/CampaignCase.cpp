@@ -117,6 +117,8 @@ Fault drawFault(Dice &dice, bool twoLines) {
     fault.amount = amountOf(fault.kind, dice);
     fault.begin = dice.chance(0.2) ? 0 : dice.chance(0.2) ? dice.between(0, 0.5) : dice.between(1, 4.5);
     fault.end = fault.begin + (dice.chance(0.3) ? dice.between(0.03, 0.5) : dice.between(0.5, 4));
+    if (fault.kind == "brownout")
+        fault.end = fault.begin + fault.amount;
     return fault;
 }
 

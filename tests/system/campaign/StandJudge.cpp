@@ -132,7 +132,7 @@ void StandJudge::extend(int controller) {
         }
     };
     for (const char *kind : {"silence", "brownout"}) {
-        if (const auto since = sinceOf(controllerName(controller), kind); since && *since + rolling > now)
+        if (const auto since = sinceOf(controllerName(controller), kind); since && *since + rolling > ended_)
             allow(std::max(ended_, *since) + rolling, "rolls without power");
     }
     const auto unreachable = unreachableSince(controller), disobedient = disobedientSince(controller);
@@ -141,7 +141,7 @@ void StandJudge::extend(int controller) {
     // It is unreachable: its time-out runs. It disobeys: first that must be seen, and then its line falls
     // silent.
     const bool times = isGuarded(controller);
-    const double runs = unreachable ? *unreachable + timeout + margin : 0;
+    const double runs = unreachable ? *unreachable + timeout + margin + reaction : 0;
     const double seen = disobedient ? std::max(ended_, *disobedient) + 2 * reaction + 1.5 * braking() +
                                           2 * timeout + 2 * margin
                                     : 0;
@@ -149,9 +149,9 @@ void StandJudge::extend(int controller) {
         if (now > std::max(runs, seen) && now > deadline)
             beyond_.insert(unreachable ? "cannot be reached and has no time-out"
                                        : "disobeys and has no time-out");
-        allow(now + reaction + braking(), "beyond");
-    } else if (now < std::max(runs, seen)) {
-        allow(now + reaction + braking(), "its own time-out");
+        allow(now + longestSilence + reaction + braking(), "beyond");
+    } else {
+        allow(std::max(runs, seen), "its own time-out");
     }
 }
 
@@ -169,7 +169,7 @@ void StandJudge::watch() {
     for (int controller = 0; controller < 2; ++controller) {
         extend(controller);
         for (int wheel = 2 * controller; wheel < 2 * controller + 2; ++wheel) {
-            if (rim(wheel) <= standing)
+            if (rim(wheel) <= (disobedientSince(controller) ? creeping : standing))
                 continue;
             double &slowest = slowest_[excuse_];
             slowest = std::max(slowest, now - ended_ - braking());
@@ -195,12 +195,16 @@ void StandJudge::watchLost() {
 
 void StandJudge::watchGuard() {
     for (int controller = 0; controller < 2; ++controller) {
-        const bool guarded = robot_.robot.controller(controller).serialTimeout() > 0;
+        const bool swapped = sinceOf("controllers", "swapped").has_value();
+        const int there = swapped ? 1 - controller : controller;
+        const bool guarded =
+            robot_.robot.controller(there).serialTimeout() > 0 || (swapped && robot_.lines() > 1);
         const bool ready = robot_.engine.controller(controller).isReady();
         double &seconds = unguardedFor_[std::size_t(controller)];
         seconds = guarded || !ready || stalledSince_ ? 0 : seconds + time() - last_;
         if (seconds > unguarded)
-            fail(controllerName(controller) + " is ready without a time-out of its own");
+            fail(controllerName(controller) +
+                 print(" is ready without a time-out of its own at %.2f s", time()));
     }
 }
 

@@ -49,10 +49,13 @@ public:
 
 private:
     static constexpr double standing = 0.005; // m/s at the rim
+    static constexpr double creeping = 0.03;  // m/s: slower counts as standing (faults.encoder_moving_rad_s)
     static constexpr double reaction = 0.2;   // cycle, line, a repetition, lag of the motors
     static constexpr double margin = 0.1;     // of a time-out
-    static constexpr double rolling = 1.2;    // without power
-    static constexpr double lost = 0.5;       // not heard for so long, a controller has been noticed
+    static constexpr double longestSilence =
+        0.6;                               // of a line, between two attempts to stop what does not confirm
+    static constexpr double rolling = 1.2; // without power
+    static constexpr double lost = 0.5;    // not heard for so long, a controller has been noticed
     static constexpr double unguarded = 2; // without its time-out a controller is ready no longer than that
 
     double time() const { return robot_.now() - start_; }
