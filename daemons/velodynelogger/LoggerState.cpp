@@ -142,10 +142,11 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
             QString("no packet on %1 for %2 s").arg(sourceName_).arg(sincePacket_.elapsed() / 1000));
     else if (packets.otherModel > 0)
         set(HealthLevel::Warn, velodyne::describe(velodyne::PacketFault::Model));
+    else if (counts.otherSensors > 0 && !counts.decoded)
+        set(HealthLevel::Warn, "no data packet is decoded, those that came are of " + otherSensors(counts));
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
-            (counts.decoded ? textOf(*counts.decoded) + " is decoded, " : "nothing is decoded, ") +
-                "data packets come from " + otherSensors(counts) + " too");
+            textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) + " too");
     else if (wrong > 0)
         set(HealthLevel::Warn, QString("%1 packets were no data packets of an HDL-32E or VLP-16").arg(wrong));
     else if (counts.model && settings().integer("decode.laser") >= counts.model->lasers)

@@ -3,6 +3,7 @@
 nobody else a message, turns are written as CSV, PCD and PLY, and a replay seeks, pauses and ends as asked."""
 import math
 import os
+import re
 import socket
 import struct
 import subprocess
@@ -199,6 +200,11 @@ def check_sensors(logger, capture):
     logger.call("source.open", pcap=capture, speed=0, port=1)
     wait_for("the end", lambda: status()["source"]["state"] == "ended")
     assert (status()["packets"], status()["other_sensors"], status()["sensor"]) == (0, PACKETS, None), status()
+    logger.call("source.open", pcap=capture, speed=1, loop=True, port=1)
+    health = lambda: next(item for item in logger.call("daemon.status")["health"] if item["name"] == "lidar")  # noqa: E731
+    wait_for("word of packets that nobody asked for", lambda: health()["level"] == "warn")
+    told = rf"no data packet is decoded, those that came are of [\d.]+ to port {port}"
+    assert re.fullmatch(told, health()["message"]), health()
     refused(-32602, logger, "source.open", live=True, port=1)
 
 

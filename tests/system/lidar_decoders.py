@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """hermes-vector ring and a decoder that shares no code with it agree on every point to the last bit: of the real captures, and
-of made ones of both sensors in every return mode with random returns. The heights of the lasers are in z, unless they are not wanted."""
+of made ones of both sensors in every return mode with random returns. The heights of the lasers are in z, unless they are not
+wanted."""
 import csv
 import math
 import os
