@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hermes {
 namespace {
@@ -9,6 +10,8 @@ namespace {
 // An encoder at the border of two counts may jitter by one. So long that a motion at the threshold shows
 // more.
 constexpr double jitter = 1, shortestWindow_s = 0.04, longestWindow_s = 1;
+// What goes on for so long counts as motion at a fifth of the threshold, too.
+constexpr double creepWindow_s = 1, creepShare = 0.2;
 
 double largestChange(const std::array<quint32, 2> &before, const std::array<quint32, 2> &now) {
     double largest = 0;
@@ -25,7 +28,7 @@ void StandstillWatch::setThreshold(double speed) {
 }
 
 void StandstillWatch::doubt() {
-    acknowledged_ = still_ = moving_ = false;
+    acknowledged_ = still_ = moving_ = creeping_ = false;
     baseTime_ = 0;
 }
 
@@ -46,9 +49,20 @@ void StandstillWatch::read(const Counts &counts, double time) {
     moving_ = baseTime_ > 0 && change > std::max(jitter, threshold_ * elapsed);
     if (baseTime_ > 0 && !moving_ && elapsed < window_)
         return;
-    still_ = baseTime_ > 0 && !moving_;
+    const bool wasStill = std::exchange(still_, baseTime_ > 0 && !moving_);
     base_ = counts;
     baseTime_ = time;
+    watchCreep(wasStill, counts, time);
+}
+
+void StandstillWatch::watchCreep(bool wasStill, const Counts &counts, double time) {
+    const double elapsed = time - creepTime_;
+    if (wasStill && elapsed < creepWindow_s)
+        return;
+    creeping_ =
+        wasStill && largestChange(creepBase_, counts) > std::max(jitter, creepShare * threshold_ * elapsed);
+    creepBase_ = counts;
+    creepTime_ = time;
 }
 
 } // namespace hermes

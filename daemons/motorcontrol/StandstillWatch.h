@@ -19,19 +19,23 @@ public:
     void acknowledged();
     void read(const std::array<quint32, 2> &counts, double time);
 
-    bool stands() const { return acknowledged_ && still_; }
-    /// What was read last differs from what was read before.
-    bool isMoving() const { return moving_; }
+    bool stands() const { return acknowledged_ && still_ && !creeping_; }
+    /// What was read last differs from what was read before, by a motion or by creeping for a second.
+    bool isMoving() const { return moving_ || creeping_; }
     /// Of the faster motor, by the last two readings; counts/s.
     double speed() const { return speed_; }
 
 private:
     using Counts = std::array<quint32, 2>;
 
+    void watchCreep(bool wasStill, const Counts &counts, double time);
+
     double threshold_ = 1, window_ = 0.04; // counts/s; seconds in which no more than jitter may be counted
-    bool acknowledged_ = false, still_ = false, moving_ = false;
+    bool acknowledged_ = false, still_ = false, moving_ = false, creeping_ = false;
     Counts base_{}, last_{};
     double baseTime_ = 0, lastTime_ = 0; // 0: none
+    Counts creepBase_{};
+    double creepTime_ = 0; // since it is still
     double speed_ = 0;
 };
 

@@ -17,6 +17,7 @@ class TestControllerStops : public QObject {
 private Q_SLOTS:
     void standsByAcknowledgementAndReadings();
     void standsByCoarseEncodersAfterLonger();
+    void creepingIsMotionAfterASecond();
     void nothingButStopsBeforeItStands();
     void stopsGoBeforeAllElse();
     void whoIsNotHeardIsStoppedInSilence_data();
@@ -82,6 +83,24 @@ void TestControllerStops::standsByCoarseEncodersAfterLonger() {
         QVERIFY(!watch.stands());
     }
     watch.read({7, 7}, 1.51);
+    QVERIFY(watch.stands());
+}
+
+void TestControllerStops::creepingIsMotionAfterASecond() {
+    StandstillWatch watch;
+    watch.setThreshold(1500);
+    watch.acknowledged();
+    double noticed = 0;
+    for (int i = 0; i < 150; ++i) {
+        const double time = 1 + i * 0.02;
+        watch.read({quint32(1000 - 600 * time), 0}, time); // less than the threshold
+        QVERIFY(i < 4 || watch.stands() != watch.isMoving());
+        if (watch.isMoving() && noticed == 0)
+            noticed = time;
+    }
+    QVERIFY2(noticed > 1.9 && noticed < 2.2, qPrintable(QString::number(noticed)));
+    for (int i = 0; i < 60; ++i)
+        watch.read({0, 0}, 4 + i * 0.02);
     QVERIFY(watch.stands());
 }
 
