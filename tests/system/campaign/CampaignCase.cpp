@@ -122,6 +122,21 @@ Fault drawFault(Dice &dice, bool twoLines) {
     return fault;
 }
 
+/// Without those that come too late, or while the device has the same already.
+std::vector<Fault> possible(const std::vector<Fault> &drawn, double duration) {
+    const auto sort = [](const Fault &f) { return f.device + (f.kind == "mute" ? "loss" : f.kind); };
+    std::vector<Fault> faults;
+    for (Fault fault : drawn) {
+        fault.end = std::min(fault.end, duration);
+        const bool again = std::any_of(faults.begin(), faults.end(), [&](const Fault &f) {
+            return sort(f) == sort(fault) && f.begin <= fault.end && fault.begin <= f.end;
+        });
+        if (fault.begin < duration && !again)
+            faults.push_back(fault);
+    }
+    return faults;
+}
+
 } // namespace
 
 QStringList everyFault() {
@@ -170,11 +185,7 @@ Case Case::draw(std::uint64_t seed) {
         Step step{dice.between(0.8, 5.2), dice.of(actions), dice.between(0.05, 2)};
         c.steps.push_back(step);
     }
-    c.faults.erase(std::remove_if(c.faults.begin(), c.faults.end(),
-                                  [&](const Fault &f) { return f.begin >= c.duration; }),
-                   c.faults.end());
-    for (Fault &fault : c.faults)
-        fault.end = std::min(fault.end, c.duration);
+    c.faults = possible(c.faults, c.duration);
     std::sort(c.steps.begin(), c.steps.end(), [](const Step &a, const Step &b) { return a.time < b.time; });
     return c;
 }

@@ -31,7 +31,9 @@ void StandJudge::configure(double deceleration, double commandTimeout_s) {
 }
 
 void StandJudge::begin(const Fault &fault) {
-    active_[{fault.device, fault.kind}] = time();
+    const bool some = fault.kind == "loss" || fault.kind == "corrupt"; // of the answers
+    if (!some || fault.amount >= 1)
+        active_[{fault.device, fault.kind}] = time();
 }
 
 void StandJudge::end(const Fault &fault) {
@@ -57,7 +59,9 @@ double StandJudge::fastest() const {
 }
 
 void StandJudge::justify(double made) {
-    if (time() >= made + commandTimeout_)
+    if (const auto number = lostController(); number && !justified_)
+        why_ = controllerName(*number) + " is not heard";
+    if (time() >= made + commandTimeout_ || lostController())
         return;
     justified_ = true;
     until_ = made + commandTimeout_;
@@ -109,9 +113,15 @@ std::optional<double> StandJudge::disobedientSince(int controller) const {
 
 std::optional<double> StandJudge::unheardSince(int controller) const {
     std::optional<double> since = unreachableSince(controller);
-    for (const char *kind : {"mute", "silence"}) {
-        const auto other = sinceOf(controllerName(controller), kind);
+    const auto take = [&](int number, const char *kind) {
+        const auto other = sinceOf(controllerName(number), kind);
         since = since ? since : other;
+    };
+    for (const char *kind : {"mute", "silence", "loss", "corrupt"})
+        take(controller, kind);
+    for (int other = 0; other < 2; ++other) {
+        if (robot_.lineOf(other) == robot_.lineOf(controller))
+            take(other, "echo");
     }
     return since;
 }
@@ -143,7 +153,7 @@ void StandJudge::extend(int controller) {
     const bool times = isGuarded(controller);
     const double runs = unreachable ? *unreachable + timeout + margin + reaction : 0;
     const double seen = disobedient ? std::max(ended_, *disobedient) + 2 * reaction + 1.5 * braking() +
-                                          2 * timeout + 2 * margin
+                                          threeReadings + 2 * timeout + 2 * margin
                                     : 0;
     if (!times && rim(2 * controller) + rim(2 * controller + 1) > standing) {
         if (now > std::max(runs, seen) && now > deadline)
@@ -159,7 +169,8 @@ void StandJudge::watch() {
     const double now = time();
     if (justified_ && !robot_.engine.drive().haltReason().isEmpty() && !stalledSince_)
         endJustification("the motor control halted: " + robot_.engine.drive().haltReason().toStdString());
-    watchLost();
+    if (const auto number = lostController())
+        endJustification(controllerName(*number) + " has not been heard for " + print("%g s", lost));
     if (justified_ && now >= until_)
         endJustification("no command came");
     watchGuard();
@@ -168,8 +179,11 @@ void StandJudge::watch() {
         return;
     for (int controller = 0; controller < 2; ++controller) {
         extend(controller);
+        if (disobedientSince(controller))
+            disobeyed_[std::size_t(controller)] = now;
+        const double limit = now < disobeyed_[std::size_t(controller)] + reaction ? creeping : standing;
         for (int wheel = 2 * controller; wheel < 2 * controller + 2; ++wheel) {
-            if (rim(wheel) <= (disobedientSince(controller) ? creeping : standing))
+            if (rim(wheel) <= limit)
                 continue;
             double &slowest = slowest_[excuse_];
             slowest = std::max(slowest, now - ended_ - braking());
@@ -183,14 +197,13 @@ void StandJudge::watch() {
 }
 
 // Of a controller that is not heard nobody knows what it does: to drive on is not justified.
-void StandJudge::watchLost() {
-    if (!justified_ || stalledSince_)
-        return;
+std::optional<int> StandJudge::lostController() const {
     for (int controller = 0; controller < 2; ++controller) {
         const auto since = unheardSince(controller);
-        if (since && time() > std::max(*since, resumed_) + lost)
-            endJustification(controllerName(controller) + " has not been heard for " + print("%g s", lost));
+        if (since && !stalledSince_ && time() > std::max(*since, resumed_) + lost)
+            return controller;
     }
+    return std::nullopt;
 }
 
 void StandJudge::watchGuard() {

@@ -51,7 +51,8 @@ private:
     static constexpr double standing = 0.005; // m/s at the rim
     static constexpr double creeping = 0.03;  // m/s: slower counts as standing (faults.encoder_moving_rad_s)
     static constexpr double reaction = 0.2;   // cycle, line, a repetition, lag of the motors
-    static constexpr double margin = 0.1;     // of a time-out
+    static constexpr double threeReadings = 0.3; // of the slowest line that drives
+    static constexpr double margin = 0.1;        // of a time-out
     static constexpr double longestSilence =
         0.6;                               // of a line, between two attempts to stop what does not confirm
     static constexpr double rolling = 1.2; // without power
@@ -68,7 +69,7 @@ private:
     std::optional<double> unheardSince(int controller) const;
     bool isGuarded(int controller) const;
     void extend(int controller);
-    void watchLost();
+    std::optional<int> lostController() const;
     void watchGuard();
     void fail(const std::string &what);
 
@@ -85,7 +86,7 @@ private:
     double speedAtEnd_ = 0;
     std::string why_ = "nobody has driven yet";
     std::string excuse_ = "obeys";
-    std::array<double, 2> deadline_{}, unguardedFor_{};
+    std::array<double, 2> deadline_{}, unguardedFor_{}, disobeyed_{-1, -1};
     std::string failure_;
     std::set<std::string> beyond_;
     std::map<std::string, double> slowest_;
