@@ -12,21 +12,18 @@ QJsonValue orNull(const std::optional<T> &value) {
 } // namespace
 
 QJsonObject toJson(const Fix &fix) {
-    const nmea::Rmc rmc = fix.rmc.value_or(nmea::Rmc());
-    const nmea::Gga gga = fix.gga.value_or(nmea::Gga());
-    const std::optional<nmea::Position> position = fix.position();
     return {{"stamp", fix.arrival.stamp()},
             {"mono", fix.arrival.mono()},
-            {"time", orNull(fix.time())},
-            {"valid", fix.isValid()},
-            {"lat_deg", position ? QJsonValue(position->latitude_deg) : QJsonValue()},
-            {"lon_deg", position ? QJsonValue(position->longitude_deg) : QJsonValue()},
-            {"alt", orNull(gga.altitude)},
-            {"quality", fix.gga ? QJsonValue(gga.quality) : QJsonValue()},
-            {"satellites", orNull(gga.satellites)},
-            {"hdop", orNull(gga.hdop)},
-            {"speed", orNull(rmc.speed)},
-            {"course_deg", orNull(rmc.course_deg)}};
+            {"time", orNull(fix.time)},
+            {"valid", fix.valid},
+            {"lat_deg", fix.position ? QJsonValue(fix.position->latitude_deg) : QJsonValue()},
+            {"lon_deg", fix.position ? QJsonValue(fix.position->longitude_deg) : QJsonValue()},
+            {"alt", orNull(fix.altitude)},
+            {"quality", orNull(fix.quality)},
+            {"satellites", orNull(fix.satellites)},
+            {"hdop", orNull(fix.hdop)},
+            {"speed", orNull(fix.speed)},
+            {"course_deg", orNull(fix.course_deg)}};
 }
 
 } // namespace hermes

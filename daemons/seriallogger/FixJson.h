@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/seriallogger/FixTracker.h"
+#include "daemons/seriallogger/FixEpoch.h"
 
 #include <QJsonObject>
 

@@ -1,34 +1,31 @@
 #include "daemons/seriallogger/FixTracker.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hermes {
 
 namespace {
 
-bool same(const std::optional<nmea::UtcTime> &a, const std::optional<nmea::UtcTime> &b) {
-    return a && b && a->hour == b->hour && a->minute == b->minute && a->second == b->second;
+// A pause is half of the time from fix to fix: no receiver is silent for so long amid its sentences. USB
+// adapters may hold bytes back for 16 ms; nobody should wait for half a second.
+constexpr double leastPause_s = 0.05, mostPause_s = 0.5;
+
+double secondOfDay(const nmea::UtcTime &time) {
+    return time.hour * 3600 + time.minute * 60 + time.second;
+}
+
+/// Some write fewer decimals in one kind of sentence than in another.
+bool isSame(const std::optional<nmea::UtcTime> &a, const std::optional<nmea::UtcTime> &b) {
+    return a && b && std::abs(secondOfDay(*a) - secondOfDay(*b)) < 0.005;
 }
 
 } // namespace
 
-std::optional<nmea::UtcTime> Fix::timeOfDay() const {
-    return rmc && rmc->time ? rmc->time : gga ? gga->time : std::nullopt;
-}
-
-std::optional<double> Fix::time() const {
-    if (!rmc || !rmc->date || !rmc->time)
-        return std::nullopt;
-    return nmea::toStamp(*rmc->date, *rmc->time);
-}
-
-bool Fix::isValid() const {
-    return position() && (!rmc || rmc->valid) && (!gga || gga->quality > 0);
-}
-
-std::optional<nmea::Position> Fix::position() const {
-    return rmc && rmc->position ? rmc->position : gga ? gga->position : std::nullopt;
-}
-
 void FixTracker::feed(std::string_view bytes, const Arrival &arrival, const Sink &sink) {
+    if (last_ && arrival.mono_ns - last_->mono_ns >= pause_ns())
+        paused_ = true;
+    last_ = arrival;
     for (const char byte : bytes) {
         const auto result = parser_.feed(byte);
         if (parser_.pending() == 1)
@@ -38,50 +35,110 @@ void FixTracker::feed(std::string_view bytes, const Arrival &arrival, const Sink
     }
 }
 
+std::int64_t FixTracker::pause_ns() const {
+    return std::int64_t(std::clamp(period_s_ / 2, leastPause_s, mostPause_s) * 1e9);
+}
+
+std::optional<std::int64_t> FixTracker::waitUntilMono_ns() const {
+    return waits() && last_ ? std::optional(last_->mono_ns + pause_ns()) : std::nullopt;
+}
+
+void FixTracker::pause(const Sink &sink) {
+    if (waits())
+        give(sink);
+    paused_ = true;
+}
+
 void FixTracker::take(const nmea::Sentence &sentence, const Sink &sink) {
-    nmea::Rmc rmc;
-    nmea::Gga gga;
-    const bool isRmc = sentence.type() == "RMC";
-    if (!isRmc && sentence.type() != "GGA")
-        return;
-    if (const nmea::FieldFault fault = isRmc ? decode(sentence, rmc) : decode(sentence, gga)) {
-        ++badFields_;
+    nmea::FieldFault fault;
+    const std::optional<FixReport> report = FixReport::read(sentence, fault);
+    if (fault) {
+        ++counts_.badFields;
         lastFault_ = fault;
+    }
+    if (!report)
+        return;
+    if (report->date && report->time)
+        calendar_.set(*report->date, *report->time, sentenceArrival_);
+    if (isOfTheEpochBefore(*report) || isRepeated(sentence.address(), *report)) {
+        ++counts_.repeated;
         return;
     }
-    const Kind kind = isRmc ? Kind::Rmc : Kind::Gga;
-    add(kind, isRmc ? rmc.time : gga.time, sink);
-    if (isRmc)
-        fix_.rmc = rmc;
-    else
-        fix_.gga = gga;
-    last_ = kind;
-    if (!given_ && ((fix_.rmc && fix_.gga) || kind == closing_))
+    if (!isOfThisEpoch(sentence.address(), *report))
+        begin(sink);
+    else if (given_ && (paused_ || (FixEpoch::parts(*report) & ~known()) != 0))
+        ++counts_.late;
+    paused_ = false;
+    epoch_->add(sentence.address(), *report);
+    if (!given_ && isComplete())
         give(sink);
 }
 
-void FixTracker::add(Kind kind, const std::optional<nmea::UtcTime> &time, const Sink &sink) {
-    const bool isThere = kind == Kind::Rmc ? fix_.rmc.has_value() : fix_.gga.has_value();
-    const bool isEmpty = !fix_.rmc && !fix_.gga;
-    // Without a time a sentence belongs to the one before.
-    if (!isEmpty && !isThere && (same(time, fix_.timeOfDay()) || !time || !fix_.timeOfDay()))
-        return;
-    if (!given_)
+/// Then it is repeated or came out of order; but after a pause the receiver's clock was set back.
+bool FixTracker::isOfTheEpochBefore(const FixReport &report) const {
+    const bool isOfThis = epoch_ && isSame(report.time, epoch_->timeOfDay());
+    return !paused_ && !isOfThis && isSame(report.time, before_);
+}
+
+/// Without times one that follows itself is, and a VTG that tells the same.
+bool FixTracker::isRepeated(std::string_view address, const FixReport &report) const {
+    if (paused_ || !epoch_ || !epoch_->has(address))
+        return false;
+    if (report.time && epoch_->timeOfDay())
+        return isSame(report.time, epoch_->timeOfDay());
+    const std::optional<FixReport> &held = epoch_->report(report.kind);
+    if (report.kind == FixReport::Kind::Vtg)
+        return held && held->speed == report.speed && held->course_deg == report.course_deg;
+    return epoch_->lastAddress() == address && !report.time;
+}
+
+bool FixTracker::isOfThisEpoch(std::string_view address, const FixReport &report) const {
+    if (!epoch_)
+        return false;
+    if (report.time && epoch_->timeOfDay())
+        return isSame(report.time, epoch_->timeOfDay()) && !(paused_ && epoch_->has(address));
+    return !paused_ && !epoch_->has(address) && !(report.time && given_);
+}
+
+/// Ends the epoch, and begins one with the sentence at hand.
+void FixTracker::begin(const Sink &sink) {
+    if (waits())
         give(sink);
-    closing_ = last_;
-    fix_ = Fix();
-    fix_.arrival = sentenceArrival_;
+    if (epoch_)
+        learn();
+    epoch_.emplace(sentenceArrival_);
     given_ = false;
+}
+
+void FixTracker::learn() {
+    if (epoch_->parts() & FixEpoch::Position)
+        told_[epochs_++ % told_.size()] = epoch_->parts();
+    if (!epoch_->timeOfDay())
+        return;
+    const double step = before_ ? secondOfDay(*epoch_->timeOfDay()) - secondOfDay(*before_) : 0;
+    if (step > 0)
+        period_s_ = std::min(step, period_s_ * 1.1); // a lost one makes no slower receiver
+    before_ = epoch_->timeOfDay();
+}
+
+unsigned FixTracker::known() const {
+    return epoch_->parts() | (calendar_.isSet() ? FixEpoch::Date : 0U);
+}
+
+bool FixTracker::isComplete() const {
+    unsigned expected = epochs_ > 0 ? 0 : FixEpoch::allParts;
+    for (const unsigned parts : told_)
+        expected |= parts;
+    return (epoch_->parts() & FixEpoch::Position) && (expected & ~known()) == 0 && !epoch_->isContradictory();
 }
 
 void FixTracker::give(const Sink &sink) {
     given_ = true;
-    sink(fix_);
-}
-
-void FixTracker::finish(const Sink &sink) {
-    if (!given_)
-        give(sink);
+    Fix fix = epoch_->fix();
+    if (const auto &time = epoch_->timeOfDay())
+        fix.time = epoch_->date() ? nmea::toStamp(*epoch_->date(), *time)
+                                  : calendar_.stampOf(*time, epoch_->arrival());
+    sink(fix);
 }
 
 } // namespace hermes

@@ -61,12 +61,14 @@ QJsonObject LoggedPort::toJson() const {
 }
 
 QJsonObject LoggedPort::nmeaJson() const {
-    const nmea::SentenceParser::Counts &counts = view_.fixes().counts();
+    const nmea::SentenceParser::Counts &counts = view_.fixes().sentences();
+    const FixTracker::Counts &fixes = view_.fixes().counts();
     QJsonObject nmea{
         {"sentences", double(counts.sentences)},        {"bad_checksum", double(counts.badChecksum)},
         {"no_checksum", double(counts.noChecksum)},     {"too_long", double(counts.tooLong)},
         {"bad_byte", double(counts.badByte)},           {"cut_short", double(counts.cutShort)},
-        {"skipped_bytes", double(counts.skippedBytes)}, {"bad_fields", double(view_.fixes().badFields())}};
+        {"skipped_bytes", double(counts.skippedBytes)}, {"bad_fields", double(fixes.badFields)},
+        {"repeated", double(fixes.repeated)},           {"late", double(fixes.late)}};
     if (view_.fixes().lastFault())
         nmea.insert("last_fault", QString("field %1: expected %2")
                                       .arg(view_.fixes().lastFault().field)
@@ -92,9 +94,9 @@ std::pair<HealthLevel, QString> LoggedPort::health() const {
         errors += count;
     if (errors > 0)
         return {HealthLevel::Warn, QString("the system tells of %1 errors on the line").arg(errors)};
-    const nmea::SentenceParser::Counts &counts = view_.fixes().counts();
+    const nmea::SentenceParser::Counts &counts = view_.fixes().sentences();
     const quint64 wrong = counts.badChecksum + counts.noChecksum + counts.tooLong + counts.badByte +
-                          counts.cutShort + view_.fixes().badFields();
+                          counts.cutShort + view_.fixes().counts().badFields;
     if (wrong > 1) // the first may have been begun before
         return {HealthLevel::Warn, QString("%1 NMEA sentences were damaged").arg(wrong)};
     return {HealthLevel::Ok, "receiving from " + (state.device.isEmpty() ? settings_.url : state.device)};

@@ -30,11 +30,16 @@ public:
 
     /// Splits and decodes what came in since.
     void process(const Sinks &sinks);
+    /// Of a live port, after process(): gives the fix begun if nothing came for long enough. In how many
+    /// milliseconds to ask again; nothing: not before more came in.
+    std::optional<int> settle(const Sinks &sinks);
 
     const std::optional<Fix> &lastFix() const { return lastFix_; }
     const FixTracker &fixes() const { return fixes_; }
 
 private:
+    std::function<void(const Fix &)> fixSink(const Sinks &sinks);
+
     const PortSettings::View kind_;
     ChunkQueue queue_{1 << 20}; // bytes; 11 s of 921,600 baud
     LineSplitter lines_;

@@ -2,6 +2,7 @@
 
 #include "common/recording/DiskError.h"
 #include "daemons/seriallogger/FixJson.h"
+#include "daemons/seriallogger/FixTracker.h"
 #include "daemons/seriallogger/LineSplitter.h"
 #include "daemons/seriallogger/SerialLogReader.h"
 
@@ -77,7 +78,7 @@ public:
 
     void finish() {
         lines_.finish(lineSink());
-        fixes_.finish(fixSink());
+        fixes_.pause(fixSink());
     }
 
 private:

@@ -8,6 +8,8 @@
 
 #include <QDir>
 
+#include <algorithm>
+
 namespace hermes {
 
 namespace {
@@ -33,6 +35,8 @@ SerialLogger::SerialLogger()
     connect(&second_, &QTimer::timeout, this, &SerialLogger::tick);
     viewTimer_.setSingleShot(true);
     connect(&viewTimer_, &QTimer::timeout, this, &SerialLogger::processViews);
+    settleTimer_.setSingleShot(true);
+    connect(&settleTimer_, &QTimer::timeout, this, &SerialLogger::processViews);
 }
 
 Result<void> SerialLogger::start() {
@@ -69,6 +73,7 @@ void SerialLogger::addPort(const PortSettings &settings) {
 void SerialLogger::stop() {
     second_.stop();
     viewTimer_.stop();
+    settleTimer_.stop();
     cancelExports_ = true;
     endReplay();
     for (const auto &port : ports_)
@@ -171,10 +176,19 @@ PortView::Sinks SerialLogger::sinks(const QString &port) {
 }
 
 void SerialLogger::processViews() {
-    for (const auto &port : ports_)
-        port->view().process(sinks(port->settings().name));
+    std::optional<int> next_ms;
+    for (const auto &port : ports_) {
+        const PortView::Sinks shown = sinks(port->settings().name);
+        port->view().process(shown);
+        if (const auto wait_ms = port->view().settle(shown))
+            next_ms = std::min(*wait_ms, next_ms.value_or(*wait_ms));
+    }
     for (const auto &track : player_.tracks())
         track->view->process(sinks(track->port));
+    if (next_ms)
+        settleTimer_.start(*next_ms);
+    else
+        settleTimer_.stop();
 }
 
 void SerialLogger::tick() {

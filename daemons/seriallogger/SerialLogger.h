@@ -68,6 +68,7 @@ private:
     quint64 generation_ = 0; ///< counts replays, so that the end of an old one is not taken for a new one's
     QTimer second_;
     QTimer viewTimer_;
+    QTimer settleTimer_; ///< for fixes that nothing more comes for
     QElapsedTimer sinceTick_;
     QThreadPool exports_; ///< one after the other
     std::atomic<bool> cancelExports_{false};

@@ -1,5 +1,7 @@
 #include "SerialLoggerFixture.h"
 
+#include "common/Time.h"
+
 using namespace hermes;
 
 class TestSerialLogger : public QObject, SerialLoggerFixture {
@@ -14,6 +16,7 @@ private Q_SLOTS:
     void saysWhatAPortLacks();
     void showsLines();
     void showsFixes();
+    void theLastFixIsNotHeldBack();
 };
 
 void TestSerialLogger::wrongPortsAreNamed_data() {
@@ -142,6 +145,23 @@ void TestSerialLogger::showsFixes() {
     QCOMPARE(healthItem("port gps").value("level").toString(), "ok"); // the first may be half a sentence
     device_->write("$GPRMC,1\r\n");
     QTRY_COMPARE(healthItem("port gps").value("level").toString(), "warn");
+}
+
+/// Of a receiver that may say more, and then says nothing at all.
+void TestSerialLogger::theLastFixIsNotHeldBack() {
+    launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}}});
+    QTRY_VERIFY(isOpen("gps"));
+    QList<double> late;
+    client_->subscribe("fix", {{"queue", 100}}, [&](const TopicUpdate &update) {
+        late << monotonicNow() - update.data.toObject().value("mono").toDouble();
+    });
+    QTRY_VERIFY(daemon_->hasSubscribers("fix"));
+    device_->write(gga);
+    QTRY_COMPARE(late.size(), 1);
+    QVERIFY(late[0] > 0.45);
+    device_->write(rmc); // of the same moment
+    QTRY_COMPARE(port("gps").value("nmea").toObject().value("late").toInt(), 1);
+    QCOMPARE(late.size(), 1);
 }
 
 QTEST_GUILESS_MAIN(TestSerialLogger)

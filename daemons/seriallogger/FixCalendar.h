@@ -1,0 +1,24 @@
+#pragma once
+
+#include "daemons/seriallogger/Arrival.h"
+#include "protocol/nmea/UtcTime.h"
+
+namespace hermes {
+
+/// Knows which day a time of day belongs to, from the last sentence that told the date and the time that went
+/// by since.
+class FixCalendar {
+public:
+    /// A sentence that arrived then told the date.
+    void set(const nmea::Date &date, const nmea::UtcTime &time, const Arrival &arrival);
+    bool isSet() const { return stamp_.has_value(); }
+    /// Seconds since the Unix epoch of a time that arrived then, of the day that brings it nearest to the one
+    /// expected; it is remembered. Nothing before a date was told.
+    std::optional<double> stampOf(const nmea::UtcTime &time, const Arrival &arrival);
+
+private:
+    std::optional<double> stamp_;
+    std::int64_t mono_ns_ = 0; ///< when it arrived
+};
+
+} // namespace hermes
