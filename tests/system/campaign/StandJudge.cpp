@@ -131,6 +131,16 @@ bool StandJudge::isGuarded(int controller) const {
            !sinceOf(controllerName(controller), "stuck_timeout");
 }
 
+// Until a line has shown that a controller does not obey, and margin; three readings, which may take 0.1 s
+// each.
+double StandJudge::seeing(int controller) const {
+    const int line = robot_.lineOf(controller);
+    bool slow = sinceOf("line" + std::to_string(line + 1), "adapter").has_value();
+    for (int other = 0; other < 2; ++other)
+        slow = slow || (robot_.lineOf(other) == line && sinceOf(controllerName(other), "slow"));
+    return slow ? 1.0 : 0.6;
+}
+
 // How much longer the wheels of a controller may turn, as it is now.
 void StandJudge::extend(int controller) {
     double &deadline = deadline_[std::size_t(controller)];
@@ -151,15 +161,14 @@ void StandJudge::extend(int controller) {
     // It is unreachable: its time-out runs. It disobeys: first that must be seen, and then its line falls
     // silent.
     const bool times = isGuarded(controller);
-    const double runs = unreachable ? *unreachable + timeout + margin + reaction : 0;
-    const double seen = disobedient ? std::max(ended_, *disobedient) + 2 * reaction + 1.5 * braking() +
-                                          threeReadings + 2 * timeout + 2 * margin
-                                    : 0;
+    const double runs = unreachable ? *unreachable + timeout + margin + braking() : 0;
+    const double seen =
+        disobedient ? std::max(ended_, *disobedient) + 1.5 * braking() + timeout + seeing(controller) : 0;
     if (!times && rim(2 * controller) + rim(2 * controller + 1) > standing) {
         if (now > std::max(runs, seen) && now > deadline)
             beyond_.insert(unreachable ? "cannot be reached and has no time-out"
                                        : "disobeys and has no time-out");
-        allow(now + longestSilence + reaction + braking(), "beyond");
+        allow(now + (robot_.lines() > 1 ? 1 : 2) * longestSilence + reaction + braking(), "beyond");
     } else {
         allow(std::max(runs, seen), "its own time-out");
     }
@@ -181,7 +190,9 @@ void StandJudge::watch() {
         extend(controller);
         if (disobedientSince(controller))
             disobeyed_[std::size_t(controller)] = now;
-        const double limit = now < disobeyed_[std::size_t(controller)] + reaction ? creeping : standing;
+        const bool creeps = now < disobeyed_[std::size_t(controller)] + reaction &&
+                            now < deadline_[std::size_t(controller)] + creepingSeen;
+        const double limit = creeps ? creeping : standing;
         for (int wheel = 2 * controller; wheel < 2 * controller + 2; ++wheel) {
             if (rim(wheel) <= limit)
                 continue;

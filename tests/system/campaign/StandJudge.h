@@ -48,11 +48,11 @@ public:
     const std::map<std::string, double> &slowest() const { return slowest_; }
 
 private:
-    static constexpr double standing = 0.005; // m/s at the rim
-    static constexpr double creeping = 0.03;  // m/s: slower counts as standing (faults.encoder_moving_rad_s)
-    static constexpr double reaction = 0.2;   // cycle, line, a repetition, lag of the motors
-    static constexpr double threeReadings = 0.3; // of the slowest line that drives
-    static constexpr double margin = 0.1;        // of a time-out
+    static constexpr double standing = 0.005;   // m/s at the rim
+    static constexpr double creeping = 0.03;    // m/s: slower is a motion only
+    static constexpr double creepingSeen = 1.5; // when it has lasted
+    static constexpr double reaction = 0.15;    // cycle, line, a repetition, lag of the motors
+    static constexpr double margin = 0.1;       // of a time-out, and lag of the motors
     static constexpr double longestSilence =
         0.6;                               // of a line, between two attempts to stop what does not confirm
     static constexpr double rolling = 1.2; // without power
@@ -68,6 +68,7 @@ private:
     std::optional<double> disobedientSince(int controller) const;
     std::optional<double> unheardSince(int controller) const;
     bool isGuarded(int controller) const;
+    double seeing(int controller) const;
     void extend(int controller);
     std::optional<int> lostController() const;
     void watchGuard();

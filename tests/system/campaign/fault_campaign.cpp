@@ -35,7 +35,13 @@ std::vector<Case> shorter(const Case &c) {
     if (c.stamps)
         add([](Case &o) { o.stamps = false; });
     if (c.twoLines)
-        add([](Case &o) { o.twoLines = false; });
+        add([](Case &o) {
+            o.twoLines = false;
+            for (Fault &fault : o.faults) {
+                if (fault.device == "line2")
+                    fault.device = "line1";
+            }
+        });
     if (c.firmware != "4.2.8")
         add([](Case &o) { o.firmware = "4.2.8"; });
     if (c.vy != 0 || c.omega != 0)
