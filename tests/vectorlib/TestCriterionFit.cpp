@@ -41,10 +41,10 @@ Transformation2D anyMotion(std::mt19937 &random) {
 }
 
 std::vector<SegmentPair> noisy(std::vector<SegmentPair> pairs, double sigma, std::mt19937 &random) {
-    std::normal_distribution<double> noise(0, sigma);
+    std::normal_distribution<double> noise;
     for (SegmentPair &p : pairs)
-        p.moving = Segment(p.moving.begin() + Vector2D<double>(noise(random), noise(random)),
-                           p.moving.end() + Vector2D<double>(noise(random), noise(random)));
+        p.moving = Segment(p.moving.begin() + Vector2D<double>(sigma * noise(random), sigma * noise(random)),
+                           p.moving.end() + Vector2D<double>(sigma * noise(random), sigma * noise(random)));
     return pairs;
 }
 

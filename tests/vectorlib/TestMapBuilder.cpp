@@ -17,7 +17,7 @@ const std::vector<Segment> room{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},      {{4
                                 {{2.9, 1}, {2, 1}}};
 
 std::vector<Vector2D<float>> scan(const Pose2D &pose, int rays, double sigma, std::mt19937 &random) {
-    std::normal_distribution<double> noise(0, sigma);
+    std::normal_distribution<double> noise;
     std::vector<Vector2D<float>> points;
     for (int i = 0; i < rays; ++i) {
         const double angle = 2 * pi * i / rays, world = pose.theta + angle;
@@ -32,7 +32,7 @@ std::vector<Vector2D<float>> scan(const Pose2D &pose, int rays, double sigma, st
             if (r > 0 && t >= 0 && t <= wall.length())
                 range = std::min(range, r);
         }
-        range += noise(random);
+        range += sigma * noise(random);
         points.emplace_back(float(range * std::cos(angle)), float(range * std::sin(angle)));
     }
     return points;

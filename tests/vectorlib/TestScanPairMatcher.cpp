@@ -22,14 +22,14 @@ struct World {
     std::vector<Circle> pillars;
 
     Points scan(const Transformation2D &pose, std::mt19937 &random, double sigma = 0.01) const {
-        std::normal_distribution<double> noise(0, sigma);
+        std::normal_distribution<double> noise;
         Points points;
         for (int i = 0; i <= 360; ++i) {
             const double angle = -pi / 2 + i * pi / 360;
             const Vector2D<double> ray(std::cos(angle), std::sin(angle));
             const double r = range(pose.translation(), pose.rotate(ray));
             if (r < 80)
-                points.emplace_back(ray * (r + noise(random)));
+                points.emplace_back(ray * (r + sigma * noise(random)));
         }
         return points;
     }

@@ -12,11 +12,11 @@ namespace {
 std::vector<Vector2D<double>> noisyLine(double theta, double distance, int count, double sigma,
                                         Vector2D<double> offset = {}, unsigned seed = 1) {
     std::mt19937 random(seed);
-    std::normal_distribution<double> noise(0, sigma);
+    std::normal_distribution<double> noise;
     const Vector2D<double> d(std::cos(theta), std::sin(theta)), n = d.left();
     std::vector<Vector2D<double>> points;
     for (int i = 0; i < count; ++i)
-        points.push_back(offset + d * (0.01 * i - 0.003 * count) + n * (distance + noise(random)));
+        points.push_back(offset + d * (0.01 * i - 0.003 * count) + n * (distance + sigma * noise(random)));
     return points;
 }
 

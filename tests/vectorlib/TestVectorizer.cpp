@@ -15,13 +15,13 @@ namespace {
 // A polyline through the corners with `each` points a side and noise across.
 Points polyline(const std::vector<Vector2D<double>> &corners, int each, double sigma, unsigned seed) {
     std::mt19937 random(seed);
-    std::normal_distribution<double> noise(0, sigma);
+    std::normal_distribution<double> noise;
     Points points;
     for (std::size_t c = 0; c + 1 < corners.size(); ++c) {
         const LineSegment2D<double> side(corners[c], corners[c + 1]);
         for (int i = 0; i < each; ++i)
             points.emplace_back(side.begin() + side.direction() * (side.length() * i / each) +
-                                side.normal() * noise(random));
+                                side.normal() * sigma * noise(random));
     }
     return points;
 }
