@@ -73,6 +73,15 @@ private Q_SLOTS:
         }
     }
 
+    // Where a line of the grid and the next are the same number there is still an end of them.
+    void svgFarFromTheOrigin() {
+        SvgPicture far("far");
+        far.points<double>({colour::points, 1, "p"}, {{1e17, -1e17}, {1e17 + 16, -1e17}});
+        const QByteArray svg = written(far);
+        QVERIFY(!contents(svg).startsWith("malformed"));
+        QVERIFY(svg.count("<path") < 30);
+    }
+
     void geoJson() {
         std::ostringstream out;
         writeGeoJson(out, corner());

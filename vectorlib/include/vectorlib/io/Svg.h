@@ -107,6 +107,7 @@ private:
     };
     static constexpr double left = 56, right = 24, bottom = 62, rowHeight = 20, mostWide = 1200,
                             mostHigh = 1200;
+    static constexpr int mostLines = 10; ///< of the grid, and one more
 
     Layer &add(Kind kind, Style style) {
         layers_.push_back({kind, std::move(style), {}, 0});
@@ -131,7 +132,7 @@ private:
         width_ = std::max(left + plot_.x + right, 480.0);
         top_ = 34 + rowHeight * static_cast<double>(legendRows());
         height_ = top_ + plot_.y + bottom;
-        step_ = niceStep(std::max(size.x, size.y) / 10);
+        step_ = niceStep(std::max(size.x, size.y) / mostLines);
     }
     /// 1, 2 or 5 times a power of ten, at least `wanted`.
     static double niceStep(double wanted) {
@@ -150,13 +151,20 @@ private:
         const double low = top_ + plot_.y, high = top_;
         const int decimals = step_ < 0.1 ? 2 : step_ < 1 ? 1 : 0;
         out << "<g stroke=\"#e3e7ee\" stroke-width=\"1\" font-size=\"11\" fill=\"#6b7280\">\n";
-        for (double x = std::ceil(origin_.x / step_) * step_; x <= origin_.x + plot_.x / scale_; x += step_) {
+        // Counted: far from the origin a step more may be the same number.
+        for (int i = 0; i <= mostLines; ++i) {
+            const double x = (std::ceil(origin_.x / step_) + i) * step_;
+            if (x > origin_.x + plot_.x / scale_)
+                break;
             const double at = toPixel({x, 0}).x;
             out << "<path d=\"M" << Fixed{at, 1} << ' ' << Fixed{low, 1} << 'V' << Fixed{high, 1}
                 << "\"/><text x=\"" << Fixed{at, 1} << "\" y=\"" << Fixed{low + 16, 1}
                 << "\" stroke=\"none\" text-anchor=\"middle\">" << Fixed{rounded(x), decimals} << "</text>\n";
         }
-        for (double y = std::ceil(origin_.y / step_) * step_; y <= origin_.y + plot_.y / scale_; y += step_) {
+        for (int i = 0; i <= mostLines; ++i) {
+            const double y = (std::ceil(origin_.y / step_) + i) * step_;
+            if (y > origin_.y + plot_.y / scale_)
+                break;
             const double at = toPixel({0, y}).y;
             out << "<path d=\"M" << Fixed{left, 1} << ' ' << Fixed{at, 1} << 'H' << Fixed{left + plot_.x, 1}
                 << "\"/><text x=\"" << Fixed{left - 6, 1} << "\" y=\"" << Fixed{at + 4, 1}
