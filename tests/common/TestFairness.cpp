@@ -2,9 +2,9 @@
 #include "common/daemon/Daemon.h"
 #include "protocol/jsonrpc/JsonRpc.h"
 #include "protocol/jsonrpc/JsonText.h"
+#include "tests/support/Patience.h"
 
 #include <QTcpSocket>
-#include <QtTest>
 
 using namespace hermes;
 

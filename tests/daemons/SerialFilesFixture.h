@@ -4,9 +4,9 @@
 #include "daemons/seriallogger/SerialLogReader.h"
 #include "daemons/seriallogger/SerialRecorder.h"
 #include "tests/support/Files.h"
+#include "tests/support/Patience.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 
 #include <csignal>
 #include <sys/resource.h>

@@ -2,10 +2,10 @@
 
 #include "MachineStalls.h"
 #include "RoboClawRig.h"
+#include "tests/support/Patience.h"
 
 #include <QProcess>
 #include <QRegularExpression>
-#include <QtTest>
 
 #include <sys/resource.h>
 
@@ -122,6 +122,7 @@ protected:
 
     /// The share of the values that are below the limit must be at least share; prints their distribution.
     static void report(const char *what, std::vector<double> seconds, double limit, double share) {
+        limit *= slowness;
         std::sort(seconds.begin(), seconds.end());
         const auto at = [&](double part) {
             return 1000 * seconds[std::size_t(part * double(seconds.size() - 1))];

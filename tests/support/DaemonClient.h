@@ -2,8 +2,7 @@
 
 #include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
-
-#include <QtTest>
+#include "tests/support/Patience.h"
 
 /// A client of the daemon that a test runs in its own process: base of the fixtures.
 class DaemonClient {
