@@ -184,6 +184,10 @@ Case Case::draw(std::uint64_t seed) {
     for (int i = 0; i < steps; ++i) {
         Step step{dice.between(0.8, 5.2), dice.of(actions), dice.between(0.05, 2)};
         c.steps.push_back(step);
+        if (step.action == "the process stands still" &&
+            dice.chance(0.5)) // and its client falls silent meanwhile
+            c.steps.push_back(
+                {step.time + dice.between(0, 1) * step.amount, "falls silent", dice.between(0.3, 3)});
     }
     c.faults = possible(c.faults, c.duration);
     std::sort(c.steps.begin(), c.steps.end(), [](const Step &a, const Step &b) { return a.time < b.time; });

@@ -2,6 +2,7 @@
 
 #include "StandJudge.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -153,7 +154,7 @@ private:
         const std::string &a = step.action;
         const auto ends = [&] { judge_.endJustification(a); };
         if (a == "falls silent") {
-            silentUntil_ = time() + step.amount;
+            silentUntil_ = step.time + step.amount;
         } else if (a == "stops") {
             drive.stop(client_, "driver");
             silentUntil_ = time() + step.amount;
@@ -196,6 +197,12 @@ private:
         const MotorSettings changed = settingsOf(case_, {{"timeout_s", timeout}});
         robot_.engine.configure(changed);
     }
+    /// Whether the client sends nothing then, for what it does while the process stands still.
+    bool isSilentAt(double when) const {
+        return std::any_of(case_.steps.begin(), case_.steps.end(), [when](const Step &s) {
+            return s.action == "falls silent" && s.time <= when && when < s.time + s.amount;
+        });
+    }
     // What the client sends meanwhile waits in the socket.
     void stall(double seconds) {
         judge_.setStalled(true);
@@ -203,7 +210,7 @@ private:
         judge_.setStalled(false);
         const double end = time();
         for (; nextCommand_ <= end; nextCommand_ += commandPeriod) {
-            if (nextCommand_ >= silentUntil_)
+            if (nextCommand_ >= silentUntil_ && !isSilentAt(nextCommand_))
                 command(nextCommand_);
         }
     }
