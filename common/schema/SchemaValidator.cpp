@@ -18,6 +18,9 @@
 namespace hermes {
 namespace {
 
+// More of them tell nobody more, and a request may hold a hundred thousand.
+constexpr std::size_t mostViolations = 20;
+
 const QString typeKey = QStringLiteral("type");
 const QString itemsKey = QStringLiteral("items");
 const QString patternKey = QStringLiteral("pattern");
@@ -62,7 +65,7 @@ void checkStructure(const QJsonObject &schema, const QJsonValue &value, const QS
         found.push_back({path, value, expectation(schema)});
     if (value.isArray() && schema.value(itemsKey).isObject()) {
         const QJsonArray array = value.toArray();
-        for (int i = 0; i < array.size(); ++i)
+        for (int i = 0; i < array.size() && found.size() < mostViolations; ++i)
             checkStructure(schema.value(itemsKey).toObject(), array.at(i), joined(path, QString::number(i)),
                            found);
     }
@@ -77,7 +80,7 @@ void checkStructure(const QJsonObject &schema, const QJsonValue &value, const QS
                 {joined(path, key), QJsonValue::Undefined, expectation(properties.value(key).toObject())});
     }
     const bool closed = schema.value(QStringLiteral("additionalProperties")) == QJsonValue(false);
-    for (auto member = object.begin(); member != object.end(); ++member) {
+    for (auto member = object.begin(); member != object.end() && found.size() < mostViolations; ++member) {
         const QString memberPath = joined(path, member.key());
         if (properties.contains(member.key()))
             checkStructure(properties.value(member.key()).toObject(), member.value(), memberPath, found);
@@ -145,12 +148,16 @@ SchemaValidator &SchemaValidator::operator=(SchemaValidator &&) noexcept = defau
 std::vector<SchemaViolation> SchemaValidator::check(const QJsonValue &value) const {
     std::vector<SchemaViolation> found;
     checkStructure(compiled->source, value, QString(), found);
+    if (found.size() >= mostViolations)
+        return found;
     valijson::Validator validator;
     valijson::ValidationResults results;
     validator.validate(compiled->schema, valijson::adapters::QtJsonAdapter(value), &results);
     std::vector<Place> places;
-    for (const auto &error : results)
-        places.push_back(locate(error.context, compiled->source, value));
+    for (const auto &error : results) {
+        if (places.size() < mostViolations)
+            places.push_back(locate(error.context, compiled->source, value));
+    }
     // valijson reports each parent of a bad value too; only the innermost place says something.
     for (const Place &place : places) {
         const auto inside = [&place](const QString &path) {
