@@ -8,4 +8,7 @@ double stampNow();
 /// Now, in seconds of a clock that never jumps (the field `mono`): for intervals only.
 double monotonicNow();
 
+/// The same, of a clock that goes on while the machine sleeps.
+double bootNow();
+
 } // namespace hermes

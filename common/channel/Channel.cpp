@@ -1,14 +1,15 @@
 #include "common/channel/Channel.h"
 
-#include "common/Time.h"
+#include "common/Turns.h"
 #include "common/interface/InterfaceRegistry.h"
 
+#include <QCoreApplication>
 #include <QPointer>
 
 namespace hermes {
 namespace {
 
-constexpr double longestTurn_s = 0.001; // then other channels get theirs
+constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their sender does
 
 } // namespace
 
@@ -19,16 +20,17 @@ Channel::Channel(Interface *interface, std::unique_ptr<Codec> codec, QObject *pa
     , canWait(interface->setReceiving(true)) {
     carrier->setParent(this);
     connect(carrier, &Interface::opened, this, [this] {
+        if (ended)
+            deliverAll();
+        ++opening;
         framing->reset();
         waiting.clear();
+        waitingBytes = 0;
+        readFront.reset();
+        reads = false;
         Q_EMIT opened();
     });
-    connect(carrier, &Interface::closed, this, [this](const QString &reason) {
-        const QPointer<Channel> alive(this);
-        deliverAll();
-        if (alive)
-            Q_EMIT closed(reason);
-    });
+    connect(carrier, &Interface::closed, this, &Channel::end);
     connect(carrier, &Interface::received, this, &Channel::receive);
 }
 
@@ -63,53 +65,121 @@ Result<void> Channel::send(const QJsonValue &message) {
 
 void Channel::close(const QString &reason) {
     waiting.clear(); // nobody wants them
-    carrier->close(reason);
+    waitingBytes = 0;
+    if (ended)
+        deliverAll();
+    else
+        carrier->close(reason);
 }
 
 void Channel::setReceiving(bool on) {
-    if (on == receiving)
-        return;
     receiving = on;
-    if (on && !willDeliver) {
-        willDeliver = true;
-        QMetaObject::invokeMethod(this, &Channel::deliver, Qt::QueuedConnection);
-    }
+    schedule();
+}
+
+bool Channel::isQuiet() const {
+    return waiting.empty() && !framing->isMidFrame() && !carrier->hasUnread();
 }
 
 void Channel::receive(const QByteArray &bytes) {
-    for (CodecItem &item : framing->feed(bytes))
-        waiting.push_back(std::move(item));
-    if (!canWait)
-        deliverAll();
-    else if (!willDeliver)
-        deliver();
+    const QPointer<Channel> alive(this);
+    bool hasJumped = false; // a flood of urgent ones is as ordinary as any
+    for (CodecFrame &frame : framing->split(bytes)) {
+        if (urgent && !hasJumped && !frame.error && urgent(frame.bytes)) {
+            hasJumped = true;
+            give(framing->read(frame));
+            if (!alive)
+                return;
+            continue;
+        }
+        waitingBytes += frame.bytes.size();
+        waiting.push_back(std::move(frame));
+    }
+    canWait ? schedule() : deliverAll();
 }
 
-void Channel::deliver() {
-    willDeliver = false;
+void Channel::end(const QString &reason) {
+    ended = reason;
+    if (!canWait || waiting.empty())
+        deliverAll();
+    else
+        schedule();
+}
+
+void Channel::schedule() {
+    updateReceiving();
+    if (scheduled || reads || !receiving || waiting.empty())
+        return;
+    scheduled = true;
+    Turns::ofThread().add(this, [this] { return deliverNext(); });
+}
+
+void Channel::updateReceiving() {
+    carrier->setReceiving(waitingBytes < readAheadBytes);
+}
+
+bool Channel::deliverNext() {
+    scheduled = false;
+    if (!receiving || waiting.empty())
+        return false;
+    if (waiting.front().bytes.size() > largeFrame && !readFront) {
+        readInBackground();
+        return false;
+    }
     const QPointer<Channel> alive(this);
-    const double end = monotonicNow() + longestTurn_s;
-    while (receiving && !waiting.empty() && monotonicNow() < end) {
-        deliverNext();
-        if (!alive)
-            return;
+    deliverFront();
+    if (!alive)
+        return false;
+    if (ended && waiting.empty()) {
+        deliverAll();
+        return false;
     }
-    carrier->setReceiving(receiving && waiting.empty());
-    if (receiving && !waiting.empty()) {
-        willDeliver = true;
-        QMetaObject::invokeMethod(this, &Channel::deliver, Qt::QueuedConnection);
-    }
+    updateReceiving();
+    if (scheduled || !receiving || waiting.empty())
+        return false;
+    return scheduled = true;
 }
 
 void Channel::deliverAll() {
     const QPointer<Channel> alive(this);
     while (alive && !waiting.empty())
-        deliverNext();
+        deliverFront();
+    if (alive && ended)
+        Q_EMIT closed(*std::exchange(ended, std::nullopt));
 }
 
-void Channel::deliverNext() {
-    const CodecItem item = std::move(waiting.front());
+void Channel::deliverFront() {
+    const CodecFrame frame = std::move(waiting.front());
     waiting.pop_front();
+    waitingBytes -= frame.bytes.size();
+    const bool isLarge = readFront.has_value();
+    CodecItem item = readFront ? *std::exchange(readFront, std::nullopt) : framing->read(frame);
+    reads = false;
+    give(item);
+    if (isLarge)
+        inBackground([large = std::move(item)] {}); // to free it takes long, too
+}
+
+void Channel::readInBackground() {
+    reads = true;
+    const auto readIt = [codec = framing, frame = waiting.front(), number = opening,
+                         self = QPointer<Channel>(this)] {
+        const CodecItem item = codec->read(frame);
+        const auto deliver = [self, item, number] {
+            if (!self || !self->reads || self->opening != number)
+                return;
+            self->reads = false;
+            self->readFront = item;
+            self->schedule();
+        };
+        if (QCoreApplication *application = QCoreApplication::instance())
+            QMetaObject::invokeMethod(application, deliver, Qt::QueuedConnection);
+    };
+    inBackground(readIt);
+}
+
+void Channel::give(const CodecItem &item) {
+    framing->count(item);
     if (item.error)
         Q_EMIT malformed(*item.error);
     else

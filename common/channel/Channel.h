@@ -6,7 +6,10 @@
 
 #include <QObject>
 #include <deque>
+#include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
 
 namespace hermes {
 
@@ -30,6 +33,13 @@ public:
 
     /// Lets messages wait, and their sender, where the interface can; others come at once all the same.
     void setReceiving(bool on);
+    /// A frame for which it gives true is delivered when it arrives, before all that wait: one of those that
+    /// come together.
+    void setUrgent(std::function<bool(const QByteArray &frame)> isUrgent) { urgent = std::move(isUrgent); }
+    /// Reads frames larger than this in the background. For channels of the main thread.
+    void setLargeFrame(int bytes) { largeFrame = bytes; }
+    /// Nothing of a message waits here or with the system.
+    bool isQuiet() const;
 
     Interface &interface() { return *carrier; }
     Codec &codec() { return *framing; }
@@ -43,16 +53,28 @@ Q_SIGNALS:
 
 private:
     void receive(const QByteArray &bytes);
-    void deliver();
+    void end(const QString &reason);
+    void schedule();
+    bool deliverNext();
     void deliverAll();
-    void deliverNext();
+    void deliverFront();
+    void readInBackground();
+    void give(const CodecItem &item);
+    void updateReceiving();
 
     Interface *carrier;
-    std::unique_ptr<Codec> framing;
-    std::deque<CodecItem> waiting;
+    std::shared_ptr<Codec> framing; // also of who reads in the background
+    std::deque<CodecFrame> waiting;
+    qint64 waitingBytes = 0;
+    std::optional<CodecItem> readFront; // what is in the first of them, when it was read in the background
+    std::optional<QString> ended;       // the carrier is closed; what was said before is still delivered
+    std::function<bool(const QByteArray &)> urgent;
+    int largeFrame = std::numeric_limits<int>::max();
     const bool canWait;
     bool receiving = true;
-    bool willDeliver = false; // a call is in the event queue
+    bool scheduled = false;
+    bool reads = false;  // in the background
+    quint64 opening = 0; // what is read for an earlier one is not wanted
 };
 
 } // namespace hermes

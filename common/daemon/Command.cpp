@@ -41,6 +41,14 @@ Command &Command::with(const QString &keyword, const QJsonValue &value) {
     return *this;
 }
 
+Command &Command::urgent() {
+    return with(urgentKey(), true);
+}
+
+Command &Command::fresh() {
+    return with(freshKey(), true);
+}
+
 Command &Command::handler(const Handler &function) {
     return asyncHandler([function](const Call &call, const Reply &reply) { reply.give(function(call)); });
 }

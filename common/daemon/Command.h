@@ -17,6 +17,7 @@ struct Call {
     QJsonObject params;
     quint64 client = 0; ///< who calls; the same for one connection as long as it lasts
     QString clientName; ///< for messages
+    double time = 0;    ///< when it was taken up; of the clock of bootNow()
 
     bool has(const char *name) const { return params.contains(QLatin1String(name)); }
     QJsonValue value(const char *name) const { return params.value(QLatin1String(name)); }
@@ -42,12 +43,18 @@ public:
     Command &example(const QJsonObject &params, const QJsonValue &result);
     /// Any further keyword of the description, e.g. "x-needs-lease".
     Command &with(const QString &keyword, const QJsonValue &value);
+    /// `x-urgent`: a stop. Goes before all other work, and a place is kept for clients that call it.
+    Command &urgent();
+    /// `x-fresh`: not carried out when it was received before the program had stood still.
+    Command &fresh();
     /// Answers at once.
     Command &handler(const Handler &function);
     /// Answers at once or later, through the Reply.
     Command &asyncHandler(const AsyncHandler &function);
 
     const QString &name() const { return commandName; }
+    bool isUrgent() const { return extra.contains(urgentKey()); }
+    bool needsFresh() const { return extra.contains(freshKey()); }
 
     /// The method object of an OpenRPC document.
     QJsonObject description() const;
@@ -57,6 +64,8 @@ public:
     void execute(const QJsonValue &params, Call call, const Reply &reply) const;
 
 private:
+    static QString urgentKey() { return QStringLiteral("x-urgent"); }
+    static QString freshKey() { return QStringLiteral("x-fresh"); }
     Result<QJsonObject> accept(const QJsonValue &params) const;
     QJsonObject paramsSchema() const;
 

@@ -1,8 +1,18 @@
 #include "common/daemon/CommandRegistry.h"
 
-#include <QStringList>
-
 namespace hermes {
+
+void CommandRegistry::add(const Command &command) {
+    commands.insert(command.name(), command);
+    urgentNames.removeAll(command.name());
+    if (command.isUrgent())
+        urgentNames.append(command.name());
+}
+
+const Command *CommandRegistry::find(const QString &name) const {
+    const auto found = commands.constFind(name);
+    return found == commands.constEnd() ? nullptr : &*found;
+}
 
 void CommandRegistry::execute(const RpcRequest &request, const Call &call, const Reply &reply) const {
     const auto found = commands.constFind(request.method);

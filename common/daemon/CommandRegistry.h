@@ -4,6 +4,7 @@
 #include "protocol/jsonrpc/JsonRpc.h"
 
 #include <QMap>
+#include <QStringList>
 
 namespace hermes {
 
@@ -11,7 +12,10 @@ namespace hermes {
 class CommandRegistry {
 public:
     /// A second command of the same name replaces the first.
-    void add(const Command &command) { commands.insert(command.name(), command); }
+    void add(const Command &command);
+    const Command *find(const QString &name) const;
+    /// The names of the urgent ones.
+    const QStringList &urgent() const { return urgentNames; }
 
     /// Runs what the request asks for. An unknown method is an error that names the nearest known ones.
     void execute(const RpcRequest &request, const Call &call, const Reply &reply) const;
@@ -21,6 +25,7 @@ public:
 
 private:
     QMap<QString, Command> commands;
+    QStringList urgentNames;
 };
 
 } // namespace hermes

@@ -213,17 +213,29 @@ void Daemon::publish(const QString &topic, const QJsonValue &data, double stamp)
 }
 
 QJsonObject Daemon::description() const {
-    return {{QStringLiteral("openrpc"), QStringLiteral("1.2.6")},
+    if (!made.isEmpty())
+        return made;
+    made = {{QStringLiteral("openrpc"), QStringLiteral("1.2.6")},
             {QStringLiteral("info"), QJsonObject{{QStringLiteral("title"), self.title},
                                                  {QStringLiteral("version"), projectVersion()},
                                                  {QStringLiteral("description"), self.description}}},
             {QStringLiteral("methods"), commands.description()},
             {QStringLiteral("x-topics"), topics.description()}};
+    return made;
+}
+
+void Daemon::forgetDescription() {
+    made = {};
+    madeHash.clear();
 }
 
 QString Daemon::descriptionHash() const {
-    const QByteArray all = compactJson(description()) + compactJson(configuration.schema());
-    return QString::fromLatin1(QCryptographicHash::hash(all, QCryptographicHash::Sha256).toHex().left(16));
+    if (madeHash.isEmpty()) {
+        const QByteArray all = compactJson(description()) + compactJson(configuration.schema());
+        madeHash =
+            QString::fromLatin1(QCryptographicHash::hash(all, QCryptographicHash::Sha256).toHex().left(16));
+    }
+    return madeHash;
 }
 
 QJsonObject Daemon::info() const {

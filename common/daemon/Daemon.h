@@ -74,9 +74,18 @@ Q_SIGNALS:
 
 protected:
     // For the constructor of a daemon.
-    void addSetting(const Field &field) { configuration.declare(field); }
-    void addCommand(const Command &command) { commands.add(command); }
-    void addTopic(const Topic &topic) { topics.declare(topic); }
+    void addSetting(const Field &field) {
+        configuration.declare(field);
+        forgetDescription();
+    }
+    void addCommand(const Command &command) {
+        commands.add(command);
+        forgetDescription();
+    }
+    void addTopic(const Topic &topic) {
+        topics.declare(topic);
+        forgetDescription();
+    }
     /// The watchdog of the service manager is fed by feedWatchdog() alone, not by the event loop.
     void feedWatchdogMyself() { watchdogByHand = true; }
 
@@ -106,6 +115,7 @@ private:
     void publishStatus();
     Result<void> configure(const CommandLine &line);
     QString helpText() const;
+    void forgetDescription();
 
     DaemonIdentity self;
     Settings configuration;
@@ -117,6 +127,8 @@ private:
     QJsonObject startedWith; // the settings
     double started = 0;      // stamp
     double startedMono = 0;
+    mutable QJsonObject made; // the description, when it was asked for
+    mutable QString madeHash;
     bool launched = false;
     bool watchdogByHand = false;
     QTimer watchdog;

@@ -1,9 +1,11 @@
 #include "common/daemon/Server.h"
 
 #include "common/Log.h"
+#include "common/Time.h"
 #include "common/interface/InterfaceRegistry.h"
 
 #include <QStringList>
+#include <algorithm>
 
 namespace hermes {
 namespace {
@@ -29,7 +31,12 @@ void addSession(QJsonObject &sums, Session &session) {
 Server::Server(const CommandRegistry &registry, TopicHub &hub, QObject *parent)
     : QObject(parent)
     , commands(registry)
-    , topics(hub) {
+    , topics(hub)
+    , gapWatch(this) {
+    connect(&gapWatch, &GapWatch::looked, this, [this] {
+        for (Session *session : qAsConst(sessions))
+            session->becomeFresh();
+    });
     idleTimer.setInterval(1000);
     connect(&idleTimer, &QTimer::timeout, this, [this] {
         const auto all = sessions.values();
@@ -99,25 +106,70 @@ QJsonObject Server::counters() const {
         addSession(sums, *session);
     sums.insert(QStringLiteral("clients"), sessions.size());
     sums.insert(QStringLiteral("clients_in_all"), double(lastId));
+    sums.insert(QStringLiteral("clients_in_kept_places"), restricted().size());
     sums.insert(QStringLiteral("clients_turned_away"), double(turnedAway));
     return sums;
 }
 
 void Server::accept(Interface *peer, const QString &protocol) {
     auto *channel = new Channel(peer, makeCodec(protocol), this);
-    auto *session = new Session(++lastId, channel, commands, limits, this);
-    if (sessions.size() >= clientLimit) {
-        ++turnedAway;
-        const QString reason =
-            QStringLiteral("%1 clients are connected already (limits.clients)").arg(clientLimit);
-        logWarning(source, QStringLiteral("%1 turned away: %2").arg(session->name(), reason));
-        session->refuse(RpcError(ErrorCode::OverLimit, reason));
-        session->close(reason);
+    auto *session = new Session(++lastId, channel, commands, limits, gapWatch, this);
+    if (!mayStay(session)) {
+        turnAway(session, session->restriction());
         return session->deleteLater();
     }
     sessions.insert(session->id(), session);
     connect(session, &Session::closed, this,
             [this, session](const QString &reason) { remove(session, reason); });
+}
+
+bool Server::mayStay(Session *session) {
+    if (places() < clientLimit)
+        return true;
+    session->restrictTo(QStringLiteral("%1 clients are connected already (limits.clients)").arg(clientLimit));
+    return makeKeptPlace();
+}
+
+// A stop has to find a place however many take one and are silent: whoever was silent for the longest time
+// goes.
+bool Server::makeKeptPlace() {
+    if (commands.urgent().isEmpty())
+        return false;
+    const QVector<Session *> all = restricted();
+    if (all.size() < keptPlaces)
+        return true;
+    Session *const longest = *std::min_element(all.begin(), all.end(), [](Session *a, Session *b) {
+        return a->lastSignOfLife() < b->lastSignOfLife();
+    });
+    turnAway(longest, longest->restriction() + QStringLiteral("; the place is for another one now"));
+    return true;
+}
+
+void Server::turnAway(Session *session, const QString &reason) {
+    ++turnedAway;
+    // Many may come; a record of each would bury all others.
+    if (const double now = monotonicNow(); now - turnAwayTold > 1) {
+        turnAwayTold = now;
+        logWarning(
+            source,
+            QStringLiteral("%1 turned away: %2; %3 in all").arg(session->name(), reason).arg(turnedAway));
+    }
+    session->refuse(RpcError(ErrorCode::OverLimit, reason));
+    session->close(reason);
+}
+
+QVector<Session *> Server::restricted() const {
+    QVector<Session *> result;
+    std::copy_if(sessions.begin(), sessions.end(), std::back_inserter(result),
+                 [](Session *session) { return session->isRestricted(); });
+    return result;
+}
+
+// The first who came to a kept place gets one that has become free.
+void Server::givePlaces() {
+    for (Session *session : restricted())
+        if (places() < clientLimit)
+            session->restrictTo(QString());
 }
 
 void Server::remove(Session *session, const QString &reason) {
@@ -127,6 +179,7 @@ void Server::remove(Session *session, const QString &reason) {
     addSession(past, *session);
     topics.forget(&session->topics());
     session->deleteLater();
+    givePlaces();
     Q_EMIT clientGone(session->id());
 }
 

@@ -16,6 +16,9 @@ namespace hermes {
 class Server : public QObject {
     Q_OBJECT
 public:
+    /// Beyond limits.clients, for clients that call urgent commands.
+    static constexpr int keptPlaces = 16;
+
     Server(const CommandRegistry &commands, TopicHub &topics, QObject *parent);
 
     /// For clients that come from now on.
@@ -28,6 +31,7 @@ public:
     /// Where it listens, with actual ports.
     QStringList addresses() const;
     Session *session(quint64 id) const { return sessions.value(id); }
+    GapWatch &gaps() { return gapWatch; }
     /// Clients now and in all, requests, errors, damaged and oversized frames, dropped topic messages,
     /// clients closed at a limit or turned away.
     QJsonObject counters() const;
@@ -38,17 +42,25 @@ Q_SIGNALS:
 
 private:
     void accept(Interface *peer, const QString &protocol);
+    bool mayStay(Session *session);
+    bool makeKeptPlace();
+    void turnAway(Session *session, const QString &reason);
+    QVector<Session *> restricted() const;
+    int places() const { return sessions.size() - restricted().size(); }
+    void givePlaces();
     void remove(Session *session, const QString &reason);
 
     const CommandRegistry &commands;
     TopicHub &topics;
+    GapWatch gapWatch;
     SessionLimits limits;
     int clientLimit = 16;
     QVector<Listener *> listeners;
     QMap<quint64, Session *> sessions;
     quint64 lastId = 0;
     quint64 turnedAway = 0;
-    QJsonObject past; // the sums of clients that have gone
+    double turnAwayTold = 0; // monotonic
+    QJsonObject past;        // the sums of clients that have gone
     QTimer idleTimer;
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "common/channel/Channel.h"
+#include "common/daemon/Batch.h"
 #include "common/daemon/CommandRegistry.h"
+#include "common/daemon/GapWatch.h"
 #include "common/daemon/TopicQueue.h"
 
 #include <QObject>
@@ -26,12 +28,13 @@ struct SessionCounters {
 };
 
 /// One client of a daemon: reads requests, has them run, sends replies (those of a batch together, in the
-/// order of the requests), and carries its topic messages.
+/// order of the requests), and carries its topic messages. Urgent commands are run when they arrive, all else
+/// in turns with what other clients want.
 class Session : public QObject {
     Q_OBJECT
 public:
     Session(quint64 id, Channel *channel, const CommandRegistry &commands, const SessionLimits &limits,
-            QObject *parent);
+            GapWatch &gaps, QObject *parent);
 
     quint64 id() const { return number; }
     QString name() const { return channel->interface().name(); }
@@ -40,11 +43,19 @@ public:
     const CodecCounters &codecCounters() const { return channel->codec().counters(); }
     /// Closes it when it has been silent for too long.
     void checkIdle();
-    void close(const QString &reason) { channel->close(reason); }
+    /// When bytes came or went last; monotonic.
+    double lastSignOfLife() const { return lastSign; }
+    void close(const QString &reason);
     /// The same, with the reason in the log.
     void expel(const QString &reason);
     /// Sends an error that answers no request, as to a client that may not stay.
     void refuse(const RpcError &error);
+    /// From now on it may only call urgent commands; empty: all.
+    void restrictTo(const QString &reason) { restrictedFor = reason; }
+    bool isRestricted() const { return !restrictedFor.isEmpty(); }
+    const QString &restriction() const { return restrictedFor; }
+    /// After a gap: what comes from now on is new, when nothing of the old is on its way.
+    void becomeFresh();
 
 Q_SIGNALS:
     void closed(const QString &reason);
@@ -52,20 +63,36 @@ Q_SIGNALS:
 private:
     using Answer = std::function<void(const QJsonValue &)>; // takes undefined for "no reply"
 
+    bool isUrgent(const QByteArray &frame) const;
+    bool isUrgent(const RpcMessage &message) const;
     void receive(const QJsonValue &frame);
-    void receiveBatch(const std::vector<RpcMessage> &messages);
+    void begin(const QJsonArray &messages);
+    bool runNextOfBatch();
+    void finish(const std::shared_ptr<Batch> &done);
+    void end(const QString &reason);
     void process(const RpcMessage &message, const Answer &answer);
     void run(const RpcRequest &request, const Answer &answer);
+    std::optional<Error> refusal(const RpcRequest &request) const;
+    void updateReceiving();
+    bool isOverPending() const;
+    bool makeRoom();
     void send(const QJsonValue &reply);
 
     const quint64 number;
     Channel *channel;
     const CommandRegistry &commands;
     const SessionLimits limits;
+    GapWatch &gaps;
     TopicQueue queue;
     SessionCounters counts;
-    double lastSign = 0; // monotonic: bytes came or went
-    int pending = 0;     // requests not yet answered
+    double lastSign = 0;          // monotonic: bytes came or went
+    int pending = 0;              // requests not yet answered
+    int pendingStops = 0;         // the same, of urgent commands
+    std::shared_ptr<Batch> batch; // not all of it has been begun
+    bool batchInTurns = false;    // it gets its turns
+    std::optional<QString> ended; // closed, with a batch that is still to be run
+    QString restrictedFor;
+    quint64 freshFor; // the count of gaps up to which it is
 };
 
 } // namespace hermes

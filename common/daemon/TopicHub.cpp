@@ -27,8 +27,9 @@ void TopicHub::publish(const QString &topic, const QJsonValue &data, double stam
                         QStringLiteral("published \"%1\", which is not declared").arg(topic));
     ++entry->seq;
     const auto queues = entry->queues;
+    const TopicMessage message{topic, entry->seq, stamp, data};
     for (TopicQueue *queue : queues)
-        queue->offer({topic, entry->seq, stamp, data});
+        queue->offer(message);
 }
 
 Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions &options,

@@ -15,6 +15,18 @@ constexpr qint64 handOverBytes = 32 << 10;
 
 } // namespace
 
+const EncodedFrame &TopicMessage::frame(Codec &codec) const {
+    EncodedFrame &made = (*frames)[typeid(codec)];
+    if (made.bytes.isEmpty() && !made.error) {
+        const QJsonObject params{{QStringLiteral("topic"), topic},
+                                 {QStringLiteral("seq"), qint64(seq)},
+                                 {QStringLiteral("stamp"), stamp},
+                                 {QStringLiteral("data"), data}};
+        made = codec.encode(makeNotification(QStringLiteral("topic"), params));
+    }
+    return made;
+}
+
 TopicQueue::TopicQueue(Channel &target, qint64 limit, QObject *parent)
     : QObject(parent)
     , channel(target)
@@ -105,21 +117,16 @@ void TopicQueue::releaseHeld() {
 void TopicQueue::enqueue(Subscription &subscription, const TopicMessage &message) {
     while (subscription.waiting >= subscription.options.queue)
         dropOldest(&subscription);
-    const QJsonObject params{{QStringLiteral("subscription"), qint64(subscription.id)},
-                             {QStringLiteral("topic"), message.topic},
-                             {QStringLiteral("seq"), qint64(message.seq)},
-                             {QStringLiteral("dropped"), qint64(subscription.dropped)},
-                             {QStringLiteral("stamp"), message.stamp},
-                             {QStringLiteral("data"), message.data}};
-    const EncodedFrame frame = channel.codec().encode(makeNotification(QStringLiteral("topic"), params));
+    const EncodedFrame &frame = message.frame(channel.codec());
     if (frame.error) {
         if (subscription.dropped++ == 0)
             logError(message.topic, frame.error->message);
         ++droppedInAll;
         return;
     }
-    frames.push_back({subscription.id, frame.bytes});
-    frameBytes += frame.bytes.size();
+    frames.push_back({subscription.id,
+                      channel.codec().forSubscription(frame.bytes, subscription.id, subscription.dropped)});
+    frameBytes += frames.back().bytes.size();
     ++subscription.waiting;
     while (frameBytes > byteLimit && frames.size() > 1)
         dropOldest(nullptr);

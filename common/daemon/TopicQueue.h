@@ -6,7 +6,10 @@
 #include <QTimer>
 #include <deque>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
+#include <typeindex>
 #include <vector>
 
 namespace hermes {
@@ -17,6 +20,11 @@ struct TopicMessage {
     quint64 seq = 0; ///< counts the publications of the topic from 1
     double stamp = 0;
     QJsonValue data;
+    /// Its frame in each framing, made once for all who get it.
+    using Frames = std::map<std::type_index, EncodedFrame>;
+    std::shared_ptr<Frames> frames = std::make_shared<Frames>();
+
+    const EncodedFrame &frame(Codec &codec) const;
 };
 
 /// How a client wants a topic.

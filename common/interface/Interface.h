@@ -50,6 +50,8 @@ public:
         Q_UNUSED(on)
         return false;
     }
+    /// Whether bytes have arrived that received() has not told, where the carrier can know.
+    virtual bool hasUnread() const { return false; }
     /// What the system says it lost or found damaged since the opening, by kind; empty where it does not
     /// tell.
     virtual QMap<QString, quint64> systemErrors() const { return {}; }

@@ -1,6 +1,8 @@
 #include "common/interface/TcpInterface.h"
 
-#include <QPointer>
+#include "common/interface/Farewell.h"
+
+#include <sys/ioctl.h>
 #include <utility>
 
 namespace hermes {
@@ -23,9 +25,10 @@ TcpInterface::TcpInterface(const InterfaceUrl &address, QObject *parent)
     });
 }
 
-TcpInterface::TcpInterface(QTcpSocket *connected, QObject *parent)
-    : Interface(parent)
-    , socket(connected) {
+TcpInterface::TcpInterface(QTcpSocket *connected, QObject *theHost)
+    : Interface(theHost)
+    , socket(connected)
+    , host(theHost) {
     socket->setParent(this);
     url.scheme = QStringLiteral("tcp");
     url.host = socket->peerAddress().toString();
@@ -57,6 +60,12 @@ bool TcpInterface::setReceiving(bool on) {
         readLater();
     receiving = on;
     return true;
+}
+
+bool TcpInterface::hasUnread() const {
+    int unread = 0;
+    return socket->bytesAvailable() > 0 ||
+           (isOpen() && ::ioctl(int(socket->socketDescriptor()), FIONREAD, &unread) == 0 && unread > 0);
 }
 
 void TcpInterface::readSome() {
@@ -97,6 +106,8 @@ void TcpInterface::doOpen() {
 
 void TcpInterface::doClose() {
     socket->flush();
+    if (host && socket->socketDescriptor() >= 0)
+        Farewell::say(int(socket->socketDescriptor()), host);
     socket->abort();
 }
 

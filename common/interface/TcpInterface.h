@@ -4,6 +4,7 @@
 #include "common/interface/InterfaceUrl.h"
 
 #include <QHostAddress>
+#include <QPointer>
 #include <QTcpSocket>
 
 namespace hermes {
@@ -13,13 +14,14 @@ class TcpInterface : public Interface {
     Q_OBJECT
 public:
     TcpInterface(const InterfaceUrl &address, QObject *parent);
-    /// Takes over a connected socket.
-    TcpInterface(QTcpSocket *connected, QObject *parent);
+    /// Takes over a connected socket. host outlives it, and its farewell.
+    TcpInterface(QTcpSocket *connected, QObject *host);
 
     QString name() const override;
     void flush() override { socket->flush(); }
     qint64 bytesToWrite() const override;
     bool setReceiving(bool on) override;
+    bool hasUnread() const override;
 
 protected:
     void doOpen() override;
@@ -33,7 +35,8 @@ private:
 
     InterfaceUrl url;
     QTcpSocket *socket;
-    bool readsOn = false; // the rest is read when others have had their turn
+    QPointer<QObject> host; // of a peer of a server
+    bool readsOn = false;   // the rest is read when others have had their turn
     bool receiving = true;
 };
 

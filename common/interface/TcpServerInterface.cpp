@@ -4,6 +4,7 @@
 #include "common/interface/TcpInterface.h"
 
 #include <sys/resource.h>
+#include <sys/socket.h>
 
 namespace hermes {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 // Descriptors that clients leave for files and devices. With none left accept() fails, and the event loop
 // spins.
 constexpr rlim_t spareDescriptors = 8;
+constexpr int acceptedAtOnce = 4;
 
 bool isScarce(qintptr descriptor) {
     rlimit limit{};
@@ -22,7 +24,10 @@ bool isScarce(qintptr descriptor) {
 TcpServerInterface::TcpServerInterface(const InterfaceUrl &address, QObject *parent)
     : Listener(parent)
     , url(address) {
-    connect(&server, &QTcpServer::newConnection, this, &TcpServerInterface::takePeers);
+    // Queued, and no more are accepted meanwhile: else peers who come faster than they are taken would keep
+    // the event loop here.
+    server.setMaxPendingConnections(acceptedAtOnce);
+    connect(&server, &QTcpServer::newConnection, this, &TcpServerInterface::takePeers, Qt::QueuedConnection);
 }
 
 Result<void> TcpServerInterface::listen() {
@@ -32,8 +37,10 @@ Result<void> TcpServerInterface::listen() {
             ErrorCode::InputOutput,
             QStringLiteral("cannot listen on %1: \"%2\" is not an IP address").arg(url.toString(), url.host));
     }
-    if (server.listen(host, url.port))
+    if (server.listen(host, url.port)) {
+        ::listen(int(server.socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
         return {};
+    }
     QString reason = server.errorString();
     if (server.serverError() == QAbstractSocket::AddressInUseError) {
         reason = QStringLiteral("port %1 of %2 is already in use; end the program that uses it or listen "
@@ -57,17 +64,20 @@ QString TcpServerInterface::address() const {
 }
 
 void TcpServerInterface::takePeers() {
-    while (QTcpSocket *socket = server.nextPendingConnection()) {
-        if (isScarce(socket->socketDescriptor())) {
-            logWarning(QStringLiteral("server"),
-                       QStringLiteral("a client is turned away: the file descriptors are nearly used up"));
-            delete socket;
-            continue;
-        }
-        auto *peer = new TcpInterface(socket, this);
-        peer->open();
-        Q_EMIT accepted(peer);
+    while (QTcpSocket *socket = server.nextPendingConnection())
+        take(socket);
+}
+
+void TcpServerInterface::take(QTcpSocket *socket) {
+    if (isScarce(socket->socketDescriptor())) {
+        logWarning(QStringLiteral("server"),
+                   QStringLiteral("a client is turned away: the file descriptors are nearly used up"));
+        delete socket;
+        return;
     }
+    auto *peer = new TcpInterface(socket, this);
+    peer->open();
+    Q_EMIT accepted(peer);
 }
 
 } // namespace hermes

@@ -19,6 +19,7 @@ public:
 
 private:
     void takePeers();
+    void take(QTcpSocket *socket);
 
     InterfaceUrl url;
     QTcpServer server;

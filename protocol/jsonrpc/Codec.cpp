@@ -18,6 +18,24 @@ const Kind kinds[] = {
 
 } // namespace
 
+std::vector<CodecItem> Codec::feed(const QByteArray &bytes) {
+    std::vector<CodecItem> items;
+    for (const CodecFrame &frame : split(bytes)) {
+        items.push_back(read(frame));
+        count(items.back());
+    }
+    return items;
+}
+
+void Codec::count(const CodecItem &item) {
+    if (!item.error)
+        ++counts.messagesIn;
+    else if (item.error->is(ErrorCode::OverLimit))
+        ++counts.oversized;
+    else
+        ++counts.malformed;
+}
+
 EncodedFrame Codec::encode(const QJsonValue &message) {
     if (const auto path = findNonFinite(message)) {
         ++counts.refused;

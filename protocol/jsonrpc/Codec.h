@@ -17,6 +17,12 @@ struct CodecItem {
     std::optional<RpcError> error;
 };
 
+/// One frame as it came, not yet read; or the error that stands in place of one that was not kept.
+struct CodecFrame {
+    QByteArray bytes;
+    std::optional<RpcError> error;
+};
+
 /// What encode() gave: the frame, or why the message cannot be sent (then bytes is empty).
 struct EncodedFrame {
     QByteArray bytes;
@@ -38,11 +44,26 @@ class Codec {
 public:
     virtual ~Codec() = default;
 
-    /// Takes bytes as they arrive, split anywhere, and gives the items completed by them in order.
-    virtual std::vector<CodecItem> feed(const QByteArray &bytes) = 0;
+    /// Takes bytes as they arrive, split anywhere, and gives the frames completed by them in order. Costs
+    /// little, whatever is in them.
+    virtual std::vector<CodecFrame> split(const QByteArray &bytes) = 0;
+    /// Reads a frame. Costs as much as it is long; may be called in any thread.
+    virtual CodecItem read(const CodecFrame &frame) const = 0;
+    /// Both at once.
+    std::vector<CodecItem> feed(const QByteArray &bytes);
+    /// Counts an item that read() gave.
+    void count(const CodecItem &item);
+    /// Whether a frame has begun and not ended.
+    virtual bool isMidFrame() const = 0;
 
     /// The message as one frame. A number that is NaN or infinite is an error that names its path.
     EncodedFrame encode(const QJsonValue &message);
+    /// Frames of single replies become the pieces of one frame, that of a batch.
+    virtual void joinBatch(std::vector<QByteArray> &frames) const = 0;
+    /// The frame of a notification with two more members of its params, whose content one frame has for all
+    /// who get it.
+    virtual QByteArray forSubscription(const QByteArray &notification, quint64 subscription,
+                                       quint64 dropped) const = 0;
 
     /// Forgets a frame begun (after the carrier was opened anew). Counters stay.
     virtual void reset() = 0;

@@ -6,38 +6,37 @@
 
 namespace hermes {
 
-std::vector<CodecItem> JsonCodec::feed(const QByteArray &bytes) {
-    std::vector<CodecItem> items;
+std::vector<CodecFrame> JsonCodec::split(const QByteArray &bytes) {
+    std::vector<CodecFrame> frames;
     const char *position = bytes.constData();
     const char *const end = position + bytes.size();
     while (position < end) {
         const auto *lineFeed = static_cast<const char *>(std::memchr(position, '\n', size_t(end - position)));
-        append(position, int((lineFeed ? lineFeed : end) - position), items);
+        append(position, int((lineFeed ? lineFeed : end) - position), frames);
         if (!lineFeed)
             break;
-        finishLine(items);
+        finishLine(frames);
         position = lineFeed + 1;
     }
-    return items;
+    return frames;
 }
 
-void JsonCodec::append(const char *bytes, int size, std::vector<CodecItem> &items) {
+void JsonCodec::append(const char *bytes, int size, std::vector<CodecFrame> &frames) {
     if (skipping)
         return;
     // One byte more than the limit may wait: the CR of a CR LF.
     if (line.size() + size > frameLimit() + 1) {
-        ++counts.oversized;
         skipping = true;
         line = QByteArray();
-        items.push_back({QJsonValue::Undefined,
-                         RpcError(ErrorCode::OverLimit,
-                                  QStringLiteral("line larger than %1 bytes, skipped").arg(frameLimit()))});
+        frames.push_back({{},
+                          RpcError(ErrorCode::OverLimit,
+                                   QStringLiteral("line larger than %1 bytes, skipped").arg(frameLimit()))});
         return;
     }
     line.append(bytes, size);
 }
 
-void JsonCodec::finishLine(std::vector<CodecItem> &items) {
+void JsonCodec::finishLine(std::vector<CodecFrame> &frames) {
     if (skipping) {
         skipping = false;
         return;
@@ -45,31 +44,47 @@ void JsonCodec::finishLine(std::vector<CodecItem> &items) {
     if (line.endsWith('\r'))
         line.chop(1);
     if (line.size() > frameLimit()) {
-        append("xx", 2, items); // reaches the limit and reports it
+        append("xx", 2, frames); // reaches the limit and reports it
         skipping = false;
         return;
     }
-    if (line.trimmed().isEmpty()) {
-        line.clear();
-        return;
-    }
+    if (!line.trimmed().isEmpty())
+        frames.push_back({line, std::nullopt});
+    line = QByteArray();
+}
+
+CodecItem JsonCodec::read(const CodecFrame &frame) const {
+    if (frame.error)
+        return {QJsonValue::Undefined, frame.error};
     JsonTextError error;
-    if (const auto value = parseJson(line, &error)) {
-        ++counts.messagesIn;
-        items.push_back({*value, std::nullopt});
-    } else {
-        ++counts.malformed;
-        items.push_back(
-            {QJsonValue::Undefined,
-             RpcError(ErrorCode::ParseError,
-                      QStringLiteral("parse error at byte %1: %2").arg(error.offset).arg(error.message))});
-    }
-    line.clear();
+    if (const auto value = parseJson(frame.bytes, &error))
+        return {*value, std::nullopt};
+    return {QJsonValue::Undefined,
+            RpcError(ErrorCode::ParseError,
+                     QStringLiteral("parse error at byte %1: %2").arg(error.offset).arg(error.message))};
 }
 
 void JsonCodec::reset() {
     line.clear();
     skipping = false;
+}
+
+void JsonCodec::joinBatch(std::vector<QByteArray> &frames) const {
+    for (QByteArray &frame : frames)
+        frame[frame.size() - 1] = ','; // was the line feed
+    frames.front().prepend('[');
+    frames.back().chop(1);
+    frames.back().append("]\n");
+}
+
+QByteArray JsonCodec::forSubscription(const QByteArray &notification, quint64 subscription,
+                                      quint64 dropped) const {
+    static const QByteArray end = QByteArrayLiteral("}}\n"); // params are its last member
+    QByteArray frame;
+    frame.reserve(notification.size() + 64);
+    frame.append(notification.constData(), notification.size() - end.size());
+    frame.append(",\"subscription\":").append(QByteArray::number(subscription));
+    return frame.append(",\"dropped\":").append(QByteArray::number(dropped)).append(end);
 }
 
 QByteArray JsonCodec::frame(const QJsonValue &message) {

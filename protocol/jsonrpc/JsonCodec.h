@@ -13,15 +13,20 @@ public:
     JsonCodec()
         : Codec(defaultFrameLimit) {}
 
-    std::vector<CodecItem> feed(const QByteArray &bytes) override;
+    std::vector<CodecFrame> split(const QByteArray &bytes) override;
+    CodecItem read(const CodecFrame &frame) const override;
+    bool isMidFrame() const override { return skipping || !line.isEmpty(); }
     void reset() override;
+    void joinBatch(std::vector<QByteArray> &frames) const override;
+    QByteArray forSubscription(const QByteArray &notification, quint64 subscription,
+                               quint64 dropped) const override;
 
 protected:
     QByteArray frame(const QJsonValue &message) override;
 
 private:
-    void append(const char *bytes, int size, std::vector<CodecItem> &items);
-    void finishLine(std::vector<CodecItem> &items);
+    void append(const char *bytes, int size, std::vector<CodecFrame> &frames);
+    void finishLine(std::vector<CodecFrame> &frames);
 
     QByteArray line; // the line begun, without its LF
     bool skipping = false;

@@ -1,0 +1,54 @@
+#include "common/interface/Farewell.h"
+
+#include <chrono>
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace hermes {
+namespace {
+
+constexpr std::chrono::seconds longest{1};
+constexpr std::size_t drainAtOnceBytes = 1 << 20;
+constexpr int most = 32; // at the same time
+
+int number = 0; // now; all are in the main thread
+
+} // namespace
+
+void Farewell::say(int socket, QObject *parent) {
+    if (number >= most)
+        return;
+    const int own = ::fcntl(socket, F_DUPFD_CLOEXEC, 0);
+    if (own < 0)
+        return;
+    ::shutdown(own, SHUT_WR);
+    new Farewell(own, parent);
+}
+
+Farewell::Farewell(int own, QObject *parent)
+    : QObject(parent)
+    , descriptor(own)
+    , notifier(own, QSocketNotifier::Read) {
+    ++number;
+    connect(&notifier, &QSocketNotifier::activated, this, &Farewell::drain);
+    connect(&limit, &QTimer::timeout, this, &QObject::deleteLater);
+    limit.setSingleShot(true);
+    limit.start(longest);
+}
+
+Farewell::~Farewell() {
+    --number;
+    notifier.setEnabled(false);
+    ::close(descriptor);
+}
+
+void Farewell::drain() {
+    // TCP drops what MSG_TRUNC receives.
+    if (::recv(descriptor, nullptr, drainAtOnceBytes, MSG_TRUNC | MSG_DONTWAIT) > 0)
+        return;
+    notifier.setEnabled(false);
+    deleteLater();
+}
+
+} // namespace hermes
