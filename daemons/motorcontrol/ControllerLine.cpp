@@ -37,6 +37,8 @@ ControllerLine::ControllerLine(Interface *interface, const QString &device,
 void ControllerLine::wake() {
     if (!interface_->isOpen())
         return;
+    if (guard_)
+        guard_();
     const double now = monotonicNow();
     if (const roboclaw::Bytes *out = master_.poll(now)) {
         interface_->write(QByteArray(reinterpret_cast<const char *>(out->data()), int(out->size())));

@@ -4,6 +4,7 @@
 #include "daemons/motorcontrol/LineMaster.h"
 
 #include <QTimer>
+#include <functional>
 
 namespace hermes {
 
@@ -17,6 +18,8 @@ public:
                    QObject *parent);
 
     void open() { interface_->open(); }
+    /// Called before anything is sent.
+    void setGuard(std::function<void()> guard) { guard_ = std::move(guard); }
     /// Sends what is due, if the line is free. To be called when a controller wants something.
     void wake();
     const LineMaster &master() const { return master_; }
@@ -28,6 +31,7 @@ private:
 
     Interface *interface_;
     LineMaster master_;
+    std::function<void()> guard_;
     QTimer deadline_;
     QString advice_;
 };

@@ -148,6 +148,11 @@ void Drive::clientGone(quint64 client) {
         halt("the client that held the control has gone");
 }
 
+void Drive::stoodStill(const QString &text) {
+    lease_.revoke();
+    halt(text);
+}
+
 bool Drive::fault(const QString &name, const QString &reason) {
     if (!latch_.set(name, reason))
         return false;

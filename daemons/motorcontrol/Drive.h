@@ -40,6 +40,9 @@ public:
     Result<void> takeOver(quint64 client, const QString &name, double timeout_s, double now);
     void release(quint64 client);
     void clientGone(quint64 client);
+    /// The program stood still, as text says: whoever held the control may know nothing of it. Halts, and
+    /// ends the lease.
+    void stoodStill(const QString &text);
 
     // What the devices tell.
     /// Latches until resetEmergencyStop(). True when it is new.

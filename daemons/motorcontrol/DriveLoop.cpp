@@ -24,7 +24,8 @@ DriveLoop::DriveLoop(const MotorSettings &settings, DriveMail &mail)
     : settings_(settings)
     , mail_(mail)
     , engine_(settings)
-    , timer_([this] { cycle(); }, this) {}
+    , timer_([this] { cycle(); }, this)
+    , longestGap_s_(settings.drive.commandTimeout_s) {}
 
 Result<void> DriveLoop::start() {
     engine_.report().realtime = becomeRealtime(realtimePriority);
@@ -57,6 +58,7 @@ Result<void> DriveLoop::openLines() {
         }
         const QString device = parsed->scheme == "serial" ? parsed->path : QString();
         lines_.push_back(new ControllerLine(*interface, device, onLine, this));
+        lines_.back()->setGuard([this] { lookForGap(); });
         for (int k = i; k < controllerCount; ++k) {
             if (settings_.controllers[k].url != url)
                 continue;
@@ -77,7 +79,23 @@ void DriveLoop::shutDown(std::function<void()> done) {
     wakeLines();
 }
 
+void DriveLoop::configure(const MotorSettings &settings) {
+    longestGap_s_ = settings.drive.commandTimeout_s;
+    engine_.configure(settings);
+}
+
+// Jobs and answers may come before the cycle that is late.
+void DriveLoop::lookForGap() {
+    const double now = bootNow(), passed = now - std::exchange(lastLook_, now);
+    if (passed <= longestGap_s_ || passed == now)
+        return;
+    voidUntil_ = now;
+    engine_.drive().stoodStill(QString("the drive loop stood still for %1 s").arg(passed, 0, 'f', 2));
+    engine_.obey();
+}
+
 void DriveLoop::doJobs() {
+    lookForGap();
     const auto &jobs = mail_.asked.take();
     for (DriveMail::Job *job : jobs) {
         job->result = job->work(*this);
@@ -90,6 +108,7 @@ void DriveLoop::doJobs() {
 }
 
 void DriveLoop::cycle() {
+    lookForGap();
     const double now = monotonicNow();
     engine_.cycle(now);
     wakeLines();

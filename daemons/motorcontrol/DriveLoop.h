@@ -22,7 +22,7 @@ public:
     /// Opens the lines and begins. Error: a URL that names no line, no timer.
     Result<void> start();
     /// New settings, except those of the lines. Halts.
-    void configure(const MotorSettings &settings) { engine_.configure(settings); }
+    void configure(const MotorSettings &settings);
     /// Brings the wheels to a stand; then, or when the controllers do not answer in time, calls done.
     void shutDown(std::function<void()> done);
 
@@ -30,9 +30,12 @@ public:
     Drive &drive() { return engine_.drive(); }
     Odometry &odometry() { return engine_.odometry(); }
     const Telemetry &telemetry() { return engine_.report(); }
+    /// What was asked before this is void: the loop stood still meanwhile. Of the clock of bootNow().
+    double voidUntil() const { return voidUntil_; }
 
 private:
     Result<void> openLines();
+    void lookForGap();
     void doJobs();
     void cycle();
     void wakeLines();
@@ -44,6 +47,8 @@ private:
     std::vector<ControllerLine *> lines_;
     std::array<ControllerLine *, controllerCount> lineOf_{};
     CycleTimer timer_;
+    double longestGap_s_;
+    double lastLook_ = 0, voidUntil_ = 0;
     std::unique_ptr<QSocketNotifier> jobs_;
     std::function<void()> done_; // shutting down
     double doneLatest_ = 0;

@@ -45,6 +45,7 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
                    .range(0, 10)
                    .byDefault(0))
         .returns(object)
+        .urgent()
         .asyncHandler([this, stop](const Call &call, const Reply &reply) {
             const double until = monotonicNow() + call.number("wait_s");
             inLoop(
@@ -60,23 +61,34 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
         });
 }
 
+Command
+MotorControl::freshLoopCommand(const QString &name, const QString &summary,
+                               const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work) {
+    const auto unlessVoid = [work](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+        if (call.time <= loop.voidUntil())
+            return Error(ErrorCode::NotReady, "the drive loop stood still since this came");
+        return work(call, loop);
+    };
+    return loopCommand(name, summary, unlessVoid).fresh();
+}
+
 void MotorControl::declareMotorCommands() {
-    addCommand(
-        loopCommand("motor.drive",
-                    "Drives with this velocity, in the robot's frame, until the next command; to be sent at "
-                    "10 Hz or more. Wheels that would be too fast slow all down alike",
-                    [](const Call &call, DriveLoop &loop) {
-                        const Twist twist{call.number("vx"), call.number("vy"), call.number("omega")};
-                        return nullOr(
-                            loop.drive().driveTwist(call.client, twist, ageOf(call), monotonicNow()));
-                    })
-            .param(Field::number("vx", "Forward").unit("m/s").byDefault(0))
-            .param(Field::number("vy", "To the left").unit("m/s").byDefault(0))
-            .param(Field::number("omega", "Counter-clockwise").unit("rad/s").byDefault(0))
-            .param(stampField())
-            .with("x-needs-lease", true)
-            .example({{"vx", 0.3}, {"vy", 0}, {"omega", 0.1}}, QJsonValue()));
-    Command wheels = loopCommand(
+    addCommand(freshLoopCommand(
+                   "motor.drive",
+                   "Drives with this velocity, in the robot's frame, until the next command; to be sent at "
+                   "10 Hz or more. Wheels that would be too fast slow all down alike",
+                   [](const Call &call, DriveLoop &loop) {
+                       const Twist twist{call.number("vx"), call.number("vy"), call.number("omega")};
+                       return nullOr(
+                           loop.drive().driveTwist(call.client, twist, ageOf(call), monotonicNow()));
+                   })
+                   .param(Field::number("vx", "Forward").unit("m/s").byDefault(0))
+                   .param(Field::number("vy", "To the left").unit("m/s").byDefault(0))
+                   .param(Field::number("omega", "Counter-clockwise").unit("rad/s").byDefault(0))
+                   .param(stampField())
+                   .with("x-needs-lease", true)
+                   .example({{"vx", 0.3}, {"vy", 0}, {"omega", 0.1}}, QJsonValue()));
+    Command wheels = freshLoopCommand(
         "motor.wheels",
         "Turns each wheel with its own speed, until the next command: for tests with the "
         "robot jacked up",
@@ -100,14 +112,14 @@ void MotorControl::declareMotorCommands() {
                     "Stops with the emergency deceleration, and stays stopped until motor.reset_estop; "
                     "anyone may. No substitute for a hard-wired device",
                     [](const Call &call, Drive &drive) { drive.emergencyStop(call.clientName); }));
-    addCommand(
-        loopCommand("motor.reset_estop",
-                    "Releases the emergency stop and latched faults; the robot stays where it is until a "
-                    "client acquires the control and drives",
-                    [](const Call &, DriveLoop &loop) -> Result<QJsonValue> {
-                        loop.drive().resetEmergencyStop();
-                        return QJsonValue();
-                    }));
+    addCommand(freshLoopCommand(
+        "motor.reset_estop",
+        "Releases the emergency stop and latched faults; the robot stays where it is until a "
+        "client acquires the control and drives",
+        [](const Call &, DriveLoop &loop) -> Result<QJsonValue> {
+            loop.drive().resetEmergencyStop();
+            return QJsonValue();
+        }));
     addCommand(Command("motor.state",
                        "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
                    .returns(object)
@@ -125,21 +137,21 @@ void MotorControl::declareMotorCommands() {
 
 void MotorControl::declareControlCommands() {
     addCommand(
-        loopCommand("control.acquire",
-                    "Gives this client the control: only it may move the robot, as long as it sends motion "
-                    "commands at least every timeout_s and stays connected",
-                    [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
-                        const QString name =
-                            call.text("client").isEmpty() ? call.clientName : call.text("client");
-                        const double now = monotonicNow();
-                        const double timeout_s = call.number("timeout_s");
-                        const auto acquired = call.flag("take_over")
-                                                  ? loop.drive().takeOver(call.client, name, timeout_s, now)
-                                                  : loop.drive().acquire(call.client, name, timeout_s, now);
-                        if (!acquired)
-                            return acquired.error();
-                        return loop.drive().lease().state(now);
-                    })
+        freshLoopCommand(
+            "control.acquire",
+            "Gives this client the control: only it may move the robot, as long as it sends motion "
+            "commands at least every timeout_s and stays connected",
+            [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+                const QString name = call.text("client").isEmpty() ? call.clientName : call.text("client");
+                const double now = monotonicNow();
+                const double timeout_s = call.number("timeout_s");
+                const auto acquired = call.flag("take_over")
+                                          ? loop.drive().takeOver(call.client, name, timeout_s, now)
+                                          : loop.drive().acquire(call.client, name, timeout_s, now);
+                if (!acquired)
+                    return acquired.error();
+                return loop.drive().lease().state(now);
+            })
             .param(
                 Field::text("client", "Name of the client, for others").with("maxLength", 100).byDefault(""))
             .param(Field::number("timeout_s", "Without a motion command for so long the control ends")

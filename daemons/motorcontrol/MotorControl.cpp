@@ -35,6 +35,7 @@ MotorControl::MotorControl()
     declareTopics();
     declareMotorCommands();
     declareControlCommands();
+    connect(&server().gaps(), &GapWatch::ended, this, &MotorControl::afterGap);
     connect(this, &Daemon::clientGone, this, [this](quint64 client) {
         if (loop_)
             inLoop(
@@ -68,6 +69,7 @@ void MotorControl::declareTopics() {
 
 Result<void> MotorControl::start() {
     active_ = MotorSettings::from(settings());
+    server().gaps().watch(active_.drive.commandTimeout_s);
     if (::getpriority(PRIO_PROCESS, 0) > niceness)
         ::setpriority(PRIO_PROCESS, 0, niceness);
     if (mail_.reports.descriptor() < 0)
@@ -120,9 +122,22 @@ void MotorControl::settingsChanged(const QStringList &paths) {
     const auto places = active_.controllers; // wait for a restart
     active_ = MotorSettings::from(settings());
     active_.controllers = places;
+    server().gaps().watch(active_.drive.commandTimeout_s);
     inLoop(
         [s = active_](DriveLoop &loop) {
             loop.configure(s);
+            return QJsonValue();
+        },
+        unanswered());
+}
+
+void MotorControl::afterGap(const QString &text) {
+    logWarning("motorcontrol", text + ": the robot halts, and the control must be acquired anew");
+    if (!loop_)
+        return;
+    inLoop(
+        [text](DriveLoop &loop) -> Result<QJsonValue> {
+            loop.drive().stoodStill(text);
             return QJsonValue();
         },
         unanswered());

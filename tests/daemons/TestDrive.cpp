@@ -196,6 +196,7 @@ void TestDrive::stopsAtOnce_data() {
     QTest::newRow("control.release") << Event([](Drive &d) { d.release(anna); });
     QTest::newRow("fault") << Event([](Drive &d) { d.fault("battery", "low"); });
     QTest::newRow("controllers lost") << Event([](Drive &d) { d.setNotReady("no answer"); });
+    QTest::newRow("gap") << Event([](Drive &d) { d.stoodStill("stood still for 3 s"); });
 }
 
 void TestDrive::stopsAtOnce() {

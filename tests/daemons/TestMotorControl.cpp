@@ -284,14 +284,20 @@ void TestMotorControl::aBusyMainThreadDelaysNoStop() {
     QTRY_VERIFY(state()["ready"].toBool());
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
+    client_->notify("control.acquire", QJsonObject{{"timeout_s", 10}});
+    client_->notify("motor.drive", QJsonObject{{"vx", 0.5}}); // read when the daemon goes on
     MachineStalls stalls;
     const double commanded = RoboClawRig::now();
     while (RoboClawRig::now() < commanded + 2) {
     } // the daemon's main thread is this one
     const double stopped = rig_->zeroSince() - commanded, most = 0.5 + stalls.takeLongest();
     QVERIFY2(stopped < most, qPrintable(QString("%1 of %2").arg(stopped).arg(most)));
+    QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::NotReady));
     QTRY_VERIFY(state()["cycle"].toObject()["unread"].toInt() > 10);
     QVERIFY(state()["ready"].toBool());
+    QVERIFY(!state()["control"].toObject()["held"].toBool());
+    QTRY_VERIFY(!call("control.acquire", {{"timeout_s", 10}}).contains("failed"));
+    QVERIFY(rig_->zeroSince() - commanded < most); // nothing else since
     drive({{"vx", 0.5}}, 0.2);
 }
 
