@@ -88,6 +88,7 @@ def batch(method, count, **params):
 
 def hold(port, number):
     connections = [connect(port) for _ in range(number)]
+    print("here", flush=True)
     time.sleep(1000)
     return connections
 
@@ -195,7 +196,8 @@ def check(kind, port):
 
 def main():
     if len(sys.argv) == 3:
-        print("here", flush=True)
+        if "silent" not in sys.argv[1]:  # those say so when all are connected
+            print("here", flush=True)
         return TRAFFIC[sys.argv[1]][1](int(sys.argv[2]))
     with tempfile.TemporaryDirectory() as folder:
         link, world = os.path.join(folder, "motors"), os.path.join(folder, "hall.json")
