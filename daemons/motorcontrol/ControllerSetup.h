@@ -26,9 +26,9 @@ public:
     /// "RoboClaw 2x45A v4.2.8"; empty until it was told.
     const QString &version() const { return version_; }
 
-private:
     static constexpr int settingSteps = 7, steps = settingSteps + ControllerReadings::slowCount;
 
+private:
     QString fault(const roboclaw::Reply &reply) const;
     QString pidFault(int motor, const roboclaw::Reply &reply) const;
 

@@ -233,7 +233,7 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
         return;
     state_ = State::SetUp;
     setup_.restart();
-    replySum_ = replies_ = 0;
+    replies_ = 0;
 }
 
 void MotorController::failSetup(const QString &reason, double now) {
@@ -244,24 +244,28 @@ void MotorController::failSetup(const QString &reason, double now) {
 void MotorController::setupAnswered(Command command, const Bus::Outcome &outcome, double now) {
     if (outcome.result != Bus::Result::Done)
         return failSetup(failureText(command, failure_, heard_), now);
-    replySum_ += outcome.received - outcome.sent;
-    ++replies_;
+    replyTimes_[replies_++] = outcome.received - outcome.sent;
     const QString fault = setup_.take(outcome, readings_);
     if (!fault.isEmpty())
         return failSetup(fault, now);
     if (!setup_.isDone())
         return;
     // A round of the line: set-point and encoders of each, and a slow reading.
-    const double reply = replySum_ / replies_, round = reply * (2 * onLine_ + 1);
+    const double reply = usualReplyTime(), round = reply * (2 * onLine_ + 1);
     if (round * leastRate_Hz > 1)
-        return failSetup(
-            QString("answers after %1 ms on average; its line gives %2 Hz then, at least %3 are needed")
-                .arg(1000 * reply, 0, 'f', 0)
-                .arg(1 / round, 0, 'f', 1)
-                .arg(leastRate_Hz),
-            now);
+        return failSetup(QString("answers after %1 ms; its line gives %2 Hz then, at least %3 are needed")
+                             .arg(1000 * reply, 0, 'f', 0)
+                             .arg(1 / round, 0, 'f', 1)
+                             .arg(leastRate_Hz),
+                         now);
     patience_s_ = std::clamp(3 * reply, shortestPatience_s, longestDrivingPatience_s);
     becomeReady();
+}
+
+double MotorController::usualReplyTime() {
+    const auto middle = replyTimes_.begin() + replies_ / 2;
+    std::nth_element(replyTimes_.begin(), middle, replyTimes_.begin() + replies_);
+    return *middle;
 }
 
 void MotorController::becomeReady() {

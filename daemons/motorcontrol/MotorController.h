@@ -91,6 +91,8 @@ private:
     void stopAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
     void setupAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome, double now);
     void readyAnswered(roboclaw::Command command, const roboclaw::Bus::Outcome &outcome);
+    /// Of the answers to the set-up; the program or the machine may have stood still in some of them.
+    double usualReplyTime();
     void becomeReady();
     void keepSilent(const roboclaw::Bus::Outcome &outcome);
     void watchStandstill();
@@ -122,8 +124,8 @@ private:
     bool stopAcknowledged_ = false;                            // the last one was
     double timeoutAtMost_s_ = longestTimeout_s;                // that it may have
     double silentUntil_ = 0, nextAttempt_ = 0, nextSetup_ = 0; // monotonic
-    double replySum_ = 0;
-    int replies_ = 0;
+    std::array<double, ControllerSetup::steps> replyTimes_{};  // seconds
+    std::size_t replies_ = 0;
 
     // What is asked, and since when nothing was heard; by clock_.
     std::optional<roboclaw::Command> asked_;                      // while the answer is still wanted
