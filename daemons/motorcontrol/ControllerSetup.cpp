@@ -19,7 +19,7 @@ qint64 fixedPoint(double value) {
 }
 
 int tenthsOf(double seconds) {
-    return std::max(1, int(std::lround(10 * seconds)));
+    return std::max(1, int(10 * seconds + 1e-6)); // never longer than it is set
 }
 
 } // namespace

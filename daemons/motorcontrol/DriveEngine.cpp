@@ -84,6 +84,10 @@ void DriveEngine::judgeObedience() {
         if (!disobedience.isEmpty())
             drive_.fault(QString("controller_%1").arg(i + 1), controllers_[i]->name() + ": " + disobedience);
     }
+    if (drive_.latch().isSet())
+        return;
+    for (const auto &controller : controllers_) // somebody has released the faults
+        controller->release();
 }
 
 void DriveEngine::takeReadings() {
@@ -118,7 +122,13 @@ void DriveEngine::trackWheels(double now) {
         ++telemetry_.counterJumps;
         odometry_.doubt(0.1, 0.1);
     }
-    faults_.judgeWheels(sent_, motion->speeds, drive_, now);
+    // Neither the control of the velocity nor a standstill is to be trusted where an encoder is not.
+    const auto disobey = faults_.judgeWheels(sent_, motion->speeds, drive_, now);
+    for (int i = 0; i < wheelCount; ++i) {
+        if (disobey[i])
+            controllers_[settings_.wheels[i].controller]->bar("is barred: " +
+                                                              drive_.latch().reason("encoder"));
+    }
 }
 
 void DriveEngine::command(const WheelValues &setPoint) {

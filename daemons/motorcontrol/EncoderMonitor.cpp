@@ -11,6 +11,10 @@ EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measur
         return Mismatch::StandsStill;
     if (told && commanded * measured < 0)
         return Mismatch::MovesBackwards;
+    // Also of a slow command: a control of the velocity that runs away, as with an encoder that counts
+    // backward.
+    if (std::abs(measured - commanded) > std::abs(commanded) + settings_.commanded && commanded != 0)
+        return commanded * measured < 0 ? Mismatch::MovesBackwards : Mismatch::MovesTooFast;
     return commanded == 0 && moves ? Mismatch::MovesUncommanded : Mismatch::None;
 }
 
@@ -31,6 +35,8 @@ const char *toText(EncoderMonitor::Mismatch mismatch) {
         return "turns and was told to stand";
     case EncoderMonitor::Mismatch::MovesBackwards:
         return "turns against its command";
+    case EncoderMonitor::Mismatch::MovesTooFast:
+        return "turns far faster than its command";
     case EncoderMonitor::Mismatch::None:
         break;
     }

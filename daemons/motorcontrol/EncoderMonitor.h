@@ -6,7 +6,7 @@ namespace hermes {
 /// of a clock that never jumps.
 class EncoderMonitor {
 public:
-    enum class Mismatch { None, StandsStill, MovesUncommanded, MovesBackwards };
+    enum class Mismatch { None, StandsStill, MovesUncommanded, MovesBackwards, MovesTooFast };
     struct Settings {
         double commanded = 0.5; ///< slower commands than this may leave the wheel standing: friction
         double moving = 0.25;   ///< slower than this counts as standing

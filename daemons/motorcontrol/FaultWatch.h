@@ -15,7 +15,9 @@ public:
     /// cycle; levels are for people.
     void judgeControllers(Telemetry &telemetry, Drive &drive, double now);
     /// setPoint: what the wheels were told when these speeds were measured.
-    void judgeWheels(const WheelValues &setPoint, const WheelValues &speeds, Drive &drive, double now);
+    /// Gives which wheels do not obey.
+    std::array<bool, wheelCount> judgeWheels(const WheelValues &setPoint, const WheelValues &speeds,
+                                             Drive &drive, double now);
     /// The wheels were not watched for a while.
     void forgetWheels();
 

@@ -55,7 +55,7 @@ double LineMaster::deadline() const {
 const roboclaw::Bytes *LineMaster::poll(double now) {
     now_ = now;
     bus_.poll(now); // ends what is late
-    if (bus_.isIdle() && now >= busyUntil())
+    if (bus_.isIdle() && now >= bus_.quietUntil())
         submitNext();
     const roboclaw::Bytes *out = bus_.poll(now);
     tellWhetherHeld(now);
@@ -74,11 +74,12 @@ void LineMaster::feed(const std::uint8_t *data, std::size_t size, double now) {
 }
 
 void LineMaster::submitNext() {
+    // The first stop of each breaks the silence that another one needs: it is one packet.
     for (std::size_t i = 0; i < places_.size(); ++i) {
         if (places_[i].controller->isToStop() && submit(i, Task::SetPoint))
             return;
     }
-    if (submitInRound())
+    if (now_ < silentUntil() || submitInRound())
         return;
     for (Place &place : places_) // the next round
         place.served = {};
@@ -127,9 +128,11 @@ bool LineMaster::submit(std::size_t place, Task task) {
 void LineMaster::finished(std::size_t place, Task task, const Bus::Outcome &outcome) {
     MotorController &controller = *places_[place].controller;
     controller.finished(outcome, now_);
-    if (task == Task::Background) { // one in a round for the whole line; then it is the next one's turn
-        for (Place &each : places_)
-            each.served[std::size_t(task)] = true;
+    if (task == Task::Background) {   // one in a round for the whole line; then it is the next one's turn
+        for (Place &each : places_) { // but one that has to stop, or to be set up, has turns of its own
+            if (each.controller->isReady())
+                each.served[std::size_t(task)] = true;
+        }
         first_ = (place + 1) % places_.size();
     }
     Place &served = places_[place];

@@ -19,8 +19,9 @@ constexpr double setupPause_s = 0.25;       // between attempts at a controller 
 constexpr double setupPatience_s = 0.25;    // a set-up waits for slow adapters, to tell how slow they are
 constexpr double shortestPatience_s = 0.03; // FTDI adapters hold bytes for up to 16 ms
 constexpr double timeoutMargin_s = 0.1;     // of the controllers' own clock
-constexpr double readingPause_s = 0.02;     // while it is seen to stand
-constexpr double standMargin_s = 0.2;       // and half of the time of braking more: motors lag behind
+constexpr double barredSilence_s = 5;
+constexpr double readingPause_s = 0.02; // while it is seen to stand
+constexpr double standMargin_s = 0.2;   // and half of the time of braking more: motors lag behind
 constexpr double longestStep_s = 0.04; // a cycle that came later: this program stood still, and asked nothing
 
 constexpr std::array<qint32, 2> zero{};
@@ -47,17 +48,33 @@ void MotorController::configure(const MotorSettings &settings) {
 }
 
 void MotorController::lineClosed(const QString &reason) {
-    heard_ = false;
+    heard_ = timeoutKnown_ = false;
     lose(reason);
     silentUntil_ = nextSetup_ = 0;
+}
+
+void MotorController::bar(const QString &reason) {
+    if (std::exchange(barred_, true))
+        return;
+    lose(reason);
+    nextAttempt_ = silentUntil_ = 0;
+}
+
+void MotorController::release() {
+    if (!std::exchange(barred_, false))
+        return;
+    const bool stopped = attempts_ > 0;
+    lose("was released, and has to stand before it is set up");
+    attempts_ = stopped; // no new stop shortens the silence in which it stops by itself
+    silentUntil_ = barStop_ + silence_s();
 }
 
 void MotorController::lose(const QString &reason) {
     state_ = State::Stopping;
     error_ = reason;
     attempts_ = 0;
-    stopAcknowledged_ = false;
-    nextAttempt_ = 0;
+    stopAcknowledged_ = timeoutSaid_ = false;
+    nextAttempt_ = brakeUntil_ = 0;
     watch_.doubt();
     rate_.restart();
     readings_.countsTime = 0;
@@ -116,7 +133,7 @@ void MotorController::watchStandstill() {
         return;
     disobedience_ =
         "was told to stand and turned on; its line fell silent, so that it stopped by its own time-out";
-    lose("was told to stand and turned on");
+    bar("was told to stand and turned on");
 }
 
 bool MotorController::isToStop() const {
@@ -138,6 +155,7 @@ std::optional<MotorController::Ask> MotorController::next(Task task, double now)
     if (*asked_ == Command::SpeedAccel || *asked_ == Command::Duty) {
         sent_ = commanded_;
         toldToTurn_ = isReady() && speeds_ != zero;
+        timeoutSaid_ = false;
         if (!isReady())
             ++attempts_;
     }
@@ -150,11 +168,15 @@ std::optional<MotorController::Ask> MotorController::due(Task task, double now) 
     case State::Stopping:
         // First with the ramp, and not waiting for long; then by taking the power away, and in silence.
         if (task == Task::SetPoint && first)
-            return ask(Command::SpeedAccel, shortestPatience_s, {deceleration_, 0, 0});
+            return barred_ ? ask(Command::Duty, shortestPatience_s, {0, 0})
+                           : ask(Command::SpeedAccel, shortestPatience_s, {deceleration_, 0, 0});
         if (task != Task::Background || first || now < nextAttempt_)
             return std::nullopt;
-        return stopAcknowledged_ ? ask(Command::ReadEncoders, silence_s())
-                                 : ask(Command::Duty, silence_s(), {0, 0});
+        if (stopAcknowledged_)
+            return ask(Command::ReadEncoders, silence_s());
+        if (!timeoutKnown_ && !timeoutSaid_) // silence stops only one that has a time-out
+            return ask(Command::SetSerialTimeout, shortestPatience_s, {setup_.timeoutTenths()});
+        return ask(Command::Duty, silence_s(), {0, 0});
     case State::SetUp:
         if (task != Task::Background)
             return std::nullopt;
@@ -210,6 +232,15 @@ void MotorController::keepSilent(const Bus::Outcome &outcome) {
 }
 
 void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome, double now) {
+    if (command == Command::SetSerialTimeout) {
+        timeoutSaid_ = true;
+        return;
+    }
+    if (barred_) {
+        barStop_ = outcome.sent;
+        silentUntil_ = barStop_ + barredSilence_s;
+        return;
+    }
     if (outcome.result != Bus::Result::Done) {
         watch_.doubt();
         stopAcknowledged_ = false;
@@ -220,11 +251,15 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
     }
     if (command != Command::ReadEncoders) {
         stopAcknowledged_ = true;
+        if (attempts_ == 1)
+            brakeUntil_ = now + standMargin_s + 1.5 * watch_.speed() / deceleration_;
         return watch_.acknowledged();
     }
     watch_.read({quint32(outcome.reply[0]), quint32(outcome.reply[1])}, outcome.received);
     nextAttempt_ = now + readingPause_s;
     if (watch_.isMoving()) {
+        if (now < brakeUntil_)
+            return;
         error_ = "was told to stand and its wheels turn";
         stopAcknowledged_ = false;
         return keepSilent(outcome);
@@ -271,7 +306,8 @@ double MotorController::usualReplyTime() {
 void MotorController::becomeReady() {
     state_ = State::Ready;
     error_.clear();
-    timeoutAtMost_s_ = setup_.timeout_s(); // was read back
+    timeoutAtMost_s_ = setup_.timeout_s();
+    timeoutKnown_ = true; // it was read back
     lastAnswer_ = lastObeyed_ = lastCounts_ = lastSlow_ = clock_;
     speeds_ = zero;
     toldToTurn_ = false;
@@ -306,6 +342,7 @@ void MotorController::readyAnswered(Command command, const Bus::Outcome &outcome
     if (slow_ == 0) {
         lastSlow_ = clock_;
         const QString fault = setup_.timeoutFault(readings_.timeoutTenths);
+        timeoutKnown_ = fault.isEmpty();
         if (!fault.isEmpty())
             lose(fault + "; it was without power, or somebody else has set it");
     }

@@ -16,6 +16,8 @@ namespace hermes {
 /// though it was told to, is sent nothing but set-points of zero until it has acknowledged one and its
 /// encoders show that it stands. Where it does not, its line is silent after each attempt for longer than the
 /// controller's own time-out. Only then it is set up, and only then it gets other set-points.
+/// One that turned though it was told to stand, or whose encoders cannot be trusted, is barred: it is told to
+/// stand every five seconds, and left in silence, until somebody releases it.
 class MotorController {
 public:
     /// In the order of precedence on the line.
@@ -41,6 +43,9 @@ public:
     /// Sets it up anew when PID or time-out differ.
     void configure(const MotorSettings &settings);
     void lineClosed(const QString &reason);
+    /// Stops it, and keeps it so until release().
+    void bar(const QString &reason);
+    void release();
     /// While another one on the line is waited for, or the line is kept silent, it is not this one's fault
     /// that it is not heard.
     void setLineHeld(bool held) { lineHeld_ = held; }
@@ -60,7 +65,7 @@ public:
     /// Set up, and answers.
     bool isReady() const { return state_ == State::Ready; }
     /// Has acknowledged that it shall stand, and its encoders say that it does.
-    bool stands() const { return watch_.stands(); }
+    bool stands() const { return !barred_ && watch_.stands(); }
     /// Its line gives fewer set-points than leastRate_Hz.
     bool isTooSlow() const { return rate_.isBelow(); }
     /// How often its encoders are read; nothing until that is known.
@@ -120,9 +125,13 @@ private:
     double clock_ = 0;     // seconds of cycles in which it could be asked
 
     // Stopping and set-up.
-    int attempts_ = 0;                                         // set-points of zero since it was lost
-    bool stopAcknowledged_ = false;                            // the last one was
-    double timeoutAtMost_s_ = longestTimeout_s;                // that it may have
+    bool barred_ = false;
+    double barStop_ = 0;                              // monotonic: the last stop while it is barred
+    bool timeoutKnown_ = false, timeoutSaid_ = false; // it was read back; it was told in this attempt
+    double brakeUntil_ = 0;                           // monotonic: so long its wheels may turn
+    int attempts_ = 0;                                // set-points of zero since it was lost
+    bool stopAcknowledged_ = false;                   // the last one was
+    double timeoutAtMost_s_ = longestTimeout_s;       // that it may have
     double silentUntil_ = 0, nextAttempt_ = 0, nextSetup_ = 0; // monotonic
     std::array<double, ControllerSetup::steps> replyTimes_{};  // seconds
     std::size_t replies_ = 0;

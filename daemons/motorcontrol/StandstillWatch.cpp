@@ -10,8 +10,9 @@ namespace {
 // An encoder at the border of two counts may jitter by one. So long that a motion at the threshold shows
 // more.
 constexpr double jitter = 1, shortestWindow_s = 0.04, longestWindow_s = 1;
-// What goes on for so long counts as motion at a fifth of the threshold, too.
-constexpr double creepWindow_s = 1, creepShare = 0.2;
+// What goes on for so long counts as motion at a fiftieth of the threshold, too; a wheel that is held
+// jitters.
+constexpr double creepWindow_s = 1, creepShare = 0.02, heldJitter = 2;
 
 double largestChange(const std::array<quint32, 2> &before, const std::array<quint32, 2> &now) {
     double largest = 0;
@@ -59,8 +60,8 @@ void StandstillWatch::watchCreep(bool wasStill, const Counts &counts, double tim
     const double elapsed = time - creepTime_;
     if (wasStill && elapsed < creepWindow_s)
         return;
-    creeping_ =
-        wasStill && largestChange(creepBase_, counts) > std::max(jitter, creepShare * threshold_ * elapsed);
+    creeping_ = wasStill &&
+                largestChange(creepBase_, counts) > std::max(heldJitter, creepShare * threshold_ * elapsed);
     creepBase_ = counts;
     creepTime_ = time;
 }

@@ -5,6 +5,7 @@
 #include "protocol/roboclaw/Crc16.h"
 
 #include <QtTest>
+#include <random>
 
 using namespace hermes;
 using roboclaw::Command;
@@ -24,6 +25,10 @@ private Q_SLOTS:
     void whoIsNotHeardIsStoppedInSilence();
     void whoKeepsItsSetPointIsStoppedBySilence();
     void theOtherOneOnTheLineStaysReady();
+    void whoIsStoppedOnASlowLineHasItsTurns_data();
+    void whoIsStoppedOnASlowLineHasItsTurns();
+    void aTimeoutIsToldBeforeTheSilence();
+    void whoIsBarredIsLeftInSilence();
     void lateAnswersSlowTheCycleDown_data();
     void lateAnswersSlowTheCycleDown();
     void tooLateAnswersAreRefused();
@@ -242,6 +247,75 @@ void TestControllerStops::theOtherOneOnTheLineStaysReady() {
     }
     QCOMPARE(bench.controller(0).error(), QString("does not answer"));
     QVERIFY(bench.controller(1).stands());
+}
+
+void TestControllerStops::whoIsStoppedOnASlowLineHasItsTurns_data() {
+    QTest::addColumn<double>("latency");
+    QTest::addColumn<double>("loss");
+    for (const double latency : {0.0, 0.010, 0.016}) {
+        for (const double loss : {0.5, 0.9, 1.0})
+            QTest::addRow("%g ms, %g lost", 1000 * latency, loss) << latency << loss;
+    }
+}
+
+// The other one, which answers, takes all the time that a slow line has.
+void TestControllerStops::whoIsStoppedOnASlowLineHasItsTurns() {
+    QFETCH(double, latency);
+    QFETCH(double, loss);
+    ControllerBench bench;
+    bench.latency = latency;
+    driveOff(bench);
+    std::mt19937 random(3);
+    bench.passes = [&](const auto &packet, const auto &bytes) {
+        const bool lost = packet.controller == 0 && std::uniform_real_distribution<double>()(random) < loss;
+        return lost ? std::nullopt : std::optional(bytes);
+    };
+    for (const double began = bench.now(); bench.now() < began + 20;) {
+        bench.speed = bench.areReady() ? fast : 0; // as the drive does
+        bench.run(0.02);
+        const auto last = std::find_if(bench.sent.rbegin(), bench.sent.rend(),
+                                       [](const auto &packet) { return packet.controller == 0; });
+        const double heard = last == bench.sent.rend() ? began : last->time;
+        QVERIFY2(bench.now() - heard < 0.8, qPrintable(bench.controller(0).error()));
+    }
+    bench.speed = 0;
+    bench.passes = ControllerBench().passes;
+    QVERIFY2(bench.runUntil([&] { return bench.areReady(); }, 5), qPrintable(bench.controller(0).error()));
+}
+
+// One that turns on whatever it is told, and has no time-out from before, is given one; then silence stops
+// it.
+void TestControllerStops::aTimeoutIsToldBeforeTheSilence() {
+    ControllerBench bench(1);
+    bench.emulator(0).channel(0).setPid({1, 0.5, 0.25, 150000});
+    bench.emulator(0).channel(0).driveSpeed(fast);
+    bench.emulator(0).faults().latched = true;
+    QCOMPARE(bench.emulator(0).serialTimeout(), 0.0);
+    bench.run(0.2);
+    QVERIFY(bench.fastest() > 0.9 * fast);
+    QVERIFY(bench.runUntil([&] { return bench.fastest() == 0; }, 3));
+}
+
+void TestControllerStops::whoIsBarredIsLeftInSilence() {
+    ControllerBench bench;
+    driveOff(bench);
+    bench.controller(0).bar("is barred");
+    bench.speed = 0;
+    bench.run(12);
+    QCOMPARE(bench.fastest(), 0.0);
+    QVERIFY(!bench.controller(0).isReady() && !bench.controller(0).stands());
+    QCOMPARE(bench.controller(0).error(), QString("is barred"));
+    int stops = 0;
+    for (const auto &packet : bench.sent) {
+        if (packet.controller != 0 || !packet.isStop())
+            continue;
+        ++stops;
+        for (const auto &other : bench.sent)
+            QVERIFY(other.time <= packet.time || other.isStop() || other.time > packet.time + silence_s);
+    }
+    QCOMPARE(stops, 3);
+    bench.controller(0).release();
+    QVERIFY(bench.runUntil([&] { return bench.areReady(); }, 2));
 }
 
 void TestControllerStops::lateAnswersSlowTheCycleDown_data() {

@@ -8,7 +8,7 @@
 /// Reads along what a motor control sends to its controllers, by the published packet format.
 class WireEar {
 public:
-    /// A set-point (command 40) as it came over the wire.
+    /// A set-point as it came over the wire: command 40, or 34 with no duty.
     struct SetPoint {
         double time; ///< monotonic
         int address;
@@ -31,6 +31,8 @@ public:
             return;
         if (packet_[1] == 40)
             heard_.push_back({time, packet_[0], quint32(number(2)), number(6), number(10), rimSpeed});
+        if (packet_[1] == 34 && number(2) == 0) // no duty
+            heard_.push_back({time, packet_[0], 0, 0, 0, rimSpeed});
         if (heard_.size() > 20000)
             heard_.pop_front();
         packet_.clear();

@@ -103,7 +103,8 @@ Fault drawFault(Dice &dice, bool twoLines) {
     const int sort = dice.below(20);
     if (sort < 13) {
         fault.device = dice.chance(0.5) ? "controller1" : "controller2";
-        fault.kind = dice.of(controllerKinds);
+        fault.kind =
+            dice.chance(0.25) ? dice.of<std::string>({"deaf", "latched", "mute"}) : dice.of(controllerKinds);
     } else if (sort < 16) {
         fault.device = twoLines && dice.chance(0.5) ? "line2" : "line1";
         fault.kind = dice.chance(0.5) ? "pulled" : "adapter";
@@ -188,6 +189,12 @@ Case Case::draw(std::uint64_t seed) {
             dice.chance(0.5)) // and its client falls silent meanwhile
             c.steps.push_back(
                 {step.time + dice.between(0, 1) * step.amount, "falls silent", dice.between(0.3, 3)});
+    }
+    if (dice.chance(0.15)) { // adapters as they come
+        for (const char *line : {"line1", "line2"}) {
+            if (line[4] == '1' || c.twoLines)
+                c.faults.push_back({line, "adapter", 0, c.duration, dice.between(0.012, 0.02, 0.001)});
+        }
     }
     c.faults = possible(c.faults, c.duration);
     std::sort(c.steps.begin(), c.steps.end(), [](const Step &a, const Step &b) { return a.time < b.time; });

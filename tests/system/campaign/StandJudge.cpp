@@ -32,12 +32,24 @@ void StandJudge::configure(double deceleration, double commandTimeout_s) {
 
 void StandJudge::begin(const Fault &fault) {
     const bool some = fault.kind == "loss" || fault.kind == "corrupt"; // of the answers
+    if (fault.kind == "swapped")
+        exchanged_ = time();
     if (!some || fault.amount >= 1)
         active_[{fault.device, fault.kind}] = time();
 }
 
 void StandJudge::end(const Fault &fault) {
     active_.erase({fault.device, fault.kind});
+    if (fault.kind == "swapped")
+        exchanged_ = time();
+    if (justified_ || (fault.kind != "deaf" && fault.kind != "pulled"))
+        return;
+    // What it hears then, be it for another one, lets its time-out begin anew.
+    for (int controller = 0; controller < 2; ++controller) {
+        double &deadline = deadline_[std::size_t(controller)];
+        deadline = std::max(deadline, time() + robot_.robot.controller(controller).serialTimeout() + margin +
+                                          braking());
+    }
 }
 
 void StandJudge::setStalled(bool stalled) {
@@ -79,6 +91,7 @@ void StandJudge::beginUnjustified(const std::string &why) {
     justified_ = false;
     why_ = why;
     ended_ = time();
+    stalledFor_ = 0;
     speedAtEnd_ = fastest();
     excuse_ = "obeys";
     deadline_.fill(ended_ + reaction + braking());
@@ -108,7 +121,7 @@ std::optional<double> StandJudge::disobedientSince(int controller) const {
     }
     if (!since && robot_.lines() > 1) // what is sent to it is for another address
         since = sinceOf("controllers", "swapped");
-    return since;
+    return since ? std::max(*since, exchanged_) : since;
 }
 
 std::optional<double> StandJudge::unheardSince(int controller) const {
@@ -162,8 +175,9 @@ void StandJudge::extend(int controller) {
     // silent.
     const bool times = isGuarded(controller);
     const double runs = unreachable ? *unreachable + timeout + margin + braking() : 0;
-    const double seen =
-        disobedient ? std::max(ended_, *disobedient) + 1.5 * braking() + timeout + seeing(controller) : 0;
+    const double seen = disobedient ? std::max(ended_, *disobedient) + 1.5 * braking() + timeout +
+                                          seeing(controller) + stalledFor_
+                                    : 0;
     if (!times && rim(2 * controller) + rim(2 * controller + 1) > standing) {
         if (now > std::max(runs, seen) && now > deadline)
             beyond_.insert(unreachable ? "cannot be reached and has no time-out"
@@ -183,6 +197,7 @@ void StandJudge::watch() {
     if (justified_ && now >= until_)
         endJustification("no command came");
     watchGuard();
+    stalledFor_ += stalledSince_ ? now - last_ : 0;
     last_ = now;
     if (justified_)
         return;
@@ -218,14 +233,15 @@ std::optional<int> StandJudge::lostController() const {
 }
 
 void StandJudge::watchGuard() {
+    hermes::DriveEngine &engine = robot_.engine;
+    const bool drivable = engine.controller(0).isReady() && engine.controller(1).isReady() && !stalledSince_;
     for (int controller = 0; controller < 2; ++controller) {
         const bool swapped = sinceOf("controllers", "swapped").has_value();
-        const int there = swapped ? 1 - controller : controller;
         const bool guarded =
-            robot_.robot.controller(there).serialTimeout() > 0 || (swapped && robot_.lines() > 1);
-        const bool ready = robot_.engine.controller(controller).isReady();
+            robot_.robot.controller(swapped ? 1 - controller : controller).serialTimeout() > 0 ||
+            (swapped && robot_.lines() > 1);
         double &seconds = unguardedFor_[std::size_t(controller)];
-        seconds = guarded || !ready || stalledSince_ ? 0 : seconds + time() - last_;
+        seconds = guarded || !drivable ? 0 : seconds + time() - last_;
         if (seconds > unguarded)
             fail(controllerName(controller) +
                  print(" is ready without a time-out of its own at %.2f s", time()));

@@ -57,7 +57,8 @@ private:
         0.6;                               // of a line, between two attempts to stop what does not confirm
     static constexpr double rolling = 1.2; // without power
     static constexpr double lost = 0.5;    // not heard for so long, a controller has been noticed
-    static constexpr double unguarded = 2; // without its time-out a controller is ready no longer than that
+    static constexpr double unguarded =
+        3; // without its time-out a controller may be driven no longer than that
 
     double time() const { return robot_.now() - start_; }
     double rim(int wheel) const;
@@ -80,6 +81,8 @@ private:
     std::map<std::pair<std::string, std::string>, double> active_; // since when
     std::optional<double> stalledSince_;
     double resumed_ = 0;
+    double exchanged_ = 0;  // when the controllers last exchanged their addresses
+    double stalledFor_ = 0; // since the justification ended: time in which nobody can see what a wheel does
 
     bool justified_ = false;
     double until_ = 0;

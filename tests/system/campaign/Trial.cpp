@@ -145,7 +145,7 @@ private:
         const Twist twist{case_.vx, case_.vy, case_.omega};
         const double age = case_.stamps ? time() - made : 0;
         if (drive.driveTwist(client_, twist, age, now))
-            judge_.justify(made);
+            judge_.justify(case_.stamps ? made : time()); // without a stamp it is good from when it comes
         robot_.obey();
     }
 
@@ -203,14 +203,21 @@ private:
             return s.action == "falls silent" && s.time <= when && when < s.time + s.amount;
         });
     }
-    // What the client sends meanwhile waits in the socket.
+    // What the client sends meanwhile waits in the socket. After a gap of more than the command time-out it
+    // is void, as the drive loop has it.
     void stall(double seconds) {
         judge_.setStalled(true);
         robot_.stall(robot_.now() + seconds, [this] { watch(); });
         judge_.setStalled(false);
+        const bool isVoid = seconds > settings_.drive.commandTimeout_s;
+        if (isVoid) {
+            robot_.engine.drive().stoodStill("the drive loop stood still");
+            judge_.endJustification("the process stood still");
+            robot_.obey();
+        }
         const double end = time();
         for (; nextCommand_ <= end; nextCommand_ += commandPeriod) {
-            if (nextCommand_ >= silentUntil_ && !isSilentAt(nextCommand_))
+            if (!isVoid && nextCommand_ >= silentUntil_ && !isSilentAt(nextCommand_))
                 command(nextCommand_);
         }
     }
