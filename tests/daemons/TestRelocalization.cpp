@@ -289,6 +289,7 @@ void TestRelocalization::theMapMayGrowOnlyBeforeItHoldsTheScan() {
 void TestRelocalization::largeMapTakesNoLongerThanPermitted() {
     load(building());
     qInfo("%zu edges", building().size());
+    set("relocalize_s", 3 * slowness); // 3 is the default
     scan(building(), {23.4, 21.6, 0.75});
     const QJsonObject found = call("pose.relocalize");
     QVERIFY2(isNear(poseOf(found["pose"].toObject()), {23.4, 21.6, 0.75}), QJsonDocument(found).toJson());

@@ -1,8 +1,8 @@
 #include "common/client/Client.h"
 #include "daemons/supervisor/Supervisor.h"
+#include "tests/support/Patience.h"
 
 #include <QTemporaryDir>
-#include <QtTest>
 #include <csignal>
 
 using namespace hermes;

@@ -14,14 +14,14 @@ protected:
     }
     /// The result; an error is printed, and is {failed: message}.
     QJsonValue call(const QString &method, const QJsonObject &params = {}) {
-        const auto result = client_->callAndWait(method, params);
+        const auto result = client_->callAndWait(method, params, slowness * hermes::Client::defaultTimeout);
         if (!result)
             qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
         return result ? *result : QJsonObject{{"failed", result.error().message}};
     }
     /// The error.
     hermes::Error failure(const QString &method, const QJsonObject &params = {}) {
-        const auto result = client_->callAndWait(method, params);
+        const auto result = client_->callAndWait(method, params, slowness * hermes::Client::defaultTimeout);
         return result ? hermes::Error(hermes::ErrorCode::InternalError, "succeeded, though it should not")
                       : result.error();
     }
