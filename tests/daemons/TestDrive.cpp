@@ -312,6 +312,9 @@ void TestDrive::encoderMismatch_data() {
     QTest::newRow("moving but not commanded") << 0.0 << -0.3 << int(Mismatch::MovesUncommanded);
     QTest::newRow("runs away") << 2.0 << -6.0 << int(Mismatch::MovesBackwards);
     QTest::newRow("too slow to judge") << 0.4 << 0.0 << int(Mismatch::None);
+    QTest::newRow("against a slow command") << 0.3 << -9.9 << int(Mismatch::MovesBackwards);
+    QTest::newRow("far faster than a slow command") << 0.3 << 9.9 << int(Mismatch::MovesTooFast);
+    QTest::newRow("brakes") << 5.0 << 10.0 << int(Mismatch::None);
     QTest::newRow("no number") << 0.0 << notANumber << int(Mismatch::MovesUncommanded);
 }
 
