@@ -1,5 +1,6 @@
 #include "common/channel/Channel.h"
 
+#include "common/Time.h"
 #include "common/Turns.h"
 #include "common/interface/InterfaceRegistry.h"
 
@@ -8,6 +9,12 @@
 
 namespace hermes {
 namespace {
+
+// The time, but never twice the same.
+double nextArrival() {
+    static thread_local double last = 0;
+    return last = std::max(bootNow(), last + 1e-9);
+}
 
 constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their sender does
 
@@ -85,9 +92,10 @@ void Channel::receive(const QByteArray &bytes) {
     const QPointer<Channel> alive(this);
     bool hasJumped = false; // a flood of urgent ones is as ordinary as any
     for (CodecFrame &frame : framing->split(bytes)) {
+        frame.arrived = nextArrival();
         if (urgent && !hasJumped && !frame.error && urgent(frame.bytes)) {
             hasJumped = true;
-            give(framing->read(frame));
+            give(framing->read(frame), frame.arrived);
             if (!alive)
                 return;
             continue;
@@ -155,7 +163,7 @@ void Channel::deliverFront() {
     const bool isLarge = readFront.has_value();
     CodecItem item = readFront ? *std::exchange(readFront, std::nullopt) : framing->read(frame);
     reads = false;
-    give(item);
+    give(item, frame.arrived);
     if (isLarge)
         inBackground([large = std::move(item)] {}); // to free it takes long, too
 }
@@ -178,7 +186,8 @@ void Channel::readInBackground() {
     inBackground(readIt);
 }
 
-void Channel::give(const CodecItem &item) {
+void Channel::give(const CodecItem &item, double arrived) {
+    arrival = arrived;
     framing->count(item);
     if (item.error)
         Q_EMIT malformed(*item.error);

@@ -38,6 +38,9 @@ public:
     void setUrgent(std::function<bool(const QByteArray &frame)> isUrgent) { urgent = std::move(isUrgent); }
     /// Reads frames larger than this in the background. For channels of the main thread.
     void setLargeFrame(int bytes) { largeFrame = bytes; }
+    /// When the message that is being given came, of the clock of bootNow(). No two in a thread came at the
+    /// same time: what came first has the smaller one.
+    double arrived() const { return arrival; }
     /// Nothing of a message waits here or with the system.
     bool isQuiet() const;
 
@@ -59,13 +62,14 @@ private:
     void deliverAll();
     void deliverFront();
     void readInBackground();
-    void give(const CodecItem &item);
+    void give(const CodecItem &item, double arrived);
     void updateReceiving();
 
     Interface *carrier;
     std::shared_ptr<Codec> framing; // also of who reads in the background
     std::deque<CodecFrame> waiting;
     qint64 waitingBytes = 0;
+    double arrival = 0;
     std::optional<CodecItem> readFront; // what is in the first of them, when it was read in the background
     std::optional<QString> ended;       // the carrier is closed; what was said before is still delivered
     std::function<bool(const QByteArray &)> urgent;

@@ -13,11 +13,14 @@ public:
     /// More bytes of replies are too much for one frame.
     static constexpr qint64 mostBytes = 8 << 20;
 
-    explicit Batch(const QJsonArray &requests)
-        : messages(requests)
+    Batch(const QJsonArray &requests, double when)
+        : arrived(when)
+        , messages(requests)
         , frames(size_t(requests.size()))
         , missing(requests.size()) {}
     ~Batch();
+
+    const double arrived; ///< Channel::arrived()
 
     bool isBegun() const { return next == messages.size(); } ///< all of it
     bool isDone() const { return missing == 0; }

@@ -17,7 +17,7 @@ struct Call {
     QJsonObject params;
     quint64 client = 0; ///< who calls; the same for one connection as long as it lasts
     QString clientName; ///< for messages
-    double time = 0;    ///< when it was taken up; of the clock of bootNow()
+    double time = 0;    ///< when it came, before all that came later; of the clock of bootNow()
 
     bool has(const char *name) const { return params.contains(QLatin1String(name)); }
     QJsonValue value(const char *name) const { return params.value(QLatin1String(name)); }

@@ -115,7 +115,7 @@ bool Session::isUrgent(const QByteArray &frame) const {
 void Session::receive(const QJsonValue &value) {
     if (value.isArray() && !value.toArray().isEmpty())
         return begin(value.toArray());
-    process(readFrame(value).messages.front(), [this](const QJsonValue &reply) {
+    process(readFrame(value).messages.front(), channel->arrived(), [this](const QJsonValue &reply) {
         if (!reply.isUndefined())
             send(reply);
     });
@@ -128,7 +128,7 @@ void Session::begin(const QJsonArray &messages) {
                                                .arg(messages.size())
                                                .arg(limits.batch)));
     }
-    batch = std::make_shared<Batch>(messages);
+    batch = std::make_shared<Batch>(messages, channel->arrived());
     updateReceiving();
 }
 
@@ -139,7 +139,8 @@ bool Session::runNextOfBatch() {
     const std::shared_ptr<Batch> now = batch;
     const int i = now->takeNext();
     const QPointer<Session> alive(this);
-    process(readFrame(QJsonArray{now->message(i)}).messages.front(), [this, now, i](const QJsonValue &reply) {
+    const RpcMessage message = readFrame(QJsonArray{now->message(i)}).messages.front();
+    process(message, now->arrived, [this, now, i](const QJsonValue &reply) {
         QByteArray frame;
         if (!reply.isUndefined()) {
             EncodedFrame encoded = channel->codec().encode(reply);
@@ -178,9 +179,9 @@ void Session::finish(const std::shared_ptr<Batch> &done) {
         channel->interface().write(piece);
 }
 
-void Session::process(const RpcMessage &message, const Answer &answer) {
+void Session::process(const RpcMessage &message, double arrived, const Answer &answer) {
     if (const auto *request = std::get_if<RpcRequest>(&message)) {
-        run(*request, answer);
+        run(*request, arrived, answer);
     } else if (const auto *invalid = std::get_if<RpcInvalid>(&message)) {
         ++counts.errors;
         answer(makeError(invalid->id, invalid->error));
@@ -209,13 +210,13 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
     return std::nullopt;
 }
 
-void Session::run(const RpcRequest &request, const Answer &answer) {
+void Session::run(const RpcRequest &request, double arrived, const Answer &answer) {
     ++counts.requests;
     gaps.look();
     Call call;
     call.client = number;
     call.clientName = name();
-    call.time = bootNow();
+    call.time = arrived;
     const bool isStop = isUrgent(RpcMessage(request));
     const QPointer<Session> alive(this);
     // Many answers that come later come at once: each in its turn, but for those to stops.

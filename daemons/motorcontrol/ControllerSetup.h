@@ -19,6 +19,7 @@ public:
     /// Takes the answer to request() and goes on. Gives what is wrong with it, or an empty text.
     QString take(const roboclaw::Bus::Outcome &outcome, ControllerReadings &readings);
 
+    double fullSpeed() const { return pid_.qpps; } ///< counts/s
     int timeoutTenths() const { return timeoutTenths_; }
     /// Seconds without a byte after which the controller stops by itself, as the settings have it.
     double timeout_s() const { return timeoutTenths_ / 10.0; }

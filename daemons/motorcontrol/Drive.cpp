@@ -120,6 +120,7 @@ void Drive::emergencyStop(const QString &who) {
 
 void Drive::resetEmergencyStop() {
     latch_.release();
+    ++resets_;
     lease_.revoke();
     halt("released, waits for a new lease");
 }

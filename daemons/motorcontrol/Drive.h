@@ -35,6 +35,8 @@ public:
     void emergencyStop(const QString &who);
     /// Releases the emergency stop and the faults. What still is wrong latches again.
     void resetEmergencyStop();
+    /// How often that was done.
+    quint64 resets() const { return resets_; }
     Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now);
     /// Takes the control from whoever holds it, and halts when that is another client.
     Result<void> takeOver(quint64 client, const QString &name, double timeout_s, double now);
@@ -75,6 +77,7 @@ private:
     WheelValues target_{}, setPoint_{};
     QString notReady_ = "the controllers have not answered yet";
     QString haltReason_;
+    quint64 resets_ = 0;
     double lastStep_ = 0;
 };
 

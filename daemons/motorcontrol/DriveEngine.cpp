@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hermes {
 namespace {
@@ -84,9 +85,9 @@ void DriveEngine::judgeObedience() {
         if (!disobedience.isEmpty())
             drive_.fault(QString("controller_%1").arg(i + 1), controllers_[i]->name() + ": " + disobedience);
     }
-    if (drive_.latch().isSet())
+    if (std::exchange(resets_, drive_.resets()) == drive_.resets())
         return;
-    for (const auto &controller : controllers_) // somebody has released the faults
+    for (const auto &controller : controllers_) // whatever has latched again by what was read before
         controller->release();
 }
 
@@ -125,9 +126,8 @@ void DriveEngine::trackWheels(double now) {
     // Neither the control of the velocity nor a standstill is to be trusted where an encoder is not.
     const auto disobey = faults_.judgeWheels(sent_, motion->speeds, drive_, now);
     for (int i = 0; i < wheelCount; ++i) {
-        if (disobey[i])
-            controllers_[settings_.wheels[i].controller]->bar("is barred: " +
-                                                              drive_.latch().reason("encoder"));
+        if (!disobey[i].isEmpty())
+            controllers_[settings_.wheels[i].controller]->bar("is barred: " + disobey[i]);
     }
 }
 

@@ -48,6 +48,7 @@ private:
     std::vector<std::unique_ptr<MotorController>> controllers_;
     Telemetry telemetry_;
     WheelValues sent_{}; // the set-point of the last cycle
+    quint64 resets_ = 0; // of the drive, seen
     bool retired_ = false;
 };
 

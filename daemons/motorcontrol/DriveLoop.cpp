@@ -110,10 +110,11 @@ void DriveLoop::doJobs() {
 void DriveLoop::cycle() {
     lookForGap();
     const double now = monotonicNow();
+    const bool obeyed = engine_.hasObeyed(); // before the cycle gives the next set-point
     engine_.cycle(now);
     wakeLines();
     report();
-    if (done_ && (engine_.hasObeyed() || now > doneLatest_)) {
+    if (done_ && (obeyed || now > doneLatest_)) {
         timer_.stop();
         std::exchange(done_, {})();
     }

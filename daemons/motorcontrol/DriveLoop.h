@@ -30,8 +30,9 @@ public:
     Drive &drive() { return engine_.drive(); }
     Odometry &odometry() { return engine_.odometry(); }
     const Telemetry &telemetry() { return engine_.report(); }
-    /// What was asked before this is void: the loop stood still meanwhile. Of the clock of bootNow().
+    /// What came before this is void: a stop overtook it, or the loop stood still. Of the clock of bootNow().
     double voidUntil() const { return voidUntil_; }
+    void makeVoidUntil(double time) { voidUntil_ = std::max(voidUntil_, time); }
 
 private:
     Result<void> openLines();

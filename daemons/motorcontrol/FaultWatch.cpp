@@ -72,19 +72,20 @@ void FaultWatch::judgeControllers(Telemetry &telemetry, Drive &drive, double now
     }
 }
 
-std::array<bool, wheelCount> FaultWatch::judgeWheels(const WheelValues &setPoint, const WheelValues &speeds,
-                                                     Drive &drive, double now) {
-    std::array<bool, wheelCount> disobey{};
+std::array<QString, wheelCount> FaultWatch::judgeWheels(const WheelValues &setPoint,
+                                                        const WheelValues &speeds, Drive &drive, double now) {
+    std::array<QString, wheelCount> texts;
     for (int i = 0; i < wheelCount; ++i) {
         const auto mismatch = encoders_[i].judge(setPoint[i], speeds[i], now);
-        disobey[i] = mismatch != EncoderMonitor::Mismatch::None;
-        if (disobey[i])
-            drive.fault("encoder", QString("wheel %1 %2 (%3 rad/s told, %4 rad/s measured)")
-                                       .arg(wheelNames[i], toText(mismatch))
-                                       .arg(setPoint[i], 0, 'g', 3)
-                                       .arg(speeds[i], 0, 'g', 3));
+        if (mismatch == EncoderMonitor::Mismatch::None)
+            continue;
+        texts[i] = QString("wheel %1 %2 (%3 rad/s told, %4 rad/s measured)")
+                       .arg(wheelNames[i], toText(mismatch))
+                       .arg(setPoint[i], 0, 'g', 3)
+                       .arg(speeds[i], 0, 'g', 3);
+        drive.fault("encoder", texts[i]);
     }
-    return disobey;
+    return texts;
 }
 
 void FaultWatch::forgetWheels() {

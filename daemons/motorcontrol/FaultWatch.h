@@ -15,9 +15,9 @@ public:
     /// cycle; levels are for people.
     void judgeControllers(Telemetry &telemetry, Drive &drive, double now);
     /// setPoint: what the wheels were told when these speeds were measured.
-    /// Gives which wheels do not obey.
-    std::array<bool, wheelCount> judgeWheels(const WheelValues &setPoint, const WheelValues &speeds,
-                                             Drive &drive, double now);
+    /// Gives what each wheel does that does not obey; empty for those that do.
+    std::array<QString, wheelCount> judgeWheels(const WheelValues &setPoint, const WheelValues &speeds,
+                                                Drive &drive, double now);
     /// The wheels were not watched for a while.
     void forgetWheels();
 

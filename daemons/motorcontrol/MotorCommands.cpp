@@ -51,6 +51,7 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
             inLoop(
                 [call, stop](DriveLoop &loop) -> Result<QJsonValue> {
                     stop(call, loop.drive());
+                    loop.makeVoidUntil(call.time); // it may have overtaken what came before it
                     return QJsonValue(standingJson(loop.telemetry()));
                 },
                 Reply([this, reply, until](const Result<QJsonValue> &result) {
@@ -66,7 +67,8 @@ MotorControl::freshLoopCommand(const QString &name, const QString &summary,
                                const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work) {
     const auto unlessVoid = [work](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
         if (call.time <= loop.voidUntil())
-            return Error(ErrorCode::NotReady, "the drive loop stood still since this came");
+            return Error(ErrorCode::NotReady,
+                         "this came before a stop, or before the drive loop stood still: it is void");
         return work(call, loop);
     };
     return loopCommand(name, summary, unlessVoid).fresh();

@@ -21,6 +21,7 @@ constexpr double shortestPatience_s = 0.03; // FTDI adapters hold bytes for up t
 constexpr double timeoutMargin_s = 0.1;     // of the controllers' own clock
 constexpr double barredSilence_s = 5;
 constexpr double readingPause_s = 0.02; // while it is seen to stand
+constexpr double overspeed = 1.5;       // times full duty: faster no motor turns
 constexpr double standMargin_s = 0.2;   // and half of the time of braking more: motors lag behind
 constexpr double longestStep_s = 0.04; // a cycle that came later: this program stood still, and asked nothing
 
@@ -56,16 +57,16 @@ void MotorController::lineClosed(const QString &reason) {
 void MotorController::bar(const QString &reason) {
     if (std::exchange(barred_, true))
         return;
+    barReason_ = reason;
     lose(reason);
-    nextAttempt_ = silentUntil_ = 0;
 }
 
 void MotorController::release() {
     if (!std::exchange(barred_, false))
         return;
-    const bool stopped = attempts_ > 0;
+    const bool isTold = attempts_ > 0;
     lose("was released, and has to stand before it is set up");
-    attempts_ = stopped; // no new stop shortens the silence in which it stops by itself
+    attempts_ = isTold ? 1 : 0; // no new stop shortens the silence in which it stops by itself
     silentUntil_ = barStop_ + silence_s();
 }
 
@@ -87,14 +88,18 @@ double MotorController::silence_s() const {
     return timeoutAtMost_s_ + timeoutMargin_s;
 }
 
+double MotorController::brakingTime() const {
+    const double speed = std::min(watch_.speed(), overspeed * setup_.fullSpeed()); // counts may jump
+    return standMargin_s + watch_.window_s() + 1.5 * speed / deceleration_;
+}
+
 void MotorController::command(const std::array<qint32, 2> &speeds) {
     if (!isReady())
         return;
     if (speeds != zero)
         watch_.doubt();
     else if (speeds_ != zero)
-        standBy_ = clock_ + standMargin_s + 1.5 * watch_.speed() / deceleration_ +
-                   3 / rate_Hz().value_or(1 / longestStep_s);
+        standBy_ = clock_ + brakingTime() + 3 / rate_Hz().value_or(1 / longestStep_s);
     speeds_ = speeds;
     ++commanded_;
 }
@@ -132,8 +137,8 @@ void MotorController::watchStandstill() {
     if (clock_ <= standBy_)
         return;
     disobedience_ =
-        "was told to stand and turned on; its line fell silent, so that it stopped by its own time-out";
-    bar("was told to stand and turned on");
+        "was told to stand and kept turning; its line is silent now, so that it stops by its own time-out";
+    bar("was told to stand and kept turning");
 }
 
 bool MotorController::isToStop() const {
@@ -155,6 +160,9 @@ std::optional<MotorController::Ask> MotorController::next(Task task, double now)
     if (*asked_ == Command::SpeedAccel || *asked_ == Command::Duty) {
         sent_ = commanded_;
         toldToTurn_ = isReady() && speeds_ != zero;
+        barStop_ = now;
+        if (toldToTurn_) // what it acknowledged before does not count
+            watch_.doubt();
         timeoutSaid_ = false;
         if (!isReady())
             ++attempts_;
@@ -237,14 +245,14 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
         return;
     }
     if (barred_) {
-        barStop_ = outcome.sent;
+        error_ = barReason_; // the line may have been closed meanwhile
         silentUntil_ = barStop_ + barredSilence_s;
         return;
     }
     if (outcome.result != Bus::Result::Done) {
         watch_.doubt();
         stopAcknowledged_ = false;
-        if (attempts_ == 1) // that was not waited for long
+        if (attempts_ == 1) // it is told again at once
             return;
         error_ = failureText(command, failure_, heard_);
         return keepSilent(outcome); // what came in spite of it may be late, or another one's
@@ -252,7 +260,7 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
     if (command != Command::ReadEncoders) {
         stopAcknowledged_ = true;
         if (attempts_ == 1)
-            brakeUntil_ = now + standMargin_s + 1.5 * watch_.speed() / deceleration_;
+            brakeUntil_ = now + brakingTime();
         return watch_.acknowledged();
     }
     watch_.read({quint32(outcome.reply[0]), quint32(outcome.reply[1])}, outcome.received);
@@ -261,6 +269,7 @@ void MotorController::stopAnswered(Command command, const Bus::Outcome &outcome,
         if (now < brakeUntil_)
             return;
         error_ = "was told to stand and its wheels turn";
+        watch_.doubt();
         stopAcknowledged_ = false;
         return keepSilent(outcome);
     }

@@ -99,6 +99,8 @@ private:
     /// Of the answers to the set-up; the program or the machine may have stood still in some of them.
     double usualReplyTime();
     void becomeReady();
+    /// Seconds until it is seen to stand after it was told to.
+    double brakingTime() const;
     void keepSilent(const roboclaw::Bus::Outcome &outcome);
     void watchStandstill();
     void watchAnswers();
@@ -119,7 +121,7 @@ private:
 
     State state_ = State::Stopping;
     QString error_ = "has not answered yet";
-    QString disobedience_;
+    QString disobedience_, barReason_;
     bool lineHeld_ = false;
     double lastCycle_ = 0; // monotonic
     double clock_ = 0;     // seconds of cycles in which it could be asked

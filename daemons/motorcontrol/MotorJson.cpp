@@ -9,7 +9,9 @@ namespace hermes {
 namespace {
 
 QString notStanding(const Telemetry::Controller &c) {
-    return c.error.isEmpty() ? QString("its wheels turn, or it has not answered yet") : c.error;
+    return c.error.isEmpty()
+               ? QString("its wheels turn, or it was not read since: its line may be silent for another one")
+               : c.error;
 }
 
 } // namespace

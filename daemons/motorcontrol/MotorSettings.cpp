@@ -163,6 +163,9 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
             "at least faults.current_warning_a");
     require(number("faults.temperature_c") >= number("faults.temperature_warning_c"), "faults.temperature_c",
             "at least faults.temperature_warning_c");
+    require(number("faults.encoder_moving_rad_s") > 0 &&
+                number("faults.encoder_moving_rad_s") <= number("faults.encoder_commanded_rad_s"),
+            "faults.encoder_moving_rad_s", "above 0, and at most faults.encoder_commanded_rad_s");
     // Braking from full speed is no fault of an encoder.
     const double rimSpeed = number("motion.motor_share") * number("pid.qpps") /
                             number("frame.counts_per_turn") * 2 * pi * number("frame.wheel_radius_m");

@@ -19,6 +19,8 @@ public:
     void acknowledged();
     void read(const std::array<quint32, 2> &counts, double time);
 
+    /// So long it takes to see a standstill; seconds.
+    double window_s() const { return window_; }
     bool stands() const { return acknowledged_ && still_ && !creeping_; }
     /// What was read last differs from what was read before, by a motion or by creeping for a second.
     bool isMoving() const { return moving_ || creeping_; }

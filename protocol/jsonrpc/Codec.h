@@ -21,6 +21,7 @@ struct CodecItem {
 struct CodecFrame {
     QByteArray bytes;
     std::optional<RpcError> error;
+    double arrived = 0; ///< for who reads it later; of a clock of the reader's
 };
 
 /// What encode() gave: the frame, or why the message cannot be sent (then bytes is empty).

@@ -27,6 +27,7 @@ private Q_SLOTS:
     void numbersWithoutAValueAreRefused();
     void missingDeviceIsNamedAndFoundWhenItComes();
     void leaseIsExclusiveAndRunsOut();
+    void whatAStopOvertakesIsVoid();
     void takingOverStopsTheRobot();
     void emergencyStopLatches();
     void stopsBrakeWithTheEmergencyDeceleration();
@@ -209,6 +210,40 @@ void TestMotorControl::leaseIsExclusiveAndRunsOut() {
     QTRY_VERIFY(other.callAndWait("control.acquire", QJsonObject{{"client", "bert"}}).ok());
     QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).data["holder"].toString(), QString("bert"));
     QCOMPARE(call("control.state")["holder"].toString(), QString("bert"));
+}
+
+// Sent in one go: the stop is done first, and what was sent before it must not undo it.
+void TestMotorControl::whatAStopOvertakesIsVoid() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    QTcpSocket socket;
+    const QStringList place = address().split(':');
+    socket.connectToHost("127.0.0.1", quint16(place.last().section(',', 0, 0).toUInt()));
+    QVERIFY(socket.waitForConnected(1000));
+    socket.write(R"({"jsonrpc":"2.0","id":1,"method":"motor.reset_estop"})"
+                 "\n"
+                 R"({"jsonrpc":"2.0","id":2,"method":"control.acquire"})"
+                 "\n"
+                 R"({"jsonrpc":"2.0","id":3,"method":"motor.drive","params":{"vx":0.3}})"
+                 "\n"
+                 R"({"jsonrpc":"2.0","id":4,"method":"motor.estop"})"
+                 "\n"
+                 R"({"jsonrpc":"2.0","id":5,"method":"motor.reset_estop"})"
+                 "\n");
+    QMap<int, QJsonObject> replies;
+    QTRY_VERIFY((replies.size() == 5) || [&] {
+        while (socket.canReadLine()) {
+            const QJsonObject reply = QJsonDocument::fromJson(socket.readLine()).object();
+            replies.insert(reply["id"].toInt(), reply);
+        }
+        return replies.size() == 5;
+    }());
+    for (int before : {1, 2, 3})
+        QVERIFY2(replies[before].contains("error"), qPrintable(QString::number(before)));
+    QVERIFY(replies[4].contains("result"));
+    QVERIFY(replies[5].contains("result")); // what comes after it counts
+    QVERIFY(!state()["estop"].toBool());
+    QCOMPARE(rig_->fastest(), 0.0);
 }
 
 void TestMotorControl::takingOverStopsTheRobot() {
