@@ -117,7 +117,9 @@ void declareFaults(const std::function<void(const Field &)> &declare) {
     add("faults.hold_s", "How long a value must be beyond", "s", 60, 1);
     add("faults.encoder_commanded_rad_s", "Wheels told to turn slower than this may stand still", "rad/s",
         100, 0.5);
-    add("faults.encoder_moving_rad_s", "Wheels slower than this count as standing", "rad/s", 100, 0.25);
+    declare(positive("faults.encoder_moving_rad_s", "Wheels slower than this count as standing", "rad/s",
+                     0.001, 100, 0.25)
+                .group("Faults"));
     add("faults.encoder_hold_s", "How long a wheel must disobey; longer than braking takes", "s", 10, 0.7);
 }
 
@@ -163,9 +165,8 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
             "at least faults.current_warning_a");
     require(number("faults.temperature_c") >= number("faults.temperature_warning_c"), "faults.temperature_c",
             "at least faults.temperature_warning_c");
-    require(number("faults.encoder_moving_rad_s") > 0 &&
-                number("faults.encoder_moving_rad_s") <= number("faults.encoder_commanded_rad_s"),
-            "faults.encoder_moving_rad_s", "above 0, and at most faults.encoder_commanded_rad_s");
+    require(number("faults.encoder_moving_rad_s") <= number("faults.encoder_commanded_rad_s"),
+            "faults.encoder_moving_rad_s", "at most faults.encoder_commanded_rad_s");
     // Braking from full speed is no fault of an encoder.
     const double rimSpeed = number("motion.motor_share") * number("pid.qpps") /
                             number("frame.counts_per_turn") * 2 * pi * number("frame.wheel_radius_m");
