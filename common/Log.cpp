@@ -3,7 +3,6 @@
 #include "common/Time.h"
 
 #include <QDateTime>
-#include <QMutexLocker>
 #include <algorithm>
 #include <climits>
 #include <fcntl.h>
@@ -83,7 +82,7 @@ Log::Log() {
 void Log::write(LogLevel level, const QString &source, const QString &text) {
     const LogRecord record{stampNow(), level, source, text};
     {
-        const QMutexLocker lock(&mutex);
+        const std::lock_guard<std::mutex> lock(mutex);
         if (level < minimum)
             return;
         records.push_back(record);
@@ -97,7 +96,7 @@ void Log::write(LogLevel level, const QString &source, const QString &text) {
 }
 
 QJsonArray Log::tail(int count) const {
-    const QMutexLocker lock(&mutex);
+    const std::lock_guard<std::mutex> lock(mutex);
     QJsonArray array;
     for (size_t i = records.size() - std::min(records.size(), size_t(std::max(count, 0))); i < records.size();
          ++i)
@@ -106,17 +105,17 @@ QJsonArray Log::tail(int count) const {
 }
 
 void Log::setMinimumLevel(LogLevel level) {
-    const QMutexLocker lock(&mutex);
+    const std::lock_guard<std::mutex> lock(mutex);
     minimum = level;
 }
 
 void Log::setCapacity(int count) {
-    const QMutexLocker lock(&mutex);
+    const std::lock_guard<std::mutex> lock(mutex);
     capacity = std::max(count, 1);
 }
 
 void Log::setStderr(bool enabled) {
-    const QMutexLocker lock(&mutex);
+    const std::lock_guard<std::mutex> lock(mutex);
     toStderr = enabled;
 }
 

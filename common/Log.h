@@ -2,10 +2,10 @@
 
 #include <QJsonArray>
 #include <QJsonObject>
-#include <QMutex>
 #include <QObject>
 #include <QString>
 #include <deque>
+#include <mutex>
 
 namespace hermes {
 
@@ -49,7 +49,7 @@ private:
     Log();
     void writeToStderr(QByteArray bytes);
 
-    mutable QMutex mutex;
+    mutable std::mutex mutex;
     std::deque<LogRecord> records;
     int capacity = 1000;
     LogLevel minimum = LogLevel::Info;

@@ -5,12 +5,13 @@
 /// what is called.
 
 #include <QCoreApplication>
-#include <QMutex>
 #include <QObject>
 #include <QThread>
 #include <QThreadPool>
 
 #include <dlfcn.h>
+#include <functional>
+#include <utility>
 
 extern "C" void __tsan_acquire(void *address);
 extern "C" void __tsan_release(void *address);
@@ -93,23 +94,14 @@ bool QMetaObject::invokeMethodImpl(QObject *object, QtPrivate::QSlotObjectBase *
     return ok;
 }
 
-// A mutex that nobody waits for is locked in the header, where the sanitizer sees it; these are the others.
-void QBasicMutex::lockInternal() noexcept {
-    static const auto lock = original<void (*)(QBasicMutex *)>("_ZN11QBasicMutex12lockInternalEv");
-    lock(this);
-    __tsan_acquire(this);
-}
-
-void QBasicMutex::unlockInternal() noexcept {
-    static const auto unlock = original<void (*)(QBasicMutex *)>("_ZN11QBasicMutex14unlockInternalEv");
-    __tsan_release(this);
-    unlock(this);
-}
-
 void QThreadPool::start(QRunnable *runnable, int priority) {
     static const auto start =
         original<void (*)(QThreadPool *, QRunnable *, int)>("_ZN11QThreadPool5startEP9QRunnablei");
     start(this, new OrderedJob(runnable, this), priority);
+}
+
+void QThreadPool::start(std::function<void()> work, int priority) {
+    start(QRunnable::create(std::move(work)), priority);
 }
 
 bool QThreadPool::waitForDone(int msecs) {
