@@ -45,7 +45,7 @@ void ScanMatcher::declareMapCommands() {
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
                    .returnsNull()
                    .asyncHandler([this](const Call &, const Reply &reply) {
-                       worker->post([this, reply](Tracker &tracker) {
+                       worker->post([this, reply](vectorlib::ScanTracker &tracker) {
                            tracker.clear();
                            showNewMap(tracker, reply, QJsonValue());
                        });
@@ -70,7 +70,7 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
         reply.give(writeMapFile(path, format, force, *map));
         --filesUnderWay;
     };
-    worker->post([this, map, write](Tracker &tracker) {
+    worker->post([this, map, write](vectorlib::ScanTracker &tracker) {
         tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { map->segments.push_back(edge); });
         files.start(write);
     });
@@ -78,7 +78,7 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
 
 // In the worker, as the scans that come after it belong into the new map.
 void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
-    worker->post([this, path = absolutePath(call.text("path")), reply](Tracker &tracker) {
+    worker->post([this, path = absolutePath(call.text("path")), reply](vectorlib::ScanTracker &tracker) {
         const auto loaded = readMapFile(path);
         if (!loaded)
             return reply.error(loaded.error());
@@ -89,18 +89,18 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
     });
 }
 
-void ScanMatcher::showNewMap(Tracker &tracker, const Reply &reply, const QJsonValue &answer) {
+void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer) {
     tracker.builder.map.takeChanges(); // the mirror gets it whole
     auto edges = std::make_shared<MapMirror::Edges>();
     tracker.builder.map.forEach(
         [&](const vectorlib::MapEdge &edge) { edges->emplace_hint(edges->end(), edge.id, edge); });
     QMetaObject::invokeMethod(this, [this, edges = std::move(edges), reply, answer]() mutable {
-        counts = TrackerCounts();
+        counts = vectorlib::ScanTrackerCounts();
         lostInARow = 0;
         lastRecovery.reset();
         mirror.replace(*edges);
         if (worker) // where the old map is freed, which takes its time too
-            worker->post([old = std::move(edges)](Tracker &) {});
+            worker->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
         publishSnapshot("map");
         reply.result(answer);
     });

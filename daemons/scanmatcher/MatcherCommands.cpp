@@ -23,7 +23,7 @@ Result<Scan> scanParameter(const Call &call, const char *name) {
     QJsonObject data = call.value(name).toObject();
     if (!data.contains("stamp"))
         data["stamp"] = 0;
-    auto scan = parseScan(data);
+    auto scan = readScan(data);
     if (!scan)
         return invalidParams({{name, QJsonValue::Undefined, "a scan {x: [], y: []}"}},
                              QString("%1: %2").arg(name, scan.error().message));
@@ -39,8 +39,7 @@ void ScanMatcher::declareMatcherCommands() {
                               .byDefault("mapping"))
                    .returnsNull()
                    .handler([this](const Call &call) -> Result<QJsonValue> {
-                       begin(call.text("mode") == "mapping" ? Tracker::Mode::Mapping
-                                                            : Tracker::Mode::Localization);
+                       begin(call.text("mode") == "mapping");
                        return QJsonValue();
                    }));
     addCommand(Command("matcher.stop", "Takes no more scans; pose and map stay")
@@ -69,7 +68,7 @@ void ScanMatcher::declareMatcherCommands() {
                    .example({{"x", 1.5}, {"y", 0}, {"theta", 1.57}}, QJsonValue())
                    .asyncHandler([this](const Call &call, const Reply &reply) {
                        const Pose2D pose = poseOf(call.params);
-                       worker->post([pose, reply](Tracker &tracker) {
+                       worker->post([pose, reply](vectorlib::ScanTracker &tracker) {
                            tracker.place(pose);
                            reply.result(QJsonValue());
                        });
@@ -81,14 +80,13 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     if (!reference || !current)
         return reply.error(reference ? current.error() : reference.error());
     const Pose2D expected = poseOf(call.value("expected").toObject());
-    worker->post([reference = *reference, current = *current, expected, reply](Tracker &) {
+    worker->post([reference = reference->data, current = current->data, expected,
+                  reply](vectorlib::ScanTracker &) {
         vectorlib::MapBuilder pair;
         pair.track.settings = vectorlib::TrackingSettings::forPoorExpectation();
-        pair.extract.segment.settings =
-            vectorlib::EarSettings::forScanner(2 * vectorlib::pi, reference.points.size());
+        pair.extract.segment.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, reference.rays);
         pair.process(reference.points, {});
-        pair.extract.segment.settings =
-            vectorlib::EarSettings::forScanner(2 * vectorlib::pi, current.points.size());
+        pair.extract.segment.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, current.rays);
         const vectorlib::ScanReport report = pair.process(current.points, expected);
         const vectorlib::Match &match = pair.match();
         const Pose2D pose = match.pose.pose();

@@ -80,16 +80,15 @@ void ScanMatcher::declareSettings() {
         Field::text("map.folder", "Where map files with a relative path are").byDefault(".").group("Map"));
 }
 
-TrackerSettings ScanMatcher::trackerSettings() const {
+vectorlib::ScanTrackerSettings ScanMatcher::trackerSettings() const {
     auto &values = const_cast<ScanMatcher *>(this)->settings();
-    TrackerSettings s;
+    vectorlib::ScanTrackerSettings s;
     s.compensateMotion = values.flag("matcher.compensate_motion");
-    s.sigma = values.number("matcher.sigma_m");
-    s.expectedDeviationXY = values.number("matcher.expected_deviation_m");
-    s.expectedDeviationAlpha = values.number("matcher.expected_deviation_rad");
-    s.permittedXY = values.number("matcher.permitted_m");
-    s.permittedAlpha = values.number("matcher.permitted_rad");
-    s.minMatchedShare = values.number("matcher.min_matched_share");
+    s.tracking.expectedDeviationXY = values.number("matcher.expected_deviation_m");
+    s.tracking.expectedDeviationAlpha = values.number("matcher.expected_deviation_rad");
+    s.tracking.permitted = {values.number("matcher.permitted_m"), values.number("matcher.permitted_m"),
+                            values.number("matcher.permitted_rad")};
+    s.tracking.minMatchedShare = values.number("matcher.min_matched_share");
     s.relocalizeAfter = values.integer("matcher.relocalize_after");
     s.relocalizeSeconds = values.number("matcher.relocalize_s");
     s.sensorOnRobot = {values.number("sensor.x_m"), values.number("sensor.y_m"),

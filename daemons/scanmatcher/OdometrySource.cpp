@@ -2,8 +2,12 @@
 
 #include "common/Log.h"
 #include "common/daemon/Health.h"
+#include "daemons/scanmatcher/ReadMessages.h"
 
 namespace hermes {
+
+using vectorlib::OdometryBuffer;
+using vectorlib::OdometryTrack;
 
 namespace {
 
@@ -35,7 +39,7 @@ void OdometrySource::close() {
 
 void OdometrySource::take(const TopicUpdate &update) {
     dropped_ = update.dropped;
-    const auto sample = parseOdometry(update.data.toObject(), update.stamp);
+    const auto sample = readOdometry(update.data.toObject(), update.stamp);
     if (!sample) {
         if (refused_++ == 0)
             logWarning("odometry", sample.error().message);

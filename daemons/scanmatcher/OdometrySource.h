@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/client/Client.h"
-#include "daemons/scanmatcher/OdometryBuffer.h"
+#include "vectorlib/motion/OdometryBuffer.h"
 
 namespace hermes {
 
@@ -16,7 +16,7 @@ public:
     void close();
 
     /// What is known from begin to end, seconds since the Unix epoch.
-    std::optional<OdometryTrack> over(double begin, double end);
+    std::optional<vectorlib::OdometryTrack> over(double begin, double end);
     /// Sets the health item `odometry`, or removes it when there is no source.
     void report(Health &health) const;
     /// Counts: {connected, messages, refused, out_of_order, restarts, dropped, scans_without}.
@@ -30,7 +30,7 @@ private:
     Client client_;
     QString address_;
     int subscription_ = 0;
-    OdometryBuffer buffer_;
+    vectorlib::OdometryBuffer buffer_;
     QString lastRefused_;
     quint64 messages_ = 0, refused_ = 0, outOfOrder_ = 0, restarts_ = 0, dropped_ = 0, scansWithout_ = 0;
     int withoutInARow_ = 0;

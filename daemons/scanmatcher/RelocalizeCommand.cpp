@@ -3,6 +3,9 @@
 
 namespace hermes {
 
+using vectorlib::Place;
+using vectorlib::Relocalized;
+
 namespace {
 
 QString name(Relocalized::Outcome outcome) {
@@ -69,7 +72,7 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     if (relocalizing) // calls that pile up would keep the scans waiting
         return reply.error({ErrorCode::NotReady, "another search of the map is under way"});
     relocalizing = true;
-    worker->post([this, apply, reply](Tracker &tracker) {
+    worker->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
         const Relocalized found = tracker.relocalize(apply);
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing = false;

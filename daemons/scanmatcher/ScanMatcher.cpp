@@ -9,6 +9,7 @@ namespace hermes {
 
 using vectorlib::Pose2D;
 using vectorlib::ScanReport;
+using vectorlib::ScanTracker;
 
 namespace {
 
@@ -79,7 +80,7 @@ void ScanMatcher::declareTopics() {
 }
 
 Result<void> ScanMatcher::start() {
-    worker = std::make_unique<Worker>([this](Tracker &tracker, const Scan &scan) {
+    worker = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
         Outcome outcome = outcomeOf(tracker, scan);
         outcome.recovery = tracker.recover();
         QMetaObject::invokeMethod(this, [this, outcome] { show(outcome); });
@@ -89,7 +90,7 @@ Result<void> ScanMatcher::start() {
     setState(DaemonState::Ready);
     const QString wanted = settings().text("matcher.start");
     if (wanted != "nothing")
-        begin(wanted == "mapping" ? Tracker::Mode::Mapping : Tracker::Mode::Localization);
+        begin(wanted == "mapping");
     return {};
 }
 
@@ -104,16 +105,19 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
     if (!worker)
         return;
     worker->setQueueLimit(size_t(settings().integer("source.queue")));
-    worker->post([s = trackerSettings()](Tracker &tracker) { tracker.apply(s); });
+    worker->post([s = trackerSettings(), sigma = settings().number("matcher.sigma_m")](ScanTracker &tracker) {
+        tracker.apply(s);
+        tracker.builder.extract.vectorize.settings.sigma = sigma;
+    });
     if (active && !paths.filter("source.").isEmpty())
         connectToSource();
     if (active && !paths.filter("odometry.").isEmpty())
         connectToOdometry();
 }
 
-void ScanMatcher::begin(Tracker::Mode wanted) {
-    mode = wanted;
-    worker->post([wanted](Tracker &tracker) { tracker.setMode(wanted); });
+void ScanMatcher::begin(bool toMap) {
+    mapping = toMap;
+    worker->post([toMap](ScanTracker &tracker) { tracker.builder.settings.grow = toMap; });
     active = true;
     connectToSource();
     connectToOdometry();
@@ -150,7 +154,7 @@ void ScanMatcher::connectToOdometry() {
 void ScanMatcher::takeScan(const TopicUpdate &update) {
     lastScan = monotonicNow();
     droppedBySource = update.dropped;
-    auto parsed = parseScan(update.data.toObject());
+    auto parsed = readScan(update.data.toObject());
     if (!parsed) {
         if (badScans++ == 0)
             logWarning("source", parsed.error().message);
@@ -160,17 +164,17 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
     Scan scan = parsed.take();
     if (scan.partial)
         return;
-    scan.odometry = odometry.over(scan.begin(), scan.end());
+    scan.data.odometry = odometry.over(scan.data.begin(), scan.data.end());
     worker->push(std::move(scan));
 }
 
-ScanMatcher::Outcome ScanMatcher::outcomeOf(Tracker &tracker, const Scan &scan) {
+ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &scan) {
     const vectorlib::MapBuilder &builder = tracker.builder;
     const ScanReport &report = builder.report();
     const vectorlib::Match &match = builder.match();
     const vectorlib::Twist2D &twist = tracker.motion().twist();
     Outcome o;
-    o.stamp = scan.stamp;
+    o.stamp = scan.data.stamp;
     o.outcome = report.outcome;
     o.counts = tracker.counts();
     o.pose = toJson(report.pose);
@@ -241,7 +245,7 @@ void ScanMatcher::updateHealth() {
 QJsonObject ScanMatcher::matcherState() const {
     const double scans = std::max<double>(1, double(counts.scans));
     return {{"active", active},
-            {"mode", mode == Tracker::Mode::Mapping ? "mapping" : "localization"},
+            {"mode", mapping ? "mapping" : "localization"},
             {"scans", qint64(counts.scans)},
             {"matched", qint64(counts.matched)},
             {"lost", qint64(counts.lost)},
@@ -254,7 +258,7 @@ QJsonObject ScanMatcher::matcherState() const {
             {"recovered", qint64(recovered)},
             {"by_odometry", qint64(counts.byOdometry)},
             {"odometry", odometry.state()},
-            {"ms_per_scan", counts.totalMs / scans},
+            {"ms_per_scan", counts.totalMs() / scans},
             {"map_segments", qint64(mirror.size())}};
 }
 

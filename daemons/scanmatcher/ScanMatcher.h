@@ -31,9 +31,9 @@ private:
         QJsonArray segments;
         MapChanges changes;
         double stamp = 0;
-        TrackerCounts counts;
+        vectorlib::ScanTrackerCounts counts;
         vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
-        std::optional<Relocalized> recovery; ///< when the whole map was searched after this scan
+        std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
     };
 
     void declareSettings();
@@ -46,19 +46,19 @@ private:
     void connectToSource();
     void connectToOdometry();
     void takeScan(const TopicUpdate &update);
-    void begin(Tracker::Mode mode);
+    void begin(bool mapping);
     void pause();
-    static Outcome outcomeOf(Tracker &tracker, const Scan &scan);
+    static Outcome outcomeOf(vectorlib::ScanTracker &tracker, const Scan &scan);
     void show(const Outcome &outcome);
     void relocalize(bool apply, const Reply &reply);
-    void showRecovery(const Relocalized &recovery);
+    void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
 
-    TrackerSettings trackerSettings() const;
+    vectorlib::ScanTrackerSettings trackerSettings() const;
     void saveMap(const QString &format, const Call &call, const Reply &reply);
     void loadMap(const Call &call, const Reply &reply);
     /// In the worker's thread, when the map is another one: hands it over to the main thread, then answers.
-    void showNewMap(Tracker &tracker, const Reply &reply, const QJsonValue &answer);
+    void showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
     QString absolutePath(const QString &path) const;
     QJsonObject matcherState() const;
@@ -70,14 +70,14 @@ private:
     int subscription = 0;
     OdometrySource odometry;
     bool active = false;
-    Tracker::Mode mode = Tracker::Mode::Mapping;
+    bool mapping = true; ///< the map grows; else it stays as it is
     MapMirror mirror;
-    TrackerCounts counts;
+    vectorlib::ScanTrackerCounts counts;
     int lostInARow = 0;
     bool relocalizing = false; ///< for a command
     quint64 recoveries = 0,
             recovered = 0; ///< searches of the whole map after lost scans, and their successes
-    std::optional<Relocalized> lastRecovery; ///< since tracking was lost
+    std::optional<vectorlib::Relocalized> lastRecovery; ///< since tracking was lost
     quint64 badScans = 0, droppedBySource = 0;
     double lastScan = 0; // monotonic
     QString lastBadScan;

@@ -70,7 +70,7 @@ void Worker::run() {
         if (item.job) {
             item.job(tracker);
         } else {
-            tracker.process(item.scan);
+            tracker.process(item.scan.data);
             whenDone(tracker, item.scan);
         }
     }

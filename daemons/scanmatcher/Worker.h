@@ -1,6 +1,7 @@
 #pragma once
 
-#include "daemons/scanmatcher/Tracker.h"
+#include "daemons/scanmatcher/ReadMessages.h"
+#include "vectorlib/mapping/ScanTracker.h"
 
 #include <condition_variable>
 #include <deque>
@@ -14,9 +15,9 @@ namespace hermes {
 /// (settings, commands) are never dropped and run in order with the scans.
 class Worker {
 public:
-    using Job = std::function<void(Tracker &)>;
+    using Job = std::function<void(vectorlib::ScanTracker &)>;
     /// Called in the worker's thread after each scan; the scan has its motion compensated.
-    using Done = std::function<void(Tracker &, const Scan &)>;
+    using Done = std::function<void(vectorlib::ScanTracker &, const Scan &)>;
 
     explicit Worker(Done done);
     /// Finishes what waits, then ends the thread.
@@ -36,7 +37,7 @@ private:
     void run();
 
     Done whenDone;
-    Tracker tracker; // used by the thread alone
+    vectorlib::ScanTracker tracker; // used by the thread alone
     mutable std::mutex mutex;
     std::condition_variable wake;
     std::deque<Item> items;

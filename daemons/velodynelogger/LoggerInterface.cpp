@@ -90,14 +90,16 @@ void VelodyneLogger::declareTopics() {
     addTopic(
         Topic("scan2d",
               "Each turn of one laser: turn, stamp (s, of its first firing), duration_s, partial (first, "
-              "last or cut), lost_packets, frame, laser, and of its points, counter-clockwise: x, y (m, "
+              "last or cut), rays (fired, with or without a return), lost_packets, frame, laser, and of its "
+              "points, counter-clockwise: x, y (m, "
               "sensor's frame: x ahead, y left), t (s after stamp), intensity (0 to 255)")
             .schema({{"type", "object"}}));
     addTopic(
-        Topic("cloud",
-              "Each turn of all lasers, thinned by the settings cloud.*: turn, stamp (s, of its first "
-              "firing), duration_s, partial, lost_packets, frame, model, and of its points, in the order "
-              "of measuring: x, y, z (m, sensor's frame: x ahead, y left, z up), laser, intensity")
+        Topic(
+            "cloud",
+            "Each turn of all lasers, thinned by the settings cloud.*: turn, stamp (s, of its first "
+            "firing), duration_s, partial, rays, lost_packets, frame, model, and of its points, in the order "
+            "of measuring: x, y, z (m, sensor's frame: x ahead, y left, z up), laser, intensity")
             .schema({{"type", "object"}}));
     addTopic(Topic("lidar", "Once a second: source, model, rpm, packet_rate_hz, receive_buffer_bytes "
                             "(granted), gps, and since the source "

@@ -19,6 +19,7 @@ QJsonObject describe(const velodyne::Turn &turn) {
             {"stamp", double(turn.begin_ns) * 1e-9},
             {"duration_s", double(turn.end_ns - turn.begin_ns) * 1e-9},
             {"partial", turn.partial},
+            {"rays", double(turn.firings)},
             {"lost_packets", double(turn.lostPackets)},
             {"frame", "lidar"}};
 }

@@ -27,10 +27,14 @@ struct MapCommand {
     void run() {
         const auto begin = std::chrono::steady_clock::now();
         MapRun run;
-        run.useOdometry = odometry == "use";
+        vectorlib::ScanTrackerSettings settings;
+        settings.useOdometry = odometry == "use";
+        run.tracker.apply(settings);
         segment.over({}); // contradictions come to light before any file is touched
-        run.segmentation = segment;
-        run.builder.extract.vectorize.settings.sigma = sigma;
+        run.tracker.segmentation = [this](const vectorlib::EarSettings &scanner) {
+            return segment.over(scanner);
+        };
+        run.tracker.builder.extract.vectorize.settings.sigma = sigma;
         source.open = segment.open;
 
         OutputSet files(force);
@@ -70,7 +74,7 @@ struct MapCommand {
 
     MapSourceReport readScans(MapRun &run) const {
         Progress progress("scan");
-        return readMapScans(source, [&](const MapScan &scan, std::size_t number, std::size_t total) {
+        return readMapScans(source, [&](MapScan &scan, std::size_t number, std::size_t total) {
             run.take(scan);
             progress.update(number + 1, total);
         });

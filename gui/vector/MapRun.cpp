@@ -4,81 +4,42 @@
 
 namespace hermes {
 
-using vectorlib::Pose2D;
-using vectorlib::ScanReport;
 using vectorlib::Transformation2D;
 
-void MapRun::take(const MapScan &scan) {
-    const float middle = vectorlib::middleTime(scan.seconds);
-    const double stamp = scan.stamp + double(middle);
-    const Pose2D expected = expectedPose(scan, stamp);
-    vectorlib::EarSettings scanner = vectorlib::EarSettings::forScanner(scan.fieldOfView, scan.rays);
-    scanner.closed = scan.closed;
-    builder.extract.segment.settings = segmentation.over(scanner);
-    Pose2D pose = expected;
-    ScanReport::Outcome outcome = ScanReport::Outcome::Skipped;
-    if (!scan.partial) {
-        points_ = scan.points;
-        const bool wellExpected = isWellExpected(scan, stamp);
-        builder.track.settings =
-            wellExpected ? vectorlib::TrackingSettings() : vectorlib::TrackingSettings::forPoorExpectation();
-        builder.matchPair.settings =
-            wellExpected ? vectorlib::ScanPairSettings() : vectorlib::ScanPairSettings::forPoorExpectation();
-        builder.settings.matchPrevious = true;
-        compensateMotion(points_, scan.seconds, middle, motion_.twist());
-        const ScanReport &report = builder.process(points_, expected);
-        pose = report.pose;
-        outcome = report.outcome;
-        segmentMs_ += report.segmentMs;
-        vectorizeMs_ += report.vectorizeMs;
-        matchMs_ += report.matchMs;
-        mapMs_ += report.mapMs;
+void MapRun::take(MapScan &scan) {
+    if (scan.partial) {
+        ++partial_;
+        return;
     }
-    ++(outcome == ScanReport::Outcome::Matched ? matched_
-       : outcome == ScanReport::Outcome::Lost  ? lost_
-                                               : skipped_);
-    motion_.update(pose, stamp);
-    trajectory_.push_back({stamp, pose});
+    // A reference gives the map its frame, by the first pose, and nothing else.
+    if (trajectory_.empty() && scan.reference)
+        tracker.place(*scan.reference);
+    const vectorlib::Pose2D pose = tracker.process(scan).pose;
+    trajectory_.push_back({scan.stamp, pose});
     if (scan.reference)
-        reference_.push_back({stamp, *scan.reference});
-}
-
-// By odometry, or because the last scan was a moment ago.
-bool MapRun::isWellExpected(const MapScan &scan, double stamp) const {
-    constexpr double moment = 0.5; // seconds
-    if (trajectory_.empty() || (useOdometry && scan.motion))
-        return true;
-    const double since = stamp - trajectory_.back().stamp;
-    return since > 0 && since <= moment;
-}
-
-// A reference gives the map its frame, by the first pose, and nothing else.
-Pose2D MapRun::expectedPose(const MapScan &scan, double stamp) const {
-    if (trajectory_.empty())
-        return scan.reference ? *scan.reference : Pose2D();
-    if (useOdometry && scan.motion)
-        return (Transformation2D(trajectory_.back().pose) * *scan.motion).pose();
-    return motion_.predict(stamp);
+        reference_.push_back({scan.stamp, *scan.reference});
+    tracker.recover();
 }
 
 std::vector<vectorlib::MapEdge> MapRun::segments() const {
     std::vector<vectorlib::MapEdge> result;
-    builder.map.forEach([&](const vectorlib::MapEdge &e) { result.push_back(e); });
+    tracker.builder.map.forEach([&](const vectorlib::MapEdge &e) { result.push_back(e); });
     return result;
 }
 
 nlohmann::ordered_json MapRun::summary() const {
-    const double scans = std::max<double>(1, double(trajectory_.size()));
+    const vectorlib::ScanTrackerCounts &counts = tracker.counts();
+    const double scans = std::max<double>(1, double(counts.scans));
     nlohmann::ordered_json json;
-    json["scans"] = trajectory_.size();
-    json["skipped"] = skipped_;
-    json["matched"] = matched_;
-    json["lost"] = lost_;
+    json["scans"] = counts.scans + partial_;
+    json["skipped"] = counts.skipped + partial_;
+    json["matched"] = counts.matched;
+    json["lost"] = counts.lost;
     json["closures"] = 0;
-    json["ms_per_scan"] = {{"segment", segmentMs_ / scans},
-                           {"vectorize", vectorizeMs_ / scans},
-                           {"match", matchMs_ / scans},
-                           {"map", mapMs_ / scans}};
+    json["ms_per_scan"] = {{"segment", counts.segmentMs / scans},
+                           {"vectorize", counts.vectorizeMs / scans},
+                           {"match", counts.matchMs / scans},
+                           {"map", counts.mapMs / scans}};
     if (reference_.size() > 1)
         json["reference"] = errors();
     return json;

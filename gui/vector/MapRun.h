@@ -3,9 +3,7 @@
 #include "gui/vector/MapSource.h"
 #include "gui/vector/Options.h"
 #include "vectorlib/io/Tum.h"
-#include "vectorlib/mapping/MapBuilder.h"
-#include "vectorlib/mapping/MapEdge.h"
-#include "vectorlib/mapping/MotionModel.h"
+#include "vectorlib/mapping/ScanTracker.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,11 +12,10 @@ namespace hermes {
 /// Builds a map from scans and keeps account of it.
 class MapRun {
 public:
-    vectorlib::MapBuilder builder;
-    SegmentOptions segmentation; ///< over the defaults of each scan's scanner
-    bool useOdometry = true;     ///< where a scan has any; else the motion is expected to go on as before
+    vectorlib::ScanTracker tracker;
 
-    void take(const MapScan &scan);
+    /// A partial scan is counted and left out.
+    void take(MapScan &scan);
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Reference poses, one a pose of the trajectory; empty without reference.
@@ -28,16 +25,11 @@ public:
     nlohmann::ordered_json summary() const;
 
 private:
-    bool isWellExpected(const MapScan &scan, double stamp) const;
-    vectorlib::Pose2D expectedPose(const MapScan &scan, double stamp) const;
     nlohmann::ordered_json errors() const;
 
-    vectorlib::MotionModel motion_;
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
-    std::vector<vectorlib::Vector2D<float>> points_;
-    std::size_t matched_ = 0, lost_ = 0, skipped_ = 0;
-    double segmentMs_ = 0, vectorizeMs_ = 0, matchMs_ = 0, mapMs_ = 0;
+    std::size_t partial_ = 0;
 };
 
 } // namespace hermes

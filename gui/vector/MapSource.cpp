@@ -24,12 +24,20 @@ MapSourceReport readLog(const MapSourceOptions &options, const MapScanSink &sink
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
     const std::size_t total = (log.scans.size() + options.every - 1) / options.every;
     MapScan scan;
+    vectorlib::Transformation2D robot; // by odometry, since its last gap
+    std::uint64_t epoch = 0;
     for (std::size_t i = 0; i < log.scans.size(); i += options.every) {
         const vectorlib::CarmenScan &source = log.scans[i];
         scan.points.clear();
         source.appendPoints(scan.points);
         scan.stamp = source.stamp;
-        scan.motion = i > 0 ? log.odometryMotion(i - options.every, i, kind) : std::nullopt;
+        const auto motion = i > 0 ? log.odometryMotion(i - options.every, i, kind) : std::nullopt;
+        if (motion)
+            robot = robot * *motion;
+        else
+            ++epoch;
+        scan.odometry.emplace(epoch,
+                              std::vector<vectorlib::OdometrySample>{{source.stamp, robot.pose(), {}, {}}});
         if (options.corrected)
             scan.reference = source.laserPose;
         scan.rays = source.ranges.size();

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "gui/vector/LidarCapture.h"
-#include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/segmentation/EarSegmenter.h"
+#include "vectorlib/mapping/TimedScan.h"
 
 #include <functional>
 #include <optional>
@@ -12,16 +11,8 @@
 namespace hermes {
 
 /// One scan on its way into a map.
-struct MapScan {
-    std::vector<vectorlib::Vector2D<float>> points; ///< sensor frame, counter-clockwise; metres
-    std::vector<float> seconds; ///< when each point was measured, after stamp; empty: at once
-    double stamp = 0;           ///< seconds
-    /// Motion since the scan delivered before, by odometry; nothing when there is none.
-    std::optional<vectorlib::Transformation2D> motion;
+struct MapScan : vectorlib::TimedScan {
     std::optional<vectorlib::Pose2D> reference; ///< the true pose as far as it is known
-    bool closed = true;                         ///< a full turn
-    double fieldOfView = 2 * vectorlib::pi;     ///< radians
-    std::size_t rays = 0;                       ///< with and without return; 0 when not known
     bool partial = false;                       ///< too little of a turn to be used
 };
 
@@ -42,8 +33,9 @@ struct MapSourceReport {
     std::string otherSensors; ///< a message about those in a capture that were not read, or nothing
 };
 
-/// Takes a scan, how many were delivered before it and how many there are in all (0 when not known).
-using MapScanSink = std::function<void(const MapScan &, std::size_t number, std::size_t total)>;
+/// Takes a scan, which it may alter, how many were delivered before it and how many there are in all (0 when
+/// not known).
+using MapScanSink = std::function<void(MapScan &, std::size_t number, std::size_t total)>;
 
 /// Delivers the scans of a CARMEN log, a capture of an HDL-32E or VLP-16 (its horizontal ring, a turn a scan)
 /// or a folder of points files in the order of their names. Throws Failure on damaged input, after delivering

@@ -12,9 +12,9 @@ namespace {
 constexpr double scanPeriod = 0.1, period = 0.02;
 constexpr int perScan = 5;
 
-// To and fro, 0.4 m and 0.3 rad a scan: nobody who goes by the motion so far expects that.
+// To and fro, 1.6 m and 1.2 rad a scan: nobody who goes by the motion so far expects that.
 Pose2D zigzag(int i) {
-    return i % 2 ? Pose2D{-0.3 + 0.01 * i, 0.2, 0.3} : Pose2D{-0.7 + 0.01 * i, 0.1, 0};
+    return i % 2 ? Pose2D{0.6 + 0.01 * i, 0.2, 1.2} : Pose2D{-1.0 + 0.01 * i, 0.1, 0};
 }
 
 } // namespace

@@ -13,8 +13,6 @@ class TestScanMatcher : public QObject, MatcherFixture {
 private Q_SLOTS:
     void init() { setUp(); }
     void cleanup() { tearDown(); }
-    void parsesScans_data();
-    void parsesScans();
     void tracksAndMaps();
     void savedMapLoadsTheSame();
     void refusesToOverwriteAndNamesThePath();
@@ -35,35 +33,6 @@ void TestScanMatcher::drive(int from, int to) {
     for (int i = from; i < to; ++i)
         source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
     QTRY_COMPARE(call("matcher.state")["scans"].toInt(), to);
-}
-
-void TestScanMatcher::parsesScans_data() {
-    QTest::addColumn<QJsonObject>("data");
-    QTest::addColumn<QString>("error");
-    const QJsonArray one{1.0}, two{1.0, 2.0};
-    QTest::newRow("good") << QJsonObject{{"stamp", 1}, {"x", two}, {"y", two}, {"t", two}} << "";
-    QTest::newRow("no points") << QJsonObject{{"stamp", 1}, {"x", QJsonArray()}, {"y", QJsonArray()}} << "";
-    QTest::newRow("no stamp") << QJsonObject{{"x", two}, {"y", two}} << "stamp";
-    QTest::newRow("no x") << QJsonObject{{"stamp", 1}, {"y", two}} << "member x: found nothing";
-    QTest::newRow("fewer y") << QJsonObject{{"stamp", 1}, {"x", two}, {"y", one}}
-                             << "found 1 numbers, expected 2";
-    QTest::newRow("null in x") << QJsonObject{{"stamp", 1},
-                                              {"x", QJsonArray{1, QJsonValue::Null}},
-                                              {"y", two}}
-                               << "element 1";
-    QTest::newRow("too large") << QJsonObject{{"stamp", 1}, {"x", QJsonArray{1, 1e300}}, {"y", two}}
-                               << "element 1";
-    QTest::newRow("t of another size")
-        << QJsonObject{{"stamp", 1}, {"x", two}, {"y", two}, {"t", one}} << "member t";
-}
-
-void TestScanMatcher::parsesScans() {
-    QFETCH(QJsonObject, data);
-    QFETCH(QString, error);
-    const auto scan = parseScan(data);
-    QCOMPARE(scan.ok(), error.isEmpty());
-    if (!scan)
-        QVERIFY2(scan.error().message.contains(error), qPrintable(scan.error().message));
 }
 
 void TestScanMatcher::tracksAndMaps() {
@@ -213,9 +182,9 @@ void TestScanMatcher::queueDropsItsOldestAndCounts() {
     std::promise<void> release;
     std::vector<quint64> seen;
     {
-        Worker worker([&](Tracker &, const Scan &scan) { seen.push_back(scan.number); });
+        Worker worker([&](vectorlib::ScanTracker &, const Scan &scan) { seen.push_back(scan.number); });
         worker.setQueueLimit(3);
-        worker.post([&](Tracker &) { release.get_future().wait(); });
+        worker.post([&](vectorlib::ScanTracker &) { release.get_future().wait(); });
         for (quint64 i = 0; i < 10; ++i) {
             Scan scan;
             scan.number = i;

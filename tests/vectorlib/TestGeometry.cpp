@@ -1,4 +1,5 @@
-#include <vectorlib/mapping/MotionModel.h>
+#include <vectorlib/motion/MotionCompensation.h>
+#include <vectorlib/motion/MotionModel.h>
 
 #include <QtTest>
 

@@ -1,5 +1,5 @@
 #include <vectorlib/mapping/MapBuilder.h>
-#include <vectorlib/mapping/MotionModel.h>
+#include <vectorlib/motion/MotionModel.h>
 
 #include <QtTest>
 

@@ -32,6 +32,7 @@ struct MapBuilderSettings {
     /// far apart. Then the deviations of an expected pose from such a match, in metres and radians.
     bool matchPrevious = false;
     double previousDeviationXY = 0.01, previousDeviationAlpha = 0.005;
+    TrackingSettings tracking; ///< from a pose that such a match expects
 };
 
 /// Builds a vector map scan by scan: extract edges, predict, match, merge. Reads as the pipeline of thesis
@@ -77,12 +78,14 @@ public:
     /// The edges of the last scan, sensor frame.
     const std::vector<EdgeRaw2D> &edges() const { return *edges_; }
 
+    /// The sensor was put elsewhere: the next scan is matched with the map alone.
+    void forgetPrevious() { previousPoints_.clear(); }
     void clear() {
         map.clear();
         lost_ = 0;
         match_ = Match();
         numbers_.clear();
-        previousPoints_.clear();
+        forgetPrevious();
     }
 
 private:
@@ -101,7 +104,7 @@ private:
             matchPair(previousPoints_, previousEdges_, scan, *edges_, previousPose_.inverse() * expected);
         if (!motion.accepted)
             return expected;
-        track.settings = TrackingSettings();
+        track.settings = settings.tracking;
         track.settings.expectedDeviationXY = settings.previousDeviationXY;
         track.settings.expectedDeviationAlpha = settings.previousDeviationAlpha;
         return previousPose_ * motion.pose;
