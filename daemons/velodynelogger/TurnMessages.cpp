@@ -2,6 +2,7 @@
 
 #include <QJsonArray>
 
+#include <charconv>
 #include <cmath>
 
 namespace hermes {
@@ -11,6 +12,15 @@ namespace {
 /// Short numbers make short messages; the sensor counts 2 mm.
 double rounded(double value, double perUnit) {
     return std::round(value * perUnit) / perUnit;
+}
+
+/// The shortest decimal fraction that a reader of floats takes for the same: short messages, and nothing lost.
+double shortest(float value) {
+    char text[32];
+    const auto written = std::to_chars(text, text + sizeof text, value);
+    double result = 0;
+    std::from_chars(text, written.ptr, result);
+    return result;
 }
 
 /// What is told of every turn.
@@ -29,9 +39,9 @@ QJsonObject describe(const velodyne::Turn &turn) {
 QJsonObject toScanMessage(const velodyne::Turn &turn) {
     QJsonArray x, y, t, intensity;
     for (auto point = turn.points.rbegin(); point != turn.points.rend(); ++point) {
-        x.append(rounded(point->x, 1e5));
-        y.append(rounded(point->y, 1e5));
-        t.append(rounded(double(point->stamp_ns - turn.begin_ns) * 1e-9, 1e6));
+        x.append(shortest(float(point->x)));
+        y.append(shortest(float(point->y)));
+        t.append(shortest(float(double(point->stamp_ns - turn.begin_ns) * 1e-9)));
         intensity.append(point->intensity);
     }
     QJsonObject message = describe(turn);

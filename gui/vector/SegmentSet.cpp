@@ -6,7 +6,7 @@
 #include "vectorlib/io/CsvSegments.h"
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/io/Pcd.h"
-#include "vectorlib/mapping/Observation2D.h"
+#include "vectorlib/edges/EdgeExtractor.h"
 
 #include <algorithm>
 #include <sstream>

@@ -25,6 +25,9 @@ QT_ALLOWED = {"vectorlib": set(), "protocol": {"QByteArray", "QString", "QString
                                                "QtEndian", "QJsonObject", "QJsonArray", "QJsonValue", "QJsonDocument",
                                                "QJsonParseError", "QCborMap", "QCborArray", "QCborValue",
                                                "QCborStreamReader", "QCborStreamWriter", "QHash", "QMap", "QSet"}}
+# The rooms of vectorlib, from the ground up: each may include those before it.
+ROOMS = ("geometry", "simd", "tls", "segmentation", "vectorization", "edges", "observation", "registration", "similarity",
+         "correspondence", "motion", "mapping", "io")
 OURS = ("vectorlib", "protocol", "common", "daemons", "gui")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -32,6 +35,12 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 def zone_of(path):
     parts = path.split("/")
     return "/".join(parts[:2]) if parts[0] == "daemons" and len(parts) > 2 else parts[0]
+
+
+def room_of(path):
+    """The room of vectorlib that a header lies in, or None."""
+    parts = path.split("/")
+    return parts[1] if parts[0] == "vectorlib" and len(parts) == 3 else None
 
 
 def complaint(path, include, root):
@@ -45,6 +54,12 @@ def complaint(path, include, root):
     name = include.split("/")[-1]
     if re.match(r"Q[A-Z]|Qt", name) and zone in QT_ALLOWED and name not in QT_ALLOWED[zone]:
         return f"{zone} may include only these of Qt: {', '.join(sorted(QT_ALLOWED[zone])) or 'nothing'}"
+    room, target_room = room_of(path.removeprefix("vectorlib/include/")), room_of(include)
+    for name in (room, target_room):
+        if name and name not in ROOMS:
+            return f"vectorlib/{name} has no place among the rooms of {os.path.basename(__file__)}"
+    if room and target_room and ROOMS.index(target_room) > ROOMS.index(room):
+        return f"vectorlib/{room} is below vectorlib/{target_room}"
     first = include.split("/")[0]
     if first not in OURS:
         beside = os.path.join(root, os.path.dirname(path), include)
@@ -60,8 +75,9 @@ def self_test():
                 ("vectorlib/include/vectorlib/io/Csv.h", "common/Result.h"), ("protocol/jsonrpc/A.cpp", "QTcpSocket"),
                 ("protocol/jsonrpc/A.cpp", "common/Result.h"), ("common/daemon/A.cpp", "vectorlib/geometry/Vector2D.h"),
                 ("daemons/scanmatcher/A.cpp", "daemons/simulator/B.h"), ("gui/hermesctl/A.cpp", "daemons/simulator/B.h"),
+                ("vectorlib/include/vectorlib/edges/A.h", "vectorlib/mapping/MapBuilder.h"),
                 ("daemons/velodynelogger/A.cpp", "vectorlib/geometry/Vector2D.h"), ("common/A.cpp", "daemons/simulator/B.h")]
-    fine = [("daemons/scanmatcher/A.cpp", "vectorlib/geometry/Vector2D.h"), ("daemons/scanmatcher/A.cpp", "daemons/scanmatcher/B.h"),
+    fine = [("vectorlib/include/vectorlib/io/A.h", "vectorlib/edges/MapEdge.h"), ("daemons/scanmatcher/A.cpp", "vectorlib/geometry/Vector2D.h"), ("daemons/scanmatcher/A.cpp", "daemons/scanmatcher/B.h"),
             ("protocol/jsonrpc/A.cpp", "QJsonObject"), ("common/A.cpp", "protocol/jsonrpc/JsonRpc.h"), ("gui/A.cpp", "vector")]
     wrong = [f"not caught: {p} including {i}" for p, i in crossing if not complaint(p, i, "/nonexistent")]
     return wrong + [f"wrongly refused: {p} including {i}" for p, i in fine if complaint(p, i, "/nonexistent")]

@@ -1,6 +1,6 @@
 #include "gui/vector/report/ScanPair.h"
 
-#include "vectorlib/mapping/Observation2D.h"
+#include "vectorlib/edges/EdgeExtractor.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 
 namespace hermes {

@@ -3,7 +3,7 @@
 #include "vectorlib/correspondence/Match.h"
 #include "vectorlib/correspondence/PotentialPairs.h"
 #include "vectorlib/correspondence/RotationVotes.h"
-#include "vectorlib/mapping/Edge2D.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/registration/PointToLineRefinement.h"
 

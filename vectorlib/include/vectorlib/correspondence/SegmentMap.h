@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/mapping/SegmentGrid.h"
+#include "vectorlib/geometry/SegmentGrid.h"
 
 namespace vectorlib {
 

@@ -2,7 +2,7 @@
 
 #include "vectorlib/io/Csv.h"
 #include "vectorlib/io/Number.h"
-#include "vectorlib/mapping/MapEdge.h"
+#include "vectorlib/edges/MapEdge.h"
 
 namespace vectorlib {
 

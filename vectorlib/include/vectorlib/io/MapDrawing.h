@@ -2,7 +2,7 @@
 
 #include "vectorlib/io/Svg.h"
 #include "vectorlib/io/Tum.h"
-#include "vectorlib/mapping/MapEdge.h"
+#include "vectorlib/edges/MapEdge.h"
 
 namespace vectorlib {
 

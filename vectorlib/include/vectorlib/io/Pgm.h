@@ -3,7 +3,7 @@
 #include "vectorlib/io/Expected.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Tum.h"
-#include "vectorlib/mapping/MapEdge.h"
+#include "vectorlib/edges/MapEdge.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/correspondence/CorrespondenceTracker.h"
-#include "vectorlib/mapping/Observation2D.h"
+#include "vectorlib/edges/EdgeExtractor.h"
 #include "vectorlib/registration/PointRefinement.h"
 
 namespace vectorlib {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vectorlib/mapping/MapEdge.h"
-#include "vectorlib/mapping/SegmentGrid.h"
+#include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/geometry/SegmentGrid.h"
 
 #include <utility>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/mapping/Edge2D.h"
+#include "vectorlib/edges/EdgeRaw2D.h"
 
 #include <cstdint>
 
@@ -16,9 +16,7 @@ struct MapEdge : EdgeRaw2D {
     MapEdge(std::int64_t id_, const EdgeRaw2D &edge, std::int64_t observations_)
         : EdgeRaw2D(edge)
         , id(id_)
-        , observations(observations_) {
-        rich = nullptr; // a map outlives observations
-    }
+        , observations(observations_) {}
 };
 
 } // namespace vectorlib

@@ -2,41 +2,22 @@
 
 #include "vectorlib/tls/TlsFit.h"
 
-#include <array>
-#include <string>
-#include <vector>
+#include <algorithm>
+#include <cmath>
 
 namespace vectorlib {
 
-struct Observation2D;
-
-/// All that is known of one edge of one observation: its points, their sums, the segment, where it comes
-/// from.
-struct EdgeRich2D {
-    std::vector<Vector2D<float>> points; ///< in the observation's frame, scanning order; metres
-    TlsSums sums;
-    LineSegment2D<double> segment; ///< free space on the left
-    double sigma = 0;              ///< standard deviation of the points from the line; metres
-    const Observation2D *observation = nullptr;
-    std::string annotation;
-};
-
-/// The light form of an edge for computing: sums, segment and a link to the rich edge (may be null).
+/// An edge for computing: a line segment and the sums of the points that it stands for.
 struct EdgeRaw2D {
     TlsSums sums;
     LineSegment2D<double> segment; ///< free space on the left
     double sigma = 0;              ///< metres
-    const EdgeRich2D *rich = nullptr;
 
     EdgeRaw2D() = default;
     EdgeRaw2D(const TlsSums &sums_, const LineSegment2D<double> &segment_, double sigma_)
         : sums(sums_)
         , segment(segment_)
         , sigma(sigma_) {}
-    explicit EdgeRaw2D(const EdgeRich2D &edge)
-        : EdgeRaw2D(edge.sums, edge.segment, edge.sigma) {
-        rich = &edge;
-    }
 
     friend EdgeRaw2D operator*(const Transformation2D &t, EdgeRaw2D e) {
         e.sums = t * e.sums;
