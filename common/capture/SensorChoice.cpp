@@ -36,7 +36,8 @@ bool SensorChoice::mayTake(const Datagram &datagram) const {
 }
 
 bool SensorChoice::isFromTaken(const Datagram &datagram) const {
-    return !taken_ || sensors_[*taken_].address == datagram.source;
+    return (taken_ ? sensors_[*taken_].address : options_.address.value_or(datagram.source)) ==
+           datagram.source;
 }
 
 std::size_t SensorChoice::find(const Datagram &packet) {

@@ -51,8 +51,11 @@ std::string LidarFeed::openPcap(const std::vector<std::string> &paths, const Pca
 void LidarFeed::begin(const Options &options) {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
     options_ = options;
-    choice_ = SensorChoice({options.onlyPort, {}, patience_ns});
-    gps_.reset();
+    LidarStream::Options stream;
+    stream.sensor = {options.onlyPort, {}, patience_ns};
+    stream.model = options.model;
+    stream.dataPort = options.dataPort;
+    stream_ = LidarStream(stream);
     ring_.reset(); // numbers begin anew
     ring_ = makeAssembler(options.laser, [this](const velodyne::Turn &turn) { takeOver(turn); });
     cloud_.reset();
@@ -85,7 +88,7 @@ void LidarFeed::finish() {
 
 void LidarFeed::jump() {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
-    choice_.jump();
+    stream_.jump();
     forAssemblers([](velodyne::TurnAssembler &assembler) { assembler.jump(); });
 }
 
@@ -98,7 +101,7 @@ LidarFeed::Assembler LidarFeed::makeAssembler(int laser, velodyne::TurnAssembler
     options.stampOffset_ns = options_.stampOffset_ns;
     options.firstNumber = ring_ ? ring_->turnNumber() : 0;
     auto assembler = std::make_unique<velodyne::TurnAssembler>(options, std::move(sink));
-    assembler->follow(gps_.state().utc_ns);
+    assembler->follow(stream_.gps().state().utc_ns);
     return assembler;
 }
 
@@ -129,26 +132,7 @@ void LidarFeed::play(const Datagram &datagram) {
 
 void LidarFeed::decode(const Datagram &datagram) {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
-    if (datagram.size == velodyne::positionPacketSize) {
-        if (choice_.isFromTaken(datagram) &&
-            gps_.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
-            forAssemblers(
-                [this](velodyne::TurnAssembler &assembler) { assembler.follow(gps_.state().utc_ns); });
-        return;
-    }
-    if (datagram.size != velodyne::packetSize && datagram.destinationPort != options_.dataPort) {
-        ++counts_.other;
-        return;
-    }
-    if (velodyne::DataPacket::check(datagram.payload, datagram.size, options_.model) ==
-            velodyne::PacketFault::None &&
-        !choice_.takes(datagram)) {
-        ++counts_.otherSensors;
-        return;
-    }
-    forAssemblers([&datagram](velodyne::TurnAssembler &assembler) {
-        assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
-    });
+    stream_.take(datagram, {ring_.get(), cloud_.get(), capture_.get()});
     if (capture_ && captures_.empty()) // delivered
         capture_.reset();
 }
@@ -232,10 +216,13 @@ LidarFeed::Counts LidarFeed::counts() const {
         counts.rpm = ring_->rpm();
         counts.model = ring_->model();
     }
-    counts.sensors = choice_.sensors();
-    if (choice_.taken())
-        counts.decoded = *choice_.taken();
-    counts.gps = gps_.counts();
+    const SensorChoice &sensors = stream_.sensors();
+    counts.sensors = sensors.sensors();
+    if (sensors.taken())
+        counts.decoded = *sensors.taken();
+    counts.gps = stream_.gps().counts();
+    counts.other = stream_.other();
+    counts.otherSensors = stream_.otherSensors();
     counts.udp = live_.counts();
     const std::lock_guard<std::mutex> queueLock(queueMutex_);
     counts.turnsDropped = turns_.dropped();
@@ -245,7 +232,7 @@ LidarFeed::Counts LidarFeed::counts() const {
 
 velodyne::GpsReader::State LidarFeed::gps() const {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
-    return gps_.state();
+    return stream_.gps().state();
 }
 
 } // namespace hermes

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "common/capture/SensorChoice.h"
+#include "common/capture/LidarStream.h"
 #include "daemons/velodynelogger/LiveSource.h"
 #include "daemons/velodynelogger/PcapPlayer.h"
 #include "daemons/velodynelogger/TurnQueue.h"
-#include "protocol/velodyne/GpsReader.h"
 
 namespace hermes {
 
@@ -33,7 +32,7 @@ public:
         velodyne::PacketCounts packets;
         LiveSource::Counts udp;
         velodyne::GpsReader::Counts gps;             ///< of position packets
-        std::uint64_t other = 0;                     ///< of another port and another size
+        std::uint64_t other = 0;                     ///< nothing of a sensor
         std::uint64_t otherSensors = 0;              ///< data packets of sensors that are not decoded
         std::vector<SensorChoice::Sensor> sensors;   ///< that sent data packets, the decoded one among them
         std::optional<SensorChoice::Sensor> decoded; ///< of these; nothing before the first
@@ -107,8 +106,7 @@ private:
     mutable std::mutex decoderMutex_; // guards what follows
     Options options_;
     std::optional<Thinning> thinning_;
-    SensorChoice choice_;
-    velodyne::GpsReader gps_;
+    LidarStream stream_;
     Assembler ring_;
     Assembler cloud_;   ///< while clouds are wanted
     Assembler capture_; ///< while a capture waits

@@ -9,15 +9,14 @@ namespace hermes {
 
 namespace {
 
-using velodyne::PacketFault;
-
-SensorChoice::Options choiceOf(const SensorOptions &options) {
-    SensorChoice::Options choice;
-    choice.port = options.port;
+LidarStream::Options streamOf(const SensorOptions &options, velodyne::Model model) {
+    LidarStream::Options stream;
+    stream.model = model;
+    stream.sensor.port = options.port;
     in_addr address{};
     if (!options.sender.empty() && inet_pton(AF_INET, options.sender.c_str(), &address) == 1)
-        choice.address = ntohl(address.s_addr);
-    return choice;
+        stream.sensor.address = ntohl(address.s_addr);
+    return stream;
 }
 
 std::string withCount(const SensorChoice::Sensor &sensor) {
@@ -48,9 +47,8 @@ void SensorOptions::addTo(CLI::App &sub) {
 LidarCapture::LidarCapture(const std::string &path, const SensorOptions &options, velodyne::Model model)
     : path_(path)
     , options_(options)
-    , model_(model)
     , file_(path)
-    , choice_(choiceOf(options)) {
+    , stream_(streamOf(options, model)) {
     if (!reader_.open(file_.path()))
         throw Failure(file_.inWordsOfOriginal(reader_.error()));
 }
@@ -60,7 +58,7 @@ std::string LidarCapture::read(velodyne::TurnAssembler &assembler,
     Datagram datagram;
     PcapReader::Next next;
     while ((next = reader_.next(datagram)) == PcapReader::Next::Datagram) {
-        take(datagram, assembler);
+        stream_.take(datagram, {&assembler});
         if (progress)
             progress(reader_.counts().records);
     }
@@ -70,32 +68,14 @@ std::string LidarCapture::read(velodyne::TurnAssembler &assembler,
     return notice(assembler.counts());
 }
 
-void LidarCapture::take(const Datagram &datagram, velodyne::TurnAssembler &assembler) {
-    if (datagram.size == velodyne::positionPacketSize) {
-        if (choice_.isFromTaken(datagram) &&
-            gps_.feed(datagram.payload, datagram.size) == velodyne::PositionFault::None)
-            assembler.follow(gps_.state().utc_ns);
-        return;
-    }
-    const PacketFault fault = velodyne::DataPacket::check(datagram.payload, datagram.size, model_);
-    if (fault == PacketFault::None ? choice_.takes(datagram) : isDamaged(datagram, fault))
-        assembler.feed(datagram.payload, datagram.size, datagram.stamp_ns);
-}
-
-/// The assembler counts what came as data packets should and is none that can be decoded.
-bool LidarCapture::isDamaged(const Datagram &datagram, PacketFault fault) const {
-    const bool likely = choice_.taken() || fault == PacketFault::Model ||
-                        datagram.destinationPort == options_.port.value_or(velodyne::dataPort);
-    return likely && choice_.mayTake(datagram);
-}
-
 std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
-    if (const SensorChoice::Sensor *taken = choice_.taken())
-        return choice_.sensors().size() == 1 ? std::string()
-                                             : path_ + ": read " + withCount(*taken) + ", not " +
-                                                   listOthers(choice_) + "; --port and --sender choose";
-    if (!choice_.sensors().empty())
-        throw Failure(path_ + ": found data packets of " + listOthers(choice_) + " only, expected some" +
+    const SensorChoice &choice = stream_.sensors();
+    if (const SensorChoice::Sensor *taken = choice.taken())
+        return choice.sensors().size() == 1 ? std::string()
+                                            : path_ + ": read " + withCount(*taken) + ", not " +
+                                                  listOthers(choice) + "; --port and --sender choose";
+    if (!choice.sensors().empty())
+        throw Failure(path_ + ": found data packets of " + listOthers(choice) + " only, expected some" +
                       (options_.port ? " to port " + std::to_string(*options_.port) : "") +
                       (options_.sender.empty() ? "" : " from " + options_.sender));
     throw Failure(

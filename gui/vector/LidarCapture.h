@@ -1,10 +1,8 @@
 #pragma once
 
+#include "common/capture/LidarStream.h"
 #include "common/capture/PcapReader.h"
-#include "common/capture/SensorChoice.h"
 #include "gui/vector/Input.h"
-#include "protocol/velodyne/GpsReader.h"
-#include "protocol/velodyne/TurnAssembler.h"
 
 #include <CLI/CLI.hpp>
 
@@ -35,17 +33,13 @@ public:
                      const std::function<void(std::uint64_t)> &progress = {});
 
 private:
-    void take(const Datagram &datagram, velodyne::TurnAssembler &assembler);
-    bool isDamaged(const Datagram &datagram, velodyne::PacketFault fault) const;
     std::string notice(const velodyne::PacketCounts &counts) const;
 
     std::string path_;
     SensorOptions options_;
-    velodyne::Model model_;
     PlainFile file_;
     PcapReader reader_;
-    velodyne::GpsReader gps_;
-    SensorChoice choice_;
+    LidarStream stream_;
 };
 
 } // namespace hermes
