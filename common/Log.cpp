@@ -75,24 +75,29 @@ void Log::writeToStderr(QByteArray bytes) {
     lostLines = 0;
 }
 
-Log::Log() {
-    qRegisterMetaType<LogRecord>();
-}
-
 void Log::write(LogLevel level, const QString &source, const QString &text) {
     const LogRecord record{stampNow(), level, source, text};
-    {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (level < minimum)
-            return;
-        records.push_back(record);
-        while (int(records.size()) > capacity)
-            records.pop_front();
-        if (toStderr && hasStandardStreams) {
-            writeToStderr(line(record));
-        }
-    }
-    Q_EMIT written(record);
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (level < minimum)
+        return;
+    records.push_back(record);
+    while (int(records.size()) > capacity)
+        records.pop_front();
+    if (toStderr && hasStandardStreams)
+        writeToStderr(line(record));
+    for (const auto &[who, take] : followers)
+        QMetaObject::invokeMethod(
+            who, [take = take, record] { take(record); }, Qt::QueuedConnection);
+}
+
+void Log::follow(QObject *who, const std::function<void(const LogRecord &)> &take) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    followers[who] = take;
+}
+
+void Log::unfollow(QObject *who) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    followers.erase(who);
 }
 
 QJsonArray Log::tail(int count) const {

@@ -5,6 +5,8 @@
 #include <QObject>
 #include <QString>
 #include <deque>
+#include <functional>
+#include <map>
 #include <mutex>
 
 namespace hermes {
@@ -26,8 +28,7 @@ struct LogRecord {
 /// The log of this process: keeps the last records in memory, writes them to stderr with their stamp as far
 /// as it takes them, tells listeners. Any thread may write. Qt's own messages (qWarning ...) arrive here
 /// after captureQtMessages().
-class Log : public QObject {
-    Q_OBJECT
+class Log {
 public:
     static Log &instance();
 
@@ -41,16 +42,18 @@ public:
     void setStderr(bool enabled);
     void captureQtMessages();
 
-Q_SIGNALS:
-    /// Emitted in the thread that wrote.
-    void written(const hermes::LogRecord &record);
+    /// Calls take in the thread of `who`, from its event loop, with each record written from now on.
+    void follow(QObject *who, const std::function<void(const LogRecord &)> &take);
+    /// To be called before `who` is destroyed.
+    void unfollow(QObject *who);
 
 private:
-    Log();
+    Log() = default;
     void writeToStderr(QByteArray bytes);
 
     mutable std::mutex mutex;
     std::deque<LogRecord> records;
+    std::map<QObject *, std::function<void(const LogRecord &)>> followers;
     int capacity = 1000;
     LogLevel minimum = LogLevel::Info;
     bool toStderr = true;
@@ -64,5 +67,3 @@ void logWarning(const QString &source, const QString &text);
 void logError(const QString &source, const QString &text);
 
 } // namespace hermes
-
-Q_DECLARE_METATYPE(hermes::LogRecord)

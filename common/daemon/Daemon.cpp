@@ -51,14 +51,10 @@ Daemon::Daemon(const DaemonIdentity &identity)
     declareCommonSettings();
     addCommonCommands(*this, commands, topics);
     connect(&channels, &Server::clientGone, this, &Daemon::clientGone);
-    // Queued: a record written while a topic is being sent must not send another topic inside it.
-    connect(
-        &Log::instance(), &Log::written, this,
-        [this](const LogRecord &record) {
-            if (hasSubscribers(QStringLiteral("log")))
-                publish(QStringLiteral("log"), record.toJson(), record.stamp);
-        },
-        Qt::QueuedConnection);
+    Log::instance().follow(this, [this](const LogRecord &record) {
+        if (hasSubscribers(QStringLiteral("log")))
+            publish(QStringLiteral("log"), record.toJson(), record.stamp);
+    });
     connect(&configuration, &Settings::changed, this, [this](const QStringList &paths) {
         if (!launched)
             return;
@@ -69,7 +65,9 @@ Daemon::Daemon(const DaemonIdentity &identity)
     healthItems.provide(QStringLiteral("channel"), [this] { updateChannelHealth(); });
 }
 
-Daemon::~Daemon() = default;
+Daemon::~Daemon() {
+    Log::instance().unfollow(this);
+}
 
 int Daemon::run(const QStringList &arguments) {
     Log::instance().captureQtMessages();

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vectorlib/io/Tum.h"
 #include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/VectorMap.h"
 
 #include <QJsonArray>

@@ -14,7 +14,8 @@ double rounded(double value, double perUnit) {
     return std::round(value * perUnit) / perUnit;
 }
 
-/// The shortest decimal fraction that a reader of floats takes for the same: short messages, and nothing lost.
+/// The shortest decimal fraction that a reader of floats takes for the same: short messages, and nothing
+/// lost.
 double shortest(float value) {
     char text[32];
     const auto written = std::to_chars(text, text + sizeof text, value);

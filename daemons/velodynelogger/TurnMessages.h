@@ -7,8 +7,8 @@
 namespace hermes {
 
 /// The data of a `scan2d` message: the points of one laser in one turn, COUNTER-CLOCKWISE, the reverse of the
-/// order in which the sensor measured them, as the vector library wants them. Lengths and times are floats: who
-/// reads floats gets what `hermes-vector map` gets of the same packets.
+/// order in which the sensor measured them, as the vector library wants them. Lengths and times are floats:
+/// who reads floats gets what `hermes-vector map` gets of the same packets.
 QJsonObject toScanMessage(const velodyne::Turn &turn);
 
 /// The data of a `cloud` message: the points of all lasers in one turn, in the order of measuring, as arrays

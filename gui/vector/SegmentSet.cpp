@@ -2,11 +2,11 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
+#include "vectorlib/edges/EdgeExtractor.h"
 #include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/CsvSegments.h"
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/io/Pcd.h"
-#include "vectorlib/edges/EdgeExtractor.h"
 
 #include <algorithm>
 #include <sstream>

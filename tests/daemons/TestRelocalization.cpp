@@ -251,7 +251,8 @@ void TestRelocalization::triesSeldomWhereItCannotRecover() {
         scan(square(), {2, -1.5, 0});
     QCOMPARE(call("matcher.state")["lost"].toInt(), 20);
     const int tried = call("matcher.state")["recoveries"].toInt();
-    QVERIFY2(tried >= 1 && tried <= 2, qPrintable(QString::number(tried))); // once a second of the scans' time
+    QVERIFY2(tried >= 1 && tried <= 2,
+             qPrintable(QString::number(tried))); // once a second of the scans' time
     const QJsonObject tracking = healthItem("tracking");
     QCOMPARE(tracking["level"].toString(), QString("error"));
     QVERIFY2(tracking["message"].toString().contains("4 places"), qPrintable(tracking["message"].toString()));

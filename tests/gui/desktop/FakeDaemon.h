@@ -3,11 +3,11 @@
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QMap>
-#include <QMutex>
 #include <QTcpServer>
 #include <QTcpSocket>
 #include <QThread>
 #include <QTimer>
+#include <mutex>
 
 namespace hermes {
 
@@ -45,7 +45,7 @@ public:
     quint16 port() const { return port_; }
     /// How often a method was called.
     int calls(const QString &method) const {
-        const QMutexLocker lock(&mutex_);
+        const std::lock_guard<std::mutex> lock(mutex_);
         return calls_.value(method);
     }
     int subscriptions(const QString &topic) const { return calls("topics.subscribe " + topic); }
@@ -71,7 +71,7 @@ private:
         const QString topic =
             method == "topics.subscribe" ? request["params"]["topic"].toString() : QString();
         {
-            const QMutexLocker lock(&mutex_);
+            const std::lock_guard<std::mutex> lock(mutex_);
             ++calls_[method];
             ++calls_[method + ' ' + topic];
         }
@@ -160,7 +160,7 @@ private:
     QTcpServer *server_ = nullptr;
     quint16 port_ = 0;
     int lastSubscription_ = 0;
-    mutable QMutex mutex_;
+    mutable std::mutex mutex_;
     QMap<QString, int> calls_;
 };
 

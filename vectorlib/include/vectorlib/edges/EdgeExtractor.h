@@ -8,8 +8,8 @@
 
 namespace vectorlib {
 
-/// Turns a scan into edges: segmentation, then vectorization of every cluster. Thesis 4.2.2. Keeps its buffers
-/// between calls.
+/// Turns a scan into edges: segmentation, then vectorization of every cluster. Thesis 4.2.2. Keeps its
+/// buffers between calls.
 class EdgeExtractor {
 public:
     EarSegmenter<float> segment;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vectorlib/io/Number.h"
 #include "vectorlib/edges/MapEdge.h"
+#include "vectorlib/io/Number.h"
 
 #include <vector>
 

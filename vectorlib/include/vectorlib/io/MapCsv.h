@@ -1,8 +1,8 @@
 #pragma once
 
+#include "vectorlib/edges/MapEdge.h"
 #include "vectorlib/io/Csv.h"
 #include "vectorlib/io/Number.h"
-#include "vectorlib/edges/MapEdge.h"
 
 namespace vectorlib {
 

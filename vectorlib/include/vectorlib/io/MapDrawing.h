@@ -1,8 +1,8 @@
 #pragma once
 
+#include "vectorlib/edges/MapEdge.h"
 #include "vectorlib/io/Svg.h"
 #include "vectorlib/io/Tum.h"
-#include "vectorlib/edges/MapEdge.h"
 
 namespace vectorlib {
 

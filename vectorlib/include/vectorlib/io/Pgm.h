@@ -1,9 +1,9 @@
 #pragma once
 
+#include "vectorlib/edges/MapEdge.h"
 #include "vectorlib/io/Expected.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Tum.h"
-#include "vectorlib/edges/MapEdge.h"
 
 #include <algorithm>
 #include <optional>
