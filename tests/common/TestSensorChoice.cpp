@@ -65,6 +65,11 @@ void TestSensorChoice::onlyWhatIsAskedForIsTaken() {
     QVERIFY(!byBoth.takes(packet(second)));
     QVERIFY(byBoth.takes(packet(second, 0, 2369)));
     QCOMPARE(byBoth.sensors().size(), std::size_t(3));
+    // As long as none is taken the position packets of others do not tell its hour.
+    options = {};
+    options.address = second;
+    SensorChoice byAddress(options);
+    QVERIFY(byAddress.isFromTaken(packet(second, 0, 8308)) && !byAddress.isFromTaken(packet(first, 0, 8308)));
 }
 
 void TestSensorChoice::anotherTakesThePlaceOfASilentOne() {
