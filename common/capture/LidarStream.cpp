@@ -30,8 +30,10 @@ void LidarStream::take(const Datagram &datagram, std::initializer_list<TurnAssem
 }
 
 bool LidarStream::isDamaged(const Datagram &datagram, PacketFault fault) const {
-    const bool likely = choice_.taken() || fault == PacketFault::Model ||
-                        datagram.destinationPort == options_.sensor.port.value_or(options_.dataPort);
+    if (fault == PacketFault::Model)
+        return choice_.isWanted(datagram);
+    const bool likely =
+        choice_.taken() || datagram.destinationPort == options_.sensor.port.value_or(options_.dataPort);
     return likely && choice_.mayTake(datagram);
 }
 

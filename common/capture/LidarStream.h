@@ -25,15 +25,15 @@ public:
         : options_(options)
         , choice_(options.sensor) {}
 
-    /// Hands a datagram to the assemblers if it is a data packet of the sensor, or should be one and is
-    /// damaged: they count that. Null ones are left out.
+    /// Hands a datagram to the assemblers if it is a data packet of the sensor, should be one and is damaged,
+    /// or is one of a model or return mode that is not decoded: they count that. Null ones are left out.
     void take(const Datagram &datagram, std::initializer_list<velodyne::TurnAssembler *> assemblers);
     /// The datagrams that follow are of another time.
     void jump() { choice_.jump(); }
 
     const SensorChoice &sensors() const { return choice_; }
     const velodyne::GpsReader &gps() const { return gps_; }
-    std::uint64_t other() const { return other_; }               ///< nothing of a sensor
+    std::uint64_t other() const { return other_; } ///< nothing that could be read, of nobody in particular
     std::uint64_t otherSensors() const { return otherSensors_; } ///< data packets of those that are not taken
 
 private:

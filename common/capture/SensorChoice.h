@@ -30,6 +30,8 @@ public:
 
     /// Whether a data packet is of the sensor that is taken.
     bool takes(const Datagram &packet);
+    /// Whether the options permit its port and sender.
+    bool isWanted(const Datagram &datagram) const;
     /// Whether any other datagram can be of that sensor, as far as addresses and ports tell.
     bool mayTake(const Datagram &datagram) const;
     /// Whether it comes from the address of that sensor; as long as there is none, whether it may.
@@ -45,7 +47,6 @@ public:
 
 private:
     std::size_t find(const Datagram &packet);
-    bool isWanted(const Datagram &datagram) const;
 
     Options options_;
     std::vector<Sensor> sensors_;

@@ -90,10 +90,14 @@ Result<Scan> readScan(const QJsonObject &data) {
     scan.data.points.reserve(x->size());
     for (size_t i = 0; i < x->size(); ++i)
         scan.data.points.emplace_back((*x)[i], (*y)[i]);
-    const double rays = data.value("rays").toDouble(double(x->size()));
-    if (!(rays >= 0 && rays <= maxPoints))
-        return wrong("rays", QString::number(rays), QString("a count up to %1").arg(maxPoints));
-    scan.data.rays = size_t(rays);
+    scan.data.rays = x->size();
+    if (data.contains("rays")) {
+        const double rays = data.value("rays").toDouble(-1);
+        if (!(rays >= 0 && rays <= maxPoints))
+            return wrong("rays", data.value("rays").isDouble() ? QString::number(rays) : "no number",
+                         QString("a count up to %1").arg(maxPoints));
+        scan.data.rays = size_t(rays);
+    }
     return scan;
 }
 

@@ -18,10 +18,9 @@ public:
         velodyne::Returns returns = velodyne::Returns::Strongest;
         bool verticalOffsets = true; ///< the lasers' own heights are added to z
         std::int64_t stampOffset_ns = 0;
-        std::uint16_t dataPort =
-            velodyne::dataPort;         ///< of other ports only datagrams of the right size are decoded
-        std::uint16_t positionPort = 0; ///< received live as well; 0: none
-        std::optional<std::uint16_t> onlyPort{}; ///< only a sensor that sends to it is decoded
+        std::uint16_t dataPort = velodyne::dataPort; ///< see LidarStream
+        std::uint16_t positionPort = 0;              ///< received live as well; 0: none
+        std::optional<std::uint16_t> onlyPort{};     ///< only a sensor that sends to it is decoded
     };
     /// How turns of all lasers are thinned.
     struct Thinning {
@@ -32,7 +31,7 @@ public:
         velodyne::PacketCounts packets;
         LiveSource::Counts udp;
         velodyne::GpsReader::Counts gps;             ///< of position packets
-        std::uint64_t other = 0;                     ///< nothing of a sensor
+        std::uint64_t other = 0;                     ///< nothing that could be read; see LidarStream
         std::uint64_t otherSensors = 0;              ///< data packets of sensors that are not decoded
         std::vector<SensorChoice::Sensor> sensors;   ///< that sent data packets, the decoded one among them
         std::optional<SensorChoice::Sensor> decoded; ///< of these; nothing before the first

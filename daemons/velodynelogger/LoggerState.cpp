@@ -135,11 +135,14 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
         set(HealthLevel::Warn, "no source is open; source.open opens one");
     else if (!receiveError.empty() || !sourceError_.isEmpty())
         set(HealthLevel::Failed, receiveError.empty() ? sourceError_ : QString::fromStdString(receiveError));
-    else if (source_ == Source::Ended)
+    else if (source_ == Source::Ended && (counts.decoded || counts.other == 0))
         set(HealthLevel::Ok, sourceName_ + " has been played to its end");
     else if (source_ == Source::Live && sincePacket_.elapsed() > 3000)
         set(HealthLevel::Stale,
             QString("no packet on %1 for %2 s").arg(sourceName_).arg(sincePacket_.elapsed() / 1000));
+    else if (counts.other > 0 && !counts.decoded)
+        set(HealthLevel::Warn,
+            QString("%1 datagrams came, and no data packet of an HDL-32E or VLP-16").arg(counts.other));
     else if (packets.otherModel > 0)
         set(HealthLevel::Warn, velodyne::describe(velodyne::PacketFault::Model));
     else if (counts.otherSensors > 0 && !counts.decoded)

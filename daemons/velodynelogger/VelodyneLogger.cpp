@@ -138,7 +138,7 @@ void VelodyneLogger::opened(Source source, const QString &name, const PcapPlayer
     sourceError_.clear();
     replayEnd_.reset();
     sincePublished_.start();
-    packetsAtTick_ = 0;
+    packetsAtTick_ = datagramsAtTick_ = 0;
     packetRate_ = 0;
     sincePacket_.start();
     sinceTick_.start();
@@ -285,9 +285,11 @@ void VelodyneLogger::publishTurns() {
 }
 
 void VelodyneLogger::tick() {
-    const std::uint64_t packets = feed_.counts().packets.packets;
-    if (packets != packetsAtTick_)
+    const LidarFeed::Counts counts = feed_.counts();
+    const std::uint64_t packets = counts.packets.packets, datagrams = packets + counts.other;
+    if (datagrams != datagramsAtTick_)
         sincePacket_.start();
+    datagramsAtTick_ = datagrams;
     packetRate_ =
         double(packets - packetsAtTick_) * 1e9 / double(std::max<qint64>(1, sinceTick_.nsecsElapsed()));
     sinceTick_.start();

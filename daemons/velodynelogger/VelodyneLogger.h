@@ -73,7 +73,7 @@ private:
     std::optional<QString> replayEnd_; ///< the replay is at its end; what waits is yet to be published
     QElapsedTimer sincePacket_;        ///< since the last second in which one came
     QElapsedTimer sinceTick_;
-    std::uint64_t packetsAtTick_ = 0;
+    std::uint64_t packetsAtTick_ = 0, datagramsAtTick_ = 0;
     double packetRate_ = 0; ///< a second
 };
 

@@ -59,7 +59,7 @@ class Demo:
             # Who listens first, then what it listens to.
             self.start("scanmatcher", logs, {"source.address": f"127.0.0.1:{self.ports['velodynelogger']}",
                                              "odometry.address": f"127.0.0.1:{self.ports['motorcontrol']}",
-                                             "map.folder": folder})
+                                             "map.folder": folder, "matcher.start": "nothing"})
             self.start("velodynelogger", logs, {"source.port": lidar_port, "record.folder": folder})
             self.start("simulator", logs, {"world": world, "lidar.port": lidar_port, "motors.link": motor_line,
                                            "frame.slip": SLIP})
@@ -88,6 +88,7 @@ class Demo:
         self.wait(lambda: self.motors.call("motor.state")["ready"], "the motor controllers")
         self.motors.call("odometry.reset", **start)
         self.matcher.call("pose.set", **start)
+        self.matcher.call("matcher.start", mode="mapping")  # not before: the first scan gives the map its frame
         poses = Listener(self.ports["scanmatcher"], "pose", 1000)
         odometry = Listener(self.ports["motorcontrol"], "odometry", 1000)
         truth = Listener(self.ports["simulator"], "truth", 1000)

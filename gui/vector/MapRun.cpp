@@ -18,7 +18,6 @@ void MapRun::take(MapScan &scan) {
     trajectory_.push_back({scan.stamp, pose});
     if (scan.reference)
         reference_.push_back({scan.stamp, *scan.reference});
-    tracker.recover();
 }
 
 std::vector<vectorlib::MapEdge> MapRun::segments() const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "gui/vector/MapSource.h"
-#include "gui/vector/Options.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/ScanTracker.h"
 

@@ -31,8 +31,6 @@ public:
 
     /// Takes the payload of a position packet. A wrong one changes nothing but the counts.
     PositionFault feed(const std::uint8_t *bytes, std::size_t size);
-    /// Forgets all, for a new source.
-    void reset() { *this = GpsReader(); }
 
     const State &state() const { return state_; }
     const Counts &counts() const { return counts_; }

@@ -108,7 +108,7 @@ void TestReadMessages::readsRays() {
     QCOMPARE(readScan(data)->data.rays, size_t(2)); // a logger that does not tell: one for each point
     data["rays"] = 1800;
     QCOMPARE(readScan(data)->data.rays, size_t(1800));
-    for (const double rays : {-1.0, 1e9}) {
+    for (const QJsonValue &rays : {QJsonValue(-1), QJsonValue(1e9), QJsonValue("many"), QJsonValue()}) {
         data["rays"] = rays;
         QVERIFY(!readScan(data).ok());
         QVERIFY(readScan(data).error().message.contains("member rays"));

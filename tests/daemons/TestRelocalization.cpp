@@ -247,12 +247,13 @@ void TestRelocalization::triesSeldomWhereItCannotRecover() {
     load(square());
     set("relocalize_after", 1);
     call("pose.set", {{"x", 0}, {"y", 0}, {"theta", 0.8}});
+    QElapsedTimer time;
+    time.start();
     for (int i = 0; i < 20; ++i)
         scan(square(), {2, -1.5, 0});
     QCOMPARE(call("matcher.state")["lost"].toInt(), 20);
     const int tried = call("matcher.state")["recoveries"].toInt();
-    QVERIFY2(tried >= 1 && tried <= 2,
-             qPrintable(QString::number(tried))); // once a second of the scans' time
+    QVERIFY2(tried >= 1 && tried <= 1 + time.elapsed() / 1000, qPrintable(QString::number(tried)));
     const QJsonObject tracking = healthItem("tracking");
     QCOMPARE(tracking["level"].toString(), QString("error"));
     QVERIFY2(tracking["message"].toString().contains("4 places"), qPrintable(tracking["message"].toString()));

@@ -54,6 +54,8 @@ def complaint(path, include, root):
     name = include.split("/")[-1]
     if re.match(r"Q[A-Z]|Qt", name) and zone in QT_ALLOWED and name not in QT_ALLOWED[zone]:
         return f"{zone} may include only these of Qt: {', '.join(sorted(QT_ALLOWED[zone])) or 'nothing'}"
+    if path.startswith("vectorlib/include/") and include == "vectorlib/vectorlib.h":
+        return "the rooms of vectorlib include what they need, not all"
     room, target_room = room_of(path.removeprefix("vectorlib/include/")), room_of(include)
     for name in (room, target_room):
         if name and name not in ROOMS:

@@ -107,7 +107,8 @@ void QThreadPool::start(std::function<void()> work, int priority) {
 bool QThreadPool::waitForDone(int msecs) {
     static const auto wait = original<bool (*)(QThreadPool *, int)>("_ZN11QThreadPool11waitForDoneEi");
     const bool done = wait(this, msecs);
-    __tsan_acquire(this);
+    if (done)
+        __tsan_acquire(this);
     return done;
 }
 
@@ -125,6 +126,7 @@ bool QThread::wait(QDeadlineTimer deadline) {
     static const auto wait =
         original<bool (*)(QThread *, QDeadlineTimer)>("_ZN7QThread4waitE14QDeadlineTimer");
     const bool ended = wait(this, deadline);
-    __tsan_acquire(this);
+    if (ended)
+        __tsan_acquire(this);
     return ended;
 }

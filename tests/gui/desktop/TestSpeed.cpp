@@ -2,6 +2,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
+#include "tests/support/Patience.h"
 
 #include <QPlainTextEdit>
 #include <QTcpServer>
@@ -157,7 +158,7 @@ void TestSpeed::memoryOfAnHour() {
             resident_mb = line.mid(6).trimmed().split(' ')[0].toDouble() * 1024 / 1e6;
     figure(messages == 36000 ? "memory at most, an hour of a map at 10 Hz" : "memory at most, six minutes",
            resident_mb, "MB");
-    QVERIFY2(resident_mb > 10 && resident_mb < 150, qPrintable(QString::number(resident_mb)));
+    QVERIFY2(resident_mb > 10 && resident_mb < 150 * slowness, qPrintable(QString::number(resident_mb)));
     program.terminate();
     QVERIFY(program.waitForFinished());
 }

@@ -31,7 +31,7 @@ struct ScanTrackerCounts {
 };
 
 /// Follows a sensor through its map and lets the map grow, scan by scan: the same for a robot that drives and
-/// for a log. Knows no clock: time is that of the scans.
+/// for a log. Time is that of the scans; only recover() goes by a clock.
 class ScanTracker {
 public:
     MapBuilder builder;
@@ -92,16 +92,15 @@ public:
     std::optional<Relocalized> recover() {
         if (!isSearchDue())
             return std::nullopt;
-        const double now = *lastStamp_;
         const Relocalized result = relocalize(true);
-        searched_ = Searched{now, std::max(1.0, 0.01 * result.ms)};
+        const std::chrono::duration<double, std::milli> pause(std::max(1000.0, 10 * result.ms));
+        nextSearch_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
         return result;
     }
     /// Forgets map, pose and counts.
     void clear() {
         builder.clear();
         lostInARow_ = 0;
-        searched_.reset();
         place({});
         counts_ = ScanTrackerCounts();
     }
@@ -110,25 +109,38 @@ public:
     const ScanTrackerCounts &counts() const { return counts_; }
 
 private:
-    struct Searched {
-        double stamp, pause; // seconds
-    };
+    using Clock = std::chrono::steady_clock;
 
     // Where the sensor is expected; tells the builder how sure that is.
     Pose2D expect(const TimedScan &scan) {
         const auto expected = scan.odometry ? odometry_.expect(*scan.odometry, scan.stamp) : std::nullopt;
         const bool well = expected || !lastStamp_ || isMomentAgo(*lastStamp_, scan.stamp);
         TrackingSettings &track = builder.track.settings;
-        track = well ? settings_.tracking : TrackingSettings::forPoorExpectation();
-        builder.matchPair.settings = well ? ScanPairSettings() : ScanPairSettings::forPoorExpectation();
+        track = well ? settings_.tracking : poorly(settings_.tracking);
+        ScanPairSettings &pair = builder.matchPair.settings;
+        pair = well ? ScanPairSettings() : ScanPairSettings::forPoorExpectation();
         if (!expected)
             return motion_.predict(scan.stamp);
         ++counts_.byOdometry;
         if (expected->deviations) {
             track.expectedDeviationXY = expected->deviations->xy;
             track.expectedDeviationAlpha = expected->deviations->alpha;
+            pair.deviationXY = std::min(pair.deviationXY, expected->deviations->xy);
+            pair.deviationAlpha = std::min(pair.deviationAlpha, expected->deviations->alpha);
         }
         return expected->pose;
+    }
+    // Searches at least as widely as it is set up.
+    static TrackingSettings poorly(const TrackingSettings &well) {
+        TrackingSettings s = well;
+        const TrackingSettings poor = TrackingSettings::forPoorExpectation();
+        s.permitted = {std::max(s.permitted.dx, poor.permitted.dx),
+                       std::max(s.permitted.dy, poor.permitted.dy),
+                       std::max(s.permitted.dalpha, poor.permitted.dalpha)};
+        s.expectedDeviationXY = std::max(s.expectedDeviationXY, poor.expectedDeviationXY);
+        s.expectedDeviationAlpha = std::max(s.expectedDeviationAlpha, poor.expectedDeviationAlpha);
+        s.minMatchedShare = std::max(s.minMatchedShare, poor.minMatchedShare);
+        return s;
     }
     bool isMomentAgo(double before, double stamp) const {
         return stamp > before && stamp - before <= settings_.moment;
@@ -137,11 +149,8 @@ private:
         // A growing map goes on from the expected pose after some lost scans: from then on it holds the scan
         // itself, at a place that may be wrong, and the search would find that.
         const bool holdsTheScan = builder.settings.grow && lostInARow_ >= builder.settings.lostBeforeRestart;
-        if (settings_.relocalizeAfter <= 0 || lostInARow_ < settings_.relocalizeAfter || holdsTheScan ||
-            !lastStamp_)
-            return false;
-        const double since = searched_ ? *lastStamp_ - searched_->stamp : 0;
-        return !searched_ || since < 0 || since >= searched_->pause;
+        return settings_.relocalizeAfter > 0 && lostInARow_ >= settings_.relocalizeAfter && !holdsTheScan &&
+               Clock::now() >= nextSearch_;
     }
     void count(const ScanReport &report) {
         lostInARow_ = report.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
@@ -170,7 +179,7 @@ private:
     Relocalization search_;
     std::optional<double> lastStamp_; // of the scan before, unless the sensor was put elsewhere since
     int lostInARow_ = 0;
-    std::optional<Searched> searched_; // the last search
+    Clock::time_point nextSearch_;
 };
 
 } // namespace vectorlib

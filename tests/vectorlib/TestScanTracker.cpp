@@ -1,0 +1,144 @@
+// The tracker of scans: what it expects, how sure it is, and what it forgets.
+#include <vectorlib/mapping/ScanTracker.h>
+#include <vectorlib/observation/SimulatedScanner.h>
+
+#include <QtTest>
+
+using namespace vectorlib;
+
+namespace {
+
+// A room of 8 m x 6 m with a niche.
+const std::vector<LineSegment2D<float>> room{{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}},  {{4, 3}, {-1, 3}},
+                                             {{-1, 3}, {-1, 2}},  {{-1, 2}, {-4, 2}}, {{-4, 2}, {-4, -3}}};
+
+bool isNear(const Pose2D &a, const Pose2D &b) {
+    return std::hypot(a.x - b.x, a.y - b.y) < 0.02 && std::abs(wrapAngle(a.theta - b.theta)) < 0.01;
+}
+
+OdometryTrack track(const Pose2D &pose, double stamp, std::optional<double> variance = {}) {
+    OdometrySample sample{stamp, pose, {}, {}};
+    if (variance)
+        sample.covariance = Eigen::Matrix3d(Eigen::Matrix3d::Identity() * *variance);
+    return {1, {sample}};
+}
+
+} // namespace
+
+class TestScanTracker : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void init();
+    void goesByTheOdometry();
+    void ignoresTheOdometryWhenTold();
+    void isAsSureAsTheOdometry();
+    void looksWidelyAfterAPause();
+    void looksNoLessWidelyThanItIsSetUp();
+    void survivesStampsThatStepBack();
+    void placeForgetsTheScanBefore();
+    void knowsTheScannerOfEachScan();
+    void clearForgetsAll();
+
+private:
+    const ScanReport &see(const Pose2D &pose, double stamp, std::optional<OdometryTrack> odometry = {}) {
+        TimedScan scan;
+        scan.points = scanner(room, pose);
+        scan.rays = std::size_t(scanner.rays);
+        scan.stamp = stamp;
+        scan.odometry = std::move(odometry);
+        return tracker->process(scan);
+    }
+
+    SimulatedScanner<float> scanner{5};
+    std::unique_ptr<ScanTracker> tracker;
+};
+
+void TestScanTracker::init() {
+    tracker = std::make_unique<ScanTracker>();
+    tracker->place({-2, -1, 0});
+    QCOMPARE(see({-2, -1, 0}, 10, track({}, 10)).outcome, ScanReport::Outcome::Matched);
+}
+
+void TestScanTracker::goesByTheOdometry() {
+    // To the other end of the room and about, within a tenth of a second: only the odometry can know.
+    QVERIFY(isNear(see({2, 1, 2}, 10.1, track({4, 2, 2}, 10.1)).pose, {2, 1, 2}));
+    QCOMPARE(tracker->counts().byOdometry, std::uint64_t(1));
+    QCOMPARE(tracker->counts().matched, std::uint64_t(2));
+}
+
+void TestScanTracker::ignoresTheOdometryWhenTold() {
+    ScanTrackerSettings settings;
+    settings.useOdometry = false;
+    tracker->apply(settings);
+    QVERIFY(isNear(see({-1.9, -1, 0.05}, 10.1, track({4, 2, 2}, 10.1)).pose, {-1.9, -1, 0.05}));
+    QCOMPARE(tracker->counts().byOdometry, std::uint64_t(0));
+}
+
+void TestScanTracker::isAsSureAsTheOdometry() {
+    see({-1.9, -1, 0}, 10.1, track({0.1, 0, 0}, 10.1, 0)); // as sure as it can be
+    see({-1.8, -1, 0}, 10.2, track({0.2, 0, 0}, 10.2, 0));
+    QCOMPARE(tracker->builder.matchPair.settings.deviationXY, OdometryModel::leastDeviationXY);
+    QCOMPARE(tracker->builder.matchPair.settings.deviationAlpha, OdometryModel::leastDeviationAlpha);
+    see({-1.7, -1, 0}, 10.3, track({0.3, 0, 0}, 10.3, 100)); // no surer than without
+    QCOMPARE(tracker->builder.matchPair.settings.deviationXY, ScanPairSettings().deviationXY);
+    see({-1.6, -1, 0}, 10.4, track({0.4, 0, 0}, 10.4)); // it does not tell
+    QCOMPARE(tracker->builder.matchPair.settings.deviationXY, ScanPairSettings().deviationXY);
+}
+
+void TestScanTracker::looksWidelyAfterAPause() {
+    QVERIFY(isNear(see({-0.8, 0, 0.7}, 12).pose, {-0.8, 0, 0.7}));
+    QCOMPARE(tracker->counts().matched, std::uint64_t(2));
+}
+
+void TestScanTracker::looksNoLessWidelyThanItIsSetUp() {
+    ScanTrackerSettings settings;
+    settings.tracking.permitted = {5, 0.1, 0.2};
+    tracker->apply(settings);
+    see({-2, -1, 0}, 12);
+    const TrackingSettings &used = tracker->builder.track.settings;
+    QCOMPARE(used.permitted.dx, 5.0);
+    QCOMPARE(used.permitted.dy, TrackingSettings::forPoorExpectation().permitted.dy);
+    see({-2, -1, 0}, 12.1); // a moment later
+    QCOMPARE(used.permitted.dy, 0.1);
+}
+
+void TestScanTracker::survivesStampsThatStepBack() {
+    for (const double stamp : {9.0, 12.0, 8.0, 8.0, 1e9, 0.0})
+        QVERIFY(isNear(see({-2, -1, 0}, stamp).pose, {-2, -1, 0}));
+    QCOMPARE(tracker->counts().matched, std::uint64_t(7));
+}
+
+// The motion from the scan before would lead back to where it was wrongly thought to be.
+void TestScanTracker::placeForgetsTheScanBefore() {
+    ScanTrackerSettings settings;
+    settings.tracking.permitted = {0.2, 0.2, 0.2};
+    tracker->apply(settings);
+    tracker->builder.settings.grow = false;
+    tracker->place({-1.2, -1.6, 0}); // somebody errs
+    QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
+    tracker->place({-2, -1, 0}); // and mends it
+    QVERIFY(isNear(see({-2, -1, 0}, 10.2).pose, {-2, -1, 0}));
+    QCOMPARE(tracker->builder.report().outcome, ScanReport::Outcome::Matched);
+}
+
+void TestScanTracker::knowsTheScannerOfEachScan() {
+    TimedScan scan;
+    scan.points = scanner(room, {-2, -1, 0});
+    scan.points.resize(scan.points.size() / 3); // most rays see nothing
+    scan.rays = 1800;
+    scan.stamp = 10.1;
+    tracker->process(scan);
+    QCOMPARE(tracker->builder.extract.segment.settings.nominalPoints, std::size_t(1800));
+    QCOMPARE(tracker->builder.extract.segment.settings.minPoints, EarSettings().minPoints);
+}
+
+void TestScanTracker::clearForgetsAll() {
+    tracker->clear();
+    QVERIFY(tracker->builder.map.isEmpty());
+    QCOMPARE(tracker->counts().scans, std::uint64_t(0));
+    QVERIFY(isNear(see({3, 2, 1}, 5).pose, {0, 0, 0})); // the first scan makes the frame
+}
+
+QTEST_APPLESS_MAIN(TestScanTracker)
+#include "TestScanTracker.moc"
