@@ -1,6 +1,7 @@
 #include "gui/desktop/MainWindow.h"
 #include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/support/LoopWatch.h"
+#include "tests/support/Patience.h"
 
 #include <QDockWidget>
 #include <QFile>
