@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """An emergency stop is answered at once whatever else clients send that the limits allow: HERMES_TRIALS stops (20) in each kind of
 traffic, by a client that was there before, and by new ones where all places are taken."""
+import contextlib
 import json
 import math
 import os
@@ -174,7 +175,17 @@ def stop_as_newcomer(port):
         return max(taken, time.monotonic() - began)
 
 
+def has_room(port):
+    """Whether those of the kind before are gone: ten clients are let in, and may ask."""
+    with contextlib.ExitStack() as stack:
+        connections = [stack.enter_context(connect(port)) for _ in range(10)]
+        for connection in connections:
+            connection.sendall(line(request("daemon.info", 1)))
+        return all("result" in json.loads(connection.makefile().readline() or "{}") for connection in connections)
+
+
 def check(kind, port):
+    wait_for("room for others", lambda: has_room(port))
     kept = None if "silent" in kind else connect(port)
     answers = kept and kept.makefile()
     others = begin(kind, port)
