@@ -5,12 +5,11 @@ import os
 import socket
 import subprocess
 import tempfile
-import time
 
 from support import BINARIES, DATA, SOURCE, Daemon, Process, free_port, wait_for
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
-SECONDS = 8
+PACKETS = 14500  # eight seconds
 
 
 def record(folder):
@@ -24,7 +23,7 @@ def record(folder):
         to_logger, to_simulator = logger.connect(), simulator.connect()
         path = to_logger.call("record.start", name="drive")["path"]
         to_simulator.call("sim.drive")
-        time.sleep(SECONDS)
+        wait_for("a drive", lambda: to_logger.call("record.status")["counts"]["packets"] > PACKETS)
         to_logger.call("record.stop")
         return path
     finally:

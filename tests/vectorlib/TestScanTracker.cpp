@@ -38,6 +38,7 @@ private Q_SLOTS:
     void survivesStampsThatStepBack();
     void placeForgetsTheScanBefore();
     void knowsTheScannerOfEachScan();
+    void aLieAboutTheRaysDoesNoHarm();
     void clearForgetsAll();
 
 private:
@@ -131,6 +132,18 @@ void TestScanTracker::knowsTheScannerOfEachScan() {
     tracker->process(scan);
     QCOMPARE(tracker->builder.extract.segment.settings.nominalPoints, std::size_t(1800));
     QCOMPARE(tracker->builder.extract.segment.settings.minPoints, EarSettings().minPoints);
+}
+
+// Any program may publish scans: fewer rays than points, far more, or none.
+void TestScanTracker::aLieAboutTheRaysDoesNoHarm() {
+    double stamp = 10;
+    for (const std::size_t rays : {0, 1, 2, 3, 1000000}) {
+        TimedScan scan;
+        scan.points = scanner(room, {-2, -1, 0});
+        scan.rays = rays;
+        scan.stamp = stamp += 0.1;
+        QVERIFY(isNear(tracker->process(scan).pose, {-2, -1, 0}));
+    }
 }
 
 void TestScanTracker::clearForgetsAll() {
