@@ -57,7 +57,7 @@ Result<Channel *> Channel::make(const QString &text, QObject *parent) {
     return new Channel(*interface, std::move(codec), parent);
 }
 
-Result<void> Channel::send(const QJsonValue &message) {
+Result<void> Channel::send(const Outgoing &message) {
     const EncodedFrame frame = framing->encode(message);
     if (frame.error)
         return *frame.error;
@@ -192,7 +192,7 @@ void Channel::give(const CodecItem &item, double arrived) {
     if (item.error)
         Q_EMIT malformed(*item.error);
     else
-        Q_EMIT message(item.message);
+        Q_EMIT message(item.message, item.data);
 }
 
 } // namespace hermes

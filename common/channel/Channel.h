@@ -29,7 +29,7 @@ public:
 
     /// Encodes and writes. Error when the message cannot be encoded, the channel is not open, or too much
     /// waits to be sent.
-    Result<void> send(const QJsonValue &message);
+    Result<void> send(const Outgoing &message);
 
     /// Lets messages wait, and their sender, where the interface can; others come at once all the same.
     void setReceiving(bool on);
@@ -50,7 +50,7 @@ public:
 Q_SIGNALS:
     void opened();
     void closed(const QString &reason);
-    void message(const QJsonValue &message);
+    void message(const QJsonValue &message, const hermes::WireValue &topicData);
     /// A frame that could not be read; the peer of a server is owed an answer.
     void malformed(const hermes::RpcError &error);
 

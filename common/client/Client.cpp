@@ -184,12 +184,12 @@ void Client::onClosed(const QString &reason) {
     Q_EMIT disconnected(reason);
 }
 
-void Client::onMessage(const QJsonValue &message) {
+void Client::onMessage(const QJsonValue &message, const WireValue &topicData) {
     for (const RpcMessage &one : readFrame(message).messages) {
         if (const auto *response = std::get_if<RpcResponse>(&one))
             onResponse(*response);
         else if (const auto *request = std::get_if<RpcRequest>(&one))
-            onNotification(*request);
+            onNotification(*request, topicData);
         else
             refuse(std::get<RpcInvalid>(one).error);
     }
@@ -215,24 +215,24 @@ void Client::finish(qint64 id, const Result<QJsonValue> &result) {
         callback(result);
 }
 
-void Client::onNotification(const RpcRequest &notification) {
+void Client::onNotification(const RpcRequest &notification, const WireValue &data) {
     const QJsonObject params = notification.params.toObject();
     const qint64 id = toCount(params.value(QStringLiteral("subscription")));
     if (notification.method == QStringLiteral("topic") && id > 0) // 0: not subscribed as yet
         for (const auto &subscription : subscriptions)
             if (subscription.second.id == id)
-                return deliver(subscription.first, params);
+                return deliver(subscription.first, params, data);
     ++refused.unasked;
 }
 
-void Client::deliver(int handle, const QJsonObject &params) {
+void Client::deliver(int handle, const QJsonObject &params, const WireValue &data) {
     TopicUpdate update;
     update.handle = handle;
     update.topic = params.value(QStringLiteral("topic")).toString();
     update.seq = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("seq")))));
     update.dropped = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("dropped")))));
     update.stamp = params.value(QStringLiteral("stamp")).toDouble();
-    update.data = params.value(QStringLiteral("data"));
+    update.data = data;
     const auto found = subscriptions.find(handle);
     if (found != subscriptions.end() && found->second.callback) {
         const TopicCallback callback = found->second.callback;

@@ -19,7 +19,9 @@ struct TopicUpdate {
     quint64 seq = 0;     ///< counts the publications; a gap was thinned out or dropped
     quint64 dropped = 0; ///< lost so far because this client read too slowly
     double stamp = 0;    ///< seconds since the epoch when the data were true
-    QJsonValue data;
+    WireValue data;
+
+    QJsonValue json() const { return data.toJson(); }
 };
 
 /// A connection to a daemon: calls, subscriptions, and a new connection when the old one ends. Subscriptions
@@ -90,11 +92,11 @@ private:
 
     void onOpened();
     void onClosed(const QString &reason);
-    void onMessage(const QJsonValue &message);
+    void onMessage(const QJsonValue &message, const WireValue &topicData);
     void refuse(const RpcError &error);
     void onResponse(const RpcResponse &response);
-    void onNotification(const RpcRequest &notification);
-    void deliver(int handle, const QJsonObject &params);
+    void onNotification(const RpcRequest &notification, const WireValue &data);
+    void deliver(int handle, const QJsonObject &params, const WireValue &data);
     void sendSubscription(int handle);
     void finish(qint64 id, const Result<QJsonValue> &result);
 

@@ -4,6 +4,7 @@
 #include "common/daemon/Reply.h"
 #include "common/schema/Field.h"
 #include "common/schema/SchemaValidator.h"
+#include "protocol/wire/Fields.h"
 
 #include <QJsonObject>
 #include <functional>
@@ -39,6 +40,11 @@ public:
     Command &param(const Field &field);
     /// The JSON Schema of the result, e.g. {{"type", "number"}}.
     Command &returns(const QJsonObject &schema);
+    /// The struct, with fields, that the result is.
+    template <typename T>
+    Command &gives() {
+        return returns(schemaOf<T>());
+    }
     Command &returnsNull();
     Command &example(const QJsonObject &params, const QJsonValue &result);
     /// Any further keyword of the description, e.g. "x-needs-lease".

@@ -1,7 +1,7 @@
 #include "common/daemon/CommandLine.h"
 
 #include "common/settings/DottedPath.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 namespace hermes {
 

@@ -8,7 +8,7 @@
 #include "common/daemon/Systemd.h"
 #include "common/schema/SchemaText.h"
 #include "common/settings/DottedPath.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QCryptographicHash>
 #include <QJsonDocument>
@@ -52,15 +52,15 @@ Daemon::Daemon(const DaemonIdentity &identity)
     addCommonCommands(*this, commands, topics);
     connect(&channels, &Server::clientGone, this, &Daemon::clientGone);
     Log::instance().follow(this, [this](const LogRecord &record) {
-        if (hasSubscribers(QStringLiteral("log")))
-            publish(QStringLiteral("log"), record.toJson(), record.stamp);
+        publish(
+            QStringLiteral("log"), [&record] { return record.toJson(); }, record.stamp);
     });
     connect(&configuration, &Settings::changed, this, [this](const QStringList &paths) {
         if (!launched)
             return;
         applyCommonSettings();
         settingsChanged(paths);
-        publish(QStringLiteral("settings"), configuration.values());
+        publish(QStringLiteral("settings"), [this] { return configuration.values(); });
     });
     healthItems.provide(QStringLiteral("channel"), [this] { updateChannelHealth(); });
 }
@@ -202,14 +202,6 @@ void Daemon::feedWatchdog() {
     systemd::notify("WATCHDOG=1");
 }
 
-void Daemon::publish(const QString &topic, const QJsonValue &data) {
-    publish(topic, data, stampNow());
-}
-
-void Daemon::publish(const QString &topic, const QJsonValue &data, double stamp) {
-    topics.publish(topic, data, stamp);
-}
-
 QJsonObject Daemon::description() const {
     if (!made.isEmpty())
         return made;
@@ -267,7 +259,7 @@ void Daemon::publishStatus() {
     if (now == lastStatus)
         return;
     lastStatus = now;
-    publish(QStringLiteral("status"), status());
+    publish(QStringLiteral("status"), [this] { return status(); });
 }
 
 void Daemon::updateChannelHealth() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/Time.h"
 #include "common/daemon/Command.h"
 #include "common/daemon/CommandLine.h"
 #include "common/daemon/CommandRegistry.h"
@@ -90,10 +91,16 @@ protected:
     void feedWatchdogMyself() { watchdogByHand = true; }
 
     // For its work.
-    /// To all subscribers; stamp is when the data were true (seconds since the epoch). Free without
-    /// subscribers.
-    void publish(const QString &topic, const QJsonValue &data);
-    void publish(const QString &topic, const QJsonValue &data, double stamp);
+    /// To all subscribers; stamp is when the data were true (seconds since the epoch). The data may be a
+    /// function that gives them: it is not called without subscribers.
+    template <typename Data>
+    void publish(const QString &topic, const Data &data, double stamp = stampNow()) {
+        if constexpr (std::is_invocable_v<const Data &>)
+            topics.publish(topic, data, stamp);
+        else
+            topics.publish(
+                topic, [&data] { return Outgoing(data); }, stamp);
+    }
     /// The full state of a topic with a snapshot in parts once more, to all subscribers.
     void publishSnapshot(const QString &topic) { topics.publishSnapshot(topic); }
     /// Ready: can work. Running: works. Fault: cannot, with a health item that says why.

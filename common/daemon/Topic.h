@@ -1,6 +1,7 @@
 #pragma once
 
-#include <QJsonObject>
+#include "protocol/wire/Outgoing.h"
+
 #include <QString>
 #include <functional>
 
@@ -9,10 +10,10 @@ namespace hermes {
 /// A topic, declared once: `Topic("temperature", "Each reading").schema({{"type", "number"}})`.
 class Topic {
 public:
-    using Snapshot = std::function<QJsonValue()>;
+    using Snapshot = std::function<Outgoing()>;
     /// Gives the part of the state that follows `cursor` (0 at first) and moves it on; below 0: it was the
     /// last.
-    using SnapshotParts = std::function<QJsonValue(qint64 &cursor)>;
+    using SnapshotParts = std::function<Outgoing(qint64 &cursor)>;
 
     Topic(const QString &name, const QString &summary)
         : topicName(name)
@@ -23,7 +24,12 @@ public:
         content = dataSchema;
         return *this;
     }
-    /// Gives the full state with which a subscription begins; undefined: nothing yet.
+    /// The struct, with fields, that its data are.
+    template <typename T>
+    Topic &carries() {
+        return schema(schemaOf<T>());
+    }
+    /// Gives the full state with which a subscription begins; nothing: there is none as yet.
     Topic &snapshot(const Snapshot &function) {
         state = function;
         return *this;

@@ -20,14 +20,16 @@ bool TopicHub::hasRoom(const QString &topic) const {
                        [&topic](TopicQueue *queue) { return queue->hasRoom(topic); });
 }
 
-void TopicHub::publish(const QString &topic, const QJsonValue &data, double stamp) {
+void TopicHub::publish(const QString &topic, const std::function<Outgoing()> &make, double stamp) {
     const auto entry = topics.find(topic);
     if (entry == topics.end())
         return logError(QStringLiteral("topics"),
                         QStringLiteral("published \"%1\", which is not declared").arg(topic));
     ++entry->seq;
     const auto queues = entry->queues;
-    const TopicMessage message{topic, entry->seq, stamp, data};
+    if (queues.isEmpty())
+        return;
+    const TopicMessage message{topic, entry->seq, stamp, make()};
     for (TopicQueue *queue : queues)
         queue->offer(message);
 }
@@ -56,8 +58,8 @@ void TopicHub::sendSnapshot(const QString &topic, quint64 id, TopicQueue *queue)
     const Entry &entry = *topics.constFind(topic);
     if (entry.topic.snapshotParts())
         return queue->stream(topic, id, partsOf(topic));
-    const QJsonValue state = entry.topic.snapshot()();
-    if (!state.isUndefined())
+    const Outgoing state = entry.topic.snapshot()();
+    if (!state.isNothing())
         queue->offer({topic, entry.seq, stampNow(), state}, id);
 }
 
@@ -66,7 +68,7 @@ TopicQueue::Parts TopicHub::partsOf(const QString &topic) const {
         if (cursor < 0)
             return std::nullopt;
         const Entry &entry = *topics.constFind(topic);
-        const QJsonValue part = entry.topic.snapshotParts()(cursor);
+        const Outgoing part = entry.topic.snapshotParts()(cursor);
         return TopicMessage{topic, entry.seq, stampNow(), part};
     };
 }

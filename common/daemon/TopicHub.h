@@ -24,9 +24,9 @@ public:
     bool hasSubscribers(const QString &topic) const;
     /// False while a reader who wants every message is behind: for sources that can wait.
     bool hasRoom(const QString &topic) const;
-    /// To all subscribers. stamp: when the data were true, in seconds since the epoch. An unknown topic is
-    /// an error in the log.
-    void publish(const QString &topic, const QJsonValue &data, double stamp);
+    /// To all subscribers; the data are made only where there are any. stamp: when the data were true, in
+    /// seconds since the epoch. An unknown topic is an error in the log.
+    void publish(const QString &topic, const std::function<Outgoing()> &make, double stamp);
     /// Sends the snapshot of the topic to all subscribers once more, after a change of everything.
     void publishSnapshot(const QString &topic);
 

@@ -17,13 +17,8 @@ constexpr qint64 handOverBytes = 32 << 10;
 
 const EncodedFrame &TopicMessage::frame(Codec &codec) const {
     EncodedFrame &made = (*frames)[typeid(codec)];
-    if (made.bytes.isEmpty() && !made.error) {
-        const QJsonObject params{{QStringLiteral("topic"), topic},
-                                 {QStringLiteral("seq"), qint64(seq)},
-                                 {QStringLiteral("stamp"), stamp},
-                                 {QStringLiteral("data"), data}};
-        made = codec.encode(makeNotification(QStringLiteral("topic"), params));
-    }
+    if (made.bytes.isEmpty() && !made.error)
+        made = codec.encodeTopic(topic, seq, stamp, data);
     return made;
 }
 

@@ -1,6 +1,6 @@
 #include "common/schema/SchemaText.h"
 
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QJsonArray>
 #include <QStringList>

@@ -1,7 +1,7 @@
 #include "common/settings/Settings.h"
 
 #include "common/settings/DottedPath.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QFile>
 #include <QJsonDocument>
@@ -116,7 +116,7 @@ Result<void> Settings::load(const QString &name) {
     QFile file(name);
     if (!file.open(QIODevice::ReadOnly))
         return fileError(name, file.errorString());
-    JsonTextError error;
+    WireError error;
     const auto value = parseJson(file.readAll(), &error);
     if (!value)
         return fileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));

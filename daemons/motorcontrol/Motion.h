@@ -1,17 +1,10 @@
 #pragma once
 
-#include "common/Twist.h"
+#include "protocol/messages/Motion.h"
 
 #include <array>
 
 namespace hermes {
-
-/// Position (m) and heading (rad, in (-pi, pi]) in the frame of the odometry.
-struct Pose {
-    double x = 0;
-    double y = 0;
-    double theta = 0;
-};
 
 enum class Wheel { FrontLeft, FrontRight, RearLeft, RearRight };
 

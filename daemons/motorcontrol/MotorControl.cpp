@@ -53,10 +53,8 @@ MotorControl::~MotorControl() {
 
 void MotorControl::declareTopics() {
     const QJsonObject object{{"type", "object"}};
-    addTopic(Topic("odometry",
-                   "After each cycle (50 Hz): pose {x, y (m), theta (rad)} since odometry.reset, twist "
-                   "{vx, vy (m/s), omega (rad/s)} as measured, covariance of the pose, row by row; mono")
-                 .schema(object));
+    addTopic(Topic("odometry", "Where the wheels have brought the robot, after each cycle (50 Hz)")
+                 .carries<OdometryMessage>());
     addTopic(Topic("wheels",
                    "After each cycle, of each wheel: target, set_point and speed (rad/s), angle (rad); "
                    "slip (m/s): what no motion of a rigid robot explains")
@@ -191,11 +189,13 @@ void MotorControl::show(const Telemetry &telemetry) {
         return; // a report between two cycles
     cycles_ = telemetry.cycle.cycles;
     if (telemetry.moved) {
-        publish("odometry", odometryJson(telemetry), telemetry.stamp);
-        publish("wheels", wheelsJson(telemetry), telemetry.stamp);
+        publish(
+            "odometry", [&] { return odometryOf(telemetry); }, telemetry.stamp);
+        publish(
+            "wheels", [&] { return wheelsJson(telemetry); }, telemetry.stamp);
     }
     if (cycles_ % slowEvery == 0) {
-        publish("power", powerJson(telemetry));
+        publish("power", [&] { return powerJson(telemetry); });
         updateHealth();
         feedWatchdog();
     }

@@ -28,12 +28,8 @@ QJsonObject toJson(const Twist &twist) {
     return {{"vx", twist.vx}, {"vy", twist.vy}, {"omega", twist.omega}};
 }
 
-QJsonObject odometryJson(const Telemetry &t) {
-    QJsonArray covariance;
-    for (double value : t.covariance)
-        covariance.append(value);
-    return {
-        {"pose", toJson(t.pose)}, {"twist", toJson(t.twist)}, {"covariance", covariance}, {"mono", t.mono}};
+OdometryMessage odometryOf(const Telemetry &t) {
+    return {t.pose, t.twist, t.covariance, t.mono};
 }
 
 QJsonObject wheelsJson(const Telemetry &t) {

@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-/// The data of the topic odometry: pose, twist, covariance, mono.
-QJsonObject odometryJson(const Telemetry &telemetry);
+OdometryMessage odometryOf(const Telemetry &telemetry);
 /// The data of the topic wheels: {front_left: {target, set_point, speed, angle}, ..., slip}.
 QJsonObject wheelsJson(const Telemetry &telemetry);
 /// The data of the topic power: {controllers: [...]}.

@@ -12,35 +12,30 @@ constexpr int mostFiles = 4; // that may wait to be written, each with its copy 
 } // namespace
 
 void ScanMatcher::declareMapCommands() {
-    const QJsonObject saved{{"type", "object"},
-                            {"properties", QJsonObject{{"path", QJsonObject{{"type", "string"}}},
-                                                       {"segments", QJsonObject{{"type", "integer"}}},
-                                                       {"bytes", QJsonObject{{"type", "integer"}}}}}};
     const Field path = Field::text("path", "File; relative to map.folder");
     const Field force = Field::boolean("force", "Overwrite a file that exists").byDefault(false);
-    addCommand(
-        Command("map.get",
-                "The whole map: revision and edges with end points (m), points, sigma (m), observations")
-            .returns({{"type", "object"}})
-            .handler([this](const Call &) -> Result<QJsonValue> { return QJsonValue(mirror.full()); }));
+    addCommand(Command("map.get", "The whole map")
+                   .gives<MapMessage>()
+                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(mirror.full()); }));
     addCommand(
         Command("map.save", "Writes the map as CSV, so that map.load gives the same map")
             .param(path)
             .param(force)
-            .returns(saved)
+            .gives<SavedMap>()
             .asyncHandler([this](const Call &call, const Reply &reply) { saveMap("csv", call, reply); }));
     addCommand(
         Command("map.export", "Writes the map in another format")
             .param(Field::text("format", "Of the file").choices({"svg", "csv", "geojson", "dxf"}))
             .param(path)
             .param(force)
-            .returns(saved)
+            .gives<SavedMap>()
             .example({{"format", "svg"}, {"path", "office.svg"}},
                      QJsonObject{{"path", "/home/robot/office.svg"}, {"segments", 48}, {"bytes", 9120}})
             .asyncHandler(
                 [this](const Call &call, const Reply &reply) { saveMap(call.text("format"), call, reply); }));
     addCommand(Command("map.load", "Replaces the map by one that map.save wrote")
                    .param(path)
+                   .gives<LoadedMap>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { loadMap(call, reply); }));
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
                    .returnsNull()
@@ -67,7 +62,8 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
         *map = {"Map of " + std::to_string(counts.scans) + " scans", {}, mirror.trajectory(), {}};
     const auto write = [this, map, format, path = absolutePath(call.text("path")), force = call.flag("force"),
                         reply] {
-        reply.give(writeMapFile(path, format, force, *map));
+        const Result<SavedMap> saved = writeMapFile(path, format, force, *map);
+        reply.give(saved ? Result<QJsonValue>(asJson(*saved)) : saved.error());
         --filesUnderWay;
     };
     worker->post([this, map, write](vectorlib::ScanTracker &tracker) {
@@ -85,7 +81,7 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
         tracker.clear();
         for (const vectorlib::MapEdge &edge : *loaded)
             tracker.builder.map.add(edge, edge.observations);
-        showNewMap(tracker, reply, QJsonObject{{"segments", qint64(loaded->size())}});
+        showNewMap(tracker, reply, asJson(LoadedMap{loaded->size()}));
     });
 }
 

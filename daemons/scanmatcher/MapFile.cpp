@@ -36,8 +36,8 @@ Result<std::vector<vectorlib::MapEdge>> readMapFile(const QString &path) {
     return std::move(*map);
 }
 
-Result<QJsonValue> writeMapFile(const QString &path, const QString &format, bool force,
-                                const vectorlib::MapDrawing &map) {
+Result<SavedMap> writeMapFile(const QString &path, const QString &format, bool force,
+                              const vectorlib::MapDrawing &map) {
     if (QFileInfo::exists(path) && !force)
         return fileError(path, "exists already, expected a new name or force: true");
     std::ostringstream text;
@@ -54,8 +54,7 @@ Result<QJsonValue> writeMapFile(const QString &path, const QString &format, bool
     if (!file.open(QIODevice::WriteOnly) || file.write(bytes) != bytes.size() || !file.flush() ||
         !file.commit()) // commit() alone does not notice a full disk
         return fileError(path, "cannot write the map: " + file.errorString());
-    return QJsonValue(QJsonObject{
-        {"path", path}, {"segments", qint64(map.segments.size())}, {"bytes", qint64(bytes.size())}});
+    return SavedMap{path, map.segments.size(), quint64(bytes.size())};
 }
 
 } // namespace hermes

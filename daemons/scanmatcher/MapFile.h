@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "daemons/scanmatcher/Answers.h"
 #include "vectorlib/io/MapDrawing.h"
 
 #include <vector>
@@ -14,9 +15,9 @@ constexpr qint64 largestMapFile = 64 << 20;
 Result<std::vector<vectorlib::MapEdge>> readMapFile(const QString &path);
 
 /// Writes a map as csv, svg, geojson or dxf (only svg takes more than its segments); the file appears when it
-/// is complete. Gives {path, segments, bytes}. Waits for the disk. InputOutput with data.path, also where the
+/// is complete. Waits for the disk. InputOutput with data.path, also where the
 /// file exists and force is not set.
-Result<QJsonValue> writeMapFile(const QString &path, const QString &format, bool force,
-                                const vectorlib::MapDrawing &map);
+Result<SavedMap> writeMapFile(const QString &path, const QString &format, bool force,
+                              const vectorlib::MapDrawing &map);
 
 } // namespace hermes

@@ -4,11 +4,10 @@ namespace hermes {
 
 namespace {
 
-QJsonObject toJson(const vectorlib::MapEdge &m) {
-    return {{"id", qint64(m.id)},        {"x1", m.segment.begin().x},
-            {"y1", m.segment.begin().y}, {"x2", m.segment.end().x},
-            {"y2", m.segment.end().y},   {"n", m.sums.n},
-            {"sigma", m.sigma},          {"observations", qint64(m.observations)}};
+MapEdgeMessage messageOf(const vectorlib::MapEdge &m) {
+    return {qint64(m.id),      m.segment.begin().x,   m.segment.begin().y,
+            m.segment.end().x, m.segment.end().y,     double(m.sums.n),
+            m.sigma,           qint64(m.observations)};
 }
 
 } // namespace
@@ -31,46 +30,37 @@ void MapMirror::replace(Edges &other) {
     ++revision;
 }
 
-QJsonObject MapMirror::apply(const MapChanges &changes) {
-    QJsonArray changed, removed;
-    for (const vectorlib::MapEdge &m : changes.changed) {
+MapMessage MapMirror::message(bool cleared) const {
+    return {revision, cleared, {}, {}, qint64(edges.size())};
+}
+
+MapMessage MapMirror::apply(const MapChanges &changes) {
+    ++revision;
+    for (const vectorlib::MapEdge &m : changes.changed)
         edges[m.id] = m;
-        changed.append(toJson(m));
-    }
-    for (qint64 id : changes.removed) {
+    for (qint64 id : changes.removed)
         edges.erase(id);
-        removed.append(id);
-    }
-    return {{"revision", ++revision},
-            {"cleared", false},
-            {"edges", changed},
-            {"removed", removed},
-            {"size", qint64(edges.size())}};
+    MapMessage told = message(false);
+    for (const vectorlib::MapEdge &m : changes.changed)
+        told.edges.push_back(messageOf(m));
+    told.removed = changes.removed;
+    return told;
 }
 
-QJsonObject MapMirror::full() const {
-    QJsonArray all;
+MapMessage MapMirror::full() const {
+    MapMessage all = message(true);
     for (const auto &[id, edge] : edges)
-        all.append(toJson(edge));
-    return {{"revision", revision},
-            {"cleared", true},
-            {"edges", all},
-            {"removed", QJsonArray()},
-            {"size", qint64(edges.size())}};
+        all.edges.push_back(messageOf(edge));
+    return all;
 }
 
-QJsonObject MapMirror::part(qint64 &cursor) const {
-    const bool isFirst = cursor == 0;
-    QJsonArray some;
+MapMessage MapMirror::part(qint64 &cursor) const {
+    MapMessage some = message(cursor == 0);
     auto edge = edges.lower_bound(cursor);
-    for (; edge != edges.end() && some.size() < partEdges; ++edge)
-        some.append(toJson(edge->second));
+    for (; edge != edges.end() && some.edges.size() < partEdges; ++edge)
+        some.edges.push_back(messageOf(edge->second));
     cursor = edge == edges.end() ? -1 : edge->first;
-    return {{"revision", revision},
-            {"cleared", isFirst},
-            {"edges", some},
-            {"removed", QJsonArray()},
-            {"size", qint64(edges.size())}};
+    return some;
 }
 
 } // namespace hermes

@@ -1,11 +1,10 @@
 #pragma once
 
+#include "protocol/messages/VectorMap.h"
 #include "vectorlib/edges/MapEdge.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/VectorMap.h"
 
-#include <QJsonArray>
-#include <QJsonObject>
 #include <map>
 #include <vector>
 
@@ -27,20 +26,22 @@ public:
 
     /// Takes the edges of another map over and forgets the trajectory; `other` has the old edges afterwards.
     void replace(Edges &other);
-    /// Takes the changes in and gives the data of the topic `map`: {revision, cleared, edges, removed, size}.
-    QJsonObject apply(const MapChanges &changes);
+    /// Takes the changes in and gives the data of the topic `map`.
+    MapMessage apply(const MapChanges &changes);
     void addPose(const vectorlib::StampedPose &pose) { poses.push_back(pose); }
 
     /// The full state in the same form, `cleared` true.
-    QJsonObject full() const;
+    MapMessage full() const;
     /// At most partEdges of them, from the id `cursor` on, which moves behind them, or below 0 with the last;
     /// `cleared` is true in the first part, from 0 on.
-    QJsonObject part(qint64 &cursor) const;
-    static constexpr int partEdges = 1000;
+    MapMessage part(qint64 &cursor) const;
+    static constexpr std::size_t partEdges = 1000;
     const std::vector<vectorlib::StampedPose> &trajectory() const { return poses; }
     size_t size() const { return edges.size(); }
 
 private:
+    MapMessage message(bool cleared) const;
+
     Edges edges;
     std::vector<vectorlib::StampedPose> poses;
     qint64 revision = 0;

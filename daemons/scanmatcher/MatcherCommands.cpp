@@ -1,4 +1,6 @@
+#include "daemons/scanmatcher/Answers.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
+#include "protocol/messages/Turns.h"
 
 namespace hermes {
 
@@ -6,15 +8,14 @@ using vectorlib::Pose2D;
 
 namespace {
 
-const QJsonObject poseSchema{
-    {"type", "object"},
-    {"properties", QJsonObject{{"x", QJsonObject{{"type", "number"}, {"x-unit", "m"}}},
-                               {"y", QJsonObject{{"type", "number"}, {"x-unit", "m"}}},
-                               {"theta", QJsonObject{{"type", "number"}, {"x-unit", "rad"}}}}},
-    {"required", QJsonArray{"x", "y", "theta"}},
-    {"additionalProperties", false}};
+// Points alone will do.
+QJsonObject scanSchema() {
+    QJsonObject schema = schemaOf<ScanMessage>();
+    schema["required"] = QJsonArray{"x", "y"};
+    return schema;
+}
 
-Pose2D poseOf(const QJsonObject &json) {
+Pose2D toPose(const QJsonObject &json) {
     return {json["x"].toDouble(), json["y"].toDouble(), json["theta"].toDouble()};
 }
 
@@ -23,7 +24,8 @@ Result<Scan> scanParameter(const Call &call, const char *name) {
     QJsonObject data = call.value(name).toObject();
     if (!data.contains("stamp"))
         data["stamp"] = 0;
-    auto scan = readScan(data);
+    quint64 unknown = 0;
+    auto scan = readScan(WireValue(data), unknown);
     if (!scan)
         return invalidParams({{name, QJsonValue::Undefined, "a scan {x: [], y: []}"}},
                              QString("%1: %2").arg(name, scan.error().message));
@@ -50,15 +52,16 @@ void ScanMatcher::declareMatcherCommands() {
                    }));
     addCommand(
         Command("matcher.state", "Mode, counts of scans, waiting and dropped ones, milliseconds a scan")
-            .returns({{"type", "object"}})
-            .handler([this](const Call &) -> Result<QJsonValue> { return QJsonValue(matcherState()); }));
+            .gives<MatcherState>()
+            .handler([this](const Call &) -> Result<QJsonValue> { return asJson(matcherState()); }));
     addCommand(Command("matcher.match", "Matches two scans with each other; map and pose are not touched")
-                   .param(Field::object("reference", "The scan that stands still: {x: [], y: []} in metres, "
-                                                     "counter-clockwise"))
-                   .param(Field::object("current", "The scan whose pose in the other's frame is wanted"))
-                   .param(Field::schema("expected", "Where the current one is expected", poseSchema)
+                   .param(Field::schema("reference", "The scan that stands still: points counter-clockwise",
+                                        scanSchema()))
+                   .param(Field::schema("current", "The scan whose pose in the other's frame is wanted",
+                                        scanSchema()))
+                   .param(Field::schema("expected", "Where the current one is expected", schemaOf<Pose>())
                               .byDefault(QJsonObject{{"x", 0}, {"y", 0}, {"theta", 0}}))
-                   .returns({{"type", "object"}})
+                   .gives<PairMatch>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { matchTwo(call, reply); }));
     addCommand(Command("pose.set", "Tells where the sensor is, standing still, in the map's frame")
                    .param(Field::number("x", "Position").unit("m"))
@@ -67,7 +70,7 @@ void ScanMatcher::declareMatcherCommands() {
                    .returnsNull()
                    .example({{"x", 1.5}, {"y", 0}, {"theta", 1.57}}, QJsonValue())
                    .asyncHandler([this](const Call &call, const Reply &reply) {
-                       const Pose2D pose = poseOf(call.params);
+                       const Pose2D pose = toPose(call.params);
                        worker->post([pose, reply](vectorlib::ScanTracker &tracker) {
                            tracker.place(pose);
                            reply.result(QJsonValue());
@@ -79,7 +82,7 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     const auto reference = scanParameter(call, "reference"), current = scanParameter(call, "current");
     if (!reference || !current)
         return reply.error(reference ? current.error() : reference.error());
-    const Pose2D expected = poseOf(call.value("expected").toObject());
+    const Pose2D expected = toPose(call.value("expected").toObject());
     worker->post([reference = reference->data, current = current->data, expected,
                   reply](vectorlib::ScanTracker &) {
         vectorlib::MapBuilder pair;
@@ -89,17 +92,9 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
         pair.extract.segment.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, current.rays);
         const vectorlib::ScanReport report = pair.process(current.points, expected);
         const vectorlib::Match &match = pair.match();
-        const Pose2D pose = match.pose.pose();
-        reply.result(QJsonObject{{"x", pose.x},
-                                 {"y", pose.y},
-                                 {"theta", pose.theta},
-                                 {"accepted", match.accepted},
-                                 {"pairs", qint64(match.pairs.size())},
-                                 {"reliability", match.reliability},
-                                 {"ambiguity", match.ambiguity},
-                                 {"matched_length", match.matchedLength},
-                                 {"visible_length", match.visibleLength},
-                                 {"ms", report.totalMs()}});
+        reply.result(
+            asJson(PairMatch{poseOf(match.pose.pose()), match.accepted, match.pairs.size(), match.reliability,
+                             match.ambiguity, match.matchedLength, match.visibleLength, report.totalMs()}));
     });
 }
 

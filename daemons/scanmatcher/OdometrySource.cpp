@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/daemon/Health.h"
 #include "daemons/scanmatcher/ReadMessages.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 
@@ -39,7 +40,7 @@ void OdometrySource::close() {
 
 void OdometrySource::take(const TopicUpdate &update) {
     dropped_ = update.dropped;
-    const auto sample = readOdometry(update.data.toObject(), update.stamp);
+    const auto sample = readOdometry(update.data, update.stamp, unknown_);
     if (!sample) {
         if (refused_++ == 0)
             logWarning("odometry", sample.error().message);
@@ -71,7 +72,7 @@ std::optional<OdometryTrack> OdometrySource::over(double begin, double end) {
 
 void OdometrySource::report(Health &health) const {
     const auto set = [&](HealthLevel level, const QString &message) {
-        health.set("odometry", level, message, state());
+        health.set("odometry", level, message, asJson(state()).toObject());
     };
     if (address_.isEmpty())
         health.remove("odometry");
@@ -90,11 +91,9 @@ void OdometrySource::report(Health &health) const {
         set(HealthLevel::Ok, "connected to " + address_);
 }
 
-QJsonObject OdometrySource::state() const {
-    return {{"connected", client_.isConnected()},    {"messages", qint64(messages_)},
-            {"refused", qint64(refused_)},           {"out_of_order", qint64(outOfOrder_)},
-            {"restarts", qint64(restarts_)},         {"dropped", qint64(dropped_)},
-            {"scans_without", qint64(scansWithout_)}};
+OdometryState OdometrySource::state() const {
+    return {client_.isConnected(), messages_, refused_, outOfOrder_, restarts_, dropped_, unknown_,
+            scansWithout_};
 }
 
 } // namespace hermes

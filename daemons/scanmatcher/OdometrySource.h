@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/client/Client.h"
+#include "daemons/scanmatcher/Answers.h"
 #include "vectorlib/motion/OdometryBuffer.h"
 
 namespace hermes {
@@ -20,7 +21,7 @@ public:
     /// Sets the health item `odometry`, or removes it when there is no source.
     void report(Health &health) const;
     /// Counts: {connected, messages, refused, out_of_order, restarts, dropped, scans_without}.
-    QJsonObject state() const;
+    OdometryState state() const;
     /// For its signals.
     const Client &client() const { return client_; }
 
@@ -32,7 +33,8 @@ private:
     int subscription_ = 0;
     vectorlib::OdometryBuffer buffer_;
     QString lastRefused_;
-    quint64 messages_ = 0, refused_ = 0, outOfOrder_ = 0, restarts_ = 0, dropped_ = 0, scansWithout_ = 0;
+    quint64 messages_ = 0, refused_ = 0, outOfOrder_ = 0, restarts_ = 0, dropped_ = 0, scansWithout_ = 0,
+            unknown_ = 0;
     int withoutInARow_ = 0;
 };
 

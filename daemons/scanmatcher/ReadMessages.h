@@ -1,9 +1,8 @@
 #pragma once
 
 #include "common/Result.h"
+#include "protocol/wire/WireValue.h"
 #include "vectorlib/mapping/TimedScan.h"
-
-#include <QJsonObject>
 
 namespace hermes {
 
@@ -14,13 +13,12 @@ struct Scan {
     vectorlib::TimedScan data;
 };
 
-/// Reads the data of a `scan2d` message: {stamp, turn?, partial?, rays?, x: [], y: [], t?: []}; other members
-/// are left alone. Without `rays` the scanner is taken to have had a return of each. The error says which
-/// member is wrong, what was found and what was expected.
-Result<Scan> readScan(const QJsonObject &data);
+/// Reads a `scan2d` message; only stamp, x and y must be there. Without `rays` the scanner is taken to have
+/// had a return of each. The error says which member is wrong, what was found and what was expected. unknown
+/// counts members that this program does not know.
+Result<Scan> readScan(WireView data, quint64 &unknown);
 
-/// Reads the data of an `odometry` message: {pose: {x, y, theta}, twist: {vx, vy, omega}, covariance: 9
-/// numbers}; the same holds.
-Result<vectorlib::OdometrySample> readOdometry(const QJsonObject &data, double stamp);
+/// Reads an `odometry` message: pose, twist and covariance must be there.
+Result<vectorlib::OdometrySample> readOdometry(WireView data, double stamp, quint64 &unknown);
 
 } // namespace hermes

@@ -3,50 +3,9 @@
 
 namespace hermes {
 
-using vectorlib::Place;
 using vectorlib::Relocalized;
 
 namespace {
-
-QString name(Relocalized::Outcome outcome) {
-    switch (outcome) {
-    case Relocalized::Outcome::Found:
-        return "found";
-    case Relocalized::Outcome::NoScan:
-        return "no_scan";
-    case Relocalized::Outcome::NoMap:
-        return "no_map";
-    case Relocalized::Outcome::TooLittle:
-        return "too_little";
-    case Relocalized::Outcome::Nowhere:
-        return "nowhere";
-    case Relocalized::Outcome::Ambiguous:
-        return "ambiguous";
-    case Relocalized::Outcome::Unfinished:
-        return "unfinished";
-    }
-    return {};
-}
-
-QJsonObject toJson(const Place &place) {
-    const bool accepted = place.fault == vectorlib::Fault::None;
-    return {{"pose", QJsonObject{{"x", place.pose.x}, {"y", place.pose.y}, {"theta", place.pose.theta}}},
-            {"score", place.score},
-            {"reliability", place.reliability},
-            {"ambiguity", place.ambiguity},
-            {"discrepancy", place.discrepancy},
-            {"matched_share", place.matchedShare},
-            {"accepted", accepted},
-            {"fault", accepted ? QJsonValue() : QJsonValue(QString(vectorlib::describe(place.fault)))}};
-}
-
-QJsonObject toJson(const Relocalized &r) {
-    QJsonArray candidates;
-    for (const Place &place : r.places)
-        candidates.append(toJson(place));
-    return {{"outcome", name(r.outcome)}, {"candidates", candidates},       {"alike", qint64(r.alike)},
-            {"parts", qint64(r.parts)},   {"searched", qint64(r.searched)}, {"ms", r.ms}};
-}
 
 QString text(const vectorlib::Pose2D &pose) {
     return QString("x %1 m, y %2 m, theta %3 rad")
@@ -63,7 +22,7 @@ void ScanMatcher::declareRelocalization() {
                 "Finds the last scan in the whole map, wherever the sensor was expected, and takes its place "
                 "over. Where several places fit alike, or none, the pose stays; data.candidates has the best")
             .param(Field::boolean("apply", "Take the pose over; false: only tell it").byDefault(true))
-            .returns({{"type", "object"}})
+            .gives<RelocalizeAnswer>()
             .asyncHandler(
                 [this](const Call &call, const Reply &reply) { relocalize(call.flag("apply"), reply); }));
 }
@@ -76,15 +35,15 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
         const Relocalized found = tracker.relocalize(apply);
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
             relocalizing = false;
-            QJsonObject answer = toJson(found);
+            RelocalizeAnswer answer;
+            answer.search = answerOf(found);
             if (!found.isFound())
-                return reply.error(
-                    {ErrorCode::NotReady, "the pose stays: " + QString::fromStdString(found.text()), answer});
-            const QJsonObject place = toJson(found.places.front());
-            for (auto member = place.begin(); member != place.end(); ++member)
-                answer[member.key()] = member.value();
-            answer["applied"] = apply;
-            reply.result(answer);
+                return reply.error({ErrorCode::NotReady,
+                                    "the pose stays: " + QString::fromStdString(found.text()),
+                                    asJson(answer.search)});
+            answer.place = answer.search.candidates.front();
+            answer.applied = apply;
+            reply.result(asJson(answer));
         });
     });
 }

@@ -7,15 +7,10 @@
 
 namespace hermes {
 
-using vectorlib::Pose2D;
 using vectorlib::ScanReport;
 using vectorlib::ScanTracker;
 
 namespace {
-
-QJsonObject toJson(const Pose2D &pose) {
-    return {{"x", pose.x}, {"y", pose.y}, {"theta", pose.theta}};
-}
 
 QString toText(ScanReport::Outcome outcome) {
     switch (outcome) {
@@ -29,15 +24,46 @@ QString toText(ScanReport::Outcome outcome) {
     return {};
 }
 
-// Row by row, of x, y (m) and theta (rad); null where the pairs leave a direction open.
-QJsonValue covariance(const vectorlib::Match &match) {
+// Nothing where the pairs leave a direction open.
+std::optional<Covariance> covariance(const vectorlib::Match &match) {
     const Eigen::FullPivLU<Eigen::Matrix3d> lu(match.information);
     if (match.pairs.empty() || !lu.isInvertible())
-        return QJsonValue::Null;
+        return std::nullopt;
     const Eigen::Matrix3d inverse = lu.inverse();
-    QJsonArray result;
+    Covariance result;
     for (int i = 0; i < 9; ++i)
-        result.append(inverse(i / 3, i % 3));
+        result[std::size_t(i)] = inverse(i / 3, i % 3);
+    return result;
+}
+
+ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
+    const vectorlib::MapBuilder &builder = tracker.builder;
+    const ScanReport &report = builder.report();
+    const vectorlib::Match &match = builder.match();
+    const vectorlib::Twist2D &twist = tracker.motion().twist();
+    ScanResult result;
+    result.stamp = scan.data.stamp;
+    result.pose = {poseOf(report.pose),
+                   {twist.vx, twist.vy, twist.omega},
+                   covariance(match),
+                   toText(report.outcome),
+                   scan.number};
+    result.match = {scan.number,
+                    match.accepted,
+                    {},
+                    match.reliability,
+                    match.ambiguity,
+                    match.matchedLength,
+                    match.visibleLength,
+                    match.rms,
+                    {report.segmentMs, report.vectorizeMs, report.matchMs, report.mapMs}};
+    for (const vectorlib::CorrespondencePair &p : match.pairs)
+        result.match.pairs.push_back({builder.candidates()[size_t(p.fixed)], p.moving});
+    const vectorlib::Transformation2D pose(report.pose);
+    for (const vectorlib::EdgeRaw2D &edge : builder.edges()) {
+        const vectorlib::LineSegment2D<double> s = pose * edge.segment;
+        result.segments.push_back({s.begin().x, s.begin().y, s.end().x, s.end().y});
+    }
     return result;
 }
 
@@ -61,22 +87,16 @@ ScanMatcher::ScanMatcher()
 }
 
 void ScanMatcher::declareTopics() {
-    addTopic(Topic("pose", "Pose of the sensor after each scan, in the map's frame: x, y (m), theta (rad), "
-                           "velocity, covariance, outcome matched, lost or skipped")
-                 .schema({{"type", "object"}}));
-    addTopic(Topic("segments", "Line segments of the last scan in the map's frame, [x1, y1, x2, y2] each (m)")
-                 .schema({{"type", "array"}}));
+    addTopic(Topic("pose", "Where the sensor is after each scan, in the map's frame").carries<PoseMessage>());
     addTopic(
-        Topic("map",
-              "Changes of the map: edges (new or altered), removed (ids), cleared. Begins with the full "
-              "map. A step of more than 1 in revision means that changes were missed: subscribe again or "
-              "call map.get")
-            .schema({{"type", "object"}})
-            .snapshotParts([this](qint64 &cursor) { return QJsonValue(mirror.part(cursor)); }));
-    addTopic(Topic("match",
-                   "How the last scan was matched: correspondences [map edge, segment], reliability, "
-                   "ambiguity (m^2), matched and visible length (m), milliseconds of each step")
-                 .schema({{"type", "object"}}));
+        Topic("segments", "Line segments of the last scan in the map's frame: x1, y1, x2, y2 of each (m)")
+            .carries<SegmentsMessage>());
+    addTopic(Topic("map", "Changes of the map. Begins with the full map. A step of more than 1 in revision "
+                          "means that changes were missed: subscribe again or call map.get")
+                 .carries<MapMessage>()
+                 .snapshotParts([this](qint64 &cursor) { return mirror.part(cursor); }));
+    addTopic(Topic("match", "How the last scan was matched").carries<MatchMessage>());
+    addTopic(Topic("scan", "What pose, match and segments say of a scan, together").carries<ScanResult>());
 }
 
 Result<void> ScanMatcher::start() {
@@ -154,7 +174,7 @@ void ScanMatcher::connectToOdometry() {
 void ScanMatcher::takeScan(const TopicUpdate &update) {
     lastScan = monotonicNow();
     droppedBySource = update.dropped;
-    auto parsed = readScan(update.data.toObject());
+    auto parsed = readScan(update.data, unknownFields);
     if (!parsed) {
         if (badScans++ == 0)
             logWarning("source", parsed.error().message);
@@ -169,40 +189,10 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
 }
 
 ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &scan) {
-    const vectorlib::MapBuilder &builder = tracker.builder;
-    const ScanReport &report = builder.report();
-    const vectorlib::Match &match = builder.match();
-    const vectorlib::Twist2D &twist = tracker.motion().twist();
     Outcome o;
-    o.stamp = scan.data.stamp;
-    o.outcome = report.outcome;
+    o.result = resultOf(tracker, scan);
+    o.outcome = tracker.builder.report().outcome;
     o.counts = tracker.counts();
-    o.pose = toJson(report.pose);
-    o.pose["twist"] = QJsonObject{{"vx", twist.vx}, {"vy", twist.vy}, {"omega", twist.omega}};
-    o.pose["covariance"] = covariance(match);
-    o.pose["outcome"] = toText(report.outcome);
-    o.pose["scan"] = qint64(scan.number);
-
-    QJsonArray pairs;
-    for (const vectorlib::CorrespondencePair &p : match.pairs)
-        pairs.append(QJsonArray{builder.candidates()[size_t(p.fixed)], p.moving});
-    o.match = {{"scan", qint64(scan.number)},
-               {"accepted", match.accepted},
-               {"pairs", pairs},
-               {"reliability", match.reliability},
-               {"ambiguity", match.ambiguity},
-               {"matched_length", match.matchedLength},
-               {"visible_length", match.visibleLength},
-               {"rms", match.rms},
-               {"ms", QJsonObject{{"segment", report.segmentMs},
-                                  {"vectorize", report.vectorizeMs},
-                                  {"match", report.matchMs},
-                                  {"map", report.mapMs}}}};
-    const vectorlib::Transformation2D pose(report.pose);
-    for (const vectorlib::EdgeRaw2D &edge : builder.edges()) {
-        const vectorlib::LineSegment2D<double> s = pose * edge.segment;
-        o.segments.append(QJsonArray{s.begin().x, s.begin().y, s.end().x, s.end().y});
-    }
     o.changes = takeChanges(tracker.builder.map);
     return o;
 }
@@ -212,12 +202,14 @@ void ScanMatcher::show(const Outcome &o) {
     lostInARow = o.outcome == ScanReport::Outcome::Lost ? lostInARow + 1 : 0;
     if (lostInARow == 0)
         lastRecovery.reset();
-    mirror.addPose({o.stamp, {o.pose["x"].toDouble(), o.pose["y"].toDouble(), o.pose["theta"].toDouble()}});
-    publish("pose", o.pose, o.stamp);
-    publish("match", o.match, o.stamp);
-    publish("segments", o.segments, o.stamp);
+    const ScanResult &r = o.result;
+    mirror.addPose({r.stamp, {r.pose.pose.x, r.pose.pose.y, r.pose.pose.theta}});
+    publish("scan", r, r.stamp);
+    publish("pose", r.pose, r.stamp);
+    publish("match", r.match, r.stamp);
+    publish("segments", r.segments, r.stamp);
     if (!o.changes.changed.empty() || !o.changes.removed.empty())
-        publish("map", mirror.apply(o.changes), o.stamp);
+        publish("map", mirror.apply(o.changes), r.stamp);
     if (o.recovery)
         showRecovery(*o.recovery);
 }
@@ -238,28 +230,30 @@ void ScanMatcher::updateHealth() {
     const quint64 dropped = droppedBySource + (worker ? worker->dropped() : 0);
     health().set("queue", dropped ? HealthLevel::Warn : HealthLevel::Ok,
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
-                 matcherState());
+                 asJson(matcherState()).toObject());
     updateTrackingHealth();
 }
 
-QJsonObject ScanMatcher::matcherState() const {
-    const double scans = std::max<double>(1, double(counts.scans));
-    return {{"active", active},
-            {"mode", mapping ? "mapping" : "localization"},
-            {"scans", qint64(counts.scans)},
-            {"matched", qint64(counts.matched)},
-            {"lost", qint64(counts.lost)},
-            {"skipped", qint64(counts.skipped)},
-            {"waiting", qint64(worker ? worker->waiting() : 0)},
-            {"dropped", qint64(worker ? worker->dropped() : 0)},
-            {"dropped_by_source", qint64(droppedBySource)},
-            {"refused", qint64(badScans)},
-            {"recoveries", qint64(recoveries)},
-            {"recovered", qint64(recovered)},
-            {"by_odometry", qint64(counts.byOdometry)},
-            {"odometry", odometry.state()},
-            {"ms_per_scan", counts.totalMs() / scans},
-            {"map_segments", qint64(mirror.size())}};
+MatcherState ScanMatcher::matcherState() const {
+    MatcherState state;
+    state.active = active;
+    state.mode = mapping ? "mapping" : "localization";
+    state.scans = quint64(counts.scans);
+    state.matched = quint64(counts.matched);
+    state.lost = quint64(counts.lost);
+    state.skipped = quint64(counts.skipped);
+    state.waiting = worker ? worker->waiting() : 0;
+    state.dropped = worker ? worker->dropped() : 0;
+    state.droppedBySource = droppedBySource;
+    state.refused = badScans;
+    state.unknownFields = unknownFields;
+    state.recoveries = recoveries;
+    state.recovered = recovered;
+    state.byOdometry = quint64(counts.byOdometry);
+    state.odometry = odometry.state();
+    state.msPerScan = counts.totalMs() / std::max<double>(1, double(counts.scans));
+    state.mapSegments = mirror.size();
+    return state;
 }
 
 } // namespace hermes

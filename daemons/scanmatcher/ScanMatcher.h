@@ -5,6 +5,7 @@
 #include "daemons/scanmatcher/MapMirror.h"
 #include "daemons/scanmatcher/OdometrySource.h"
 #include "daemons/scanmatcher/Worker.h"
+#include "protocol/messages/Matching.h"
 
 #include <QThreadPool>
 #include <atomic>
@@ -27,10 +28,8 @@ protected:
 private:
     /// What the worker's thread hands over after a scan.
     struct Outcome {
-        QJsonObject pose, match;
-        QJsonArray segments;
+        ScanResult result;
         MapChanges changes;
-        double stamp = 0;
         vectorlib::ScanTrackerCounts counts;
         vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
         std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
@@ -61,7 +60,7 @@ private:
     void showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
     QString absolutePath(const QString &path) const;
-    QJsonObject matcherState() const;
+    MatcherState matcherState() const;
 
     std::atomic<int> filesUnderWay{0};
     QThreadPool files; ///< one thread, which writes maps: a disk may take its time
@@ -78,7 +77,7 @@ private:
     quint64 recoveries = 0,
             recovered = 0; ///< searches of the whole map after lost scans, and their successes
     std::optional<vectorlib::Relocalized> lastRecovery; ///< since tracking was lost
-    quint64 badScans = 0, droppedBySource = 0;
+    quint64 badScans = 0, droppedBySource = 0, unknownFields = 0;
     double lastScan = 0; // monotonic
     QString lastBadScan;
 };

@@ -196,7 +196,7 @@ void SerialLogger::tick() {
     for (const auto &port : ports_)
         port->tick(elapsed_s);
     updateHealth();
-    publish("serial", state());
+    publish("serial", [this] { return state(); });
 }
 
 QJsonObject SerialLogger::state() const {

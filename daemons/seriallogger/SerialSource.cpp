@@ -76,7 +76,7 @@ void SerialLogger::replayEnded(const Result<void> &result) {
         logError("source", sourceError_);
     }
     updateHealth();
-    publish("serial", state());
+    publish("serial", [this] { return state(); });
 }
 
 Result<QJsonValue> SerialLogger::pause(bool paused) {

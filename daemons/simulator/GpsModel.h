@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/Twist.h"
+#include "protocol/messages/Motion.h"
 #include "protocol/nmea/Gga.h"
 #include "protocol/nmea/Rmc.h"
 #include "protocol/velodyne/PositionPacket.h"

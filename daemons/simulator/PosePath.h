@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/Twist.h"
 #include "common/world/World.h"
+#include "protocol/messages/Motion.h"
 #include "vectorlib/geometry/Pose2D.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/Twist.h"
+#include "protocol/messages/Motion.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
 

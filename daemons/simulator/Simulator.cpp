@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/world/WorldFile.h"
 #include "daemons/simulator/FaultNames.h"
+#include "protocol/messages/Motion.h"
 #include "vectorlib/geometry/Angle.h"
 
 namespace hermes {
@@ -11,18 +12,14 @@ namespace {
 
 constexpr auto healthItem = "lidar";
 
-QJsonObject toJson(const Simulation::Truth &truth) {
-    return {{"stamp", double(truth.stamp_ns) * 1e-9},
-            {"x", truth.pose.x},
-            {"y", truth.pose.y},
-            {"theta", truth.pose.theta},
-            {"vx", truth.twist.vx},
-            {"vy", truth.twist.vy},
-            {"omega", truth.twist.omega},
-            {"progress", truth.progress},
-            {"driving", truth.driving},
-            {"finished", truth.finished},
-            {"touching", truth.touching}};
+TruthMessage messageOf(const Simulation::Truth &truth) {
+    return {double(truth.stamp_ns) * 1e-9,
+            {truth.pose.x, truth.pose.y, truth.pose.theta},
+            truth.twist,
+            truth.progress,
+            truth.driving,
+            truth.finished,
+            truth.touching};
 }
 
 QString toText(LidarFault::Kind kind) {
@@ -70,12 +67,7 @@ Simulator::Simulator()
 }
 
 void Simulator::declareTopics() {
-    addTopic(
-        Topic("truth",
-              "Where the robot truly is, 50 times a second on the clock of the lidar's stamps: stamp (s), "
-              "x, y (m), theta (rad), vx, vy (m/s, the robot's frame), omega (rad/s), progress along the "
-              "path (0 to 1), driving, finished, touching a wall")
-            .schema({{"type", "object"}}));
+    addTopic(Topic("truth", "Where the robot truly is, 50 times a second").carries<TruthMessage>());
 }
 
 void Simulator::declareCommands() {
@@ -317,7 +309,8 @@ QJsonObject Simulator::state() {
 
 void Simulator::publishTruth(const Simulation::Truth &truth) {
     if (hasSubscribers("truth"))
-        publish("truth", toJson(truth), double(truth.stamp_ns) * 1e-9);
+        publish(
+            "truth", [&] { return messageOf(truth); }, double(truth.stamp_ns) * 1e-9);
 }
 
 void Simulator::updateHealth() {

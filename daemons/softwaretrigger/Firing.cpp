@@ -1,7 +1,7 @@
 #include "daemons/softwaretrigger/Firing.h"
 
 #include "daemons/softwaretrigger/FiringLog.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 #include "common/interface/InterfaceRegistry.h"
 #include "daemons/softwaretrigger/Definition.h"
 #include "daemons/softwaretrigger/GpioLines.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonTextWriter.h"
 
 #include <QHash>
 #include <QJsonArray>
@@ -68,8 +68,10 @@ void Checker::checkMembers(const QString &base, const QJsonObject &object, const
 }
 
 void Checker::checkTrigger(const QJsonObject &trigger) {
-    if (const auto path = findNonFinite(trigger))
-        return refuse(*path, "NaN or infinite", "a finite number");
+    JsonTextWriter writer;
+    writer.json(trigger);
+    if (writer.hasRefused())
+        return refuse(writer.refused(), "NaN or infinite", "a finite number");
     checkWhen(trigger.value("when").toObject());
     const QJsonArray actions = trigger.value("actions").toArray();
     for (int i = 0; i < actions.size(); ++i)

@@ -70,12 +70,12 @@ QJsonObject TravelWatch::state() const {
 }
 
 QString TravelWatch::take(const TopicUpdate &update) {
-    const auto passed = travel_.add(update.data);
+    const auto passed = travel_.add(update.json());
     if (!passed)
         return passed.error().message;
     if (*passed)
         fire(update, (*passed)->missed,
-             {{"n", double((*passed)->n)}, {"travelled", travel_.total()}, {"pose", update.data["pose"]}});
+             {{"n", double((*passed)->n)}, {"travelled", travel_.total()}, {"pose", update.json()["pose"]}});
     return {};
 }
 
@@ -85,8 +85,8 @@ ConditionWatch::ConditionWatch(const TriggerDefinition &definition, Client &clie
     , condition_(path_, definition.text("op"), definition.when.value("value")) {}
 
 QString ConditionWatch::take(const TopicUpdate &update) {
-    const auto becomesTrue = condition_.becomesTrue(update.data);
-    const QJsonValue value = lookUp(update.data, path_);
+    const auto becomesTrue = condition_.becomesTrue(update.json());
+    const QJsonValue value = lookUp(update.json(), path_);
     if (!becomesTrue)
         return value.isUndefined() ? "there is no " + path_
                                    : QString("%1 is %2, not a number").arg(path_, shown(value));

@@ -245,7 +245,7 @@ void Supervisor::update() {
         else
             health().set(item, HealthLevel::Ok, toString(state));
     }
-    publish("processes", list());
+    publish("processes", [this] { return list(); });
 }
 
 void Supervisor::stop() {

@@ -1,6 +1,7 @@
 // What the Velodyne logger offers: its settings, topics and commands.
 #include "common/recording/ReplayCommands.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
+#include "protocol/messages/Turns.h"
 
 namespace hermes {
 
@@ -87,20 +88,11 @@ void VelodyneLogger::declareSettings() {
 }
 
 void VelodyneLogger::declareTopics() {
-    addTopic(
-        Topic("scan2d",
-              "Each turn of one laser: turn, stamp (s, of its first firing), duration_s, partial (first, "
-              "last or cut), rays (fired, with or without a return), lost_packets, frame, laser, and of its "
-              "points, counter-clockwise: x, y (m, "
-              "sensor's frame: x ahead, y left), t (s after stamp), intensity (0 to 255)")
-            .schema({{"type", "object"}}));
-    addTopic(
-        Topic(
-            "cloud",
-            "Each turn of all lasers, thinned by the settings cloud.*: turn, stamp (s, of its first "
-            "firing), duration_s, partial, rays, lost_packets, frame, model, and of its points, in the order "
-            "of measuring: x, y, z (m, sensor's frame: x ahead, y left, z up), laser, intensity")
-            .schema({{"type", "object"}}));
+    addTopic(Topic("scan2d", "Each turn of one laser: its points, counter-clockwise, in the sensor's frame")
+                 .carries<ScanMessage>());
+    addTopic(Topic("cloud",
+                   "Each turn of all lasers, thinned by the settings cloud.*: points in the sensor's frame")
+                 .carries<CloudMessage>());
     addTopic(Topic("lidar", "Once a second: source, model, rpm, packet_rate_hz, receive_buffer_bytes "
                             "(granted), gps, and since the source "
                             "was opened packets, turns, "
@@ -164,7 +156,8 @@ void VelodyneLogger::declareSourceCommands() {
 void VelodyneLogger::declareRecordCommands() {
     for (const Command &command : recording_.commands())
         addCommand(command);
-    connect(&recording_, &Recording::changed, this, [this] { publish("lidar", lidarState()); });
+    connect(&recording_, &Recording::changed, this,
+            [this] { publish("lidar", [this] { return lidarState(); }); });
 }
 
 } // namespace hermes

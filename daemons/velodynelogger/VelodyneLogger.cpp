@@ -198,7 +198,7 @@ void VelodyneLogger::replayEnded(QString error) {
         logError("source", error);
     setState(DaemonState::Ready);
     updateHealth();
-    publish("lidar", lidarState());
+    publish("lidar", [this] { return lidarState(); });
 }
 
 Result<QJsonValue> VelodyneLogger::seek(double time_s) {
@@ -274,10 +274,12 @@ void VelodyneLogger::publishTurns() {
     const LidarFeed::Turn turn = feed_.takeTurn(), cloud = feed_.takeCloud();
     if (turn || cloud) {
         sincePublished_.start();
-        if (turn && hasSubscribers("scan2d"))
-            publish("scan2d", toScanMessage(*turn), double(turn->begin_ns) * 1e-9);
-        if (cloud && hasSubscribers("cloud"))
-            publish("cloud", toCloudMessage(*cloud), double(cloud->begin_ns) * 1e-9);
+        if (turn)
+            publish(
+                "scan2d", [&] { return toScanMessage(*turn); }, double(turn->begin_ns) * 1e-9);
+        if (cloud)
+            publish(
+                "cloud", [&] { return toCloudMessage(*cloud); }, double(cloud->begin_ns) * 1e-9);
         retry_.start(0);
     } else if (replayEnd_) {
         replayEnded(*replayEnd_);
@@ -300,7 +302,7 @@ void VelodyneLogger::tick() {
     }
     updateClouds();
     updateHealth();
-    publish("lidar", lidarState());
+    publish("lidar", [this] { return lidarState(); });
 }
 
 } // namespace hermes

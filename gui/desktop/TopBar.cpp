@@ -19,7 +19,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     , fleet_(fleet)
     , drive_(drive)
     , powerFeed_(
-          fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
+          fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.json()); }, this)
     , robots_(new QComboBox)
     , link_(new PlainLabel)
     , control_(new PlainLabel)

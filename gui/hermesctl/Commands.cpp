@@ -5,7 +5,7 @@
 #include "common/daemon/CommandLine.h"
 #include "common/settings/DottedPath.h"
 #include "gui/hermesctl/Markdown.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QDateTime>
 #include <QEventLoop>
@@ -164,7 +164,7 @@ Result<void> showLog(Client &client, const Arguments &arguments) {
     QEventLoop loop;
     QObject::connect(&client, &Client::disconnected, &loop, &QEventLoop::quit);
     client.subscribe(QStringLiteral("log"), {{QStringLiteral("queue"), 1000}},
-                     [](const TopicUpdate &update) { printLine(logLine(update.data)); });
+                     [](const TopicUpdate &update) { printLine(logLine(update.json())); });
     loop.exec();
     return Error(ErrorCode::Disconnected, client.lastError());
 }

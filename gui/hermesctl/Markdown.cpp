@@ -1,7 +1,7 @@
 #include "gui/hermesctl/Markdown.h"
 
 #include "common/schema/SchemaText.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QJsonArray>
 #include <QStringList>

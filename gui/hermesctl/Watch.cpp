@@ -1,6 +1,6 @@
 #include "common/settings/DottedPath.h"
 #include "gui/hermesctl/Commands.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QEventLoop>
 #include <cstdio>
@@ -23,8 +23,9 @@ QString csvField(const QJsonValue &value) {
 class CsvPrinter {
 public:
     void print(const TopicUpdate &update) {
-        const QJsonObject row = update.data.isObject() ? update.data.toObject()
-                                                       : QJsonObject{{QStringLiteral("data"), update.data}};
+        const QJsonObject row = update.json().isObject()
+                                    ? update.json().toObject()
+                                    : QJsonObject{{QStringLiteral("data"), update.json()}};
         if (columns.isEmpty()) {
             columns = leafPaths(row);
             printLine(QStringLiteral("stamp,seq,dropped,") + columns.join(QLatin1Char(',')));
@@ -44,7 +45,7 @@ void printJson(const TopicUpdate &update) {
     printLine(QString::fromUtf8(compactJson(QJsonObject{{QStringLiteral("stamp"), update.stamp},
                                                         {QStringLiteral("seq"), double(update.seq)},
                                                         {QStringLiteral("dropped"), double(update.dropped)},
-                                                        {QStringLiteral("data"), update.data}})));
+                                                        {QStringLiteral("data"), update.json()}})));
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
 #include "gui/hermesctl/Commands.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QCoreApplication>
 #include <cstdio>

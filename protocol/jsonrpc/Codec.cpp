@@ -1,7 +1,6 @@
 #include "protocol/jsonrpc/Codec.h"
 
 #include "protocol/jsonrpc/JsonCodec.h"
-#include "protocol/jsonrpc/JsonText.h"
 
 namespace hermes {
 namespace {
@@ -27,6 +26,23 @@ std::vector<CodecItem> Codec::feed(const QByteArray &bytes) {
     return items;
 }
 
+CodecItem Codec::itemOf(const WireValue &value) {
+    const WireView params = value["params"];
+    const bool isTopic = value["method"].text() == QStringLiteral("topic");
+    const WireView data = isTopic ? params["data"] : WireView();
+    if (data.kind() == WireView::Kind::Undefined)
+        return {value.toJson(), std::nullopt, {}};
+    QJsonObject message, rest;
+    params.forEachMember([&](const QString &name, WireView member) {
+        if (name != QStringLiteral("data"))
+            rest.insert(name, member.toJson());
+    });
+    value.forEachMember([&](const QString &name, WireView member) {
+        message.insert(name, name == QStringLiteral("params") ? QJsonValue(rest) : member.toJson());
+    });
+    return {message, std::nullopt, WireValue(value, data)};
+}
+
 void Codec::count(const CodecItem &item) {
     if (!item.error)
         ++counts.messagesIn;
@@ -36,15 +52,43 @@ void Codec::count(const CodecItem &item) {
         ++counts.malformed;
 }
 
-EncodedFrame Codec::encode(const QJsonValue &message) {
-    if (const auto path = findNonFinite(message)) {
+EncodedFrame Codec::encode(const Outgoing &message) {
+    std::optional<QString> path;
+    const QByteArray bytes = frame(message, path);
+    if (path) {
         ++counts.refused;
         return {{},
                 RpcError(ErrorCode::InternalError,
                          QStringLiteral("cannot send %1: not a finite number").arg(*path))};
     }
     ++counts.messagesOut;
-    return {frame(message), std::nullopt};
+    return {bytes, std::nullopt};
+}
+
+EncodedFrame Codec::encodeTopic(const QString &topic, quint64 seq, double stamp, const Outgoing &data) {
+    return encode(Outgoing::writtenBy([&](WireWriter &out) {
+        out.beginObject();
+        out.key(QStringLiteral("jsonrpc"));
+        out.text(QStringLiteral("2.0"));
+        out.key(QStringLiteral("method"));
+        out.text(QStringLiteral("topic"));
+        out.key(QStringLiteral("params"));
+        out.beginObject();
+        out.key(QStringLiteral("topic"));
+        out.text(topic);
+        out.key(QStringLiteral("seq"));
+        out.integer(qint64(seq));
+        out.key(QStringLiteral("stamp"));
+        out.number(stamp);
+        out.key(QStringLiteral("data"));
+        data.write(out);
+        if (out.hasRefused()) {
+            out.within(QStringLiteral("data"));
+            return out.within(QStringLiteral("params"));
+        }
+        out.endObject();
+        out.endObject();
+    }));
 }
 
 std::unique_ptr<Codec> makeCodec(const QString &name) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "protocol/jsonrpc/RpcError.h"
+#include "protocol/wire/Outgoing.h"
 
 #include <QByteArray>
 #include <QJsonValue>
@@ -15,6 +16,9 @@ namespace hermes {
 struct CodecItem {
     QJsonValue message{QJsonValue::Undefined};
     std::optional<RpcError> error;
+    /// Of a topic's notification params.data, which is left out of message: it may be large, and its reader
+    /// knows what to make of it.
+    WireValue data;
 };
 
 /// One frame as it came, not yet read; or the error that stands in place of one that was not kept.
@@ -58,7 +62,9 @@ public:
     virtual bool isMidFrame() const = 0;
 
     /// The message as one frame. A number that is NaN or infinite is an error that names its path.
-    EncodedFrame encode(const QJsonValue &message);
+    EncodedFrame encode(const Outgoing &message);
+    /// The notification of a topic; its params come last, so that forSubscription() can add to them.
+    EncodedFrame encodeTopic(const QString &topic, quint64 seq, double stamp, const Outgoing &data);
     /// Frames of single replies become the pieces of one frame, that of a batch.
     virtual void joinBatch(std::vector<QByteArray> &frames) const = 0;
     /// The frame of a notification with two more members of its params, whose content one frame has for all
@@ -78,7 +84,9 @@ protected:
     explicit Codec(int frameLimitBytes)
         : limit(frameLimitBytes) {}
 
-    virtual QByteArray frame(const QJsonValue &message) = 0;
+    static CodecItem itemOf(const WireValue &value);
+    /// Writes a frame; path: of the number that cannot be written.
+    virtual QByteArray frame(const Outgoing &message, std::optional<QString> &path) = 0;
 
     CodecCounters counts;
 

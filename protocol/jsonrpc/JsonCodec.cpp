@@ -1,6 +1,6 @@
 #include "protocol/jsonrpc/JsonCodec.h"
 
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonTextWriter.h"
 
 #include <cstring>
 
@@ -55,13 +55,14 @@ void JsonCodec::finishLine(std::vector<CodecFrame> &frames) {
 
 CodecItem JsonCodec::read(const CodecFrame &frame) const {
     if (frame.error)
-        return {QJsonValue::Undefined, frame.error};
-    JsonTextError error;
-    if (const auto value = parseJson(frame.bytes, &error))
-        return {*value, std::nullopt};
+        return {QJsonValue::Undefined, frame.error, {}};
+    WireError error;
+    if (const auto value = WireValue::parse(frame.bytes, &error))
+        return itemOf(*value);
     return {QJsonValue::Undefined,
             RpcError(ErrorCode::ParseError,
-                     QStringLiteral("parse error at byte %1: %2").arg(error.offset).arg(error.message))};
+                     QStringLiteral("parse error at byte %1: %2").arg(error.offset).arg(error.message)),
+            {}};
 }
 
 void JsonCodec::reset() {
@@ -87,8 +88,12 @@ QByteArray JsonCodec::forSubscription(const QByteArray &notification, quint64 su
     return frame.append(",\"dropped\":").append(QByteArray::number(dropped)).append(end);
 }
 
-QByteArray JsonCodec::frame(const QJsonValue &message) {
-    return compactJson(message) + '\n';
+QByteArray JsonCodec::frame(const Outgoing &message, std::optional<QString> &path) {
+    JsonTextWriter writer;
+    message.write(writer);
+    if (writer.hasRefused())
+        path = writer.refused();
+    return writer.take().append('\n');
 }
 
 } // namespace hermes

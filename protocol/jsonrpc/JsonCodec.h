@@ -22,7 +22,7 @@ public:
                                quint64 dropped) const override;
 
 protected:
-    QByteArray frame(const QJsonValue &message) override;
+    QByteArray frame(const Outgoing &message, std::optional<QString> &path) override;
 
 private:
     void append(const char *bytes, int size, std::vector<CodecFrame> &frames);

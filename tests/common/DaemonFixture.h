@@ -2,7 +2,7 @@
 
 #include "common/Log.h"
 #include "common/daemon/Daemon.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QTcpSocket>
 #include <QtTest>

@@ -119,7 +119,7 @@ void TestClient::reconnectsAndSubscribesAgain() {
     QTRY_VERIFY(daemon->hasSubscribers("numbers"));
     daemon->publish("numbers", 2);
     QTRY_COMPARE(updates.size(), size_t(2));
-    QCOMPARE(updates[1].data, QJsonValue(2));
+    QCOMPARE(updates[1].json(), QJsonValue(2));
     QCOMPARE(updates[1].handle, handle);
     client.unsubscribe(handle);
     QTRY_VERIFY(!daemon->hasSubscribers("numbers"));

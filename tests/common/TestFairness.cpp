@@ -1,7 +1,7 @@
 // One client may not starve another, nor fill a daemon with work.
 #include "common/daemon/Daemon.h"
 #include "protocol/jsonrpc/JsonRpc.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 #include "tests/support/Patience.h"
 
 #include <QTcpSocket>

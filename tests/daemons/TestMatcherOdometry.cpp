@@ -81,8 +81,8 @@ int TestMatcherOdometry::zigzagLost(bool byOdometry, int scans) {
     const Pose2D start = zigzag(0);
     call("pose.set", {{"x", start.x}, {"y", start.y}, {"theta", start.theta}});
     QJsonObject last;
-    const int handle = client_->subscribe("pose", {{"queue", 100}},
-                                          [&](const TopicUpdate &update) { last = update.data.toObject(); });
+    const int handle = client_->subscribe(
+        "pose", {{"queue", 100}}, [&](const TopicUpdate &update) { last = update.json().toObject(); });
     for (int i = 0; i < scans; ++i) {
         Transformation2D motion;
         if (i > 0)

@@ -18,6 +18,16 @@ QJsonObject message() {
             {"covariance", QJsonArray{1, 0, 0, 0, 2, 0, 0, 0, 3}}};
 }
 
+Result<vectorlib::OdometrySample> odometryOf(const QJsonObject &data, double stamp) {
+    quint64 unknown = 0;
+    return readOdometry(WireValue(data), stamp, unknown);
+}
+
+Result<Scan> scanOf(const QJsonObject &data) {
+    quint64 unknown = 0;
+    return readScan(WireValue(data), unknown);
+}
+
 QJsonObject scanMessage() {
     return {{"stamp", start}, {"turn", 7}, {"x", QJsonArray{1, 2}}, {"y", QJsonArray{3, 4}}};
 }
@@ -33,10 +43,11 @@ private Q_SLOTS:
     void readsScans_data();
     void readsScans();
     void readsRays();
+    void countsWhatItDoesNotKnow();
 };
 
 void TestReadMessages::readsOdometry() {
-    const auto sample = readOdometry(message(), start);
+    const auto sample = odometryOf(message(), start);
     QVERIFY(sample.ok());
     QCOMPARE(sample->stamp, start);
     QCOMPARE(sample->pose.theta, 3.0);
@@ -49,16 +60,16 @@ void TestReadMessages::refusesOdometry_data() {
     QTest::addColumn<QJsonValue>("value");
     QTest::addColumn<QString>("error");
     const QJsonValue none(QJsonValue::Null);
-    QTest::newRow("no pose") << "pose" << none << "member pose.x: found no number";
+    QTest::newRow("no pose") << "pose" << none << "member pose: found null, expected an object";
     QTest::newRow("pose of text") << "pose" << QJsonValue(QJsonObject{{"x", "1"}}) << "member pose.x";
     QTest::newRow("no heading") << "pose" << QJsonValue(QJsonObject{{"x", 1}, {"y", 1}, {"theta", none}})
-                                << "member pose.theta: found no number";
+                                << "member pose.theta: found null, expected a number";
     QTest::newRow("far beyond") << "pose" << QJsonValue(QJsonObject{{"x", 1e300}, {"y", 1}, {"theta", 1}})
                                 << "found 1e+300, expected a number from -1e+10 to 1e+10";
-    QTest::newRow("no twist") << "twist" << none << "member twist.vx";
-    QTest::newRow("no covariance") << "covariance" << none << "found 0 numbers, expected 9";
+    QTest::newRow("no twist") << "twist" << none << "member twist: found null";
+    QTest::newRow("no covariance") << "covariance" << none << "found null, expected an array of 9";
     QTest::newRow("negative variance") << "covariance" << QJsonValue(QJsonArray{1, 0, 0, 0, 1, 0, 0, 0, -1})
-                                       << "member covariance[8]: found -1, expected a number from 0";
+                                       << "member covariance.8: found -1, expected a variance";
 }
 
 void TestReadMessages::refusesOdometry() {
@@ -67,11 +78,11 @@ void TestReadMessages::refusesOdometry() {
     QFETCH(QString, error);
     QJsonObject data = message();
     data[member] = value;
-    const auto sample = readOdometry(data, start);
+    const auto sample = odometryOf(data, start);
     QVERIFY(!sample.ok());
     QVERIFY2(sample.error().message.contains(error), qPrintable(sample.error().message));
     for (const double stamp : {std::nan(""), -1.0, 1e300})
-        QVERIFY(!readOdometry(message(), stamp).ok());
+        QVERIFY(!odometryOf(message(), stamp).ok());
 }
 
 void TestReadMessages::readsScans_data() {
@@ -83,13 +94,13 @@ void TestReadMessages::readsScans_data() {
     QTest::newRow("no stamp") << QJsonObject{{"x", two}, {"y", two}} << "stamp";
     QTest::newRow("no x") << QJsonObject{{"stamp", 1}, {"y", two}} << "member x: found nothing";
     QTest::newRow("fewer y") << QJsonObject{{"stamp", 1}, {"x", two}, {"y", one}}
-                             << "found 1 numbers, expected 2";
+                             << "member y: found an array of 1, expected 2";
     QTest::newRow("null in x") << QJsonObject{{"stamp", 1},
                                               {"x", QJsonArray{1, QJsonValue::Null}},
                                               {"y", two}}
-                               << "element 1";
+                               << "member x.1: found null, expected a number";
     QTest::newRow("too large") << QJsonObject{{"stamp", 1}, {"x", QJsonArray{1, 1e300}}, {"y", two}}
-                               << "element 1";
+                               << "member x.1: found 1e+300, expected a number";
     QTest::newRow("t of another size")
         << QJsonObject{{"stamp", 1}, {"x", two}, {"y", two}, {"t", one}} << "member t";
 }
@@ -97,7 +108,7 @@ void TestReadMessages::readsScans_data() {
 void TestReadMessages::readsScans() {
     QFETCH(QJsonObject, data);
     QFETCH(QString, error);
-    const auto scan = readScan(data);
+    const auto scan = scanOf(data);
     QCOMPARE(scan.ok(), error.isEmpty());
     if (!scan)
         QVERIFY2(scan.error().message.contains(error), qPrintable(scan.error().message));
@@ -105,14 +116,27 @@ void TestReadMessages::readsScans() {
 
 void TestReadMessages::readsRays() {
     QJsonObject data = scanMessage();
-    QCOMPARE(readScan(data)->data.rays, size_t(2)); // a logger that does not tell: one for each point
+    QCOMPARE(scanOf(data)->data.rays, size_t(2)); // a logger that does not tell: one for each point
     data["rays"] = 1800;
-    QCOMPARE(readScan(data)->data.rays, size_t(1800));
+    QCOMPARE(scanOf(data)->data.rays, size_t(1800));
     for (const QJsonValue &rays : {QJsonValue(-1), QJsonValue(1e9), QJsonValue("many"), QJsonValue()}) {
         data["rays"] = rays;
-        QVERIFY(!readScan(data).ok());
-        QVERIFY(readScan(data).error().message.contains("member rays"));
+        QVERIFY(!scanOf(data).ok());
+        QVERIFY(scanOf(data).error().message.contains("member rays"));
     }
+}
+
+void TestReadMessages::countsWhatItDoesNotKnow() {
+    QJsonObject data = scanMessage();
+    data["colour"] = "red";
+    data["shape"] = QJsonArray{1, 2};
+    quint64 unknown = 0;
+    QVERIFY(readScan(WireValue(data), unknown).ok());
+    QCOMPARE(unknown, quint64(2));
+    data = message();
+    data["twist"] = QJsonObject{{"vx", 0}, {"vy", 0}, {"omega", 0}, {"vz", 0}};
+    QVERIFY(readOdometry(WireValue(data), start, unknown).ok());
+    QCOMPARE(unknown, quint64(3));
 }
 
 QTEST_GUILESS_MAIN(TestReadMessages)

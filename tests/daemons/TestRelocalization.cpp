@@ -156,7 +156,7 @@ void TestRelocalization::findsTheKidnappedRobot() {
     for (const char *member : {"ambiguity", "discrepancy", "matched_share", "score", "ms"})
         QVERIFY2(found[member].isDouble(), member);
     QJsonObject next;
-    client_->subscribe("pose", {}, [&](const TopicUpdate &update) { next = update.data.toObject(); });
+    client_->subscribe("pose", {}, [&](const TopicUpdate &update) { next = update.json().toObject(); });
     QTRY_VERIFY(matcher->hasSubscribers("pose"));
     const Pose2D then{pose.x + 0.05, pose.y, pose.theta + 0.02};
     scan(pillars(), then);

@@ -39,7 +39,7 @@ void TestScanMatcher::tracksAndMaps() {
     call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
     QJsonObject last;
     client_->subscribe("pose", {{"queue", 100}},
-                       [&](const TopicUpdate &update) { last = update.data.toObject(); });
+                       [&](const TopicUpdate &update) { last = update.json().toObject(); });
     QTRY_VERIFY(matcher->hasSubscribers("pose"));
     drive(0, 40);
     QTRY_COMPARE(last["scan"].toInt(), 39);
@@ -168,7 +168,7 @@ void TestScanMatcher::mapTopicBeginsWithTheFullMap() {
     drive(0, 5);
     QVector<QJsonObject> updates;
     client_->subscribe("map", {{"queue", 100}},
-                       [&](const TopicUpdate &update) { updates.append(update.data.toObject()); });
+                       [&](const TopicUpdate &update) { updates.append(update.json().toObject()); });
     QTRY_COMPARE(updates.size(), 1);
     QVERIFY(updates[0]["cleared"].toBool());
     QCOMPARE(updates[0]["edges"].toArray().size(), updates[0]["size"].toInt());

@@ -111,7 +111,7 @@ void TestSerialLogger::showsLines() {
     QTRY_VERIFY(isOpen("dev"));
     QList<QJsonObject> lines;
     client_->subscribe("lines", {{"queue", 100}},
-                       [&](const TopicUpdate &update) { lines << update.data.toObject(); });
+                       [&](const TopicUpdate &update) { lines << update.json().toObject(); });
     QTRY_VERIFY(daemon_->hasSubscribers("lines"));
     device_->write("first\r\nsec");
     QTRY_COMPARE(lines.size(), 1);
@@ -130,7 +130,7 @@ void TestSerialLogger::showsFixes() {
     QTRY_VERIFY(isOpen("gps"));
     QList<QJsonObject> fixes;
     client_->subscribe("fix", {{"queue", 100}},
-                       [&](const TopicUpdate &update) { fixes << update.data.toObject(); });
+                       [&](const TopicUpdate &update) { fixes << update.json().toObject(); });
     QTRY_VERIFY(daemon_->hasSubscribers("fix"));
     device_->write("\xff\xfe$GPRMC,1\r\n" + rmc.left(40));
     device_->write(rmc.mid(40) + gga);
@@ -153,7 +153,7 @@ void TestSerialLogger::theLastFixIsNotHeldBack() {
     QTRY_VERIFY(isOpen("gps"));
     QList<double> late;
     client_->subscribe("fix", {{"queue", 100}}, [&](const TopicUpdate &update) {
-        late << monotonicNow() - update.data.toObject().value("mono").toDouble();
+        late << monotonicNow() - update.json().toObject().value("mono").toDouble();
     });
     QTRY_VERIFY(daemon_->hasSubscribers("fix"));
     device_->write(gga);

@@ -124,8 +124,8 @@ void TestSerialRecording::replaysARecording() {
                         {"view", "none"}}});
     QTRY_VERIFY(isOpen("gps"));
     QJsonArray lines, fixes;
-    client_->subscribe("lines", {{"queue", 100}}, [&](const TopicUpdate &update) { lines << update.data; });
-    client_->subscribe("fix", {{"queue", 100}}, [&](const TopicUpdate &update) { fixes << update.data; });
+    client_->subscribe("lines", {{"queue", 100}}, [&](const TopicUpdate &update) { lines << update.json(); });
+    client_->subscribe("fix", {{"queue", 100}}, [&](const TopicUpdate &update) { fixes << update.json(); });
     QTRY_VERIFY(daemon_->hasSubscribers("lines") && daemon_->hasSubscribers("fix"));
     call("record.start", {{"name", "run"}});
     QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::NotReady)); // not ended

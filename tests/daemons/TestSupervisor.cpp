@@ -108,7 +108,7 @@ void TestSupervisor::killedProcessComesBackWithBackOff() {
     QTRY_COMPARE(stateOf("one"), QString("running"));
     std::map<int, QJsonObject> waits; // by the restarts before: what is told as soon as one waits
     client_->subscribe("processes", {{"queue", 100}}, [&](const TopicUpdate &update) {
-        const QJsonObject told = update.data["processes"][0].toObject();
+        const QJsonObject told = update.json()["processes"][0].toObject();
         if (told["state"].toString() == "waiting")
             waits.try_emplace(told["restarts"].toInt(), told);
     });

@@ -36,7 +36,7 @@ void TestTriggerDistance::init() {
     trigger_->startTrigger();
     odometry_.clear();
     client_->subscribe("odometry", {{"queue", 1000}},
-                       [this](const TopicUpdate &update) { odometry_.push_back(update.data["pose"]); });
+                       [this](const TopicUpdate &update) { odometry_.push_back(update.json()["pose"]); });
     QTRY_VERIFY(!odometry_.empty());
 }
 

@@ -86,7 +86,7 @@ void TestTriggerTiming::init() {
     QVERIFY(client_->waitConnected().ok());
     fired_.clear();
     client_->subscribe("fired", {{"queue", 10000}},
-                       [this](const TopicUpdate &update) { fired_.push_back(update.data); });
+                       [this](const TopicUpdate &update) { fired_.push_back(update.json()); });
 }
 
 void TestTriggerTiming::cleanup() {

@@ -78,7 +78,7 @@ protected:
         fired_.clear();
         connectTo(*trigger_);
         client_->subscribe("fired", {{"queue", 10000}}, [this](const hermes::TopicUpdate &update) {
-            fired_[update.data["id"].toString()].append(update.data);
+            fired_[update.json()["id"].toString()].append(update.json());
         });
     }
     void tearDown() {

@@ -1,5 +1,5 @@
 #include "protocol/jsonrpc/JsonCodec.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QtTest>
 #include <cmath>

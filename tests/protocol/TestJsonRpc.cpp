@@ -1,5 +1,5 @@
 #include "protocol/jsonrpc/JsonRpc.h"
-#include "protocol/jsonrpc/JsonText.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QtTest>
 

@@ -23,7 +23,7 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     , odometry_(
           fleet, "odometry", {{"max_rate_hz", 10}},
           [this](const TopicUpdate &update) {
-              const QJsonValue twist = update.data["twist"];
+              const QJsonValue twist = update.json()["twist"];
               measured_ = {twist["vx"].toDouble(), twist["vy"].toDouble(), twist["omega"].toDouble()};
               if (odometry_.source() == motors_) // no other clock is asked for
                   clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);

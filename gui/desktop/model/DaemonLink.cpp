@@ -41,7 +41,7 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
     timer_.start(pollPeriod);
     client_.connectTo(address);
     subscribe("status", {{"max_rate_hz", 10}},
-              [this](const TopicUpdate &update) { onStatus(update.data.toObject()); });
+              [this](const TopicUpdate &update) { onStatus(update.json().toObject()); });
 }
 
 QString DaemonLink::name() const {

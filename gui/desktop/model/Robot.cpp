@@ -120,8 +120,8 @@ void Robot::followSupervisor(DaemonLink *link) {
     followed_ = link;
     search();
     link->subscribe("processes", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) {
-        name_ = shortLine(update.data["robot"].toString(), longestName);
-        const QJsonArray listed = update.data["processes"].toArray();
+        name_ = shortLine(update.json()["robot"].toString(), longestName);
+        const QJsonArray listed = update.json()["processes"].toArray();
         processes_ = {};
         for (int i = 0; i < listed.size() && i < mostDaemons; ++i)
             processes_.append(listed[i]);

@@ -85,7 +85,7 @@ void TopicSampler::take(const TopicId &topic, const TopicUpdate &update) {
     for (auto &[field, samples] : fields_) {
         if (TopicId(field.address, field.topic) != topic)
             continue;
-        const QJsonValue value = fieldAt(update.data, field.path);
+        const QJsonValue value = fieldAt(update.json(), field.path);
         const double number = value.isBool() ? double(value.toBool()) : value.toDouble(2 * largest);
         if (!(std::abs(number) <= largest && std::abs(update.stamp) <= largest)) {
             ++unusable_;

@@ -79,7 +79,7 @@ void LogPanel::follow(DaemonLink *daemon) {
     followed_.insert(daemon);
     connect(daemon, &QObject::destroyed, this, [this, daemon] { followed_.remove(daemon); });
     daemon->subscribe("log", {{"queue", 100}}, [this, daemon](const TopicUpdate &update) {
-        add(daemon->name(), update.data.toObject());
+        add(daemon->name(), update.json().toObject());
     });
     daemon->call("log.tail", {{"count", 100}}, this, [this, name = daemon->name()](const auto &tail) {
         if (!tail)

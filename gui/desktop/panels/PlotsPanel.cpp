@@ -159,7 +159,7 @@ void PlotsPanel::listFields(DaemonLink *daemon, const QString &topic) {
                 return;
             daemon->unsubscribe(*handle);
             isListing_ = true;
-            const QStringList paths = numericPaths(update.data, mostFields);
+            const QStringList paths = numericPaths(update.json(), mostFields);
             for (QTreeWidgetItemIterator i(tree_); *i; ++i) {
                 QTreeWidgetItem *const item = *i;
                 if (item->data(0, TopicRole) != topic || item->data(0, PathRole).isValid() ||

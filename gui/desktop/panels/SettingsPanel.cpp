@@ -86,7 +86,7 @@ void SettingsPanel::follow(DaemonLink *daemon) {
         connect(daemon, &DaemonLink::ready, this, &SettingsPanel::load);
         connect(daemon, &DaemonLink::changed, this, &SettingsPanel::update);
         handle_ = daemon->subscribe("settings", {{"max_rate_hz", 5}}, [this](const TopicUpdate &update) {
-            form_->setBaseline(update.data.toObject());
+            form_->setBaseline(update.json().toObject());
             this->update();
         });
         if (daemon->isConnected())

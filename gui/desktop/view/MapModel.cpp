@@ -75,21 +75,21 @@ void MapModel::Path::add(const MapPose &pose) {
 MapModel::MapModel(Fleet &fleet, QObject *parent)
     : QObject(parent)
     , maps_(
-          fleet, "map", {{"queue", 100}}, [this](const TopicUpdate &u) { onMap(u.data); }, this)
+          fleet, "map", {{"queue", 100}}, [this](const TopicUpdate &u) { onMap(u.json()); }, this)
     , poses_(
-          fleet, "pose", {}, [this](const TopicUpdate &u) { onPose(u.data); }, this)
+          fleet, "pose", {}, [this](const TopicUpdate &u) { onPose(u.json()); }, this)
     , matches_(
-          fleet, "match", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onMatch(u.data); }, this)
+          fleet, "match", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onMatch(u.json()); }, this)
     , segmentFeed_(
-          fleet, "segments", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onSegments(u.data); },
+          fleet, "segments", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onSegments(u.json()); },
           this)
     , scans_(
-          fleet, "scan2d", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onScan(u.data); }, this)
+          fleet, "scan2d", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onScan(u.json()); }, this)
     , odometryFeed_(
           fleet, "odometry", {{"max_rate_hz", 10}},
-          [this](const TopicUpdate &u) { follow(odometry_, u.data["pose"]); }, this)
+          [this](const TopicUpdate &u) { follow(odometry_, u.json()["pose"]); }, this)
     , truthFeed_(
-          fleet, "truth", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { follow(truth_, u.data); },
+          fleet, "truth", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { follow(truth_, u.json()); },
           this) {
     connect(&maps_, &TopicFeed::sourceChanged, this, [this] { onMap(QJsonObject{{"cleared", true}}); });
     connect(&poses_, &TopicFeed::sourceChanged, this, [this] {

@@ -1,0 +1,178 @@
+#include "daemons/scanmatcher/Answers.h"
+
+#include "protocol/wire/Fields.h"
+
+namespace hermes {
+
+using vectorlib::Place;
+using vectorlib::Relocalized;
+
+namespace {
+
+QString name(Relocalized::Outcome outcome) {
+    switch (outcome) {
+    case Relocalized::Outcome::Found:
+        return "found";
+    case Relocalized::Outcome::NoScan:
+        return "no_scan";
+    case Relocalized::Outcome::NoMap:
+        return "no_map";
+    case Relocalized::Outcome::TooLittle:
+        return "too_little";
+    case Relocalized::Outcome::Nowhere:
+        return "nowhere";
+    case Relocalized::Outcome::Ambiguous:
+        return "ambiguous";
+    case Relocalized::Outcome::Unfinished:
+        return "unfinished";
+    }
+    return {};
+}
+
+PlaceAnswer answerOf(const Place &place) {
+    PlaceAnswer answer{poseOf(place.pose),
+                       place.score,
+                       place.reliability,
+                       place.ambiguity,
+                       place.discrepancy,
+                       place.matchedShare,
+                       place.fault == vectorlib::Fault::None,
+                       std::nullopt};
+    if (!answer.accepted)
+        answer.fault = QString(vectorlib::describe(place.fault));
+    return answer;
+}
+
+} // namespace
+
+Pose poseOf(const vectorlib::Pose2D &pose) {
+    return {pose.x, pose.y, pose.theta};
+}
+
+SearchAnswer answerOf(const Relocalized &search) {
+    SearchAnswer answer;
+    answer.outcome = name(search.outcome);
+    for (const Place &place : search.places)
+        answer.candidates.push_back(answerOf(place));
+    answer.alike = quint64(search.alike);
+    answer.parts = quint64(search.parts);
+    answer.searched = quint64(search.searched);
+    answer.ms = search.ms;
+    return answer;
+}
+
+template <>
+const Fields<OdometryState> &fieldsOf<OdometryState>() {
+    using S = OdometryState;
+    static const auto fields =
+        Fields<S>()
+            .add("connected", &S::connected, "To the daemon that publishes it")
+            .add("messages", &S::messages, "Taken")
+            .add("refused", &S::refused, "That could not be read")
+            .add("out_of_order", &S::outOfOrder, "Older than one before")
+            .add("restarts", &S::restarts, "Times it began anew: a reset, or a gap")
+            .add("dropped", &S::dropped, "By the source, as this daemon read too slowly")
+            .add("unknown_fields", &S::unknownFields, "Members of messages that this program does not know")
+            .add("scans_without", &S::scansWithout, "Scans that found no odometry of their time");
+    return fields;
+}
+
+template <>
+const Fields<MatcherState> &fieldsOf<MatcherState>() {
+    using S = MatcherState;
+    static const auto fields =
+        Fields<S>()
+            .add("active", &S::active, "Scans are taken")
+            .add("mode", &S::mode, "mapping: the map grows; localization: it stays")
+            .choices({"mapping", "localization"})
+            .add("scans", &S::scans, "Since the map is the one it is")
+            .add("matched", &S::matched, "Of them")
+            .add("lost", &S::lost, "Of them: no match was good enough")
+            .add("skipped", &S::skipped, "Of them: too little to see")
+            .add("waiting", &S::waiting, "Scans not yet matched")
+            .add("dropped", &S::dropped, "As too many waited")
+            .add("dropped_by_source", &S::droppedBySource, "As this daemon read too slowly")
+            .add("refused", &S::refused, "That could not be read")
+            .add("unknown_fields", &S::unknownFields, "Members of scans that this program does not know")
+            .add("recoveries", &S::recoveries, "Searches of the whole map after lost scans")
+            .add("recovered", &S::recovered, "Of them: found")
+            .add("by_odometry", &S::byOdometry, "Scans whose pose was expected by odometry")
+            .add("odometry", &S::odometry, "What comes as odometry")
+            .add("ms_per_scan", &S::msPerScan, "Mean time to match one", "ms")
+            .add("map_segments", &S::mapSegments, "Edges of the map");
+    return fields;
+}
+
+template <>
+const Fields<PairMatch> &fieldsOf<PairMatch>() {
+    using M = PairMatch;
+    static const auto fields = Fields<M>()
+                                   .include(&M::pose)
+                                   .add("accepted", &M::accepted, "The match is good enough to be believed")
+                                   .add("pairs", &M::pairs, "Segments that correspond")
+                                   .add("reliability", &M::reliability, "0 to 1")
+                                   .add("ambiguity", &M::ambiguity, "Of the position", "m^2")
+                                   .add("matched_length", &M::matchedLength, "Of the segments in pairs", "m")
+                                   .add("visible_length", &M::visibleLength, "Of all segments", "m")
+                                   .add("ms", &M::ms, "Time it took", "ms");
+    return fields;
+}
+
+template <>
+const Fields<PlaceAnswer> &fieldsOf<PlaceAnswer>() {
+    using P = PlaceAnswer;
+    static const auto fields =
+        Fields<P>()
+            .add("pose", &P::pose, "Of the sensor in the map's frame")
+            .add("score", &P::score, "Places are ordered by it, the best first")
+            .add("reliability", &P::reliability, "0 to 1")
+            .add("ambiguity", &P::ambiguity, "Of the position", "m^2")
+            .add("discrepancy", &P::discrepancy, "How far the scan contradicts the view expected there")
+            .add("matched_share", &P::matchedShare, "Of the length of the scan's segments")
+            .add("accepted", &P::accepted, "It stands all tests")
+            .add("fault", &P::fault, "The test it failed")
+            .orNull();
+    return fields;
+}
+
+template <>
+const Fields<SearchAnswer> &fieldsOf<SearchAnswer>() {
+    using S = SearchAnswer;
+    static const auto fields =
+        Fields<S>()
+            .add("outcome", &S::outcome, "Of the search")
+            .choices({"found", "no_scan", "no_map", "too_little", "nowhere", "ambiguous", "unfinished"})
+            .add("candidates", &S::candidates, "The best places")
+            .add("alike", &S::alike, "Places that fit as well as the best one")
+            .add("parts", &S::parts, "Of the map")
+            .add("searched", &S::searched, "Of them")
+            .add("ms", &S::ms, "Time it took", "ms");
+    return fields;
+}
+
+template <>
+const Fields<RelocalizeAnswer> &fieldsOf<RelocalizeAnswer>() {
+    using R = RelocalizeAnswer;
+    static const auto fields = Fields<R>()
+                                   .include(&R::search)
+                                   .include(&R::place)
+                                   .add("applied", &R::applied, "The pose was taken over");
+    return fields;
+}
+
+template <>
+const Fields<SavedMap> &fieldsOf<SavedMap>() {
+    static const auto fields = Fields<SavedMap>()
+                                   .add("path", &SavedMap::path, "Of the file")
+                                   .add("segments", &SavedMap::segments, "Edges written")
+                                   .add("bytes", &SavedMap::bytes, "Size of the file", "byte");
+    return fields;
+}
+
+template <>
+const Fields<LoadedMap> &fieldsOf<LoadedMap>() {
+    static const auto fields = Fields<LoadedMap>().add("segments", &LoadedMap::segments, "Edges read");
+    return fields;
+}
+
+} // namespace hermes

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "protocol/messages/Motion.h"
+#include "vectorlib/mapping/Relocalization.h"
+
+#include <QString>
+#include <optional>
+#include <vector>
+
+namespace hermes {
+
+/// What comes as odometry, since the source was opened.
+struct OdometryState {
+    bool connected = false;
+    quint64 messages = 0, refused = 0, outOfOrder = 0, restarts = 0, dropped = 0, unknownFields = 0;
+    quint64 scansWithout = 0;
+};
+
+/// What matcher.state gives.
+struct MatcherState {
+    bool active = false;
+    QString mode;
+    quint64 scans = 0, matched = 0, lost = 0, skipped = 0;
+    quint64 waiting = 0, dropped = 0, droppedBySource = 0, refused = 0, unknownFields = 0;
+    quint64 recoveries = 0, recovered = 0, byOdometry = 0;
+    OdometryState odometry;
+    double msPerScan = 0;
+    quint64 mapSegments = 0;
+};
+
+/// What matcher.match gives.
+struct PairMatch {
+    Pose pose;
+    bool accepted = false;
+    quint64 pairs = 0;
+    double reliability = 0, ambiguity = 0, matchedLength = 0, visibleLength = 0, ms = 0;
+};
+
+/// A place in the map where a scan may have been taken.
+struct PlaceAnswer {
+    Pose pose;
+    double score = 0, reliability = 0, ambiguity = 0, discrepancy = 0, matchedShare = 0;
+    bool accepted = false;
+    std::optional<QString> fault;
+};
+
+/// The search of a whole map for a scan; the best place beside it when one was found.
+struct SearchAnswer {
+    QString outcome;
+    std::vector<PlaceAnswer> candidates;
+    quint64 alike = 0, parts = 0, searched = 0;
+    double ms = 0;
+};
+
+/// What pose.relocalize gives.
+struct RelocalizeAnswer {
+    SearchAnswer search;
+    PlaceAnswer place;
+    bool applied = false;
+};
+
+/// A map that was written.
+struct SavedMap {
+    QString path;
+    quint64 segments = 0, bytes = 0;
+};
+
+/// A map that was read.
+struct LoadedMap {
+    quint64 segments = 0;
+};
+
+Pose poseOf(const vectorlib::Pose2D &pose);
+SearchAnswer answerOf(const vectorlib::Relocalized &search);
+
+template <>
+const Fields<OdometryState> &fieldsOf<OdometryState>();
+template <>
+const Fields<MatcherState> &fieldsOf<MatcherState>();
+template <>
+const Fields<PairMatch> &fieldsOf<PairMatch>();
+template <>
+const Fields<PlaceAnswer> &fieldsOf<PlaceAnswer>();
+template <>
+const Fields<SearchAnswer> &fieldsOf<SearchAnswer>();
+template <>
+const Fields<RelocalizeAnswer> &fieldsOf<RelocalizeAnswer>();
+template <>
+const Fields<SavedMap> &fieldsOf<SavedMap>();
+template <>
+const Fields<LoadedMap> &fieldsOf<LoadedMap>();
+
+} // namespace hermes

@@ -1,0 +1,64 @@
+#include "protocol/messages/Motion.h"
+
+#include "protocol/wire/Fields.h"
+
+namespace hermes {
+namespace {
+
+constexpr double farthest = 1e10; // beyond it differences of poses lose their digits
+
+} // namespace
+
+template <>
+const Fields<Pose> &fieldsOf<Pose>() {
+    static const auto fields = Fields<Pose>()
+                                   .add("x", &Pose::x, "Position", "m")
+                                   .range(-farthest, farthest)
+                                   .add("y", &Pose::y, "Position", "m")
+                                   .range(-farthest, farthest)
+                                   .add("theta", &Pose::theta, "Heading, counter-clockwise", "rad")
+                                   .range(-farthest, farthest);
+    return fields;
+}
+
+template <>
+const Fields<Twist> &fieldsOf<Twist>() {
+    static const auto fields = Fields<Twist>()
+                                   .add("vx", &Twist::vx, "Forward", "m/s")
+                                   .range(-farthest, farthest)
+                                   .add("vy", &Twist::vy, "To the left", "m/s")
+                                   .range(-farthest, farthest)
+                                   .add("omega", &Twist::omega, "Counter-clockwise", "rad/s")
+                                   .range(-farthest, farthest);
+    return fields;
+}
+
+template <>
+const Fields<OdometryMessage> &fieldsOf<OdometryMessage>() {
+    static const auto fields =
+        Fields<OdometryMessage>()
+            .add("pose", &OdometryMessage::pose, "Since odometry.reset")
+            .add("twist", &OdometryMessage::twist, "As measured, in the robot's frame")
+            .add("covariance", &OdometryMessage::covariance, "Of x, y and theta of the pose, row by row")
+            .range(-farthest, farthest)
+            .add("mono", &OdometryMessage::mono, "The stamp on a clock that never jumps", "s")
+            .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<TruthMessage> &fieldsOf<TruthMessage>() {
+    static const auto fields =
+        Fields<TruthMessage>()
+            .add("stamp", &TruthMessage::stamp, "On the clock of the lidar's stamps", "s")
+            .include(&TruthMessage::pose)
+            .include(&TruthMessage::twist)
+            .add("progress", &TruthMessage::progress, "Share of the path behind the robot")
+            .range(0, 1)
+            .add("driving", &TruthMessage::driving, "It follows the path")
+            .add("finished", &TruthMessage::finished, "It is at the end of the path")
+            .add("touching", &TruthMessage::touching, "A wall holds it");
+    return fields;
+}
+
+} // namespace hermes

@@ -1,0 +1,65 @@
+#include "protocol/messages/Turns.h"
+
+#include "protocol/wire/Fields.h"
+
+namespace hermes {
+
+template <>
+const Fields<TurnHeader> &fieldsOf<TurnHeader>() {
+    static const auto fields =
+        Fields<TurnHeader>()
+            .add("turn", &TurnHeader::turn, "Counts the turns since the source was opened")
+            .mayBeMissing()
+            .add("stamp", &TurnHeader::stamp, "Of the first firing, since the Unix epoch", "s")
+            .add("duration_s", &TurnHeader::duration_s, "From the first firing to the last", "s")
+            .mayBeMissing()
+            .add("partial", &TurnHeader::partial, "The first, the last, or one that was cut")
+            .mayBeMissing()
+            .add("rays", &TurnHeader::rays, "Fired, with or without a return")
+            .range(0, ScanMessage::mostPoints)
+            .add("lost_packets", &TurnHeader::lostPackets, "In this turn")
+            .mayBeMissing()
+            .add("frame", &TurnHeader::frame, "What the coordinates are relative to")
+            .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<ScanMessage> &fieldsOf<ScanMessage>() {
+    static const auto fields =
+        Fields<ScanMessage>()
+            .include(&ScanMessage::header)
+            .add("laser", &ScanMessage::laser, "Whose ring it is")
+            .mayBeMissing()
+            .add("x", &ScanMessage::x, "Of each point, counter-clockwise: ahead of the sensor", "m")
+            .atMostElements(ScanMessage::mostPoints)
+            .add("y", &ScanMessage::y, "To the left of the sensor", "m")
+            .atMostElements(ScanMessage::mostPoints)
+            .add("t", &ScanMessage::t, "After the stamp", "s")
+            .atMostElements(ScanMessage::mostPoints)
+            .add("intensity", &ScanMessage::intensity, "Of the return, 0 to 255")
+            .atMostElements(ScanMessage::mostPoints)
+            .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<CloudMessage> &fieldsOf<CloudMessage>() {
+    static const auto fields =
+        Fields<CloudMessage>()
+            .include(&CloudMessage::header)
+            .add("model", &CloudMessage::model, "Of the sensor")
+            .add("x", &CloudMessage::x, "Of each point, in the order of measuring: ahead of the sensor", "m")
+            .atMostElements(ScanMessage::mostPoints)
+            .add("y", &CloudMessage::y, "To the left", "m")
+            .atMostElements(ScanMessage::mostPoints)
+            .add("z", &CloudMessage::z, "Up", "m")
+            .atMostElements(ScanMessage::mostPoints)
+            .add("laser", &CloudMessage::laser, "That fired")
+            .atMostElements(ScanMessage::mostPoints)
+            .add("intensity", &CloudMessage::intensity, "Of the return, 0 to 255")
+            .atMostElements(ScanMessage::mostPoints);
+    return fields;
+}
+
+} // namespace hermes

@@ -1,0 +1,87 @@
+#include "protocol/wire/FieldTable.h"
+
+#include <QJsonArray>
+
+namespace hermes {
+
+void ReadReport::fail(WireView value, const QString &wanted) {
+    found = value.described();
+    expected = wanted;
+}
+
+void ReadReport::within(const QString &name) {
+    path = path.isEmpty() ? name : name + QLatin1Char('.') + path;
+}
+
+QString ReadReport::text() const {
+    return QStringLiteral("%1: found %2, expected %3")
+        .arg(path.isEmpty() ? QStringLiteral("message") : QStringLiteral("member ") + path, found, expected);
+}
+
+void FieldTable::Entry::describe(const char *description, const char *unit) {
+    keywords.insert(QStringLiteral("description"), QString::fromUtf8(description));
+    if (*unit)
+        keywords.insert(QStringLiteral("unit"), QString::fromUtf8(unit));
+}
+
+void FieldTable::write(WireWriter &out, const void *message) const {
+    out.beginObject();
+    for (const Entry &entry : entries) {
+        const bool isEmpty = entry.isOptional && entry.isEmpty(message);
+        if (isEmpty && !entry.isNullable)
+            continue;
+        out.key(QLatin1String(entry.name));
+        isEmpty ? out.null() : entry.write(out, message);
+        if (out.hasRefused())
+            return out.within(QLatin1String(entry.name));
+    }
+    out.endObject();
+}
+
+void FieldTable::read(WireView in, void *message, ReadReport &report) const {
+    if (in.kind() != WireView::Kind::Object)
+        return report.fail(in, QStringLiteral("an object"));
+    std::size_t known = 0;
+    for (const Entry &entry : entries) {
+        const WireView value = in[entry.name.constData()];
+        known += value.kind() != WireView::Kind::Undefined;
+        const bool isMissing = value.kind() == WireView::Kind::Undefined;
+        if ((isMissing && (entry.isOptional || entry.mayBeMissing)) ||
+            (entry.isNullable && value.kind() == WireView::Kind::Null))
+            continue;
+        entry.read(value, message, entry.limits, report);
+        if (report.hasFailed())
+            return report.within(QLatin1String(entry.name));
+    }
+    report.unknown += in.size() - known;
+}
+
+QJsonObject FieldTable::schemaOf(const Entry &entry) {
+    QJsonObject schema = entry.schema(entry.limits);
+    if (entry.isNullable) {
+        const QJsonValue type = schema.value(QStringLiteral("type"));
+        if (type.isString())
+            schema.insert(QStringLiteral("type"), QJsonArray{type, QStringLiteral("null")});
+    }
+    for (auto keyword = entry.keywords.begin(); keyword != entry.keywords.end(); ++keyword)
+        schema.insert(keyword.key(), keyword.value());
+    return schema;
+}
+
+QJsonObject FieldTable::schema() const {
+    QJsonObject properties;
+    QJsonArray required;
+    for (const Entry &entry : entries) {
+        properties.insert(QLatin1String(entry.name), schemaOf(entry));
+        if (!entry.isOptional || entry.isNullable)
+            required.append(QLatin1String(entry.name));
+    }
+    QJsonObject schema{{QStringLiteral("type"), QStringLiteral("object")},
+                       {QStringLiteral("properties"), properties},
+                       {QStringLiteral("additionalProperties"), false}};
+    if (!required.isEmpty())
+        schema.insert(QStringLiteral("required"), required);
+    return schema;
+}
+
+} // namespace hermes

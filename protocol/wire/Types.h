@@ -1,0 +1,206 @@
+#pragma once
+
+#include "protocol/wire/FieldTable.h"
+#include "protocol/wire/FieldsOf.h"
+
+#include <QJsonArray>
+#include <QMap>
+#include <QStringList>
+#include <array>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace hermes {
+
+/// How a value of the type T is written, read and described: this one for structs with fields.
+template <typename T, typename = void>
+struct Type {
+    static void write(WireWriter &out, const T &value) { fieldsOf<T>().write(out, &value); }
+    static void read(WireView in, T &value, const Limits &, ReadReport &report) {
+        fieldsOf<T>().read(in, &value, report);
+    }
+    static QJsonObject schema(const Limits &) { return fieldsOf<T>().schema(); }
+};
+
+/// Numbers, checked against their limits.
+double readNumber(WireView in, Limits limits, ReadReport &report);
+qint64 readInteger(WireView in, Limits limits, ReadReport &report);
+QJsonObject numberSchema(const char *type, const Limits &limits);
+
+template <typename T>
+struct Type<T, std::enable_if_t<std::is_floating_point_v<T>>> {
+    static Limits within(Limits limits) {
+        limits.least = std::max(limits.least, double(std::numeric_limits<T>::lowest()));
+        limits.most = std::min(limits.most, double(std::numeric_limits<T>::max()));
+        return limits;
+    }
+    static void write(WireWriter &out, T value) { out.number(value); }
+    static void read(WireView in, T &value, const Limits &limits, ReadReport &report) {
+        value = T(readNumber(in, within(limits), report));
+    }
+    static QJsonObject schema(const Limits &limits) { return numberSchema("number", limits); }
+};
+
+template <typename T>
+struct Type<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool>>> {
+    static void write(WireWriter &out, T value) { out.integer(qint64(value)); }
+    static void read(WireView in, T &value, Limits limits, ReadReport &report) {
+        limits.least = std::max(limits.least, double(std::numeric_limits<T>::lowest()));
+        limits.most = std::min(limits.most, double(std::numeric_limits<T>::max()));
+        value = T(readInteger(in, limits, report));
+    }
+    static QJsonObject schema(const Limits &limits) { return numberSchema("integer", limits); }
+};
+
+template <>
+struct Type<bool> {
+    static void write(WireWriter &out, bool value) { out.boolean(value); }
+    static void read(WireView in, bool &value, const Limits &, ReadReport &report);
+    static QJsonObject schema(const Limits &);
+};
+
+template <>
+struct Type<QString> {
+    static void write(WireWriter &out, const QString &value) { out.text(value); }
+    static void read(WireView in, QString &value, const Limits &, ReadReport &report);
+    static QJsonObject schema(const Limits &);
+};
+
+template <>
+struct Type<std::string> {
+    static void write(WireWriter &out, const std::string &value) { out.text(QString::fromStdString(value)); }
+    static void read(WireView in, std::string &value, const Limits &limits, ReadReport &report);
+    static QJsonObject schema(const Limits &limits) { return Type<QString>::schema(limits); }
+};
+
+/// Open: any JSON value.
+template <>
+struct Type<QJsonValue> {
+    static void write(WireWriter &out, const QJsonValue &value) { out.json(value); }
+    static void read(WireView in, QJsonValue &value, const Limits &, ReadReport &) { value = in.toJson(); }
+    static QJsonObject schema(const Limits &);
+};
+
+/// Open: an object with any members.
+template <>
+struct Type<QJsonObject> {
+    static void write(WireWriter &out, const QJsonObject &value) { out.json(value); }
+    static void read(WireView in, QJsonObject &value, const Limits &, ReadReport &report);
+    static QJsonObject schema(const Limits &);
+};
+
+bool readsAsArray(WireView in, std::size_t least, std::size_t most, ReadReport &report);
+QJsonObject arraySchema(const QJsonObject &items, std::size_t least, std::size_t most);
+
+/// What the lists below share.
+template <typename List, typename T>
+struct ListType {
+    static void write(WireWriter &out, const List &values) {
+        if constexpr (std::is_floating_point_v<T>)
+            return out.numbers(values.data(), std::size_t(values.size()));
+        out.beginArray();
+        std::size_t i = 0;
+        for (const T &value : values) {
+            Type<T>::write(out, value);
+            if (out.hasRefused())
+                return out.within(QString::number(i));
+            ++i;
+        }
+        out.endArray();
+    }
+
+    static void readElements(WireView in, List &values, const Limits &limits, ReadReport &report) {
+        std::size_t first = 0;
+        if constexpr (std::is_floating_point_v<T>) { // many at once; what is wrong is looked at one by one
+            const Limits within = Type<T>::within(limits);
+            const std::size_t count = in.numbers(values.data());
+            while (first < count && values[first] >= within.least && values[first] <= within.most)
+                ++first;
+        }
+        for (std::size_t i = first; i < in.size(); ++i) {
+            Type<T>::read(in[i], values[i], limits, report);
+            if (report.hasFailed())
+                return report.within(QString::number(i));
+        }
+    }
+};
+
+template <typename T>
+struct Type<std::vector<T>> : ListType<std::vector<T>, T> {
+    static void read(WireView in, std::vector<T> &values, const Limits &limits, ReadReport &report) {
+        if (!readsAsArray(in, 0, limits.elements, report))
+            return;
+        values.resize(in.size());
+        ListType<std::vector<T>, T>::readElements(in, values, limits, report);
+    }
+    static QJsonObject schema(const Limits &limits) {
+        return arraySchema(Type<T>::schema(limits), 0, limits.elements);
+    }
+};
+
+template <typename T, std::size_t N>
+struct Type<std::array<T, N>> : ListType<std::array<T, N>, T> {
+    static void read(WireView in, std::array<T, N> &values, const Limits &limits, ReadReport &report) {
+        if (readsAsArray(in, N, N, report))
+            ListType<std::array<T, N>, T>::readElements(in, values, limits, report);
+    }
+    static QJsonObject schema(const Limits &limits) { return arraySchema(Type<T>::schema(limits), N, N); }
+};
+
+template <>
+struct Type<QStringList> {
+    static void write(WireWriter &out, const QStringList &values);
+    static void read(WireView in, QStringList &values, const Limits &limits, ReadReport &report);
+    static QJsonObject schema(const Limits &limits);
+};
+
+/// An object whose members have names that are not known beforehand.
+template <typename T>
+struct Type<QMap<QString, T>> {
+    static void write(WireWriter &out, const QMap<QString, T> &values) {
+        out.beginObject();
+        for (auto value = values.begin(); value != values.end(); ++value) {
+            out.key(value.key());
+            Type<T>::write(out, value.value());
+            if (out.hasRefused())
+                return out.within(value.key());
+        }
+        out.endObject();
+    }
+    static void read(WireView in, QMap<QString, T> &values, const Limits &limits, ReadReport &report) {
+        if (in.kind() != WireView::Kind::Object)
+            return report.fail(in, QStringLiteral("an object"));
+        in.forEachMember([&](const QString &name, WireView value) {
+            if (report.hasFailed())
+                return;
+            Type<T>::read(value, values[name], limits, report);
+            if (report.hasFailed())
+                report.within(name);
+        });
+    }
+    static QJsonObject schema(const Limits &limits) {
+        return {{QStringLiteral("type"), QStringLiteral("object")},
+                {QStringLiteral("additionalProperties"), Type<T>::schema(limits)}};
+    }
+};
+
+/// What lies in a field: a std::optional's value, or the field itself.
+template <typename M>
+struct Unwrapped {
+    using Type = M;
+    static constexpr bool isOptional = false;
+    static const M &value(const M &field) { return field; }
+    static M &make(M &field) { return field; }
+};
+
+template <typename M>
+struct Unwrapped<std::optional<M>> {
+    using Type = M;
+    static constexpr bool isOptional = true;
+    static const M &value(const std::optional<M> &field) { return *field; }
+    static M &make(std::optional<M> &field) { return field.emplace(); }
+};
+
+} // namespace hermes

@@ -1,0 +1,306 @@
+#include "protocol/wire/WireValue.h"
+
+#include <QJsonArray>
+#include <QJsonObject>
+#include <QVariant>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <rapidjson/document.h>
+#include <rapidjson/error/en.h>
+#include <string>
+#include <vector>
+
+namespace hermes {
+namespace {
+
+using Node = rapidjson::Value;
+
+const Node &nodeOf(const void *pointer) {
+    static const Node none;
+    return pointer ? *static_cast<const Node *>(pointer) : none;
+}
+
+QString textOf(const Node &node) {
+    return QString::fromUtf8(node.GetString(), int(node.GetStringLength()));
+}
+
+/// Hands what the parser finds on to the document, and stops where it is nested too deeply or a key comes
+/// twice.
+class Guard : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Guard> {
+public:
+    Guard(rapidjson::Document &target, int depthLimit)
+        : document(target)
+        , maximumDepth(depthLimit) {}
+
+    QString complaint;
+
+    bool Null() { return document.Null(); }
+    bool Bool(bool value) { return document.Bool(value); }
+    bool Int(int value) { return document.Int(value); }
+    bool Uint(unsigned value) { return document.Uint(value); }
+    bool Int64(int64_t value) { return document.Int64(value); }
+    bool Uint64(uint64_t value) { return document.Uint64(value); }
+    bool Double(double value) { return document.Double(value); }
+    bool String(const char *text, unsigned length, bool copy) { return document.String(text, length, copy); }
+    bool Key(const char *text, unsigned length, bool copy) {
+        keys.back().emplace_back(text, length);
+        return document.Key(text, length, copy);
+    }
+    bool StartObject() { return enter() && document.StartObject(); }
+    bool EndObject(unsigned count) { return leave() && document.EndObject(count); }
+    bool StartArray() { return enter() && document.StartArray(); }
+    bool EndArray(unsigned count) {
+        keys.pop_back();
+        return document.EndArray(count);
+    }
+
+private:
+    bool enter() {
+        keys.emplace_back();
+        if (int(keys.size()) > maximumDepth)
+            complaint = QStringLiteral("nested deeper than %1 levels").arg(maximumDepth);
+        return complaint.isEmpty();
+    }
+
+    bool leave() {
+        std::vector<std::string> &names = keys.back();
+        std::sort(names.begin(), names.end());
+        const auto twice = std::adjacent_find(names.begin(), names.end());
+        if (twice != names.end())
+            complaint = QStringLiteral("the key \"%1\" occurs twice in one object")
+                            .arg(QString::fromStdString(*twice));
+        keys.pop_back();
+        return complaint.isEmpty();
+    }
+
+    rapidjson::Document &document;
+    const int maximumDepth;
+    std::vector<std::vector<std::string>> keys; // of each object (or array: none) still open
+};
+
+void give(const QJsonValue &value, rapidjson::Document &to) {
+    switch (value.type()) {
+    case QJsonValue::Bool:
+        to.Bool(value.toBool());
+        break;
+    case QJsonValue::Double:
+        if (const QVariant exact = value.toVariant(); exact.type() == QVariant::LongLong)
+            to.Int64(exact.toLongLong());
+        else
+            to.Double(value.toDouble());
+        break;
+    case QJsonValue::String: {
+        const QByteArray text = value.toString().toUtf8();
+        to.String(text.constData(), unsigned(text.size()), true);
+        break;
+    }
+    case QJsonValue::Array: {
+        const QJsonArray array = value.toArray();
+        to.StartArray();
+        for (const QJsonValue &element : array)
+            give(element, to);
+        to.EndArray(unsigned(array.size()));
+        break;
+    }
+    case QJsonValue::Object: {
+        const QJsonObject object = value.toObject();
+        to.StartObject();
+        for (auto member = object.begin(); member != object.end(); ++member) {
+            const QByteArray key = member.key().toUtf8();
+            to.Key(key.constData(), unsigned(key.size()), true);
+            give(member.value(), to);
+        }
+        to.EndObject(unsigned(object.size()));
+        break;
+    }
+    default:
+        to.Null();
+    }
+}
+
+QJsonValue toJson(const Node &node) {
+    switch (node.GetType()) {
+    case rapidjson::kFalseType:
+    case rapidjson::kTrueType:
+        return node.GetBool();
+    case rapidjson::kNumberType:
+        return node.IsInt64() ? QJsonValue(qint64(node.GetInt64())) : QJsonValue(node.GetDouble());
+    case rapidjson::kStringType:
+        return textOf(node);
+    case rapidjson::kArrayType: {
+        QJsonArray array;
+        for (const Node &element : node.GetArray())
+            array.append(toJson(element));
+        return array;
+    }
+    case rapidjson::kObjectType: {
+        QJsonObject object;
+        for (const auto &member : node.GetObject())
+            object.insert(textOf(member.name), toJson(member.value));
+        return object;
+    }
+    default:
+        return QJsonValue::Null;
+    }
+}
+
+template <typename T>
+std::size_t copyNumbers(const Node &node, T *to) {
+    if (!node.IsArray())
+        return 0;
+    std::size_t count = 0;
+    for (const Node &element : node.GetArray()) {
+        if (!element.IsNumber())
+            break;
+        to[count++] = T(element.GetDouble());
+    }
+    return count;
+}
+
+} // namespace
+
+struct WireValue::Tree {
+    rapidjson::Document document;
+};
+
+WireView::Kind WireView::kind() const {
+    if (!node)
+        return Kind::Undefined;
+    switch (nodeOf(node).GetType()) {
+    case rapidjson::kFalseType:
+    case rapidjson::kTrueType:
+        return Kind::Boolean;
+    case rapidjson::kNumberType:
+        return Kind::Number;
+    case rapidjson::kStringType:
+        return Kind::Text;
+    case rapidjson::kArrayType:
+        return Kind::Array;
+    case rapidjson::kObjectType:
+        return Kind::Object;
+    default:
+        return Kind::Null;
+    }
+}
+
+bool WireView::boolean() const {
+    return nodeOf(node).IsTrue();
+}
+
+double WireView::number() const {
+    return nodeOf(node).IsNumber() ? nodeOf(node).GetDouble() : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<qint64> WireView::integer() const {
+    const Node &value = nodeOf(node);
+    if (value.IsInt64())
+        return value.GetInt64();
+    const double number = this->number();
+    if (number == std::floor(number) && std::abs(number) < 9.2e18)
+        return qint64(number);
+    return std::nullopt;
+}
+
+QString WireView::text() const {
+    return nodeOf(node).IsString() ? textOf(nodeOf(node)) : QString();
+}
+
+std::size_t WireView::size() const {
+    const Node &value = nodeOf(node);
+    return value.IsArray() ? value.Size() : value.IsObject() ? value.MemberCount() : 0;
+}
+
+WireView WireView::operator[](std::size_t element) const {
+    const Node &value = nodeOf(node);
+    return value.IsArray() && element < value.Size() ? WireView(&value[unsigned(element)]) : WireView();
+}
+
+WireView WireView::operator[](const char *name) const {
+    const Node &value = nodeOf(node);
+    if (!value.IsObject())
+        return {};
+    const auto member = value.FindMember(name);
+    return member == value.MemberEnd() ? WireView() : WireView(&member->value);
+}
+
+std::size_t WireView::numbers(float *to) const {
+    return copyNumbers(nodeOf(node), to);
+}
+
+std::size_t WireView::numbers(double *to) const {
+    return copyNumbers(nodeOf(node), to);
+}
+
+void WireView::forEachMember(const std::function<void(const QString &, WireView)> &see) const {
+    if (nodeOf(node).IsObject())
+        for (const auto &member : nodeOf(node).GetObject())
+            see(textOf(member.name), WireView(&member.value));
+}
+
+QJsonValue WireView::toJson() const {
+    return node ? hermes::toJson(nodeOf(node)) : QJsonValue(QJsonValue::Undefined);
+}
+
+QString WireView::described() const {
+    switch (kind()) {
+    case Kind::Undefined:
+        return QStringLiteral("nothing");
+    case Kind::Null:
+        return QStringLiteral("null");
+    case Kind::Boolean:
+        return boolean() ? QStringLiteral("true") : QStringLiteral("false");
+    case Kind::Number:
+        return QString::number(number(), 'g', 10);
+    case Kind::Text:
+        return QStringLiteral("text \"%1\"").arg(text().left(40));
+    case Kind::Array:
+        return QStringLiteral("an array of %1").arg(size());
+    case Kind::Object:
+        return QStringLiteral("an object of %1").arg(size());
+    }
+    return {};
+}
+
+WireValue::WireValue(const QJsonValue &value) {
+    if (value.isUndefined())
+        return;
+    const auto made = std::make_shared<Tree>();
+    const auto generate = [&value](rapidjson::Document &document) {
+        give(value, document);
+        return true;
+    };
+    made->document.Populate(generate);
+    node = static_cast<const Node *>(&made->document);
+    tree = made;
+}
+
+std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *error, int maximumDepth) {
+    const auto made = std::make_shared<Tree>();
+    Guard guard(made->document, maximumDepth);
+    rapidjson::ParseResult result;
+    const auto generate = [&](rapidjson::Document &) {
+        rapidjson::MemoryStream bytes(json.constData(), std::size_t(json.size()));
+        constexpr unsigned flags = rapidjson::kParseFullPrecisionFlag |
+                                   rapidjson::kParseValidateEncodingFlag | rapidjson::kParseIterativeFlag;
+        result = rapidjson::Reader().Parse<flags>(bytes, guard);
+        return !result.IsError();
+    };
+    made->document.Populate(generate);
+    if (result.IsError()) {
+        if (error) {
+            error->offset = std::min(int(result.Offset()), json.size());
+            error->line = 1 + int(std::count(json.begin(), json.begin() + error->offset, '\n'));
+            error->message = guard.complaint.isEmpty()
+                                 ? QString::fromLatin1(rapidjson::GetParseError_En(result.Code()))
+                                 : guard.complaint;
+        }
+        return std::nullopt;
+    }
+    WireValue value;
+    value.node = static_cast<const Node *>(&made->document);
+    value.tree = made;
+    return value;
+}
+
+} // namespace hermes

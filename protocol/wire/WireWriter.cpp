@@ -1,0 +1,83 @@
+#include "protocol/wire/WireWriter.h"
+
+#include <QJsonArray>
+#include <QJsonObject>
+#include <QVariant>
+#include <cmath>
+
+namespace hermes {
+
+void WireWriter::number(double value) {
+    std::isfinite(value) ? finite(value) : refuse();
+}
+
+void WireWriter::number(float value) {
+    std::isfinite(value) ? finite(value) : refuse();
+}
+
+template <typename T>
+void WireWriter::each(const T *values, std::size_t count) {
+    beginArray();
+    for (std::size_t i = 0; i < count && !isRefused; ++i) {
+        number(values[i]);
+        if (isRefused)
+            within(QString::number(i));
+    }
+    endArray();
+}
+
+void WireWriter::numbers(const float *values, std::size_t count) {
+    each(values, count);
+}
+
+void WireWriter::numbers(const double *values, std::size_t count) {
+    each(values, count);
+}
+
+void WireWriter::json(const QJsonValue &value) {
+    switch (value.type()) {
+    case QJsonValue::Bool:
+        return boolean(value.toBool());
+    case QJsonValue::Double:
+        if (const QVariant exact = value.toVariant(); exact.type() == QVariant::LongLong)
+            return integer(exact.toLongLong());
+        return number(value.toDouble());
+    case QJsonValue::String:
+        return text(value.toString());
+    case QJsonValue::Array: {
+        beginArray();
+        int i = 0;
+        for (const QJsonValue &element : value.toArray()) {
+            json(element);
+            if (isRefused)
+                return within(QString::number(i));
+            ++i;
+        }
+        return endArray();
+    }
+    case QJsonValue::Object: {
+        beginObject();
+        const QJsonObject object = value.toObject();
+        for (auto member = object.begin(); member != object.end(); ++member) {
+            key(member.key());
+            json(member.value());
+            if (isRefused)
+                return within(member.key());
+        }
+        return endObject();
+    }
+    default:
+        return null();
+    }
+}
+
+void WireWriter::refuse() {
+    isRefused = true;
+    null();
+}
+
+void WireWriter::within(const QString &name) {
+    path = path.isEmpty() ? name : name + QLatin1Char('.') + path;
+}
+
+} // namespace hermes

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <QJsonValue>
+#include <QString>
+#include <cstddef>
+
+namespace hermes {
+
+/// Where a message is written to, value after value, in whatever form the wire has. A number that is NaN or
+/// infinite cannot be written: the message is refused, and refused() tells where it stands.
+class WireWriter {
+public:
+    virtual ~WireWriter() = default;
+
+    virtual void beginObject() = 0;
+    virtual void key(const QString &name) = 0; ///< before each value of an object
+    virtual void endObject() = 0;
+    virtual void beginArray() = 0;
+    virtual void endArray() = 0;
+
+    virtual void null() = 0;
+    virtual void boolean(bool value) = 0;
+    virtual void integer(qint64 value) = 0;
+    virtual void text(const QString &value) = 0;
+    void number(double value);
+    /// The shortest decimal fraction that a reader of floats takes for the same.
+    void number(float value);
+    /// An array of them: packed where the wire has that.
+    virtual void numbers(const float *values, std::size_t count);
+    virtual void numbers(const double *values, std::size_t count);
+    void json(const QJsonValue &value);
+
+    bool hasRefused() const { return isRefused; }
+    /// The dotted path of the first number that could not be written; "" is the message itself.
+    const QString &refused() const { return path; }
+    /// Whoever wrote a member or an element that was refused says which.
+    void within(const QString &name);
+
+protected:
+    virtual void finite(double value) = 0;
+    virtual void finite(float value) = 0;
+
+private:
+    void refuse();
+    template <typename T>
+    void each(const T *values, std::size_t count);
+
+    bool isRefused = false;
+    QString path;
+};
+
+} // namespace hermes
