@@ -4,7 +4,7 @@
 #include "common/daemon/Reply.h"
 #include "common/schema/Field.h"
 #include "common/schema/SchemaValidator.h"
-#include "protocol/wire/Fields.h"
+#include "protocol/wire/FieldsOf.h"
 
 #include <QJsonObject>
 #include <functional>

@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/Time.h"
 #include "daemons/motorcontrol/MotorJson.h"
+#include "protocol/wire/Fields.h"
 
 #include <QSocketNotifier>
 #include <algorithm>

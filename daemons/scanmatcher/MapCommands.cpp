@@ -1,5 +1,6 @@
 #include "daemons/scanmatcher/MapFile.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
+#include "protocol/wire/Fields.h"
 
 #include <QDir>
 

@@ -1,6 +1,7 @@
 #include "daemons/scanmatcher/Answers.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
 #include "protocol/messages/Turns.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 

@@ -1,5 +1,6 @@
 #include "common/Log.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 

@@ -2,6 +2,7 @@
 
 #include "common/Log.h"
 #include "common/Time.h"
+#include "protocol/wire/Fields.h"
 
 #include <Eigen/LU>
 

@@ -4,6 +4,7 @@
 #include "common/world/WorldFile.h"
 #include "daemons/simulator/FaultNames.h"
 #include "protocol/messages/Motion.h"
+#include "protocol/wire/Fields.h"
 #include "vectorlib/geometry/Angle.h"
 
 namespace hermes {

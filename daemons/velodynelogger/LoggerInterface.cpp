@@ -2,6 +2,7 @@
 #include "common/recording/ReplayCommands.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
 #include "protocol/messages/Turns.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 

@@ -4,6 +4,7 @@
 #include "common/recording/StoredRecording.h"
 #include "daemons/velodynelogger/TurnFile.h"
 #include "daemons/velodynelogger/TurnMessages.h"
+#include "protocol/wire/Fields.h"
 
 #include <QThreadPool>
 

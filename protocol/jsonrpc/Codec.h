@@ -2,6 +2,7 @@
 
 #include "protocol/jsonrpc/RpcError.h"
 #include "protocol/wire/Outgoing.h"
+#include "protocol/wire/WireValue.h"
 
 #include <QByteArray>
 #include <QJsonValue>

@@ -1,7 +1,10 @@
 #pragma once
 
-#include "protocol/wire/Fields.h"
+#include "protocol/wire/FieldsOf.h"
+#include "protocol/wire/WireWriter.h"
 
+#include <QJsonArray>
+#include <QJsonObject>
 #include <functional>
 #include <memory>
 

@@ -14,8 +14,8 @@
 
 namespace hermes {
 
-/// How a value of the type T is written, read and described: this one for structs with fields.
-template <typename T, typename = void>
+/// Of structs with fields.
+template <typename T, typename>
 struct Type {
     static void write(WireWriter &out, const T &value) { fieldsOf<T>().write(out, &value); }
     static void read(WireView in, T &value, const Limits &, ReadReport &report) {
@@ -29,16 +29,19 @@ double readNumber(WireView in, Limits limits, ReadReport &report);
 qint64 readInteger(WireView in, Limits limits, ReadReport &report);
 QJsonObject numberSchema(const char *type, const Limits &limits);
 
+/// And no more than the type T can hold.
+template <typename T>
+Limits limitsOf(Limits limits) {
+    limits.least = std::max(limits.least, double(std::numeric_limits<T>::lowest()));
+    limits.most = std::min(limits.most, double(std::numeric_limits<T>::max()));
+    return limits;
+}
+
 template <typename T>
 struct Type<T, std::enable_if_t<std::is_floating_point_v<T>>> {
-    static Limits within(Limits limits) {
-        limits.least = std::max(limits.least, double(std::numeric_limits<T>::lowest()));
-        limits.most = std::min(limits.most, double(std::numeric_limits<T>::max()));
-        return limits;
-    }
     static void write(WireWriter &out, T value) { out.number(value); }
     static void read(WireView in, T &value, const Limits &limits, ReadReport &report) {
-        value = T(readNumber(in, within(limits), report));
+        value = T(readNumber(in, limitsOf<T>(limits), report));
     }
     static QJsonObject schema(const Limits &limits) { return numberSchema("number", limits); }
 };
@@ -46,12 +49,10 @@ struct Type<T, std::enable_if_t<std::is_floating_point_v<T>>> {
 template <typename T>
 struct Type<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool>>> {
     static void write(WireWriter &out, T value) { out.integer(qint64(value)); }
-    static void read(WireView in, T &value, Limits limits, ReadReport &report) {
-        limits.least = std::max(limits.least, double(std::numeric_limits<T>::lowest()));
-        limits.most = std::min(limits.most, double(std::numeric_limits<T>::max()));
-        value = T(readInteger(in, limits, report));
+    static void read(WireView in, T &value, const Limits &limits, ReadReport &report) {
+        value = T(readInteger(in, limitsOf<T>(limits), report));
     }
-    static QJsonObject schema(const Limits &limits) { return numberSchema("integer", limits); }
+    static QJsonObject schema(const Limits &limits) { return numberSchema("integer", limitsOf<T>(limits)); }
 };
 
 template <>
@@ -114,7 +115,7 @@ struct ListType {
     static void readElements(WireView in, List &values, const Limits &limits, ReadReport &report) {
         std::size_t first = 0;
         if constexpr (std::is_floating_point_v<T>) { // many at once; what is wrong is looked at one by one
-            const Limits within = Type<T>::within(limits);
+            const Limits within = limitsOf<T>(limits);
             const std::size_t count = in.numbers(values.data());
             while (first < count && values[first] >= within.least && values[first] <= within.most)
                 ++first;

@@ -135,9 +135,14 @@ QJsonValue toJson(const Node &node) {
         return array;
     }
     case rapidjson::kObjectType: {
-        QJsonObject object;
+        std::vector<std::pair<QString, const Node *>> members; // in order: each goes to the end of the object
+        members.reserve(node.MemberCount());
         for (const auto &member : node.GetObject())
-            object.insert(textOf(member.name), toJson(member.value));
+            members.emplace_back(textOf(member.name), &member.value);
+        std::sort(members.begin(), members.end());
+        QJsonObject object;
+        for (const auto &[name, value] : members)
+            object.insert(name, toJson(*value));
         return object;
     }
     default:

@@ -1,8 +1,8 @@
 #include "gui/desktop/view/MapModel.h"
 
 #include "gui/desktop/widgets/ForeignText.h"
+#include "protocol/wire/Fields.h"
 
-#include <QJsonArray>
 #include <QtMath>
 #include <algorithm>
 #include <limits>
@@ -19,31 +19,14 @@ bool isPlausible(double metresOrRadians) {
     return std::abs(metresOrRadians) <= MapModel::farthest_m; // not NaN
 }
 
-/// NaN: it is no number.
-double toNumber(const QJsonValue &value) {
-    return value.toDouble(std::numeric_limits<double>::quiet_NaN());
+bool isPlausible(const MapPose &pose) {
+    return isPlausible(pose.x) && isPlausible(pose.y) && isPlausible(pose.theta);
 }
 
-std::optional<MapPose> toPose(const QJsonValue &value) {
-    const MapPose pose{toNumber(value["x"]), toNumber(value["y"]), toNumber(value["theta"])};
-    if (!isPlausible(pose.x) || !isPlausible(pose.y) || !isPlausible(pose.theta))
+std::optional<QLineF> toLine(double x1, double y1, double x2, double y2) {
+    if (!isPlausible(x1) || !isPlausible(y1) || !isPlausible(x2) || !isPlausible(y2))
         return std::nullopt;
-    return pose;
-}
-
-std::optional<QLineF> toLine(const QJsonValue &x1, const QJsonValue &y1, const QJsonValue &x2,
-                             const QJsonValue &y2) {
-    const QLineF line(toNumber(x1), toNumber(y1), toNumber(x2), toNumber(y2));
-    if (!isPlausible(line.x1()) || !isPlausible(line.y1()) || !isPlausible(line.x2()) ||
-        !isPlausible(line.y2()))
-        return std::nullopt;
-    return line;
-}
-
-/// Whole numbers that a double holds; negative: it is none.
-qint64 toId(const QJsonValue &value) {
-    const double number = value.toDouble(-1);
-    return number >= 0 && number <= 9007199254740992.0 ? qint64(number) : -1;
+    return QLineF(x1, y1, x2, y2);
 }
 
 } // namespace
@@ -72,26 +55,26 @@ void MapModel::Path::add(const MapPose &pose) {
     way.append(point);
 }
 
+template <typename Message>
+Client::TopicCallback MapModel::reader(void (MapModel::*take)(const Message &)) {
+    return [this, take](const TopicUpdate &update) {
+        ReadReport report;
+        if (const auto message = readMessage<Message>(update.data, report))
+            return (this->*take)(*message);
+        ++ignored_;
+        Q_EMIT changed();
+    };
+}
+
 MapModel::MapModel(Fleet &fleet, QObject *parent)
     : QObject(parent)
-    , maps_(
-          fleet, "map", {{"queue", 100}}, [this](const TopicUpdate &u) { onMap(u.json()); }, this)
-    , poses_(
-          fleet, "pose", {}, [this](const TopicUpdate &u) { onPose(u.json()); }, this)
-    , matches_(
-          fleet, "match", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onMatch(u.json()); }, this)
-    , segmentFeed_(
-          fleet, "segments", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onSegments(u.json()); },
-          this)
-    , scans_(
-          fleet, "scan2d", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onScan(u.json()); }, this)
-    , odometryFeed_(
-          fleet, "odometry", {{"max_rate_hz", 10}},
-          [this](const TopicUpdate &u) { follow(odometry_, u.json()["pose"]); }, this)
-    , truthFeed_(
-          fleet, "truth", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { follow(truth_, u.json()); },
-          this) {
-    connect(&maps_, &TopicFeed::sourceChanged, this, [this] { onMap(QJsonObject{{"cleared", true}}); });
+    , maps_(fleet, "map", {{"queue", 100}}, reader(&MapModel::onMap), this)
+    , poses_(fleet, "pose", {}, reader(&MapModel::onPose), this)
+    , results_(fleet, "scan", {{"max_rate_hz", 10}}, reader(&MapModel::onResult), this)
+    , scans_(fleet, "scan2d", {{"max_rate_hz", 10}}, reader(&MapModel::onScan), this)
+    , odometryFeed_(fleet, "odometry", {{"max_rate_hz", 10}}, reader(&MapModel::onOdometry), this)
+    , truthFeed_(fleet, "truth", {{"max_rate_hz", 10}}, reader(&MapModel::onTruth), this) {
+    connect(&maps_, &TopicFeed::sourceChanged, this, [this] { onMap({0, true, {}, {}, 0}); });
     connect(&poses_, &TopicFeed::sourceChanged, this, [this] {
         pose_.reset();
         clearPaths();
@@ -115,31 +98,29 @@ QRectF MapModel::bounds() const {
     return all;
 }
 
-void MapModel::onMap(const QJsonValue &data) {
-    const double revision = data["revision"].toDouble();
-    if (data["cleared"].toBool()) {
+void MapModel::onMap(const MapMessage &map) {
+    if (map.cleared) {
         edges_.clear();
         rows_.clear();
         ids_.clear();
-    } else if (revision > revision_ + 1) {
+    } else if (double(map.revision) > revision_ + 1) {
         revision_ = std::numeric_limits<double>::infinity(); // changes were lost: the whole map anew, once
         return maps_.renew();
     }
-    revision_ = revision;
-    size_ = data["size"].toInt();
-    for (const QJsonValue &edge : data["edges"].toArray())
+    revision_ = double(map.revision);
+    size_ = int(qMin<qint64>(map.size, mostEdges));
+    for (const MapEdgeMessage &edge : map.edges)
         addEdge(edge);
-    for (const QJsonValue &removed : data["removed"].toArray())
-        removeEdge(toId(removed));
+    for (qint64 removed : map.removed)
+        removeEdge(removed);
     Q_EMIT changed();
 }
 
-void MapModel::addEdge(const QJsonValue &edge) {
-    const qint64 id = toId(edge["id"]);
-    const auto line = toLine(edge["x1"], edge["y1"], edge["x2"], edge["y2"]);
-    const auto row = rows_.constFind(id);
+void MapModel::addEdge(const MapEdgeMessage &edge) {
+    const auto line = toLine(edge.x1, edge.y1, edge.x2, edge.y2);
+    const auto row = rows_.constFind(edge.id);
     const bool isNew = row == rows_.constEnd();
-    if (!line || id < 0 || (isNew && edges_.size() >= mostEdges)) {
+    if (!line || (isNew && edges_.size() >= mostEdges)) {
         ++ignored_;
         return;
     }
@@ -147,9 +128,9 @@ void MapModel::addEdge(const QJsonValue &edge) {
         edges_[*row] = *line;
         return;
     }
-    rows_.insert(id, edges_.size());
+    rows_.insert(edge.id, edges_.size());
     edges_.append(*line);
-    ids_.append(id);
+    ids_.append(edge.id);
 }
 
 void MapModel::removeEdge(qint64 id) {
@@ -167,65 +148,49 @@ void MapModel::removeEdge(qint64 id) {
     ids_.removeLast();
 }
 
-void MapModel::onPose(const QJsonValue &data) {
-    const auto pose = toPose(data);
-    if (!pose) {
+void MapModel::onPose(const PoseMessage &message) {
+    const MapPose pose{message.pose.x, message.pose.y, message.pose.theta};
+    if (!isPlausible(pose)) {
         ++ignored_;
         return Q_EMIT changed();
     }
     pose_ = pose;
-    outcome_ = shortLine(data["outcome"].toString(), longestOutcome);
-    covariance_.reset();
-    const QJsonArray covariance = data["covariance"].toArray();
-    if (covariance.size() == 9) {
-        covariance_.emplace();
-        for (int i = 0; i < 9; ++i)
-            (*covariance_)[size_t(i)] = toNumber(covariance[i]);
-        const auto isVariance = [](double v) { return std::abs(v) <= farthest_m * farthest_m; };
-        if (!std::all_of(covariance_->begin(), covariance_->end(), isVariance)) {
-            covariance_.reset();
-            ++ignored_;
-        }
+    outcome_ = shortLine(message.outcome, longestOutcome);
+    covariance_ = message.covariance;
+    const auto isVariance = [](double v) { return std::abs(v) <= farthest_m * farthest_m; };
+    if (covariance_ && !std::all_of(covariance_->begin(), covariance_->end(), isVariance)) {
+        covariance_.reset();
+        ++ignored_;
     }
-    const QJsonValue twist = data["twist"];
-    const MapPose velocity{twist["vx"].toDouble(), twist["vy"].toDouble(), twist["omega"].toDouble()};
-    const bool isMoving = isPlausible(velocity.x) && isPlausible(velocity.y) && isPlausible(velocity.theta);
-    twist_ = isMoving ? velocity : MapPose();
-    ignored_ += !isMoving;
-    poseScan_ = data["scan"].toDouble();
+    const MapPose velocity{message.twist.vx, message.twist.vy, message.twist.omega};
+    twist_ = isPlausible(velocity) ? velocity : MapPose();
+    ignored_ += !isPlausible(velocity);
+    poseScan_ = message.scan;
     matched_.add(*pose_);
     placeScan();
     Q_EMIT changed();
 }
 
-void MapModel::onMatch(const QJsonValue &data) {
-    reliability_ = data["reliability"].toDouble();
-    ambiguity_ = data["ambiguity"].toDouble();
-    pairs_.clear();
-    for (const QJsonValue &pair : data["pairs"].toArray())
-        pairs_.append({toId(pair[0]), pair[1].toInt(-1)});
-}
-
-// The segments of a scan come right after its match.
-void MapModel::onSegments(const QJsonValue &data) {
+void MapModel::onResult(const ScanResult &result) {
+    reliability_ = result.match.reliability;
+    ambiguity_ = result.match.ambiguity;
     segments_.clear();
-    for (const QJsonValue &segment : data.toArray())
-        if (const auto line = toLine(segment[0], segment[1], segment[2], segment[3]))
+    for (const auto &[x1, y1, x2, y2] : result.segments)
+        if (const auto line = toLine(x1, y1, x2, y2))
             segments_.append(*line);
         else
             ++ignored_;
     correspondences_.clear();
-    for (const auto &[edge, segment] : qAsConst(pairs_)) {
+    for (const auto &[edge, segment] : result.match.pairs) {
         const int row = rows_.value(edge, -1);
-        if (row < 0 || segment < 0 || segment >= segments_.size())
-            continue;
-        correspondences_.append(QLineF(segments_[segment].center(), edges_[row].center()));
+        if (row >= 0 && segment >= 0 && segment < segments_.size())
+            correspondences_.append(QLineF(segments_[int(segment)].center(), edges_[row].center()));
     }
     Q_EMIT changed();
 }
 
-void MapModel::onScan(const QJsonValue &data) {
-    rawScan_ = data;
+void MapModel::onScan(const ScanMessage &scan) {
+    rawScan_ = scan;
     placeScan();
     if (!poses_.source())
         Q_EMIT changed();
@@ -234,18 +199,17 @@ void MapModel::onScan(const QJsonValue &data) {
 // A scan is drawn where the matcher found it, each point where the sensor was when it was measured: the pose
 // is that of the middle of the turn.
 void MapModel::placeScan() {
-    if (poses_.source() && rawScan_["turn"].toDouble() != poseScan_)
+    if (poses_.source() && rawScan_.header.turn != poseScan_)
         return;
     const MapPose at = pose_.value_or(MapPose());
-    const QJsonArray x = rawScan_["x"].toArray(), y = rawScan_["y"].toArray(), t = rawScan_["t"].toArray();
-    const double middle = rawScan_["duration_s"].toDouble() / 2;
-    const int count = qMin(x.size(), y.size());
+    const double middle = rawScan_.header.duration_s / 2;
+    const std::size_t count = qMin(rawScan_.x.size(), rawScan_.y.size());
     scan_.clear();
-    scan_.reserve(count);
-    for (int i = 0; i < count; ++i) {
-        const double dt = i < t.size() ? t.at(i).toDouble() - middle : 0;
+    scan_.reserve(int(count));
+    for (std::size_t i = 0; i < count; ++i) {
+        const double dt = rawScan_.t && i < rawScan_.t->size() ? double((*rawScan_.t)[i]) - middle : 0;
         const MapPose moved{twist_.x * dt, twist_.y * dt, twist_.theta * dt};
-        const QPointF point = at * (moved * QPointF(toNumber(x.at(i)), toNumber(y.at(i))));
+        const QPointF point = at * (moved * QPointF(double(rawScan_.x[i]), double(rawScan_.y[i])));
         if (isPlausible(point.x()) && isPlausible(point.y()))
             scan_.append(point);
         else
@@ -253,17 +217,25 @@ void MapModel::placeScan() {
     }
 }
 
-void MapModel::follow(Path &path, const QJsonValue &value) {
+void MapModel::onOdometry(const OdometryMessage &odometry) {
+    follow(odometry_, odometry.pose);
+}
+
+void MapModel::onTruth(const TruthMessage &truth) {
+    follow(truth_, truth.pose);
+}
+
+void MapModel::follow(Path &path, const Pose &told) {
     if (!pose_ && poses_.source())
         return; // nothing to lay it against yet
-    const auto pose = toPose(value);
-    if (!pose) {
+    const MapPose pose{told.x, told.y, told.theta};
+    if (!isPlausible(pose)) {
         ++ignored_;
         return Q_EMIT changed();
     }
     if (!path.frame)
-        path.frame = pose_ ? *pose_ * pose->inverse() : MapPose();
-    path.add(*path.frame * *pose);
+        path.frame = pose_ ? *pose_ * pose.inverse() : MapPose();
+    path.add(*path.frame * pose);
 }
 
 } // namespace hermes

@@ -1,6 +1,9 @@
 #pragma once
 
 #include "gui/desktop/model/TopicFeed.h"
+#include "protocol/messages/Matching.h"
+#include "protocol/messages/Turns.h"
+#include "protocol/messages/VectorMap.h"
 
 #include <QLineF>
 #include <QPolygonF>
@@ -20,7 +23,7 @@ struct MapPose {
 };
 
 /// Everything that the map view shows of the chosen robot, in the map's frame and in metres, as it comes from
-/// the topics map, pose, match, segments, scan2d, odometry and truth of whichever daemons have them.
+/// the topics map, pose, scan, scan2d, odometry and truth of whichever daemons have them.
 class MapModel : public QObject {
     Q_OBJECT
 public:
@@ -77,14 +80,17 @@ private:
         void add(const MapPose &pose);
     };
 
-    void onMap(const QJsonValue &data);
-    void onPose(const QJsonValue &data);
-    void onMatch(const QJsonValue &data);
-    void onSegments(const QJsonValue &data);
-    void onScan(const QJsonValue &data);
-    void addEdge(const QJsonValue &edge);
+    template <typename Message>
+    Client::TopicCallback reader(void (MapModel::*take)(const Message &));
+    void onMap(const MapMessage &map);
+    void onPose(const PoseMessage &message);
+    void onResult(const ScanResult &result);
+    void onScan(const ScanMessage &scan);
+    void onOdometry(const OdometryMessage &odometry);
+    void onTruth(const TruthMessage &truth);
+    void addEdge(const MapEdgeMessage &edge);
     void removeEdge(qint64 id);
-    void follow(Path &path, const QJsonValue &pose);
+    void follow(Path &path, const Pose &told);
     void placeScan();
 
     QVector<QLineF> edges_, segments_, correspondences_;
@@ -92,18 +98,17 @@ private:
     QVector<qint64> ids_;     // of each row
     double revision_ = 0;     // of the map, counts its changes
     int size_ = 0;            // edges that the daemon's map has
-    QJsonValue rawScan_;      // waits for its pose
+    ScanMessage rawScan_;     // waits for its pose
     QPolygonF scan_;
-    MapPose twist_;        // metres and radians a second, in the frame of the sensor
-    double poseScan_ = -1; // the number of the scan that the pose belongs to
+    MapPose twist_;                  // metres and radians a second, in the frame of the sensor
+    quint64 poseScan_ = ~quint64(0); // the number of the scan that the pose belongs to
     std::optional<MapPose> pose_;
     std::optional<std::array<double, 9>> covariance_;
     QString outcome_;
-    QVector<QPair<qint64, int>> pairs_; // edge, segment
     quint64 ignored_ = 0;
     double reliability_ = 0, ambiguity_ = 0;
     Path matched_, odometry_, truth_;
-    TopicFeed maps_, poses_, matches_, segmentFeed_, scans_, odometryFeed_, truthFeed_;
+    TopicFeed maps_, poses_, results_, scans_, odometryFeed_, truthFeed_;
 };
 
 } // namespace hermes

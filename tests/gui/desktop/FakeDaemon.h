@@ -141,8 +141,8 @@ private:
             methods << "motor.drive"
                     << "motor.estop"
                     << "motor.state";
-        QStringList topics{"map",   "pose",   "match",    "segments", "scan2d",    "odometry", "truth",
-                           "power", "status", "settings", "log",      "processes", "free"};
+        QStringList topics{"map",   "pose",   "scan",     "scan2d", "odometry",  "truth",
+                           "power", "status", "settings", "log",    "processes", "free"};
         if (!mischief_.hasTopics)
             topics.clear();
         return "{\"openrpc\":\"1.2.6\",\"methods\":" + named(methods) + ",\"x-topics\":" + named(topics) +

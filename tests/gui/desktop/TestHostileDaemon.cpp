@@ -144,8 +144,8 @@ static void addNonsenseEverywhere() {
         {"many members", objectOf("1", 20000)}};
     for (const auto &[name, json] : nonsense) {
         Mischief topics, results;
-        for (const char *const topic : {"map", "pose", "match", "segments", "scan2d", "odometry", "truth",
-                                        "power", "status", "settings", "log", "processes", "free"})
+        for (const char *const topic : {"map", "pose", "scan", "scan2d", "odometry", "truth", "power",
+                                        "status", "settings", "log", "processes", "free"})
             topics.topics[topic] = json;
         for (const char *const method : {"daemon.status", "settings.schema", "record.status", "record.list",
                                          "log.tail", "topics.subscribe", "fake.call"})
@@ -181,9 +181,14 @@ static void addMap() {
                                                   ",\"y\":" + listOf("-1e%1", 300) + ",\"t\":[1e300]}");
     row("large scan") << ofTopic("scan2d", "{\"turn\":-1,\"x\":" + listOf("1", 60000) +
                                                ",\"y\":" + listOf("1", 60000) + '}');
-    row("segments far away") << ofTopic("segments", listOf("[1e%1,0,1e%1,1]", 300));
-    row("partners that are not there") << ofTopic(
-        "match", R"({"reliability":1e300,"ambiguity":-1e300,"pairs":[[1e300,-1e300],[0,99],["x"],5]})");
+    const auto result = [](const QByteArray &pairs, const QByteArray &segments) {
+        return ofTopic("scan", R"({"stamp":1,"pose":{"x":0,"y":0,"theta":0,"outcome":"matched"},)"
+                               R"("match":{"reliability":1e300,"ambiguity":-1e300,"pairs":)" +
+                                   pairs + R"(},"segments":)" + segments + '}');
+    };
+    row("segments far away") << result("[]", listOf("[1e%1,0,1e%1,1]", 300));
+    row("partners that are not there") << result("[[1,-7],[0,99],[-5,9007199254740992]]", "[[0,0,1,1]]");
+    row("partners that are none") << result("[[1e300,-1e300],[0,99],[\"x\"],5]", "[[0,0,1,1]]");
 }
 
 static void addForms() {

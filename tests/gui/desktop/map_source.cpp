@@ -16,7 +16,7 @@ public:
         addSetting(Field::number("rate_hz", "Scans a second").range(0.1, 10000).byDefault(10));
         addSetting(
             Field::integer("records", "Records in the log with each scan").range(0, 1000).byDefault(0));
-        for (const char *const name : {"pose", "segments", "match", "scan2d"})
+        for (const char *const name : {"pose", "scan", "scan2d"})
             addTopic(Topic(name, name));
         addTopic(Topic("map", "map").snapshotParts([this](qint64 &cursor) {
             const bool isFirst = cursor == 0;
@@ -79,16 +79,23 @@ private:
         ++revision_;
         for (int i = 0; i < 20; ++i)
             changed.append(edge((scan_ * 20 + i) % qMax(1, settings().integer("edges"))));
-        publish("scan2d", QJsonObject{{"turn", scan_}, {"x", x}, {"y", y}, {"duration_s", 0.1}});
+        publish(
+            "scan2d",
+            QJsonObject{{"turn", scan_}, {"stamp", double(scan_)}, {"x", x}, {"y", y}, {"duration_s", 0.1}});
         publish("map", message(false, changed));
-        publish("match", QJsonObject{{"pairs", pairs}, {"reliability", 0.9}, {"ambiguity", 0.001}});
-        publish("segments", segments);
-        publish("pose", QJsonObject{{"x", radius * std::cos(way / radius)},
-                                    {"y", radius * std::sin(way / radius)},
-                                    {"theta", way / radius},
-                                    {"outcome", "matched"},
-                                    {"scan", scan_},
-                                    {"covariance", QJsonArray{1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e-5}}});
+        const QJsonObject pose{{"x", radius * std::cos(way / radius)},
+                               {"y", radius * std::sin(way / radius)},
+                               {"theta", way / radius},
+                               {"outcome", "matched"},
+                               {"scan", scan_},
+                               {"covariance", QJsonArray{1e-4, 0, 0, 0, 1e-4, 0, 0, 0, 1e-5}}};
+        publish(
+            "scan",
+            QJsonObject{{"stamp", double(scan_)},
+                        {"pose", pose},
+                        {"match", QJsonObject{{"pairs", pairs}, {"reliability", 0.9}, {"ambiguity", 0.001}}},
+                        {"segments", segments}});
+        publish("pose", pose);
         for (int i = 0; i < settings().integer("records"); ++i)
             publish("log", QJsonObject{{"stamp", double(scan_)},
                                        {"level", "info"},
