@@ -132,6 +132,7 @@ bool UdpSocket::receive() {
     drops_ = 0;
     batch_->prepare();
     const int received = ::recvmmsg(socket_, batch_->headers, batchSize, MSG_DONTWAIT, nullptr);
+    full_ = received == int(batchSize);
     if (received < 0)
         return errno == EINTR || errno == EAGAIN;
     for (std::size_t i = 0; i < std::size_t(received); ++i) {

@@ -21,7 +21,8 @@ public:
     bool receive();
     std::size_t count() const { return count_; } ///< datagrams of the last receive()
     const Datagram &datagram(std::size_t i) const;
-    std::size_t cut() const { return cut_; } ///< and those too long for a sensor's, which are left out
+    bool mayHaveMore() const { return full_; } ///< the last receive() was a whole batch
+    std::size_t cut() const { return cut_; }   ///< and those too long for a sensor's, which are left out
     /// Dropped by the kernel, as far as it told in the last receive(): it tells with the next datagram.
     std::uint32_t drops() const { return drops_; }
 
@@ -41,6 +42,7 @@ private:
     int bufferBytes_ = 0;
     std::size_t count_ = 0;
     std::size_t cut_ = 0;
+    bool full_ = false;
     std::uint32_t drops_ = 0;
     std::uint32_t allDrops_ = 0; ///< as the kernel counts; may wrap
 };

@@ -175,8 +175,7 @@ void TestMotorControl::numbersWithoutAValueAreRefused() {
     QVERIFY(ask("control.acquire", "{}") && answers.contains(R"("held":true)"));
     for (const char *number : {"NaN", "1e999", "-Infinity"}) {
         QVERIFY(ask("motor.drive", QByteArray(R"({"vx":)") + number + "}"));
-        QVERIFY2(answers.contains(R"("code":-32700)"),
-                 answers.constData());
+        QVERIFY2(answers.contains(R"("code":-32700)"), answers.constData());
     }
     passCycles(5);
     for (const RoboClawRig::SetPoint &setPoint : rig_->heard())

@@ -203,7 +203,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         try:
             ports = start_all(folder, processes)
-            daemons = {name: Daemon(port=port, timeout=20) for name, port in ports.items()}
+            daemons = dict(zip(ports, [process.connect() for process in processes]))
             for name, daemon in daemons.items():
                 wanted |= declare_all(judge, name, daemon)
                 watchers.append(Watcher(judge, name, ports[name], [t["name"] for t in daemon.call("topics.list")]))
