@@ -9,6 +9,7 @@ namespace hermes {
 
 namespace {
 
+using velodyne::hdl32e;
 constexpr double degree = vectorlib::pi / 180;
 constexpr std::uint8_t wallIntensity = 100; // made up, to tell the two apart
 constexpr std::uint8_t floorIntensity = 40;
@@ -19,16 +20,21 @@ struct Beam {
     double offset;  ///< of the laser above the sensor's origin; metres
 };
 
-std::array<Beam, velodyne::lasers> makeBeams() {
-    std::array<Beam, velodyne::lasers> beams;
-    for (int laser = 0; laser < velodyne::lasers; ++laser) {
-        const double elevation = velodyne::elevation_deg[laser] * degree;
-        beams[laser] = {std::cos(elevation), std::tan(elevation), velodyne::verticalOffset_mm[laser] / 1000};
+/// Part of the way to the next block's azimuth that passes from the first to the last laser.
+constexpr double firingShare =
+    double((hdl32e.lasers - 1) * hdl32e.laserPeriod_ns) / double(hdl32e.firingPeriod_ns);
+
+std::array<Beam, hdl32e.lasers> makeBeams() {
+    std::array<Beam, hdl32e.lasers> beams;
+    for (int i = 0; i < hdl32e.lasers; ++i) {
+        const velodyne::Laser &laser = hdl32e.laser[i];
+        const double elevation = laser.elevation_deg * degree;
+        beams[i] = {std::cos(elevation), std::tan(elevation), laser.verticalOffset_mm / 1000};
     }
     return beams;
 }
 
-const std::array<Beam, velodyne::lasers> beams = makeBeams();
+const std::array<Beam, hdl32e.lasers> beams = makeBeams();
 
 } // namespace
 
@@ -42,11 +48,11 @@ void LidarModel::fire(const vectorlib::Pose2D &pose, double azimuth, double gap,
                       velodyne::DataPacketWriter &packet, int block) {
     // The head turns clockwise: from left to right.
     const double first = pose.theta - azimuth * degree;
-    const double last = first - gap * velodyne::laserGap * (velodyne::lasers - 1) * degree;
+    const double last = first - gap * firingShare * degree;
     const Vector left(std::cos(first), std::sin(first)), right(std::cos(last), std::sin(last));
     selectWalls({pose.x, pose.y}, left, right);
-    const Vector step = (right - left) / (velodyne::lasers - 1); // the arc is so short that its chord serves
-    for (int laser = 0; laser < velodyne::lasers; ++laser)
+    const Vector step = (right - left) / (hdl32e.lasers - 1); // the arc is so short that its chord serves
+    for (int laser = 0; laser < hdl32e.lasers; ++laser)
         measure(laser, wallDistance(left + step * laser), packet, block);
 }
 

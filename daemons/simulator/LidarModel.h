@@ -1,6 +1,7 @@
 #pragma once
 
 #include "protocol/velodyne/DataPacket.h"
+#include "protocol/velodyne/Hdl32e.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
 

@@ -69,14 +69,14 @@ void PacketPump::run() {
         }
         const std::lock_guard<std::mutex> lock(mutex_);
         if (lag > stall) {
-            const auto missed = std::uint64_t(lag.count() / velodyne::packetPeriod_ns);
+            const auto missed = std::uint64_t(lag.count() / velodyne::hdl32e.packetPeriod_ns());
             simulation_.skip(missed);
             counts_.skipped += missed;
-            due += nanoseconds(std::int64_t(missed) * velodyne::packetPeriod_ns);
+            due += nanoseconds(std::int64_t(missed) * velodyne::hdl32e.packetPeriod_ns());
         }
         step();
         counts_.worstLag_s = std::max(counts_.worstLag_s, lag.count() * 1e-9);
-        due += nanoseconds(velodyne::packetPeriod_ns);
+        due += nanoseconds(velodyne::hdl32e.packetPeriod_ns());
     }
 }
 

@@ -6,7 +6,7 @@ namespace hermes {
 
 namespace {
 
-constexpr double firingPeriod = velodyne::firingPeriod_ns * 1e-9; // seconds
+constexpr double firingPeriod = velodyne::hdl32e.firingPeriod_ns * 1e-9; // seconds
 constexpr double packetPeriod = firingPeriod * velodyne::blocksPerPacket;
 
 std::vector<vectorlib::LineSegment2D<double>> wallsOf(const World &world) {

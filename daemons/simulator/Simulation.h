@@ -62,7 +62,9 @@ public:
     Truth truth() const;
     bool isPlaced() const { return placed_; }
     /// Time of the next firing: of the packet that nextPacket() makes.
-    std::int64_t now_ns() const { return start_ns_ + std::int64_t(firings_) * velodyne::firingPeriod_ns; }
+    std::int64_t now_ns() const {
+        return start_ns_ + std::int64_t(firings_) * velodyne::hdl32e.firingPeriod_ns;
+    }
 
 private:
     void advanceWheels();

@@ -108,7 +108,8 @@ LidarFeed::Assembler LidarFeed::makeAssembler(int laser, velodyne::TurnAssembler
 void LidarFeed::makeCloudAssembler() {
     cloud_ = makeAssembler(velodyne::PacketDecoder::allLasers,
                            [this](const velodyne::Turn &turn) { takeOverCloud(turn); });
-    const velodyne::SensorModel *model = ring_->model() ? ring_->model() : &velodyne::hdl32e();
+    const velodyne::SensorModel *model =
+        ring_->model() ? ring_->model() : velodyne::findSensorModel(options_.model);
     const double turnsPerSecond = ring_->rpm() > 0 ? ring_->rpm() / 60 : 10;
     cloud_->setFiringStep(firingStep(*model, std::int64_t(double(model->firingRate()) / turnsPerSecond),
                                      thinning_->maximumPoints));

@@ -7,6 +7,9 @@
 namespace hermes {
 
 void VelodyneLogger::declareSettings() {
+    QStringList models;
+    for (const std::string &model : velodyne::modelChoices())
+        models.append(QString::fromStdString(model));
     addSetting(Field::text("source.address", "Local IPv4 address to receive on; 0.0.0.0 for all")
                    .byDefault("0.0.0.0")
                    .appliesOnRestart()
@@ -43,15 +46,15 @@ void VelodyneLogger::declareSettings() {
             .byDefault(1)
             .appliesOnRestart()
             .group("Source"));
-    addSetting(Field::integer("decode.laser",
-                              "Laser whose ring is published; -1: the one nearest to the horizon, "
-                              "15 of an HDL-32E, 1 of a VLP-16")
-                   .range(-1, velodyne::lasers - 1)
-                   .byDefault(-1)
-                   .appliesOnRestart()
-                   .group("Decoding"));
+    addSetting(
+        Field::integer("decode.laser", "Laser whose ring is published; -1: the one nearest to the horizon (" +
+                                           QString::fromStdString(velodyne::horizonLasers()) + ")")
+            .range(-1, velodyne::mostLasers() - 1)
+            .byDefault(-1)
+            .appliesOnRestart()
+            .group("Decoding"));
     addSetting(Field::text("decode.model", "The sensor; auto: as its packets say (hdl32e where they do not)")
-                   .choices({"auto", "hdl32e", "vlp16"})
+                   .choices(models)
                    .byDefault("auto")
                    .appliesOnRestart()
                    .group("Decoding"));

@@ -130,6 +130,7 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     const auto set = [&](HealthLevel level, const QString &message) {
         health().set("lidar", level, message, values);
     };
+    const QString sensors = QString::fromStdString(velodyne::sensorNames());
     const std::string receiveError = feed_.receiveError();
     if (source_ == Source::None)
         set(HealthLevel::Warn, "no source is open; source.open opens one");
@@ -142,16 +143,16 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
             QString("no packet on %1 for %2 s").arg(sourceName_).arg(sincePacket_.elapsed() / 1000));
     else if (counts.other > 0 && !counts.decoded)
         set(HealthLevel::Warn,
-            QString("%1 datagrams came, and no data packet of an HDL-32E or VLP-16").arg(counts.other));
+            QString("%1 datagrams came, and no data packet of an %2").arg(counts.other).arg(sensors));
     else if (packets.otherModel > 0)
-        set(HealthLevel::Warn, velodyne::describe(velodyne::PacketFault::Model));
+        set(HealthLevel::Warn, QString::fromStdString(velodyne::describe(velodyne::PacketFault::Model)));
     else if (counts.otherSensors > 0 && !counts.decoded)
         set(HealthLevel::Warn, "no data packet is decoded, those that came are of " + otherSensors(counts));
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
             textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) + " too");
     else if (wrong > 0)
-        set(HealthLevel::Warn, QString("%1 packets were no data packets of an HDL-32E or VLP-16").arg(wrong));
+        set(HealthLevel::Warn, QString("%1 packets were no data packets of an %2").arg(wrong).arg(sensors));
     else if (counts.model && settings().integer("decode.laser") >= counts.model->lasers)
         set(HealthLevel::Warn, QString("decode.laser is %1, but a %2 has lasers 0 to %3: scans are empty")
                                    .arg(settings().integer("decode.laser"))

@@ -27,9 +27,11 @@ PcapPlayer::Options replayOptions(const Call &call) {
 } // namespace
 
 VelodyneLogger::VelodyneLogger()
-    : Daemon({"velodynelogger", "Velodyne logger",
-              "Receives an HDL-32E or VLP-16 or replays a capture of one, publishes its horizontal ring as "
-              "scans and thinned clouds of all lasers, records pcap"})
+    : Daemon(
+          {"velodynelogger", "Velodyne logger",
+           "Receives an " + QString::fromStdString(velodyne::sensorNames()) +
+               " or replays a capture of one, publishes its horizontal ring as scans and thinned clouds of "
+               "all lasers, records pcap"})
     , feed_(recorder_, [this] {
         const auto wake = [this] {
             if (!retry_.isActive())

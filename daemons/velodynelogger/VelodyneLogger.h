@@ -9,7 +9,7 @@
 
 namespace hermes {
 
-/// hermes-velodynelogger: receives an HDL-32E or VLP-16 or replays a capture, publishes the horizontal ring
+/// hermes-velodynelogger: receives a Velodyne lidar or replays a capture, publishes the horizontal ring
 /// and thinned turns of all lasers, records to pcap.
 class VelodyneLogger : public Daemon {
 public:

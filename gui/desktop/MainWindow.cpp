@@ -3,14 +3,8 @@
 #include "gui/desktop/TopBar.h"
 #include "gui/desktop/drive/DriveGamepad.h"
 #include "gui/desktop/drive/DriveKeys.h"
-#include "gui/desktop/panels/CommandsPanel.h"
-#include "gui/desktop/panels/DaemonsPanel.h"
-#include "gui/desktop/panels/DrivePanel.h"
-#include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
-#include "gui/desktop/panels/PlotsPanel.h"
-#include "gui/desktop/panels/RecordPanel.h"
-#include "gui/desktop/panels/SettingsPanel.h"
+#include "gui/desktop/panels/Panels.h"
 #include "gui/desktop/widgets/EnterKey.h"
 
 #include <QAction>
@@ -39,13 +33,8 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     bar->addWidget(new TopBar(fleet, drive_));
 
     setCentralWidget(new MapPanel(fleet));
-    addPanel(Qt::LeftDockWidgetArea, new DaemonsPanel(fleet), tr("Daemons"), "daemons");
-    addPanel(Qt::BottomDockWidgetArea, new SettingsPanel(fleet), tr("Settings"), "settings");
-    addPanel(Qt::BottomDockWidgetArea, new CommandsPanel(fleet), tr("Commands"), "commands", lastDock());
-    addPanel(Qt::BottomDockWidgetArea, new LogPanel(fleet), tr("Log"), "log", lastDock());
-    addPanel(Qt::BottomDockWidgetArea, new PlotsPanel(fleet), tr("Plots"), "plots", lastDock());
-    addPanel(Qt::RightDockWidgetArea, new DrivePanel(drive_), tr("Drive"), "drive");
-    addPanel(Qt::LeftDockWidgetArea, new RecordPanel(fleet), tr("Recordings"), "recordings", docks_.front());
+    for (const PanelKind &kind : panelKinds())
+        addPanel(kind, kind.make(fleet, drive_));
     new DriveKeys(drive_, *this);
     new DriveGamepad(drive_, this);
     new EnterKey(*this);
@@ -55,18 +44,19 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
 
 MainWindow::~MainWindow() = default;
 
-void MainWindow::addPanel(Qt::DockWidgetArea area, QWidget *panel, const QString &title, const QString &name,
-                          QDockWidget *tabbedWith) {
+void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
+    const QString title = tr(kind.title);
     auto *const dock = new QDockWidget(title, this);
-    dock->setObjectName(name);
+    dock->setObjectName(kind.name);
     dock->setWidget(panel);
-    addDockWidget(area, dock);
-    if (tabbedWith)
-        tabifyDockWidget(tabbedWith, dock);
+    addDockWidget(kind.area, dock);
+    if (auto *const other = kind.tabbedWith ? findChild<QDockWidget *>(kind.tabbedWith) : nullptr)
+        tabifyDockWidget(other, dock);
     docks_.push_back(dock);
 
     auto *const show = new QAction(title, this);
-    show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size())));
+    if (docks_.size() <= 9)
+        show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size())));
     connect(show, &QAction::triggered, dock, [dock] {
         dock->show();
         dock->raise();

@@ -8,6 +8,8 @@ class QDockWidget;
 
 namespace hermes {
 
+struct PanelKind;
+
 /// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
 /// bring the docks to the front.
 class MainWindow : public QMainWindow {
@@ -21,9 +23,7 @@ protected:
     void closeEvent(QCloseEvent *event) override;
 
 private:
-    void addPanel(Qt::DockWidgetArea area, QWidget *panel, const QString &title, const QString &name,
-                  QDockWidget *tabbedWith = nullptr);
-    QDockWidget *lastDock() const { return docks_.back(); }
+    void addPanel(const PanelKind &kind, QWidget *panel);
     void restoreLayout();
     void saveLayout() const;
 

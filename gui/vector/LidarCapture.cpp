@@ -81,8 +81,8 @@ std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
     throw Failure(
         path_ + ": found " +
         (counts.otherModel > 0 ? "only packets of another sensor or return mode" : "no data packet") +
-        ", expected those of an HDL-32E or VLP-16: UDP datagrams of 1206 bytes whose blocks begin with FF "
-        "EE");
+        ", expected those of an " + velodyne::sensorNames() +
+        ": UDP datagrams of 1206 bytes whose blocks begin with FF EE");
 }
 
 } // namespace hermes

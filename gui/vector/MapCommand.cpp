@@ -107,9 +107,9 @@ void addMapCommand(CLI::App &app) {
     CLI::App *sub = app.add_subcommand(
         "map", "Build the vector map of a CARMEN log, a capture or a folder of scans (summary as "
                "JSON)");
-    sub->add_option(
-           "LOG", command->source.path,
-           "CARMEN log, pcap of an HDL-32E or VLP-16, or a folder of points files taken in name order")
+    sub->add_option("LOG", command->source.path,
+                    "CARMEN log, pcap of an " + velodyne::sensorNames() +
+                        ", or a folder of points files taken in name order")
         ->required();
     sub->add_option("--out-map", command->outMap,
                     "The map; its kind follows from the extension: csv, svg, geojson, dxf, pgm")

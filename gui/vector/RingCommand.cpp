@@ -97,19 +97,19 @@ struct RingCommand {
 
 void addRingCommand(CLI::App &app) {
     auto command = std::make_shared<RingCommand>();
-    CLI::App *sub =
-        app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an HDL-32E or VLP-16 "
-                                   "(CSV turn,stamp,azimuth,range,intensity,x,y)");
+    CLI::App *sub = app.add_subcommand("ring", "Decode one horizontal ring a turn from a capture of an " +
+                                                   velodyne::sensorNames() +
+                                                   " (CSV turn,stamp,azimuth,range,intensity,x,y)");
     sub->add_option("PCAP", command->in, "Capture, pcap or pcapng")->required();
     command->sensor.addTo(*sub);
     CLI::Option *laser = sub->add_option("--laser", command->laser,
-                                         "Which laser, else the one that looks nearest to the horizon: "
-                                         "15 of an HDL-32E, 1 of a VLP-16")
-                             ->check(between(0, velodyne::lasers - 1))
+                                         "Which laser, else the one that looks nearest to the horizon (" +
+                                             velodyne::horizonLasers() + ")")
+                             ->check(between(0, velodyne::mostLasers() - 1))
                              ->type_name("ID");
     sub->add_option("--model", command->model,
-                    "The sensor: hdl32e, vlp16, or auto, as the packets say (hdl32e where they do not)")
-        ->check(CLI::IsMember({"auto", "hdl32e", "vlp16"}))
+                    "The sensor, or auto: as the packets say (hdl32e where they do not)")
+        ->check(CLI::IsMember(velodyne::modelChoices()))
         ->type_name("MODEL")
         ->capture_default_str();
     sub->add_option("--returns", command->returns,

@@ -1,15 +1,10 @@
 #include "gui/vector/Options.h"
 #include "gui/vector/Points.h"
+#include "gui/vector/Vectorizers.h"
 #include "vectorlib/io/Svg.h"
-#include "vectorlib/vectorization/AftlsVectorizer.h"
-#include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
-#include "vectorlib/vectorization/IncVectorizer.h"
-#include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
-#include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
-#include "vectorlib/vectorization/TlsVectorizer.h"
 
+#include <algorithm>
 #include <iostream>
-#include <map>
 #include <numeric>
 
 namespace hermes {
@@ -34,7 +29,6 @@ struct VectorizeCommand {
     std::string algorithm = "ftls";
     vectorlib::VectorizerSettings settings;
     bool noSegment = false;
-    bool polyline = false;
     OutputOptions output;
     SegmentOptions segment;
 
@@ -46,7 +40,7 @@ struct VectorizeCommand {
         std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
         const std::vector<Point> points = loadPoints(in);
         const vectorlib::Segmentation clusters = noSegment ? oneCluster(points.size()) : segmenter(points);
-        const std::vector<Row> rows = (this->*algorithms().at(algorithm))(points, clusters);
+        const std::vector<Row> rows = vectorize(points, clusters);
         out << "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2\n";
         for (const Row &r : rows) {
             out << r.cluster << ',' << r.first << ',' << r.last;
@@ -69,27 +63,11 @@ struct VectorizeCommand {
         return s;
     }
 
-    using Vectorize = std::vector<Row> (VectorizeCommand::*)(const std::vector<Point> &,
-                                                             const vectorlib::Segmentation &) const;
-    static const std::map<std::string, Vectorize> &algorithms() {
-        using Command = VectorizeCommand;
-        static const std::map<std::string, Vectorize> all = {
-            {"tls", &Command::vectorize<vectorlib::TlsVectorizer<double>>},
-            {"ftls", &Command::vectorize<vectorlib::FtlsVectorizer<double>>},
-            {"aftls", &Command::vectorize<vectorlib::AftlsVectorizer<double>>},
-            {"inc", &Command::vectorize<vectorlib::IncVectorizer<double>>},
-            {"dp", &Command::vectorize<vectorlib::DouglasPeuckerVectorizer<double>>},
-            {"rw", &Command::vectorize<vectorlib::ReumannWitkamVectorizer<double>>},
-            {"sam", &Command::vectorize<vectorlib::SplitAndMergeVectorizer<double>>}};
-        return all;
-    }
-
-    template <typename Vectorizer>
     std::vector<Row> vectorize(const std::vector<Point> &points,
                                const vectorlib::Segmentation &clusters) const {
-        Vectorizer vectorizer;
-        static_cast<vectorlib::VectorizerSettings &>(vectorizer.settings) = settings;
-        vectorizer.settings.polyline = polyline;
+        const auto chosen = std::find_if(vectorizers().begin(), vectorizers().end(),
+                                         [&](const NamedVectorizer &v) { return v.name == algorithm; });
+        const Vectorize<double> vectorizer = chosen->make(settings);
         std::vector<Row> rows;
         std::vector<Point> part;
         std::size_t without = 0;
@@ -135,15 +113,18 @@ struct VectorizeCommand {
 
 void addVectorizeCommand(CLI::App &app) {
     auto command = std::make_shared<VectorizeCommand>();
+    command->settings.polyline = false;
     CLI::App *sub = app.add_subcommand("vectorize", "Replace points by line segments (CSV "
                                                     "cluster,first,last,a,b,c,sigma,x1,y1,x2,y2)");
     sub->add_option("IN", command->in, "Points: CSV x,y or ascii PCD, in order of acquisition")->required();
-    sub->add_option(
-           "--algorithm", command->algorithm,
-           "tls: one line a cluster; ftls: as many as sigma asks for; aftls: ftls with the corners where "
-           "they fit best; inc: point by point; dp: Douglas-Peucker, rw: Reumann-Witkam, sam: split and "
-           "merge, these three with a tolerance of 3 sigma")
-        ->check(CLI::IsMember({"tls", "ftls", "aftls", "inc", "dp", "rw", "sam"}))
+    std::vector<std::string> names;
+    std::string help;
+    for (const NamedVectorizer &v : vectorizers()) {
+        names.push_back(v.name);
+        help += (help.empty() ? "" : "; ") + v.name + ": " + v.help;
+    }
+    sub->add_option("--algorithm", command->algorithm, help)
+        ->check(CLI::IsMember(names))
         ->type_name("A")
         ->capture_default_str();
     sub->add_option("--sigma", command->settings.sigma,
@@ -157,7 +138,7 @@ void addVectorizeCommand(CLI::App &app) {
         ->type_name("M")
         ->capture_default_str();
     sub->add_flag("--no-segment", command->noSegment, "The whole file is one open cluster");
-    sub->add_flag("--polyline", command->polyline,
+    sub->add_flag("--polyline", command->settings.polyline,
                   "Join the consecutive lines of a cluster where they cross");
     command->segment.addTo(*sub, "defaults 10, 0.05, 0.20, 15");
     command->output.addTo(*sub, true);

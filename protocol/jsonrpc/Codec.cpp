@@ -2,18 +2,23 @@
 
 #include "protocol/jsonrpc/JsonCodec.h"
 
+#include <stdexcept>
+
 namespace hermes {
 namespace {
 
 struct Kind {
-    const char *name;
-    std::unique_ptr<Codec> (*make)();
+    QString name;
+    CodecMaker make;
 };
 
-// A new framing is one line here.
-const Kind kinds[] = {
-    {"json", [] { return std::unique_ptr<Codec>(new JsonCodec); }},
-};
+std::vector<Kind> &kinds() {
+    // A new framing is one line here.
+    static std::vector<Kind> all = {
+        {QStringLiteral("json"), makeCodecOf<JsonCodec>},
+    };
+    return all;
+}
 
 } // namespace
 
@@ -91,9 +96,16 @@ EncodedFrame Codec::encodeTopic(const QString &topic, quint64 seq, double stamp,
     }));
 }
 
+bool addCodec(const QString &name, CodecMaker make) {
+    if (codecNames().contains(name))
+        throw std::invalid_argument("codec " + name.toStdString() + ": there is one of that name");
+    kinds().push_back({name, make});
+    return true;
+}
+
 std::unique_ptr<Codec> makeCodec(const QString &name) {
-    for (const Kind &kind : kinds) {
-        if (name == QLatin1String(kind.name))
+    for (const Kind &kind : kinds()) {
+        if (name == kind.name)
             return kind.make();
     }
     return nullptr;
@@ -101,8 +113,8 @@ std::unique_ptr<Codec> makeCodec(const QString &name) {
 
 QStringList codecNames() {
     QStringList names;
-    for (const Kind &kind : kinds)
-        names.append(QLatin1String(kind.name));
+    for (const Kind &kind : kinds())
+        names.append(kind.name);
     return names;
 }
 

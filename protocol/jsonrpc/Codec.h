@@ -95,6 +95,17 @@ private:
     int limit;
 };
 
+using CodecMaker = std::unique_ptr<Codec> (*)();
+
+template <typename Kind>
+std::unique_ptr<Codec> makeCodecOf() {
+    return std::make_unique<Kind>();
+}
+
+/// Makes a framing known by this name before main() begins, as the initializer of a global constant. Throws
+/// std::invalid_argument when there is one of that name. Gives true.
+bool addCodec(const QString &name, CodecMaker make);
+
 /// A new codec by its name in a URL (`?protocol=json`); null when there is none of that name.
 std::unique_ptr<Codec> makeCodec(const QString &name);
 

@@ -1,6 +1,9 @@
 #include "protocol/velodyne/DataPacket.h"
 
+#include "protocol/velodyne/Hdl32e.h"
+
 #include <cmath>
+#include <cstdio>
 
 namespace hermes::velodyne {
 
@@ -14,7 +17,7 @@ bool isDecoded(ReturnMode mode, Model model) {
 
 } // namespace
 
-const char *describe(PacketFault fault) {
+std::string describe(PacketFault fault) {
     switch (fault) {
     case PacketFault::None:
         return "no fault";
@@ -25,8 +28,15 @@ const char *describe(PacketFault fault) {
     case PacketFault::Value:
         return "an azimuth of 360 degrees or more, or a stamp beyond the hour";
     case PacketFault::Model:
-        return "a sensor or return mode that is not decoded: an HDL-32E (21 hex) or VLP-16 (22 hex), one of "
-               "them a stream, in mode 37, 38 or 39 hex expected";
+        return "a sensor or return mode that is not decoded: an " +
+               listSensors(
+                   [](const SensorModel &model) {
+                       char byte[16];
+                       std::snprintf(byte, sizeof byte, " (%02X hex)", unsigned(model.model));
+                       return model.name + std::string(byte);
+                   },
+                   " or ") +
+               ", one of them a stream, in mode 37, 38 or 39 hex expected";
     }
     return "unknown fault";
 }
@@ -85,7 +95,7 @@ void DataPacketWriter::setWord(std::size_t offset, std::uint16_t value) {
 }
 
 std::uint16_t toDistanceCounts(double range) {
-    const double counts = std::round(range * distanceCounts);
+    const double counts = std::round(range * hdl32e.distanceCounts);
     return counts >= 1 && counts <= 65535 ? std::uint16_t(counts) : 0;
 }
 

@@ -14,7 +14,7 @@ enum class PacketFault {
 };
 
 /// A short phrase for people: what the fault is and what was expected.
-const char *describe(PacketFault fault);
+std::string describe(PacketFault fault);
 
 /// The fields of a data packet, read from bytes that somebody else keeps. Block and slot count from 0. A slot
 /// holds the return of one laser; those of the second firing in a block of a VLP-16 follow those of the
@@ -30,7 +30,7 @@ public:
 
     /// Hundredths of a degree, clockwise seen from above, 0 to 35999: where the head was as the block began.
     std::uint16_t azimuth(int block) const { return word(block * blockSize + 2); }
-    /// Counts of 2 mm; 0 means no return.
+    /// In counts of the sensor (SensorModel.h); 0 means no return.
     std::uint16_t distance(int block, int slot) const { return word(returnOffset(block, slot)); }
     std::uint8_t intensity(int block, int slot) const { return bytes_[returnOffset(block, slot) + 2]; }
     /// Microseconds since the top of the hour, when the first laser of the packet fired.
@@ -58,7 +58,7 @@ public:
 
     /// azimuth: hundredths of a degree, below 36000.
     void setAzimuth(int block, std::uint16_t azimuth);
-    /// distance: counts of 2 mm, 0 for no return.
+    /// distance: counts of the sensor, 0 for no return.
     void setReturn(int block, int slot, std::uint16_t distance, std::uint8_t intensity);
     /// stamp_us: microseconds since the top of the hour.
     void setTail(std::uint32_t stamp_us, ReturnMode mode = ReturnMode::Strongest,
@@ -74,8 +74,8 @@ private:
     std::array<std::uint8_t, packetSize> bytes_;
 };
 
-/// Counts of 2 mm nearest to a range in metres; 0 (no return) when it rounds to nothing or lies beyond 131.07
-/// m.
+/// Counts of 2 mm, as of an HDL-32E, nearest to a range in metres; 0 (no return) when it rounds to nothing or
+/// lies beyond 131.07 m.
 std::uint16_t toDistanceCounts(double range);
 
 } // namespace hermes::velodyne

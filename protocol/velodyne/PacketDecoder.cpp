@@ -8,6 +8,7 @@ namespace hermes::velodyne {
 namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
+constexpr std::int64_t turn = 10 * azimuthSteps; // thousandths of a degree
 
 } // namespace
 
@@ -20,9 +21,11 @@ PacketDecoder::PacketDecoder(const SensorModel &model, int laser, Returns return
     , laser_(laser == levelLaser ? model.horizonLaser : laser)
     , returns_(returns) {
     for (int i = 0; i < model.lasers; ++i) {
-        cosElevation_[i] = std::cos(model.elevation_deg[i] * degree);
-        sinElevation_[i] = std::sin(model.elevation_deg[i] * degree);
-        height_[i] = verticalOffsets ? model.verticalOffset_mm[i] / 1000 : 0;
+        const Laser &l = model.laser[i];
+        beams_[i] = {std::cos(l.elevation_deg * degree), std::sin(l.elevation_deg * degree),
+                     verticalOffsets ? l.verticalOffset_mm / 1000 : 0,
+                     i / model.lasersAtOnce * model.laserPeriod_ns,
+                     (turn + std::llround(l.azimuthOffset_deg * 1000)) % turn * model.blockPeriod_ns()};
     }
 }
 
@@ -38,7 +41,8 @@ void PacketDecoder::decode(const DataPacket &packet, int group, int firing, std:
     const int lastLaser = laser_ == allLasers ? model_->lasers - 1 : std::min(laser_, model_->lasers - 1);
     for (int laser = firstLaser; laser <= lastLaser; ++laser) {
         const int slot = firing * model_->lasers + laser;
-        const std::int64_t after_ns = firing * model_->firingPeriod_ns + laser * model_->laserPeriod_ns;
+        const Beam &beam = beams_[laser];
+        const std::int64_t after_ns = firing * model_->firingPeriod_ns + beam.after_ns;
         for (int block = first; block <= last; ++block) {
             const std::uint16_t counts = packet.distance(block, slot);
             const bool repeated = block > first && counts == packet.distance(first, slot);
@@ -46,14 +50,15 @@ void PacketDecoder::decode(const DataPacket &packet, int group, int firing, std:
                 continue;
             Point point;
             point.stamp_ns = packetStamp_ns + group * period_ns + after_ns;
-            // Hundredths of a degree times the period: whole numbers, rounded once by the division.
-            const std::int64_t azimuth = packet.azimuth(group * returns) * period_ns + gap * after_ns;
-            point.azimuth = double(azimuth % (azimuthSteps * period_ns)) / double(100 * period_ns);
-            point.range = counts / distanceCounts;
-            const double horizontal = point.range * cosElevation_[laser];
+            // Thousandths of a degree times the period: whole numbers, rounded once by the division.
+            const std::int64_t azimuth =
+                10 * (packet.azimuth(group * returns) * period_ns + gap * after_ns) + beam.azimuthOffset;
+            point.azimuth = double(azimuth % (turn * period_ns)) / double(1000 * period_ns);
+            point.range = counts / model_->distanceCounts;
+            const double horizontal = point.range * beam.cosElevation;
             point.x = horizontal * std::cos(point.azimuth * degree);
             point.y = -horizontal * std::sin(point.azimuth * degree); // the sensor counts clockwise
-            point.z = point.range * sinElevation_[laser] + height_[laser];
+            point.z = point.range * beam.sinElevation + beam.height;
             point.laser = std::uint8_t(laser);
             point.intensity = packet.intensity(block, slot);
             points.push_back(point);

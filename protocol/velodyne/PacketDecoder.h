@@ -53,9 +53,15 @@ private:
     const SensorModel *model_;
     int laser_;
     Returns returns_;
-    std::array<double, lasers> cosElevation_{};
-    std::array<double, lasers> sinElevation_{};
-    std::array<double, lasers> height_{}; ///< of the laser above the sensor's origin; metres
+    /// Of each laser what its table says, ready for use.
+    struct Beam {
+        double cosElevation, sinElevation;
+        double height;         ///< above the sensor's origin; metres
+        std::int64_t after_ns; ///< the first of the firing
+        std::int64_t
+            azimuthOffset; ///< from 0 to below a turn; thousandths of a degree times the block's period
+    };
+    std::array<Beam, slotsPerBlock> beams_{};
 };
 
 /// How far the head turned during a group of blocks: to the next block's azimuth; for the last group of a

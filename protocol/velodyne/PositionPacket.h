@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/velodyne/Hdl32e.h"
+#include "protocol/velodyne/PacketFormat.h"
 
 #include <string>
 

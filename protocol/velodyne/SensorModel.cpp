@@ -1,63 +1,105 @@
 #include "protocol/velodyne/SensorModel.h"
 
+#include "protocol/velodyne/Hdl32e.h"
+#include "protocol/velodyne/Vlp16.h"
+
+#include <algorithm>
+#include <stdexcept>
+
 namespace hermes::velodyne {
 
 namespace {
 
-/// VLP-16 manual, table of vertical angles by laser id.
-constexpr std::array<double, 16> vlp16Elevation_deg = {-15, 1, -13, 3,  -11, 5,  -9, 7,
-                                                       -7,  9, -5,  11, -3,  13, -1, 15};
-/// VLP-16 manual, table of vertical angles: "vertical correction (mm)", to be added to z.
-constexpr std::array<double, 16> vlp16VerticalOffset_mm = {11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1,
-                                                           5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
-constexpr std::int64_t vlp16LaserPeriod_ns = 2304;
-constexpr std::int64_t vlp16FiringPeriod_ns = 16 * vlp16LaserPeriod_ns + 18432;
-static_assert(2 * vlp16FiringPeriod_ns == 110592, "of a block; 753.5 packets a second");
+std::vector<const SensorModel *> &models() {
+    // A new sensor is one line here.
+    static std::vector<const SensorModel *> all = {
+        &hdl32e,
+        &vlp16,
+    };
+    return all;
+}
 
-constexpr SensorModel hdl32eModel = {
-    Model::Hdl32e,           "HDL-32E",       lasers,       1,
-    laserPeriod_ns,          firingPeriod_ns, horizonLaser, elevation_deg.data(),
-    verticalOffset_mm.data()};
-constexpr SensorModel vlp16Model = {Model::Vlp16,
-                                    "VLP-16",
-                                    16,
-                                    2,
-                                    vlp16LaserPeriod_ns,
-                                    vlp16FiringPeriod_ns,
-                                    1, // +1 degree; 14 looks as far down
-                                    vlp16Elevation_deg.data(),
-                                    vlp16VerticalOffset_mm.data()};
+/// Why a sensor cannot be read, or nothing.
+std::string faultOf(const SensorModel &model) {
+    const auto isTaken = [&](const SensorModel *other) {
+        return other->model == model.model || std::string_view(other->key) == model.key;
+    };
+    if (model.model == Model::Blank || std::any_of(models().begin(), models().end(), isTaken))
+        return "its product byte or its key is another's";
+    if (model.lasers < 1 || model.firingsPerBlock < 1 || model.lasers * model.firingsPerBlock > slotsPerBlock)
+        return "a block has 32 returns, for whole firings of all lasers";
+    if (model.horizonLaser < 0 || model.horizonLaser >= model.lasers)
+        return "it has not the laser that is said to look along the horizon";
+    if (model.firingPeriod_ns <= 0 || model.laserPeriod_ns < 0 || model.lasersAtOnce < 1 ||
+        !(model.distanceCounts > 0))
+        return "a period or a unit is not positive";
+    return {};
+}
 
 } // namespace
 
-int SensorModel::ring(int laser) const {
-    int below = 0;
-    for (int other = 0; other < lasers; ++other)
-        below += elevation_deg[other] < elevation_deg[laser];
-    return below;
+const std::vector<const SensorModel *> &sensorModels() {
+    return models();
 }
 
-const SensorModel &hdl32e() {
-    return hdl32eModel;
+bool addSensorModel(const SensorModel &model) {
+    if (const std::string fault = faultOf(model); !fault.empty())
+        throw std::invalid_argument(std::string("lidar model ") + model.name + ": " + fault);
+    models().push_back(&model);
+    return true;
 }
 
-const SensorModel &vlp16() {
-    return vlp16Model;
+int SensorModel::ring(int number) const {
+    return int(std::count_if(laser, laser + lasers, [&](const Laser &other) {
+        return other.elevation_deg < laser[number].elevation_deg;
+    }));
 }
 
 const SensorModel *findSensorModel(Model model) {
-    switch (model) {
-    case Model::Blank:
-    case Model::Hdl32e:
-        return &hdl32eModel;
-    case Model::Vlp16:
-        return &vlp16Model;
-    }
+    if (model == Model::Blank)
+        return &hdl32e;
+    for (const SensorModel *known : models())
+        if (known->model == model)
+            return known;
     return nullptr;
 }
 
-Model modelFromText(std::string_view text) {
-    return text == "hdl32e" ? Model::Hdl32e : text == "vlp16" ? Model::Vlp16 : Model::Blank;
+Model modelFromText(std::string_view key) {
+    for (const SensorModel *known : models())
+        if (key == known->key)
+            return known->model;
+    return Model::Blank;
+}
+
+int mostLasers() {
+    int most = 0;
+    for (const SensorModel *known : models())
+        most = std::max(most, known->lasers);
+    return most;
+}
+
+std::string listSensors(const std::function<std::string(const SensorModel &)> &text, const char *last) {
+    std::string list;
+    for (const SensorModel *known : models())
+        list += (list.empty() ? "" : known == models().back() ? last : ", ") + text(*known);
+    return list;
+}
+
+std::string sensorNames() {
+    return listSensors([](const SensorModel &model) { return model.name; }, " or ");
+}
+
+std::string horizonLasers() {
+    return listSensors(
+        [](const SensorModel &model) { return model.name + (": " + std::to_string(model.horizonLaser)); },
+        ", ");
+}
+
+std::vector<std::string> modelChoices() {
+    std::vector<std::string> choices = {"auto"};
+    for (const SensorModel *known : models())
+        choices.push_back(known->key);
+    return choices;
 }
 
 } // namespace hermes::velodyne

@@ -1,4 +1,5 @@
 // Decoding: a packet of an HDL-32E, every laser of which sees something, becomes points of turns.
+#include "protocol/velodyne/Hdl32e.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
 #include <benchmark/benchmark.h>
@@ -28,7 +29,7 @@ void decode(benchmark::State &state, int laser, std::uint32_t firingStep) {
     for (auto _ : state) {
         packets[next].setTail(std::uint32_t(now_ns / 1000 % stampPeriod_us));
         assembler.feed(packets[next].bytes().data(), packetSize, now_ns);
-        now_ns += packetPeriod_ns;
+        now_ns += hdl32e.packetPeriod_ns();
         next = (next + 1) % count;
     }
     benchmark::DoNotOptimize(points);

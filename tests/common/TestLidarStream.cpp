@@ -88,7 +88,7 @@ void TestLidarStream::countsWhatIsOfNobody() {
 // Whether it is the only sensor, another one beside that which is decoded, or comes in its place.
 void TestLidarStream::tellsOfAModelThatIsNotDecoded() {
     Sensor hdl, vlp;
-    vlp.model = &velodyne::vlp16();
+    vlp.model = &velodyne::vlp16;
     LidarStream::Options options;
     options.model = velodyne::Model::Vlp16;
     LidarStream stream(options);

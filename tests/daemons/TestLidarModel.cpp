@@ -1,6 +1,7 @@
 // The packets of the simulated lidar, decoded again: points lie where the walls are.
 #include "Pillars.h"
 #include "daemons/simulator/Simulation.h"
+#include "protocol/velodyne/Hdl32e.h"
 #include "protocol/velodyne/TurnAssembler.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
@@ -54,9 +55,9 @@ void TestLidarModel::ringPointsLieOnTheWalls() {
     double squares = 0;
     velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
         for (const velodyne::Point &point : turn.points) {
-            for (; truthTime_ns + velodyne::firingPeriod_ns < point.stamp_ns;
-                 truthTime_ns += velodyne::firingPeriod_ns)
-                truth.advance(velodyne::firingPeriod_ns * 1e-9);
+            for (; truthTime_ns + velodyne::hdl32e.firingPeriod_ns < point.stamp_ns;
+                 truthTime_ns += velodyne::hdl32e.firingPeriod_ns)
+                truth.advance(velodyne::hdl32e.firingPeriod_ns * 1e-9);
             const double distance =
                 distanceToWalls(world, Transformation2D(truth.pose()) * Point(point.x, point.y));
             ++points;
@@ -83,7 +84,7 @@ void TestLidarModel::lasersMeetWallsFloorOrNothing() {
     options.lidar.sigma = 0;
     Simulation simulation(world, options, start_ns);
     int walls = 0, floors = 0;
-    std::array<int, velodyne::lasers> ofLaser{};
+    std::array<int, velodyne::hdl32e.lasers> ofLaser{};
     velodyne::TurnAssembler::Options all;
     all.laser = velodyne::PacketDecoder::allLasers;
     velodyne::TurnAssembler assembler(all, [&](const velodyne::Turn &turn) {
@@ -106,7 +107,7 @@ void TestLidarModel::lasersMeetWallsFloorOrNothing() {
     options.lidar.wallHeight = 0.4; // lower than the sensor: the horizon is free
     simulation = Simulation(world, options, start_ns);
     const velodyne::DataPacket packet(simulation.nextPacket().data());
-    QCOMPARE(int(packet.distance(0, velodyne::horizonLaser)), 0);
+    QCOMPARE(int(packet.distance(0, velodyne::hdl32e.horizonLaser)), 0);
     QCOMPARE(int(packet.distance(0, 31)), 0);
     QVERIFY(packet.distance(0, 0) > 0);
 }
@@ -119,7 +120,8 @@ void TestLidarModel::rangesOutOfReachReturnNothing() {
     options.lidar.sensorHeight = 0.01;
     const auto ahead = [&] {
         Simulation simulation(world, options, start_ns);
-        return int(velodyne::DataPacket(simulation.nextPacket().data()).distance(0, velodyne::horizonLaser));
+        return int(
+            velodyne::DataPacket(simulation.nextPacket().data()).distance(0, velodyne::hdl32e.horizonLaser));
     };
     QVERIFY(std::abs(ahead() - 2500) < 40);
     options.lidar.maxRange = 4.5;
@@ -158,7 +160,7 @@ void TestLidarModel::returnsDropOutAndLieFar() {
         for (int i = 0; i < 500; ++i) {
             const velodyne::DataPacket packet(simulation.nextPacket().data());
             for (int block = 0; block < velodyne::blocksPerPacket; ++block) {
-                const int distance = packet.distance(block, velodyne::horizonLaser);
+                const int distance = packet.distance(block, velodyne::hdl32e.horizonLaser);
                 ++counts[distance == 0 ? 0 : std::abs(distance - 2500) <= 1 ? 1 : 2];
             }
         }

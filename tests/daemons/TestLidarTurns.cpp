@@ -95,7 +95,7 @@ void TestLidarTurns::nobodyReadsClouds() {
 
 void TestLidarTurns::turnsAreWrittenWithAllDigits() {
     Sensor sensor;
-    sensor.model = &velodyne::vlp16();
+    sensor.model = &velodyne::vlp16;
     velodyne::TurnAssembler::Options all;
     all.laser = velodyne::PacketDecoder::allLasers;
     std::vector<Turn> turns;

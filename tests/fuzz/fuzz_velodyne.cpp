@@ -1,6 +1,7 @@
 #include "tests/fuzz/FuzzInput.h"
 
 #include "protocol/velodyne/GpsReader.h"
+#include "protocol/velodyne/Hdl32e.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
 using namespace hermes::velodyne;
@@ -46,9 +47,9 @@ void feedPosition(GpsReader &gps, FuzzInput &in) {
 
 void requireSound(const Turn &turn) {
     FUZZ_REQUIRE(turn.firings > 0);
-    FUZZ_REQUIRE(turn.points.size() <= std::size_t(turn.firings) * lasers * 2);
+    FUZZ_REQUIRE(turn.points.size() <= std::size_t(turn.firings) * slotsPerBlock * 2);
     for (const Point &p : turn.points) {
-        FUZZ_REQUIRE(p.azimuth >= 0 && p.azimuth < 360 && p.range > 0 && p.laser < lasers);
+        FUZZ_REQUIRE(p.azimuth >= 0 && p.azimuth < 360 && p.range > 0 && p.laser < slotsPerBlock);
         FUZZ_REQUIRE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
     }
 }
@@ -59,7 +60,7 @@ void requireSound(const Turn &turn) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
     FuzzInput in(data, size);
     TurnAssembler::Options options;
-    options.laser = in.take<std::uint8_t>() % (lasers + 2) + PacketDecoder::levelLaser;
+    options.laser = in.take<std::uint8_t>() % (slotsPerBlock + 2) + PacketDecoder::levelLaser;
     options.returns = Returns(in.take<std::uint8_t>() % 3);
     options.firingStep = in.take<std::uint8_t>() + 1u;
     constexpr Model models[] = {Model::Blank, Model::Hdl32e, Model::Vlp16};
@@ -73,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
         if (kind == 0)
             now_ns = in.take<std::uint32_t>() * std::int64_t(1000000000); // all that PcapReader lets pass
         else
-            now_ns += kind * packetPeriod_ns / 4;
+            now_ns += kind * hdl32e.packetPeriod_ns() / 4;
         if (kind % 16 == 2) {
             feedPosition(gps, in);
             assembler.follow(gps.state().utc_ns);

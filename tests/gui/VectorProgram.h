@@ -2,6 +2,7 @@
 
 #include "common/capture/PcapWriter.h"
 #include "protocol/velodyne/DataPacket.h"
+#include "protocol/velodyne/Hdl32e.h"
 
 #include <QDir>
 #include <QJsonDocument>
@@ -72,7 +73,7 @@ inline void writeCapture(const QString &path, int packets,
         for (int block = 0; block < velodyne::blocksPerPacket; ++block, azimuth = (azimuth + 17) % 36000)
             packet.setAzimuth(block, std::uint16_t(azimuth));
         Datagram d;
-        d.stamp_ns = 1000000000 + p * velodyne::packetPeriod_ns;
+        d.stamp_ns = 1000000000 + p * velodyne::hdl32e.packetPeriod_ns();
         d.payload = packet.bytes().data();
         d.size = packet.bytes().size();
         for (const CapturedSensor &sensor : sensors) {

@@ -27,11 +27,11 @@ private Q_SLOTS:
 };
 
 void TestPacketDecoder::elevationsAreMultiplesOfFourThirds() {
-    for (int laser = 0; laser < lasers; ++laser) {
+    for (int laser = 0; laser < hdl32e.lasers; ++laser) {
         const int ring = laser % 2 == 0 ? laser / 2 : 16 + (laser - 1) / 2;
-        QVERIFY(std::abs(elevation_deg[laser] - (ring - 23) * 4 / 3.0) < 0.0051);
+        QVERIFY(std::abs(hdl32e.laser[laser].elevation_deg - (ring - 23) * 4 / 3.0) < 0.0051);
     }
-    QCOMPARE(elevation_deg[horizonLaser], 0.0);
+    QCOMPARE(hdl32e.laser[hdl32e.horizonLaser].elevation_deg, 0.0);
 }
 
 void TestPacketDecoder::packetsComeBackToTheLastBit() {
@@ -44,7 +44,7 @@ void TestPacketDecoder::packetsComeBackToTheLastBit() {
         for (int block = 0; block < blocksPerPacket; ++block) {
             written.push_back(random() % azimuthSteps);
             writer.setAzimuth(block, std::uint16_t(written.back()));
-            for (int laser = 0; laser < lasers; ++laser) {
+            for (int laser = 0; laser < hdl32e.lasers; ++laser) {
                 written.push_back(random() & 0xFFFF);
                 written.push_back(random() & 0xFF);
                 writer.setReturn(block, laser, std::uint16_t(written[written.size() - 2]),
@@ -59,7 +59,7 @@ void TestPacketDecoder::packetsComeBackToTheLastBit() {
         std::vector<unsigned> read;
         for (int block = 0; block < blocksPerPacket; ++block) {
             read.push_back(packet.azimuth(block));
-            for (int laser = 0; laser < lasers; ++laser) {
+            for (int laser = 0; laser < hdl32e.lasers; ++laser) {
                 read.push_back(packet.distance(block, laser));
                 read.push_back(packet.intensity(block, laser));
             }
@@ -108,9 +108,9 @@ void TestPacketDecoder::pointsLieWhereTheFactSheetSays() {
     auto bytes = sensor.packet(0);
     bytes[2] = bytes[3] = bytes[102] = bytes[103] = 0; // no gap: every laser at azimuth 0
     std::vector<Point> points;
-    PacketDecoder(hdl32e(), PacketDecoder::allLasers, Returns::Strongest, false)
+    PacketDecoder(hdl32e, PacketDecoder::allLasers, Returns::Strongest, false)
         .decode(DataPacket(bytes.data()), 0, 0, 0, points);
-    QCOMPARE(points.size(), std::size_t(lasers));
+    QCOMPARE(points.size(), std::size_t(hdl32e.lasers));
     QVERIFY(std::abs(points[0].x - 4.3008) < 5e-4 && points[0].y == 0 &&
             std::abs(points[0].z + 2.5505) < 5e-4);
     QCOMPARE(points[15].x, 5.0);
@@ -120,7 +120,7 @@ void TestPacketDecoder::pointsLieWhereTheFactSheetSays() {
     bytes[2] = bytes[102] = 9000 & 0xFF;
     bytes[3] = bytes[103] = 9000 >> 8;
     points.clear();
-    PacketDecoder(hdl32e()).decode(DataPacket(bytes.data()), 0, 0, 0, points);
+    PacketDecoder(hdl32e).decode(DataPacket(bytes.data()), 0, 0, 0, points);
     QVERIFY(std::abs(points[0].x) < 1e-9 && std::abs(points[0].y + 5) < 1e-9);
 }
 
@@ -163,7 +163,7 @@ void TestPacketDecoder::azimuthsAreInterpolated() {
     std::vector<Point> points;
     const DataPacket packet(writer.bytes().data());
     for (int group = 0; group < blocksPerPacket; ++group)
-        PacketDecoder(hdl32e()).decode(packet, group, 0, 1000, points);
+        PacketDecoder(hdl32e).decode(packet, group, 0, 1000, points);
     QCOMPARE(points.size(), std::size_t(12));
     QVERIFY(std::abs(points[0].azimuth - (359.90 + 0.16 * 0.375)) < 1e-9);
     QVERIFY(std::abs(points[1].azimuth - (0.06 + 0.16 * 0.375)) < 1e-9);
@@ -183,7 +183,7 @@ void TestPacketDecoder::aBlockOfAVlp16HoldsTwoFirings() {
     writer.setTail(0, ReturnMode::Last, Model::Vlp16);
     std::vector<Point> points;
     const DataPacket packet(writer.bytes().data());
-    const PacketDecoder decoder(vlp16(), PacketDecoder::allLasers, Returns::Strongest, false);
+    const PacketDecoder decoder(vlp16, PacketDecoder::allLasers, Returns::Strongest, false);
     for (int group = 0; group < blocksPerPacket; ++group)
         for (int firing = 0; firing < 2; ++firing)
             decoder.decode(packet, group, firing, 500, points);
@@ -201,12 +201,12 @@ void TestPacketDecoder::aBlockOfAVlp16HoldsTwoFirings() {
 }
 
 void TestPacketDecoder::ringsCountFromTheLowest() {
-    QCOMPARE(hdl32e().ring(0), 0);
-    QCOMPARE(hdl32e().ring(15), 23);
-    QCOMPARE(hdl32e().ring(31), 31);
-    QCOMPARE(vlp16().ring(0), 0);
-    QCOMPARE(vlp16().ring(1), 8);
-    QCOMPARE(vlp16().ring(15), 15);
+    QCOMPARE(hdl32e.ring(0), 0);
+    QCOMPARE(hdl32e.ring(15), 23);
+    QCOMPARE(hdl32e.ring(31), 31);
+    QCOMPARE(vlp16.ring(0), 0);
+    QCOMPARE(vlp16.ring(1), 8);
+    QCOMPARE(vlp16.ring(15), 15);
 }
 
 void TestPacketDecoder::dualReturns_data() {
@@ -231,12 +231,12 @@ void TestPacketDecoder::dualReturns() {
     if (same)
         std::copy(bytes.begin() + 104, bytes.begin() + 200, bytes.begin() + 4);
     std::vector<Point> points;
-    PacketDecoder(hdl32e(), horizonLaser, Returns(returns)).decode(packet, 0, 0, 0, points);
+    PacketDecoder(hdl32e, hdl32e.horizonLaser, Returns(returns)).decode(packet, 0, 0, 0, points);
     QCOMPARE(int(points.size()), ranges.size());
     for (int i = 0; i < ranges.size(); ++i)
         QVERIFY(std::abs(points[std::size_t(i)].range - ranges[i]) < 1e-9);
     points.clear();
-    PacketDecoder(hdl32e()).decode(packet, 5, 0, 0, points);
+    PacketDecoder(hdl32e).decode(packet, 5, 0, 0, points);
     QCOMPARE(points[0].stamp_ns, std::int64_t(5 * 46080 + 15 * 1152));
 }
 

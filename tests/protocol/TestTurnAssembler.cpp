@@ -47,7 +47,7 @@ void TestTurnAssembler::turnsBeginWhereTheAzimuthWraps() {
 
 void TestTurnAssembler::turnsOfAVlp16() {
     Sensor sensor;
-    sensor.model = &vlp16();
+    sensor.model = &vlp16;
     sensor.azimuthStep = 40;
     for (const bool dual : {false, true}) {
         sensor.dual = dual;
@@ -56,13 +56,13 @@ void TestTurnAssembler::turnsOfAVlp16() {
         for (int i = 0; i < (dual ? 400 : 200); ++i)
             QCOMPARE(feed(assembler, sensor, i), PacketFault::None);
         assembler.finish();
-        QCOMPARE(assembler.model(), &vlp16());
+        QCOMPARE(assembler.model(), &vlp16);
         QCOMPARE(turns.size(), std::size_t(4)); // 25 blocks, 900, 900 and the rest of 2400
         QCOMPARE(turns[0].firings, 50u);
         QCOMPARE(turns[1].firings, 1800u);
         QVERIFY(!turns[1].partial && !turns[2].partial && turns[3].partial);
         QCOMPARE(turns[1].points.size(), std::size_t(1800)); // of laser 1
-        QVERIFY(turns[1].points[7].laser == 1 && turns[1].model == &vlp16());
+        QVERIFY(turns[1].points[7].laser == 1 && turns[1].model == &vlp16);
         QVERIFY(std::abs(assembler.rpm() - 602.8) < 0.1);
         QCOMPARE(assembler.counts().lost, std::uint64_t(0));
     }
@@ -70,7 +70,7 @@ void TestTurnAssembler::turnsOfAVlp16() {
 
 void TestTurnAssembler::theFirstOfTwoSensorsIsDecoded() {
     Sensor hdl, vlp;
-    vlp.model = &vlp16();
+    vlp.model = &vlp16;
     std::vector<const SensorModel *> models;
     TurnAssembler assembler({}, [&](const Turn &turn) { models.push_back(turn.model); });
     for (int i = 0; i < 10; ++i) {
@@ -82,7 +82,7 @@ void TestTurnAssembler::theFirstOfTwoSensorsIsDecoded() {
     for (int i = 0; i < 10; ++i)
         QCOMPARE(feed(assembler, vlp, i), PacketFault::None);
     assembler.finish();
-    QVERIFY(models == (std::vector<const SensorModel *>{&hdl32e(), &hdl32e(), &vlp16(), &vlp16()}));
+    QVERIFY(models == (std::vector<const SensorModel *>{&hdl32e, &hdl32e, &vlp16, &vlp16}));
 }
 
 void TestTurnAssembler::aSettingNamesTheSensor() {
@@ -94,7 +94,7 @@ void TestTurnAssembler::aSettingNamesTheSensor() {
     auto blank = sensor.packet(1); // old firmware names neither mode nor model
     blank[1204] = blank[1205] = 0;
     QCOMPARE(assembler.feed(blank.data(), blank.size(), sensor.stamp(1)), PacketFault::None);
-    QCOMPARE(assembler.model(), &vlp16());
+    QCOMPARE(assembler.model(), &vlp16);
 }
 
 void TestTurnAssembler::everyNthFiringOnly() {
@@ -109,7 +109,7 @@ void TestTurnAssembler::everyNthFiringOnly() {
     QCOMPARE(turns.at(1).firings, 2118u);
     QCOMPARE(turns.at(1).points.size(), std::size_t(32 * 265)); // 0, 8, ... 2112
     const std::int64_t step_ns = turns[1].points[32].stamp_ns - turns[1].points[0].stamp_ns;
-    QVERIFY(std::abs(step_ns - 8 * firingPeriod_ns) < 1000); // stamps are whole microseconds
+    QVERIFY(std::abs(step_ns - 8 * hdl32e.firingPeriod_ns) < 1000); // stamps are whole microseconds
 }
 
 /// Two packets 1 us apart: a turn begins with the last firing of the one and ends with the first of the

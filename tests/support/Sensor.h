@@ -2,6 +2,8 @@
 
 #include "common/capture/Datagram.h"
 #include "protocol/velodyne/DataPacket.h"
+#include "protocol/velodyne/Hdl32e.h"
+#include "protocol/velodyne/Vlp16.h"
 
 /// Packets of a sensor that turns evenly, 0.17 degrees a block, and sees a wall 5 m away all around.
 class Sensor {
@@ -9,7 +11,7 @@ public:
     std::int64_t start_ns = 1700000000000000000;
     int azimuthStep = 17; ///< hundredths of a degree
     bool dual = false;
-    const hermes::velodyne::SensorModel *model = &hermes::velodyne::hdl32e();
+    const hermes::velodyne::SensorModel *model = &hermes::velodyne::hdl32e;
 
     std::array<std::uint8_t, hermes::velodyne::packetSize> packet(int number) const {
         using namespace hermes::velodyne;

@@ -3,6 +3,7 @@
 // first eight returns hold the number; the stamps follow it, whatever the rate. With a position port every
 // 14th packet is followed by a position packet.
 #include "protocol/velodyne/DataPacket.h"
+#include "protocol/velodyne/Hdl32e.h"
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
@@ -36,7 +37,7 @@ void write(int socket, int port, const std::uint8_t *bytes, std::size_t size) {
 DataPacketWriter fullPacket() {
     DataPacketWriter packet;
     for (int block = 0; block < blocksPerPacket; ++block)
-        for (int slot = 0; slot < lasers; ++slot)
+        for (int slot = 0; slot < hdl32e.lasers; ++slot)
             packet.setReturn(block, slot, std::uint16_t(2500 + 10 * slot), 100);
     return packet;
 }
@@ -47,7 +48,7 @@ void sendPacket(int socket, int port, long number) {
         packet.setAzimuth(block, std::uint16_t((number * blocksPerPacket + block) * 17 % azimuthSteps));
     for (int i = 0; i < 8; ++i)
         packet.setReturn(0, i, 2500, std::uint8_t(number >> (8 * i)));
-    packet.setTail(std::uint32_t(number * packetPeriod_ns / 1000 % stampPeriod_us));
+    packet.setTail(std::uint32_t(number * hdl32e.packetPeriod_ns() / 1000 % stampPeriod_us));
     write(socket, port, packet.bytes().data(), packet.bytes().size());
 }
 

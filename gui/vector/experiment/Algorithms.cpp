@@ -7,23 +7,14 @@
 #include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
 #include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
 
-#include <memory>
-
 namespace hermes {
 
 namespace {
 
 template <template <typename> class Vectorizer>
 Algorithm make(const char *name, const char *label, const char *colour, double sigma, bool polyline) {
-    const auto vectorizer = std::make_shared<Vectorizer<float>>();
-    vectorizer->settings.sigma = sigma;
-    vectorizer->settings.delta = 5 * sigma; // as by default
-    vectorizer->settings.polyline = polyline;
-    return {
-        name, label, colour,
-        [vectorizer](vectorlib::PointSpan<float> points) -> const std::vector<vectorlib::VectorizedLine> & {
-            return (*vectorizer)(points);
-        }};
+    return {name, label, colour,
+            makeVectorizer<Vectorizer, float>({sigma, 5 * sigma, polyline})}; // as by default
 }
 
 } // namespace

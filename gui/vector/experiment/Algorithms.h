@@ -1,10 +1,6 @@
 #pragma once
 
-#include "vectorlib/vectorization/VectorizedLine.h"
-
-#include <functional>
-#include <string>
-#include <vector>
+#include "gui/vector/Vectorizers.h"
 
 namespace hermes {
 
@@ -13,7 +9,7 @@ struct Algorithm {
     std::string name;   ///< as the option --algorithm takes it
     std::string label;  ///< as papers write it
     std::string colour; ///< in plots, as in the thesis where it has one
-    std::function<const std::vector<vectorlib::VectorizedLine> &(vectorlib::PointSpan<float>)> run;
+    Vectorize<float> run;
 };
 
 /// Those that the experiments of thesis 6.5 compare, for a standard deviation sigma (metres) of points from

@@ -1,0 +1,49 @@
+#include "gui/desktop/panels/Panels.h"
+
+#include "gui/desktop/panels/CommandsPanel.h"
+#include "gui/desktop/panels/DaemonsPanel.h"
+#include "gui/desktop/panels/DrivePanel.h"
+#include "gui/desktop/panels/LogPanel.h"
+#include "gui/desktop/panels/PlotsPanel.h"
+#include "gui/desktop/panels/RecordPanel.h"
+#include "gui/desktop/panels/SettingsPanel.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace hermes {
+namespace {
+
+QWidget *makeDrivePanel(Fleet &, DriveControl &drive) {
+    return new DrivePanel(drive);
+}
+
+std::vector<PanelKind> &known() {
+    // A new panel is one line here.
+    static std::vector<PanelKind> all = {
+        {Qt::LeftDockWidgetArea, "Daemons", "daemons", makePanel<DaemonsPanel>},
+        {Qt::BottomDockWidgetArea, "Settings", "settings", makePanel<SettingsPanel>},
+        {Qt::BottomDockWidgetArea, "Commands", "commands", makePanel<CommandsPanel>, "settings"},
+        {Qt::BottomDockWidgetArea, "Log", "log", makePanel<LogPanel>, "settings"},
+        {Qt::BottomDockWidgetArea, "Plots", "plots", makePanel<PlotsPanel>, "settings"},
+        {Qt::RightDockWidgetArea, "Drive", "drive", makeDrivePanel},
+        {Qt::LeftDockWidgetArea, "Recordings", "recordings", makePanel<RecordPanel>, "daemons"},
+    };
+    return all;
+}
+
+} // namespace
+
+const std::vector<PanelKind> &panelKinds() {
+    return known();
+}
+
+bool addPanelKind(const PanelKind &kind) {
+    for (const PanelKind &other : known())
+        if (std::string(other.name) == kind.name)
+            throw std::invalid_argument(std::string("panel ") + kind.name + ": there is one of that name");
+    known().push_back(kind);
+    return true;
+}
+
+} // namespace hermes

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "gui/desktop/drive/DriveControl.h"
+
+#include <QWidget>
+#include <vector>
+
+namespace hermes {
+
+/// A panel of the operator's window: what is in a dock, and where that lies at first.
+struct PanelKind {
+    Qt::DockWidgetArea area;
+    const char *title;
+    const char *name; ///< by which layouts are kept
+    QWidget *(*make)(Fleet &fleet, DriveControl &drive);
+    const char *tabbedWith = nullptr; ///< the name of one before it, with which it shares its place
+};
+
+/// All panels, in the order of Ctrl+1 to Ctrl+9.
+const std::vector<PanelKind> &panelKinds();
+/// Adds one as the last, before main() begins: as the initializer of a global constant. Throws
+/// std::invalid_argument when there is one of that name. Gives true.
+bool addPanelKind(const PanelKind &kind);
+
+/// Makes a panel that is made of a Fleet alone.
+template <typename Panel>
+QWidget *makePanel(Fleet &fleet, DriveControl &) {
+    return new Panel(fleet);
+}
+
+} // namespace hermes

@@ -1,0 +1,46 @@
+#include "gui/vector/Vectorizers.h"
+
+#include "vectorlib/vectorization/AftlsVectorizer.h"
+#include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
+#include "vectorlib/vectorization/IncVectorizer.h"
+#include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
+#include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
+#include "vectorlib/vectorization/TlsVectorizer.h"
+
+#include <stdexcept>
+
+namespace hermes {
+
+namespace {
+
+using namespace vectorlib;
+
+std::vector<NamedVectorizer> &known() {
+    // A new vectorizer is one line here.
+    static std::vector<NamedVectorizer> all = {
+        {"tls", "one line a cluster", makeVectorizer<TlsVectorizer, double>},
+        {"ftls", "as many as sigma asks for", makeVectorizer<FtlsVectorizer, double>},
+        {"aftls", "ftls with the corners where they fit best", makeVectorizer<AftlsVectorizer, double>},
+        {"inc", "point by point", makeVectorizer<IncVectorizer, double>},
+        {"dp", "Douglas-Peucker, within 3 sigma", makeVectorizer<DouglasPeuckerVectorizer, double>},
+        {"rw", "Reumann-Witkam, within 3 sigma", makeVectorizer<ReumannWitkamVectorizer, double>},
+        {"sam", "split and merge, within 3 sigma", makeVectorizer<SplitAndMergeVectorizer, double>},
+    };
+    return all;
+}
+
+} // namespace
+
+const std::vector<NamedVectorizer> &vectorizers() {
+    return known();
+}
+
+bool addVectorizer(const NamedVectorizer &vectorizer) {
+    for (const NamedVectorizer &other : known())
+        if (other.name == vectorizer.name)
+            throw std::invalid_argument("vectorizer " + vectorizer.name + ": there is one of that name");
+    known().push_back(vectorizer);
+    return true;
+}
+
+} // namespace hermes

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "vectorlib/vectorization/VectorizedLine.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hermes {
+
+/// A vectorizer at work: the lines of a cluster, which stand until it is called again.
+template <typename Scalar>
+using Vectorize = std::function<const std::vector<vectorlib::VectorizedLine> &(vectorlib::PointSpan<Scalar>)>;
+
+/// One of the vectorizers, chosen at run time by its name.
+struct NamedVectorizer {
+    std::string name; ///< as the option --algorithm takes it
+    std::string help; ///< what it does, in a few words
+    std::function<Vectorize<double>(const vectorlib::VectorizerSettings &)> make;
+};
+
+/// All that are known, in the order in which they are told.
+const std::vector<NamedVectorizer> &vectorizers();
+/// Makes one known before main() begins, as the initializer of a global constant; see makeVectorizer() for
+/// what it needs. Throws std::invalid_argument when its name is another's. Gives true.
+bool addVectorizer(const NamedVectorizer &vectorizer);
+
+/// A vectorizer of the library's kind: settings that begin with VectorizerSettings, and an operator() as that
+/// of TlsVectorizer.
+template <template <typename> class Vectorizer, typename Scalar>
+Vectorize<Scalar> makeVectorizer(const vectorlib::VectorizerSettings &settings) {
+    const auto vectorizer = std::make_shared<Vectorizer<Scalar>>();
+    static_cast<vectorlib::VectorizerSettings &>(vectorizer->settings) = settings;
+    return
+        [vectorizer](vectorlib::PointSpan<Scalar> points) -> const std::vector<vectorlib::VectorizedLine> & {
+            return (*vectorizer)(points);
+        };
+}
+
+} // namespace hermes
