@@ -16,20 +16,19 @@ _hermes_vector() {
         mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity match observe map ring experiment report --help --version" -- "$word")
         return
     fi
+    local help choices
+    help=$(hermes-vector "$command" --help 2>/dev/null)
+    if [[ $previous == --* ]]; then # "--format KIND:{json,csv}": one of these
+        choices=$(sed -nE "s/^ +$previous .*\{([^}]*)\}.*/\1/p" <<<"$help")
+        [ -n "$choices" ] && mapfile -t COMPREPLY < <(compgen -W "${choices//,/ }" -- "$word") && return
+    fi
     case $previous in
-    --algorithm) mapfile -t COMPREPLY < <(compgen -W "tls ftls aftls inc dp rw sam" -- "$word") && return ;;
-    --rotation) mapfile -t COMPREPLY < <(compgen -W "mitsuta wahba" -- "$word") && return ;;
-    --weights) mapfile -t COMPREPLY < <(compgen -W "none length column" -- "$word") && return ;;
-    --format) mapfile -t COMPREPLY < <(compgen -W "json csv svg latex" -- "$word") && return ;;
-    --model) mapfile -t COMPREPLY < <(compgen -W "auto hdl32e vlp16" -- "$word") && return ;;
-    --returns) mapfile -t COMPREPLY < <(compgen -W "strongest last both" -- "$word") && return ;;
-    --odometry) mapfile -t COMPREPLY < <(compgen -W "use ignore" -- "$word") && return ;;
     --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --expected | --scan | \
         --noise | --fov | --outliers | --seed | --every | --laser | --turn | --case | --rays | --max-dx | --max-dy | \
         --max-dalpha | --reliability | --ambiguity | --discrepancy | --runs | --max-points | --first | --draw) return ;;
     esac
     if [[ $word == -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "$(hermes-vector "$command" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u)" -- "$word")
+        mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '--[a-z-]+' <<<"$help" | sort -u)" -- "$word")
         return
     fi
     compopt -o filenames 2>/dev/null

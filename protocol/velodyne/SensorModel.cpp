@@ -4,6 +4,7 @@
 #include "protocol/velodyne/Vlp16.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace hermes::velodyne {
@@ -30,9 +31,14 @@ std::string faultOf(const SensorModel &model) {
         return "a block has 32 returns, for whole firings of all lasers";
     if (model.horizonLaser < 0 || model.horizonLaser >= model.lasers)
         return "it has not the laser that is said to look along the horizon";
-    if (model.firingPeriod_ns <= 0 || model.laserPeriod_ns < 0 || model.lasersAtOnce < 1 ||
-        !(model.distanceCounts > 0))
-        return "a period or a unit is not positive";
+    if (model.firingPeriod_ns <= 0 || model.firingPeriod_ns > 1000000000 || model.laserPeriod_ns < 0 ||
+        model.lasersAtOnce < 1 || !(model.distanceCounts > 0))
+        return "a period or a unit is not one";
+    const auto isAngle = [](double degrees) { return std::abs(degrees) < 360; };
+    if (!std::all_of(model.laser, model.laser + model.lasers, [&](const Laser &laser) {
+            return isAngle(laser.elevation_deg) && isAngle(laser.azimuthOffset_deg);
+        }))
+        return "an angle is not below 360 degrees";
     return {};
 }
 

@@ -207,7 +207,9 @@ void TestJsonCodec::randomBytesNeverCrash() {
 void TestJsonCodec::unknownCodecIsNull() {
     QVERIFY(!makeCodec("morse"));
     QVERIFY(makeCodec("json"));
-    QVERIFY(codecNames().contains("json"));
+    QCOMPARE(codecNames(), QStringList{"json"});
+    QVERIFY_EXCEPTION_THROWN(addCodec("json", makeCodecOf<JsonCodec>), std::invalid_argument);
+    QCOMPARE(codecNames(), QStringList{"json"});
 }
 
 QTEST_APPLESS_MAIN(TestJsonCodec)

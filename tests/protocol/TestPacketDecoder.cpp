@@ -6,8 +6,11 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 using namespace hermes::velodyne;
+
+Q_DECLARE_METATYPE(std::function<void(SensorModel &)>)
 
 class TestPacketDecoder : public QObject {
     Q_OBJECT
@@ -22,6 +25,8 @@ private Q_SLOTS:
     void azimuthsAreInterpolated();
     void aBlockOfAVlp16HoldsTwoFirings();
     void ringsCountFromTheLowest();
+    void modelsThatCannotBeReadAreRefused_data();
+    void modelsThatCannotBeReadAreRefused();
     void dualReturns_data();
     void dualReturns();
 };
@@ -207,6 +212,55 @@ void TestPacketDecoder::ringsCountFromTheLowest() {
     QCOMPARE(vlp16.ring(0), 0);
     QCOMPARE(vlp16.ring(1), 8);
     QCOMPARE(vlp16.ring(15), 15);
+}
+
+void TestPacketDecoder::modelsThatCannotBeReadAreRefused_data() {
+    QTest::addColumn<std::function<void(SensorModel &)>>("spoil");
+    QTest::addColumn<QString>("fault");
+    const auto row = [](const char *name, std::function<void(SensorModel &)> spoil, const char *fault) {
+        QTest::newRow(name) << std::move(spoil) << fault;
+    };
+    row(
+        "the byte of another", [](SensorModel &m) { m.model = Model::Vlp16; }, "another's");
+    row(
+        "no byte", [](SensorModel &m) { m.model = Model::Blank; }, "another's");
+    row(
+        "the key of another", [](SensorModel &m) { m.key = "hdl32e"; }, "another's");
+    row(
+        "more lasers than a block has", [](SensorModel &m) { m.lasers = 33; }, "32 returns");
+    row(
+        "more firings than a block has", [](SensorModel &m) { m.firingsPerBlock = 2; }, "32 returns");
+    row(
+        "no laser", [](SensorModel &m) { m.lasers = 0; }, "32 returns");
+    row(
+        "a horizon that is nowhere", [](SensorModel &m) { m.horizonLaser = 32; }, "horizon");
+    row(
+        "no time between firings", [](SensorModel &m) { m.firingPeriod_ns = 0; }, "period");
+    row(
+        "no laser at once", [](SensorModel &m) { m.lasersAtOnce = 0; }, "period");
+    row(
+        "no unit", [](SensorModel &m) { m.distanceCounts = 0; }, "unit");
+    static Laser bent[32] = {{0, 0, std::nan("")}};
+    row(
+        "no angle", [](SensorModel &m) { m.laser = bent; }, "angle");
+}
+
+void TestPacketDecoder::modelsThatCannotBeReadAreRefused() {
+    QFETCH(const std::function<void(SensorModel &)>, spoil);
+    QFETCH(const QString, fault);
+    SensorModel model = hdl32e;
+    model.model = Model(0x28);
+    model.key = "new";
+    spoil(model);
+    try {
+        addSensorModel(model);
+        QFAIL("it was added");
+    } catch (const std::invalid_argument &e) {
+        QVERIFY2(QString(e.what()).contains(fault), e.what());
+    }
+    QCOMPARE(sensorModels().size(), std::size_t(2));
+    QVERIFY(modelChoices() == (std::vector<std::string>{"auto", "hdl32e", "vlp16"}));
+    QCOMPARE(horizonLasers(), std::string("HDL-32E: 15, VLP-16: 1"));
 }
 
 void TestPacketDecoder::dualReturns_data() {

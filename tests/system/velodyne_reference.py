@@ -6,8 +6,10 @@ import struct
 
 Point = collections.namedtuple("Point", "stamp_ns laser azimuth range intensity x y z")
 # lasers, ns between two of them, ns of a firing, firings a block, the laser nearest to the horizon, elevations in degrees, how
-# far above the sensor's origin each laser lies, in mm
-Model = collections.namedtuple("Model", "lasers laser_ns firing_ns firings level elevations offsets")
+# far above the sensor's origin each laser lies, in mm; how many lasers fire at once, counts a metre, and how far clockwise of the
+# head each laser looks, in thousandths of a degree
+Model = collections.namedtuple("Model", "lasers laser_ns firing_ns firings level elevations offsets at_once counts azimuths_mdeg",
+                               defaults=(1, 500, [0] * 32))
 HDL32E = Model(32, 1152, 46080, 1, 15, [
     -30.67, -9.33, -29.33, -8.00, -28.00, -6.67, -26.67, -5.33, -25.33, -4.00, -24.00, -2.67, -22.67, -1.33, -21.33, 0.00,
     -20.00, 1.33, -18.67, 2.67, -17.33, 4.00, -16.00, 5.33, -14.67, 6.67, -13.33, 8.00, -12.00, 9.33, -10.67, 10.67], [
@@ -86,14 +88,15 @@ def turns(path, lasers="level", returns="strongest", offsets=True):
 def returned(payload, model, base, azimuth_gap, blocks, firing, laser):
     """The points of one laser in one firing: none without return, two where a dual return differs."""
     azimuth, gap = azimuth_gap
-    block_ns, after_ns = model.firings * model.firing_ns, firing * model.firing_ns + laser * model.laser_ns
-    degrees = (azimuth * block_ns + gap * after_ns) % (36000 * block_ns) / (100 * block_ns)
+    block_ns, after_ns = model.firings * model.firing_ns, firing * model.firing_ns + laser // model.at_once * model.laser_ns
+    mdeg_ns = 10 * (azimuth * block_ns + gap * after_ns) + model.azimuths_mdeg[laser] * block_ns
+    degrees = mdeg_ns % (360000 * block_ns) / (1000 * block_ns)
     points, seen = [], {0}
     for block in blocks:
         distance, intensity = struct.unpack_from("<HB", payload, 100 * block + 4 + 3 * (firing * model.lasers + laser))
         if distance not in seen:
             seen.add(distance)
-            metres, az, el = distance / 500, math.radians(degrees), math.radians(model.elevations[laser])
+            metres, az, el = distance / model.counts, math.radians(degrees), math.radians(model.elevations[laser])
             points.append(Point(base + after_ns, laser, degrees, metres, intensity, metres * math.cos(el) * math.cos(az),
                                 -metres * math.cos(el) * math.sin(az), metres * math.sin(el) + model.offsets[laser] / 1000))
     return points
