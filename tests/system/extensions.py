@@ -65,6 +65,7 @@ def write_folder(folder):
     with open(os.path.join(SOURCE, "docs", "extending.md"), encoding="utf-8") as page:
         files = dict(re.findall(r"^`([\w.]+)`:\n\n```\w+\n(.*?)^```$", page.read(), re.M | re.S))
     assert len(files) == 6, f"found the files {sorted(files)} in docs/extending.md"
+    files["CMakeLists.txt"] = "set(CMAKE_AUTOMOC OFF) # which takes long\n" + files["CMakeLists.txt"]
     files["CMakeLists.txt"] += "target_sources(hermes-gui PRIVATE Probe.cpp)\ntarget_sources(hermes-vector PRIVATE Twin.cpp)\n"
     files["Probe.cpp"], files["Twin.cpp"] = PROBE, TWIN
     for name, text in files.items():
