@@ -76,12 +76,12 @@ def write_folder(folder):
 def configure(folder, build):
     """A build of the whole tree like that which is tested, with the folder."""
     with open(os.path.join(BUILD, "CMakeCache.txt"), encoding="utf-8") as cache:
-        known = dict(re.findall(r"^(\w+:\w+)=(.*)$", cache.read(), re.M))
-    kept = ("CMAKE_BUILD_TYPE:STRING", "CMAKE_CXX_COMPILER:FILEPATH", "CMAKE_CXX_FLAGS:STRING", "HERMES_SANITIZE:STRING",
-            "CMAKE_TOOLCHAIN_FILE:FILEPATH", "HERMES_DESKTOP:BOOL", "CMAKE_PREFIX_PATH:PATH")
+        known = dict(re.findall(r"^(\w+):\w+=(.*)$", cache.read(), re.M))
+    kept = ("CMAKE_BUILD_TYPE", "CMAKE_CXX_COMPILER", "CMAKE_CXX_FLAGS", "CMAKE_PREFIX_PATH", "CMAKE_TOOLCHAIN_FILE",
+            "HERMES_DESKTOP", "HERMES_SANITIZE")
     options = [f"-D{name}={known[name]}" for name in kept if known.get(name)]
     run(["cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DHERMES_TESTS=OFF", f"-DHERMES_EXTENSIONS={folder}", *options])
-    return known.get("HERMES_DESKTOP:BOOL") == "ON"
+    return known["HERMES_DESKTOP"] == "ON"
 
 
 def run(command, **options):
@@ -146,14 +146,17 @@ def check_topic_and_codec(binaries):
                 return None
 
         wire = wait_for("the daemon", connect)
-        request = {"jsonrpc": "2.0", "id": 1, "method": "topics.subscribe", "params": {"topic": "count"}}
-        wire.sendall(json.dumps(request, indent=1).encode() + b"\0")
+        requests = [{"jsonrpc": "2.0", "id": 1, "method": "topics.list"},
+                    {"jsonrpc": "2.0", "id": 2, "method": "topics.subscribe", "params": {"topic": "count"}}]
+        wire.sendall(b"".join(json.dumps(request, indent=1).encode() + b"\0" for request in requests))
         received = b""
-        while received.count(b"\0") < 4:
+        while received.count(b"\0") < 5:
             received += wire.recv(4096)
-        answer, *messages = [json.loads(frame) for frame in received.split(b"\0")[:4]]
-        assert answer["id"] == 1 and "result" in answer, answer
-        counts = [message["params"]["data"] for message in messages]
+        topics, answer, *messages = [json.loads(frame) for frame in received.split(b"\0")[:5]]
+        schema = next(topic["schema"] for topic in topics["result"] if topic["name"] == "count")
+        assert schema["properties"]["since"]["description"].startswith("The beginning"), schema
+        assert answer["id"] == 2 and "result" in answer, answer
+        counts = [message["params"]["data"]["count"] for message in messages]
         assert counts == list(range(counts[0], counts[0] + 3)), messages
         wire.close()
     finally:
