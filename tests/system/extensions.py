@@ -77,8 +77,8 @@ def configure(folder, build):
     """A build of the whole tree like that which is tested, with the folder."""
     with open(os.path.join(BUILD, "CMakeCache.txt"), encoding="utf-8") as cache:
         known = dict(re.findall(r"^(\w+):\w+=(.*)$", cache.read(), re.M))
-    kept = ("CMAKE_BUILD_TYPE", "CMAKE_CXX_COMPILER", "CMAKE_CXX_FLAGS", "CMAKE_PREFIX_PATH", "CMAKE_TOOLCHAIN_FILE",
-            "HERMES_DESKTOP", "HERMES_SANITIZE")
+    kept = ("CMAKE_BUILD_TYPE", "CMAKE_CXX_COMPILER", "CMAKE_CXX_FLAGS", "CMAKE_CXX_FLAGS_" + known["CMAKE_BUILD_TYPE"].upper(),
+            "CMAKE_PREFIX_PATH", "CMAKE_TOOLCHAIN_FILE", "HERMES_DESKTOP", "HERMES_SANITIZE")
     options = [f"-D{name}={known[name]}" for name in kept if known.get(name)]
     run(["cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DHERMES_TESTS=OFF", f"-DHERMES_EXTENSIONS={folder}", *options])
     return known["HERMES_DESKTOP"] == "ON"
