@@ -13,6 +13,8 @@ using velodyne::hdl32e;
 constexpr double degree = vectorlib::pi / 180;
 constexpr std::uint8_t wallIntensity = 100; // made up, to tell the two apart
 constexpr std::uint8_t floorIntensity = 40;
+constexpr int normalBits = 16;
+constexpr std::size_t normals = 1 << normalBits;
 
 struct Beam {
     double cosine;
@@ -42,7 +44,14 @@ LidarModel::LidarModel(const std::vector<vectorlib::LineSegment2D<double>> &wall
                        std::uint64_t seed)
     : walls_(walls)
     , options_(options)
-    , random_(seed) {}
+    , random_(seed)
+    , normal_(normals) {
+    std::normal_distribution<float> normal;
+    for (std::size_t i = 0; i < normals; i += 2) { // in pairs, so that their mean is 0
+        normal_[i] = normal(random_);
+        normal_[i + 1] = -normal_[i];
+    }
+}
 
 void LidarModel::fire(const vectorlib::Pose2D &pose, double azimuth, double gap,
                       velodyne::DataPacketWriter &packet, int block) {
@@ -79,6 +88,18 @@ bool LidarModel::chance(double share) {
     return share > 0 && std::uniform_real_distribution<double>()(random_) < share;
 }
 
+// To draw from the distribution itself would take as long as all the rest of a ray.
+double LidarModel::noise() {
+    if (bitsLeft_ < normalBits) {
+        bits_ = random_();
+        bitsLeft_ = 64;
+    }
+    const std::size_t drawn = bits_ % normals;
+    bits_ >>= normalBits;
+    bitsLeft_ -= normalBits;
+    return double(normal_[drawn]);
+}
+
 void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block) {
     const Beam &beam = beams[laser];
     const double height = options_.sensorHeight + beam.offset;
@@ -92,7 +113,7 @@ void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWri
     }
     double range = horizontal / beam.cosine;
     if (range <= options_.maxRange)
-        range += options_.sigma * normal_(random_);
+        range += options_.sigma * noise();
     if (chance(options_.outliers))
         range *= std::uniform_real_distribution<double>(0, 2)(random_);
     const bool returns =

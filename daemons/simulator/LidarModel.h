@@ -48,12 +48,15 @@ private:
     void selectWalls(Vector position, Vector left, Vector right);
     double wallDistance(Vector direction) const;
     bool chance(double share);
+    double noise();
     void measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block);
 
     std::vector<vectorlib::LineSegment2D<double>> walls_;
     Options options_;
     std::mt19937_64 random_;
-    std::normal_distribution<double> normal_;
+    std::vector<float> normal_; ///< values of a standard normal distribution, of which each ray draws one
+    std::uint64_t bits_ = 0;    ///< drawn, not yet used
+    int bitsLeft_ = 0;
     std::vector<Wall> inReach_; ///< of the current firing
 };
 
