@@ -5,6 +5,7 @@
 #include "vectorlib/mapping/VectorMap.h"
 
 #include <chrono>
+#include <utility>
 
 namespace vectorlib {
 
@@ -48,7 +49,14 @@ public:
     /// Takes a scan (sensor frame, in order of acquisition) and where the sensor is expected to be (map
     /// frame), by odometry or by its motion so far.
     const ScanReport &process(PointSpan<float> scan, const Pose2D &expected) {
-        report_ = ScanReport();
+        find(scan, expected);
+        return conclude(scan, true);
+    }
+    /// The first half of it, which may be done again for the same scan, straightened otherwise or expected
+    /// elsewhere: the pose. Leaves the map alone.
+    const ScanReport &find(PointSpan<float> scan, const Pose2D &expected) {
+        if (std::exchange(concluded_, false))
+            report_ = ScanReport();
         const auto t0 = Clock::now();
         const Segmentation &clusters = extract.segment(scan);
         const auto t1 = Clock::now();
@@ -58,15 +66,25 @@ public:
         const TrackingSettings usual = track.settings;
         locate(settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected));
         track.settings = usual;
-        if (settings.matchPrevious)
-            remember(scan);
         const auto t3 = Clock::now();
-        updateMap();
-        const auto t4 = Clock::now();
-        report_.segmentMs = milliseconds(t0, t1);
-        report_.vectorizeMs = milliseconds(t1, t2);
-        report_.matchMs = milliseconds(t2, t3);
-        report_.mapMs = milliseconds(t3, t4);
+        report_.segmentMs += milliseconds(t0, t1);
+        report_.vectorizeMs += milliseconds(t1, t2);
+        report_.matchMs += milliseconds(t2, t3);
+        return report_;
+    }
+    /// The other half: the map takes the scan as it was found last. One that is not sure is left out, and the
+    /// next one is not matched with it.
+    const ScanReport &conclude(PointSpan<float> scan, bool sure) {
+        const auto begin = Clock::now();
+        concluded_ = true;
+        lost_ = report_.outcome == ScanReport::Outcome::Lost ? lost_ + 1 : 0;
+        if (settings.matchPrevious && sure)
+            remember(scan);
+        else
+            forgetPrevious();
+        if (sure)
+            updateMap();
+        report_.mapMs = milliseconds(begin, Clock::now());
         return report_;
     }
 
@@ -75,6 +93,8 @@ public:
     const Match &match() const { return match_; }
     /// Map edges that the last scan was compared with, by index of the match's static set.
     const std::vector<int> &candidates() const { return numbers_; }
+    /// Their segments.
+    const std::vector<LineSegment2D<double>> &known() const { return static_; }
     /// The edges of the last scan, sensor frame.
     const std::vector<EdgeRaw2D> &edges() const { return *edges_; }
 
@@ -118,6 +138,7 @@ private:
         pose_ = expected;
         match_ = Match();
         numbers_.clear();
+        static_.clear();
         if (edges_->size() < settings.minEdges)
             report_.outcome = ScanReport::Outcome::Skipped;
         else if (map.isEmpty())
@@ -129,7 +150,6 @@ private:
             if (match_.accepted)
                 pose_ = match_.pose;
         }
-        lost_ = report_.outcome == ScanReport::Outcome::Lost ? lost_ + 1 : 0;
         report_.pose = pose_.pose();
     }
     // The part of the map that the scan can touch from any permitted pose.
@@ -139,7 +159,6 @@ private:
             reach = std::max({reach, e.segment.begin().squaredNorm(), e.segment.end().squaredNorm()});
         reach = std::sqrt(reach) + std::max(track.settings.permitted.dx, track.settings.permitted.dy);
         const Vector2D<double> centre = expected.translation(), half(reach, reach);
-        static_.clear();
         for (int number : map.near(centre - half, centre + half)) {
             numbers_.push_back(number);
             static_.push_back(map.slots()[static_cast<std::size_t>(number)].segment);
@@ -182,6 +201,7 @@ private:
     Match match_;
     ScanReport report_;
     int lost_ = 0;
+    bool concluded_ = true;
 };
 
 } // namespace vectorlib

@@ -6,6 +6,7 @@
 #include "vectorlib/motion/MotionCompensation.h"
 #include "vectorlib/motion/MotionModel.h"
 #include "vectorlib/motion/OdometryModel.h"
+#include "vectorlib/motion/TwistCorrection.h"
 
 #include <functional>
 
@@ -31,7 +32,8 @@ struct ScanTrackerCounts {
 };
 
 /// Follows a sensor through its map and lets the map grow, scan by scan: the same for a robot that drives and
-/// for a log. Time is that of the scans; only recover() goes by a clock.
+/// for a log. Time is that of the scans; only recover() goes by a clock. A scan that was not taken at once
+/// enters the map only when it is found to be straight there.
 class ScanTracker {
 public:
     MapBuilder builder;
@@ -53,16 +55,15 @@ public:
     const ScanReport &process(TimedScan &scan) {
         if (!settings_.useOdometry)
             scan.odometry.reset();
-        const float middle = middleTime(scan.seconds);
-        if (settings_.compensateMotion)
-            compensateMotion(scan.points, scan.seconds, middle,
-                             scan.odometry ? odometry_.twist(*scan.odometry, scan.begin(), scan.end())
-                                           : motion_.twist());
-        scan.stamp += double(middle);
+        const double begin = scan.begin(), end = scan.end();
+        middle_ = middleTime(scan.seconds);
+        scan.stamp += double(middle_);
+        raw_ = scan.points;
         EarSettings scanner = EarSettings::forScanner(scan.fieldOfView, scan.rays);
         scanner.closed = scan.closed;
         builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
-        const ScanReport &report = builder.process(scan.points, expect(scan));
+        const bool sure = locate(scan, begin, end);
+        const ScanReport &report = builder.conclude(scan.points, sure);
         motion_.update(report.pose, scan.stamp);
         if (scan.odometry)
             odometry_.update(report.pose, *scan.odometry, scan.stamp);
@@ -110,25 +111,108 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
+    static constexpr double straight_m = 0.02; // a scan bent by no more is straight
+    static constexpr int mostTries = 3;
+    static constexpr double leap_m = 0.1, leap_rad = 0.1;
 
-    // Where the sensor is expected; tells the builder how sure that is.
-    Pose2D expect(const TimedScan &scan) {
-        const auto expected = scan.odometry ? odometry_.expect(*scan.odometry, scan.stamp) : std::nullopt;
-        const bool well = expected || !lastStamp_ || isMomentAgo(*lastStamp_, scan.stamp);
-        TrackingSettings &track = builder.track.settings;
-        track = well ? settings_.tracking : poorly(settings_.tracking);
-        ScanPairSettings &pair = builder.matchPair.settings;
-        pair = well ? ScanPairSettings() : ScanPairSettings::forPoorExpectation();
-        if (!expected)
-            return motion_.predict(scan.stamp);
-        ++counts_.byOdometry;
-        if (expected->deviations) {
-            track.expectedDeviationXY = expected->deviations->xy;
-            track.expectedDeviationAlpha = expected->deviations->alpha;
-            pair.deviationXY = std::min(pair.deviationXY, expected->deviations->xy);
-            pair.deviationAlpha = std::min(pair.deviationAlpha, expected->deviations->alpha);
+    // Where the sensor is thought to be, how it moves, and how sure that is.
+    struct Guess {
+        Pose2D pose;
+        Twist2D twist;
+        bool well = false; // expected
+        bool byOdometry = false;
+        std::optional<OdometryModel::Deviations> deviations;
+    };
+    // How a scan was found by a guess.
+    struct Found {
+        bool straight = true, again = false; // it had to be straightened again
+        double score = -1;                   // matched length less what lies apart, metres; below 0: lost
+    };
+
+    // False when the scan is in doubt: it stays bent. Where the odometry bends or loses it, or leaps, the
+    // scan is sought where the motion so far leads, too, and the better place counts.
+    bool locate(TimedScan &scan, double begin, double end) {
+        const Guess byMotion{motion_.predict(scan.stamp),
+                             motion_.twist(),
+                             !lastStamp_ || isMomentAgo(*lastStamp_, scan.stamp),
+                             false,
+                             {}};
+        Guess guess = byMotion;
+        if (scan.odometry) {
+            guess.twist = odometry_.twist(*scan.odometry, begin, end);
+            if (const auto expected = odometry_.expect(*scan.odometry, scan.stamp))
+                guess = {expected->pose, guess.twist, true, true, expected->deviations};
         }
-        return expected->pose;
+        Found found = find(scan, guess);
+        const bool doubtful = found.again || found.score < 0 || leaps(byMotion, guess, end - begin);
+        if (isStraightened(scan) && scan.odometry && doubtful) {
+            const Found other = find(scan, byMotion);
+            if (other.score > found.score)
+                return other.straight;
+            found = find(scan, guess);
+        }
+        counts_.byOdometry += guess.byOdometry;
+        return found.straight;
+    }
+    // Straightens the scan by the velocity that is guessed, and again by what its points say of it then.
+    Found find(TimedScan &scan, const Guess &guess) {
+        tellHowSure(guess);
+        Found found;
+        Twist2D twist = guess.twist;
+        for (int tries = 1;; ++tries) {
+            if (isStraightened(scan)) {
+                scan.points = raw_;
+                compensateMotion(scan.points, scan.seconds, middle_, twist);
+            }
+            const ScanReport &report = builder.find(scan.points, guess.pose);
+            if (report.outcome != ScanReport::Outcome::Matched)
+                return {true, tries > 1, report.outcome == ScanReport::Outcome::Lost ? -1.0 : 0.0};
+            if (!isStraightened(scan))
+                break;
+            const TwistCorrection::Result wrong = twistError(scan);
+            found.straight = wrong.bend <= straight_m;
+            found.again = tries > 1 || !found.straight;
+            if (found.straight || tries == mostTries)
+                break;
+            twist = {twist.vx + wrong.twist.vx, twist.vy + wrong.twist.vy, twist.omega + wrong.twist.omega};
+        }
+        const double apart = builder.match().rms / builder.track.settings.finalDistance;
+        found.score = builder.match().matchedLength * (1 - apart * apart);
+        return found;
+    }
+    bool isStraightened(const TimedScan &scan) const {
+        return settings_.compensateMotion && !scan.seconds.empty();
+    }
+    TwistCorrection::Result twistError(const TimedScan &scan) {
+        const Transformation2D toSensor = Transformation2D(builder.report().pose).inverse();
+        known_.clear();
+        for (const LineSegment2D<double> &edge : builder.known()) {
+            const LineSegment2D<double> seen = toSensor * edge;
+            if (seen.across({0, 0}) > 0) // its front
+                known_.push_back(seen);
+        }
+        return correct_(scan.points, scan.seconds, middle_, known_);
+    }
+    // The two guesses differ by more than the speed of a robot changes between two scans.
+    static bool leaps(const Guess &a, const Guess &b, double seconds) {
+        const auto isFar = [](const Transformation2D &from, const Transformation2D &to) {
+            const Transformation2D way = from.inverse() * to;
+            return way.translation().norm() > leap_m || std::abs(way.alpha()) > leap_rad;
+        };
+        return isFar(Transformation2D(a.pose), Transformation2D(b.pose)) ||
+               isFar(a.twist.motion(seconds), b.twist.motion(seconds));
+    }
+    void tellHowSure(const Guess &guess) {
+        TrackingSettings &track = builder.track.settings;
+        track = guess.well ? settings_.tracking : poorly(settings_.tracking);
+        ScanPairSettings &pair = builder.matchPair.settings;
+        pair = guess.well ? ScanPairSettings() : ScanPairSettings::forPoorExpectation();
+        if (!guess.deviations)
+            return;
+        track.expectedDeviationXY = guess.deviations->xy;
+        track.expectedDeviationAlpha = guess.deviations->alpha;
+        pair.deviationXY = std::min(pair.deviationXY, guess.deviations->xy);
+        pair.deviationAlpha = std::min(pair.deviationAlpha, guess.deviations->alpha);
     }
     // Searches at least as widely as it is set up.
     static TrackingSettings poorly(const TrackingSettings &well) {
@@ -173,10 +257,14 @@ private:
     }
 
     ScanTrackerSettings settings_;
+    std::vector<Vector2D<float>> raw_; // the points as they were measured
+    float middle_ = 0;                 // of their times
+    std::vector<LineSegment2D<double>> known_;
     MotionModel motion_;
     OdometryModel odometry_;
     ScanTrackerCounts counts_;
     Relocalization search_;
+    TwistCorrection correct_;
     std::optional<double> lastStamp_; // of the scan before, unless the sensor was put elsewhere since
     int lostInARow_ = 0;
     Clock::time_point nextSearch_;
