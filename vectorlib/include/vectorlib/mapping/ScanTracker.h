@@ -111,7 +111,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    static constexpr double straight_m = 0.02; // a scan bent by no more is straight
+    static constexpr double straight_m = 0.015; // a scan bent by no more is straight
     static constexpr int mostTries = 3;
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
 
