@@ -287,7 +287,7 @@ void TestTroubledDrive::findsTheVelocityOfABentScan() {
         compensateMotion(points, scan.seconds, middle, found);
         const auto wrong = correct(points, scan.seconds, middle, known);
         QVERIFY(i > 0 || (wrong.bend > 0.1 && wrong.bend < 0.4));
-        QVERIFY(i < 2 || wrong.bend < 0.015);
+        QVERIFY(i < 2 || wrong.bend < 0.01);
         found = {found.vx + wrong.twist.vx, found.vy + wrong.twist.vy, found.omega + wrong.twist.omega};
     }
     QVERIFY(std::abs(found.vx - real.vx) < 0.1 && std::abs(found.vy - real.vy) < 0.1);

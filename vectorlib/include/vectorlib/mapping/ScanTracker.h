@@ -111,9 +111,10 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    static constexpr double straight_m = 0.015; // a scan bent by no more is straight
+    static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int mostTries = 3;
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
+    static constexpr double muchBetter = 1.02; // a score, where the odometry tells otherwise
 
     // Where the sensor is thought to be, how it moves, and how sure that is.
     struct Guess {
@@ -147,7 +148,8 @@ private:
         const bool doubtful = found.again || found.score < 0 || leaps(byMotion, guess, end - begin);
         if (isStraightened(scan) && scan.odometry && doubtful) {
             const Found other = find(scan, byMotion);
-            if (other.score > found.score)
+            const bool better = other.score > muchBetter * found.score || (other.straight && !found.straight);
+            if (other.score > 0 && better)
                 return other.straight;
             found = find(scan, guess);
         }
