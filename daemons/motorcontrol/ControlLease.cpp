@@ -1,5 +1,6 @@
 #include "daemons/motorcontrol/ControlLease.h"
 
+#include <QJsonObject>
 #include <algorithm>
 
 namespace hermes {
@@ -51,10 +52,10 @@ std::optional<QString> ControlLease::expire(double now) {
     return name;
 }
 
-QJsonObject ControlLease::state(double now) const {
+LeaseState ControlLease::state(double now) const {
     if (!holder_)
-        return {{"held", false}, {"holder", QJsonValue::Null}, {"remaining_s", 0}};
-    return {{"held", true}, {"holder", holder_->name}, {"remaining_s", std::max(0.0, holder_->until - now)}};
+        return {};
+    return {true, holder_->name, std::max(0.0, holder_->until - now)};
 }
 
 } // namespace hermes

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/Result.h"
+#include "protocol/messages/Motors.h"
 
-#include <QJsonObject>
 #include <optional>
 
 namespace hermes {
@@ -26,8 +26,7 @@ public:
     std::optional<QString> expire(double now);
 
     bool isHeldBy(quint64 client) const { return holder_ && holder_->client == client; }
-    /// {held, holder, remaining_s}
-    QJsonObject state(double now) const;
+    LeaseState state(double now) const;
 
 private:
     struct Holder {

@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/Drive.h"
 
-#include <QJsonArray>
+#include "protocol/wire/Fields.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -70,11 +71,9 @@ Result<void> Drive::driveWheels(quint64 client, const WheelValues &speeds, doubl
 }
 
 Result<void> Drive::mayMove(double age_s) const {
-    if (latch_.has(emergencyCause))
-        return Error(ErrorCode::NotReady, latch_.text() + "; motor.reset_estop releases it", latch_.toJson());
     if (latch_.isSet())
-        return Error(ErrorCode::DeviceFault, latch_.text() + "; motor.reset_estop releases it",
-                     latch_.toJson());
+        return Error(latch_.has(emergencyCause) ? ErrorCode::NotReady : ErrorCode::DeviceFault,
+                     latch_.text() + "; motor.reset_estop releases it", asJson(latch_.causes()));
     if (!notReady_.isEmpty())
         return Error(ErrorCode::DeviceFault, notReady_);
     if (!(std::abs(age_s) < settings_.commandTimeout_s))

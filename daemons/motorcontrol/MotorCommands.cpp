@@ -1,11 +1,8 @@
 #include "common/Time.h"
 #include "daemons/motorcontrol/MotorControl.h"
-#include "daemons/motorcontrol/MotorJson.h"
 
 namespace hermes {
 namespace {
-
-const QJsonObject object{{"type", "object"}};
 
 Field stampField() {
     return Field::number("stamp", "When the command was made, seconds since the epoch; one older than "
@@ -44,19 +41,23 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
                    .unit("s")
                    .range(0, 10)
                    .byDefault(0))
-        .returns(object)
+        .gives<Standing>()
         .urgent()
         .asyncHandler([this, stop](const Call &call, const Reply &reply) {
             const double until = monotonicNow() + call.number("wait_s");
+            const auto standing = std::make_shared<Standing>();
             inLoop(
-                [call, stop](DriveLoop &loop) -> Result<QJsonValue> {
+                [call, stop, standing](DriveLoop &loop) -> Result<QJsonValue> {
                     stop(call, loop.drive());
                     loop.makeVoidUntil(call.time); // it may have overtaken what came before it
-                    return QJsonValue(standingJson(loop.telemetry()));
+                    *standing = standingOf(loop.telemetry());
+                    return QJsonValue();
                 },
-                Reply([this, reply, until](const Result<QJsonValue> &result) {
-                    if (!result || monotonicNow() >= until || (*result)["confirmed"].toBool())
+                Reply([this, reply, until, standing](const Result<QJsonValue> &result) {
+                    if (!result)
                         return reply.give(result);
+                    if (monotonicNow() >= until || standing->confirmed)
+                        return reply.result(asJson(*standing));
                     stops_.push_back({reply, until});
                 }));
         });
@@ -124,8 +125,8 @@ void MotorControl::declareMotorCommands() {
         }));
     addCommand(Command("motor.state",
                        "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
-                   .returns(object)
-                   .handler([this](const Call &) -> Result<QJsonValue> { return state(); }));
+                   .gives<MotorState>()
+                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
     addCommand(
         loopCommand("odometry.reset", "The pose is this from now on, certain",
                     [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
@@ -152,7 +153,7 @@ void MotorControl::declareControlCommands() {
                                           : loop.drive().acquire(call.client, name, timeout_s, now);
                 if (!acquired)
                     return acquired.error();
-                return loop.drive().lease().state(now);
+                return asJson(loop.drive().lease().state(now));
             })
             .param(
                 Field::text("client", "Name of the client, for others").with("maxLength", 100).byDefault(""))
@@ -163,7 +164,7 @@ void MotorControl::declareControlCommands() {
             .param(Field::boolean("take_over", "Take it from another client that holds it: the robot stops, "
                                                "and the other one is refused from then on")
                        .byDefault(false))
-            .returns(object)
+            .gives<LeaseState>()
             .example({{"client", "joystick"}, {"timeout_s", 1}},
                      QJsonObject{{"held", true}, {"holder", "joystick"}, {"remaining_s", 1}}));
     addCommand(loopCommand("control.release", "Gives the control back; the robot stops",
@@ -172,9 +173,9 @@ void MotorControl::declareControlCommands() {
                                return QJsonValue();
                            }));
     addCommand(Command("control.state", "Who holds the control, and for how long without a further command")
-                   .returns(object)
+                   .gives<LeaseState>()
                    .handler([this](const Call &) -> Result<QJsonValue> {
-                       return told_.lease.state(monotonicNow());
+                       return asJson(told_.lease.state(monotonicNow()));
                    }));
 }
 

@@ -2,7 +2,6 @@
 
 #include "common/Log.h"
 #include "common/Time.h"
-#include "daemons/motorcontrol/MotorJson.h"
 #include "protocol/wire/Fields.h"
 
 #include <QSocketNotifier>
@@ -53,17 +52,10 @@ MotorControl::~MotorControl() {
 }
 
 void MotorControl::declareTopics() {
-    const QJsonObject object{{"type", "object"}};
     addTopic(Topic("odometry", "Where the wheels have brought the robot, after each cycle (50 Hz)")
                  .carries<OdometryMessage>());
-    addTopic(Topic("wheels",
-                   "After each cycle, of each wheel: target, set_point and speed (rad/s), angle (rad); "
-                   "slip (m/s): what no motion of a rigid robot explains")
-                 .schema(object));
-    addTopic(Topic("power",
-                   "10 Hz, of each controller: battery_v, logic_v, current_a of both motors, temperature_c, "
-                   "status and what it means")
-                 .schema(object));
+    addTopic(Topic("wheels", "How each wheel turns, after each cycle").carries<WheelsMessage>());
+    addTopic(Topic("power", "What each controller measures, at 10 Hz").carries<PowerMessage>());
 }
 
 Result<void> MotorControl::start() {
@@ -104,7 +96,7 @@ void MotorControl::stop() {
     loop_ = nullptr;
     answerJobs(mail_.finished.exchange(0));
     for (const WaitingStop &stop : std::exchange(stops_, {}))
-        stop.reply.give(QJsonValue(standingJson(told_)));
+        stop.reply.result(asJson(standingOf(told_)));
     for (const DriveMail::Job &job : std::exchange(jobs_, {}))
         job.reply.error(Error(ErrorCode::NotReady, "the daemon is stopping"));
 }
@@ -176,7 +168,7 @@ void MotorControl::answerStops() {
     const auto isDue = [&](const WaitingStop &stop) { return allStand(told_) || now >= stop.until; };
     for (const WaitingStop &stop : stops_) {
         if (isDue(stop))
-            stop.reply.give(QJsonValue(standingJson(told_)));
+            stop.reply.result(asJson(standingOf(told_)));
     }
     stops_.erase(std::remove_if(stops_.begin(), stops_.end(), isDue), stops_.end());
 }
@@ -193,10 +185,10 @@ void MotorControl::show(const Telemetry &telemetry) {
         publish(
             "odometry", [&] { return odometryOf(telemetry); }, telemetry.stamp);
         publish(
-            "wheels", [&] { return wheelsJson(telemetry); }, telemetry.stamp);
+            "wheels", [&] { return wheelsOf(telemetry); }, telemetry.stamp);
     }
     if (cycles_ % slowEvery == 0) {
-        publish("power", [&] { return powerJson(telemetry); });
+        publish("power", [&] { return powerOf(telemetry); });
         updateHealth();
         feedWatchdog();
     }

@@ -2,6 +2,7 @@
 
 #include "common/daemon/Daemon.h"
 #include "daemons/motorcontrol/DriveLoop.h"
+#include "daemons/motorcontrol/MotorMessages.h"
 
 #include <QThread>
 #include <deque>
@@ -49,7 +50,7 @@ private:
     void show(const Telemetry &telemetry);
     void updateHealth();
     bool isReady() const;
-    QJsonObject state() const;
+    MotorState state() const;
 
     DriveMail mail_;
     std::deque<DriveMail::Job> jobs_; // not yet answered

@@ -2,15 +2,13 @@
 #include "common/Log.h"
 #include "common/Time.h"
 #include "daemons/motorcontrol/MotorControl.h"
-#include "daemons/motorcontrol/MotorJson.h"
+#include "daemons/motorcontrol/MotorMessages.h"
 
-#include <QJsonArray>
 #include <algorithm>
 
 namespace hermes {
 namespace {
 
-constexpr double period_s = std::chrono::duration<double>(DriveLoop::period).count();
 constexpr double lateness_s = 0.005; // more of it is worth a look
 constexpr double slowRate_Hz = 40;   // less of what a line should give at 50 Hz, too
 
@@ -36,7 +34,7 @@ void MotorControl::updateHealth() {
         const HealthLevel level = !c.ready             ? HealthLevel::Failed
                                   : c.advice.isEmpty() ? HealthLevel::Ok
                                                        : HealthLevel::Warn;
-        health().set(QString("controller_%1").arg(i + 1), level, text, controllerJson(c));
+        health().set(QString("controller_%1").arg(i + 1), level, text, asJson(c).toObject());
         if (text != logged_[i])
             c.ready ? logInfo("controllers", text) : logWarning("controllers", text);
         logged_[i] = text;
@@ -78,15 +76,16 @@ void MotorControl::updateHealth() {
                     .arg(c.rate_Hz, 0, 'f', 1);
     }
     health().set("cycle", late || slow ? HealthLevel::Warn : HealthLevel::Ok, text,
-                 cycleJson(told_, period_s));
+                 asJson(cycleOf(told_)).toObject());
 
     const bool latched = told_.latch.isSet();
-    const QJsonObject causes = told_.latch.toJson();
+    const auto &causes = told_.latch.causes();
     QStringList texts{latched ? told_.latch.text() : QString("not latched")};
     const bool lost = !isReady() && !allStand(told_); // while it brakes it is ready
     if (lost)
-        texts.append(notConfirmedText(told_));
-    health().set("stop", latched || lost ? HealthLevel::Failed : HealthLevel::Ok, texts.join("; "), causes);
+        texts.append(standingOf(told_).text);
+    health().set("stop", latched || lost ? HealthLevel::Failed : HealthLevel::Ok, texts.join("; "),
+                 asJson(causes).toObject());
     const bool fault = causes.size() > int(told_.latch.has(Drive::emergencyCause));
     setState(fault ? DaemonState::Fault : isReady() && !latched ? DaemonState::Running : DaemonState::Ready);
 }
@@ -96,24 +95,21 @@ bool MotorControl::isReady() const {
                        [](const Telemetry::Controller &c) { return c.ready; });
 }
 
-QJsonObject MotorControl::state() const {
-    QJsonArray controllers;
-    for (const Telemetry::Controller &controller : told_.controllers)
-        controllers.append(controllerJson(controller));
-    return {{"ready", isReady()},
-            {"standing", standingJson(told_)},
-            {"estop", told_.latch.has(Drive::emergencyCause)},
-            {"latched", told_.latch.toJson()},
-            {"halted", told_.haltReason},
-            {"control", told_.lease.state(monotonicNow())},
-            {"pose", toJson(told_.pose)},
-            {"twist", toJson(told_.twist)},
-            {"target", toJson(active_.drive.layout.twist(told_.target))},
-            {"set_point", toJson(active_.drive.layout.twist(told_.setPoint))},
-            {"wheels", wheelsJson(told_)},
-            {"counter_jumps", double(told_.counterJumps)},
-            {"controllers", controllers},
-            {"cycle", cycleJson(told_, period_s)}};
+MotorState MotorControl::state() const {
+    const WheelLayout &layout = active_.drive.layout;
+    return {isReady(),
+            standingOf(told_),
+            told_.latch.has(Drive::emergencyCause),
+            {told_.latch.causes(), told_.lease.state(monotonicNow())},
+            told_.haltReason,
+            told_.pose,
+            told_.twist,
+            layout.twist(told_.target),
+            layout.twist(told_.setPoint),
+            wheelsOf(told_),
+            told_.counterJumps,
+            told_.controllers,
+            cycleOf(told_)};
 }
 
 } // namespace hermes

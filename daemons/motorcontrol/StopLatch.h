@@ -1,6 +1,5 @@
 #pragma once
 
-#include <QJsonObject>
 #include <QMap>
 #include <QString>
 
@@ -24,13 +23,8 @@ public:
     QString reason(const QString &cause) const { return causes_.value(cause); }
     /// All reasons as one sentence.
     QString text() const { return causes_.values().join("; "); }
-    /// {cause: reason}
-    QJsonObject toJson() const {
-        QJsonObject json;
-        for (auto cause = causes_.cbegin(); cause != causes_.cend(); ++cause)
-            json.insert(cause.key(), cause.value());
-        return json;
-    }
+    /// The reason of each.
+    const QMap<QString, QString> &causes() const { return causes_; }
 
 private:
     QMap<QString, QString> causes_;

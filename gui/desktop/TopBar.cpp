@@ -1,10 +1,10 @@
 #include "gui/desktop/TopBar.h"
 
 #include "gui/desktop/widgets/PlainLabel.h"
+#include "protocol/wire/Fields.h"
 
 #include <QComboBox>
 #include <QHBoxLayout>
-#include <QJsonArray>
 #include <QPushButton>
 
 namespace hermes {
@@ -19,7 +19,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     , fleet_(fleet)
     , drive_(drive)
     , powerFeed_(
-          fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.json()); }, this)
+          fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
     , robots_(new QComboBox)
     , link_(new PlainLabel)
     , control_(new PlainLabel)
@@ -111,16 +111,19 @@ void TopBar::updateDrive() {
     stop_->setText(drive_.isStopped() ? tr("STOPPED") : tr("STOP"));
 }
 
-void TopBar::showPower(const QJsonValue &power) {
+void TopBar::showPower(WireView data) {
+    ReadReport report;
+    const auto power = readMessage<PowerMessage>(data, report);
+    if (!power)
+        return power_->setText(shortLine(tr("power: %1").arg(report.text()), 2 * longestName));
     double volts = 0, amperes = 0, hottest = -300;
-    for (const QJsonValue &controller : power["controllers"].toArray()) {
-        if (!controller["ready"].toBool())
+    for (const ControllerPower &controller : power->controllers) {
+        if (!controller.ready)
             continue;
-        const double battery = controller["battery_v"].toDouble();
-        volts = volts > 0 ? std::min(volts, battery) : battery;
-        hottest = std::max(hottest, controller["temperature_c"].toDouble());
-        for (const QJsonValue &current : controller["current_a"].toArray())
-            amperes += std::abs(current.toDouble());
+        volts = volts > 0 ? std::min(volts, controller.battery_v) : controller.battery_v;
+        hottest = std::max(hottest, controller.temperature_c);
+        for (const double current : controller.current_a)
+            amperes += std::abs(current);
     }
     power_->setText(hottest < -273
                         ? QString()

@@ -22,7 +22,7 @@ private:
     void updateRobots();
     void updateLink();
     void updateDrive();
-    void showPower(const QJsonValue &power);
+    void showPower(WireView data);
 
     Fleet &fleet_;
     DriveControl &drive_;

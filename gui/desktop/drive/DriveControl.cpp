@@ -1,6 +1,7 @@
 #include "gui/desktop/drive/DriveControl.h"
 
 #include "common/Time.h"
+#include "protocol/wire/Fields.h"
 
 #include <QHostInfo>
 
@@ -21,15 +22,7 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     : QObject(parent)
     , fleet_(fleet)
     , odometry_(
-          fleet, "odometry", {{"max_rate_hz", 10}},
-          [this](const TopicUpdate &update) {
-              const QJsonValue twist = update.json()["twist"];
-              measured_ = {twist["vx"].toDouble(), twist["vy"].toDouble(), twist["omega"].toDouble()};
-              if (odometry_.source() == motors_) // no other clock is asked for
-                  clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);
-              Q_EMIT changed();
-          },
-          this) {
+          fleet, "odometry", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onOdometry(u); }, this) {
     stopLine_.setFrameLimit(DaemonLink::usualFrame);
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
@@ -60,7 +53,7 @@ void DriveControl::follow() {
     if (motors_)
         motors_->disconnect(this);
     motors_ = found;
-    state_ = {};
+    hold_ = {};
     isHolding_ = isAsking_ = isPolling_ = false;
     mustCentre_ = isAnyHeld();
     clock_ = {};
@@ -77,7 +70,7 @@ void DriveControl::follow() {
     poll();
 }
 
-void DriveControl::steer(const QString &input, const Velocity &wish, bool isHeld) {
+void DriveControl::steer(const QString &input, const Twist &wish, bool isHeld) {
     inputs_[input] = {wish, isHeld};
     if (mustCentre_ && !isAnyHeld())
         mustCentre_ = false;
@@ -92,8 +85,8 @@ bool DriveControl::isAnyHeld() const {
     return std::any_of(inputs_.begin(), inputs_.end(), [](const Input &input) { return input.isHeld; });
 }
 
-Velocity DriveControl::wish() const {
-    Velocity sum;
+Twist DriveControl::wish() const {
+    Twist sum;
     for (const Input &input : inputs_) {
         if (!input.isHeld)
             continue;
@@ -226,13 +219,28 @@ void DriveControl::poll() {
     motors_->call("motor.state", {}, this, [this](const Result<QJsonValue> &state) {
         isPolling_ = false;
         if (state)
-            onState(state->toObject());
+            onState(*state);
     });
 }
 
-void DriveControl::onState(const QJsonObject &state) {
+void DriveControl::onOdometry(const TopicUpdate &update) {
+    ReadReport report;
+    const auto odometry = readMessage<OdometryMessage>(update.data, report);
+    if (!odometry)
+        return tell(tr("Odometry: %1").arg(report.text()));
+    measured_ = odometry->twist;
+    if (odometry_.source() == motors_) // no other clock is asked for
+        clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);
+    Q_EMIT changed();
+}
+
+void DriveControl::onState(const QJsonValue &state) {
+    ReadReport report;
+    auto hold = readMessage<MotionHold>(WireValue(state), report);
+    if (!hold)
+        return tell(tr("State of the motors: %1").arg(report.text()));
     const bool wasStopped = isStopped();
-    state_ = state;
+    hold_ = std::move(*hold);
     if (isStopped() && !wasStopped) {
         isDriving_ = isHolding_ = false;
         commanded_ = {};
@@ -242,10 +250,9 @@ void DriveControl::onState(const QJsonObject &state) {
 }
 
 QString DriveControl::holder() const {
-    const QJsonObject control = state_["control"].toObject();
-    if (!control["held"].toBool())
+    if (!hold_.control.held)
         return {};
-    const QString name = control["holder"].toString();
+    const QString name = hold_.control.holder.value_or(QString());
     return isHolding_ && name == clientName() ? tr("you") : name;
 }
 

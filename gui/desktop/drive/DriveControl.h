@@ -2,15 +2,12 @@
 
 #include "gui/desktop/drive/ClockOffset.h"
 #include "gui/desktop/model/TopicFeed.h"
+#include "protocol/messages/Motion.h"
+#include "protocol/messages/Motors.h"
 
 #include <QMap>
 
 namespace hermes {
-
-/// A velocity: m/s ahead and to the left, rad/s counter-clockwise.
-struct Velocity {
-    double vx = 0, vy = 0, omega = 0;
-};
 
 /// Drives the chosen robot: takes what stick, keys and gamepad wish, asks for the control, sends motion
 /// commands at 20 Hz with their time, and stops. Whatever ends a drive (released, focus lost, link lost,
@@ -27,7 +24,7 @@ public:
 
     /// What an input wishes: each of the three from -1 to 1 of the largest speed. isHeld: its dead-man key or
     /// button is down; released it wishes nothing.
-    void steer(const QString &input, const Velocity &wish, bool isHeld);
+    void steer(const QString &input, const Twist &wish, bool isHeld);
     /// The share of the largest speed that the whole stick means, 0.05 to 1.
     void setLimit(double share);
     double limit() const { return limit_; }
@@ -44,14 +41,14 @@ public:
     /// Somebody who can be driven is there.
     bool isPossible() const { return motors() != nullptr; }
     bool isDriving() const { return isDriving_; }
-    bool isStopped() const { return !latched().isEmpty(); }
+    bool isStopped() const { return !hold_.latched.isEmpty(); }
     /// Why the robot does not move, by cause: "estop", faults.
-    QJsonObject latched() const { return state_["latched"].toObject(); }
+    const QMap<QString, QString> &latched() const { return hold_.latched; }
     /// Who holds the control: "" nobody, "you", or the name of another client.
     QString holder() const;
     /// The velocity that is commanded, and the one that odometry measures.
-    const Velocity &commanded() const { return commanded_; }
-    const Velocity &measured() const { return measured_; }
+    const Twist &commanded() const { return commanded_; }
+    const Twist &measured() const { return measured_; }
     /// The refusal of the last command, or what else hinders; empty while all is well.
     const QString &problem() const { return problem_; }
 
@@ -60,7 +57,7 @@ Q_SIGNALS:
 
 private:
     struct Input {
-        Velocity wish;
+        Twist wish;
         bool isHeld = false;
     };
 
@@ -71,9 +68,10 @@ private:
     void repeatStop();
     void send();
     void poll();
-    void onState(const QJsonObject &state);
+    void onState(const QJsonValue &state);
+    void onOdometry(const TopicUpdate &update);
     /// What all inputs wish together, in m/s and rad/s.
-    Velocity wish() const;
+    Twist wish() const;
     bool isAnyHeld() const;
     void tell(const QString &problem);
 
@@ -83,8 +81,8 @@ private:
     Client stopLine_; ///< a second connection: a lost packet on one does not hold up the stop on the other
     QTimer timer_, pollTimer_, stopTimer_;
     QMap<QString, Input> inputs_;
-    QJsonObject state_; // motor.state
-    Velocity most_{0.5, 0.5, 1}, commanded_, measured_;
+    MotionHold hold_;
+    Twist most_{0.5, 0.5, 1}, commanded_, measured_;
     ClockOffset clock_;
     double limit_ = 0.4;
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;

@@ -22,6 +22,7 @@ private Q_SLOTS:
     void initTestCase();
     void survives_data();
     void survives();
+    void whatCannotBeReadIsNamed();
 
 private:
     // Of the processor, in one turn of the event loop; and what Qt takes here to paint so many lines.
@@ -401,6 +402,22 @@ void TestHostileDaemon::survives() {
              qPrintable(QString::number(resident_mb() - before_mb)));
     qInfo("busy %.1f ms, %.1f MB", busy_ms, resident_mb() - before_mb);
     QVERIFY2(busy_ms < busyMost_ms, qPrintable(QString::number(busy_ms)));
+}
+
+void TestHostileDaemon::whatCannotBeReadIsNamed() {
+    Mischief mischief = ofMethod("motor.state", R"({"latched":{},"control":{"held":true,"holder":7}})");
+    mischief.isMotors = true;
+    mischief.topics["power"] =
+        R"({"controllers":[{"ready":true,"battery_v":"full","current_a":[0,0],"temperature_c":20}]})";
+    const FakeDaemon daemon(mischief);
+    Fleet fleet;
+    DriveControl drive(fleet);
+    MainWindow window(fleet, drive, {});
+    add(fleet, daemon);
+    auto *const power = window.findChild<QLabel *>("power");
+    QTRY_VERIFY2(power->text().contains("controllers.0.battery_v"), qPrintable(power->text()));
+    QTRY_VERIFY2(drive.problem().contains("member control.holder: found 7"), qPrintable(drive.problem()));
+    QVERIFY(drive.holder().isEmpty());
 }
 
 QTEST_MAIN(TestHostileDaemon)

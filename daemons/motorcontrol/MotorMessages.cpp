@@ -1,0 +1,179 @@
+#include "daemons/motorcontrol/MotorMessages.h"
+
+#include "daemons/motorcontrol/DriveLoop.h"
+#include "protocol/roboclaw/Status.h"
+#include "protocol/wire/Fields.h"
+
+#include <algorithm>
+
+namespace hermes {
+
+bool allStand(const Telemetry &t) {
+    return std::all_of(t.controllers.begin(), t.controllers.end(), [](const auto &c) { return c.stands; });
+}
+
+OdometryMessage odometryOf(const Telemetry &t) {
+    return {t.pose, t.twist, t.covariance, t.mono};
+}
+
+WheelsMessage wheelsOf(const Telemetry &t) {
+    WheelsMessage message;
+    for (std::size_t i = 0; i < wheelCount; ++i)
+        message.wheels[i] = {t.target[i], t.setPoint[i], t.speeds[i], t.turns[i]};
+    message.slip = t.slip;
+    return message;
+}
+
+PowerMessage powerOf(const Telemetry &t) {
+    PowerMessage message;
+    for (const Telemetry::Controller &controller : t.controllers) {
+        const ControllerReadings &r = controller.readings;
+        QStringList meanings;
+        for (quint32 bit = 1; bit != 0; bit <<= 1) {
+            if (r.status & bit)
+                meanings.append(roboclaw::statusText(bit));
+        }
+        message.controllers.push_back({controller.ready && r.complete, r.battery_v, r.logic_v, r.current_a,
+                                       r.temperature_c, r.status, meanings});
+    }
+    return message;
+}
+
+CycleState cycleOf(const Telemetry &t) {
+    return {std::chrono::duration<double>(DriveLoop::period).count(), t.cycle, t.unread, t.realtime};
+}
+
+Standing standingOf(const Telemetry &t) {
+    Standing standing;
+    QStringList texts;
+    for (std::size_t i = 0; i < controllerCount; ++i) {
+        const Telemetry::Controller &c = t.controllers[i];
+        standing.controllers[i] = {c.name, c.stands, {}};
+        if (c.stands)
+            continue;
+        QString &reason = standing.controllers[i].reason;
+        reason =
+            c.error.isEmpty()
+                ? QString("its wheels turn, or it was not read since: its line may be silent for another one")
+                : c.error;
+        texts.append(c.name + " is not confirmed to stand: " + reason);
+    }
+    standing.confirmed = allStand(t);
+    standing.text = texts.join("; ");
+    return standing;
+}
+
+template <>
+const Fields<WheelMessage> &fieldsOf<WheelMessage>() {
+    using W = WheelMessage;
+    static const auto fields = Fields<W>()
+                                   .add("target", &W::target, "What was commanded", "rad/s")
+                                   .add("set_point", &W::setPoint, "On the way there", "rad/s")
+                                   .add("speed", &W::speed, "As measured", "rad/s")
+                                   .add("angle", &W::angle, "Since the start", "rad");
+    return fields;
+}
+
+template <>
+const Fields<WheelsMessage> &fieldsOf<WheelsMessage>() {
+    static const auto fields =
+        Fields<WheelsMessage>()
+            .addEach(wheelNames, &WheelsMessage::wheels, "Positive turns drive the robot forward")
+            .add("slip", &WheelsMessage::slip, "What no motion of a rigid robot explains", "m/s");
+    return fields;
+}
+
+template <>
+const Fields<Standing::Controller> &fieldsOf<Standing::Controller>() {
+    using C = Standing::Controller;
+    static const auto fields = Fields<C>()
+                                   .add("name", &C::name, "Address and line")
+                                   .add("confirmed", &C::confirmed, "It stands")
+                                   .add("reason", &C::reason, "Why that is not confirmed, or empty");
+    return fields;
+}
+
+template <>
+const Fields<Standing> &fieldsOf<Standing>() {
+    static const auto fields =
+        Fields<Standing>()
+            .add("confirmed", &Standing::confirmed,
+                 "All have acknowledged a set-point of zero, and their encoders have not moved since")
+            .add("text", &Standing::text, "Which have not, and why; or empty")
+            .add("controllers", &Standing::controllers, "Each");
+    return fields;
+}
+
+template <>
+const Fields<CycleStatistics> &fieldsOf<CycleStatistics>() {
+    static const auto fields =
+        Fields<CycleStatistics>()
+            .add("cycles", &CycleStatistics::cycles, "Since the start")
+            .add("missed", &CycleStatistics::missed, "Periods without a cycle: it came too late")
+            .add("mean_lateness_s", &CycleStatistics::meanLateness_s, "Of the last 50 cycles", "s")
+            .add("worst_lateness_s", &CycleStatistics::worstLateness_s, "Of the last 50 cycles", "s");
+    return fields;
+}
+
+template <>
+const Fields<CycleState> &fieldsOf<CycleState>() {
+    using C = CycleState;
+    static const auto fields = Fields<C>()
+                                   .add("period_s", &C::period_s, "Of the cycle", "s")
+                                   .include(&C::statistics)
+                                   .add("unread", &C::unread, "Reports that were taken too slowly")
+                                   .add("realtime", &C::realtime, "It goes before all ordinary threads");
+    return fields;
+}
+
+template <>
+const Fields<roboclaw::Bus::Counts> &fieldsOf<roboclaw::Bus::Counts>() {
+    using C = roboclaw::Bus::Counts;
+    static const auto fields = Fields<C>()
+                                   .add("requests", &C::sent, "Sent, repetitions too")
+                                   .add("answers", &C::done, "That were taken")
+                                   .add("timeouts", &C::timeouts, "Requests without an answer")
+                                   .add("crc_errors", &C::crcErrors, "Damaged answers")
+                                   .add("unexpected", &C::unexpected, "Answers to something else");
+    return fields;
+}
+
+template <>
+const Fields<Telemetry::Controller> &fieldsOf<Telemetry::Controller>() {
+    using C = Telemetry::Controller;
+    static const auto fields =
+        Fields<C>()
+            .add("name", &C::name, "Address and line")
+            .add("ready", &C::ready, "It can be driven")
+            .add("confirmed", &C::stands, "It has confirmed that it stands")
+            .add("error", &C::error, "Why it is not ready, or empty")
+            .add("version", &C::version, "Of its firmware")
+            .include(&C::counts)
+            .add("stray_bytes", &C::strayBytes, "On its line, when none was awaited")
+            .add("rate_hz", &C::rate_Hz, "Of readings that its line gives; 0: not known", "Hz")
+            .add("overruns", &C::overruns, "Cycles that began before the encoders of the last were read");
+    return fields;
+}
+
+template <>
+const Fields<MotorState> &fieldsOf<MotorState>() {
+    using S = MotorState;
+    static const auto fields =
+        Fields<S>()
+            .add("ready", &S::ready, "All controllers are")
+            .add("standing", &S::standing, "As motor.stop answers")
+            .add("estop", &S::estop, "The emergency stop is latched")
+            .include(&S::hold)
+            .add("halted", &S::halted, "Why the robot halted last; empty while it follows commands")
+            .add("pose", &S::pose, "As in the topic odometry")
+            .add("twist", &S::twist, "As measured")
+            .add("target", &S::target, "The velocity that was commanded")
+            .add("set_point", &S::setPoint, "The velocity on the way there")
+            .add("wheels", &S::wheels, "As in the topic wheels")
+            .add("counter_jumps", &S::counterJumps, "Times that a controller lost its counts")
+            .add("controllers", &S::controllers, "Each, with its traffic")
+            .add("cycle", &S::cycle, "How punctual it is");
+    return fields;
+}
+
+} // namespace hermes

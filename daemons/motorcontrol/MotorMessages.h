@@ -1,0 +1,77 @@
+#pragma once
+
+#include "daemons/motorcontrol/Telemetry.h"
+#include "protocol/messages/Motors.h"
+
+namespace hermes {
+
+/// A wheel of the topic `wheels`: rad/s, angle in rad.
+struct WheelMessage {
+    double target = 0, setPoint = 0, speed = 0, angle = 0;
+};
+
+/// The topic `wheels`.
+struct WheelsMessage {
+    std::array<WheelMessage, wheelCount> wheels;
+    double slip = 0;
+};
+
+/// Whether all controllers have confirmed that they stand: the answer to a stop.
+struct Standing {
+    struct Controller {
+        QString name;
+        bool confirmed = false;
+        QString reason; ///< why not
+    };
+    bool confirmed = false;
+    QString text;
+    std::array<Controller, controllerCount> controllers;
+};
+
+/// How punctual the drive loop is.
+struct CycleState {
+    double period_s = 0;
+    CycleStatistics statistics;
+    quint64 unread = 0;
+    bool realtime = false;
+};
+
+/// What motor.state gives.
+struct MotorState {
+    bool ready = false;
+    Standing standing;
+    bool estop = false;
+    MotionHold hold;
+    QString halted;
+    Pose pose;
+    Twist twist, target, setPoint;
+    WheelsMessage wheels;
+    quint64 counterJumps = 0;
+    std::array<Telemetry::Controller, controllerCount> controllers;
+    CycleState cycle;
+};
+
+OdometryMessage odometryOf(const Telemetry &telemetry);
+WheelsMessage wheelsOf(const Telemetry &telemetry);
+PowerMessage powerOf(const Telemetry &telemetry);
+CycleState cycleOf(const Telemetry &telemetry);
+Standing standingOf(const Telemetry &telemetry);
+/// Whether every controller has confirmed that it stands.
+bool allStand(const Telemetry &telemetry);
+
+template <>
+const Fields<WheelMessage> &fieldsOf<WheelMessage>();
+template <>
+const Fields<WheelsMessage> &fieldsOf<WheelsMessage>();
+template <>
+const Fields<Standing::Controller> &fieldsOf<Standing::Controller>();
+template <>
+const Fields<Standing> &fieldsOf<Standing>();
+template <>
+const Fields<CycleState> &fieldsOf<CycleState>();
+template <>
+const Fields<Telemetry::Controller> &fieldsOf<Telemetry::Controller>();
+template <>
+const Fields<MotorState> &fieldsOf<MotorState>();
+
+} // namespace hermes

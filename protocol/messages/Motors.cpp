@@ -1,0 +1,52 @@
+#include "protocol/messages/Motors.h"
+
+#include "protocol/wire/Fields.h"
+
+namespace hermes {
+
+template <>
+const Fields<LeaseState> &fieldsOf<LeaseState>() {
+    using L = LeaseState;
+    static const auto fields = Fields<L>()
+                                   .add("held", &L::held, "A client holds the control")
+                                   .add("holder", &L::holder, "Its name")
+                                   .orNull()
+                                   .add("remaining_s", &L::remaining_s, "Without a further command", "s")
+                                   .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<MotionHold> &fieldsOf<MotionHold>() {
+    static const auto fields =
+        Fields<MotionHold>()
+            .add("latched", &MotionHold::latched, "Reason of each cause that holds until motor.reset_estop")
+            .add("control", &MotionHold::control, "As in control.state");
+    return fields;
+}
+
+template <>
+const Fields<ControllerPower> &fieldsOf<ControllerPower>() {
+    using C = ControllerPower;
+    static const auto fields = Fields<C>()
+                                   .add("ready", &C::ready, "It answers and has told all of this")
+                                   .add("battery_v", &C::battery_v, "Main battery", "V")
+                                   .add("logic_v", &C::logic_v, "Logic battery", "V")
+                                   .mayBeMissing()
+                                   .add("current_a", &C::current_a, "Of both motors", "A")
+                                   .add("temperature_c", &C::temperature_c, "Of the controller", "degC")
+                                   .add("status", &C::status, "Bits of errors and warnings")
+                                   .mayBeMissing()
+                                   .add("status_texts", &C::statusTexts, "What they mean")
+                                   .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<PowerMessage> &fieldsOf<PowerMessage>() {
+    static const auto fields =
+        Fields<PowerMessage>().add("controllers", &PowerMessage::controllers, "All").atMostElements(100);
+    return fields;
+}
+
+} // namespace hermes

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "protocol/wire/FieldsOf.h"
+
+#include <QMap>
+#include <QString>
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace hermes {
+
+/// Who may move the robot.
+struct LeaseState {
+    bool held = false;
+    std::optional<QString> holder;
+    double remaining_s = 0;
+};
+
+/// What keeps the robot from following a client's commands: a part of motor.state.
+struct MotionHold {
+    QMap<QString, QString> latched; ///< cause: reason
+    LeaseState control;
+};
+
+/// What a motor controller measures of its power.
+struct ControllerPower {
+    bool ready = false;
+    double battery_v = 0, logic_v = 0;
+    std::array<double, 2> current_a{};
+    double temperature_c = 0;
+    quint32 status = 0;
+    QStringList statusTexts;
+};
+
+/// The topic `power`.
+struct PowerMessage {
+    std::vector<ControllerPower> controllers;
+};
+
+template <>
+const Fields<LeaseState> &fieldsOf<LeaseState>();
+template <>
+const Fields<MotionHold> &fieldsOf<MotionHold>();
+template <>
+const Fields<ControllerPower> &fieldsOf<ControllerPower>();
+template <>
+const Fields<PowerMessage> &fieldsOf<PowerMessage>();
+
+} // namespace hermes
