@@ -6,7 +6,6 @@
 
 #include <QCoreApplication>
 #include <QFileInfo>
-#include <QJsonArray>
 #include <csignal>
 #include <sys/prctl.h>
 
@@ -176,24 +175,21 @@ QStringList SupervisedProcess::output(int lines) const {
     return QStringList(lines_.begin() + std::ptrdiff_t(from), lines_.end());
 }
 
-QJsonObject SupervisedProcess::toJson() const {
-    QJsonObject json{{"name", entry_.name},
-                     {"program", entry_.program},
-                     {"arguments", QJsonArray::fromStringList(entry_.arguments)},
-                     {"port", entry_.port},
-                     {"autostart", entry_.autostart},
-                     {"state", toString(state_)},
-                     {"pid", isAlive() ? double(process_.processId()) : 0},
-                     {"restarts", restarts_},
-                     {"last_exit", lastExit_}};
+ProcessStatus SupervisedProcess::status() const {
+    ProcessStatus status;
+    status.entry = entry_;
+    status.state = toString(state_);
+    status.restarts = restarts_;
+    status.lastExit = lastExit_;
     if (retry_.isActive())
-        json["next_start_s"] = double(retry_.remainingTime()) / 1000;
+        status.nextStart_s = double(retry_.remainingTime()) / 1000;
     if (isAlive()) {
-        json["uptime_s"] = monotonicNow() - started_;
-        json["memory_bytes"] = double(memory_bytes_);
-        json["cpu"] = cpu_;
+        status.pid = process_.processId();
+        status.uptime_s = monotonicNow() - started_;
+        status.memory_bytes = memory_bytes_;
+        status.cpu = cpu_;
     }
-    return json;
+    return status;
 }
 
 void SupervisedProcess::measure() {

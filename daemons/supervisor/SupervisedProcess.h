@@ -1,28 +1,14 @@
 #pragma once
 
-#include <QJsonObject>
+#include "protocol/messages/Processes.h"
+
 #include <QObject>
 #include <QProcess>
-#include <QStringList>
 #include <QTimer>
 #include <deque>
 #include <sys/types.h>
 
 namespace hermes {
-
-/// What a process is started with.
-struct ProcessEntry {
-    QString name;
-    QString program; ///< a path, or a name that is looked for beside the supervisor and then in PATH
-    QStringList arguments;
-    int port = 0; ///< where its commands are accepted, for those who look for it; 0: none
-    bool autostart = false;
-
-    bool operator==(const ProcessEntry &other) const {
-        return name == other.name && program == other.program && arguments == other.arguments &&
-               port == other.port && autostart == other.autostart;
-    }
-};
 
 /// One process that is kept running. When it ends by itself with an error it is started again, after a
 /// back-off that doubles; a wrong command line (exit status 2) is not tried again, nor is an end in order
@@ -52,9 +38,7 @@ public:
 
     /// Looks how much of a core (since the last time) and how much memory it uses.
     void measure();
-    /// {name, program, arguments, port, autostart, state, pid, cpu, memory_bytes, restarts, uptime_s,
-    /// last_exit, next_start_s}; cpu is a share of one core.
-    QJsonObject toJson() const;
+    ProcessStatus status() const;
     const QString &lastExit() const { return lastExit_; }
     /// The last lines that it wrote to stdout and stderr, oldest first.
     QStringList output(int lines) const;

@@ -8,31 +8,19 @@
 namespace hermes {
 namespace {
 
-const QJsonObject object{{"type", "object"}};
-
+// A name will do.
 QJsonObject entrySchema() {
-    const QJsonObject text{{"type", "string"}, {"minLength", 1}};
-    const QJsonObject strings{{"type", "array"}, {"items", QJsonObject{{"type", "string"}}}};
-    return {{"type", "object"},
-            {"properties",
-             QJsonObject{{"name", text},
-                         {"program", text},
-                         {"arguments", strings},
-                         {"port", QJsonObject{{"type", "integer"}, {"minimum", 0}, {"maximum", 65535}}},
-                         {"autostart", QJsonObject{{"type", "boolean"}}}}},
-            {"required", QJsonArray{"name"}},
-            {"additionalProperties", false}};
+    QJsonObject schema = schemaOf<ProcessEntry>();
+    schema["required"] = QJsonArray{"name"};
+    return schema;
 }
 
-/// What is not said follows from the name: hermes-NAME at its usual port.
+/// Of what the schema has let pass. What is not said follows from the name: hermes-NAME at its usual port.
 ProcessEntry toEntry(const QJsonObject &json) {
-    ProcessEntry entry;
-    entry.name = json["name"].toString();
-    entry.program = json["program"].toString("hermes-" + entry.name);
-    entry.port = json["port"].toInt(defaultPort(entry.name));
-    entry.autostart = json["autostart"].toBool();
-    for (const QJsonValue &argument : json["arguments"].toArray())
-        entry.arguments.append(argument.toString());
+    const QString name = json["name"].toString();
+    ProcessEntry entry{name, "hermes-" + name, {}, defaultPort(name)};
+    ReadReport report;
+    fieldsOf<ProcessEntry>().read(WireValue(json), &entry, report);
     return entry;
 }
 
@@ -65,10 +53,9 @@ Supervisor::Supervisor()
     : Daemon({"supervisor", "Supervisor", "Starts the daemons of this host and keeps them running"}) {
     declareSettings();
     declareCommands();
-    addTopic(Topic("processes", "All processes, each second and at each change: {robot, processes: [...]} as "
-                                "process.list gives them")
-                 .schema(object)
-                 .snapshot([this] { return QJsonValue(list()); }));
+    addTopic(Topic("processes", "What process.list gives, each second and at each change")
+                 .carries<ProcessesMessage>()
+                 .snapshot([this] { return Outgoing(list()); }));
     connect(&timer_, &QTimer::timeout, this, [this] {
         for (const auto &process : processes_)
             process->measure();
@@ -87,8 +74,7 @@ void Supervisor::declareSettings() {
     addSetting(
         Field::array(
             "processes",
-            "What runs here, in the order of their start: name, program (hermes-NAME), arguments, port "
-            "(the usual one of NAME), autostart (false)",
+            "What runs here, in the order of their start; a name will do: hermes-NAME at its usual port",
             entrySchema())
             .group("Processes")
             .byDefault(standard));
@@ -96,11 +82,9 @@ void Supervisor::declareSettings() {
 }
 
 void Supervisor::declareCommands() {
-    addCommand(Command("process.list",
-                       "All processes: state, process id, share of a core, memory (bytes), restarts, "
-                       "how it ended last")
-                   .returns(object)
-                   .handler([this](const Call &) { return QJsonValue(list()); }));
+    addCommand(Command("process.list", "All processes, how they are and what they use")
+                   .gives<ProcessesMessage>()
+                   .handler([this](const Call &) { return asJson(list()); }));
     addCommand(processCommand("process.start", "Starts a process", &SupervisedProcess::start));
     addCommand(processCommand("process.stop", "Ends a process: SIGTERM, after 5 s SIGKILL",
                               &SupervisedProcess::stop));
@@ -111,12 +95,12 @@ void Supervisor::declareCommands() {
             .param(Field::text("name", "Of the process"))
             .param(
                 Field::integer("lines", "How many").range(1, int(SupervisedProcess::keptLines)).byDefault(50))
-            .returns({{"type", "array"}})
+            .gives<QStringList>()
             .handler([this](const Call &call) -> Result<QJsonValue> {
                 const SupervisedProcess *const process = find(call.text("name"));
                 if (!process)
                     return noProcess(call.text("name"));
-                return QJsonValue(QJsonArray::fromStringList(process->output(call.integer("lines"))));
+                return asJson(process->output(call.integer("lines")));
             }));
     addCommand(
         Command("process.add", "Adds a process to the settings; settings.save keeps it")
@@ -228,12 +212,12 @@ Result<QJsonValue> Supervisor::setEntries(const QJsonArray &entries) {
     return QJsonValue();
 }
 
-QJsonObject Supervisor::list() {
+ProcessesMessage Supervisor::list() {
     const QString robot = settings().text("robot");
-    QJsonArray all;
+    ProcessesMessage all{robot.isEmpty() ? QHostInfo::localHostName() : robot, {}};
     for (const auto &process : processes_)
-        all.append(process->toJson());
-    return {{"robot", robot.isEmpty() ? QHostInfo::localHostName() : robot}, {"processes", all}};
+        all.processes.push_back(process->status());
+    return all;
 }
 
 void Supervisor::update() {

@@ -32,8 +32,7 @@ private:
     Result<QJsonValue> remove(const QString &name);
     Result<QJsonValue> setEntries(const QJsonArray &entries);
     void dismiss(std::unique_ptr<SupervisedProcess> process);
-    /// {robot, processes: [...]}
-    QJsonObject list();
+    ProcessesMessage list();
     void update();
 
     std::vector<std::unique_ptr<SupervisedProcess>> processes_;

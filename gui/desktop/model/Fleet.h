@@ -2,6 +2,7 @@
 
 #include "common/Result.h"
 #include "gui/desktop/model/DaemonLink.h"
+#include "protocol/messages/Processes.h"
 
 #include <QPointer>
 #include <memory>
@@ -29,10 +30,8 @@ public:
     std::vector<DaemonLink *> allWithMethod(const QString &method) const;
     DaemonLink *withTopic(const QString &topic) const;
     DaemonLink *withName(const QString &name) const;
-    /// The entry of the supervisor for a daemon: {name, state, pid, cpu, memory_bytes, ...}; empty: none.
-    QJsonObject process(const DaemonLink &daemon) const;
-    /// All processes that the supervisor has.
-    const QJsonArray &processes() const { return processes_; }
+    /// What the supervisor tells of a daemon; null: nothing.
+    const ProcessStatus *process(const DaemonLink &daemon) const;
     DaemonLink *supervisor() const;
     /// What of the supervisor's list cannot be shown; empty: all is.
     const QString &problem() const { return problem_; }
@@ -57,11 +56,12 @@ private:
 
     DaemonLink *found(quint16 port, bool isExpected);
     void followSupervisor(DaemonLink *link);
+    void takeProcesses(WireView data);
 
     const QString host_;
     QString name_, problem_;
     std::map<quint16, Entry> entries_;
-    QJsonArray processes_;
+    std::vector<ProcessStatus> processes_;
     QPointer<DaemonLink> followed_;
 };
 

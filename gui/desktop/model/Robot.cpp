@@ -1,14 +1,13 @@
 #include "common/Project.h"
 #include "gui/desktop/model/Fleet.h"
 #include "gui/desktop/widgets/ForeignText.h"
-
-#include <QJsonArray>
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 namespace {
 
 constexpr int longestName = 30;
-constexpr int mostDaemons = 100; // of one robot, as far as its supervisor names them
+constexpr std::size_t mostDaemons = 100; // of one robot, as far as its supervisor names them
 
 } // namespace
 
@@ -59,11 +58,11 @@ DaemonLink *Robot::supervisor() const {
     return withMethod("process.list");
 }
 
-QJsonObject Robot::process(const DaemonLink &daemon) const {
-    for (const QJsonValue &process : processes_)
-        if (process["port"].toInt() == daemon.address().section(':', -1).toInt())
-            return process.toObject();
-    return {};
+const ProcessStatus *Robot::process(const DaemonLink &daemon) const {
+    for (const ProcessStatus &process : processes_)
+        if (process.entry.port == daemon.address().section(':', -1).toInt())
+            return &process;
+    return nullptr;
 }
 
 void Robot::search() {
@@ -119,20 +118,28 @@ void Robot::followSupervisor(DaemonLink *link) {
         return;
     followed_ = link;
     search();
-    link->subscribe("processes", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) {
-        name_ = shortLine(update.json()["robot"].toString(), longestName);
-        const QJsonArray listed = update.json()["processes"].toArray();
-        processes_ = {};
-        for (int i = 0; i < listed.size() && i < mostDaemons; ++i)
-            processes_.append(listed[i]);
-        for (const QJsonValue &process : qAsConst(processes_))
-            if (const int port = process["port"].toInt();
-                port > 0 && port < 65536 && int(entries_.size()) < mostDaemons)
-                found(quint16(port), true);
-        const int left = listed.size() - processes_.size();
-        problem_ = left > 0 ? tr("%1 more processes of the supervisor are not shown").arg(left) : QString();
-        Q_EMIT changed();
-    });
+    link->subscribe("processes", {{"max_rate_hz", 10}},
+                    [this](const TopicUpdate &update) { takeProcesses(update.data); });
+}
+
+void Robot::takeProcesses(WireView data) {
+    ReadReport report;
+    auto told = readMessage<ProcessesMessage>(data, report);
+    if (told) {
+        name_ = shortLine(told->robot, longestName);
+        processes_ = std::move(told->processes);
+        const std::size_t all = processes_.size();
+        processes_.resize(std::min(all, mostDaemons));
+        for (const ProcessStatus &process : processes_)
+            if (process.entry.port > 0 && entries_.size() < mostDaemons)
+                found(process.entry.port, true);
+        problem_ = all > mostDaemons
+                       ? tr("%1 more processes of the supervisor are not shown").arg(all - mostDaemons)
+                       : QString();
+    } else {
+        problem_ = tr("The supervisor's processes: %1").arg(report.text());
+    }
+    Q_EMIT changed();
 }
 
 } // namespace hermes

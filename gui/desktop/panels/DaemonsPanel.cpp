@@ -34,13 +34,13 @@ void setText(QTreeWidgetItem &item, const QString &name, const QString &state, C
 }
 
 /// What the supervisor says of a process: share of a core, memory, restarts.
-QString usage(const QJsonObject &process) {
-    if (process["pid"].toInt() == 0)
+QString usage(const ProcessStatus *process) {
+    if (!process || process->pid == 0)
         return {};
     return DaemonsPanel::tr("%1 % of a core, %2 MB, %3 restarts")
-        .arg(shortNumber(100 * process["cpu"].toDouble(), 1),
-             shortNumber(process["memory_bytes"].toDouble() / 1e6, 1))
-        .arg(process["restarts"].toInt());
+        .arg(shortNumber(100 * process->cpu.value_or(0), 1),
+             shortNumber(double(process->memory_bytes.value_or(0)) / 1e6, 1))
+        .arg(process->restarts);
 }
 
 } // namespace
@@ -143,8 +143,8 @@ void DaemonsPanel::updateTree() {
 }
 
 void DaemonsPanel::showDaemon(QTreeWidgetItem &item, const Robot &robot, const DaemonLink &daemon) {
-    const QJsonObject process = robot.process(daemon);
-    const QString processState = shortLine(process["state"].toString(), longestWord);
+    const ProcessStatus *const process = robot.process(daemon);
+    const QString processState = process ? shortLine(process->state, longestWord) : QString();
     const bool isStopped = !daemon.isConnected() && !processState.isEmpty() && processState != "running";
     QStringList toolTip{daemon.title() + ", " + daemon.address(), daemon.reason(), usage(process)};
     toolTip.removeAll(QString());
@@ -186,9 +186,9 @@ void DaemonsPanel::showChosen() {
 void DaemonsPanel::updateButtons() {
     const DaemonLink *const daemon = fleet_.daemon();
     const Robot *const robot = fleet_.robot();
-    const QJsonObject process = daemon && robot ? robot->process(*daemon) : QJsonObject();
-    const bool isRunning = process["pid"].toInt() > 0;
-    const bool isManaged = !process.isEmpty() && robot->supervisor();
+    const ProcessStatus *const process = daemon && robot ? robot->process(*daemon) : nullptr;
+    const bool isRunning = process && process->pid > 0;
+    const bool isManaged = process && robot->supervisor();
     start_->setEnabled(isManaged && !isRunning);
     stop_->setEnabled(isManaged && isRunning);
     restart_->setEnabled(isManaged && isRunning);
@@ -209,8 +209,10 @@ void DaemonsPanel::ask(const QString &method) {
     DaemonLink *const supervisor = fleet_.robot() ? fleet_.robot()->supervisor() : nullptr;
     if (!supervisor || !fleet_.daemon())
         return;
-    const QString name = fleet_.robot()->process(*fleet_.daemon())["name"].toString();
-    supervisor->call(method, {{"name", name}}, this, [this](const Result<QJsonValue> &done) {
+    const ProcessStatus *const process = fleet_.robot()->process(*fleet_.daemon());
+    if (!process)
+        return;
+    supervisor->call(method, {{"name", process->entry.name}}, this, [this](const Result<QJsonValue> &done) {
         if (done)
             message_->hide();
         else

@@ -33,8 +33,11 @@ private:
                 return found;
         return nullptr;
     }
-    QJsonObject process(const QString &name) const { return window_->fleet.robot()->process(*daemon(name)); }
-    int pid(const QString &name) const { return process(name)["pid"].toInt(); }
+    ProcessStatus process(const QString &name) const {
+        const ProcessStatus *const told = window_->fleet.robot()->process(*daemon(name));
+        return told ? *told : ProcessStatus();
+    }
+    int pid(const QString &name) const { return int(process(name).pid); }
     QString stateOf(const QString &name) const { return window_->row(daemon(name))->text(1); }
     DaemonsPanel *panel() const { return window_->panel<DaemonsPanel>("daemons"); }
     QLabel *message() const { return panel()->findChild<QLabel *>("message"); }
@@ -135,7 +138,7 @@ void TestDaemonsPanel::killedDaemonComesBack() {
     QTRY_VERIFY_WITH_TIMEOUT(before->isConnected(), 10000);
     QCOMPARE(daemon("scanmatcher"), before); // the same row, still chosen
     QVERIFY(window_->fleet.daemon() == before);
-    QTRY_COMPARE(process("scanmatcher")["restarts"].toInt(), 1);
+    QTRY_COMPARE(process("scanmatcher").restarts, 1);
 }
 
 void TestDaemonsPanel::whatNobodyManagesHasNoButtons() {

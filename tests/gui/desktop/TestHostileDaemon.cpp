@@ -409,6 +409,7 @@ void TestHostileDaemon::whatCannotBeReadIsNamed() {
     mischief.isMotors = true;
     mischief.topics["power"] =
         R"({"controllers":[{"ready":true,"battery_v":"full","current_a":[0,0],"temperature_c":20}]})";
+    mischief.topics["processes"] = R"({"robot":"r","processes":[{"name":"p","port":70000}]})";
     const FakeDaemon daemon(mischief);
     Fleet fleet;
     DriveControl drive(fleet);
@@ -418,6 +419,7 @@ void TestHostileDaemon::whatCannotBeReadIsNamed() {
     QTRY_VERIFY2(power->text().contains("controllers.0.battery_v"), qPrintable(power->text()));
     QTRY_VERIFY2(drive.problem().contains("member control.holder: found 7"), qPrintable(drive.problem()));
     QVERIFY(drive.holder().isEmpty());
+    QTRY_VERIFY2(fleet.robot()->problem().contains("processes.0.port"), qPrintable(fleet.robot()->problem()));
 }
 
 QTEST_MAIN(TestHostileDaemon)
