@@ -7,7 +7,7 @@ Result<void> GpsLine::open(const QString &link) {
     if (!opened)
         return opened.error();
     pty_ = *opened;
-    link_ = link;
+    state_.line.link = link;
     return {};
 }
 
@@ -15,11 +15,8 @@ void GpsLine::send(const QByteArray &sentences) {
     if (!pty_ || !pty_->isOpen())
         return;
     if (pty_->unread() > mostUnread)
-        lost_ += pty_->discardUnread();
-    if (pty_->write(sentences))
-        sent_ += sentences.size();
-    else
-        lost_ += sentences.size();
+        state_.unreadLost += pty_->discardUnread();
+    (pty_->write(sentences) ? state_.bytes : state_.unreadLost) += sentences.size();
 }
 
 void GpsLine::setPulled(bool pulled) {
@@ -29,11 +26,9 @@ void GpsLine::setPulled(bool pulled) {
         pty_->open();
 }
 
-QJsonObject GpsLine::toJson() const {
-    return {{"link", link_},
-            {"device", pty_ ? pty_->device() : QString()},
-            {"bytes", double(sent_)},
-            {"unread_lost", double(lost_)}};
+const GpsLineState &GpsLine::state() {
+    state_.line.device = pty_ ? pty_->device() : QString();
+    return state_;
 }
 
 } // namespace hermes

@@ -2,9 +2,13 @@
 
 #include "daemons/simulator/DeviceLine.h"
 
-#include <QJsonObject>
-
 namespace hermes {
+
+/// The line of the GPS receiver; bytes sent, and those that no program has read in time.
+struct GpsLineState {
+    LineState line;
+    qint64 bytes = 0, unreadLost = 0;
+};
 
 /// The serial line of the simulated GPS receiver: a pseudo-terminal under a link that stays the same.
 class GpsLine {
@@ -17,16 +21,14 @@ public:
     void send(const QByteArray &sentences);
     /// As when the cable is pulled: device and link vanish. Put back, there is a new device under the link.
     void setPulled(bool pulled);
-    /// Link, device (none while it is pulled), bytes sent and those that no program has read in time.
-    QJsonObject toJson() const;
+    const GpsLineState &state();
 
 private:
     /// At 10 Hz it is 1.4 s, at 1 Hz it is 14 s.
     static constexpr qint64 mostUnread = 2048;
 
     std::shared_ptr<PtyInterface> pty_;
-    QString link_;
-    qint64 sent_ = 0, lost_ = 0; // bytes
+    GpsLineState state_;
 };
 
 } // namespace hermes

@@ -2,7 +2,6 @@
 
 #include "common/Time.h"
 
-#include <QJsonObject>
 #include <QTimer>
 #include <cmath>
 
@@ -35,10 +34,10 @@ void MotorLines::setPulled(int line, bool pulled) {
         lines_[std::size_t(line)].pty->open();
 }
 
-QJsonArray MotorLines::toJson() const {
-    QJsonArray lines;
+std::vector<LineState> MotorLines::state() const {
+    std::vector<LineState> lines;
     for (const Line &line : lines_)
-        lines.append(QJsonObject{{"link", line.link}, {"device", line.pty->device()}});
+        lines.push_back({line.link, line.pty->device()});
     return lines;
 }
 

@@ -3,7 +3,6 @@
 #include "daemons/simulator/DeviceLine.h"
 #include "daemons/simulator/RoboClawEmulator.h"
 
-#include <QJsonArray>
 #include <QStringList>
 #include <functional>
 #include <vector>
@@ -28,7 +27,7 @@ public:
     /// As when the cable is pulled: device and link vanish. Put back, there is a new device under the link.
     void setPulled(int line, bool pulled);
     /// Link and device of each; no device while it is pulled.
-    QJsonArray toJson() const;
+    std::vector<LineState> state() const;
 
 private:
     struct Line {

@@ -72,22 +72,21 @@ void Simulator::declareTopics() {
 }
 
 void Simulator::declareCommands() {
-    addCommand(
-        Command("sim.load", "Loads a world file and puts the robot, standing, at its first pose")
-            .param(Field::text("world", "World file (JSON)"))
-            .returns({{"type", "object"}})
-            .example({{"world", "deploy/worlds/pillars.json"}}, QJsonObject{{"edges", 36}, {"poses", 39}})
-            .handler([this](const Call &call) -> Result<QJsonValue> {
-                const Result<void> loaded = load(call.text("world"));
-                if (!loaded)
-                    return loaded.error();
-                return QJsonObject{{"name", QString::fromStdString(world_.name)},
-                                   {"edges", int(world_.edges.size())},
-                                   {"poses", int(world_.poses.size())}};
-            }));
+    addCommand(Command("sim.load", "Loads a world file and puts the robot, standing, at its first pose")
+                   .param(Field::text("world", "World file (JSON)"))
+                   .gives<LoadedWorld>()
+                   .example({{"world", "deploy/worlds/pillars.json"}},
+                            QJsonObject{{"name", "pillars"}, {"edges", 36}, {"poses", 39}})
+                   .handler([this](const Call &call) -> Result<QJsonValue> {
+                       const Result<void> loaded = load(call.text("world"));
+                       if (!loaded)
+                           return loaded.error();
+                       return asJson(LoadedWorld{QString::fromStdString(world_.name), world_.edges.size(),
+                                                 world_.poses.size()});
+                   }));
     addCommand(Command("sim.state", "World, true pose, progress along the path, packets sent and left out")
-                   .returns({{"type", "object"}})
-                   .handler([this](const Call &) -> Result<QJsonValue> { return state(); }));
+                   .gives<SimulatorState>()
+                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
     addCommand(Command("sim.drive", "Follows the path of the world from where the robot is on it")
                    .param(Field::boolean("restart", "Begin again at the first pose").byDefault(false))
                    .returnsNull()
@@ -270,57 +269,39 @@ Result<QJsonValue> Simulator::setFault(const Call &call) {
     return QJsonValue();
 }
 
-QJsonObject Simulator::state() {
-    Simulation::Truth truth;
-    LidarModel::Options lidar;
-    bool placed = false;
-    QJsonObject motors;
+SimulatorState Simulator::state() {
+    SimulatorState state;
+    state.world = worldPath_;
     pump_.with([&](Simulation &simulation) {
-        truth = simulation.truth();
-        lidar = simulation.lidar().options();
-        placed = simulation.isPlaced();
-        motors = motorState(simulation.drivetrain());
+        const Simulation::Truth truth = simulation.truth();
+        state.stamp = double(truth.stamp_ns) * 1e-9;
+        state.pose = {truth.pose.x, truth.pose.y, truth.pose.theta};
+        state.twist = truth.twist;
+        state.progress = truth.progress;
+        state.driving = truth.driving;
+        state.finished = truth.finished;
+        state.placed = simulation.isPlaced();
+        state.touching = truth.touching;
+        state.motors = motorState(simulation.drivetrain());
+        state.lidar = simulation.lidar().options();
     });
-    motors["lines"] = lines_.toJson();
-    const PacketPump::Counts counts = pump_.counts();
+    state.motors.lines = lines_.state();
+    state.gps = gpsLine_.state();
     const LidarFault fault = pump_.fault();
-    return {
-        {"world", worldPath_},
-        {"stamp", double(truth.stamp_ns) * 1e-9},
-        {"pose", QJsonObject{{"x", truth.pose.x}, {"y", truth.pose.y}, {"theta", truth.pose.theta}}},
-        {"twist", QJsonObject{{"vx", truth.twist.vx}, {"vy", truth.twist.vy}, {"omega", truth.twist.omega}}},
-        {"progress", truth.progress},
-        {"driving", truth.driving},
-        {"finished", truth.finished},
-        {"placed", placed},
-        {"touching", truth.touching},
-        {"motors", motors},
-        {"gps", gpsLine_.toJson()},
-        {"sigma_m", lidar.sigma},
-        {"dropouts", lidar.dropouts},
-        {"outliers", lidar.outliers},
-        {"fault", QJsonObject{{"kind", toText(fault.kind)}, {"share", fault.share}}},
-        {"packets", double(counts.sent)},
-        {"position_packets", double(counts.positions)},
-        {"swallowed", double(counts.swallowed)},
-        {"skipped", double(counts.skipped)},
-        {"send_errors", double(counts.sendErrors)},
-        {"worst_lag_s", counts.worstLag_s}};
+    state.fault = {toText(fault.kind), fault.share};
+    state.packets = pump_.counts();
+    return state;
 }
 
 void Simulator::publishTruth(const Simulation::Truth &truth) {
-    if (hasSubscribers("truth"))
-        publish(
-            "truth", [&] { return messageOf(truth); }, double(truth.stamp_ns) * 1e-9);
+    publish(
+        "truth", [&] { return messageOf(truth); }, double(truth.stamp_ns) * 1e-9);
 }
 
 void Simulator::updateHealth() {
     const PacketPump::Counts counts = pump_.counts();
     const LidarFault fault = pump_.fault();
-    const QJsonObject values{{"packets", double(counts.sent)},
-                             {"swallowed", double(counts.swallowed)},
-                             {"skipped", double(counts.skipped)},
-                             {"send_errors", double(counts.sendErrors)}};
+    const QJsonObject values = asJson(counts).toObject();
     if (worldPath_.isEmpty())
         health().set(healthItem, HealthLevel::Ok,
                      "no world is loaded; nothing is sent, and the motors are without power", values);

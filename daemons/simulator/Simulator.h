@@ -1,9 +1,8 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
-#include "daemons/simulator/GpsLine.h"
 #include "daemons/simulator/MotorLines.h"
-#include "daemons/simulator/PacketPump.h"
+#include "daemons/simulator/SimulatorAnswers.h"
 
 namespace hermes {
 
@@ -39,8 +38,8 @@ private:
     Result<QJsonValue> setFault(const Call &call);
     Result<QJsonValue> setMotorFault(const Call &call);
     Result<QJsonValue> setGpsFault(const Call &call);
-    QJsonObject motorState(Drivetrain &drivetrain) const;
-    QJsonObject state();
+    DrivetrainState motorState(Drivetrain &drivetrain) const;
+    SimulatorState state();
     void publishTruth(const Simulation::Truth &truth);
     void updateHealth();
 

@@ -155,25 +155,17 @@ Result<QJsonValue> Simulator::setMotorFault(const Call &call) {
     return QJsonValue();
 }
 
-QJsonObject Simulator::motorState(Drivetrain &drivetrain) const {
-    QJsonArray wheels, controllers;
-    for (const double speed : drivetrain.wheelSpeeds())
-        wheels.append(speed);
+DrivetrainState Simulator::motorState(Drivetrain &drivetrain) const {
+    DrivetrainState state;
+    state.wheels_rps = drivetrain.wheelSpeeds();
+    state.controllers.emplace();
     for (int i = 0; i < Drivetrain::controllers; ++i) {
-        const RoboClawEmulator &controller = drivetrain.controller(i);
-        const RoboClawEmulator::Counts &counts = controller.counts();
-        controllers.append(QJsonObject{{"status", double(controller.status())},
-                                       {"temperature_c", controller.temperature()},
-                                       {"serial_timeout_s", controller.serialTimeout()},
-                                       {"requests", double(counts.requests)},
-                                       {"crc_errors", double(counts.crcErrors)},
-                                       {"unknown", double(counts.unknown)},
-                                       {"timeouts", double(counts.timeouts)}});
+        const RoboClawEmulator &c = drivetrain.controller(i);
+        state.controllers->push_back({c.status(), c.temperature(), c.serialTimeout(), c.counts()});
     }
-    return {{"wheels_rps", wheels},
-            {"controllers", controllers},
-            {"battery_v", drivetrain.battery().voltage()},
-            {"battery_charge", drivetrain.battery().charge()}};
+    state.battery_v = drivetrain.battery().voltage();
+    state.batteryCharge = drivetrain.battery().charge();
+    return state;
 }
 
 } // namespace hermes

@@ -160,7 +160,7 @@ void TestMotorLines::pulledLineIsFoundAgain() {
     QCOMPARE(robot.ask(0x80, Command::SetEncoderM1, {1234}).result, Bus::Result::Done);
     robot.lines.setPulled(0, true);
     QCOMPARE(robot.ask(0x80, Command::ReadEncoders).result, Bus::Result::LineClosed);
-    QVERIFY(robot.lines.toJson()[0].toObject()["device"].toString().isEmpty());
+    QVERIFY(robot.lines.state()[0].device.isEmpty());
     robot.lines.setPulled(0, false);
     QTRY_VERIFY(robot.serial->isOpen());
     const auto counts = robot.ask(0x80, Command::ReadEncoders);
@@ -179,7 +179,7 @@ void TestMotorLines::badLinkIsNamed() {
 void TestMotorLines::sentencesThatNobodyReadsAreLost() {
     GpsLine line;
     QVERIFY(line.open("").ok());
-    QFile near(line.toJson()["device"].toString());
+    QFile near(line.state().line.device);
     QVERIFY(near.open(QIODevice::ReadOnly | QIODevice::Unbuffered));
     const auto unread = [&near] {
         int size = 0;
@@ -194,14 +194,14 @@ void TestMotorLines::sentencesThatNobodyReadsAreLost() {
     QByteArray latest(8192, '\0'); // QFile would wait for all of it
     latest.resize(int(::read(near.handle(), latest.data(), std::size_t(latest.size()))));
     QVERIFY(latest.size() == left && latest.endsWith("29\r\n"));
-    QCOMPARE(line.toJson()["bytes"].toInt(), 3000);
-    QCOMPARE(line.toJson()["unread_lost"].toInt(), 3000 - left);
+    QCOMPARE(line.state().bytes, qint64(3000));
+    QCOMPARE(line.state().unreadLost, qint64(3000 - left));
 }
 
 void TestMotorLines::claimOfAKilledProgramIsDropped() {
     GpsLine line;
     QVERIFY(line.open("").ok());
-    const QByteArray device = line.toJson()["device"].toString().toLocal8Bit();
+    const QByteArray device = line.state().line.device.toLocal8Bit();
     const int claimed = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     QVERIFY(claimed >= 0 && ::ioctl(claimed, TIOCEXCL) == 0);
     ::close(claimed);

@@ -1,0 +1,124 @@
+#include "daemons/simulator/SimulatorAnswers.h"
+
+#include "protocol/wire/Fields.h"
+
+namespace hermes {
+
+template <>
+const Fields<LoadedWorld> &fieldsOf<LoadedWorld>() {
+    static const auto fields = Fields<LoadedWorld>()
+                                   .add("name", &LoadedWorld::name, "Of the world")
+                                   .add("edges", &LoadedWorld::edges, "Walls")
+                                   .add("poses", &LoadedWorld::poses, "Of its path");
+    return fields;
+}
+
+template <>
+const Fields<RoboClawEmulator::Counts> &fieldsOf<RoboClawEmulator::Counts>() {
+    using C = RoboClawEmulator::Counts;
+    static const auto fields = Fields<C>()
+                                   .add("requests", &C::requests, "Carried out")
+                                   .add("crc_errors", &C::crcErrors, "Damaged requests")
+                                   .add("unknown", &C::unknown, "Bytes of no request")
+                                   .add("timeouts", &C::timeouts, "Times that silence stopped the motors");
+    return fields;
+}
+
+template <>
+const Fields<EmulatorState> &fieldsOf<EmulatorState>() {
+    using E = EmulatorState;
+    static const auto fields =
+        Fields<E>()
+            .add("status", &E::status, "Bits of errors and warnings")
+            .add("temperature_c", &E::temperature_c, "Of the controller", "degC")
+            .add("serial_timeout_s", &E::serialTimeout_s, "It stops then; 0: never", "s")
+            .include(&E::counts);
+    return fields;
+}
+
+template <>
+const Fields<LineState> &fieldsOf<LineState>() {
+    static const auto fields = Fields<LineState>()
+                                   .add("link", &LineState::link, "That stays the same, or empty")
+                                   .add("device", &LineState::device, "Empty while it is pulled");
+    return fields;
+}
+
+template <>
+const Fields<GpsLineState> &fieldsOf<GpsLineState>() {
+    using G = GpsLineState;
+    static const auto fields =
+        Fields<G>()
+            .include(&G::line)
+            .add("bytes", &G::bytes, "Sent", "byte")
+            .add("unread_lost", &G::unreadLost, "That no program has read in time", "byte");
+    return fields;
+}
+
+template <>
+const Fields<DrivetrainState> &fieldsOf<DrivetrainState>() {
+    using D = DrivetrainState;
+    static const auto fields = Fields<D>()
+                                   .add("wheels_rps", &D::wheels_rps,
+                                        "Front left, front right, rear left, rear right, forward", "rad/s")
+                                   .add("controllers", &D::controllers, "Each")
+                                   .add("battery_v", &D::battery_v, "Voltage", "V")
+                                   .add("battery_charge", &D::batteryCharge, "0 to 1")
+                                   .add("lines", &D::lines, "Pseudo-terminals of the controllers");
+    return fields;
+}
+
+template <>
+const Fields<LidarModel::Options> &fieldsOf<LidarModel::Options>() {
+    using L = LidarModel::Options;
+    static const auto fields = Fields<L>()
+                                   .add("sigma_m", &L::sigma, "Standard deviation of the lidar's range", "m")
+                                   .add("dropouts", &L::dropouts, "Share of its returns that do not come")
+                                   .add("outliers", &L::outliers, "Share that comes from anywhere");
+    return fields;
+}
+
+template <>
+const Fields<FaultState> &fieldsOf<FaultState>() {
+    static const auto fields = Fields<FaultState>()
+                                   .add("kind", &FaultState::kind, "What the lidar does wrong")
+                                   .choices({"none", "silence", "loss"})
+                                   .add("share", &FaultState::share, "Of the packets that a loss leaves out");
+    return fields;
+}
+
+template <>
+const Fields<PacketPump::Counts> &fieldsOf<PacketPump::Counts>() {
+    using C = PacketPump::Counts;
+    static const auto fields = Fields<C>()
+                                   .add("packets", &C::sent, "Sent")
+                                   .add("position_packets", &C::positions, "Sent besides")
+                                   .add("swallowed", &C::swallowed, "By a fault that was asked for")
+                                   .add("skipped", &C::skipped, "Not made, because the machine stalled")
+                                   .add("send_errors", &C::sendErrors, "Packets that the system did not take")
+                                   .add("worst_lag_s", &C::worstLag_s, "By which one was late", "s");
+    return fields;
+}
+
+template <>
+const Fields<SimulatorState> &fieldsOf<SimulatorState>() {
+    using S = SimulatorState;
+    static const auto fields = Fields<S>()
+                                   .add("world", &S::world, "File, or empty")
+                                   .add("stamp", &S::stamp, "On the clock of the lidar's stamps", "s")
+                                   .add("pose", &S::pose, "Where the robot truly is")
+                                   .add("twist", &S::twist, "How it truly moves")
+                                   .add("progress", &S::progress, "Share of the path behind the robot")
+                                   .add("driving", &S::driving, "It follows the path")
+                                   .add("finished", &S::finished, "It is at the end of the path")
+                                   .add("placed", &S::placed, "It was placed off the path")
+                                   .add("touching", &S::touching, "A wall holds it")
+                                   .add("motors", &S::motors, "What drives it")
+                                   .add("gps", &S::gps, "Line of the GPS receiver")
+                                   .include(&S::lidar)
+                                   .add("fault", &S::fault, "Of the lidar")
+                                   .include(&S::packets);
+    return fields;
+}
+
+} // namespace hermes

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "daemons/simulator/GpsLine.h"
+#include "daemons/simulator/PacketPump.h"
+#include "protocol/messages/Motion.h"
+
+#include <optional>
+
+namespace hermes {
+
+/// A world that was read.
+struct LoadedWorld {
+    QString name;
+    quint64 edges = 0, poses = 0;
+};
+
+/// A simulated motor controller.
+struct EmulatorState {
+    quint32 status = 0;
+    double temperature_c = 0, serialTimeout_s = 0;
+    RoboClawEmulator::Counts counts;
+};
+
+/// What drives the simulated robot; without a world there are its lines only.
+struct DrivetrainState {
+    std::optional<std::array<double, 4>> wheels_rps;
+    std::optional<std::vector<EmulatorState>> controllers;
+    std::optional<double> battery_v, batteryCharge;
+    std::vector<LineState> lines;
+};
+
+/// A fault of the lidar that was asked for.
+struct FaultState {
+    QString kind;
+    double share = 0;
+};
+
+/// What sim.state gives.
+struct SimulatorState {
+    QString world;
+    double stamp = 0;
+    Pose pose;
+    Twist twist;
+    double progress = 0;
+    bool driving = false, finished = false, placed = false, touching = false;
+    DrivetrainState motors;
+    GpsLineState gps;
+    LidarModel::Options lidar;
+    FaultState fault;
+    PacketPump::Counts packets;
+};
+
+template <>
+const Fields<LoadedWorld> &fieldsOf<LoadedWorld>();
+template <>
+const Fields<PacketPump::Counts> &fieldsOf<PacketPump::Counts>();
+template <>
+const Fields<SimulatorState> &fieldsOf<SimulatorState>();
+
+} // namespace hermes
