@@ -9,8 +9,7 @@ namespace {
 
 constexpr double shortestPeriod_s = 0.001, longestPeriod_s = 7 * 86400.0;
 
-// In the order of Cause and of ActionDefinition::Kind.
-const QStringList causes{"period", "distance", "angle", "time_of_day", "condition", "trigger", "command"};
+// In the order of ActionDefinition::Kind.
 const QStringList actionKinds{"call", "serial", "pulse", "gpio"};
 
 QJsonObject text(const char *description) {
@@ -38,7 +37,7 @@ QJsonObject closed(const QJsonObject &properties, const QStringList &required) {
 
 QJsonObject whenSchema() {
     return closed(
-        {{"kind", choice("What fires it", causes)},
+        {{"kind", choice("What fires it", causeKinds())},
          {"period_s", number("period: firing n is n periods after the trigger was armed", "s",
                              shortestPeriod_s, longestPeriod_s)},
          {"distance_m", number("distance: the way between two firings", "m", 0.001, 1e6)},
@@ -68,7 +67,10 @@ QJsonObject actionSchema() {
                  actionKinds)},
          {"daemon", text("call: name, HOST:PORT or URL")},
          {"method", text("call: the command")},
-         {"params", QJsonObject{{"type", "object"}, {"description", "call: its parameters by name"}}},
+         {"params", QJsonObject{{"type", "object"},
+                                {"description", "call: its parameters by name"},
+                                {"additionalProperties", true},
+                                {"x-open", true}}},
          {"timeout_s", number("call: without a reply so long it has failed (2)", "s", 0.01, 60)},
          {"url", text("serial, pulse: serial:///dev/ttyS1?baud=9600")},
          {"text", text("serial: what to write, as UTF-8")},
@@ -84,6 +86,12 @@ QJsonObject actionSchema() {
 }
 
 } // namespace
+
+const QStringList &causeKinds() {
+    static const QStringList kinds{"period",    "distance", "angle",  "time_of_day",
+                                   "condition", "trigger",  "command"};
+    return kinds;
+}
 
 QTime timeOfDay(const QString &text) {
     for (const char *format : {"HH:mm", "HH:mm:ss", "HH:mm:ss.zzz"}) {
@@ -109,7 +117,7 @@ QString ActionDefinition::name() const {
 }
 
 Cause TriggerDefinition::cause() const {
-    return Cause(causes.indexOf(text("kind")));
+    return Cause(causeKinds().indexOf(text("kind")));
 }
 
 TriggerDefinition TriggerDefinition::from(const QJsonObject &json) {

@@ -3,7 +3,7 @@
 #include "common/schema/SchemaValidator.h"
 
 #include <QJsonObject>
-#include <QString>
+#include <QStringList>
 #include <QTime>
 #include <vector>
 
@@ -11,6 +11,9 @@ namespace hermes {
 
 /// What fires a trigger by itself. Command: nothing does, only trigger.fire. Trigger: the firing of another.
 enum class Cause { Period, Distance, Angle, TimeOfDay, Condition, Trigger, Command };
+
+/// Their names, in that order.
+const QStringList &causeKinds();
 
 /// One thing that a firing does.
 struct ActionDefinition {

@@ -1,21 +1,20 @@
 // What the engine tells about itself: health items, and the state of each trigger.
 #include "daemons/softwaretrigger/TriggerEngine.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 
-QJsonObject TriggerEngine::state() const {
-    QJsonObject result;
-    for (const auto &[id, trigger] : triggers_) {
-        const QJsonValue last = trigger.last.isEmpty() ? QJsonValue() : QJsonValue(trigger.last);
-        result.insert(id, QJsonObject{{"armed", trigger.definition.armed},
-                                      {"fired", double(trigger.seq)},
-                                      {"missed", double(trigger.missed)},
-                                      {"failed_actions", double(trigger.failedActions)},
-                                      {"jitter", trigger.jitter.toJson()},
-                                      {"last", last},
-                                      {"problem", trigger.watch ? trigger.watch->problem() : QString()},
-                                      {"watched", trigger.watch ? trigger.watch->state() : QJsonObject()}});
-    }
+std::map<QString, TriggerState> TriggerEngine::state() const {
+    std::map<QString, TriggerState> result;
+    for (const auto &[id, trigger] : triggers_)
+        result[id] = {trigger.definition.armed,
+                      trigger.seq,
+                      trigger.missed,
+                      trigger.failedActions,
+                      trigger.jitter.summary(),
+                      trigger.last,
+                      trigger.watch ? trigger.watch->problem() : QString(),
+                      trigger.watch ? trigger.watch->state() : WatchedState()};
     return result;
 }
 
@@ -39,7 +38,7 @@ EngineHealth TriggerEngine::health(const QString &item) const {
 }
 
 EngineHealth TriggerEngine::scheduleHealth() const {
-    QJsonObject values = jitter_.toJson();
+    QJsonObject values = asJson(jitter_.summary()).toObject();
     double missed = 0;
     QStringList problems;
     for (const auto &[id, trigger] : triggers_) {
@@ -74,24 +73,21 @@ EngineHealth TriggerEngine::lineHealth() const {
 EngineHealth TriggerEngine::actionHealth() const {
     bool failing = false; // the last firing of any
     for (const auto &[id, trigger] : triggers_)
-        failing = failing || trigger.last.value("ok") == QJsonValue(false);
+        failing = failing || (trigger.last && !trigger.last->ok);
     return {failing ? HealthLevel::Warn : HealthLevel::Ok,
             failing ? lastFailure_ : QString("%1 have failed").arg(failedActions_),
             {{"failed", double(failedActions_)}, {"under_way", int(underWay_.size())}}};
 }
 
 EngineHealth TriggerEngine::logHealth() const {
-    const QJsonObject values = log_.toJson();
-    const QString error = values["error"].toString();
-    const double lost = values["lost"].toDouble();
-    if (!error.isEmpty())
-        return {HealthLevel::Failed, error, values};
-    if (lost > 0)
-        return {HealthLevel::Warn, QString("%1 firings are missing in the log").arg(lost), values};
+    const FiringLog::State log = log_.state();
+    const QJsonObject values = asJson(log).toObject();
+    if (!log.error.isEmpty())
+        return {HealthLevel::Failed, log.error, values};
+    if (log.lost > 0)
+        return {HealthLevel::Warn, QString("%1 firings are missing in the log").arg(log.lost), values};
     return {HealthLevel::Ok,
-            values["folder"].toString().isEmpty() ? QString("none: firings.folder is empty")
-                                                  : QString("writing"),
-            values};
+            log.folder.isEmpty() ? QString("none: firings.folder is empty") : QString("writing"), values};
 }
 
 } // namespace hermes

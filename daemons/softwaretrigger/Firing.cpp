@@ -10,15 +10,13 @@ namespace {
 
 constexpr int largestResult = 1000; // bytes of JSON; a larger result is not repeated
 
-QJsonObject actionJson(const Firing::ActionResult &one) {
-    QJsonObject json{{"action", one.action}, {"ok", one.result.ok()}, {"duration_s", one.duration_s}};
-    if (!one.result) {
-        const Error &error = one.result.error();
-        json.insert("error", QJsonObject{{"code", error.code}, {"message", error.message}});
-    } else if (compactJson(*one.result).size() <= largestResult) {
-        json.insert("result", *one.result);
-    }
-    return json;
+ActionOutcome outcomeOf(const Firing::ActionResult &one) {
+    ActionOutcome outcome{one.action, one.result.ok(), one.duration_s, {}, {}};
+    if (!one.result)
+        outcome.error = {one.result.error().code, one.result.error().message};
+    else if (compactJson(*one.result).size() <= largestResult)
+        outcome.result = *one.result;
+    return outcome;
 }
 
 } // namespace
@@ -37,15 +35,11 @@ int Firing::failures() const {
     return int(std::count_if(results.begin(), results.end(), [](const auto &one) { return !one.result; }));
 }
 
-QJsonObject Firing::toJson() const {
-    QJsonArray actions;
+FiringMessage Firing::message() const {
+    FiringMessage told{id, seq, stamp, mono, late_s(), occasion.missed, occasion.cause, failures() == 0, {}};
     for (const ActionResult &one : results)
-        actions.append(actionJson(one));
-    QJsonObject why = occasion.detail;
-    why.insert("kind", cause);
-    return {{"id", id},     {"seq", double(seq)},    {"stamp", stamp},
-            {"mono", mono}, {"jitter_s", late_s()},  {"missed", double(occasion.missed)},
-            {"cause", why}, {"ok", failures() == 0}, {"results", actions}};
+        told.results.push_back(outcomeOf(one));
+    return told;
 }
 
 QByteArray Firing::csvHeader() {
@@ -54,9 +48,9 @@ QByteArray Firing::csvHeader() {
 
 QByteArray Firing::csvRows() const {
     const QByteArray head = QByteArray::number(stamp, 'f', 6) + ',' + QByteArray::number(mono, 'f', 6) + ',' +
-                            csvField(id) + ',' + QByteArray::number(seq) + ',' + csvField(cause) + ',' +
-                            QByteArray::number(late_s(), 'f', 6) + ',' + QByteArray::number(occasion.missed) +
-                            ',';
+                            csvField(id) + ',' + QByteArray::number(seq) + ',' +
+                            csvField(occasion.cause.kind) + ',' + QByteArray::number(late_s(), 'f', 6) + ',' +
+                            QByteArray::number(occasion.missed) + ',';
     if (results.empty())
         return head + ",1,0,\n";
     QByteArray rows;

@@ -19,18 +19,16 @@ struct Firing {
 
     QString id;
     quint64 seq = 0;
-    QString cause; ///< kind
     Occasion occasion;
     double stamp = 0, mono = 0; ///< when its actions began
     std::vector<ActionResult> results;
-    std::function<void(const QJsonObject &)> ended; ///< who waits for it
+    std::function<void(const FiringMessage &)> ended; ///< who waits for it
 
     /// How long its actions began after the time that it fires for; 0 where there is none (a command).
     double late_s() const;
     bool isOver() const;
     int failures() const;
-    /// As the topic `fired` has it.
-    QJsonObject toJson() const;
+    FiringMessage message() const;
     /// A row of the log for each action; one for a firing without actions.
     QByteArray csvRows() const;
     static QByteArray csvHeader();

@@ -23,9 +23,9 @@ QByteArray csvField(const QString &text) {
 }
 
 FiringLog::FiringLog(QString folder, double fileBytes, QByteArray header)
-    : folder_(std::move(folder))
-    , fileBytes_(fileBytes)
+    : fileBytes_(fileBytes)
     , header_(std::move(header)) {
+    state_.folder = std::move(folder);
     disk_.setMaxThreadCount(1);
     disk_.setExpiryTimeout(-1);
     disk_.start([] {}); // its thread begins here, with the priority of this one, not of who appends
@@ -36,12 +36,12 @@ FiringLog::~FiringLog() {
 }
 
 void FiringLog::append(const QByteArray &row) {
-    if (folder_.isEmpty())
+    if (state_.folder.isEmpty())
         return;
     {
         const std::lock_guard lock(mutex_);
         if (waiting_ >= mostWaiting) {
-            ++lost_;
+            ++state_.lost;
             return;
         }
         ++waiting_;
@@ -64,11 +64,11 @@ void FiringLog::write(const QByteArray &row) {
     }
     const std::lock_guard lock(mutex_);
     --waiting_;
-    ++(error.isEmpty() ? rows_ : lost_);
-    if (!error.isEmpty() && error != error_)
+    ++(error.isEmpty() ? state_.rows : state_.lost);
+    if (!error.isEmpty() && error != state_.error)
         logError("log of firings", error);
-    error_ = error;
-    path_ = file_.fileName();
+    state_.error = error;
+    state_.path = file_.fileName();
 }
 
 // Somebody has removed it, or its folder: rows in it would be lost.
@@ -80,9 +80,10 @@ bool FiringLog::isRemoved() const {
 // A new file with its header; gives what is wrong.
 QString FiringLog::begin() {
     file_.close();
-    if (!QDir().mkpath(folder_))
-        return QString("cannot make the folder %1").arg(folder_);
-    const QString stem = QDir(folder_).absoluteFilePath(
+    const QString &folder = state_.folder; // does not change
+    if (!QDir().mkpath(folder))
+        return QString("cannot make the folder %1").arg(folder);
+    const QString stem = QDir(folder).absoluteFilePath(
         "firings-" + QDateTime::currentDateTimeUtc().toString("yyyyMMddTHHmmsszzzZ"));
     for (int number = 0; number < 1000; ++number) {
         file_.setFileName(number == 0 ? stem + ".csv" : QString("%1-%2.csv").arg(stem).arg(number));
@@ -99,13 +100,9 @@ QString FiringLog::begin() {
     return QString("cannot make %1: %2").arg(file_.fileName(), file_.errorString());
 }
 
-QJsonObject FiringLog::toJson() const {
+FiringLog::State FiringLog::state() const {
     const std::lock_guard lock(mutex_);
-    return {{"folder", folder_},
-            {"path", path_},
-            {"rows", double(rows_)},
-            {"lost", double(lost_)},
-            {"error", error_}};
+    return state_;
 }
 
 } // namespace hermes

@@ -2,7 +2,6 @@
 
 #include <QByteArray>
 #include <QFile>
-#include <QJsonObject>
 #include <QString>
 #include <QThreadPool>
 #include <mutex>
@@ -24,23 +23,25 @@ public:
     /// Waits until everything is written. For tests and the end.
     void flush() { disk_.waitForDone(); }
 
-    /// {folder, path, rows, lost, error}; error is empty when the last row was written.
-    QJsonObject toJson() const;
+    struct State {
+        QString folder, path;
+        quint64 rows = 0, lost = 0;
+        QString error; ///< empty when the last row was written
+    };
+    State state() const;
 
 private:
     void write(const QByteArray &row);
     QString begin();
     bool isRemoved() const;
 
-    const QString folder_;
     const double fileBytes_;
     const QByteArray header_;
     QFile file_; // of the thread
 
     mutable std::mutex mutex_; // of what follows
     int waiting_ = 0;
-    quint64 rows_ = 0, lost_ = 0;
-    QString path_, error_;
+    State state_;
 
     QThreadPool disk_; // one thread: rows are written one after another
 };

@@ -1,12 +1,18 @@
 #pragma once
 
-#include <QJsonObject>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 namespace hermes {
+
+/// How late firings were.
+struct Jitter {
+    int count = 0;
+    std::optional<double> mean_s, p99_s, worst_s; ///< of some
+};
 
 /// How late the last 1000 firings were.
 class JitterWindow {
@@ -19,17 +25,15 @@ public:
         next_ = (next_ + 1) % size;
     }
 
-    /// {count, mean_s, p99_s, worst_s}; of no firing only the count.
-    QJsonObject toJson() const {
+    Jitter summary() const {
         if (values_.empty())
-            return {{"count", 0}};
+            return {};
         std::vector<double> sorted = values_;
         std::sort(sorted.begin(), sorted.end());
         const auto p99 = std::size_t(std::ceil(0.99 * double(sorted.size()))) - 1;
-        return {{"count", int(sorted.size())},
-                {"mean_s", std::accumulate(sorted.begin(), sorted.end(), 0.0) / double(sorted.size())},
-                {"p99_s", sorted[p99]},
-                {"worst_s", sorted.back()}};
+        return {int(sorted.size()),
+                std::accumulate(sorted.begin(), sorted.end(), 0.0) / double(sorted.size()), sorted[p99],
+                sorted.back()};
     }
 
 private:

@@ -7,10 +7,7 @@ SoftwareTrigger::SoftwareTrigger()
               "Fires triggers by period, way, time of day, a condition on any topic, or command; each calls "
               "commands of daemons, writes to serial lines or pulses lines"}) {
     declareSettings();
-    addTopic(Topic("fired",
-                   "Each firing, when its last action has ended: id, seq, stamp and mono of its begin, "
-                   "jitter_s, missed, cause, ok, results {action, ok, duration_s, error or result}")
-                 .schema({{"type", "object"}}));
+    addTopic(Topic("fired", "Each firing, when its last action has ended").carries<FiringMessage>());
     declareCommands();
 }
 
@@ -40,7 +37,7 @@ void SoftwareTrigger::declareSettings() {
 Result<void> SoftwareTrigger::start() {
     engine_ = new TriggerEngine(settings().text("firings.folder"), settings().number("firings.file_bytes"));
     connect(engine_, &TriggerEngine::fired, this,
-            [this](const QJsonObject &firing, double stamp) { publish("fired", firing, stamp); });
+            [this](const FiringMessage &firing) { publish("fired", firing, firing.stamp); });
     engine_->moveToThread(&thread_);
     connect(&thread_, &QThread::finished, engine_, &QObject::deleteLater);
     thread_.setObjectName("triggers");

@@ -36,8 +36,8 @@ QString TopicWatch::problem() const {
     return problem_;
 }
 
-QJsonObject TopicWatch::state() const {
-    return {{"messages", double(messages_)}, {"bad_messages", double(bad_)}};
+WatchedState TopicWatch::state() const {
+    return {messages_, bad_, {}, {}};
 }
 
 void TopicWatch::receive(const TopicUpdate &update) {
@@ -52,8 +52,8 @@ void TopicWatch::receive(const TopicUpdate &update) {
     dropped_ = update.dropped;
 }
 
-void TopicWatch::fire(const TopicUpdate &update, quint64 missed, const QJsonObject &detail) {
-    listener_.fire({{}, update.stamp, missed, detail});
+void TopicWatch::fire(const TopicUpdate &update, quint64 missed, const FiringCause &cause) {
+    listener_.fire({{}, update.stamp, missed, cause});
 }
 
 TravelWatch::TravelWatch(const TriggerDefinition &definition, Client &client, const Listener &listener)
@@ -62,20 +62,24 @@ TravelWatch::TravelWatch(const TriggerDefinition &definition, Client &client, co
                   ? Travel(Travel::Kind::Distance, definition.number("distance_m"))
                   : Travel(Travel::Kind::Angle, definition.number("angle_rad"))) {}
 
-QJsonObject TravelWatch::state() const {
-    QJsonObject state = TopicWatch::state();
-    state.insert("travelled", travel_.total());
-    state.insert("jumps", double(travel_.jumps()));
+WatchedState TravelWatch::state() const {
+    WatchedState state = TopicWatch::state();
+    state.travelled = travel_.total();
+    state.jumps = travel_.jumps();
     return state;
 }
 
 QString TravelWatch::take(const TopicUpdate &update) {
-    const auto passed = travel_.add(update.json());
+    const auto passed = travel_.add(update.data);
     if (!passed)
         return passed.error().message;
-    if (*passed)
-        fire(update, (*passed)->missed,
-             {{"n", double((*passed)->n)}, {"travelled", travel_.total()}, {"pose", update.json()["pose"]}});
+    if (!*passed)
+        return {};
+    FiringCause cause;
+    cause.n = (*passed)->n;
+    cause.travelled = travel_.total();
+    cause.pose = (*passed)->pose;
+    fire(update, (*passed)->missed, cause);
     return {};
 }
 
@@ -85,13 +89,17 @@ ConditionWatch::ConditionWatch(const TriggerDefinition &definition, Client &clie
     , condition_(path_, definition.text("op"), definition.when.value("value")) {}
 
 QString ConditionWatch::take(const TopicUpdate &update) {
-    const auto becomesTrue = condition_.becomesTrue(update.json());
-    const QJsonValue value = lookUp(update.json(), path_);
+    const QJsonValue data = update.json();
+    const auto becomesTrue = condition_.becomesTrue(data);
+    const QJsonValue value = lookUp(data, path_);
     if (!becomesTrue)
         return value.isUndefined() ? "there is no " + path_
                                    : QString("%1 is %2, not a number").arg(path_, shown(value));
-    if (*becomesTrue)
-        fire(update, 0, {{"value", value}});
+    if (!*becomesTrue)
+        return {};
+    FiringCause cause;
+    cause.value = value;
+    fire(update, 0, cause);
     return {};
 }
 

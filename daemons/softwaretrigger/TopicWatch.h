@@ -16,13 +16,13 @@ public:
     ~TopicWatch() override;
 
     QString problem() const override;
-    QJsonObject state() const override;
+    WatchedState state() const override;
 
 protected:
     /// Gives what is wrong with the message, or an empty text.
     virtual QString take(const TopicUpdate &update) = 0;
     virtual void interrupted() {}
-    void fire(const TopicUpdate &update, quint64 missed, const QJsonObject &detail);
+    void fire(const TopicUpdate &update, quint64 missed, const FiringCause &cause);
 
 private:
     void receive(const TopicUpdate &update);
@@ -39,7 +39,7 @@ private:
 class TravelWatch : public TopicWatch {
 public:
     TravelWatch(const TriggerDefinition &definition, Client &client, const Listener &listener);
-    QJsonObject state() const override;
+    WatchedState state() const override;
 
 protected:
     QString take(const TopicUpdate &update) override;

@@ -1,8 +1,7 @@
 #include "daemons/softwaretrigger/Travel.h"
 
-#include "common/schema/SchemaText.h"
+#include "protocol/wire/Fields.h"
 
-#include <QJsonObject>
 #include <algorithm>
 #include <cmath>
 
@@ -15,32 +14,31 @@ constexpr double allowance = 0.05; // m or rad that a step may exceed what the s
 
 } // namespace
 
-std::optional<Travel::State> Travel::read(const QJsonValue &message, Kind kind) {
-    const QJsonValue pose = message["pose"], twist = message["twist"];
-    const QJsonValue values[] = {pose["x"],   pose["y"],      pose["theta"],  twist["vx"],
-                                 twist["vy"], twist["omega"], message["mono"]};
-    for (const QJsonValue &value : values) {
-        if (!value.isDouble() || !std::isfinite(value.toDouble()))
-            return std::nullopt;
-    }
-    const double speed = kind == Kind::Distance ? std::hypot(values[3].toDouble(), values[4].toDouble())
-                                                : std::abs(values[5].toDouble());
-    return State{values[0].toDouble(), values[1].toDouble(), values[2].toDouble(), speed,
-                 values[6].toDouble()};
+template <>
+const Fields<TravelPoint> &fieldsOf<TravelPoint>() {
+    static const auto fields = Fields<TravelPoint>()
+                                   .add("pose", &TravelPoint::pose, "As in odometry")
+                                   .add("twist", &TravelPoint::twist, "As in odometry")
+                                   .add("mono", &TravelPoint::mono, "As in odometry", "s");
+    return fields;
 }
 
-double Travel::between(const State &from, const State &to) const {
-    return kind_ == Kind::Distance ? std::hypot(to.x - from.x, to.y - from.y)
-                                   : std::abs(std::remainder(to.theta - from.theta, 2 * pi));
+double Travel::speed(const TravelPoint &at) const {
+    return kind_ == Kind::Distance ? std::hypot(at.twist.vx, at.twist.vy) : std::abs(at.twist.omega);
 }
 
-Result<std::optional<Travel::Passed>> Travel::add(const QJsonValue &message) {
-    const auto now = read(message, kind_);
+double Travel::between(const TravelPoint &from, const TravelPoint &to) const {
+    return kind_ == Kind::Distance ? std::hypot(to.pose.x - from.pose.x, to.pose.y - from.pose.y)
+                                   : std::abs(std::remainder(to.pose.theta - from.pose.theta, 2 * pi));
+}
+
+Result<std::optional<Travel::Passed>> Travel::add(WireView message) {
+    ReadReport report;
+    const auto now = readMessage<TravelPoint>(message, report);
     if (!now)
-        return Error(ErrorCode::InvalidParams,
-                     "expected pose {x, y, theta}, twist {vx, vy, omega} and mono, found " + shown(message));
+        return Error(ErrorCode::InvalidParams, "no odometry: " + report.text());
     if (last_) {
-        const double fastest = std::max(last_->speed, now->speed);
+        const double fastest = std::max(speed(*last_), speed(*now));
         const double explained = 2 * fastest * (now->mono - last_->mono) + allowance;
         if (now->mono <= last_->mono || between(*last_, *now) > explained) {
             ++jumps_;
@@ -62,7 +60,7 @@ Result<std::optional<Travel::Passed>> Travel::add(const QJsonValue &message) {
     const auto reached = quint64(std::floor(total() / step_ * (1 + 1e-9)));
     if (reached <= passed_)
         return std::optional<Passed>();
-    const Passed result{reached, reached - passed_ - 1};
+    const Passed result{reached, reached - passed_ - 1, now->pose};
     passed_ = reached;
     return std::optional<Passed>(result);
 }

@@ -1,15 +1,23 @@
 #pragma once
 
 #include "common/Result.h"
+#include "protocol/messages/Motion.h"
+#include "protocol/wire/WireValue.h"
 
-#include <QJsonValue>
 #include <optional>
 
 namespace hermes {
 
-/// Adds up the way, or the turn, from the messages of an odometry topic: {pose {x, y, theta}, twist {vx, vy,
-/// omega}, mono}. A pose that the speed does not explain (it was set, or the daemon started anew) counts as
-/// no way; so does noise below 1 mm or 1 mrad. No I/O.
+/// What is read of a message of an odometry topic.
+struct TravelPoint {
+    Pose pose;
+    Twist twist;
+    double mono = 0;
+};
+
+/// Adds up the way, or the turn, from the messages of an odometry topic. A pose that the speed does not
+/// explain (it was set, or the daemon started anew) counts as no way; so does noise below 1 mm or 1 mrad. No
+/// I/O.
 class Travel {
 public:
     enum class Kind { Distance, Angle };
@@ -22,10 +30,11 @@ public:
     struct Passed {
         quint64 n = 0;      ///< which multiple of the step was reached last, from 1
         quint64 missed = 0; ///< multiples before it, since the last message
+        Pose pose;
     };
     /// Takes a message. Gives the multiple of the step that it reached, if it did; InvalidParams for what is
     /// no odometry.
-    Result<std::optional<Passed>> add(const QJsonValue &message);
+    Result<std::optional<Passed>> add(WireView message);
     /// The next message begins anew; what was added up stays.
     void interrupt() { last_.reset(); }
 
@@ -33,16 +42,13 @@ public:
     quint64 jumps() const { return jumps_; }         ///< poses that were not explained
 
 private:
-    struct State {
-        double x, y, theta, speed, mono;
-    };
-    static std::optional<State> read(const QJsonValue &message, Kind kind);
-    double between(const State &from, const State &to) const;
+    double speed(const TravelPoint &at) const;
+    double between(const TravelPoint &from, const TravelPoint &to) const;
 
     Kind kind_;
     double step_;
-    std::optional<State> last_;   // the message before
-    std::optional<State> anchor_; // up to here it is in sum_
+    std::optional<TravelPoint> last_;   // the message before
+    std::optional<TravelPoint> anchor_; // up to here it is in sum_
     double sum_ = 0, pending_ = 0;
     quint64 passed_ = 0, jumps_ = 0;
 };

@@ -18,19 +18,27 @@ Field schemaField(const char *name) {
     return Field::schema(name, schema.value("description").toString(), schema);
 }
 
+// Definition and state together.
+QJsonObject listedSchema() {
+    QJsonObject schema = triggerSchema(), state = schemaOf<TriggerState>();
+    QJsonArray required = state["required"].toArray();
+    for (const QJsonValue &member : schema["required"].toArray())
+        required.append(member);
+    schema["properties"] = merged(schema["properties"].toObject(), state["properties"].toObject());
+    schema["required"] = required;
+    return schema;
+}
+
 } // namespace
 
 void SoftwareTrigger::declareCommands() {
-    const QJsonObject object{{"type", "object"}};
     const QJsonObject when{{"kind", "period"}, {"period_s", 0.1}};
     const QJsonArray actions{QJsonObject{{"do", "call"},
                                          {"daemon", "seriallogger"},
                                          {"method", "mark"},
                                          {"params", QJsonObject{{"text", "tick"}}}}};
-    addCommand(Command("trigger.list",
-                       "All triggers: their definitions, and fired, missed, failed_actions, jitter {mean_s, "
-                       "p99_s, worst_s} of the last 1000 firings, last firing, problem, watched")
-                   .returns({{"type", "array"}})
+    addCommand(Command("trigger.list", "All triggers: their definitions, and how they are")
+                   .returns({{"type", "array"}, {"items", listedSchema()}})
                    .handler([this](const Call &) { return list(); }));
     addCommand(
         Command("trigger.define",
@@ -40,7 +48,7 @@ void SoftwareTrigger::declareCommands() {
             .param(Field::schema("when", "What fires it", memberSchema("when")))
             .param(schemaField("actions"))
             .param(Field::boolean("armed", "Whether it fires by itself").byDefault(true))
-            .returns(object)
+            .returns(triggerSchema())
             .example({{"id", "tick"}, {"when", when}, {"actions", actions}},
                      QJsonObject{{"id", "tick"}, {"when", when}, {"actions", actions}, {"armed", true}})
             .handler([this](const Call &call) { return define(call.params); }));
@@ -59,16 +67,16 @@ void SoftwareTrigger::declareCommands() {
     addCommand(Command("trigger.fire", "Fires an armed trigger now, and gives the firing, as in the topic "
                                        "fired, when its last action has ended")
                    .param(idField())
-                   .returns(object)
+                   .gives<FiringMessage>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { fireNow(call, reply); }));
 }
 
 Result<QJsonValue> SoftwareTrigger::list() {
-    QJsonObject state;
-    inEngine([&](TriggerEngine &engine) { state = engine.state(); });
+    std::map<QString, TriggerState> states;
+    inEngine([&](TriggerEngine &engine) { states = engine.state(); });
     QJsonArray result;
     for (const QJsonValue &definition : settings().value("triggers").toArray())
-        result.append(merged(definition.toObject(), state.value(definition["id"].toString()).toObject()));
+        result.append(merged(definition.toObject(), asJson(states[definition["id"].toString()]).toObject()));
     return QJsonValue(result);
 }
 
@@ -143,7 +151,7 @@ void SoftwareTrigger::fireNow(const Call &call, const Reply &reply) {
     Result<void> begun;
     inEngine([&](TriggerEngine &engine) {
         begun = engine.fireNow(call.text("id"), call.clientName,
-                               [reply](const QJsonObject &firing) { reply.result(firing); });
+                               [reply](const FiringMessage &firing) { reply.result(asJson(firing)); });
     });
     if (!begun)
         reply.error(begun.error());

@@ -28,9 +28,9 @@ void TriggerEngine::stop() {
                 one.result = Error(ErrorCode::NotReady, "the daemon ended before the action did");
         }
         log_.append(firing->csvRows());
-        Q_EMIT fired(firing->toJson(), firing->stamp);
+        Q_EMIT fired(firing->message());
         if (firing->ended)
-            firing->ended(firing->toJson());
+            firing->ended(firing->message());
     }
     runner_.reset();
     schedule_.reset();
@@ -41,7 +41,10 @@ Result<void> TriggerEngine::fireNow(const QString &id, const QString &client, co
     const auto found = triggers_.find(id);
     if (found == triggers_.end() || !found->second.definition.armed)
         return Error(ErrorCode::NotReady, id + " is disarmed: trigger.arm first");
-    fire(found->second, {{}, {}, 0, {{"kind", "command"}, {"client", client}}}, ended);
+    FiringCause cause;
+    cause.kind = "command";
+    cause.client = client;
+    fire(found->second, {{}, {}, 0, cause}, ended);
     return {};
 }
 
@@ -79,17 +82,19 @@ void TriggerEngine::fire(Trigger &trigger, const Occasion &occasion, const Ended
     const auto firing = std::make_shared<Firing>();
     firing->id = trigger.definition.id;
     firing->seq = ++trigger.seq;
-    const QString kind = trigger.definition.text("kind");
-    firing->cause = occasion.detail.value("kind").toString(kind); // trigger.fire has one of its own
     firing->occasion = occasion;
+    const QString kind = trigger.definition.text("kind");
+    QString &cause = firing->occasion.cause.kind;
+    if (cause.isEmpty()) // trigger.fire has one of its own
+        cause = kind;
     firing->stamp = stampNow();
     firing->mono = monotonicNow();
     firing->ended = ended;
     firing->results.resize(trigger.definition.actions.size());
     trigger.missed += occasion.missed;
-    if (firing->cause == kind)
+    if (cause == kind)
         trigger.jitter.add(firing->late_s());
-    if (firing->cause == "period")
+    if (cause == "period")
         jitter_.add(firing->late_s());
     underWay_.insert(firing);
     for (size_t i = 0; i < firing->results.size(); ++i)
@@ -114,18 +119,21 @@ void TriggerEngine::beginAction(const std::shared_ptr<Firing> &firing, size_t in
 void TriggerEngine::fireFollowers(const Firing &firing) {
     for (auto &[id, trigger] : triggers_) {
         if (trigger.definition.armed && trigger.definition.cause() == Cause::Trigger &&
-            trigger.definition.text("trigger") == firing.id)
-            fire(trigger,
-                 {firing.mono, {}, 0, {{"trigger", firing.id}, {"trigger_seq", double(firing.seq)}}});
+            trigger.definition.text("trigger") == firing.id) {
+            FiringCause cause;
+            cause.trigger = firing.id;
+            cause.triggerSeq = firing.seq;
+            fire(trigger, {firing.mono, {}, 0, cause});
+        }
     }
 }
 
 void TriggerEngine::endIfOver(const std::shared_ptr<Firing> &firing) {
     if (!firing->isOver() || underWay_.erase(firing) == 0)
         return;
-    const QJsonObject json = firing->toJson();
+    const FiringMessage message = firing->message();
     log_.append(firing->csvRows());
-    Q_EMIT fired(json, firing->stamp);
+    Q_EMIT fired(message);
     for (const Firing::ActionResult &one : firing->results) {
         if (!one.result)
             lastFailure_ = firing->id + ": " + one.action + ": " + one.result.error().message;
@@ -134,10 +142,10 @@ void TriggerEngine::endIfOver(const std::shared_ptr<Firing> &firing) {
     const auto trigger = triggers_.find(firing->id);
     if (trigger != triggers_.end()) {
         trigger->second.failedActions += quint64(firing->failures());
-        trigger->second.last = json;
+        trigger->second.last = message;
     }
     if (firing->ended)
-        firing->ended(json);
+        firing->ended(message);
 }
 
 } // namespace hermes

@@ -25,7 +25,7 @@ struct EngineHealth {
 class TriggerEngine : public QObject {
     Q_OBJECT
 public:
-    using Ended = std::function<void(const QJsonObject &)>;
+    using Ended = std::function<void(const FiringMessage &)>;
 
     /// Of the log of all firings; no folder: none.
     TriggerEngine(const QString &folder, double fileBytes);
@@ -39,14 +39,14 @@ public:
     /// Fires an armed trigger; ended gets the firing when its last action has ended.
     Result<void> fireNow(const QString &id, const QString &client, const Ended &ended);
 
-    /// What trigger.list tells beside the definition, by id.
-    QJsonObject state() const;
+    /// By id.
+    std::map<QString, TriggerState> state() const;
     static QStringList healthItems();
     EngineHealth health(const QString &item) const;
 
 Q_SIGNALS:
     /// The last action of a firing has ended.
-    void fired(const QJsonObject &firing, double stamp);
+    void fired(const hermes::FiringMessage &firing);
 
 private:
     struct Trigger {
@@ -54,7 +54,7 @@ private:
         std::unique_ptr<Watch> watch; ///< while armed, for causes that are watched
         quint64 seq = 0, missed = 0, failedActions = 0;
         JitterWindow jitter;
-        QJsonObject last; ///< firing
+        std::optional<FiringMessage> last;
     };
 
     void watch(Trigger &trigger);

@@ -16,7 +16,10 @@ public:
         , key_(schedule.add(
               std::chrono::nanoseconds(std::llround(period_s * 1e9)), [listener](const Schedule::Due &due) {
                   const double time = std::chrono::duration<double>(due.time.time_since_epoch()).count();
-                  listener.fire({time, {}, due.missed, {{"n", double(due.n)}, {"due_mono", time}}});
+                  FiringCause cause;
+                  cause.n = due.n;
+                  cause.dueMono = time;
+                  listener.fire({time, {}, due.missed, cause});
               })) {}
     ~PeriodWatch() override { schedule_.remove(key_); }
 
@@ -33,8 +36,9 @@ public:
                 ++missed_;
                 return listener.missed();
             }
-            listener.fire({{}, verdict.due, missed_, {{"due", verdict.due}}});
-            missed_ = 0;
+            FiringCause cause;
+            cause.due = verdict.due;
+            listener.fire({{}, verdict.due, std::exchange(missed_, 0), cause});
         }) {}
 
 private:

@@ -19,10 +19,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-QJsonObject odometry(double x, double y, double theta, double mono, double vx = 1, double omega = 1) {
-    return {{"pose", QJsonObject{{"x", x}, {"y", y}, {"theta", theta}}},
-            {"twist", QJsonObject{{"vx", vx}, {"vy", 0}, {"omega", omega}}},
-            {"mono", mono}};
+WireValue odometry(double x, double y, double theta, double mono, double vx = 1, double omega = 1) {
+    return QJsonValue(QJsonObject{{"pose", QJsonObject{{"x", x}, {"y", y}, {"theta", theta}}},
+                                  {"twist", QJsonObject{{"vx", vx}, {"vy", 0}, {"omega", omega}}},
+                                  {"mono", mono}});
 }
 
 double utc(const QString &text) {
@@ -163,12 +163,12 @@ void TestTriggerParts::severalStepsInOneMessageFireOnce() {
 
 void TestTriggerParts::whatIsNoOdometryIsRefused() {
     Travel travel(Travel::Kind::Distance, 1);
-    QJsonObject text = odometry(0, 0, 0, 1), without = text;
+    QJsonObject text = odometry(0, 0, 0, 1).toJson().toObject(), without = text;
     text["pose"] = QJsonObject{{"x", "far"}, {"y", 0}, {"theta", 0}};
     without.remove("mono");
     const QJsonValue bad[] = {QJsonValue(), 1, QJsonArray(), QJsonObject(), text, without};
     for (const QJsonValue &message : bad)
-        QVERIFY(!travel.add(message).ok());
+        QVERIFY(!travel.add(WireValue(message)).ok());
 }
 
 void TestTriggerParts::timeOfDayFiresOnceADay() {
@@ -295,7 +295,7 @@ void TestTriggerParts::logGoesOnInNewFiles() {
     for (int i = 0; i < 40; ++i)
         log.append("0123456789012345678\n"); // 20 bytes: 4 beside the header
     log.flush();
-    QCOMPARE(log.toJson()["rows"].toInt(), 40);
+    QCOMPARE(log.state().rows, quint64(40));
     const QFileInfoList files = QDir(folder.path()).entryInfoList(QDir::Files);
     QCOMPARE(files.size(), 10);
     for (const QFileInfo &file : files)
@@ -310,8 +310,8 @@ void TestTriggerParts::logThatIsRemovedBeginsAnew() {
     QVERIFY(QDir(folder.filePath("log")).removeRecursively());
     log.append("row 2\n");
     log.flush();
-    QCOMPARE(log.toJson()["rows"].toInt(), 2);
-    QFile file(log.toJson()["path"].toString());
+    QCOMPARE(log.state().rows, quint64(2));
+    QFile file(log.state().path);
     QVERIFY(file.open(QIODevice::ReadOnly));
     QCOMPARE(file.readAll(), QByteArray("head\nrow 2\n"));
 }
@@ -323,24 +323,25 @@ void TestTriggerParts::logCountsWhatTheDiskRefuses() {
     log.append("row\n");
     log.append("row\n");
     log.flush();
-    QCOMPARE(log.toJson()["lost"].toInt(), 2);
-    QVERIFY(log.toJson()["error"].toString().contains(folder.path()));
+    QCOMPARE(log.state().lost, quint64(2));
+    QVERIFY(log.state().error.contains(folder.path()));
     QVERIFY(QFile::remove(folder.filePath("file")));
     log.append("row\n");
     log.flush();
-    QCOMPARE(log.toJson()["rows"].toInt(), 1);
-    QCOMPARE(log.toJson()["error"].toString(), QString());
+    QCOMPARE(log.state().rows, quint64(1));
+    QCOMPARE(log.state().error, QString());
 }
 
 void TestTriggerParts::jitterOfTheLastThousand() {
     JitterWindow window;
-    QCOMPARE(window.toJson(), (QJsonObject{{"count", 0}}));
+    QVERIFY(window.summary().count == 0 && !window.summary().mean_s);
     for (int i = 0; i < 500; ++i)
         window.add(100); // leaves the window
     for (int i = 1; i <= 1000; ++i)
         window.add(i);
-    QCOMPARE(window.toJson(),
-             (QJsonObject{{"count", 1000}, {"mean_s", 500.5}, {"p99_s", 990.0}, {"worst_s", 1000.0}}));
+    const Jitter jitter = window.summary();
+    QVERIFY(jitter.count == 1000 && *jitter.mean_s == 500.5 && *jitter.p99_s == 990 &&
+            *jitter.worst_s == 1000);
 }
 
 QTEST_GUILESS_MAIN(TestTriggerParts)
