@@ -44,11 +44,8 @@ QString toString(LogLevel level) {
     return QLatin1String(names[int(level)]);
 }
 
-QJsonObject LogRecord::toJson() const {
-    return {{QStringLiteral("stamp"), stamp},
-            {QStringLiteral("level"), toString(level)},
-            {QStringLiteral("source"), source},
-            {QStringLiteral("text"), text}};
+LogMessage LogRecord::message() const {
+    return {stamp, toString(level), source, text};
 }
 
 Log &Log::instance() {
@@ -100,13 +97,13 @@ void Log::unfollow(QObject *who) {
     followers.erase(who);
 }
 
-QJsonArray Log::tail(int count) const {
+std::vector<LogMessage> Log::tail(int count) const {
     const std::lock_guard<std::mutex> lock(mutex);
-    QJsonArray array;
+    std::vector<LogMessage> last;
     for (size_t i = records.size() - std::min(records.size(), size_t(std::max(count, 0))); i < records.size();
          ++i)
-        array.append(records[i].toJson());
-    return array;
+        last.push_back(records[i].message());
+    return last;
 }
 
 void Log::setMinimumLevel(LogLevel level) {

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <QJsonArray>
-#include <QJsonObject>
+#include "protocol/messages/Daemons.h"
+
 #include <QObject>
-#include <QString>
 #include <deque>
 #include <functional>
 #include <map>
@@ -22,7 +21,7 @@ struct LogRecord {
     QString source; ///< what spoke: a subsystem, or a Qt category
     QString text;
 
-    QJsonObject toJson() const;
+    LogMessage message() const;
 };
 
 /// The log of this process: keeps the last records in memory, writes them to stderr with their stamp as far
@@ -35,7 +34,7 @@ public:
     void write(LogLevel level, const QString &source, const QString &text);
 
     /// The last count records, oldest first.
-    QJsonArray tail(int count) const;
+    std::vector<LogMessage> tail(int count) const;
 
     void setMinimumLevel(LogLevel level);
     void setCapacity(int records);

@@ -10,25 +10,17 @@ namespace {
 
 constexpr std::size_t mostSubscriptions = 100; // of a client
 
-QJsonObject type(const char *name) {
-    return {{QStringLiteral("type"), QLatin1String(name)}};
-}
-
-QJsonArray toArray(const QStringList &texts) {
-    return QJsonArray::fromStringList(texts);
-}
-
 void addDaemonCommands(Daemon &daemon, CommandRegistry &commands) {
     commands.add(
         Command(QStringLiteral("rpc.discover"), QStringLiteral("This description, an OpenRPC document"))
-            .returns(type("object"))
+            .gives<QJsonObject>()
             .handler([&daemon](const Call &) { return QJsonValue(daemon.description()); }));
     commands.add(Command(QStringLiteral("daemon.info"), QStringLiteral("Who this daemon is"))
-                     .returns(type("object"))
-                     .handler([&daemon](const Call &) { return QJsonValue(daemon.info()); }));
+                     .gives<DaemonInfo>()
+                     .handler([&daemon](const Call &) { return asJson(daemon.info()); }));
     commands.add(Command(QStringLiteral("daemon.status"), QStringLiteral("Its state and its health items"))
-                     .returns(type("object"))
-                     .handler([&daemon](const Call &) { return QJsonValue(daemon.status()); }));
+                     .gives<DaemonStatus>()
+                     .handler([&daemon](const Call &) { return asJson(daemon.status()); }));
     commands.add(Command(QStringLiteral("daemon.shutdown"), QStringLiteral("Ends the daemon in order"))
                      .returnsNull()
                      .handler([&daemon](const Call &call) {
@@ -41,8 +33,7 @@ void addDaemonCommands(Daemon &daemon, CommandRegistry &commands) {
 }
 
 QJsonValue changeReply(Daemon &daemon, const QStringList &paths) {
-    return QJsonObject{{QStringLiteral("changed"), toArray(paths)},
-                       {QStringLiteral("restart"), toArray(daemon.settings().needRestart(paths))}};
+    return asJson(SettingsChange{paths, daemon.settings().needRestart(paths)});
 }
 
 Result<QJsonValue> getSettings(Daemon &daemon, const Call &call) {
@@ -61,9 +52,8 @@ Result<QJsonValue> getSettings(Daemon &daemon, const Call &call) {
 }
 
 void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
-    const QJsonObject changeSchema = type("object");
     commands.add(Command(QStringLiteral("settings.schema"), QStringLiteral("The JSON Schema of the settings"))
-                     .returns(type("object"))
+                     .gives<QJsonObject>()
                      .handler([&daemon](const Call &) { return QJsonValue(daemon.settings().schema()); }));
     commands.add(
         Command(QStringLiteral("settings.get"), QStringLiteral("All settings, or the value at a path"))
@@ -71,14 +61,14 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
             .param(Field::boolean(QStringLiteral("changes"),
                                   QStringLiteral("Only what differs from the defaults"))
                        .byDefault(false))
-            .returns({})
+            .gives<QJsonValue>()
             .example({{QStringLiteral("path"), QStringLiteral("limits.clients")}}, 16)
             .handler([&daemon](const Call &call) { return getSettings(daemon, call); }));
     commands.add(
         Command(QStringLiteral("settings.set"),
                 QStringLiteral("Changes settings: all of the partial object, or nothing"))
             .param(Field::object(QStringLiteral("values"), QStringLiteral("Partial object of settings")))
-            .returns(changeSchema)
+            .gives<SettingsChange>()
             .example(
                 {{QStringLiteral("values"),
                   QJsonObject{{QStringLiteral("limits"), QJsonObject{{QStringLiteral("clients"), 20}}}}}},
@@ -93,9 +83,9 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
     commands.add(
         Command(QStringLiteral("settings.reset"), QStringLiteral("Puts settings back to their defaults"))
             .param(Field::array(QStringLiteral("paths"), QStringLiteral("Dotted paths; none: all settings"),
-                                type("string"))
+                                schemaOf<QString>())
                        .byDefault(QJsonArray()))
-            .returns(changeSchema)
+            .gives<SettingsChange>()
             .handler([&daemon](const Call &call) -> Result<QJsonValue> {
                 QStringList paths;
                 for (const QJsonValue &path : call.value("paths").toArray())
@@ -107,20 +97,20 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
             }));
     commands.add(Command(QStringLiteral("settings.save"),
                          QStringLiteral("Writes what differs from the defaults to the file of --config"))
-                     .returns(type("object"))
+                     .gives<SavedSettings>()
                      .handler([&daemon](const Call &) -> Result<QJsonValue> {
                          const auto file = daemon.settings().save();
                          if (!file)
                              return file.error();
-                         return QJsonValue(QJsonObject{{QStringLiteral("path"), *file}});
+                         return asJson(SavedSettings{*file});
                      }));
 }
 
 void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topics) {
     commands.add(
         Command(QStringLiteral("topics.list"), QStringLiteral("The topics and the schemas of their data"))
-            .returns(type("array"))
-            .handler([&topics](const Call &) { return QJsonValue(topics.description()); }));
+            .gives<std::vector<TopicDescription>>()
+            .handler([&topics](const Call &) { return asJson(topics.description()); }));
     commands.add(
         Command(
             QStringLiteral("topics.subscribe"),
@@ -136,7 +126,7 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
                                   QStringLiteral("Messages that wait for a slow reader; 1: only the newest"))
                        .range(1, 10000)
                        .byDefault(1))
-            .returns(type("object"))
+            .gives<SubscriptionAnswer>()
             .example({{QStringLiteral("topic"), QStringLiteral("log")}},
                      QJsonObject{{QStringLiteral("subscription"), 1}})
             .handler([&daemon, &topics](const Call &call) -> Result<QJsonValue> {
@@ -152,7 +142,7 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
                                      &session->topics());
                 if (!id)
                     return id.error();
-                return QJsonValue(QJsonObject{{QStringLiteral("subscription"), qint64(*id)}});
+                return asJson(SubscriptionAnswer{*id});
             }));
     commands.add(
         Command(QStringLiteral("topics.unsubscribe"), QStringLiteral("Ends a subscription of this client"))
@@ -181,18 +171,16 @@ void addCommonCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topi
             .param(Field::integer(QStringLiteral("count"), QStringLiteral("How many"))
                        .range(1, 100000)
                        .byDefault(100))
-            .returns(type("array"))
-            .handler(
-                [](const Call &call) { return QJsonValue(Log::instance().tail(call.integer("count"))); }));
+            .gives<std::vector<LogMessage>>()
+            .handler([](const Call &call) { return asJson(Log::instance().tail(call.integer("count"))); }));
     topics.declare(
-        Topic(QStringLiteral("log"), QStringLiteral("Each record of the log: {stamp, level, source, text}"))
-            .schema(type("object")));
+        Topic(QStringLiteral("log"), QStringLiteral("Each record of the log")).carries<LogMessage>());
     topics.declare(
         Topic(QStringLiteral("status"), QStringLiteral("What daemon.status gives, at each change of level"))
-            .schema(type("object"))
-            .snapshot([&daemon] { return QJsonValue(daemon.status()); }));
+            .carries<DaemonStatus>()
+            .snapshot([&daemon] { return daemon.status(); }));
     topics.declare(Topic(QStringLiteral("settings"), QStringLiteral("All settings, after each change"))
-                       .schema(type("object"))
+                       .carries<QJsonObject>()
                        .snapshot([&daemon] { return QJsonValue(daemon.settings().values()); }));
 }
 

@@ -53,7 +53,7 @@ Daemon::Daemon(const DaemonIdentity &identity)
     connect(&channels, &Server::clientGone, this, &Daemon::clientGone);
     Log::instance().follow(this, [this](const LogRecord &record) {
         publish(
-            QStringLiteral("log"), [&record] { return record.toJson(); }, record.stamp);
+            QStringLiteral("log"), [&record] { return record.message(); }, record.stamp);
     });
     connect(&configuration, &Settings::changed, this, [this](const QStringList &paths) {
         if (!launched)
@@ -210,7 +210,7 @@ QJsonObject Daemon::description() const {
                                                  {QStringLiteral("version"), projectVersion()},
                                                  {QStringLiteral("description"), self.description}}},
             {QStringLiteral("methods"), commands.description()},
-            {QStringLiteral("x-topics"), topics.description()}};
+            {QStringLiteral("x-topics"), asJson(topics.description())}};
     return made;
 }
 
@@ -228,34 +228,30 @@ QString Daemon::descriptionHash() const {
     return madeHash;
 }
 
-QJsonObject Daemon::info() const {
-    return {{QStringLiteral("name"), self.name},
-            {QStringLiteral("title"), self.title},
-            {QStringLiteral("version"), projectVersion()},
-            {QStringLiteral("protocol"), protocolVersion()},
-            {QStringLiteral("description_hash"), descriptionHash()},
-            {QStringLiteral("host"), QSysInfo::machineHostName()},
-            {QStringLiteral("pid"), QCoreApplication::applicationPid()},
-            {QStringLiteral("listen"), QJsonArray::fromStringList(channels.addresses())},
-            {QStringLiteral("started"), started},
-            {QStringLiteral("uptime_s"), monotonicNow() - startedMono}};
+DaemonInfo Daemon::info() const {
+    return {self.name,
+            self.title,
+            projectVersion(),
+            protocolVersion(),
+            descriptionHash(),
+            QSysInfo::machineHostName(),
+            QCoreApplication::applicationPid(),
+            channels.addresses(),
+            started,
+            monotonicNow() - startedMono};
 }
 
-QJsonObject Daemon::status() {
-    const QJsonArray items = healthItems.toJson();
-    return {{QStringLiteral("state"), toString(state())},
-            {QStringLiteral("health"), items},
-            {QStringLiteral("restart_for"), QJsonArray::fromStringList(configuration.needRestart(leafPaths(
-                                                difference(configuration.values(), startedWith))))}};
+DaemonStatus Daemon::status() {
+    std::vector<HealthItem> items = healthItems.list(); // before the state, which follows from them
+    return {toString(state()), std::move(items),
+            configuration.needRestart(leafPaths(difference(configuration.values(), startedWith)))};
 }
 
 void Daemon::publishStatus() {
     // Only a change of a level or of the state is news; ages and counters change all the time.
     QString now = toString(state());
-    for (const QJsonValue &item : healthItems.toJson()) {
-        now += QLatin1Char(' ') + item[QStringLiteral("name")].toString() + QLatin1Char('=') +
-               item[QStringLiteral("level")].toString();
-    }
+    for (const HealthItem &item : healthItems.list())
+        now += QLatin1Char(' ') + item.name + QLatin1Char('=') + item.level;
     if (now == lastStatus)
         return;
     lastStatus = now;

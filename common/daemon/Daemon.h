@@ -60,8 +60,8 @@ public:
     QJsonObject description() const;
     /// Changes when anything in the description changes.
     QString descriptionHash() const;
-    QJsonObject info() const;
-    QJsonObject status();
+    DaemonInfo info() const;
+    DaemonStatus status();
 
     bool hasSubscribers(const QString &topic) const { return topics.hasSubscribers(topic); }
     /// False while a subscriber with a queue longer than one is behind: for data that can wait.

@@ -43,20 +43,16 @@ void Health::expectEvery(const QString &name, std::chrono::milliseconds period) 
         item.set = monotonicNow();
 }
 
-QJsonArray Health::toJson() {
+std::vector<HealthItem> Health::list() {
     for (const QString &name : items.keys()) {
         if (const auto update = items.value(name).update)
             update();
     }
-    QJsonArray array;
-    for (auto item = items.cbegin(); item != items.cend(); ++item) {
-        array.append(QJsonObject{{QStringLiteral("name"), item.key()},
-                                 {QStringLiteral("level"), toString(item->levelNow())},
-                                 {QStringLiteral("message"), item->message},
-                                 {QStringLiteral("values"), item->values},
-                                 {QStringLiteral("age_s"), monotonicNow() - item->set}});
-    }
-    return array;
+    std::vector<HealthItem> list;
+    for (auto item = items.cbegin(); item != items.cend(); ++item)
+        list.push_back({item.key(), toString(item->levelNow()), item->message, item->values,
+                        monotonicNow() - item->set});
+    return list;
 }
 
 HealthLevel Health::worst() const {

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <QJsonArray>
-#include <QJsonObject>
+#include "protocol/messages/Daemons.h"
+
 #include <QMap>
 #include <QObject>
-#include <QString>
 #include <chrono>
 #include <functional>
 
@@ -31,8 +30,8 @@ public:
     /// The item counts as stale when set() was not called for that long.
     void expectEvery(const QString &name, std::chrono::milliseconds period);
 
-    /// {name, level, message, values, age_s} of each item.
-    QJsonArray toJson();
+    /// The items as they stand.
+    std::vector<HealthItem> list();
     /// The worst level of all items as they stand.
     HealthLevel worst() const;
 

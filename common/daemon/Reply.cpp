@@ -17,6 +17,9 @@ public:
     void give(Result<QJsonValue> answer) {
         if (given.exchange(true))
             return;
+        if (answer && answer->isUndefined()) // of asJson()
+            answer = Error(ErrorCode::InternalError,
+                           QStringLiteral("internal error: a number of the result is not finite"));
         QCoreApplication *application = QCoreApplication::instance();
         if (application && QThread::currentThread() != application->thread()) {
             QMetaObject::invokeMethod(

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "protocol/messages/Daemons.h"
 #include "protocol/wire/Outgoing.h"
 
-#include <QString>
 #include <functional>
 
 namespace hermes {
@@ -45,12 +45,8 @@ public:
     const QString &name() const { return topicName; }
     const Snapshot &snapshot() const { return state; }
     const SnapshotParts &snapshotParts() const { return parts; }
-    /// {name, summary, schema, snapshot}
-    QJsonObject description() const {
-        return {{QStringLiteral("name"), topicName},
-                {QStringLiteral("summary"), topicSummary},
-                {QStringLiteral("schema"), content},
-                {QStringLiteral("snapshot"), bool(state) || bool(parts)}};
+    TopicDescription description() const {
+        return {topicName, topicSummary, content, bool(state) || bool(parts)};
     }
 
 private:

@@ -93,11 +93,11 @@ void TopicHub::forget(TopicQueue *queue) {
         entry.queues.removeAll(queue);
 }
 
-QJsonArray TopicHub::description() const {
-    QJsonArray array;
+std::vector<TopicDescription> TopicHub::description() const {
+    std::vector<TopicDescription> list;
     for (const Entry &entry : topics)
-        array.append(entry.topic.description());
-    return array;
+        list.push_back(entry.topic.description());
+    return list;
 }
 
 } // namespace hermes

@@ -4,7 +4,6 @@
 #include "common/daemon/Topic.h"
 #include "common/daemon/TopicQueue.h"
 
-#include <QJsonArray>
 #include <QMap>
 #include <QObject>
 #include <QVector>
@@ -36,7 +35,7 @@ public:
     /// The client has gone.
     void forget(TopicQueue *queue);
 
-    QJsonArray description() const;
+    std::vector<TopicDescription> description() const;
 
 private:
     struct Entry {

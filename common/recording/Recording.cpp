@@ -113,7 +113,7 @@ void Recording::start(const Call &call, const Reply &reply) {
             timer_.start(activePeriod_ms);
             logInfo("recording", "recording to " + folder_);
             updateHealth();
-            reply.result(status());
+            reply.result(asJson(status()));
             Q_EMIT changed();
         };
     });
@@ -148,7 +148,7 @@ void Recording::ended(const Result<void> &result) {
         logError("recording", error_->message);
     }
     for (const Reply &reply : stopping_)
-        reply.give(result ? Result<QJsonValue>(status()) : Result<QJsonValue>(result.error()));
+        reply.give(result ? Result<QJsonValue>(asJson(status())) : Result<QJsonValue>(result.error()));
     stopping_.clear();
     updateHealth();
     Q_EMIT changed();

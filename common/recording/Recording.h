@@ -33,9 +33,8 @@ public:
     void close();
 
     bool isActive() const { return phase_ != Phase::Idle; }
-    /// {recording, name, session, folder, path, start, bytes, files, counts, losses, free_bytes, error?} of
-    /// the recording under way or the last.
-    QJsonObject status() const;
+    /// Of the recording under way or the last.
+    RecordingStatus status() const;
 
 Q_SIGNALS:
     /// One began or ended.

@@ -18,12 +18,37 @@ Field byteField(const char *name, const char *description, double least, double 
 }
 
 /// The names of those that have a sidecar in the folder of a session.
-QJsonArray loggersIn(const QString &folder) {
-    QJsonArray loggers;
+QStringList loggersIn(const QString &folder) {
+    QStringList loggers;
     for (const QFileInfo &file : QDir(folder).entryInfoList({"*.json"}, QDir::Files, QDir::Name))
         if (const Result<QJsonObject> sidecar = Sidecar::read(file.absoluteFilePath()))
-            loggers.append(sidecar->value("logger"));
+            loggers.append(sidecar->value("logger").toString());
     return loggers;
+}
+
+/// What the sidecar tells under the same names.
+RecordingEntry entryOf(const QString &root, const QString &name, const QString &logger) {
+    const QString folder = QDir(root).absoluteFilePath(name), path = Sidecar::path(folder, logger);
+    RecordingEntry entry;
+    entry.name = name;
+    const Result<QJsonObject> sidecar = Sidecar::read(path);
+    if (!sidecar) {
+        entry.error = sidecar.error().message;
+        return entry;
+    }
+    QJsonObject content = *sidecar;
+    content.insert("name", name);
+    content.remove("error"); // that ended it
+    const int files = content.take("files").toArray().size();
+    ReadReport report;
+    if (const auto read = readMessage<RecordingEntry>(WireValue(content), report))
+        entry = *read;
+    else
+        entry.error = path + ": " + report.text();
+    entry.folder = folder;
+    entry.files = files;
+    entry.loggers = loggersIn(folder);
+    return entry;
 }
 
 } // namespace
@@ -67,88 +92,64 @@ std::vector<Command> Recording::commands() {
                                "Id that loggers give alike which record to the same folder as one session; "
                                "without it the folder must be new")
                        .optional())
-            .returns({{"type", "object"}})
+            .gives<RecordingStatus>()
             .example({{"name", "drive"}}, example)
             .asyncHandler([this](const Call &call, const Reply &reply) { start(call, reply); }),
         Command("record.stop", "Ends the recording; everything is on the disk when this returns")
-            .returns({{"type", "object"}})
+            .gives<RecordingStatus>()
             .asyncHandler([this](const Call &, const Reply &reply) { stop(reply); }),
-        Command("record.status",
-                "Of the recording under way or the last: name, session, folder, path, bytes, files, "
-                "counts, losses, free_bytes of the disk, and the error that ended it")
-            .returns({{"type", "object"}})
-            .handler([this](const Call &) -> Result<QJsonValue> { return status(); }),
-        Command("record.list",
-                "The recordings in the folder, the latest first: name, folder, loggers (those of its session "
-                "in the same folder), and of its sidecar session, start, end, ended, complete, files (how "
-                "many), bytes, counts, losses; or the error of one that cannot be read")
-            .returns({{"type", "array"}})
+        Command("record.status", "The recording under way or the last")
+            .gives<RecordingStatus>()
+            .handler([this](const Call &) { return asJson(status()); }),
+        Command("record.list", "The recordings in the folder, the latest first")
+            .gives<std::vector<RecordingEntry>>()
             .asyncHandler([this](const Call &, const Reply &reply) { list(reply); })};
 }
 
 void Recording::list(const Reply &reply) {
     run([reply, root = options().root, logger = logger_]() -> Done {
-        std::vector<QJsonObject> found;
-        for (const QString &name : QDir(root).entryList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name)) {
-            const QString path = Sidecar::path(QDir(root).filePath(name), logger);
-            if (!QFile::exists(path))
-                continue;
-            const Result<QJsonObject> sidecar = Sidecar::read(path);
-            QJsonObject entry{{"name", name}};
-            for (const char *member :
-                 {"session", "start", "end", "ended", "complete", "bytes", "counts", "losses"})
-                if (sidecar)
-                    entry.insert(member, sidecar->value(member));
-            if (sidecar) {
-                const QString folder = QDir(root).absoluteFilePath(name);
-                entry.insert("folder", folder);
-                entry.insert("files", sidecar->value("files").toArray().size());
-                entry.insert("loggers", loggersIn(folder));
-            }
-            if (!sidecar)
-                entry.insert("error", sidecar.error().message);
-            found.push_back(entry);
-        }
-        std::stable_sort(found.begin(), found.end(), [](const QJsonObject &a, const QJsonObject &b) {
-            return a.value("start").toDouble() > b.value("start").toDouble();
+        std::vector<RecordingEntry> found;
+        for (const QString &name : QDir(root).entryList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name))
+            if (QFile::exists(Sidecar::path(QDir(root).filePath(name), logger)))
+                found.push_back(entryOf(root, name, logger));
+        std::stable_sort(found.begin(), found.end(), [](const RecordingEntry &a, const RecordingEntry &b) {
+            return a.start.value_or(0) > b.start.value_or(0);
         });
-        QJsonArray recordings;
-        for (const QJsonObject &entry : found)
-            recordings.append(entry);
-        return [reply, recordings] { reply.result(recordings); };
+        return [reply, found] { reply.result(asJson(found)); };
     });
 }
 
-QJsonObject Recording::status() const {
-    QJsonObject status{{"recording", phase_ == Phase::Recording}};
-    if (free_)
-        status.insert("free_bytes", *free_);
-    if (error_)
-        status.insert(
-            "error",
-            QJsonObject{{"code", error_->code}, {"message", error_->message}, {"data", error_->data}});
+RecordingStatus Recording::status() const {
+    RecordingStatus status;
+    status.recording = phase_ == Phase::Recording;
+    status.freeBytes = free_;
+    if (error_) {
+        status.error = RecordingError{error_->code, error_->message, {}};
+        if (!error_->data.isUndefined())
+            status.error->data = error_->data;
+    }
     if (folder_.isEmpty())
         return status;
     const RecordingState state = writer_.state();
-    status.insert("name", name_.name);
-    status.insert("session", name_.session);
-    status.insert("folder", folder_);
-    status.insert("path", state.path);
-    status.insert("start", start_);
-    status.insert("bytes", state.bytes);
-    status.insert("files", state.files.size());
-    status.insert("counts", state.counts);
-    status.insert("losses", state.losses);
+    status.name = name_.name;
+    status.session = name_.session;
+    status.folder = folder_;
+    status.path = state.path;
+    status.start = start_;
+    status.bytes = state.bytes;
+    status.files = state.files.size();
+    status.counts = state.counts;
+    status.losses = state.losses;
     return status;
 }
 
 void Recording::updateHealth() {
     updateDiskHealth();
-    const QJsonObject values = status();
+    const RecordingStatus now = status();
+    const QJsonObject values = asJson(now).toObject();
     double lost = 0;
-    const QJsonObject losses = values.value("losses").toObject();
-    for (const QJsonValue &count : losses)
-        lost += count.toDouble();
+    for (const double count : now.losses.value_or(NamedCounts()))
+        lost += count;
     if (error_)
         health_.set("recording", HealthLevel::Failed, error_->message, values);
     else if (refreshError_)

@@ -3,6 +3,7 @@
 #include "common/Time.h"
 #include "common/recording/DiskError.h"
 #include "common/recording/Sidecar.h"
+#include "protocol/wire/Fields.h"
 
 #include <QDateTime>
 #include <QDir>
@@ -120,8 +121,8 @@ QJsonObject RecordingSession::describe() const {
     content.insert("ended", QJsonValue());
     content.insert("complete", false);
     content.insert("bytes", state.bytes);
-    content.insert("counts", state.counts);
-    content.insert("losses", state.losses);
+    content.insert("counts", asJson(state.counts));
+    content.insert("losses", asJson(state.losses));
     content.insert("gps", state.gps);
     content.insert("files", state.files);
     return content;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "protocol/messages/Recordings.h"
 
 #include <QJsonArray>
 #include <QJsonObject>
@@ -22,8 +23,8 @@ struct RecordingState {
     QString path;               ///< of the file being written
     QJsonArray files;           ///< {name, bytes, ...} of each, in order; bytes end with a whole record
     double bytes = 0;           ///< of all files
-    QJsonObject counts;         ///< what was recorded, by kind
-    QJsonObject losses;         ///< what was not, by reason; all zero where nothing is missing
+    NamedCounts counts;         ///< what was recorded, by kind
+    NamedCounts losses;         ///< what was not, by reason; all zero where nothing is missing
     QJsonObject gps;            ///< what is known of position and time
     std::optional<Error> error; ///< writing has ended by it
 };

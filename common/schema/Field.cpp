@@ -1,5 +1,7 @@
 #include "common/schema/Field.h"
 
+#include "protocol/wire/Fields.h"
+
 namespace hermes {
 namespace {
 
@@ -36,11 +38,11 @@ Field Field::array(const QString &name, const QString &description, const QJsonO
 }
 
 Field Field::object(const QString &name, const QString &description) {
-    return Field(name, description, ofType("object"));
+    return Field(name, description, schemaOf<QJsonObject>());
 }
 
 Field Field::any(const QString &name, const QString &description) {
-    return Field(name, description, {});
+    return Field(name, description, schemaOf<QJsonValue>());
 }
 
 Field Field::schema(const QString &name, const QString &description, const QJsonObject &schema) {

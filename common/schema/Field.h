@@ -17,6 +17,7 @@ public:
     static Field boolean(const QString &name, const QString &description);
     /// itemSchema: the JSON Schema of each element, e.g. {{"type", "number"}}.
     static Field array(const QString &name, const QString &description, const QJsonObject &itemSchema);
+    /// With any members.
     static Field object(const QString &name, const QString &description);
     /// Any JSON value.
     static Field any(const QString &name, const QString &description);

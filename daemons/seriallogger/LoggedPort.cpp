@@ -1,7 +1,6 @@
 #include "daemons/seriallogger/LoggedPort.h"
 
 #include "common/Time.h"
-#include "daemons/seriallogger/FixJson.h"
 
 namespace hermes {
 
@@ -34,45 +33,49 @@ void LoggedPort::tick(double elapsed_s) {
     bytesAtTick_ = bytes;
 }
 
-QJsonObject LoggedPort::toJson() const {
+PortStatus LoggedPort::status() const {
     const PortThread::State state = thread_.state();
-    QJsonObject errors;
-    for (auto error = state.systemErrors.begin(); error != state.systemErrors.end(); ++error)
-        errors.insert(error.key(), double(*error));
-    QJsonObject port{{"name", settings_.name},
-                     {"url", settings_.url},
-                     {"state", toText(state.carrier)},
-                     {"reason", state.reason},
-                     {"device", state.device},
-                     {"opened", double(state.counters.opened)},
-                     {"failures", double(state.counters.errors)},
-                     {"bytes", double(state.counters.bytesIn)},
-                     {"bytes_per_s", rate_},
-                     {"sent", double(state.counters.bytesOut)},
-                     {"lost", double(recording_.lost())},
-                     {"view_lost", double(view_.queue().lost())},
-                     {"system_errors", errors}};
-    port.insert("last_stamp", state.last ? QJsonValue(state.last->stamp()) : QJsonValue());
+    PortStatus port;
+    port.name = settings_.name;
+    port.url = settings_.url;
+    port.state = toText(state.carrier);
+    port.reason = state.reason;
+    port.device = state.device;
+    port.opened = state.counters.opened;
+    port.failures = state.counters.errors;
+    port.bytes = state.counters.bytesIn;
+    port.bytesPerSecond = rate_;
+    port.sent = state.counters.bytesOut;
+    port.lost = recording_.lost();
+    port.viewLost = view_.queue().lost();
+    port.systemErrors = state.systemErrors;
+    if (state.last)
+        port.lastStamp = state.last->stamp();
     if (settings_.view == PortSettings::View::Nmea) {
-        port.insert("nmea", nmeaJson());
-        port.insert("fix", view_.lastFix() ? QJsonValue(hermes::toJson(*view_.lastFix())) : QJsonValue());
+        port.nmea = nmeaCounts();
+        port.fix.emplace();
+        if (view_.lastFix())
+            *port.fix = valuesOf(*view_.lastFix());
     }
     return port;
 }
 
-QJsonObject LoggedPort::nmeaJson() const {
+NmeaCounts LoggedPort::nmeaCounts() const {
     const nmea::SentenceParser::Counts &counts = view_.fixes().sentences();
     const FixTracker::Counts &fixes = view_.fixes().counts();
-    QJsonObject nmea{
-        {"sentences", double(counts.sentences)},        {"bad_checksum", double(counts.badChecksum)},
-        {"no_checksum", double(counts.noChecksum)},     {"too_long", double(counts.tooLong)},
-        {"bad_byte", double(counts.badByte)},           {"cut_short", double(counts.cutShort)},
-        {"skipped_bytes", double(counts.skippedBytes)}, {"bad_fields", double(fixes.badFields)},
-        {"repeated", double(fixes.repeated)},           {"late", double(fixes.late)}};
-    if (view_.fixes().lastFault())
-        nmea.insert("last_fault", QString("field %1: expected %2")
-                                      .arg(view_.fixes().lastFault().field)
-                                      .arg(view_.fixes().lastFault().expected));
+    NmeaCounts nmea{counts.sentences,
+                    counts.badChecksum,
+                    counts.noChecksum,
+                    counts.tooLong,
+                    counts.badByte,
+                    counts.cutShort,
+                    counts.skippedBytes,
+                    fixes.badFields,
+                    fixes.repeated,
+                    fixes.late,
+                    {}};
+    if (const nmea::FieldFault &fault = view_.fixes().lastFault())
+        nmea.lastFault = QString("field %1: expected %2").arg(fault.field).arg(fault.expected);
     return nmea;
 }
 

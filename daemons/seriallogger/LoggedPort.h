@@ -3,8 +3,7 @@
 #include "common/daemon/Health.h"
 #include "daemons/seriallogger/PortThread.h"
 #include "daemons/seriallogger/PortView.h"
-
-#include <QJsonObject>
+#include "daemons/seriallogger/SerialMessages.h"
 
 namespace hermes {
 
@@ -24,13 +23,12 @@ public:
     ChunkQueue &recordingQueue() { return recording_; }
     PortView &view() { return view_; }
     PortThread &thread() { return thread_; }
-    /// Everything that is known of it, as ports.list shows it.
-    QJsonObject toJson() const;
+    PortStatus status() const;
     /// Level and message of its health item.
     std::pair<HealthLevel, QString> health() const;
 
 private:
-    QJsonObject nmeaJson() const;
+    NmeaCounts nmeaCounts() const;
 
     const PortSettings settings_;
     ChunkQueue recording_;

@@ -19,20 +19,13 @@ void SerialLogger::declareSettings() {
 }
 
 void SerialLogger::declareTopics() {
+    addTopic(Topic("lines", "Each line of the ports with view lines or nmea").carries<LineMessage>());
+    addTopic(Topic("fix", "Each fix of the ports with view nmea; null is what the receiver does not know")
+                 .carries<FixMessage>());
     addTopic(
-        Topic("lines",
-              "Each line of the ports with view lines or nmea: port, stamp (s) and mono (s) of its first "
-              "byte, text (printable ASCII; \\\\ and \\xHH for the rest), cut (more of it follows)")
-            .schema({{"type", "object"}}));
-    addTopic(Topic("fix",
-                   "Each fix of the ports with view nmea: port, stamp and mono of its arrival, time (s since "
-                   "the epoch by the satellites), valid, lat_deg, lon_deg, alt (m above sea level), quality, "
-                   "satellites, hdop, speed (m/s), course_deg (clockwise from north); null where unknown")
-                 .schema({{"type", "object"}}));
-    addTopic(Topic("serial", "Once a second: ports as ports.list gives them, whether they are recorded, and "
-                             "source as source.open gives it")
-                 .schema({{"type", "object"}})
-                 .snapshot([this] { return state(); }));
+        Topic("serial", "State of ports and source, once a second").carries<SerialMessage>().snapshot([this] {
+            return state();
+        }));
 }
 
 void SerialLogger::declareSourceCommands() {
@@ -45,13 +38,13 @@ void SerialLogger::declareSourceCommands() {
             .param(Field::number("speed", "Of the replay: 1 real time").range(0.001, 1000).byDefault(1))
             .param(pausedParam())
             .param(delayParam())
-            .returns({{"type", "object"}})
+            .gives<SourceStatus>()
             .example({{"recording", "drive"}}, QJsonObject{{"state", "replay"}, {"name", "/data/drive"}})
             .handler([this](const Call &call) { return openSource(call); }));
     addCommand(pauseCommand([this](bool paused) { return pause(paused); }));
     addCommand(Command("source.status", "What the topic serial says, now")
-                   .returns({{"type", "object"}})
-                   .handler([this](const Call &) -> Result<QJsonValue> { return state(); }));
+                   .gives<SerialMessage>()
+                   .handler([this](const Call &) { return asJson(state()); }));
 }
 
 void SerialLogger::declareCommands() {
@@ -67,19 +60,16 @@ void SerialLogger::declareCommands() {
                        .choices({"lines", "bytes", "fixes"})
                        .byDefault("lines"))
             .param(Field::boolean("force", "Replace the CSV of an earlier export").byDefault(false))
-            .returns({{"type", "object"}})
+            .gives<ExportAnswer>()
             .example({{"name", "drive"}, {"port", "gps"}},
                      QJsonObject{{"path", "/data/drive/seriallogger-gps-lines.csv"}, {"rows", 4711}})
             .asyncHandler([this](const Call &call, const Reply &reply) { exportRecording(call, reply); }));
-    addCommand(Command("ports.list",
-                       "Of each port: state, reason why it is closed, device, times opened, failures, bytes, "
-                       "bytes_per_s, sent, lost (bytes that the disk was too slow for), errors that the "
-                       "system tells of, last_stamp, and with view nmea counts of sentences and the last fix")
-                   .returns({{"type", "array"}})
-                   .handler([this](const Call &) -> Result<QJsonValue> { return portList(); }));
+    addCommand(Command("ports.list", "State of each port, and what came from it")
+                   .gives<std::vector<PortStatus>>()
+                   .handler([this](const Call &) { return asJson(portList()); }));
     addCommand(Command("mark", "Puts a text with the time into the events of the recording")
                    .param(Field::text("text", "What to remember").with("maxLength", 1000))
-                   .returns({{"type", "object"}})
+                   .gives<MarkAnswer>()
                    .example({{"text", "at the door"}}, QJsonObject{{"stamp", 1.7e9}, {"mono", 4711.5}})
                    .handler([this](const Call &call) { return mark(call); }));
     addCommand(
@@ -89,7 +79,7 @@ void SerialLogger::declareCommands() {
                        .with("maxLength", 65536)
                        .optional())
             .param(Field::text("text", "Instead of bytes; sent as UTF-8").with("maxLength", 65536).optional())
-            .returns({{"type", "object"}})
+            .gives<SendAnswer>()
             .example({{"port", "gps"}, {"text", "$PMTK220,200*2C\r\n"}}, QJsonObject{{"sent", 17}})
             .asyncHandler([this](const Call &call, const Reply &reply) { send(call, reply); }));
 }

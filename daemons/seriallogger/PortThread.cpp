@@ -2,6 +2,8 @@
 
 #include "common/Realtime.h"
 #include "common/interface/InterfaceRegistry.h"
+#include "daemons/seriallogger/SerialMessages.h"
+#include "protocol/wire/Fields.h"
 
 #include <QFileInfo>
 #include <QJsonObject>
@@ -120,7 +122,7 @@ void PortThread::send(const QByteArray &bytes, const Reply &reply) {
                 const std::lock_guard<std::mutex> lock(mutex_);
                 state_.counters = carrier_->counters();
             }
-            return reply.result(QJsonObject{{"sent", bytes.size()}});
+            return reply.result(asJson(SendAnswer{bytes.size()}));
         }
         reply.error(
             Error(ErrorCode::NotReady,

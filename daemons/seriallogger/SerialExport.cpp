@@ -1,10 +1,10 @@
 #include "daemons/seriallogger/SerialExport.h"
 
 #include "common/recording/DiskError.h"
-#include "daemons/seriallogger/FixJson.h"
 #include "daemons/seriallogger/FixTracker.h"
 #include "daemons/seriallogger/LineSplitter.h"
 #include "daemons/seriallogger/SerialLogReader.h"
+#include "daemons/seriallogger/SerialMessages.h"
 
 #include <QSaveFile>
 
@@ -13,9 +13,6 @@
 namespace hermes {
 
 namespace {
-
-constexpr const char *fixColumns[] = {"time",    "valid",      "lat_deg", "lon_deg", "alt",
-                                      "quality", "satellites", "hdop",    "speed",   "course_deg"};
 
 std::string_view viewOf(const QByteArray &bytes) {
     return {bytes.constData(), std::size_t(bytes.size())};
@@ -36,10 +33,8 @@ QByteArray quoted(QByteArray text) {
     return '"' + text.replace('"', "\"\"") + '"';
 }
 
-QByteArray cell(const QJsonValue &value) {
-    if (value.isBool())
-        return value.toBool() ? "1" : "0";
-    return value.isDouble() ? QByteArray::number(value.toDouble(), 'g', 17) : QByteArray();
+QByteArray cell(std::optional<double> value) {
+    return value ? QByteArray::number(*value, 'g', 17) : QByteArray();
 }
 
 /// Makes the rows of one kind from pieces.
@@ -61,10 +56,7 @@ public:
         case ExportRows::Fixes:
             break;
         }
-        QByteArray columns = "stamp,mono";
-        for (const char *column : fixColumns)
-            columns += ',' + QByteArray(column);
-        return columns;
+        return "stamp,mono,time,valid,lat_deg,lon_deg,alt,quality,satellites,hdop,speed,course_deg";
     }
 
     void feed(const SerialLogReader::Piece &piece) {
@@ -90,10 +82,12 @@ private:
     }
     FixTracker::Sink fixSink() {
         return [this](const Fix &fix) {
-            const QJsonObject values = toJson(fix);
+            const FixValues f = valuesOf(fix);
             QByteArray row = times(fix.arrival);
-            for (const char *column : fixColumns)
-                row += ',' + cell(values.value(column));
+            for (const std::optional<double> &value : std::initializer_list<std::optional<double>>{
+                     f.time, f.valid, f.lat_deg, f.lon_deg, f.alt, f.quality, f.satellites, f.hdop, f.speed,
+                     f.course_deg})
+                row += ',' + cell(value);
             write_(row);
         };
     }
@@ -106,14 +100,14 @@ private:
 
 } // namespace
 
-Result<double> SerialExport::run(const std::atomic<bool> &cancel) const {
+Result<quint64> SerialExport::run(const std::atomic<bool> &cancel) const {
     SerialLogReader reader;
     if (const Result<void> opened = reader.open(base); !opened)
         return opened.error();
     QSaveFile file(target);
     if (!file.open(QIODevice::WriteOnly))
         return diskError(target + ": cannot be made: " + file.errorString(), target);
-    double count = 0;
+    quint64 count = 0;
     RowMaker maker(rows, checksum, [&](const QByteArray &row) {
         file.write(row + '\n');
         ++count;

@@ -20,7 +20,7 @@ struct SerialExport {
     nmea::ChecksumRule checksum = nmea::ChecksumRule::Strict;
 
     /// The number of rows without the header. cancel: ends it early with an error.
-    Result<double> run(const std::atomic<bool> &cancel) const;
+    Result<quint64> run(const std::atomic<bool> &cancel) const;
 };
 
 } // namespace hermes

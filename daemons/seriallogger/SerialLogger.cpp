@@ -3,7 +3,6 @@
 #include "common/Log.h"
 #include "common/recording/DiskError.h"
 #include "common/recording/SessionFolder.h"
-#include "daemons/seriallogger/FixJson.h"
 #include "daemons/seriallogger/SerialExport.h"
 
 #include <QDir>
@@ -101,7 +100,7 @@ Result<QJsonValue> SerialLogger::mark(const Call &call) {
     if (!recorder_.note("mark", {{"text", call.text("text")}}, now))
         return Error(ErrorCode::NotReady, "nothing is being recorded, or the disk does not keep up; "
                                           "record.start begins");
-    return QJsonObject{{"stamp", now.stamp()}, {"mono", now.mono()}};
+    return asJson(MarkAnswer{now.stamp(), now.mono()});
 }
 
 void SerialLogger::send(const Call &call, const Reply &reply) {
@@ -139,8 +138,8 @@ void SerialLogger::exportRecording(const Call &call, const Reply &reply) {
     if (QFile::exists(job.target) && !call.flag("force"))
         return reply.error(diskError(job.target + ": it exists already; force=true replaces it", job.target));
     exports_.start(QRunnable::create([this, job, reply] {
-        const Result<double> count = job.run(cancelExports_);
-        reply.give(count ? Result<QJsonValue>(QJsonObject{{"path", job.target}, {"rows", *count}})
+        const Result<quint64> count = job.run(cancelExports_);
+        reply.give(count ? Result<QJsonValue>(asJson(ExportAnswer{job.target, *count}))
                          : Result<QJsonValue>(count.error()));
     }));
 }
@@ -157,20 +156,14 @@ std::function<void()> SerialLogger::viewFilled() {
 
 PortView::Sinks SerialLogger::sinks(const QString &port) {
     const auto line = [this, port](const LineSplitter::Line &found) {
-        if (!hasSubscribers("lines"))
-            return;
-        publish("lines",
-                QJsonObject{{"port", port},
-                            {"stamp", found.arrival.stamp()},
-                            {"mono", found.arrival.mono()},
-                            {"text", QString::fromStdString(escaped(found.bytes))},
-                            {"cut", found.cut}},
-                found.arrival.stamp());
+        const auto message = [&] {
+            return LineMessage{port, found.arrival.stamp(), found.arrival.mono(),
+                               QString::fromStdString(escaped(found.bytes)), found.cut};
+        };
+        publish("lines", message, found.arrival.stamp());
     };
     const auto fix = [this, port](const Fix &found) {
-        QJsonObject data = toJson(found);
-        data.insert("port", port);
-        publish("fix", data, found.arrival.stamp());
+        publish("fix", FixMessage{port, valuesOf(found)}, found.arrival.stamp());
     };
     return {line, fix};
 }
@@ -200,7 +193,7 @@ void SerialLogger::tick() {
 }
 
 QJsonObject SerialLogger::state() const {
-    return {{"ports", portList()}, {"recording", recording_.isActive()}, {"source", sourceState()}};
+    return {portList(), recording_.isActive(), sourceState()};
 }
 
 void SerialLogger::updateHealth() {
@@ -213,13 +206,13 @@ void SerialLogger::updateHealth() {
 
 void SerialLogger::updateHealth(const LoggedPort &port) {
     const auto [level, message] = port.health();
-    health().set("port " + port.settings().name, level, message, port.toJson());
+    health().set("port " + port.settings().name, level, message, asJson(port.status()).toObject());
 }
 
-QJsonArray SerialLogger::portList() const {
-    QJsonArray list;
+std::vector<PortStatus> SerialLogger::portList() const {
+    std::vector<PortStatus> list;
     for (const auto &port : ports_)
-        list.append(port->toJson());
+        list.push_back(port->status());
     return list;
 }
 

@@ -45,7 +45,7 @@ private:
     void openViews();
     void replayEnded(const Result<void> &result);
     Result<QJsonValue> pause(bool paused);
-    QJsonObject sourceState() const;
+    SourceStatus sourceState() const;
     void updateSourceHealth();
 
     /// For other threads to tell that a view was filled.
@@ -55,8 +55,8 @@ private:
     void tick();
     void updateHealth();
     void updateHealth(const LoggedPort &port);
-    QJsonArray portList() const;
-    QJsonObject state() const;
+    std::vector<PortStatus> portList() const;
+    SerialMessage state() const;
 
     std::vector<std::unique_ptr<LoggedPort>> ports_; ///< outlive the recorder, which takes from them
     SerialRecorder recorder_;

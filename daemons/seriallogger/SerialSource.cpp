@@ -19,7 +19,7 @@ Result<QJsonValue> SerialLogger::openSource(const Call &call) {
         return result.error();
     }
     updateHealth();
-    return sourceState();
+    return asJson(sourceState());
 }
 
 Result<void> SerialLogger::openRecording(const Call &call) {
@@ -83,22 +83,24 @@ Result<QJsonValue> SerialLogger::pause(bool paused) {
     if (source_ != Source::Replay)
         return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
     player_.setPaused(paused);
-    return sourceState();
+    return asJson(sourceState());
 }
 
-QJsonObject SerialLogger::sourceState() const {
+SourceStatus SerialLogger::sourceState() const {
+    SourceStatus status;
+    status.state = "live";
     if (source_ == Source::Live)
-        return {{"state", "live"}};
+        return status;
     const SerialPlayer::Status replay = player_.status();
-    QJsonObject state{{"state", source_ == Source::Replay ? "replay" : "ended"},
-                      {"name", sourceName_},
-                      {"speed", speed_},
-                      {"paused", replay.paused},
-                      {"position_s", replay.position_s},
-                      {"duration_s", replay.duration_s}};
+    status.state = source_ == Source::Replay ? "replay" : "ended";
+    status.name = sourceName_;
+    status.speed = speed_;
+    status.paused = replay.paused;
+    status.position_s = replay.position_s;
+    status.duration_s = replay.duration_s;
     if (!sourceError_.isEmpty())
-        state.insert("error", sourceError_);
-    return state;
+        status.error = sourceError_;
+    return status;
 }
 
 void SerialLogger::updateSourceHealth() {

@@ -97,11 +97,8 @@ void VelodyneLogger::declareTopics() {
     addTopic(Topic("cloud",
                    "Each turn of all lasers, thinned by the settings cloud.*: points in the sensor's frame")
                  .carries<CloudMessage>());
-    addTopic(Topic("lidar", "Once a second: source, model, rpm, packet_rate_hz, receive_buffer_bytes "
-                            "(granted), gps, and since the source "
-                            "was opened packets, turns, "
-                            "lost and wrong packets by kind, drops by kernel and queues, recording")
-                 .schema({{"type", "object"}})
+    addTopic(Topic("lidar", "State of source, sensor and recording, once a second")
+                 .carries<LidarMessage>()
                  .snapshot([this] { return lidarState(); }));
 }
 
@@ -121,7 +118,7 @@ void VelodyneLogger::declareSourceCommands() {
             .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false))
             .param(pausedParam())
             .param(delayParam())
-            .returns({{"type", "object"}})
+            .gives<SourceStatus>()
             .example({{"pcap", "drive.pcap"}, {"speed", 1}},
                      QJsonObject{{"state", "replay"}, {"name", "drive.pcap"}, {"speed", 1}})
             .handler([this](const Call &call) { return openSource(call); }));
@@ -140,19 +137,19 @@ void VelodyneLogger::declareSourceCommands() {
             .param(Field::number("t_s", "Seconds after the first packet, of a recording after its beginning")
                        .unit("s")
                        .range(0, 1e7))
-            .returns({{"type", "object"}})
+            .gives<SourceStatus>()
             .example({{"t_s", 60}}, QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}})
             .handler([this](const Call &call) { return seek(call.number("t_s")); }));
     addCommand(pauseCommand([this](bool paused) { return pause(paused); }));
     addCommand(Command("source.status", "What the topic lidar says, now")
-                   .returns({{"type", "object"}})
-                   .handler([this](const Call &) -> Result<QJsonValue> { return lidarState(); }));
+                   .gives<LidarMessage>()
+                   .handler([this](const Call &) { return asJson(lidarState()); }));
     addCommand(
         Command("capture.turn",
                 "Writes the next complete turn of all lasers to a file in the folder of recordings")
             .param(Field::text("name", "Of the file, without path"))
             .param(Field::text("format", "Of the file").choices({"csv", "pcd", "ply"}).byDefault("csv"))
-            .returns({{"type", "object"}})
+            .gives<CapturedTurn>()
             .example({{"name", "hall"}}, QJsonObject{{"path", "/data/hall.csv"}, {"points", 60123}})
             .asyncHandler([this](const Call &call, const Reply &reply) { captureTurn(call, reply); }));
 }

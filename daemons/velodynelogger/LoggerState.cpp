@@ -35,72 +35,78 @@ QString VelodyneLogger::toText(Source source) {
     return {};
 }
 
-QJsonObject VelodyneLogger::sourceState() const {
-    QJsonObject state{{"state", toText(source_)}, {"name", sourceName_}};
+SourceStatus VelodyneLogger::sourceState() const {
+    SourceStatus status;
+    status.state = toText(source_);
+    status.name = sourceName_;
     if (source_ == Source::Replay || source_ == Source::Ended) {
         const PcapPlayer::Status replay = feed_.player().status();
-        state.insert("speed", play_.speed);
-        state.insert("loop", play_.loop);
-        state.insert("loops", double(replay.loops));
-        state.insert("paused", replay.paused);
-        state.insert("position_s", replay.position_s);
-        state.insert("duration_s", replay.duration_s ? QJsonValue(*replay.duration_s) : QJsonValue());
+        status.speed = play_.speed;
+        status.loop = play_.loop;
+        status.loops = replay.loops;
+        status.paused = replay.paused;
+        status.position_s = replay.position_s;
+        status.duration_s = replay.duration_s;
     }
     if (!sourceError_.isEmpty())
-        state.insert("error", sourceError_);
-    return state;
+        status.error = sourceError_;
+    return status;
 }
 
-/// What the position packets tell; {} before the first.
-QJsonObject VelodyneLogger::gpsState() const {
+LidarGps VelodyneLogger::gpsState() const {
     const velodyne::GpsReader::State gps = feed_.gps();
     const velodyne::GpsReader::Counts counts = feed_.counts().gps;
+    LidarGps state;
     if (counts.packets == 0)
-        return {};
-    QJsonObject state{{"pps", velodyne::toText(gps.packet.pps)},
-                      {"valid", gps.valid},
-                      {"locked", gps.utc_ns.has_value()},
-                      {"nmea", QString::fromLatin1(gps.packet.nmea.data(), int(gps.packet.nmea.size()))},
-                      {"packets", double(counts.packets)},
-                      {"wrong_value", double(counts.wrongValue)},
-                      {"bad_nmea", double(counts.badNmea)}};
+        return state;
+    state.pps = velodyne::toText(gps.packet.pps);
+    state.nmea = QString::fromLatin1(gps.packet.nmea.data(), int(gps.packet.nmea.size()));
+    state.valid = gps.valid;
+    state.locked = gps.utc_ns.has_value();
+    state.packets = counts.packets;
+    state.wrongValue = counts.wrongValue;
+    state.badNmea = counts.badNmea;
     if (gps.utc_ns)
-        state.insert("utc", double(*gps.utc_ns) * 1e-9);
+        state.utc = double(*gps.utc_ns) * 1e-9;
     if (gps.position) {
-        state.insert("latitude_deg", gps.position->latitude_deg);
-        state.insert("longitude_deg", gps.position->longitude_deg);
+        state.latitude_deg = gps.position->latitude_deg;
+        state.longitude_deg = gps.position->longitude_deg;
     }
     return state;
 }
 
-QJsonObject VelodyneLogger::lidarState() {
+LidarMessage VelodyneLogger::lidarState() const {
     const LidarFeed::Counts counts = feed_.counts();
     const velodyne::PacketCounts &packets = counts.packets;
-    return {{"source", sourceState()},
-            {"model", counts.model ? QJsonValue(counts.model->name) : QJsonValue()},
-            {"sensor", counts.decoded ? QJsonValue(textOf(*counts.decoded)) : QJsonValue()},
-            {"rpm", counts.rpm},
-            {"packet_rate_hz", packetRate_},
-            {"gps", gpsState()},
-            {"packets", double(packets.packets)},
-            {"turns", double(counts.turns)},
-            {"lost", double(packets.lost)},
-            {"gaps", double(packets.gaps)},
-            {"out_of_order", double(packets.outOfOrder)},
-            {"clock_jumps", double(packets.clockJumps)},
-            {"wrong_size", double(packets.wrongSize)},
-            {"wrong_flag", double(packets.wrongFlag)},
-            {"wrong_value", double(packets.wrongValue)},
-            {"other_model", double(packets.otherModel)},
-            {"other_sensors", double(counts.otherSensors)},
-            {"position_packets", double(counts.gps.packets)},
-            {"other_datagrams", double(counts.other + counts.udp.tooLong)},
-            {"kernel_drops", double(counts.udp.kernelDrops)},
-            {"decoder_drops", double(counts.udp.decoderDrops)},
-            {"receive_buffer_bytes", counts.udp.bufferBytes},
-            {"turns_dropped", double(counts.turnsDropped)},
-            {"clouds_dropped", double(counts.cloudsDropped)},
-            {"recording", recording_.status()}};
+    LidarMessage state;
+    state.source = sourceState();
+    if (counts.model)
+        state.model = counts.model->name;
+    if (counts.decoded)
+        state.sensor = textOf(*counts.decoded);
+    state.rpm = counts.rpm;
+    state.packetRate_hz = packetRate_;
+    state.gps = gpsState();
+    state.packets = packets.packets;
+    state.turns = counts.turns;
+    state.lost = packets.lost;
+    state.gaps = packets.gaps;
+    state.outOfOrder = packets.outOfOrder;
+    state.clockJumps = packets.clockJumps;
+    state.wrongSize = packets.wrongSize;
+    state.wrongFlag = packets.wrongFlag;
+    state.wrongValue = packets.wrongValue;
+    state.otherModel = packets.otherModel;
+    state.otherSensors = counts.otherSensors;
+    state.positionPackets = counts.gps.packets;
+    state.otherDatagrams = counts.other + counts.udp.tooLong;
+    state.kernelDrops = counts.udp.kernelDrops;
+    state.decoderDrops = counts.udp.decoderDrops;
+    state.receiveBufferBytes = counts.udp.bufferBytes;
+    state.turnsDropped = counts.turnsDropped;
+    state.cloudsDropped = counts.cloudsDropped;
+    state.recording = recording_.status();
+    return state;
 }
 
 void VelodyneLogger::updateHealth() {

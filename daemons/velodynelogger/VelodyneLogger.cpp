@@ -169,7 +169,7 @@ Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
     updateHealth();
     if (!result)
         return result.error();
-    return sourceState();
+    return asJson(sourceState());
 }
 
 /// The time of the replay is that of the recording, which began before its first packet.
@@ -208,14 +208,14 @@ Result<QJsonValue> VelodyneLogger::seek(double time_s) {
     if (source_ != Source::Replay)
         return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
     feed_.player().seek(time_s);
-    return sourceState();
+    return asJson(sourceState());
 }
 
 Result<QJsonValue> VelodyneLogger::pause(bool paused) {
     if (source_ != Source::Replay)
         return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
     feed_.player().setPaused(paused);
-    return sourceState();
+    return asJson(sourceState());
 }
 
 void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
@@ -236,7 +236,7 @@ void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
             if (!written)
                 reply.error(written.error());
             else
-                reply.result(QJsonObject{{"path", path}, {"points", double(copy.points.size())}});
+                reply.result(asJson(CapturedTurn{path, copy.points.size()}));
         }));
     });
 }

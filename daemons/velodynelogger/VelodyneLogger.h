@@ -3,6 +3,7 @@
 #include "common/daemon/Daemon.h"
 #include "common/recording/Recording.h"
 #include "daemons/velodynelogger/LidarFeed.h"
+#include "daemons/velodynelogger/LidarMessage.h"
 #include "daemons/velodynelogger/RecordFolder.h"
 
 #include <QElapsedTimer>
@@ -48,9 +49,9 @@ private:
     bool mayPublish();
     void updateClouds();
     void tick();
-    QJsonObject lidarState();
-    QJsonObject sourceState() const;
-    QJsonObject gpsState() const;
+    LidarMessage lidarState() const;
+    SourceStatus sourceState() const;
+    LidarGps gpsState() const;
     void updateHealth();
     void updateSourceHealth(const LidarFeed::Counts &counts);
 

@@ -5,6 +5,8 @@
 #include "common/daemon/CommandLine.h"
 #include "common/settings/DottedPath.h"
 #include "gui/hermesctl/Markdown.h"
+#include "protocol/messages/Daemons.h"
+#include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QDateTime>
@@ -46,12 +48,14 @@ Result<QJsonObject> assignments(const QStringList &words, bool nested) {
     return object;
 }
 
-QString logLine(const QJsonValue &record) {
-    const auto time =
-        QDateTime::fromMSecsSinceEpoch(qint64(record[QStringLiteral("stamp")].toDouble() * 1000));
+QString logLine(WireView record) {
+    ReadReport report;
+    const auto read = readMessage<LogMessage>(record, report);
+    if (!read)
+        return QStringLiteral("a record of the log cannot be read: ") + report.text();
+    const auto time = QDateTime::fromMSecsSinceEpoch(qint64(read->stamp * 1000));
     return QStringLiteral("%1 %2 %3: %4")
-        .arg(time.toString(Qt::ISODateWithMs), record[QStringLiteral("level")].toString(),
-             record[QStringLiteral("source")].toString(), record[QStringLiteral("text")].toString());
+        .arg(time.toString(Qt::ISODateWithMs), read->level, read->source, read->text);
 }
 
 } // namespace
@@ -158,13 +162,13 @@ Result<void> showLog(Client &client, const Arguments &arguments) {
     if (!records)
         return records.error();
     for (const QJsonValue &record : records->toArray())
-        printLine(logLine(record));
+        printLine(logLine(WireValue(record)));
     if (!arguments.follow)
         return {};
     QEventLoop loop;
     QObject::connect(&client, &Client::disconnected, &loop, &QEventLoop::quit);
     client.subscribe(QStringLiteral("log"), {{QStringLiteral("queue"), 1000}},
-                     [](const TopicUpdate &update) { printLine(logLine(update.json())); });
+                     [](const TopicUpdate &update) { printLine(logLine(update.data)); });
     loop.exec();
     return Error(ErrorCode::Disconnected, client.lastError());
 }

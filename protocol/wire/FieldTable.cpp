@@ -56,13 +56,17 @@ void FieldTable::read(WireView in, void *message, ReadReport &report) const {
     report.unknown += in.size() - known;
 }
 
+QJsonObject orNull(QJsonObject schema) {
+    const QJsonValue type = schema.value(QStringLiteral("type"));
+    if (type.isString())
+        schema.insert(QStringLiteral("type"), QJsonArray{type, QStringLiteral("null")});
+    return schema;
+}
+
 QJsonObject FieldTable::schemaOf(const Entry &entry) {
     QJsonObject schema = entry.schema(entry.limits);
-    if (entry.isNullable) {
-        const QJsonValue type = schema.value(QStringLiteral("type"));
-        if (type.isString())
-            schema.insert(QStringLiteral("type"), QJsonArray{type, QStringLiteral("null")});
-    }
+    if (entry.isNullable)
+        schema = orNull(schema);
     for (auto keyword = entry.keywords.begin(); keyword != entry.keywords.end(); ++keyword)
         schema.insert(keyword.key(), keyword.value());
     return schema;

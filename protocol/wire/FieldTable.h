@@ -33,6 +33,9 @@ struct Limits {
     std::size_t elements = 10000000;
 };
 
+/// A schema that allows null too.
+QJsonObject orNull(QJsonObject schema);
+
 /// How the fields of a struct are named on the wire and what they mean: writing, checked reading and the JSON
 /// Schema follow from it. Made by Fields<T>.
 class FieldTable {

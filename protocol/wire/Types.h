@@ -76,6 +76,20 @@ struct Type<std::string> {
     static QJsonObject schema(const Limits &limits) { return Type<QString>::schema(limits); }
 };
 
+/// Null where there is none. In a field, which is left out where there is none, a std::optional of it.
+template <typename T>
+struct Type<std::optional<T>> {
+    static void write(WireWriter &out, const std::optional<T> &value) {
+        value ? Type<T>::write(out, *value) : out.null();
+    }
+    static void read(WireView in, std::optional<T> &value, const Limits &limits, ReadReport &report) {
+        value.reset();
+        if (in.kind() != WireView::Kind::Null)
+            Type<T>::read(in, value.emplace(), limits, report);
+    }
+    static QJsonObject schema(const Limits &limits) { return orNull(Type<T>::schema(limits)); }
+};
+
 /// Open: any JSON value.
 template <>
 struct Type<QJsonValue> {

@@ -83,13 +83,13 @@ struct Logger {
             qFatal("no answer came");
         return answer;
     }
-    QJsonObject item(const QString &name) {
-        for (const QJsonValue &item : health.toJson())
-            if (item.toObject().value("name") == name)
-                return item.toObject();
+    HealthItem item(const QString &name) {
+        for (const HealthItem &item : health.list())
+            if (item.name == name)
+                return item;
         return {};
     }
-    QString level(const QString &name) { return item(name).value("level").toString(); }
+    QString level(const QString &name) { return item(name).level; }
 
     Settings settings;
     Health health{nullptr};

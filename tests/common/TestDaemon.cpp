@@ -82,7 +82,7 @@ void TestDaemon::networkNeedsInsecure() {
     TestedDaemon insecure;
     QVERIFY(!insecure.prepare({"tested", "--listen", "tcp://0.0.0.0:0", "--set", "insecure=true"}));
     QVERIFY(insecure.launch());
-    const QByteArray status = compactJson(insecure.status());
+    const QByteArray status = compactJson(asJson(insecure.status()));
     QVERIFY2(status.contains("\"level\":\"warn\"") && status.contains("\"name\":\"insecure\""), status);
 }
 

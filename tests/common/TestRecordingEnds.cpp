@@ -52,7 +52,7 @@ void TestRecordingEnds::lowSpaceIsToldAndEndsTheRecording() {
     QCOMPARE(stopped.error().code, int(ErrorCode::InputOutput));
     QCOMPARE(stopped.error().data.toObject().value("path").toString(), root.path() + "/a");
     QCOMPARE(logger.level("recording"), "error");
-    QCOMPARE(logger.recording.status().value("error").toObject().value("code").toInt(), -32008);
+    QCOMPARE(logger.recording.status().error->code, -32008);
     const QJsonObject sidecar = sidecarOf(root.path() + "/a");
     QCOMPARE(sidecar.value("ended").toString(), "free space");
     QVERIFY(sidecar.value("complete").toBool());
@@ -126,7 +126,7 @@ void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone() {
     put(path, content);
     Logger logger(root.path());
     QTRY_COMPARE(logger.level("recording"), "warn");
-    QVERIFY(logger.item("recording").value("message").toString().contains(path));
+    QVERIFY(logger.item("recording").message.contains(path));
     const QJsonArray list = logger.call("record.list")->toArray();
     QCOMPARE(list.size(), 1);
     QVERIFY(list[0].toObject().value("error").toString().contains(path));

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "daemons/seriallogger/FixJson.h"
 #include "daemons/seriallogger/FixTracker.h"
+#include "daemons/seriallogger/SerialMessages.h"
+#include "protocol/wire/Fields.h"
 
 #include <QJsonArray>
 
@@ -39,7 +40,7 @@ private:
     static hermes::Arrival at(int ms) { return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000}; }
     hermes::FixTracker::Sink sink() {
         return [this](const hermes::Fix &fix) {
-            fixes << toJson(fix);
+            fixes << asJson(valuesOf(fix)).toObject();
             givenAt_ms << now_ms_;
         };
     }

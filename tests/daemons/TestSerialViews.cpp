@@ -1,6 +1,7 @@
-#include "daemons/seriallogger/FixJson.h"
 #include "daemons/seriallogger/FixTracker.h"
 #include "daemons/seriallogger/LineSplitter.h"
+#include "daemons/seriallogger/SerialMessages.h"
+#include "protocol/wire/Fields.h"
 
 #include <QtTest>
 
@@ -203,7 +204,7 @@ void TestSerialViews::damagedSentencesAreCounted() {
 void TestSerialViews::fixesAsJson() {
     FixTracker tracker(nmea::ChecksumRule::Strict);
     QJsonObject json;
-    const auto sink = [&](const Fix &fix) { json = toJson(fix); };
+    const auto sink = [&](const Fix &fix) { json = asJson(valuesOf(fix)).toObject(); };
     tracker.feed(viewOf(Sentence::rmc(7) + Sentence::gga(7)), at(2500), sink);
     QCOMPARE(json.value("stamp").toDouble(), 2.5);
     QCOMPARE(json.value("time").toDouble(), 1774267207.0);
@@ -219,7 +220,7 @@ void TestSerialViews::fixesAsJson() {
     tracker.feed(viewOf(Sentence::of("GPRMC,120008,V,,,,,,,230326") + Sentence::rmc(9)), at(3000),
                  [&](const Fix &fix) {
                      if (!fix.valid)
-                         json = toJson(fix);
+                         json = asJson(valuesOf(fix)).toObject();
                  });
     for (const char *unknown :
          {"lat_deg", "lon_deg", "alt", "quality", "satellites", "hdop", "speed", "course_deg"})

@@ -2,6 +2,7 @@
 
 #include "common/Project.h"
 #include "gui/desktop/widgets/ForeignText.h"
+#include "protocol/wire/Fields.h"
 
 #include <QElapsedTimer>
 #include <QJsonArray>
@@ -13,17 +14,16 @@ namespace {
 constexpr int longestName = 40;
 constexpr double usualRate_hz = 100;
 
-int severity(const QJsonValue &item) {
-    const QString level = item["level"].toString();
-    return level == "error" ? 3 : level == "stale" ? 2 : level == "warn" ? 1 : 0;
+int severity(const HealthItem &item) {
+    return item.level == "error" ? 3 : item.level == "stale" ? 2 : item.level == "warn" ? 1 : 0;
 }
 
-QJsonObject worstItem(const QJsonObject &status) {
-    QJsonValue worst;
-    for (const QJsonValue &item : status["health"].toArray())
+HealthItem worstItem(const DaemonStatus &status) {
+    HealthItem worst;
+    for (const HealthItem &item : status.health)
         if (severity(item) > severity(worst))
             worst = item;
-    return worst.toObject();
+    return worst;
 }
 
 } // namespace
@@ -40,12 +40,11 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
     connect(&timer_, &QTimer::timeout, this, &DaemonLink::poll);
     timer_.start(pollPeriod);
     client_.connectTo(address);
-    subscribe("status", {{"max_rate_hz", 10}},
-              [this](const TopicUpdate &update) { onStatus(update.json().toObject()); });
+    subscribe("status", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) { onStatus(update.data); });
 }
 
 QString DaemonLink::name() const {
-    const QString name = shortLine(info_["name"].toString(), longestName);
+    const QString name = shortLine(info_.name, longestName);
     if (!name.isEmpty())
         return name;
     const quint16 port = address_.section(':', -1).toUShort();
@@ -56,14 +55,14 @@ QString DaemonLink::name() const {
 }
 
 QString DaemonLink::title() const {
-    const QString title = shortLine(info_["title"].toString());
+    const QString title = shortLine(info_.title);
     return title.isEmpty() ? name() : title;
 }
 
 Condition DaemonLink::condition() const {
     if (!isConnected())
         return Condition::Unreachable;
-    const QString state = status_["state"].toString();
+    const QString &state = status_.state;
     const int worst = qMax(severity(worst_), isUnderstood() ? 0 : 1);
     if (state == "fault" || worst == 3)
         return Condition::Fault;
@@ -76,7 +75,7 @@ QString DaemonLink::conditionWord() const {
     const Condition now = condition();
     if (now == Condition::Unreachable)
         return tr("unreachable");
-    const QString state = shortLine(status_["state"].toString(), longestName);
+    const QString state = shortLine(status_.state, longestName);
     if (now == Condition::Warning && state != "degraded")
         return tr("warning");
     if (now == Condition::Fault && state != "fault")
@@ -88,8 +87,8 @@ QString DaemonLink::reason() const {
     if (!isConnected())
         return client_.lastError();
     QStringList lines;
-    if (!worst_.isEmpty())
-        lines.append(shortLine(worst_["name"].toString() + ": " + worst_["message"].toString()));
+    if (severity(worst_) > 0)
+        lines.append(shortLine(worst_.name + ": " + worst_.message));
     if (!nonsense_.isEmpty())
         lines.append(nonsense_);
     const Client::Rejected &rejected = client_.rejected();
@@ -150,15 +149,15 @@ void DaemonLink::onConnected() {
     poll();
     nonsense_.clear();
     call("daemon.info", {}, this, [this](const Result<QJsonValue> &info) {
-        if (!info || !info->isObject()) {
-            nonsense_ =
-                info ? tr("daemon.info is no object") : "daemon.info: " + shortLine(info.error().message);
+        ReadReport report;
+        const auto read = info ? readMessage<DaemonInfo>(WireValue(*info), report) : std::nullopt;
+        if (!read) {
+            nonsense_ = "daemon.info: " + shortLine(info ? report.text() : info.error().message);
             return Q_EMIT changed();
         }
-        const bool isSame = !description_.isEmpty() &&
-                            (*info)["description_hash"] == info_["description_hash"] &&
-                            info_.contains("description_hash");
-        info_ = info->toObject();
+        const bool isSame = !description_.isEmpty() && !read->descriptionHash.isEmpty() &&
+                            read->descriptionHash == info_.descriptionHash;
+        info_ = *read;
         Q_EMIT changed();
         if (isSame) {
             Q_EMIT ready();
@@ -193,9 +192,12 @@ void DaemonLink::onDescription(const QJsonValue &description) {
     Q_EMIT ready();
 }
 
-void DaemonLink::onStatus(const QJsonObject &status) {
-    status_ = status;
-    worst_ = worstItem(status);
+void DaemonLink::onStatus(WireView status) {
+    ReadReport report;
+    status_ = readMessage<DaemonStatus>(status, report).value_or(DaemonStatus());
+    if (report.hasFailed())
+        nonsense_ = "daemon.status: " + shortLine(report.text());
+    worst_ = worstItem(status_);
     Q_EMIT changed();
 }
 
@@ -214,9 +216,7 @@ void DaemonLink::poll() {
         if (!status)
             return;
         latency_ms_ = double(time.nsecsElapsed()) * 1e-6;
-        if (!status->isObject())
-            nonsense_ = tr("daemon.status is no object");
-        onStatus(status->toObject());
+        onStatus(WireValue(*status));
     });
 }
 

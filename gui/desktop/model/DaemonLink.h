@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/model/NewestOnly.h"
+#include "protocol/messages/Daemons.h"
 
 #include <QHash>
 #include <QJsonObject>
@@ -35,7 +36,7 @@ public:
     QString title() const;
     bool isConnected() const { return client_.isConnected(); }
     /// It has answered once; what it said then is still here when the connection is gone.
-    bool isKnown() const { return !info_.isEmpty(); }
+    bool isKnown() const { return !info_.name.isEmpty(); }
 
     Condition condition() const;
     /// What stands behind the condition in one word: the daemon's own state, "warning" or "unreachable".
@@ -45,8 +46,7 @@ public:
     /// The time of a request and its reply in milliseconds; negative: not measured.
     double latency_ms() const { return isConnected() ? latency_ms_ : -1; }
 
-    const QJsonObject &info() const { return info_; }
-    const QJsonObject &status() const { return status_; }
+    const DaemonStatus &status() const { return status_; }
     /// OpenRPC, with "x-topics".
     const QJsonObject &description() const { return description_; }
     /// The description of a method; empty when the daemon does not have it.
@@ -79,15 +79,17 @@ Q_SIGNALS:
 private:
     void onConnected();
     void onDescription(const QJsonValue &description);
-    void onStatus(const QJsonObject &status);
+    void onStatus(WireView status);
     bool isUnderstood() const;
     void poll();
 
     const QString address_;
     Client client_;
     QTimer timer_;
-    QJsonObject info_, status_, description_;
-    QJsonObject worst_; // health item
+    DaemonInfo info_;
+    DaemonStatus status_;
+    HealthItem worst_; // without a name: all is well
+    QJsonObject description_;
     QHash<QString, QJsonObject> methods_;
     QSet<QString> topics_;
     QStringList topicNames_;

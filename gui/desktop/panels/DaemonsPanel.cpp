@@ -151,20 +151,21 @@ void DaemonsPanel::showDaemon(QTreeWidgetItem &item, const Robot &robot, const D
     setText(item, daemon.name(), isStopped ? processState : daemon.conditionWord(), daemon.condition(),
             toolTip.join('\n'));
 
-    const QJsonArray health = daemon.isConnected() ? daemon.status()["health"].toArray() : QJsonArray();
-    const int shown = qMin(health.size(), mostHealthItems);
-    const int rows = shown + (health.size() > shown ? 1 : 0);
+    const std::vector<HealthItem> &health = daemon.status().health;
+    const int count = daemon.isConnected() ? int(health.size()) : 0;
+    const int shown = qMin(count, mostHealthItems);
+    const int rows = shown + (count > shown ? 1 : 0);
     while (item.childCount() > rows)
         delete item.takeChild(item.childCount() - 1);
     while (item.childCount() < rows)
         item.addChild(new QTreeWidgetItem);
     for (int i = 0; i < shown; ++i) {
-        const QString level = shortLine(health[i]["level"].toString(), longestWord);
-        setText(*item.child(i), shortLine(health[i]["name"].toString(), longestName), level,
-                conditionOf(level), health[i]["message"].toString());
+        const HealthItem &one = health[std::size_t(i)];
+        setText(*item.child(i), shortLine(one.name, longestName), shortLine(one.level, longestWord),
+                conditionOf(one.level), one.message);
     }
     if (rows > shown)
-        setText(*item.child(shown), tr("%1 more").arg(health.size() - shown), {}, Condition::Warning, {});
+        setText(*item.child(shown), tr("%1 more").arg(count - shown), {}, Condition::Warning, {});
 }
 
 void DaemonsPanel::showChosen() {

@@ -3,6 +3,7 @@
 #include "common/Time.h"
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/PlainLabel.h"
+#include "protocol/wire/Fields.h"
 
 #include <QComboBox>
 #include <QDateTime>
@@ -20,6 +21,7 @@ namespace {
 
 const QStringList levels{"debug", "info", "warning", "error"};
 constexpr int usualLevel = 1;
+constexpr int lastRecords = 100; // of a daemon's, before the panel follows it
 constexpr int longestText = 500;
 
 QBrush colourOf(int level) {
@@ -78,25 +80,27 @@ void LogPanel::followAll() {
 void LogPanel::follow(DaemonLink *daemon) {
     followed_.insert(daemon);
     connect(daemon, &QObject::destroyed, this, [this, daemon] { followed_.remove(daemon); });
-    daemon->subscribe("log", {{"queue", 100}}, [this, daemon](const TopicUpdate &update) {
-        add(daemon->name(), update.json().toObject());
-    });
-    daemon->call("log.tail", {{"count", 100}}, this, [this, name = daemon->name()](const auto &tail) {
-        if (!tail)
+    daemon->subscribe("log", {{"queue", lastRecords}},
+                      [this, daemon](const TopicUpdate &update) { add(daemon->name(), update.data); });
+    daemon->call("log.tail", {{"count", lastRecords}}, this, [this, name = daemon->name()](const auto &tail) {
+        if (!tail || !tail->isArray())
             return;
-        for (const QJsonValue &record : tail->toArray())
-            add(name, record.toObject());
+        const WireValue records(*tail);
+        for (std::size_t i = records.size() - qMin(records.size(), std::size_t(lastRecords));
+             i < records.size(); ++i)
+            add(name, records[i]);
     });
 }
 
-void LogPanel::add(const QString &daemon, const QJsonObject &record) {
+void LogPanel::add(const QString &daemon, WireView record) {
+    ReadReport report;
+    const auto message = readMessage<LogMessage>(record, report);
+    const LogMessage read = message ? *message : LogMessage{-1, "warning", "log", report.text()};
     // Sorted by the time at which it came, and with a level that is shown, where it has none that makes
     // sense.
-    const double stamp = record["stamp"].toDouble(-1);
-    const int level = levels.indexOf(record["level"].toString());
-    const QString text = record["source"].toString() + ": " + record["text"].toString();
-    const Record made{timeOf(stamp) ? stamp : stampNow(), daemon, level < 0 ? usualLevel : level,
-                      shortLine(text, longestText)};
+    const int level = levels.indexOf(read.level);
+    const Record made{timeOf(read.stamp) ? read.stamp : stampNow(), daemon, level < 0 ? usualLevel : level,
+                      shortLine(read.source + ": " + read.text, longestText)};
     isUnsorted_ = isUnsorted_ || (!records_.empty() && made.stamp < records_.back().stamp);
     records_.push_back(made);
     ++newRecords_;

@@ -2,7 +2,6 @@
 
 #include "gui/desktop/model/Fleet.h"
 
-#include <QJsonArray>
 #include <QSet>
 #include <QTimer>
 #include <QWidget>
@@ -37,7 +36,7 @@ private:
 
     void followAll();
     void follow(DaemonLink *daemon);
-    void add(const QString &daemon, const QJsonObject &record);
+    void add(const QString &daemon, WireView record);
     bool passes(const Record &record) const;
     void append(const std::vector<const Record *> &records);
     void refresh();

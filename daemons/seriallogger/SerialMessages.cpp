@@ -1,0 +1,143 @@
+#include "daemons/seriallogger/SerialMessages.h"
+
+#include "protocol/wire/Fields.h"
+
+namespace hermes {
+
+FixValues valuesOf(const Fix &fix) {
+    FixValues values{
+        fix.arrival.stamp(), fix.arrival.mono(), fix.time,       fix.valid, {},        {},
+        fix.altitude,        fix.quality,        fix.satellites, fix.hdop,  fix.speed, fix.course_deg};
+    if (fix.position) {
+        values.lat_deg = fix.position->latitude_deg;
+        values.lon_deg = fix.position->longitude_deg;
+    }
+    return values;
+}
+
+template <>
+const Fields<LineMessage> &fieldsOf<LineMessage>() {
+    using L = LineMessage;
+    static const auto fields = Fields<L>()
+                                   .add("port", &L::port, "That it came from")
+                                   .add("stamp", &L::stamp, "Of its first byte, since the Unix epoch", "s")
+                                   .add("mono", &L::mono, "The stamp on a clock that never jumps", "s")
+                                   .add("text", &L::text, "Printable ASCII; \\\\ and \\xHH for the rest")
+                                   .add("cut", &L::cut, "More of the line follows");
+    return fields;
+}
+
+template <>
+const Fields<FixValues> &fieldsOf<FixValues>() {
+    using F = FixValues;
+    static const auto fields =
+        Fields<F>()
+            .add("stamp", &F::stamp, "When it came, since the Unix epoch", "s")
+            .add("mono", &F::mono, "The stamp on a clock that never jumps", "s")
+            .add("time", &F::time, "Of the fix by the satellites, since the Unix epoch", "s")
+            .orNull()
+            .add("valid", &F::valid, "The receiver vouches for it")
+            .add("lat_deg", &F::lat_deg, "North", "deg")
+            .orNull()
+            .add("lon_deg", &F::lon_deg, "East", "deg")
+            .orNull()
+            .add("alt", &F::alt, "Above mean sea level", "m")
+            .orNull()
+            .add("quality", &F::quality, "As of GGA")
+            .orNull()
+            .add("satellites", &F::satellites, "Used")
+            .orNull()
+            .add("hdop", &F::hdop, "Dilution of the horizontal position")
+            .orNull()
+            .add("speed", &F::speed, "Over ground", "m/s")
+            .orNull()
+            .add("course_deg", &F::course_deg, "Clockwise from north", "deg")
+            .orNull();
+    return fields;
+}
+
+template <>
+const Fields<FixMessage> &fieldsOf<FixMessage>() {
+    static const auto fields =
+        Fields<FixMessage>().add("port", &FixMessage::port, "That it came from").include(&FixMessage::values);
+    return fields;
+}
+
+template <>
+const Fields<NmeaCounts> &fieldsOf<NmeaCounts>() {
+    using N = NmeaCounts;
+    static const auto fields = Fields<N>()
+                                   .add("sentences", &N::sentences, "Whole ones")
+                                   .add("bad_checksum", &N::badChecksum, "Damaged sentences")
+                                   .add("no_checksum", &N::noChecksum, "Sentences refused, as they have none")
+                                   .add("too_long", &N::tooLong, "Sentences")
+                                   .add("bad_byte", &N::badByte, "Sentences with a byte that cannot be")
+                                   .add("cut_short", &N::cutShort, "Sentences without their end")
+                                   .add("skipped_bytes", &N::skippedBytes, "Between sentences", "byte")
+                                   .add("bad_fields", &N::badFields, "Sentences whose fields make no sense")
+                                   .add("repeated", &N::repeated, "Sentences that came again")
+                                   .add("late", &N::late, "Sentences that came after their fix was given")
+                                   .add("last_fault", &N::lastFault, "Of the fields");
+    return fields;
+}
+
+template <>
+const Fields<PortStatus> &fieldsOf<PortStatus>() {
+    using P = PortStatus;
+    static const auto fields =
+        Fields<P>()
+            .add("name", &P::name, "As of the setting ports")
+            .add("url", &P::url, "As of the setting ports")
+            .add("state", &P::state, "Of its device")
+            .choices({"open", "opening", "closed"})
+            .add("reason", &P::reason, "Why it is closed")
+            .add("device", &P::device, "That a link led to as it was opened")
+            .add("opened", &P::opened, "Times")
+            .add("failures", &P::failures, "To open it, and ends")
+            .add("bytes", &P::bytes, "Received", "byte")
+            .add("bytes_per_s", &P::bytesPerSecond, "Received in the last second", "byte/s")
+            .add("sent", &P::sent, "To the device", "byte")
+            .add("lost", &P::lost, "That the disk was too slow for", "byte")
+            .add("view_lost", &P::viewLost, "That were recorded, but not shown", "byte")
+            .add("system_errors", &P::systemErrors, "Counts that the system tells of, by kind")
+            .add("last_stamp", &P::lastStamp, "Of the last bytes, since the Unix epoch", "s")
+            .orNull()
+            .add("nmea", &P::nmea, "Of a port with view nmea: what was found")
+            .add("fix", &P::fix, "Of a port with view nmea: the last one");
+    return fields;
+}
+
+template <>
+const Fields<SerialMessage> &fieldsOf<SerialMessage>() {
+    using S = SerialMessage;
+    static const auto fields = Fields<S>()
+                                   .add("ports", &S::ports, "As ports.list gives them")
+                                   .add("recording", &S::recording, "They are recorded")
+                                   .add("source", &S::source, "Where lines and fixes come from");
+    return fields;
+}
+
+template <>
+const Fields<MarkAnswer> &fieldsOf<MarkAnswer>() {
+    using M = MarkAnswer;
+    static const auto fields = Fields<M>()
+                                   .add("stamp", &M::stamp, "Since the Unix epoch", "s")
+                                   .add("mono", &M::mono, "The stamp on a clock that never jumps", "s");
+    return fields;
+}
+
+template <>
+const Fields<SendAnswer> &fieldsOf<SendAnswer>() {
+    static const auto fields = Fields<SendAnswer>().add("sent", &SendAnswer::sent, "Bytes", "byte");
+    return fields;
+}
+
+template <>
+const Fields<ExportAnswer> &fieldsOf<ExportAnswer>() {
+    static const auto fields = Fields<ExportAnswer>()
+                                   .add("path", &ExportAnswer::path, "Of the CSV")
+                                   .add("rows", &ExportAnswer::rows, "Without the header");
+    return fields;
+}
+
+} // namespace hermes

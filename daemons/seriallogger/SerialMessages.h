@@ -1,0 +1,95 @@
+#pragma once
+
+#include "daemons/seriallogger/FixEpoch.h"
+#include "protocol/messages/Recordings.h"
+
+namespace hermes {
+
+/// The topic `lines`: a line of a port.
+struct LineMessage {
+    QString port;
+    double stamp = 0, mono = 0;
+    QString text;
+    bool cut = false;
+};
+
+/// What a GPS receiver told of one moment.
+struct FixValues {
+    double stamp = 0, mono = 0;
+    std::optional<double> time;
+    bool valid = false;
+    std::optional<double> lat_deg, lon_deg, alt;
+    std::optional<int> quality, satellites;
+    std::optional<double> hdop, speed, course_deg;
+};
+
+/// The topic `fix`.
+struct FixMessage {
+    QString port;
+    FixValues values;
+};
+
+/// What was found in the bytes of a port with view nmea.
+struct NmeaCounts {
+    quint64 sentences = 0, badChecksum = 0, noChecksum = 0, tooLong = 0, badByte = 0, cutShort = 0;
+    quint64 skippedBytes = 0, badFields = 0, repeated = 0, late = 0;
+    std::optional<QString> lastFault;
+};
+
+/// Of what ports.list gives a list: a port.
+struct PortStatus {
+    QString name, url, state, reason, device;
+    quint64 opened = 0, failures = 0, bytes = 0;
+    double bytesPerSecond = 0;
+    quint64 sent = 0, lost = 0, viewLost = 0;
+    QMap<QString, quint64> systemErrors;
+    std::optional<double> lastStamp;
+    std::optional<NmeaCounts> nmea;
+    std::optional<std::optional<FixValues>> fix; ///< nothing: none came yet
+};
+
+/// The topic `serial`, and what source.status gives.
+struct SerialMessage {
+    std::vector<PortStatus> ports;
+    bool recording = false;
+    SourceStatus source;
+};
+
+/// What mark gives.
+struct MarkAnswer {
+    double stamp = 0, mono = 0;
+};
+
+/// What send gives.
+struct SendAnswer {
+    qint64 sent = 0;
+};
+
+/// What record.export gives.
+struct ExportAnswer {
+    QString path;
+    quint64 rows = 0;
+};
+
+FixValues valuesOf(const Fix &fix);
+
+template <>
+const Fields<LineMessage> &fieldsOf<LineMessage>();
+template <>
+const Fields<FixValues> &fieldsOf<FixValues>();
+template <>
+const Fields<FixMessage> &fieldsOf<FixMessage>();
+template <>
+const Fields<NmeaCounts> &fieldsOf<NmeaCounts>();
+template <>
+const Fields<PortStatus> &fieldsOf<PortStatus>();
+template <>
+const Fields<SerialMessage> &fieldsOf<SerialMessage>();
+template <>
+const Fields<MarkAnswer> &fieldsOf<MarkAnswer>();
+template <>
+const Fields<SendAnswer> &fieldsOf<SendAnswer>();
+template <>
+const Fields<ExportAnswer> &fieldsOf<ExportAnswer>();
+
+} // namespace hermes

@@ -1,0 +1,111 @@
+#include "protocol/messages/Daemons.h"
+
+#include "protocol/wire/Fields.h"
+
+namespace hermes {
+
+template <>
+const Fields<DaemonInfo> &fieldsOf<DaemonInfo>() {
+    using I = DaemonInfo;
+    static const auto fields =
+        Fields<I>()
+            .add("name", &I::name, "As in the program hermes-NAME")
+            .add("title", &I::title, "For people")
+            .mayBeMissing()
+            .add("version", &I::version, "Of the program")
+            .mayBeMissing()
+            .add("protocol", &I::protocol, "Version of the rules by which it speaks")
+            .mayBeMissing()
+            .add("description_hash", &I::descriptionHash, "Changes with what rpc.discover gives")
+            .mayBeMissing()
+            .add("host", &I::host, "Where it runs")
+            .mayBeMissing()
+            .add("pid", &I::pid, "Of its process")
+            .mayBeMissing()
+            .add("listen", &I::listen, "URLs at which commands are accepted")
+            .mayBeMissing()
+            .add("started", &I::started, "Since the Unix epoch", "s")
+            .mayBeMissing()
+            .add("uptime_s", &I::uptime_s, "Since it started", "s")
+            .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<HealthItem> &fieldsOf<HealthItem>() {
+    using H = HealthItem;
+    static const auto fields =
+        Fields<H>()
+            .add("name", &H::name, "What it is about")
+            .add("level", &H::level, "error: does not work; stale: not heard of in time")
+            .choices({"ok", "warn", "error", "stale"})
+            .add("message", &H::message, "For people")
+            .mayBeMissing()
+            .add("values", &H::values, "What stands behind the message")
+            .mayBeMissing()
+            .add("age_s", &H::age_s, "Since it was looked at", "s")
+            .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<DaemonStatus> &fieldsOf<DaemonStatus>() {
+    using S = DaemonStatus;
+    static const auto fields =
+        Fields<S>()
+            .add("state", &S::state, "degraded: works, but a health item is at error or stale")
+            .choices({"starting", "ready", "running", "degraded", "fault", "stopping"})
+            .add("health", &S::health, "Its health items")
+            .add("restart_for", &S::restartFor, "Paths of changed settings that wait for a restart")
+            .mayBeMissing();
+    return fields;
+}
+
+template <>
+const Fields<LogMessage> &fieldsOf<LogMessage>() {
+    using L = LogMessage;
+    static const auto fields = Fields<L>()
+                                   .add("stamp", &L::stamp, "Since the Unix epoch", "s")
+                                   .add("level", &L::level, "How bad it is")
+                                   .choices({"debug", "info", "warning", "error"})
+                                   .add("source", &L::source, "What spoke")
+                                   .mayBeMissing()
+                                   .add("text", &L::text, "What it said");
+    return fields;
+}
+
+template <>
+const Fields<SettingsChange> &fieldsOf<SettingsChange>() {
+    using C = SettingsChange;
+    static const auto fields = Fields<C>()
+                                   .add("changed", &C::changed, "Paths of the settings that have new values")
+                                   .add("restart", &C::restart, "Of them: those that wait for a restart");
+    return fields;
+}
+
+template <>
+const Fields<SavedSettings> &fieldsOf<SavedSettings>() {
+    static const auto fields = Fields<SavedSettings>().add("path", &SavedSettings::path, "Of the file");
+    return fields;
+}
+
+template <>
+const Fields<TopicDescription> &fieldsOf<TopicDescription>() {
+    using T = TopicDescription;
+    static const auto fields = Fields<T>()
+                                   .add("name", &T::name, "As topics.subscribe takes it")
+                                   .add("summary", &T::summary, "What it is")
+                                   .add("schema", &T::schema, "The JSON Schema of its data")
+                                   .add("snapshot", &T::snapshot, "It begins with the full state");
+    return fields;
+}
+
+template <>
+const Fields<SubscriptionAnswer> &fieldsOf<SubscriptionAnswer>() {
+    using S = SubscriptionAnswer;
+    static const auto fields =
+        Fields<S>().add("subscription", &S::subscription, "For topics.unsubscribe; stands in each message");
+    return fields;
+}
+
+} // namespace hermes
