@@ -4,6 +4,7 @@
 #include "common/Time.h"
 #include "common/daemon/Daemon.h"
 #include "common/settings/DottedPath.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 namespace {

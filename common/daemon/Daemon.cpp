@@ -8,6 +8,7 @@
 #include "common/daemon/Systemd.h"
 #include "common/schema/SchemaText.h"
 #include "common/settings/DottedPath.h"
+#include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QCryptographicHash>

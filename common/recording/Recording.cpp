@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/Time.h"
 #include "common/recording/DiskError.h"
+#include "protocol/wire/Fields.h"
 
 #include <QDir>
 

@@ -2,6 +2,7 @@
 #include "common/recording/Recording.h"
 
 #include "common/recording/Sidecar.h"
+#include "protocol/wire/Fields.h"
 
 #include <QDir>
 

@@ -1,6 +1,7 @@
 // What the serial logger offers: its settings, topics and commands.
 #include "common/recording/ReplayCommands.h"
 #include "daemons/seriallogger/SerialLogger.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 

@@ -4,6 +4,7 @@
 #include "common/recording/DiskError.h"
 #include "common/recording/SessionFolder.h"
 #include "daemons/seriallogger/SerialExport.h"
+#include "protocol/wire/Fields.h"
 
 #include <QDir>
 

@@ -2,6 +2,7 @@
 #include "daemons/seriallogger/SerialLogger.h"
 
 #include "common/Log.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 

@@ -2,6 +2,7 @@
 
 #include "common/Log.h"
 #include "common/daemon/Daemon.h"
+#include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QTcpSocket>
@@ -41,6 +42,9 @@ public:
         }));
         addCommand(
             Command("nan", "Gives what JSON cannot carry").handler([](const Call &) { return qQNaN(); }));
+        addCommand(Command("nanStruct", "The same, of a struct").handler([](const Call &) {
+            return asJson(LogMessage{qQNaN(), {}, {}, {}});
+        }));
         addCommand(Command("silent", "Forgets to answer").asyncHandler([](const Call &, const Reply &) {}));
         addCommand(Command("large", "Gives much")
                        .param(Field::integer("bytes", "How much").byDefault(100000))

@@ -114,3 +114,4 @@ void TestDaemon::logIsATopic() {
 
 QTEST_GUILESS_MAIN(TestDaemon)
 #include "TestDaemon.moc"
+#include "protocol/wire/Fields.h"

@@ -87,3 +87,4 @@ void TestDaemonClients::oversizedRequest() {
 
 QTEST_GUILESS_MAIN(TestDaemonClients)
 #include "TestDaemonClients.moc"
+#include "protocol/wire/Fields.h"

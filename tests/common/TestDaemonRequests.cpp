@@ -87,6 +87,7 @@ void TestDaemonRequests::handlerErrorsEndThatRequestOnly_data() {
     QTest::addColumn<QString>("says");
     QTest::newRow("throw") << -32603 << "on purpose";
     QTest::newRow("nan") << -32603 << "result: not a finite number";
+    QTest::newRow("nanStruct") << -32603 << "a number of the result is not finite";
     QTest::newRow("silent") << -32603 << "no answer";
     QTest::newRow("fault") << -32004 << "unplugged";
 }

@@ -121,3 +121,4 @@ void TestRecording::closingEndsTheRecording() {
 
 QTEST_GUILESS_MAIN(TestRecording)
 #include "TestRecording.moc"
+#include "protocol/wire/Fields.h"

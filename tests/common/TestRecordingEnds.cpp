@@ -26,6 +26,7 @@ private Q_SLOTS:
     void aRecordingThatWasCutOffIsCompleted();
     void foreignSidecarsAreToldAndLeftAlone_data();
     void foreignSidecarsAreToldAndLeftAlone();
+    void listNamesWhatIsWrongInASidecar();
 };
 
 void TestRecordingEnds::refusalsLeaveNothingBehind() {
@@ -134,6 +135,19 @@ void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone() {
     QFile file(path);
     QVERIFY(file.open(QIODevice::ReadOnly));
     QCOMPARE(file.readAll(), content);
+}
+
+void TestRecordingEnds::listNamesWhatIsWrongInASidecar() {
+    QTemporaryDir root;
+    QDir(root.path()).mkpath("a");
+    put(root.path() + "/a/logger.json",
+        R"({"format": "hermes recording 1", "ended": "stopped", "start": 5, "counts": {"lines": "two"}})");
+    Logger logger(root.path());
+    const QJsonObject entry = logger.call("record.list")->toArray()[0].toObject();
+    QCOMPARE(entry.value("name").toString(), "a");
+    QVERIFY(!entry.contains("start"));
+    QCOMPARE(entry.value("error").toString(),
+             root.path() + "/a/logger.json: member counts.lines: found text \"two\", expected a number");
 }
 
 QTEST_GUILESS_MAIN(TestRecordingEnds)

@@ -324,3 +324,4 @@ void TestRecorder::repairOfDamagedFiles() {
 
 QTEST_GUILESS_MAIN(TestRecorder)
 #include "TestRecorder.moc"
+#include "protocol/wire/Fields.h"

@@ -29,6 +29,7 @@ struct Sample {
     std::vector<Inner> list;
     std::optional<double> height;
     std::optional<QString> note;
+    std::optional<std::optional<double>> end;
     std::array<double, 2> wheels{};
     QMap<QString, double> counts;
     QJsonValue open;
@@ -61,6 +62,7 @@ const Fields<Sample> &fieldsOf<Sample>() {
                                    .add("height", &Sample::height, "How high", "m")
                                    .add("note", &Sample::note, "More")
                                    .orNull()
+                                   .add("end", &Sample::end, "Left out, or not known")
                                    .addEach(wheelNames, &Sample::wheels, "Speed of a wheel", "rad/s")
                                    .add("counts", &Sample::counts, "Of each kind")
                                    .add("open", &Sample::open, "Anything")
@@ -99,6 +101,7 @@ private Q_SLOTS:
     void doublesAreExact();
     void describesAll();
     void hugeNumbersAreNoIntegers();
+    void leftOutIsNotNull();
 };
 
 void TestWire::goesAroundUnchanged() {
@@ -266,6 +269,22 @@ void TestWire::hugeNumbersAreNoIntegers() {
         QVERIFY(!readMessage<MapMessage>(WireValue(json), report));
         QVERIFY2(report.text().contains("member removed.0"), qPrintable(report.text()));
     }
+}
+
+void TestWire::leftOutIsNotNull() {
+    const QJsonValue leftOut = QJsonValue::Undefined;
+    for (const QJsonValue &end : {leftOut, QJsonValue(QJsonValue::Null), QJsonValue(1.5)}) {
+        QJsonObject json = sampleJson();
+        json["end"] = end;
+        ReadReport report;
+        const auto sample = readMessage<Sample>(WireValue(json), report);
+        QVERIFY2(sample, qPrintable(report.text()));
+        QCOMPARE(sample->end.has_value(), !end.isUndefined());
+        QCOMPARE(asJson(*sample), QJsonValue(json));
+    }
+    QCOMPARE(schemaOf<Sample>()["properties"].toObject()["end"].toObject()["type"],
+             QJsonValue(QJsonArray{"number", "null"}));
+    QVERIFY(!schemaOf<Sample>()["required"].toArray().contains("end"));
 }
 
 QTEST_APPLESS_MAIN(TestWire)
