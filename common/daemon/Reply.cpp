@@ -1,4 +1,5 @@
 #include "common/daemon/Reply.h"
+#include "protocol/wire/Fields.h"
 
 #include <QCoreApplication>
 #include <QThread>

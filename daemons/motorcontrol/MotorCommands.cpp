@@ -1,5 +1,6 @@
 #include "common/Time.h"
 #include "daemons/motorcontrol/MotorControl.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 namespace {

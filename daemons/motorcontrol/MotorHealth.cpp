@@ -3,6 +3,7 @@
 #include "common/Time.h"
 #include "daemons/motorcontrol/MotorControl.h"
 #include "daemons/motorcontrol/MotorMessages.h"
+#include "protocol/wire/Fields.h"
 
 #include <algorithm>
 

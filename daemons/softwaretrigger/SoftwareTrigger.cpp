@@ -1,4 +1,5 @@
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 

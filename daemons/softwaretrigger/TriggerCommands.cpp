@@ -1,6 +1,7 @@
 // The commands trigger.*.
 #include "common/settings/DottedPath.h"
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 namespace {

@@ -1,6 +1,7 @@
 #include "daemons/supervisor/Supervisor.h"
 
 #include "common/Project.h"
+#include "protocol/wire/Fields.h"
 
 #include <QHostInfo>
 #include <QSet>
