@@ -37,8 +37,10 @@ void SoftwareTrigger::declareSettings() {
 
 Result<void> SoftwareTrigger::start() {
     engine_ = new TriggerEngine(settings().text("firings.folder"), settings().number("firings.file_bytes"));
-    connect(engine_, &TriggerEngine::fired, this,
-            [this](const FiringMessage &firing) { publish("fired", firing, firing.stamp); });
+    connect(
+        engine_, &TriggerEngine::fired, this,
+        [this](const FiringMessage &firing) { publish("fired", firing, firing.stamp); },
+        Qt::QueuedConnection); // said, so that Qt knows how to carry the message
     engine_->moveToThread(&thread_);
     connect(&thread_, &QThread::finished, engine_, &QObject::deleteLater);
     thread_.setObjectName("triggers");
