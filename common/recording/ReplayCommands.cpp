@@ -1,5 +1,8 @@
 #include "common/recording/ReplayCommands.h"
 
+#include "protocol/messages/Recordings.h"
+#include "protocol/wire/Fields.h"
+
 namespace hermes {
 
 Field pausedParam() {
@@ -16,7 +19,7 @@ Field delayParam() {
 Command pauseCommand(const std::function<Result<QJsonValue>(bool)> &pause) {
     return Command("source.pause", "The replay waits, or goes on")
         .param(Field::boolean("paused", "Whether it waits").byDefault(true))
-        .returns({{"type", "object"}})
+        .gives<SourceStatus>()
         .example({{"paused", true}}, QJsonObject{{"state", "replay"}, {"paused", true}})
         .handler([pause](const Call &call) { return pause(call.flag("paused")); });
 }
