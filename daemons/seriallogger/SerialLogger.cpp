@@ -193,7 +193,7 @@ void SerialLogger::tick() {
     publish("serial", [this] { return state(); });
 }
 
-QJsonObject SerialLogger::state() const {
+SerialMessage SerialLogger::state() const {
     return {portList(), recording_.isActive(), sourceState()};
 }
 
