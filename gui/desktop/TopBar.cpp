@@ -111,9 +111,9 @@ void TopBar::updateDrive() {
     stop_->setText(drive_.isStopped() ? tr("STOPPED") : tr("STOP"));
 }
 
-void TopBar::showPower(WireView data) {
+void TopBar::showPower(WireView told) {
     ReadReport report;
-    const auto power = readMessage<PowerMessage>(data, report);
+    const auto power = readMessage<PowerMessage>(told, report);
     if (!power)
         return power_->setText(shortLine(tr("power: %1").arg(report.text()), 2 * longestName));
     double volts = 0, amperes = 0, hottest = -300;

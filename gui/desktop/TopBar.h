@@ -22,7 +22,7 @@ private:
     void updateRobots();
     void updateLink();
     void updateDrive();
-    void showPower(WireView data);
+    void showPower(WireView told);
 
     Fleet &fleet_;
     DriveControl &drive_;

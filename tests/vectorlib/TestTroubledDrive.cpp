@@ -22,11 +22,11 @@ constexpr float middle = 0.05f;
 
 std::vector<Segment> makeRoom() {
     std::vector<Segment> walls;
-    const auto box = [&](Point middle, double half, double angle, bool inside) {
+    const auto box = [&](Point centre, double half, double angle, bool inside) {
         std::vector<Point> corners;
         for (int i = 0; i < 4; ++i) {
             const double a = angle + (inside ? 1 : -1) * i * pi / 2;
-            corners.push_back(middle + Point(std::cos(a), std::sin(a)) * half);
+            corners.push_back(centre + Point(std::cos(a), std::sin(a)) * half);
         }
         for (std::size_t i = 0; i < 4; ++i)
             walls.emplace_back(corners[i], corners[(i + 1) % 4]);
@@ -152,14 +152,14 @@ private:
             if (endOf(trouble_.silent, time))
                 continue;
             const Pose2D now = endOf(trouble_.frozen, time) ? last : poseAt(worldTime[ms]);
-            Twist2D way = Twist2D::between(Transformation2D(last).inverse() * Transformation2D(now), 0.97);
-            told = told * way.motion(1);
-            xy += 4e-4 * std::hypot(way.vx, way.vy);
-            alpha += 9e-4 * std::abs(way.omega);
+            Twist2D motion = Twist2D::between(Transformation2D(last).inverse() * Transformation2D(now), 0.97);
+            told = told * motion.motion(1);
+            xy += 4e-4 * std::hypot(motion.vx, motion.vy);
+            alpha += 9e-4 * std::abs(motion.omega);
             const double gap = time - lastTime;
             OdometrySample sample{start + time + trouble_.clock,
                                   told.pose(),
-                                  {way.vx / gap, way.vy / gap, way.omega / gap},
+                                  {motion.vx / gap, motion.vy / gap, motion.omega / gap},
                                   Eigen::Matrix3d(Eigen::Vector3d(xy, xy, alpha).asDiagonal())};
             events.push_back({endOf(trouble_.late, time).value_or(time) + 0.004, sample, {}});
             last = now;
