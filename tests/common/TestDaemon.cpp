@@ -1,4 +1,5 @@
 #include "DaemonFixture.h"
+#include "protocol/wire/Fields.h"
 
 using namespace hermes;
 
@@ -114,4 +115,3 @@ void TestDaemon::logIsATopic() {
 
 QTEST_GUILESS_MAIN(TestDaemon)
 #include "TestDaemon.moc"
-#include "protocol/wire/Fields.h"

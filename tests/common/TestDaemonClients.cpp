@@ -1,5 +1,6 @@
 // Clients that do not read, are many, idle, or send too much.
 #include "DaemonFixture.h"
+#include "protocol/wire/Fields.h"
 
 using namespace hermes;
 
@@ -87,4 +88,3 @@ void TestDaemonClients::oversizedRequest() {
 
 QTEST_GUILESS_MAIN(TestDaemonClients)
 #include "TestDaemonClients.moc"
-#include "protocol/wire/Fields.h"

@@ -1,4 +1,5 @@
 #include "LoggerFixture.h"
+#include "protocol/wire/Fields.h"
 
 using namespace hermes;
 
@@ -121,4 +122,3 @@ void TestRecording::closingEndsTheRecording() {
 
 QTEST_GUILESS_MAIN(TestRecording)
 #include "TestRecording.moc"
-#include "protocol/wire/Fields.h"

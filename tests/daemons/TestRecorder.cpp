@@ -1,5 +1,6 @@
 #include "common/capture/PcapReader.h"
 #include "daemons/velodynelogger/Recorder.h"
+#include "protocol/wire/Fields.h"
 #include "tests/support/Sensor.h"
 
 #include <QProcess>
@@ -324,4 +325,3 @@ void TestRecorder::repairOfDamagedFiles() {
 
 QTEST_GUILESS_MAIN(TestRecorder)
 #include "TestRecorder.moc"
-#include "protocol/wire/Fields.h"
