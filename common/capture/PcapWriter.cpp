@@ -86,13 +86,11 @@ bool PcapWriter::flush() {
     return true;
 }
 
-bool PcapWriter::close(bool durable) {
+bool PcapWriter::close() {
     if (!isOpen())
         return error_.empty();
     if (!flush())
         return false;
-    if (durable && ::fsync(file_) != 0)
-        error_ = path_ + ": cannot be brought to the disk: " + std::strerror(errno);
     const int result = ::close(file_);
     file_ = -1;
     if (result != 0)

@@ -29,8 +29,8 @@ public:
     bool write(const Datagram &datagram);
     /// Writes what is collected.
     bool flush();
-    /// Flushes and closes. False when something could not be written. durable: it is on the disk.
-    bool close(bool durable = false);
+    /// Flushes and closes. False when something could not be written.
+    bool close();
 
     bool isOpen() const { return file_ >= 0; }
     const std::string &path() const { return path_; }

@@ -13,7 +13,12 @@ namespace {
 
 constexpr int activePeriod_ms = 200; // at 25 MB/s the disk fills by 5 MB meanwhile
 constexpr int idlePeriod_ms = 5000;
-constexpr int refreshEvery = 5; // checks: the sidecar is at most a second old
+constexpr int refreshEvery = 5;    // checks: the sidecar is at most a second old
+constexpr int syncPeriod_ms = 700; // until the next check, and the disk's time: less than a second
+
+Error nothingRecorded() {
+    return Error(ErrorCode::NotReady, "nothing is being recorded; record.start begins");
+}
 
 } // namespace
 
@@ -24,6 +29,7 @@ Recording::Recording(const QString &logger, Settings &settings, Health &health, 
     , writer_(writer)
     , session_(writer) {
     disk_.setMaxThreadCount(1);
+    syncs_.setMaxThreadCount(1);
     connect(&timer_, &QTimer::timeout, this, &Recording::check);
 }
 
@@ -42,8 +48,8 @@ RecordingSession::Options Recording::options() const {
     return options;
 }
 
-void Recording::run(std::function<Done()> job) {
-    disk_.start(QRunnable::create([this, job = std::move(job)] {
+void Recording::run(QThreadPool &pool, std::function<Done()> job) {
+    pool.start(QRunnable::create([this, job = std::move(job)] {
         const Done done = job();
         const auto unlessClosed = [this, done] {
             if (!closed_)
@@ -56,7 +62,7 @@ void Recording::run(std::function<Done()> job) {
 void Recording::open() {
     closed_ = false;
     timer_.start(idlePeriod_ms);
-    run([this, options = options()]() -> Done {
+    run(disk_, [this, options = options()]() -> Done {
         const RecordingSession::Completed completed = RecordingSession::completeAll(options, writer_);
         return [this, completed] {
             for (const QString &line : completed.done)
@@ -78,15 +84,14 @@ void Recording::close() {
     timer_.stop();
     disk_.clear();
     disk_.waitForDone();
+    syncs_.waitForDone();
     if (session_.isOpen()) {
         const Result<void> result = session_.finish(RecordingEnd::Stopped, {});
         if (!result)
             logError("recording", result.error().message);
     }
     phase_ = Phase::Idle;
-    for (const Reply &reply : stopping_)
-        reply.error(Error(ErrorCode::NotReady, "the logger ends, and the recording with it"));
-    stopping_.clear();
+    giveToStopping(Error(ErrorCode::NotReady, "the logger ends, and the recording with it"));
 }
 
 void Recording::start(const Call &call, const Reply &reply) {
@@ -100,12 +105,14 @@ void Recording::start(const Call &call, const Reply &reply) {
     if (!fine)
         return reply.error(fine.error());
     phase_ = Phase::Starting;
-    run([this, name, reply, options = options()]() -> Done {
+    run(disk_, [this, name, reply, options = options()]() -> Done {
         const Result<void> begun = session_.begin(options, name);
         return [this, name, reply, begun] {
             phase_ = begun ? Phase::Recording : Phase::Idle;
-            if (!begun)
+            if (!begun) {
+                giveToStopping(nothingRecorded());
                 return reply.error(begun.error());
+            }
             name_ = {name.name, session_.session()};
             folder_ = session_.folder();
             start_ = stampNow();
@@ -115,24 +122,30 @@ void Recording::start(const Call &call, const Reply &reply) {
             logInfo("recording", "recording to " + folder_);
             updateHealth();
             reply.result(asJson(status()));
+            if (!stopping_.empty()) // whoever began it did not wait
+                end(RecordingEnd::Stopped, {});
             Q_EMIT changed();
         };
     });
 }
 
 void Recording::stop(const Reply &reply) {
-    if (phase_ == Phase::Idle || phase_ == Phase::Starting)
-        return reply.error(
-            error_ ? *error_ : Error(ErrorCode::NotReady, "nothing is being recorded; record.start begins"));
+    if (phase_ == Phase::Idle)
+        return reply.error(error_ ? *error_ : nothingRecorded());
     stopping_.push_back(reply);
     if (phase_ == Phase::Recording)
         end(RecordingEnd::Stopped, {});
 }
 
+void Recording::giveToStopping(const Result<QJsonValue> &result) {
+    for (const Reply &reply : std::exchange(stopping_, {}))
+        reply.give(result);
+}
+
 void Recording::end(RecordingEnd reason, const std::optional<Error> &error) {
     phase_ = Phase::Ending;
     error_ = error; // told at once, not when the disk is done
-    run([this, reason, error]() -> Done {
+    run(disk_, [this, reason, error]() -> Done {
         const Result<void> result = session_.finish(reason, error);
         return [this, result] { ended(result); };
     });
@@ -148,20 +161,36 @@ void Recording::ended(const Result<void> &result) {
         error_ = result.error();
         logError("recording", error_->message);
     }
-    for (const Reply &reply : stopping_)
-        reply.give(result ? Result<QJsonValue>(asJson(status())) : Result<QJsonValue>(result.error()));
-    stopping_.clear();
+    giveToStopping(result ? Result<QJsonValue>(asJson(status())) : Result<QJsonValue>(result.error()));
     updateHealth();
     Q_EMIT changed();
 }
 
+/// Beside writing, and beside the checks of the free space: a disk may take long over it.
+void Recording::sync() {
+    if (syncing_ || phase_ != Phase::Recording ||
+        (sinceSync_.isValid() && sinceSync_.elapsed() < syncPeriod_ms))
+        return;
+    syncing_ = true;
+    sinceSync_.start();
+    run(syncs_, [this, folder = folder_]() -> Done {
+        const Result<void> synced = sync_.run(folder, logger_);
+        return [this, folder, synced] {
+            syncing_ = false;
+            if (!synced && phase_ == Phase::Recording && folder == folder_)
+                end(RecordingEnd::Failed, synced.error());
+        };
+    });
+}
+
 void Recording::check() {
+    sync();
     if (checking_ || phase_ == Phase::Starting || phase_ == Phase::Ending)
         return;
     checking_ = true;
     const bool active = phase_ == Phase::Recording;
     const bool refresh = active && ++checks_ % refreshEvery == 0;
-    run([this, refresh, active, path = active ? folder_ : options().root]() -> Done {
+    run(disk_, [this, refresh, active, path = active ? folder_ : options().root]() -> Done {
         const Result<void> refreshed = refresh && session_.isOpen() ? session_.refresh() : Result<void>();
         const bool gone = active && !QDir(path).exists();
         const Result<double> room = freeBytes(path);

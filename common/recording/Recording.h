@@ -2,9 +2,11 @@
 
 #include "common/daemon/Command.h"
 #include "common/daemon/Health.h"
+#include "common/recording/FileSync.h"
 #include "common/recording/RecordingSession.h"
 #include "common/settings/Settings.h"
 
+#include <QElapsedTimer>
 #include <QThreadPool>
 #include <QTimer>
 #include <vector>
@@ -13,8 +15,9 @@ namespace hermes {
 
 /// What every logger shares: the commands record.*, their settings, the session folder with its sidecar, the
 /// guard of the disk, health items "recording" and "disk", and the completion of recordings that were cut
-/// off. The logger adds settingFields() and commands() to its own, calls open() and close() with its start
-/// and stop, and writes as a RecordingWriter. Never waits for the disk in the main thread, but in close().
+/// off. What was written is on the disk a second later at most. The logger adds settingFields() and
+/// commands() to its own, calls open() and close() with its start and stop, and writes as a RecordingWriter.
+/// Never waits for the disk in the main thread, but in close().
 class Recording : public QObject {
     Q_OBJECT
 public:
@@ -49,23 +52,27 @@ private:
     void list(const Reply &reply);
     void end(RecordingEnd reason, const std::optional<Error> &error);
     void ended(const Result<void> &result);
+    void giveToStopping(const Result<QJsonValue> &result);
+    void sync();
     void check();
     void checked(const Result<double> &room, const Result<void> &refreshed);
     void updateHealth();
     void updateDiskHealth();
     RecordingSession::Options options() const;
-    /// Runs the job in the thread of the disk, and what it gives in the main thread.
-    void run(std::function<Done()> job);
+    /// Runs the job in the thread of the pool, and what it gives in the main thread.
+    void run(QThreadPool &pool, std::function<Done()> job);
 
     const QString logger_;
     Settings &settings_;
     Health &health_;
     RecordingWriter &writer_;
     RecordingSession session_; ///< of the thread while a job runs
-    QThreadPool disk_;         ///< one thread: jobs run one after another
+    FileSync sync_;            ///< of the thread while a sync runs
+    QThreadPool disk_, syncs_; ///< one thread each: jobs run one after another
     QTimer timer_;
     bool closed_ = true;
-    bool checking_ = false;
+    bool checking_ = false, syncing_ = false;
+    QElapsedTimer sinceSync_; ///< began
     int checks_ = 0;
 
     Phase phase_ = Phase::Idle;

@@ -108,7 +108,7 @@ std::vector<Command> Recording::commands() {
 }
 
 void Recording::list(const Reply &reply) {
-    run([reply, root = options().root, logger = logger_]() -> Done {
+    run(disk_, [reply, root = options().root, logger = logger_]() -> Done {
         std::vector<RecordingEntry> found;
         for (const QString &name : QDir(root).entryList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name))
             if (QFile::exists(Sidecar::path(QDir(root).filePath(name), logger)))

@@ -2,6 +2,7 @@
 
 #include "common/Time.h"
 #include "common/recording/DiskError.h"
+#include "common/recording/FileSync.h"
 #include "common/recording/Sidecar.h"
 #include "protocol/wire/Fields.h"
 
@@ -98,8 +99,8 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
                                  *folder));
     reserve(ownReserve());
     result = writer_.begin(plan_);
-    if (result)
-        result = refresh();
+    if (result) // without a sidecar on the disk nobody could complete what the end of the power cuts off
+        result = Sidecar::write(sidecarPath(), describe(), true);
     if (result)
         return {};
     writer_.end();
@@ -134,14 +135,17 @@ Result<void> RecordingSession::refresh() {
 
 Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Error> &error) {
     writer_.end();
-    const std::optional<Error> failure = error ? error : writer_.state().error;
+    const Result<void> synced = FileSync().run(plan_.folder, options_.logger);
+    const std::optional<Error> broken =
+        synced ? writer_.state().error : writer_.state().error.value_or(synced.error());
+    const std::optional<Error> failure = error ? error : broken;
     const double stamp = stampNow();
     QJsonObject content = describe();
     content.insert("end", stamp);
     content.insert("end_utc", toUtc(stamp));
     content.insert("end_mono", monotonicNow());
-    content.insert("ended", toText(writer_.state().error ? RecordingEnd::Failed : end));
-    content.insert("complete", !writer_.state().error);
+    content.insert("ended", toText(broken ? RecordingEnd::Failed : end));
+    content.insert("complete", !broken);
     if (failure)
         content.insert("error", failure->message);
     QFile::remove(ownReserve());

@@ -37,7 +37,7 @@ public:
     virtual ~RecordingWriter() = default;
 
     virtual Result<void> begin(const RecordingPlan &plan) = 0;
-    /// Everything taken so far is on the disk when it returns; state() says if that failed.
+    /// Everything taken so far is in the files when it returns; state() says if that failed.
     virtual void end() = 0;
     /// Any thread, and quick.
     virtual RecordingState state() const = 0;

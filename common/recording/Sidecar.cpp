@@ -1,13 +1,13 @@
 #include "common/recording/Sidecar.h"
 
 #include "common/recording/DiskError.h"
+#include "common/recording/FileSync.h"
 
 #include <QFile>
 #include <QFileInfo>
 #include <QJsonDocument>
 
 #include <cstdio>
-#include <fcntl.h>
 #include <unistd.h>
 
 namespace hermes {
@@ -20,15 +20,6 @@ constexpr qint64 largest = 16 * 1024 * 1024; // a recording of a year has tens o
 QString draftPath(const QString &path) {
     const QFileInfo file(path);
     return file.path() + "/." + file.fileName() + ".new";
-}
-
-/// A rename lasts once the folder is on the disk.
-void syncFolder(const QString &path) {
-    const int folder = ::open(QFile::encodeName(QFileInfo(path).path()).constData(), O_RDONLY | O_CLOEXEC);
-    if (folder < 0)
-        return;
-    ::fsync(folder); // not every file system can; the content is safe by then
-    ::close(folder);
 }
 
 } // namespace
@@ -66,7 +57,7 @@ Result<void> Sidecar::write(const QString &path, const QJsonObject &content, boo
     if (std::rename(QFile::encodeName(draft).constData(), QFile::encodeName(path).constData()) != 0)
         return failed(qt_error_string());
     if (durable)
-        syncFolder(path);
+        syncFolder(QFileInfo(path).path());
     return {};
 }
 

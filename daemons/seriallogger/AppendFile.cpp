@@ -39,14 +39,6 @@ bool AppendFile::truncate(quint64 size) {
     return true;
 }
 
-bool AppendFile::sync() {
-    return ::fdatasync(file_) == 0 || fail("cannot be brought to the disk");
-}
-
-void AppendFile::syncBeside() const {
-    ::fdatasync(file_);
-}
-
 void AppendFile::close() {
     if (file_ >= 0)
         ::close(file_);

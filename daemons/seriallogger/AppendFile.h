@@ -18,10 +18,6 @@ public:
     /// False when not all of it could be written; size() tells how much was.
     bool append(const void *bytes, std::size_t size);
     bool truncate(quint64 size);
-    /// On the disk when it returns.
-    bool sync();
-    /// The same in another thread than that which appends; a failure is left for sync() to tell.
-    void syncBeside() const;
     void close();
 
     bool isOpen() const { return file_ >= 0; }

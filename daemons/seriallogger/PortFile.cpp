@@ -44,15 +44,6 @@ quint64 PortFile::chunks() const {
     return index_.size() < headerSize ? 0 : (index_.size() - headerSize) / recordSize;
 }
 
-bool PortFile::sync() {
-    return (index_.sync() || fail(index_)) && (raw_.sync() || fail(raw_));
-}
-
-void PortFile::syncBeside() const {
-    index_.syncBeside();
-    raw_.syncBeside();
-}
-
 void PortFile::close() {
     index_.close();
     raw_.close();

@@ -15,8 +15,6 @@ public:
     bool create(const QString &base);
     /// False when not all of it could be written; the files then end with the last byte that was.
     bool write(const ChunkBatch &batch);
-    bool sync();
-    void syncBeside() const;
     void close();
 
     quint64 bytes() const { return raw_.size(); }

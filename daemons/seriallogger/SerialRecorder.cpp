@@ -12,7 +12,6 @@ namespace hermes {
 namespace {
 
 constexpr std::chrono::milliseconds collectPeriod{20}; // what the end of the process may cost
-constexpr std::chrono::seconds syncPeriod{1};          // what the end of the power may cost
 constexpr int mostEventBytes = 1 << 20;
 
 } // namespace
@@ -40,7 +39,6 @@ Result<void> SerialRecorder::begin(const RecordingPlan &plan) {
     for (const auto &entry : entries_)
         entry->port.queue->open();
     thread_ = std::thread([this] { run(); });
-    syncer_ = std::thread([this] { syncBeside(); });
     return {};
 }
 
@@ -63,10 +61,8 @@ void SerialRecorder::end() {
         stopping_ = true;
     }
     wake_.notify_all();
-    for (std::thread *thread : {&thread_, &syncer_}) {
-        if (thread->joinable())
-            thread->join();
-    }
+    if (thread_.joinable())
+        thread_.join();
     for (const auto &entry : entries_)
         entry->file.close();
     eventFile_.close();
@@ -105,8 +101,6 @@ void SerialRecorder::run() {
         }
         writing = writePorts();
         writing = writeEvents() && writing;
-        if (writing && stopping)
-            syncAll();
         const std::lock_guard<std::mutex> lock(mutex_);
         publish();
     }
@@ -162,25 +156,6 @@ bool SerialRecorder::writeEvents() {
     const QString why = eventFile_.error();
     eventFile_.truncate(before); // no half lines
     return fail(why, eventFile_.path());
-}
-
-bool SerialRecorder::syncAll() {
-    for (const auto &entry : entries_) {
-        if (!entry->file.sync())
-            return fail(entry->file.error(), entry->file.failedPath());
-    }
-    return eventFile_.sync() || fail(eventFile_.error(), eventFile_.path());
-}
-
-void SerialRecorder::syncBeside() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    while (!wake_.wait_for(lock, syncPeriod, [this] { return stopping_; })) {
-        lock.unlock();
-        for (const auto &entry : entries_)
-            entry->file.syncBeside();
-        eventFile_.syncBeside();
-        lock.lock();
-    }
 }
 
 bool SerialRecorder::fail(const QString &message, const QString &path) {

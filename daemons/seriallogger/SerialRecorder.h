@@ -45,8 +45,6 @@ private:
     void run();
     bool writePorts();
     bool writeEvents();
-    bool syncAll();
-    void syncBeside();
     bool addEvent(const QString &event, QJsonObject line, const Arrival &when, bool atEnd);
     void noteLosses(const Entry &entry, quint64 begin);
     void publish();
@@ -55,7 +53,6 @@ private:
     std::vector<std::unique_ptr<Entry>> entries_;
     AppendFile eventFile_;
     std::thread thread_;
-    std::thread syncer_; ///< a disk may take long over it; writing goes on meanwhile
 
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable wake_;

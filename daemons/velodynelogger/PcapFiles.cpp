@@ -1,26 +1,10 @@
 #include "daemons/velodynelogger/PcapFiles.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-
 namespace hermes {
 
 namespace {
 
 constexpr std::size_t overhead = 42 + PcapWriter::recordHeaderBytes; // of a datagram in a file
-
-/// Brings a file to the disk that was closed before; an empty string on success.
-std::string sync(const std::string &path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    const bool done = file >= 0 && ::fsync(file) == 0;
-    const std::string why = std::strerror(errno);
-    if (file >= 0)
-        ::close(file);
-    return done ? std::string() : path + ": cannot be brought to the disk: " + why;
-}
 
 } // namespace
 
@@ -76,13 +60,8 @@ std::string PcapFiles::flush() {
 }
 
 std::string PcapFiles::close() {
-    const bool done = writer_.close(true);
+    const bool done = writer_.close();
     note();
-    for (std::size_t number = 1; number < files_.size(); ++number) {
-        const std::string error = sync(pathOf(number));
-        if (!error.empty())
-            return error;
-    }
     return done ? std::string() : writer_.error();
 }
 

@@ -24,7 +24,7 @@ public:
     std::string write(const Datagram &datagram);
     /// What was written is the system's from here on: it outlives this process.
     std::string flush();
-    /// Ends the last file and brings all to the disk. Keeps files().
+    /// Ends the last file. Keeps files().
     std::string close();
 
     const std::vector<File> &files() const { return files_; }

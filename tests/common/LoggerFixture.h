@@ -7,14 +7,17 @@
 #include <QTemporaryDir>
 #include <QtTest>
 
+#include <atomic>
 #include <mutex>
 
 namespace hermes {
 
-/// Writes one file of text, and fails when told to.
+/// Writes one file of text, and fails or waits when told to.
 class TextWriter : public RecordingWriter {
 public:
     Result<void> begin(const RecordingPlan &plan) override {
+        while (hold)
+            QThread::msleep(1);
         plan_ = plan;
         file_.setFileName(plan.folder + '/' + plan.prefix + "-0001.txt");
         if (refuse || !file_.open(QIODevice::WriteOnly | QIODevice::NewOnly))
@@ -47,6 +50,7 @@ public:
     }
 
     bool refuse = false;
+    std::atomic<bool> hold{false}; ///< to begin takes as long as this
 
 private:
     RecordingPlan plan_;

@@ -23,6 +23,8 @@ private Q_SLOTS:
     void lowSpaceIsToldAndEndsTheRecording();
     void aFailedWriterEndsTheRecording();
     void aFolderThatIsRemovedEndsTheRecording();
+    void aStopWhileItBeginsEndsIt_data();
+    void aStopWhileItBeginsEndsIt();
     void aRecordingThatWasCutOffIsCompleted();
     void foreignSidecarsAreToldAndLeftAlone_data();
     void foreignSidecarsAreToldAndLeftAlone();
@@ -90,6 +92,35 @@ void TestRecordingEnds::aFolderThatIsRemovedEndsTheRecording() {
     QCOMPARE(stopped.error().data.toObject().value("path").toString(), root.path() + "/a");
     QCOMPARE(logger.level("recording"), "error");
     QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
+}
+
+void TestRecordingEnds::aStopWhileItBeginsEndsIt_data() {
+    QTest::addColumn<bool>("begins");
+    QTest::newRow("begins") << true;
+    QTest::newRow("does not") << false;
+}
+
+void TestRecordingEnds::aStopWhileItBeginsEndsIt() {
+    QFETCH(bool, begins);
+    QTemporaryDir root;
+    Logger logger(root.path());
+    logger.writer.hold = true;
+    logger.writer.refuse = !begins;
+    std::optional<Result<QJsonValue>> started;
+    for (const Command &command : logger.recording.commands())
+        if (command.name() == "record.start")
+            command.execute(QJsonObject{{"name", "a"}}, Call(),
+                            Reply([&](const Result<QJsonValue> &result) { started = result; }));
+    QTimer::singleShot(50, [&] { logger.writer.hold = false; });
+    const Result<QJsonValue> stopped = logger.call("record.stop");
+    QVERIFY(started);
+    QCOMPARE(started->ok(), begins);
+    QVERIFY(!logger.recording.isActive());
+    QCOMPARE(stopped.ok(), begins);
+    if (begins)
+        QCOMPARE(sidecarOf(root.path() + "/a").value("ended").toString(), "stopped");
+    else
+        QCOMPARE(stopped.error().code, int(ErrorCode::NotReady));
 }
 
 void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {
