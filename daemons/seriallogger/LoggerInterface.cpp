@@ -1,5 +1,4 @@
 // What the serial logger offers: its settings, topics and commands.
-#include "common/recording/ReplayCommands.h"
 #include "daemons/seriallogger/SerialLogger.h"
 #include "protocol/wire/Fields.h"
 
@@ -31,18 +30,11 @@ void SerialLogger::declareTopics() {
 
 void SerialLogger::declareSourceCommands() {
     addCommand(
-        Command("source.open",
-                "Shows lines and fixes of the ports, or of a recording; the ports are received "
-                "and recorded all the same")
-            .param(Field::boolean("live", "Show those of the ports").optional())
-            .param(Field::text("recording", "Recording to replay, by its name").optional())
-            .param(Field::number("speed", "Of the replay: 1 real time").range(0.001, 1000).byDefault(1))
-            .param(pausedParam())
-            .param(delayParam())
-            .gives<SourceStatus>()
-            .example({{"recording", "drive"}}, QJsonObject{{"state", "replay"}, {"name", "/data/drive"}})
-            .handler([this](const Call &call) { return openSource(call); }));
-    addCommand(pauseCommand([this](bool paused) { return pause(paused); }));
+        source_
+            .openCommand("Shows lines and fixes of the ports, or of a recording; the ports are "
+                         "received and recorded all the same")
+            .param(Field::number("speed", "Of the replay: 1 real time").range(0.001, 1000).byDefault(1)));
+    addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic serial says, now")
                    .gives<SerialMessage>()
                    .handler([this](const Call &) { return asJson(state()); }));

@@ -49,6 +49,7 @@ Result<void> SerialLogger::start() {
     recording_.open();
     for (const auto &port : ports_)
         port->start();
+    source_.opened(ReplaySource::State::Live, "the ports");
     sinceTick_.start();
     second_.start(1000);
     setState(ports_.empty() ? DaemonState::Ready : DaemonState::Running);
@@ -75,7 +76,8 @@ void SerialLogger::stop() {
     viewTimer_.stop();
     settleTimer_.stop();
     cancelExports_ = true;
-    endReplay();
+    source_.close();
+    player_.stop();
     for (const auto &port : ports_)
         port->thread().end();
     recording_.close();
@@ -194,7 +196,7 @@ void SerialLogger::tick() {
 }
 
 SerialMessage SerialLogger::state() const {
-    return {portList(), recording_.isActive(), sourceState()};
+    return {portList(), recording_.isActive(), source_.status()};
 }
 
 void SerialLogger::updateHealth() {

@@ -2,6 +2,7 @@
 
 #include "common/daemon/Daemon.h"
 #include "common/recording/Recording.h"
+#include "common/recording/ReplaySource.h"
 #include "daemons/seriallogger/LoggedPort.h"
 #include "daemons/seriallogger/SerialPlayer.h"
 #include "daemons/seriallogger/SerialRecorder.h"
@@ -23,9 +24,6 @@ protected:
     void stop() override;
 
 private:
-    /// Where lines and fixes come from.
-    enum class Source { Live, Replay, Ended };
-
     void declareSettings();
     void declareTopics();
     void declareCommands();
@@ -39,13 +37,10 @@ private:
     void send(const Call &call, const Reply &reply);
     void exportRecording(const Call &call, const Reply &reply);
 
-    Result<QJsonValue> openSource(const Call &call);
-    Result<void> openRecording(const Call &call);
-    void endReplay();
-    void openViews();
+    ReplaySource::Actions sourceActions();
+    void openLive();
+    Result<void> openRecording(const Call &call, const StoredRecording &stored);
     void replayEnded(const Result<void> &result);
-    Result<QJsonValue> pause(bool paused);
-    SourceStatus sourceState() const;
     void updateSourceHealth();
 
     /// For other threads to tell that a view was filled.
@@ -62,10 +57,7 @@ private:
     SerialRecorder recorder_;
     Recording recording_;
     SerialPlayer player_;
-    Source source_ = Source::Live;
-    QString sourceName_, sourceError_; ///< of a replay
-    double speed_ = 1;
-    quint64 generation_ = 0; ///< counts replays, so that the end of an old one is not taken for a new one's
+    ReplaySource source_{"lines", identity().name, settings(), player_.playback(), sourceActions()};
     QTimer second_;
     QTimer viewTimer_;
     QTimer settleTimer_; ///< for fixes that nothing more comes for

@@ -27,10 +27,10 @@ PortSettings settingsOf(const StoredRecording &recording, const QString &port) {
 
 } // namespace
 
-Result<void> SerialPlayer::start(const StoredRecording &recording, const Options &options, Filled filled,
-                                 End end) {
+Result<void> SerialPlayer::start(const StoredRecording &recording, const Playback::Options &options,
+                                 double delay_s, Filled filled, End end) {
     stop();
-    options_ = options;
+    delay_s_ = delay_s;
     startMono_s_ = recording.sidecar.value("start_mono").toDouble();
     length_s_ = recording.length_s;
     filled_ = std::move(filled);
@@ -55,11 +55,7 @@ Result<void> SerialPlayer::start(const StoredRecording &recording, const Options
             return added;
         }
     }
-    stopping_ = false;
-    paused_ = options.paused;
-    position_ns_ = 0;
-    clock_.set(0, options.speed);
-    thread_ = std::thread([this] { run(); });
+    playback_.start(options, [this] { run(); });
     return {};
 }
 
@@ -83,33 +79,14 @@ Result<void> SerialPlayer::advance(Track &track) {
     if (!piece)
         return piece.error();
     track.piece = piece.take();
-    const double time_s = options_.delay_s + track.piece.arrival.mono() - startMono_s_;
+    const double time_s = delay_s_ + track.piece.arrival.mono() - startMono_s_;
     track.time_ns = std::max(track.time_ns, std::int64_t(std::clamp(time_s, 0.0, longest_s) * 1e9));
     return {};
 }
 
 void SerialPlayer::stop() {
-    {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        stopping_ = true;
-    }
-    wake_.notify_all();
-    if (thread_.joinable())
-        thread_.join();
+    playback_.stop();
     tracks_.clear();
-}
-
-void SerialPlayer::setPaused(bool paused) {
-    {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        paused_ = paused;
-    }
-    wake_.notify_all();
-}
-
-SerialPlayer::Status SerialPlayer::status() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return {double(position_ns_) * 1e-9, options_.delay_s + length_s_, paused_};
 }
 
 SerialPlayer::Track *SerialPlayer::nextTrack() const {
@@ -135,23 +112,11 @@ void SerialPlayer::run() {
 
 /// Until the piece is due and there is room for it; false when the replay is stopped.
 bool SerialPlayer::wait(const Track &track) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    while (!stopping_) {
-        if (paused_) {
-            clock_.hold();
-            wake_.wait(lock);
-            continue;
-        }
-        clock_.run();
-        const auto due = clock_.due(track.time_ns);
-        if (PlayClock::Clock::now() < due) {
-            wake_.wait_until(lock, due);
-        } else if (!track.view->queue().hasRoom(std::size_t(track.piece.bytes.size()))) {
-            wake_.wait_for(lock, roomPeriod);
-        } else {
-            position_ns_ = track.time_ns;
+    while (playback_.waitFor(track.time_ns) == Playback::Turn::Due) {
+        if (track.view->queue().hasRoom(std::size_t(track.piece.bytes.size())))
             return true;
-        }
+        if (!playback_.rest(roomPeriod))
+            break;
     }
     return false;
 }

@@ -1,14 +1,12 @@
 #pragma once
 
-#include "common/recording/PlayClock.h"
+#include "common/recording/Playback.h"
 #include "common/recording/StoredRecording.h"
 #include "daemons/seriallogger/PortView.h"
 #include "daemons/seriallogger/SerialLogReader.h"
 
-#include <condition_variable>
 #include <functional>
 #include <memory>
-#include <thread>
 
 namespace hermes {
 
@@ -16,15 +14,6 @@ namespace hermes {
 /// came in or any other. Loses nothing: waits where a view has no room.
 class SerialPlayer {
 public:
-    struct Options {
-        double speed = 1;
-        double delay_s = 0; ///< time of the replay at which the recording begins
-        bool paused = false;
-    };
-    struct Status {
-        double position_s = 0, duration_s = 0; ///< after the beginning of the replay
-        bool paused = false;
-    };
     /// One port of the recording.
     struct Track {
         QString port;
@@ -39,11 +28,13 @@ public:
 
     ~SerialPlayer() { stop(); }
 
-    /// Nothing is played when it fails. Ports that are not shown are left out.
-    Result<void> start(const StoredRecording &recording, const Options &options, Filled filled, End end);
+    /// Nothing is played when it fails. Ports that are not shown are left out. delay_s: the time of the
+    /// replay at which the recording begins.
+    Result<void> start(const StoredRecording &recording, const Playback::Options &options, double delay_s,
+                       Filled filled, End end);
     void stop();
-    void setPaused(bool paused);
-    Status status() const;
+    Playback &playback() { return playback_; }
+    double duration_s() const { return delay_s_ + length_s_; }
     /// Its views are of the main thread.
     const std::vector<std::unique_ptr<Track>> &tracks() const { return tracks_; }
 
@@ -54,21 +45,14 @@ private:
     void run();
     bool wait(const Track &track);
 
-    Options options_;
+    double delay_s_ = 0;
     double startMono_s_ = 0;
     double length_s_ = 0;
     std::vector<std::unique_ptr<Track>> tracks_;
     Filled filled_;
     End end_;
     Result<void> missing_; // what a file had when it was recorded, and has no more
-    PlayClock clock_;
-
-    std::thread thread_;
-    mutable std::mutex mutex_; // guards what follows
-    std::condition_variable wake_;
-    bool stopping_ = false;
-    bool paused_ = false;
-    std::int64_t position_ns_ = 0;
+    Playback playback_;
 };
 
 } // namespace hermes

@@ -39,13 +39,13 @@ std::string LidarFeed::openLive(const std::string &address, std::uint16_t port, 
     return live_.start({address, port, options.positionPort, bufferBytes});
 }
 
-std::string LidarFeed::openPcap(const std::vector<std::string> &paths, const PcapPlayer::Options &play,
-                                const Options &options, Ended ended) {
+std::string LidarFeed::openPcap(const std::vector<std::string> &paths, const Playback::Options &play,
+                                const Options &options, Ended ended, const PlayTime &begin) {
     close();
     ended_ = std::move(ended);
     lossless_ = play.speed == 0;
-    begin(options);
-    return player_.start(paths, play);
+    this->begin(options);
+    return player_.start(paths, play, begin);
 }
 
 void LidarFeed::begin(const Options &options) {

@@ -56,8 +56,8 @@ public:
                          const Options &options);
     /// ended is called in another thread when the captures have been played to their end, or to the error
     /// given.
-    std::string openPcap(const std::vector<std::string> &paths, const PcapPlayer::Options &play,
-                         const Options &options, Ended ended);
+    std::string openPcap(const std::vector<std::string> &paths, const Playback::Options &play,
+                         const Options &options, Ended ended, const PlayTime &begin = {});
     /// Delivers the turns that were under way as partial ones.
     void close();
 

@@ -1,5 +1,4 @@
 // What the Velodyne logger offers: its settings, topics and commands.
-#include "common/recording/ReplayCommands.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
@@ -104,43 +103,24 @@ void VelodyneLogger::declareTopics() {
 
 void VelodyneLogger::declareSourceCommands() {
     addCommand(
-        Command("source.open",
-                "Receives live, or replays a capture file or a recording; what was open is closed")
-            .param(Field::boolean("live", "Receive on the UDP port of the settings").optional())
+        source_
+            .openCommand("Receives live, or replays a capture file or a recording; what was open is closed")
             .param(Field::text("pcap", "Capture file to replay, pcap or pcapng").optional())
-            .param(Field::text("recording", "Recording of this logger to replay, by its name").optional())
             .param(Field::integer("port", "Of the replay only the sensor that sends to this port is decoded")
                        .range(1, 65535)
                        .optional())
             .param(Field::number("speed", "Of the replay: 1 real time, 0 as fast as possible without loss")
                        .range(0, 1000)
                        .byDefault(1))
-            .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false))
-            .param(pausedParam())
-            .param(delayParam())
-            .gives<SourceStatus>()
-            .example({{"pcap", "drive.pcap"}, {"speed", 1}},
-                     QJsonObject{{"state", "replay"}, {"name", "drive.pcap"}, {"speed", 1}})
-            .handler([this](const Call &call) { return openSource(call); }));
+            .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false)));
     addCommand(Command("source.close", "Stops receiving or replaying")
                    .returnsNull()
                    .handler([this](const Call &) -> Result<QJsonValue> {
-                       ++generation_;
-                       feed_.close();
-                       publishTurns();
-                       opened(Source::None, {}, {});
-                       updateHealth();
+                       closeSource();
                        return QJsonValue();
                    }));
-    addCommand(
-        Command("source.seek", "The replay goes on there; beyond its end it ends")
-            .param(Field::number("t_s", "Seconds after the first packet, of a recording after its beginning")
-                       .unit("s")
-                       .range(0, 1e7))
-            .gives<SourceStatus>()
-            .example({{"t_s", 60}}, QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}})
-            .handler([this](const Call &call) { return seek(call.number("t_s")); }));
-    addCommand(pauseCommand([this](bool paused) { return pause(paused); }));
+    addCommand(source_.seekCommand());
+    addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic lidar says, now")
                    .gives<LidarMessage>()
                    .handler([this](const Call &) { return asJson(lidarState()); }));

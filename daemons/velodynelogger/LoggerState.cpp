@@ -21,38 +21,6 @@ QString otherSensors(const LidarFeed::Counts &counts) {
 
 } // namespace
 
-QString VelodyneLogger::toText(Source source) {
-    switch (source) {
-    case Source::None:
-        return "none";
-    case Source::Live:
-        return "live";
-    case Source::Replay:
-        return "replay";
-    case Source::Ended:
-        return "ended";
-    }
-    return {};
-}
-
-SourceStatus VelodyneLogger::sourceState() const {
-    SourceStatus status;
-    status.state = toText(source_);
-    status.name = sourceName_;
-    if (source_ == Source::Replay || source_ == Source::Ended) {
-        const PcapPlayer::Status replay = feed_.player().status();
-        status.speed = play_.speed;
-        status.loop = play_.loop;
-        status.loops = replay.loops;
-        status.paused = replay.paused;
-        status.position_s = replay.position_s;
-        status.duration_s = replay.duration_s;
-    }
-    if (!sourceError_.isEmpty())
-        status.error = sourceError_;
-    return status;
-}
-
 LidarGps VelodyneLogger::gpsState() const {
     const velodyne::GpsReader::State gps = feed_.gps();
     const velodyne::GpsReader::Counts counts = feed_.counts().gps;
@@ -79,7 +47,7 @@ LidarMessage VelodyneLogger::lidarState() const {
     const LidarFeed::Counts counts = feed_.counts();
     const velodyne::PacketCounts &packets = counts.packets;
     LidarMessage state;
-    state.source = sourceState();
+    state.source = source_.status();
     if (counts.model)
         state.model = counts.model->name;
     if (counts.decoded)
@@ -111,7 +79,7 @@ LidarMessage VelodyneLogger::lidarState() const {
 
 void VelodyneLogger::updateHealth() {
     updateSourceHealth(feed_.counts());
-    if (source_ == Source::Live && !feed_.positionError().empty())
+    if (source_.state() == State::Live && !feed_.positionError().empty())
         health().set("position packets", HealthLevel::Warn, QString::fromStdString(feed_.positionError()));
     else
         health().remove("position packets");
@@ -138,15 +106,16 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     };
     const QString sensors = QString::fromStdString(velodyne::sensorNames());
     const std::string receiveError = feed_.receiveError();
-    if (source_ == Source::None)
+    if (source_.state() == State::None)
         set(HealthLevel::Warn, "no source is open; source.open opens one");
-    else if (!receiveError.empty() || !sourceError_.isEmpty())
-        set(HealthLevel::Failed, receiveError.empty() ? sourceError_ : QString::fromStdString(receiveError));
-    else if (source_ == Source::Ended && (counts.decoded || counts.other == 0))
-        set(HealthLevel::Ok, sourceName_ + " has been played to its end");
-    else if (source_ == Source::Live && sincePacket_.elapsed() > 3000)
+    else if (!receiveError.empty() || !source_.error().isEmpty())
+        set(HealthLevel::Failed,
+            receiveError.empty() ? source_.error() : QString::fromStdString(receiveError));
+    else if (source_.state() == State::Ended && (counts.decoded || counts.other == 0))
+        set(HealthLevel::Ok, source_.name() + " has been played to its end");
+    else if (source_.state() == State::Live && sincePacket_.elapsed() > 3000)
         set(HealthLevel::Stale,
-            QString("no packet on %1 for %2 s").arg(sourceName_).arg(sincePacket_.elapsed() / 1000));
+            QString("no packet on %1 for %2 s").arg(source_.name()).arg(sincePacket_.elapsed() / 1000));
     else if (counts.other > 0 && !counts.decoded)
         set(HealthLevel::Warn,
             QString("%1 datagrams came, and no data packet of an %2").arg(counts.other).arg(sensors));
@@ -172,7 +141,7 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     else if (lost > 0)
         set(HealthLevel::Warn, "packets or turns were lost");
     else
-        set(HealthLevel::Ok, "packets come from " + sourceName_);
+        set(HealthLevel::Ok, "packets come from " + source_.name());
 }
 
 } // namespace hermes

@@ -13,62 +13,27 @@ PcapPlayer::~PcapPlayer() {
     stop();
 }
 
-std::string PcapPlayer::start(const std::vector<std::string> &paths, const Options &options) {
+std::string PcapPlayer::start(const std::vector<std::string> &paths, const Playback::Options &options,
+                              const PlayTime &begin) {
     stop();
     if (!reader_.open(paths))
         return reader_.error();
-    options_ = options;
-    time_ = options.begin;
+    time_ = begin_ = begin;
     atTarget_ = false;
-    clock_.set(0, options.speed);
-    stopping_ = false;
-    paused_ = options.paused;
-    seek_ns_.reset();
-    position_ns_ = 0;
-    loops_ = 0;
-    index_.start(paths, options.begin);
-    thread_ = std::thread([this] { run(); });
+    index_.start(paths, begin);
+    playback_.start(options, [this] { run(); });
     return {};
 }
 
 void PcapPlayer::stop() {
-    {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        stopping_ = true;
-    }
-    wake_.notify_all();
-    if (thread_.joinable())
-        thread_.join();
+    playback_.stop();
     index_.stop();
     reader_.close();
 }
 
-void PcapPlayer::seek(double time_s) {
-    {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        seek_ns_ = std::int64_t(time_s * 1e9);
-        position_ns_ = *seek_ns_;
-    }
-    wake_.notify_all();
-}
-
-void PcapPlayer::setPaused(bool paused) {
-    {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        paused_ = paused;
-    }
-    wake_.notify_all();
-}
-
-PcapPlayer::Status PcapPlayer::status() const {
-    Status status;
-    if (const auto duration_ns = index_.duration_ns())
-        status.duration_s = double(*duration_ns) * 1e-9;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    status.position_s = double(position_ns_) * 1e-9;
-    status.paused = paused_;
-    status.loops = loops_;
-    return status;
+std::optional<double> PcapPlayer::duration_s() const {
+    const auto duration_ns = index_.duration_ns();
+    return duration_ns ? std::optional<double>(double(*duration_ns) * 1e-9) : std::nullopt;
 }
 
 void PcapPlayer::run() {
@@ -85,48 +50,29 @@ void PcapPlayer::run() {
             continue;
         }
         const std::string error = next == PcapReader::Next::Failed ? reader_.error() : std::string();
-        if (!options_.loop || !error.empty() || !played) {
+        if (!playback_.options().loop || !error.empty() || !played) {
             end_(error);
             return;
         }
         played = false;
-        if (!rewind({options_.begin, {}}))
+        if (!rewind({begin_, {}}))
             return;
-        clock_.set(0, options_.speed);
-        const std::lock_guard<std::mutex> lock(mutex_);
-        ++loops_;
+        playback_.loop();
     }
 }
 
 /// False when playing is at its end.
 bool PcapPlayer::play(const Datagram &datagram) {
-    const std::int64_t now_ns = time_.advance(datagram.stamp_ns);
-    std::unique_lock<std::mutex> lock(mutex_);
-    for (;;) {
-        if (stopping_)
-            return false;
-        if (seek_ns_) {
-            const std::int64_t target_ns = *std::exchange(seek_ns_, std::nullopt);
-            lock.unlock();
-            return goTo(target_ns);
-        }
-        if (paused_) {
-            clock_.hold();
-            wake_.wait(lock);
-            continue;
-        }
-        if (options_.speed <= 0)
-            break;
-        clock_.run();
-        const auto due = clock_.due(now_ns);
-        if (PlayClock::Clock::now() >= due)
-            break;
-        wake_.wait_until(lock, due);
+    switch (playback_.waitFor(time_.advance(datagram.stamp_ns))) {
+    case Playback::Turn::Due:
+        sink_(datagram);
+        return true;
+    case Playback::Turn::Seek:
+        return goTo(playback_.takeSeek());
+    case Playback::Turn::End:
+        break;
     }
-    position_ns_ = now_ns;
-    lock.unlock();
-    sink_(datagram);
-    return true;
+    return false;
 }
 
 bool PcapPlayer::goTo(std::int64_t time_ns) {
@@ -137,21 +83,16 @@ bool PcapPlayer::goTo(std::int64_t time_ns) {
         jump_();
     else if (!rewind(mark))
         return false;
-    clock_.set(time_ns, options_.speed);
-    while (reader_.next(target_) == PcapReader::Next::Datagram) {
+    playback_.jump(time_ns);
+    while (!playback_.isInterrupted() && reader_.next(target_) == PcapReader::Next::Datagram) {
         PlayTime after = time_;
         if (after.advance(target_.stamp_ns) >= time_ns) {
             atTarget_ = true;
             break;
         }
         time_ = after;
-        const std::lock_guard<std::mutex> lock(mutex_);
-        if (stopping_)
-            return false;
-        if (seek_ns_) // and elsewhere already
-            break;
     }
-    return true; // at the end of the file, or where it is damaged, run() finds so
+    return true; // at the end of the file, where it is damaged, or sought anew: run() finds so
 }
 
 bool PcapPlayer::rewind(const PcapIndex::Mark &mark) {

@@ -1,9 +1,8 @@
 #pragma once
 
-#include "common/recording/PlayClock.h"
+#include "common/recording/Playback.h"
 #include "daemons/velodynelogger/PcapIndex.h"
 
-#include <condition_variable>
 #include <functional>
 
 namespace hermes {
@@ -12,18 +11,6 @@ namespace hermes {
 /// they were received or any other.
 class PcapPlayer {
 public:
-    struct Options {
-        double speed = 1; ///< 1 is real time, 0 as fast as the sink takes it
-        bool loop = false;
-        bool paused = false; ///< from the beginning
-        PlayTime begin{};    ///< when the first datagram is played, and what is a jump of the clock
-    };
-    struct Status {
-        double position_s = 0;            ///< after the beginning, clock jumps left out
-        std::optional<double> duration_s; ///< nothing until the files have been read through
-        bool paused = false;
-        std::uint64_t loops = 0; ///< how often it began anew
-    };
     /// Called in the playing thread; the payload is valid during the call. May block: playing waits.
     using Sink = std::function<void(const Datagram &)>;
     /// Called in the playing thread: the next datagram does not follow the last one, after a seek or at the
@@ -36,14 +23,16 @@ public:
     PcapPlayer(Sink sink, Jump jump, End end);
     ~PcapPlayer();
 
-    /// An empty string on success, else what failed.
-    std::string start(const std::vector<std::string> &paths, const Options &options);
+    /// An empty string on success, else what failed. At speed 0 as fast as the sink takes it. begin: when the
+    /// first datagram is played, and what is a jump of the clock.
+    std::string start(const std::vector<std::string> &paths, const Playback::Options &options,
+                      const PlayTime &begin = {});
     void stop();
 
-    /// Goes on at the first datagram at or after this time; beyond the end is the end.
-    void seek(double time_s);
-    void setPaused(bool paused);
-    Status status() const;
+    /// A seek goes on at the first datagram at or after its time; beyond the end is the end.
+    Playback &playback() { return playback_; }
+    /// Clock jumps left out; nothing until the files have been read through.
+    std::optional<double> duration_s() const;
 
 private:
     void run();
@@ -55,23 +44,15 @@ private:
     Jump jump_;
     End end_;
     PcapIndex index_;
-    Options options_;
+    PlayTime begin_;
 
     // Of the thread while it runs.
     PcapSequence reader_;
     PlayTime time_;
     bool atTarget_ = false; ///< the datagram that a seek ended at is yet to be played
     Datagram target_;       ///< that datagram
-    PlayClock clock_;
 
-    std::thread thread_;
-    mutable std::mutex mutex_; // guards what follows
-    std::condition_variable wake_;
-    bool stopping_ = false;
-    bool paused_ = false;
-    std::optional<std::int64_t> seek_ns_;
-    std::int64_t position_ns_ = 0;
-    std::uint64_t loops_ = 0;
+    Playback playback_;
 };
 
 } // namespace hermes

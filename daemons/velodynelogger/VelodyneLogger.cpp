@@ -1,7 +1,6 @@
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
 #include "common/Log.h"
-#include "common/recording/StoredRecording.h"
 #include "daemons/velodynelogger/TurnFile.h"
 #include "daemons/velodynelogger/TurnMessages.h"
 #include "protocol/wire/Fields.h"
@@ -16,12 +15,8 @@ constexpr int retry_ms = 2;
 constexpr qint64 patience_ms = 5000;
 constexpr qint64 capturePatience_ms = 10000;
 
-PcapPlayer::Options replayOptions(const Call &call) {
-    PcapPlayer::Options options;
-    options.speed = call.number("speed");
-    options.loop = call.flag("loop");
-    options.paused = call.flag("paused");
-    return options;
+Playback::Options replayOptions(const Call &call) {
+    return {call.number("speed"), call.flag("loop"), call.flag("paused")};
 }
 
 } // namespace
@@ -56,8 +51,8 @@ Result<void> VelodyneLogger::start() {
     const Result<void> result =
         pcap.isEmpty()
             ? openLive()
-            : openPcap(pcap, {pcap}, {settings().number("source.speed"), settings().flag("source.loop")},
-                       options());
+            : openPcap(pcap, {pcap},
+                       {settings().number("source.speed"), settings().flag("source.loop"), false}, options());
     updateHealth();
     return result;
 }
@@ -93,20 +88,21 @@ Result<void> VelodyneLogger::openLive() {
     const QString address = settings().text("source.address");
     const int port = settings().integer("source.port");
     const QString name = QString("udp://%1:%2").arg(address).arg(port);
-    ++generation_;
+    source_.close();
     updateClouds();
     const std::string error = feed_.openLive(address.toStdString(), quint16(port),
                                              settings().integer("source.receive_buffer_bytes"), options());
     if (!error.empty()) {
-        opened(Source::None, {}, {});
+        opened(State::None, {});
         return diskError(QString::fromStdString(error), name);
     }
-    opened(Source::Live, name, {});
+    opened(State::Live, name);
     return {};
 }
 
 Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &paths,
-                                      const PcapPlayer::Options &play, const LidarFeed::Options &options) {
+                                      const Playback::Options &play, const LidarFeed::Options &options,
+                                      const PlayTime &begin) {
     std::vector<std::string> files;
     for (const QString &path : paths) {
         PcapReader probe; // a wrong name does not close what is open
@@ -114,114 +110,87 @@ Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &pa
             return diskError(QString::fromStdString(probe.error()), path);
         files.push_back(path.toStdString());
     }
-    ++generation_;
+    source_.close();
     updateClouds();
-    const auto ended = [this, generation = generation_](const std::string &failure) {
-        const auto tell = [this, generation, failure] {
-            if (generation != generation_) // a source that was closed meanwhile
-                return;
-            replayEnd_ = QString::fromStdString(failure);
-            publishTurns();
-        };
-        QMetaObject::invokeMethod(this, tell, Qt::QueuedConnection);
+    const auto ended = source_.whenEnded([this](const Result<void> &result) {
+        replayEnd_ = result;
+        publishTurns();
+    });
+    const auto tell = [ended, name](const std::string &failure) {
+        ended(failure.empty() ? Result<void>() : diskError(QString::fromStdString(failure), name));
     };
-    const std::string error = feed_.openPcap(files, play, options, ended);
+    const std::string error = feed_.openPcap(files, play, options, tell, begin);
     if (!error.empty()) {
-        opened(Source::None, {}, {});
+        opened(State::None, {});
         return diskError(QString::fromStdString(error), name);
     }
-    opened(Source::Replay, name, play);
+    opened(State::Replay, name);
     return {};
 }
 
-void VelodyneLogger::opened(Source source, const QString &name, const PcapPlayer::Options &play) {
-    source_ = source;
-    sourceName_ = name;
-    play_ = play;
-    sourceError_.clear();
+void VelodyneLogger::opened(State state, const QString &name) {
     replayEnd_.reset();
     sincePublished_.start();
     packetsAtTick_ = datagramsAtTick_ = 0;
     packetRate_ = 0;
     sincePacket_.start();
     sinceTick_.start();
-    setState(source == Source::None ? DaemonState::Ready : DaemonState::Running);
-    if (source != Source::None)
-        logInfo("source", "packets come from " + name);
+    setState(state == State::None ? DaemonState::Ready : DaemonState::Running);
+    if (state != State::None)
+        source_.opened(state, name);
 }
 
-Result<QJsonValue> VelodyneLogger::openSource(const Call &call) {
-    const bool live = call.has("live") && call.flag("live");
-    if (live + call.has("pcap") + call.has("recording") != 1)
-        return invalidParams({{"live", call.value("live"), "true, without the others"},
-                              {"pcap", call.value("pcap"), "a capture file, without the others"},
-                              {"recording", call.value("recording"), "the name of one, without the others"}},
-                             "one of live: true, pcap: FILE and recording: NAME expected");
-    if (live && call.has("port"))
-        return invalidParams(
-            {{"port", call.value("port"), "only of a replay; live it is the setting source.port"}},
-            "port is of a replay, live it is the setting source.port");
-    const QString pcap = call.text("pcap");
-    const Result<void> result = live ? openLive()
-                                : call.has("recording")
-                                    ? openRecording(call)
-                                    : openPcap(pcap, {pcap}, replayOptions(call), replayedOptions(call));
-    updateHealth();
-    if (!result)
-        return result.error();
-    return asJson(sourceState());
+ReplaySource::Actions VelodyneLogger::sourceActions() {
+    ReplaySource::Actions actions;
+    actions.live = [this](const Call &call) -> Result<void> {
+        if (call.has("port"))
+            return invalidParams(
+                {{"port", call.value("port"), "only of a replay; live it is the setting source.port"}},
+                "port is of a replay, live it is the setting source.port");
+        return openLive();
+    };
+    actions.pcap = [this](const Call &call) {
+        const QString pcap = call.text("pcap");
+        return openPcap(pcap, {pcap}, replayOptions(call), replayedOptions(call));
+    };
+    actions.recording = [this](const Call &call, const StoredRecording &stored) {
+        return openRecording(call, stored);
+    };
+    actions.duration_s = [this] { return feed_.player().duration_s(); };
+    actions.records = [this] { return recording_.isActive(); };
+    actions.changed = [this] { updateHealth(); };
+    return actions;
 }
 
 /// The time of the replay is that of the recording, which began before its first packet.
-Result<void> VelodyneLogger::openRecording(const Call &call) {
-    if (recording_.isActive())
-        return Error(ErrorCode::NotReady,
-                     "what is replayed would be recorded; record.stop ends the recording");
-    const Result<StoredRecording> stored =
-        StoredRecording::find(settings().text("record.folder"), call.text("recording"), identity().name);
-    if (!stored)
-        return stored.error();
-    const Result<QStringList> files = stored->files();
+Result<void> VelodyneLogger::openRecording(const Call &call, const StoredRecording &stored) {
+    const Result<QStringList> files = stored.files();
     if (!files || files->isEmpty())
-        return files ? diskError(stored->folder + ": the recording has no files", stored->folder)
+        return files ? diskError(stored.folder + ": the recording has no files", stored.folder)
                      : files.error();
-    PcapPlayer::Options play = replayOptions(call);
-    play.begin = PlayTime(std::int64_t(stored->start_s * 1e9), std::int64_t(stored->length_s * 1e9),
-                          std::int64_t(call.number("delay_s") * 1e9));
-    return openPcap(stored->folder, *files, play, replayedOptions(call));
+    return openPcap(stored.folder, *files, replayOptions(call), replayedOptions(call),
+                    PlayTime(std::int64_t(stored.start_s * 1e9), std::int64_t(stored.length_s * 1e9),
+                             std::int64_t(call.number("delay_s") * 1e9)));
 }
 
-void VelodyneLogger::replayEnded(QString error) {
-    source_ = Source::Ended;
-    sourceError_ = error;
-    replayEnd_.reset();
-    if (error.isEmpty())
-        logInfo("source", sourceName_ + " has been played to its end");
-    else
-        logError("source", error);
-    setState(DaemonState::Ready);
+void VelodyneLogger::closeSource() {
+    source_.close();
+    feed_.close();
+    publishTurns();
+    opened(State::None, {});
     updateHealth();
+}
+
+void VelodyneLogger::replayEnded() {
+    setState(DaemonState::Ready);
+    source_.end(*std::exchange(replayEnd_, std::nullopt));
     publish("lidar", [this] { return lidarState(); });
-}
-
-Result<QJsonValue> VelodyneLogger::seek(double time_s) {
-    if (source_ != Source::Replay)
-        return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
-    feed_.player().seek(time_s);
-    return asJson(sourceState());
-}
-
-Result<QJsonValue> VelodyneLogger::pause(bool paused) {
-    if (source_ != Source::Replay)
-        return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
-    feed_.player().setPaused(paused);
-    return asJson(sourceState());
 }
 
 void VelodyneLogger::captureTurn(const Call &call, const Reply &reply) {
     const QString format = call.text("format");
     const Result<QString> path = folder_.newFile(call.text("name"), format);
-    if (!path || (source_ != Source::Live && source_ != Source::Replay)) {
+    if (!path || !source_.isOpen()) {
         reply.error(path ? Error(ErrorCode::NotReady, "no source is open; source.open opens one")
                          : path.error());
         return;
@@ -262,7 +231,7 @@ void VelodyneLogger::updateClouds() {
 
 /// A replay without loss waits for readers who are behind, but not for one that reads no more.
 bool VelodyneLogger::mayPublish() {
-    const bool patient = source_ == Source::Replay && play_.speed == 0;
+    const bool patient = source_.state() == State::Replay && feed_.player().playback().options().speed == 0;
     return !patient || (hasRoom("scan2d") && hasRoom("cloud")) || sincePublished_.elapsed() >= patience_ms;
 }
 
@@ -285,7 +254,7 @@ void VelodyneLogger::publishTurns() {
                 "cloud", [&] { return toCloudMessage(*cloud); }, double(cloud->begin_ns) * 1e-9);
         retry_.start(0);
     } else if (replayEnd_) {
-        replayEnded(*replayEnd_);
+        replayEnded();
     }
 }
 

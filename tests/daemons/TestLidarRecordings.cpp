@@ -49,11 +49,11 @@ void TestLidarRecordings::severalFilesAreOneReplay() {
         const std::lock_guard<std::mutex> lock(mutex);
         return last >= sensor.stamp(packet) && last < sensor.stamp(packet + 2000);
     };
-    QCOMPARE(player.start(paths, {1}), std::string());
-    QTRY_VERIFY(player.status().duration_s.has_value());
-    QVERIFY(std::abs(*player.status().duration_s - 8999 * 552.96e-6) < 1e-5);
+    QCOMPARE(player.start(paths, {1, false, false}), std::string());
+    QTRY_VERIFY(player.duration_s().has_value());
+    QVERIFY(std::abs(*player.duration_s() - 8999 * 552.96e-6) < 1e-5);
     for (const int packet : {7000, 2000, 4000}) {
-        player.seek(packet * 552.96e-6);
+        player.playback().seek(packet * 552.96e-6);
         QTRY_VERIFY(at(packet));
     }
     QVERIFY(QFile::remove(QString::fromStdString(paths[2])));
@@ -70,18 +70,16 @@ void TestLidarRecordings::aRecordingBeginsBeforeItsFirstPacket() {
     const QString path = makeCapture(folder, 500); // 0.276 s
     const std::int64_t begin_ns = Sensor().stamp(0) - 100000000000;
     LidarListener listener;
-    PcapPlayer::Options play;
-    play.speed = 100;
-    play.paused = true;
-    play.begin = PlayTime(begin_ns, 101000000000, 300000000);
-    QCOMPARE(listener.feed.openPcap({path.toStdString()}, play, {},
-                                    [&](const std::string &) { listener.ended = true; }),
+    QCOMPARE(listener.feed.openPcap(
+                 {path.toStdString()}, {100, false, true}, {},
+                 [&](const std::string &) { listener.ended = true; },
+                 PlayTime(begin_ns, 101000000000, 300000000)),
              std::string());
-    QTRY_VERIFY(listener.feed.player().status().duration_s.has_value());
-    QVERIFY(std::abs(*listener.feed.player().status().duration_s - 100.3 - 499 * 552.96e-6) < 1e-5);
+    QTRY_VERIFY(listener.feed.player().duration_s().has_value());
+    QVERIFY(std::abs(*listener.feed.player().duration_s() - 100.3 - 499 * 552.96e-6) < 1e-5);
     QElapsedTimer timer;
     timer.start();
-    listener.feed.player().setPaused(false);
+    listener.feed.player().playback().setPaused(false);
     QVERIFY(listener.waitForEnd());
     QVERIFY(timer.elapsed() >= 1003);
     QCOMPARE(listener.feed.counts().packets.packets, std::uint64_t(500));

@@ -101,7 +101,7 @@ void TestLidarReplay::replayLoops() {
     }
     const velodyne::PacketCounts counts = listener.feed.counts().packets;
     QCOMPARE(counts.lost + counts.outOfOrder + counts.clockJumps, std::uint64_t(0));
-    QVERIFY(listener.feed.player().status().loops >= 2);
+    QVERIFY(listener.feed.player().playback().status().loops >= 2);
     // A file that is cut is played to the cut, once.
     QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
     LidarListener cut;
@@ -150,19 +150,20 @@ void TestLidarReplay::replaySeeks() {
             const std::lock_guard<std::mutex> lock(mutex);
             return stamps;
         };
-        QCOMPARE(player.start({path.toStdString()}, {1, false}), std::string());
-        QTRY_VERIFY(player.status().duration_s.has_value());
-        QVERIFY(std::abs(*player.status().duration_s - 11999 * 552.96e-6) < 1e-5);
-        player.seek(from_s);
+        QCOMPARE(player.start({path.toStdString()}, {1, false, false}), std::string());
+        QTRY_VERIFY(player.duration_s().has_value());
+        QVERIFY(std::abs(*player.duration_s() - 11999 * 552.96e-6) < 1e-5);
+        Playback &playback = player.playback();
+        playback.seek(from_s);
         QTRY_VERIFY(jumps == 1 && !played().empty() && played().back() - Sensor().stamp(0) >= from_s * 1e9);
-        player.setPaused(true);
-        player.seek(target_s);
+        playback.setPaused(true);
+        playback.seek(target_s);
         QTRY_COMPARE(jumps.load(), 2);
         const std::size_t before = played().size();
-        player.setPaused(false);
+        playback.setPaused(false);
         QTRY_VERIFY(played().size() > before);
         QCOMPARE(played()[before], Sensor().stamp(first));
-        QVERIFY(player.status().position_s >= first * 552.96e-6 - 1e-6);
+        QVERIFY(playback.status().position_s >= first * 552.96e-6 - 1e-6);
         player.stop();
     }
 }
@@ -173,7 +174,7 @@ void TestLidarReplay::replayPauses() {
     LidarListener listener;
     QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
     QTRY_VERIFY(listener.feed.counts().packets.packets > 100);
-    listener.feed.player().setPaused(true);
+    listener.feed.player().playback().setPaused(true);
     std::uint64_t packets = 0; // one may be on its way
     QTRY_VERIFY(packets == std::exchange(packets, listener.feed.counts().packets.packets));
     QElapsedTimer timer;
@@ -181,8 +182,8 @@ void TestLidarReplay::replayPauses() {
     while (timer.elapsed() < 700) // in which 1200 packets would have been played
         QTest::qWait(10);
     QCOMPARE(listener.feed.counts().packets.packets, packets);
-    QVERIFY(listener.feed.player().status().paused && !listener.ended);
-    listener.feed.player().setPaused(false);
+    QVERIFY(listener.feed.player().playback().status().paused && !listener.ended);
+    listener.feed.player().playback().setPaused(false);
     QVERIFY(listener.waitForEnd()); // and does not hurry to catch up: the rest takes its time
     QVERIFY(timer.elapsed() > 700 + qint64(double(3000 - packets) * 0.553) - 20);
     QVERIFY(same(listener.turns, decode(path)));

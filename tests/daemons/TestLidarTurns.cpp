@@ -26,7 +26,7 @@ void TestLidarTurns::allLasersOfATurn() {
         points = turn ? turn->points.size() : 0;
         ++clouds;
     });
-    listener.feed.player().setPaused(false);
+    listener.feed.player().playback().setPaused(false);
     QVERIFY(listener.waitForEnd());
     QCOMPARE(clouds.load(), 1);
     QVERIFY(points >= 2117 * 32);
@@ -41,7 +41,7 @@ void TestLidarTurns::aCaptureEndsWithItsSource() {
     QCOMPARE(listener.openPcap(path.toStdString(), 1, false, true), std::string());
     listener.feed.captureTurn(capture);
     listener.feed.captureTurn(capture); // both are told
-    listener.feed.player().setPaused(false);
+    listener.feed.player().playback().setPaused(false);
     QVERIFY(listener.waitForEnd());
     QCOMPARE(refused.load(), 2);
     QCOMPARE(listener.feed.openLive("127.0.0.1", 0, 1 << 20, {}), std::string());
