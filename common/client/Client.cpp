@@ -90,6 +90,19 @@ void Client::call(const QString &method, const QJsonValue &params, const Callbac
     });
 }
 
+void Client::callForMuch(const QString &method, const QJsonValue &params, const Callback &callback,
+                         std::chrono::milliseconds timeout) {
+    ++largeCalls;
+    if (channel)
+        channel->codec().setFrameLimit(qMax(frameBytes, largeFrame));
+    const auto done = [this, callback](const Result<QJsonValue> &result) {
+        if (--largeCalls == 0)
+            setFrameLimit(frameBytes);
+        callback(result);
+    };
+    call(method, params, done, timeout);
+}
+
 bool Client::notify(const QString &method, const QJsonValue &params) {
     return isConnected() && channel->send(makeNotification(method, params)).ok();
 }

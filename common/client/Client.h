@@ -34,6 +34,8 @@ public:
     static constexpr std::chrono::milliseconds defaultTimeout{5000};
     /// Of a message from the daemon, e.g. the reply that holds a map of 100,000 edges.
     static constexpr int frameLimit = 16 << 20;
+    /// Of an answer that is asked for as a large one, whatever limit others have.
+    static constexpr int largeFrame = 4 << 20;
 
     explicit Client(QObject *parent = nullptr);
     ~Client() override;
@@ -61,6 +63,9 @@ public:
     /// Not connected: fails at once (from the event loop).
     void call(const QString &method, const QJsonValue &params, const Callback &callback,
               std::chrono::milliseconds timeout = defaultTimeout);
+    /// The same for an answer of up to largeFrame.
+    void callForMuch(const QString &method, const QJsonValue &params, const Callback &callback,
+                     std::chrono::milliseconds timeout = defaultTimeout);
     /// Sends without expecting an answer; false when it could not be sent.
     bool notify(const QString &method, const QJsonValue &params);
 
@@ -104,6 +109,7 @@ private:
     QString failure;
     Rejected refused;
     int frameBytes = frameLimit;
+    int largeCalls = 0; ///< that wait
     qint64 lastId = 0;
     QHash<qint64, Callback> waiting;
     int lastHandle = 0;

@@ -19,7 +19,7 @@ _hermesctl() {
     elif [ ${#words[@]} -eq 0 ]; then
         candidates="list record replay discover call get set watch log doc"
     elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" = record ]; then
-        candidates="start stop status list"
+        candidates="start stop mark status list"
     elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" = replay ]; then
         candidates=$(hermesctl --timeout 1 record list 2>/dev/null | awk 'NR > 1 { print $1 }')
     elif [ ${#words[@]} -eq 1 ] && [ "${words[0]}" != list ]; then

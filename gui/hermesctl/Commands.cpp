@@ -77,24 +77,25 @@ Result<void> listDaemons(const Arguments &arguments) {
     for (const QString &name : daemonNames())
         addresses.append(*daemonAddress(name, arguments.host));
     const auto all = connectAll(addresses, arguments.timeout);
-    std::vector<ClientCall> clients;
+    std::vector<SessionCall> calls;
     for (const auto &client : all) {
         if (client->isConnected())
-            clients.push_back({client.get(), {}});
+            calls.push_back({{client->address(), client.get(), false, false}, {}});
     }
-    const auto infos = callAll(clients, QStringLiteral("daemon.info"), arguments.timeout);
-    const auto states = callAll(clients, QStringLiteral("daemon.status"), arguments.timeout);
-    const auto text = [](const Result<QJsonValue> &result, const char *member, const char *unknown) {
-        return result ? (*result)[QLatin1String(member)].toString() : QString::fromLatin1(unknown);
+    const auto infos = callAllAndWait(calls, QStringLiteral("daemon.info"), arguments.timeout);
+    const auto states = callAllAndWait(calls, QStringLiteral("daemon.status"), arguments.timeout);
+    const auto text = [](const SessionReply &reply, const char *member, const char *unknown) {
+        return reply.result ? (*reply.result)[QLatin1String(member)].toString()
+                            : QString::fromLatin1(unknown);
     };
-    for (std::size_t i = 0; i < clients.size(); ++i) {
+    for (std::size_t i = 0; i < calls.size(); ++i) {
         printLine(QStringLiteral("%1 %2 %3 %4")
                       .arg(text(infos[i], "name", "?"), -16)
                       .arg(text(states[i], "state", "?"), -10)
                       .arg(text(infos[i], "version", ""), -8)
-                      .arg(clients[i].first->address()));
+                      .arg(calls[i].member.name));
     }
-    if (clients.empty())
+    if (calls.empty())
         return Error(ErrorCode::Disconnected,
                      QStringLiteral("no daemon answers at its default port on %1").arg(arguments.host));
     return {};

@@ -18,6 +18,8 @@ Result<void> listDaemons(const Arguments &arguments);
 Result<void> recordStart(const Arguments &arguments);
 /// Error: what is missing or does not agree.
 Result<void> recordStop(const Arguments &arguments);
+/// A text into the recordings of all loggers that have marks.
+Result<void> recordMark(const Arguments &arguments);
 Result<void> recordStatus(const Arguments &arguments);
 Result<void> recordList(const Arguments &arguments);
 /// All loggers of a session replay it, until its end or SIGINT; then they are live again.

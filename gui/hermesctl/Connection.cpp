@@ -1,6 +1,5 @@
 #include "gui/hermesctl/Connection.h"
 
-#include <QEventLoop>
 #include <QTimer>
 
 namespace hermes {
@@ -51,22 +50,10 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
     return clients;
 }
 
-std::vector<Result<QJsonValue>> callAll(const std::vector<ClientCall> &calls, const QString &method,
-                                        std::chrono::milliseconds timeout) {
-    QEventLoop loop;
-    std::vector<Result<QJsonValue>> results(calls.size(), Result<QJsonValue>(QJsonValue()));
-    std::size_t open = calls.size();
-    for (std::size_t i = 0; i < calls.size(); ++i) {
-        const auto done = [&loop, &open, &results, i](const Result<QJsonValue> &result) {
-            results[i] = result;
-            if (--open == 0)
-                loop.quit();
-        };
-        calls[i].first->call(method, calls[i].second, done, timeout);
-    }
-    if (open > 0)
-        loop.exec();
-    return results;
+SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
+                              std::chrono::milliseconds timeout) {
+    QObject context;
+    return await<SessionReplies>([&](auto done) { callAll(calls, method, timeout, &context, done); });
 }
 
 } // namespace hermes

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "common/client/Client.h"
+#include "gui/session/SessionMember.h"
 
-#include <QStringList>
+#include <QEventLoop>
 #include <memory>
-#include <vector>
+#include <optional>
 
 namespace hermes {
 
@@ -16,11 +16,23 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
 std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
                                                 std::chrono::milliseconds timeout);
 
-/// A client and the parameters that a method is called with.
-using ClientCall = std::pair<Client *, QJsonObject>;
+/// Begins something, and waits in a nested event loop for what it gives: begin takes a function to give it
+/// to.
+template <typename T, typename Begin>
+T await(const Begin &begin) {
+    std::optional<T> result;
+    QEventLoop loop;
+    begin([&](const T &value) {
+        result = value;
+        loop.quit();
+    });
+    if (!result)
+        loop.exec();
+    return *result;
+}
 
-/// Calls a method of each at the same time; gives each its result, in the order of the calls.
-std::vector<Result<QJsonValue>> callAll(const std::vector<ClientCall> &calls, const QString &method,
-                                        std::chrono::milliseconds timeout);
+/// As callAll, and waits.
+SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
+                              std::chrono::milliseconds timeout);
 
 } // namespace hermes

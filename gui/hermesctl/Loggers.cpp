@@ -5,7 +5,6 @@
 
 #include <QJsonArray>
 #include <algorithm>
-#include <numeric>
 
 namespace hermes {
 namespace {
@@ -22,15 +21,27 @@ Result<QStringList> addressesOf(const Arguments &arguments) {
     return addresses;
 }
 
-bool records(const QJsonValue &description) {
-    const QJsonArray methods = description[QStringLiteral("methods")].toArray();
-    return std::any_of(methods.begin(), methods.end(), [](const QJsonValue &method) {
-        return method[QStringLiteral("name")].toString() == QStringLiteral("record.start");
-    });
+/// Whether a description tells of a method.
+bool has(const QJsonValue &description, const QString &method) {
+    const QJsonArray methods = description["methods"].toArray();
+    return std::any_of(methods.begin(), methods.end(),
+                       [&](const QJsonValue &one) { return one["name"].toString() == method; });
 }
 
-QString complaint(const QString &address, const QString &why) {
-    return QStringLiteral("%1: %2").arg(address, why.isEmpty() ? QStringLiteral("no answer") : why);
+/// Lines for those that are no loggers; those that do not say what they are go to the silent ones.
+QStringList identify(SessionMembers &members, const std::vector<SessionMember> &daemons) {
+    const auto infos = callAllAndWait(callsOf(daemons), "daemon.info", members.timeout);
+    const auto descriptions = callAllAndWait(callsOf(daemons), "rpc.discover", members.timeout);
+    QStringList others;
+    for (std::size_t i = 0; i < daemons.size(); ++i) {
+        const SessionReply &reply = infos[i].result ? descriptions[i] : infos[i];
+        if (!reply.result)
+            members.silent.append(reply.complaint() + " (is it a logger? --daemons names those that are)");
+        else if (!members.add((*infos[i].result)["name"].toString(), *daemons[i].client,
+                              [&](const QString &method) { return has(*reply.result, method); }))
+            others.append(daemons[i].name + ": no logger, record.start is missing");
+    }
+    return others;
 }
 
 } // namespace
@@ -40,67 +51,29 @@ Result<Loggers> Loggers::find(const Arguments &arguments) {
     if (!addresses)
         return addresses.error();
     Loggers loggers;
-    loggers.timeout_ = arguments.timeout;
-    QStringList absent, others;
-    auto clients = connectAll(*addresses, arguments.timeout);
-    for (std::size_t i = 0; i < clients.size(); ++i) {
-        if (clients[i]->isConnected())
-            loggers.members_.push_back({addresses->at(int(i)), std::move(clients[i])});
+    loggers.clients = connectAll(*addresses, arguments.timeout);
+    loggers.members.timeout = arguments.timeout;
+    QStringList faults;
+    std::vector<SessionMember> daemons;
+    for (int i = 0; i < addresses->size(); ++i) {
+        Client &client = *loggers.clients[std::size_t(i)];
+        const QString &why = client.lastError();
+        if (client.isConnected())
+            daemons.push_back({addresses->at(i), &client, false, false});
         else
-            absent.append(complaint(addresses->at(int(i)), clients[i]->lastError()));
+            faults.append(addresses->at(i) + ": " + (why.isEmpty() ? "no answer" : why));
     }
-    loggers.keepThoseThatRecord(others);
-    if (!arguments.daemons.isEmpty() && !(absent + loggers.silent_ + others).isEmpty())
-        return Error(ErrorCode::Disconnected, (absent + loggers.silent_ + others).join(QStringLiteral("; ")));
-    if (loggers.members_.empty())
-        return Error(ErrorCode::Disconnected,
-                     (QStringList(QStringLiteral("no logger answers at its default port on %1; --daemons "
-                                                 "names others")
-                                      .arg(arguments.host)) +
-                      loggers.silent_)
-                         .join(QStringLiteral("; ")));
+    faults += identify(loggers.members, daemons) + loggers.members.silent;
+    if (!arguments.daemons.isEmpty() && !faults.isEmpty())
+        return Error(ErrorCode::Disconnected, faults.join("; "));
+    if (loggers.members.all.empty())
+        return Error(
+            ErrorCode::Disconnected,
+            (QStringList(QString("no logger answers at its default port on %1; --daemons names others")
+                             .arg(arguments.host)) +
+             loggers.members.silent)
+                .join("; "));
     return loggers;
-}
-
-void Loggers::keepThoseThatRecord(QStringList &others) {
-    const Replies infos = call(QStringLiteral("daemon.info"));
-    const Replies descriptions = call(QStringLiteral("rpc.discover"));
-    std::vector<Member> all;
-    all.swap(members_);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const Result<QJsonValue> &reply = infos[i] ? descriptions[i] : infos[i];
-        if (!reply) {
-            silent_.append(complaint(all[i].name, reply.error().message));
-        } else if (!records(*reply)) {
-            others.append(complaint(all[i].name, QStringLiteral("no logger, record.start is missing")));
-        } else {
-            const QString name = (*infos[i])[QStringLiteral("name")].toString();
-            const bool known = std::any_of(members_.begin(), members_.end(),
-                                           [&](const Member &member) { return member.name == name; });
-            members_.push_back(
-                {known ? name + QLatin1Char('@') + all[i].name : name, std::move(all[i].client)});
-        }
-    }
-}
-
-Loggers::Numbers Loggers::everyone() const {
-    Numbers numbers(members_.size());
-    std::iota(numbers.begin(), numbers.end(), 0);
-    return numbers;
-}
-
-Loggers::Replies Loggers::call(const Numbers &numbers, const QString &method, const QJsonObject &params,
-                               std::chrono::milliseconds atLeast) const {
-    return callEach(numbers, method, std::vector<QJsonObject>(numbers.size(), params), atLeast);
-}
-
-Loggers::Replies Loggers::callEach(const Numbers &numbers, const QString &method,
-                                   const std::vector<QJsonObject> &params,
-                                   std::chrono::milliseconds atLeast) const {
-    std::vector<ClientCall> calls;
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-        calls.push_back({members_[numbers[i]].client.get(), params[i]});
-    return callAll(calls, method, std::max(timeout_, atLeast));
 }
 
 } // namespace hermes

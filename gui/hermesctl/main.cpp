@@ -17,6 +17,7 @@ Speaks to the daemons of a robot.
   list                           the daemons that answer at their default ports
   record start NAME              all loggers begin to record as one session, or none does
   record stop                    ends it and checks that nothing is missing
+  record mark TEXT               puts a text with the time into what is being recorded
   record status                  what each logger records
   record list                    the sessions that were recorded
   replay SESSION                 plays a session back through the same topics, until its end or Ctrl-C
@@ -74,6 +75,7 @@ const RobotEntry robotCommands[] = {
     {"list", 0, "list", listDaemons},
     {"record start", 1, "record start NAME", recordStart},
     {"record stop", 0, "record stop", recordStop},
+    {"record mark", 1, "record mark TEXT", recordMark},
     {"record status", 0, "record status", recordStatus},
     {"record list", 0, "record list", recordList},
     {"replay", 1, "replay SESSION [--speed X] [--loop]", replay},

@@ -16,7 +16,7 @@ import unittest
 
 import recording_load as load
 from lateness import Lateness
-from support import Daemon, Process, free_port, wait_for
+from support import SOURCE, Daemon, Process, free_port, wait_for
 
 CTL = os.path.join(load.BINARIES, "hermesctl")
 PACKETS_HZ, SECONDS = 1810, 1
@@ -41,6 +41,28 @@ class Serial:
         wait_for("the bytes", lambda: self.daemon.call("ports.list")[0]["bytes"] == before + len(text))
 
 
+# A logger whose record.start takes long.
+LATE_LOGGER = """
+import sys, time
+sys.path.insert(0, sys.argv.pop(1))
+from hermes_daemon import Daemon
+late = Daemon("late", "Late", {"period_s": {"type": "number", "default": 0.1}}, {})
+state = {"recording": False, "folder": "/late"}
+
+def put(recording, seconds=0):
+    time.sleep(seconds)
+    state["recording"] = recording
+    return state
+
+late.method("record.status", "Status")(lambda: state)
+late.method("record.list", "List")(lambda: [])
+late.method("record.stop", "Stop")(lambda: put(False))
+text = {"type": "string"}
+late.methods["record.start"] = ("Start", {"name": text, "session": text}, lambda name, session: put(True, 8))
+late.run(lambda: None, 0)
+"""
+
+
 class Reader(threading.Thread):
     """Everything that a topic says, with the time at which it came; understood when it is taken, which takes longer."""
 
@@ -61,6 +83,11 @@ class Reader(threading.Thread):
     def take(self):
         came, self.came = self.came, []
         return [(when, json.loads(line)["params"]["data"]) for when, line in came]
+
+
+def listens(port):
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
 
 
 def ctl(*arguments):
@@ -211,6 +238,27 @@ class Sessions(unittest.TestCase):
         for logger in (self.lidar, full):
             self.assertFalse(logger.daemon.call("record.status")["recording"])
         self.assertEqual(self.sidecar("run1", "velodynelogger")["ended"], "stopped")
+
+    def test_a_start_that_timed_out_is_taken_back(self):
+        port = free_port(0)
+        late = subprocess.Popen(["python3", "-c", LATE_LOGGER, os.path.join(SOURCE, "docs", "examples"), "--port", str(port)])
+        self.addCleanup(late.wait)
+        self.addCleanup(late.kill)
+        wait_for("the late logger", lambda: listens(port))
+        self.daemons = f"127.0.0.1:{self.lidar.process.port},127.0.0.1:{port}"
+        told = self.ctl("--timeout", "4", "record", "start", "run1", status=1)
+        for words in ("late: record.start: no reply within 4 s", "late had begun and was stopped, see /late",
+                      "velodynelogger had begun and was stopped"):
+            self.assertIn(words, told)
+        self.assertNotRegex(self.ctl("record", "status"), " recording ")
+
+    def test_mark(self):
+        self.assertIn("no logger that takes marks is recording", self.ctl("record", "mark", "too early", status=1))
+        self.ctl("record", "start", "run1")
+        self.assertRegex(self.ctl("record", "mark", "at the door"), r"daemon +marked at\nseriallogger +20\d\d-\S+\n$")
+        self.ctl("record", "stop")
+        with open(os.path.join(self.records, "run1", "seriallogger-events.jsonl"), encoding="utf-8") as events:
+            self.assertIn('"text":"at the door"', events.read())
 
     def test_one_that_died_is_told(self):
         self.record("run1")

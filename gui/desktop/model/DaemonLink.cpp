@@ -114,11 +114,7 @@ void DaemonLink::call(const QString &method, const QJsonObject &params, QObject 
 
 void DaemonLink::callForMuch(const QString &method, const QJsonObject &params, QObject *context,
                              const Client::Callback &done) {
-    ++largeCalls_;
-    client_.setFrameLimit(largeFrame);
-    client_.call(method, params, [=, guard = QPointer<QObject>(context)](const auto &result) {
-        if (--largeCalls_ == 0)
-            client_.setFrameLimit(usualFrame);
+    client_.callForMuch(method, params, [done, guard = QPointer<QObject>(context)](const auto &result) {
         if (guard)
             done(result);
     });

@@ -22,9 +22,9 @@ class DaemonLink : public QObject {
     Q_OBJECT
 public:
     static constexpr std::chrono::milliseconds pollPeriod{1000};
-    /// Of messages that come by themselves, and of answers that may be large: what takes longer to read than
-    /// the event loop may be busy is refused.
-    static constexpr int usualFrame = 320 << 10, largeFrame = 4 << 20;
+    /// Of messages that come by themselves: what takes longer to read than the event loop may be busy is
+    /// refused.
+    static constexpr int usualFrame = 320 << 10;
 
     /// address: "HOST:PORT".
     explicit DaemonLink(const QString &address, QObject *parent = nullptr);
@@ -60,7 +60,7 @@ public:
     /// Calls a method; the callback is dropped with the context.
     void call(const QString &method, const QJsonObject &params, QObject *context,
               const Client::Callback &done);
-    /// The same for an answer of up to largeFrame.
+    /// The same for an answer of up to Client::largeFrame.
     void callForMuch(const QString &method, const QJsonObject &params, QObject *context,
                      const Client::Callback &done);
     /// As Client::subscribe. Without "queue" in the options only the newest message counts, and no more of
@@ -95,7 +95,6 @@ private:
     QStringList topicNames_;
     QHash<int, NewestOnly *> gates_; // by the handle of their subscription
     QString nonsense_;               // what it said of itself that cannot be used
-    int largeCalls_ = 0;
     quint64 shownUnreadable_ = 0;
     double latency_ms_ = -1;
     bool isPolling_ = false;

@@ -47,10 +47,11 @@ QString startText(double stamp) {
 
 RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
-    , recorder_(fleet)
-    , player_(fleet)
+    , watch_(fleet)
     , name_(new QLineEdit("run1"))
+    , mark_(new QLineEdit)
     , record_(new QPushButton)
+    , addMark_(new QPushButton(tr("&Mark")))
     , replay_(new QPushButton(theme::icon("start"), tr("Repla&y")))
     , live_(new QPushButton(tr("&Live")))
     , amount_(new PlainLabel)
@@ -73,46 +74,109 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     sessions_->header()->setSectionResizeMode(1, QHeaderView::ResizeToContents);
     sessions_->setRootIsDecorated(false);
 
+    mark_->setObjectName("markText");
+    mark_->setPlaceholderText(tr("What to remember of this moment"));
+    addMark_->setObjectName("mark");
+    layOut();
+
+    connect(record_, &QPushButton::clicked, this, [this] { watch_.isRecording() ? stop() : start(); });
+    connect(name_, &QLineEdit::returnPressed, record_, &QPushButton::click);
+    connect(addMark_, &QPushButton::clicked, this, &RecordPanel::mark);
+    connect(mark_, &QLineEdit::returnPressed, addMark_, &QPushButton::click);
+    connect(replay_, &QPushButton::clicked, this, &RecordPanel::play);
+    connect(live_, &QPushButton::clicked, &player_, &SessionPlayer::end);
+    connect(sessions_, &QTreeWidget::currentItemChanged, this, &RecordPanel::update);
+    connect(&watch_, &LoggerWatch::changed, this, &RecordPanel::update);
+    connect(&watch_, &LoggerWatch::membersChanged, this, &RecordPanel::list);
+    connect(&player_, &SessionPlayer::ended, this, [this](const Result<void> &result) {
+        message_->tell(result ? tr("The replay has ended; everything is live.") : result.error().message,
+                       !result);
+        update();
+    });
+    list();
+    update();
+}
+
+void RecordPanel::layOut() {
     auto *const top = new QHBoxLayout;
     top->addWidget(name_, 1);
     top->addWidget(record_);
+    auto *const middle = new QHBoxLayout;
+    middle->addWidget(mark_, 1);
+    middle->addWidget(addMark_);
     auto *const bottom = new QHBoxLayout;
     bottom->addWidget(replay_);
     bottom->addWidget(live_);
     auto *const layout = new QVBoxLayout(this);
     layout->addLayout(top);
+    layout->addLayout(middle);
     layout->addWidget(amount_);
     layout->addWidget(sessions_, 1);
     layout->addLayout(bottom);
     layout->addWidget(message_);
+}
 
-    connect(record_, &QPushButton::clicked, this, [this] {
-        if (recorder_.isRecording())
-            recorder_.stop();
-        else
-            recorder_.start(name_->text().trimmed());
+/// With the loggers of this moment.
+SessionRecorder &RecordPanel::recorder() {
+    recorder_.setMembers(watch_.members());
+    return recorder_;
+}
+
+void RecordPanel::start() {
+    const QString name = name_->text().trimmed();
+    recorder().start(name, [this, name](const Result<SessionReplies> &replies) {
+        message_->tell(replies ? tr("Recording %1.").arg(name) : replies.error().message, !replies);
+        watch_.poll();
+        list();
     });
-    connect(name_, &QLineEdit::returnPressed, record_, &QPushButton::click);
-    connect(replay_, &QPushButton::clicked, this, [this] {
-        const int row = sessions_->indexOfTopLevelItem(sessions_->currentItem());
-        if (row >= 0 && row < recorder_.sessions().size())
-            player_.play(recorder_.sessions()[row].toObject(), 1);
+}
+
+void RecordPanel::stop() {
+    recorder().stop([this](const Result<SessionRecorder::Stopped> &stopped) {
+        const QStringList problems = stopped ? stopped->problems : QStringList(stopped.error().message);
+        message_->tell(problems.isEmpty() ? tr("Stopped, nothing missing.") : problems.join('\n'),
+                       !problems.isEmpty());
+        watch_.poll();
+        list();
     });
-    connect(live_, &QPushButton::clicked, &player_, &SessionPlayer::live);
-    connect(sessions_, &QTreeWidget::currentItemChanged, this, &RecordPanel::update);
-    connect(&recorder_, &SessionRecorder::changed, this, &RecordPanel::update);
-    connect(&recorder_, &SessionRecorder::told, message_, &MessageLabel::tell);
-    connect(&player_, &SessionPlayer::changed, this, &RecordPanel::update);
-    connect(&player_, &SessionPlayer::told, message_, &MessageLabel::tell);
+}
+
+void RecordPanel::mark() {
+    const QString text = mark_->text().trimmed();
+    recorder().mark(text, [this, text](const Result<SessionReplies> &replies) {
+        message_->tell(replies ? tr("Marked: %1").arg(text) : replies.error().message, !replies);
+        if (replies)
+            mark_->clear();
+    });
+}
+
+void RecordPanel::list() {
+    recorder().list(mostRecordings, [this](const SessionList &found) {
+        list_ = found;
+        update();
+    });
+}
+
+void RecordPanel::play() {
+    const int row = sessions_->indexOfTopLevelItem(sessions_->currentItem());
+    if (row < 0 || row >= int(list_.sessions.size()))
+        return;
+    const RecordedSession &session = list_.sessions[std::size_t(row)];
+    QStringList lines = session.absent();
+    lines.prepend(tr("Replaying %1.").arg(session.name));
+    message_->tell(lines.join('\n'), lines.size() > 1);
+    player_.play(session, {});
     update();
 }
 
 void RecordPanel::update() {
-    const bool isRecording = recorder_.isRecording();
+    const bool isRecording = watch_.isRecording();
     record_->setText(isRecording ? tr("S&top") : tr("Re&cord"));
     record_->setIcon(theme::icon(isRecording ? "stop" : "record"));
-    record_->setEnabled(!recorder_.loggers().empty() && (isRecording || !name_->text().trimmed().isEmpty()));
+    record_->setEnabled(!watch_.members().all.empty() && (isRecording || !name_->text().trimmed().isEmpty()));
     name_->setEnabled(!isRecording);
+    mark_->setVisible(watch_.marks());
+    addMark_->setVisible(watch_.marks());
     showAmount();
     showSessions();
     replay_->setEnabled(sessions_->currentItem() && !isRecording);
@@ -120,54 +184,49 @@ void RecordPanel::update() {
 }
 
 void RecordPanel::showAmount() {
-    if (recorder_.loggers().empty())
+    if (watch_.members().all.empty())
         return amount_->setText(tr("No logger is connected."));
-    if (!recorder_.isRecording()) {
+    if (!watch_.isRecording()) {
         QStringList names;
-        for (const SessionRecorder::Logger &logger : recorder_.loggers())
-            if (logger.daemon)
-                names.append(logger.daemon->name());
+        for (const SessionMember &member : watch_.members().all)
+            names.append(member.name);
         QString text = tr("Records with %1.").arg(names.join(", "));
-        if (recorder_.unlisted() > 0)
-            text += ' ' + tr("%1 older recordings are not listed.").arg(recorder_.unlisted());
+        if (list_.unlisted > 0)
+            text += ' ' + tr("%1 older recordings are not listed.").arg(list_.unlisted);
         return amount_->setText(text);
     }
     QString text = tr("%1: %2, %3")
-                       .arg(shortLine(recorder_.name(), longestName), timeText(recorder_.seconds()),
-                            bytesText(recorder_.bytes()));
-    if (recorder_.secondsLeft() > 0)
-        text += tr(", the disk will do for %1").arg(timeText(recorder_.secondsLeft()));
-    for (const SessionRecorder::Logger &logger : recorder_.loggers())
-        if (logger.daemon && logger.losses() > 0)
-            text += tr("; %1 misses %2").arg(logger.daemon->name()).arg(logger.losses());
+                       .arg(shortLine(watch_.name(), longestName), timeText(watch_.seconds()),
+                            bytesText(watch_.bytes()));
+    if (watch_.secondsLeft() > 0)
+        text += tr(", the disk will do for %1").arg(timeText(watch_.secondsLeft()));
+    for (const auto &[name, state] : watch_.states())
+        if (const double lost = sumOf(state["losses"]); lost > 0)
+            text += tr("; %1 misses %2").arg(name).arg(lost);
     amount_->setText(text);
 }
 
 void RecordPanel::showSessions() {
-    const QJsonArray &sessions = recorder_.sessions();
-    while (sessions_->topLevelItemCount() > sessions.size())
+    const int count = int(list_.sessions.size());
+    while (sessions_->topLevelItemCount() > count)
         delete sessions_->takeTopLevelItem(sessions_->topLevelItemCount() - 1);
-    while (sessions_->topLevelItemCount() < sessions.size())
+    while (sessions_->topLevelItemCount() < count)
         sessions_->addTopLevelItem(new QTreeWidgetItem);
-    for (int i = 0; i < sessions.size(); ++i) {
-        const QJsonObject session = sessions[i].toObject();
-        const bool isComplete = session["complete"].toBool();
-        const bool goesOn = session["name"].toString() == recorder_.name();
-        QStringList loggers;
-        for (const QJsonValue &part : session["parts"].toArray())
-            loggers.append(part["logger"].toString());
+    for (int i = 0; i < count; ++i) {
+        const RecordedSession &session = list_.sessions[std::size_t(i)];
+        QStringList lines{startText(session.start)};
+        for (const SessionPart &part : session.parts)
+            lines.append(tr("%1: %2, %3")
+                             .arg(part.member.name, countsText(part.entry["counts"]),
+                                  part.fault().isEmpty() ? tr("complete") : part.fault()));
+        const bool isComplete = session.faults().isEmpty();
         QTreeWidgetItem *const item = sessions_->topLevelItem(i);
-        item->setText(0, shortLine(session["name"].toString(), longestName));
-        item->setText(1, bytesText(session["bytes"].toDouble()));
-        item->setIcon(0, theme::icon(isComplete ? Condition::Ready
-                                     : goesOn   ? Condition::Busy
-                                                : Condition::Warning));
-        item->setToolTip(0,
-                         toolTipOf(tr("%1\n%2\n%3")
-                                       .arg(startText(session["start"].toDouble()), loggers.join(", "),
-                                            isComplete ? tr("complete")
-                                            : goesOn   ? tr("going on")
-                                                       : tr("not complete: cut off, or ended by an error"))));
+        item->setText(0, shortLine(session.name, longestName));
+        item->setText(1, bytesText(session.bytes()));
+        item->setIcon(0, theme::icon(isComplete         ? Condition::Ready
+                                     : session.goesOn() ? Condition::Busy
+                                                        : Condition::Warning));
+        item->setToolTip(0, toolTipOf(lines.join('\n')));
     }
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "gui/desktop/model/SessionPlayer.h"
-#include "gui/desktop/model/SessionRecorder.h"
+#include "gui/desktop/model/LoggerWatch.h"
+#include "gui/session/SessionPlayer.h"
+#include "gui/session/SessionRecorder.h"
 
 #include <QWidget>
 
@@ -14,22 +15,34 @@ namespace hermes {
 class MessageLabel;
 class PlainLabel;
 
-/// Records with all loggers of the robot under one name, shows how much and how long the disk will do, and
-/// lists what was recorded.
+/// Records with all loggers of the robot as one session, puts marks into it, shows how much and how long the
+/// disk will do, lists what was recorded and plays it.
 class RecordPanel : public QWidget {
     Q_OBJECT
 public:
+    /// Of each logger, the newest so many recordings are listed.
+    static constexpr int mostRecordings = 200;
+
     explicit RecordPanel(Fleet &fleet, QWidget *parent = nullptr);
 
 private:
+    void layOut();
+    SessionRecorder &recorder();
+    void start();
+    void stop();
+    void mark();
+    void list();
+    void play();
     void update();
     void showAmount();
     void showSessions();
 
+    LoggerWatch watch_;
     SessionRecorder recorder_;
     SessionPlayer player_;
-    QLineEdit *name_;
-    QPushButton *record_, *replay_, *live_;
+    SessionList list_;
+    QLineEdit *name_, *mark_;
+    QPushButton *record_, *addMark_, *replay_, *live_;
     PlainLabel *amount_;
     MessageLabel *message_;
     QTreeWidget *sessions_;

@@ -1,4 +1,5 @@
 #include "gui/desktop/panels/RecordPanel.h"
+#include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 
 #include <QLabel>
@@ -13,6 +14,7 @@ class TestRecordPanel : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void recordsAsOneAndReplays();
+    void aStartThatTimesOutIsTakenBack();
 
 private:
     template <typename T>
@@ -41,18 +43,28 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_COMPARE(message(), QString("Recording first."));
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
     QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("amount")->text().contains("the disk will do for"), 15000);
+    QTRY_VERIFY(find<QPushButton>("mark")->isVisible());
+    find<QLineEdit>("markText")->setText("at the door");
+    click("mark");
+    QTRY_COMPARE(message(), QString("Marked: at the door"));
     click("record");
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
     QTRY_VERIFY2(message().contains("nothing missing"), qPrintable(message()));
+    QVERIFY(!find<QPushButton>("mark")->isVisible());
+    QFile events(robot.path("recordings") + "/first/seriallogger-events.jsonl");
+    QVERIFY(events.open(QIODevice::ReadOnly));
+    QVERIFY(events.readAll().contains("\"text\":\"at the door\""));
 
     auto *const sessions = find<QTreeWidget>("sessions");
     QTRY_COMPARE(sessions->topLevelItemCount(), 1); // both loggers, one session
     QCOMPARE(sessions->topLevelItem(0)->text(0), QString("first"));
-    QTRY_VERIFY(sessions->topLevelItem(0)->toolTip(0).contains("seriallogger, velodynelogger") ||
-                sessions->topLevelItem(0)->toolTip(0).contains("velodynelogger, seriallogger"));
+    const auto toolTip = [&] { return sessions->topLevelItem(0)->toolTip(0); };
+    QTRY_VERIFY2(toolTip().contains("seriallogger: ") && toolTip().contains("marks 1, complete") &&
+                     toolTip().contains("velodynelogger: data "),
+                 qPrintable(toolTip()));
 
     click("record"); // the same name once more
-    QTRY_VERIFY(message().startsWith("Nothing is recorded."));
+    QTRY_VERIFY(message().startsWith("nothing was begun; "));
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
 
     sessions->setCurrentItem(sessions->topLevelItem(0));
@@ -74,6 +86,29 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_COMPARE(state(), QString("replay"));
     QTRY_COMPARE_WITH_TIMEOUT(state(), QString("live"), 15000); // played to its end
     QTRY_VERIFY(!find<QPushButton>("live")->isEnabled());
+    panel_.reset();
+}
+
+/// As with hermesctl: see TestSessions.
+void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
+    FakeRobot robot;
+    FakeLogger &prompt = robot.add("prompt"), &late = robot.add("late");
+    Fleet fleet;
+    for (const auto &logger : robot.loggers)
+        QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
+    panel_ = std::make_unique<RecordPanel>(fleet);
+    panel_->show();
+    QTRY_VERIFY(find<QLabel>("amount")->text().contains("prompt") &&
+                find<QLabel>("amount")->text().contains("late"));
+    late.writer.hold = true;
+    click("record");
+    QTRY_VERIFY(prompt.recording.isActive());
+    QTRY_VERIFY_WITH_TIMEOUT(!prompt.recording.isActive(), 15000);
+    late.writer.hold = false;
+    QTRY_VERIFY2(message().contains("late: record.start: no reply within 5 s") &&
+                     message().contains("late had begun and was stopped"),
+                 qPrintable(message()));
+    QVERIFY(!robot.isRecording());
     panel_.reset();
 }
 

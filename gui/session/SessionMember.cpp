@@ -1,0 +1,72 @@
+#include "gui/session/SessionMember.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace hermes {
+namespace {
+
+/// Replies that come in. Given when nobody holds it any more: each client has answered, or is gone.
+struct Round {
+    QPointer<QObject> context;
+    std::function<void(const SessionReplies &)> done;
+    SessionReplies replies;
+
+    ~Round() {
+        if (context)
+            QMetaObject::invokeMethod(
+                context, [done = done, replies = replies] { done(replies); }, Qt::QueuedConnection);
+    }
+};
+
+} // namespace
+
+bool SessionMembers::add(const QString &name, Client &client,
+                         const std::function<bool(const QString &)> &has) {
+    if (!has("record.start"))
+        return false;
+    const bool isKnown =
+        std::any_of(all.begin(), all.end(), [&](const SessionMember &one) { return one.name == name; });
+    const QString fullName = isKnown ? name + '@' + client.address().section("//", -1) : name;
+    all.push_back({fullName, &client, has("mark"), has("source.open")});
+    return true;
+}
+
+void callAll(const std::vector<SessionCall> &calls, const QString &method, std::chrono::milliseconds timeout,
+             QObject *context, const std::function<void(const SessionReplies &)> &done) {
+    const auto round = std::make_shared<Round>();
+    round->context = context;
+    round->done = done;
+    const Error gone(ErrorCode::Disconnected, method + ": the connection was given up");
+    for (const SessionCall &call : calls)
+        round->replies.push_back({call.member, gone});
+    for (std::size_t i = 0; i < calls.size(); ++i) {
+        const auto take = [round, i](const Result<QJsonValue> &result) { round->replies[i].result = result; };
+        Client *const client = calls[i].member.client;
+        if (client && method == "record.list")
+            client->callForMuch(method, calls[i].params, take, timeout);
+        else if (client)
+            client->call(method, calls[i].params, take, timeout);
+    }
+}
+
+std::vector<SessionCall> callsOf(const std::vector<SessionMember> &members, const QJsonObject &params) {
+    std::vector<SessionCall> calls;
+    for (const SessionMember &member : members)
+        calls.push_back({member, params});
+    return calls;
+}
+
+QStringList complaints(const SessionReplies &replies) {
+    QStringList lines;
+    for (const SessionReply &reply : replies)
+        if (!reply.result)
+            lines.append(reply.complaint());
+    return lines;
+}
+
+Error sessionError(const QString &what, const QStringList &lines) {
+    return Error(ErrorCode::NotReady, (QStringList(what) + lines).join("; "));
+}
+
+} // namespace hermes

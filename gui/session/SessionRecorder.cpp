@@ -1,0 +1,183 @@
+#include "gui/session/SessionRecorder.h"
+
+#include <QJsonArray>
+#include <QSet>
+#include <QUuid>
+#include <algorithm>
+#include <map>
+
+namespace hermes {
+namespace {
+
+constexpr std::chrono::minutes stopLimit{2}; // everything is to get to the disk
+
+bool isRecording(const SessionReply &state) {
+    return state.result && (*state.result)["recording"].toBool();
+}
+
+/// What is in the way of a new recording of this name.
+QStringList obstacles(const SessionRecorder::States &states, const SessionReplies &lists,
+                      const QString &name) {
+    QStringList lines = states.problems;
+    for (const SessionReply &state : states.replies)
+        if (isRecording(state))
+            lines.append(QString("%1 records \"%2\" already; record stop ends it")
+                             .arg(state.member.name, (*state.result)["name"].toString()));
+    for (const SessionReply &list : lists)
+        for (const QJsonValue &entry : list.result ? list.result->toArray() : QJsonArray())
+            if (entry["name"].toString() == name)
+                lines.append(QString("%1 has a recording \"%2\" already (%3)")
+                                 .arg(list.member.name, name, entry["folder"].toString()));
+    return lines + complaints(lists);
+}
+
+/// What does not agree between how a logger ended and its sidecar.
+QStringList differences(const SessionPart &part, const QJsonValue &end) {
+    QStringList lines;
+    for (const char *member : {"files", "bytes", "counts", "losses"})
+        if (end[QLatin1String(member)] != part.entry[QLatin1String(member)])
+            lines.append(QString("%1: its %2 at the end and in its sidecar are not the same")
+                             .arg(part.member.name, QLatin1String(member)));
+    return lines;
+}
+
+/// Completes what is known of sessions with these ids by how their loggers ended and the sidecars.
+void check(SessionRecorder::Stopped &stopped, const QSet<QString> &ids, const SessionReplies &replies,
+           const SessionList &list) {
+    stopped.problems += complaints(replies);
+    std::map<QString, QJsonValue> ends;
+    for (const SessionReply &reply : replies)
+        if (reply.result)
+            ends[reply.member.name] = *reply.result;
+    for (const RecordedSession &session : list.sessions) {
+        if (!ids.contains(session.id))
+            continue;
+        stopped.sessions.push_back(session);
+        for (const SessionPart &part : session.parts) {
+            if (const QString fault = part.fault(); !fault.isEmpty())
+                stopped.problems.append(part.member.name + ": " + fault);
+            if (const auto end = ends.find(part.member.name); end != ends.end()) {
+                stopped.problems += differences(part, end->second);
+                ends.erase(end);
+            }
+        }
+        stopped.problems += session.absent();
+    }
+    for (const auto &[name, end] : ends)
+        stopped.problems.append(name + ": its sidecar cannot be read; " + list.problems.join("; "));
+}
+
+} // namespace
+
+void SessionRecorder::status(const Done<States> &done) {
+    callAll(callsOf(members_.all), "record.status", members_.timeout, this,
+            [done, silent = members_.silent](const SessionReplies &replies) {
+                done(States{replies, silent + complaints(replies)});
+            });
+}
+
+void SessionRecorder::list(int most, const Done<SessionList> &done) {
+    callAll(callsOf(members_.all), "record.list", members_.timeout, this,
+            [=, silent = members_.silent](const SessionReplies &replies) {
+                SessionList found = SessionList::of(replies, most);
+                found.problems = silent + found.problems;
+                done(found);
+            });
+}
+
+void SessionRecorder::start(const QString &name, const Done<Result<SessionReplies>> &done) {
+    status([=](const States &states) {
+        const auto listed = [=](const SessionReplies &lists) {
+            QStringList lines = obstacles(states, lists, name);
+            if (members_.all.empty())
+                lines.append("no logger is connected");
+            if (!lines.isEmpty())
+                return done(sessionError("nothing was begun", lines));
+            begin(name, done);
+        };
+        callAll(callsOf(members_.all), "record.list", members_.timeout, this, listed);
+    });
+}
+
+void SessionRecorder::begin(const QString &name, const Done<Result<SessionReplies>> &done) {
+    const QJsonObject params{{"name", name}, {"session", QUuid::createUuid().toString(QUuid::WithoutBraces)}};
+    callAll(callsOf(members_.all, params), "record.start", members_.timeout, this,
+            [=](const SessionReplies &replies) {
+                if (complaints(replies).isEmpty())
+                    done(replies);
+                else
+                    takeBack(name, replies, done);
+            });
+}
+
+void SessionRecorder::takeBack(const QString &name, const SessionReplies &replies,
+                               const Done<Result<SessionReplies>> &done) {
+    std::vector<SessionMember> toStop;
+    for (const SessionReply &reply : replies)
+        if (reply.result || reply.result.error().is(ErrorCode::TimedOut))
+            toStop.push_back(reply.member);
+    callAll(callsOf(toStop), "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
+        QStringList lines = complaints(replies);
+        for (const SessionReply &end : ends) {
+            if (end.result)
+                lines.append(QString("%1 had begun and was stopped, see %2")
+                                 .arg(end.member.name, (*end.result)["folder"].toString()));
+            else if (!end.result.error().is(ErrorCode::NotReady)) // it had not begun
+                lines.append(QString("%1 may have begun and could not be stopped: %2")
+                                 .arg(end.member.name, end.result.error().message));
+        }
+        done(sessionError(QString("\"%1\" is not recorded").arg(name), lines));
+    });
+}
+
+void SessionRecorder::stop(const Done<Result<Stopped>> &done) {
+    status([=](const States &states) { end(states, done); });
+}
+
+/// Those that record; and where none does, the sessions that were ended by an error are told.
+void SessionRecorder::end(const States &states, const Done<Result<Stopped>> &done) {
+    std::vector<SessionMember> active;
+    QSet<QString> ids, failed;
+    for (const SessionReply &state : states.replies) {
+        const QJsonValue said = state.result ? *state.result : QJsonValue();
+        if (isRecording(state)) {
+            active.push_back(state.member);
+            ids.insert(said["session"].toString());
+        } else if (said["error"].isObject()) {
+            failed.insert(said["session"].toString());
+        }
+    }
+    if (ids.isEmpty())
+        ids = failed;
+    Stopped stopped;
+    stopped.problems = states.problems;
+    if (ids.isEmpty() && stopped.problems.isEmpty())
+        return done(Error(ErrorCode::NotReady, "nothing is being recorded"));
+    callAll(callsOf(active), "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
+        callAll(callsOf(members_.all), "record.list", members_.timeout, this,
+                [=](const SessionReplies &lists) {
+                    Stopped checked = stopped;
+                    check(checked, ids, ends, SessionList::of(lists));
+                    done(checked);
+                });
+    });
+}
+
+void SessionRecorder::mark(const QString &text, const Done<Result<SessionReplies>> &done) {
+    status([=](const States &states) {
+        std::vector<SessionMember> takers;
+        for (const SessionReply &state : states.replies)
+            if (isRecording(state) && state.member.marks)
+                takers.push_back(state.member);
+        if (takers.empty())
+            return done(sessionError("no logger that takes marks is recording", states.problems));
+        callAll(callsOf(takers, {{"text", text}}), "mark", members_.timeout, this,
+                [=](const SessionReplies &replies) {
+                    const QStringList lines = states.problems + complaints(replies);
+                    done(lines.isEmpty() ? Result<SessionReplies>(replies)
+                                         : sessionError("not all have the mark", lines));
+                });
+    });
+}
+
+} // namespace hermes

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "gui/session/SessionList.h"
+
+namespace hermes {
+
+/// Records with all loggers of a robot as one session. What it does ends from the event loop, by the function
+/// given with it, whatever the loggers do; nothing waits. One at a time.
+class SessionRecorder : public QObject {
+    Q_OBJECT
+public:
+    template <typename T>
+    using Done = std::function<void(const T &)>;
+    /// What record.status tells.
+    struct States {
+        SessionReplies replies;
+        QStringList problems; ///< who does not tell, and why
+    };
+    /// How a session ended.
+    struct Stopped {
+        std::vector<RecordedSession> sessions; ///< that were ended, as the sidecars have them
+        QStringList problems; ///< what is missing, or does not agree; empty when all is there
+    };
+
+    explicit SessionRecorder(const SessionMembers &members = {}, QObject *parent = nullptr)
+        : QObject(parent)
+        , members_(members) {}
+    void setMembers(const SessionMembers &members) { members_ = members; }
+    const SessionMembers &members() const { return members_; }
+
+    /// All begin one session, or none does: those that have begun, or may have, are stopped, and the error
+    /// tells so. Gives the replies to record.start.
+    void start(const QString &name, const Done<Result<SessionReplies>> &done);
+    /// Ends the recording of all, and compares what each told at its end with its sidecar. NotReady when
+    /// nothing is being recorded, and nothing has ended by an error.
+    void stop(const Done<Result<Stopped>> &done);
+    /// Puts a text into the recordings of all that record and have marks. NotReady: there is none, or not all
+    /// of them took it.
+    void mark(const QString &text, const Done<Result<SessionReplies>> &done);
+    void status(const Done<States> &done);
+    /// most: of each logger only the newest so many; 0: all.
+    void list(int most, const Done<SessionList> &done);
+
+private:
+    void begin(const QString &name, const Done<Result<SessionReplies>> &done);
+    void takeBack(const QString &name, const SessionReplies &replies,
+                  const Done<Result<SessionReplies>> &done);
+    void end(const States &states, const Done<Result<Stopped>> &done);
+
+    SessionMembers members_;
+};
+
+} // namespace hermes
