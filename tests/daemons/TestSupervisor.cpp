@@ -74,7 +74,7 @@ void TestSupervisor::launch(const QJsonArray &processes) {
     const auto launched = supervisor_->launch();
     QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
     client_ = std::make_unique<Client>();
-    client_->connectTo(supervisor_->info()["listen"].toArray()[0].toString());
+    client_->connectTo(supervisor_->info().listen.front());
     QVERIFY(client_->waitConnected().ok());
 }
 
