@@ -133,13 +133,12 @@ Command ReplaySource::seekCommand() {
 }
 
 Command ReplaySource::whileReplaying(Command command, const std::function<void(const Call &)> &action) {
-    return command.gives<SourceStatus>()
-        .handler([this, action](const Call &call) -> Result<QJsonValue> {
-            if (state_ != State::Replay)
-                return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
-            action(call);
-            return asJson(status());
-        });
+    return command.gives<SourceStatus>().handler([this, action](const Call &call) -> Result<QJsonValue> {
+        if (state_ != State::Replay)
+            return Error(ErrorCode::NotReady, "no replay is under way; source.open begins one");
+        action(call);
+        return asJson(status());
+    });
 }
 
 } // namespace hermes

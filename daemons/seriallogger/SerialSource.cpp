@@ -1,5 +1,6 @@
 // Where the lines and fixes of the serial logger come from: its ports, or a recording that is replayed.
 #include "daemons/seriallogger/SerialLogger.h"
+#include "protocol/wire/Fields.h"
 
 namespace hermes {
 

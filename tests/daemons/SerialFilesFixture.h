@@ -86,7 +86,7 @@ inline QList<QByteArray> SerialFilesFixture::exported(ExportRows rows) {
     QList<QByteArray> lines = contentOf(job.target).split('\n');
     lines.removeFirst();
     lines.removeLast();
-    if (lines.size() != *count)
+    if (quint64(lines.size()) != *count)
         return {"another number of rows was told"};
     return lines;
 }

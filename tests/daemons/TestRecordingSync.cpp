@@ -130,8 +130,8 @@ public:
     }
     double lost() {
         double sum = 0;
-        for (const QJsonValue &loss : writer().state().losses)
-            sum += loss.toDouble();
+        for (const double loss : writer().state().losses)
+            sum += loss;
         return sum;
     }
     double longestPush_s() const { return std::chrono::duration<double>(longestPush_).count(); }
