@@ -56,10 +56,11 @@ def die_with(parent):
 class Process:
     """A running daemon, its port and its log file."""
 
-    def __init__(self, binaries, name, port, log_folder, settings):
+    def __init__(self, binaries, name, port, log_folder, settings, arguments=()):
         self.name, self.port = name, port
         self.log_name = os.path.join(log_folder, name + ".log")
         command = [os.path.join(binaries, "hermes-" + name), "--listen", f"tcp://127.0.0.1:{port}?protocol=json"]
+        command += arguments
         for path, value in settings.items():
             command += ["--set", f"{path}={value}"]
         parent = os.getpid()
