@@ -4,11 +4,14 @@
 #include <QJsonObject>
 #include <QVariant>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <rapidjson/document.h>
 #include <rapidjson/error/en.h>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hermes {
@@ -37,11 +40,20 @@ public:
 
     bool Null() { return document.Null(); }
     bool Bool(bool value) { return document.Bool(value); }
-    bool Int(int value) { return document.Int(value); }
-    bool Uint(unsigned value) { return document.Uint(value); }
-    bool Int64(int64_t value) { return document.Int64(value); }
-    bool Uint64(uint64_t value) { return document.Uint64(value); }
-    bool Double(double value) { return document.Double(value); }
+    /// Its grammar is checked already. What is nearer to 0 than any number is 0.
+    bool RawNumber(const char *text, unsigned length, bool) {
+        const char *const end = text + length;
+        qint64 whole = 0;
+        if (!std::memchr(text, '.', length))
+            if (const auto read = std::from_chars(text, end, whole);
+                read.ptr == end && read.ec == std::errc())
+                return document.Int64(whole);
+        double number = 0;
+        if (std::from_chars(text, end, number).ec == std::errc::result_out_of_range &&
+            !isSmall({text, length}))
+            complaint = QStringLiteral("Number too big to be stored in double.");
+        return complaint.isEmpty() && document.Double(number);
+    }
     bool String(const char *text, unsigned length, bool copy) { return document.String(text, length, copy); }
     bool Key(const char *text, unsigned length, bool copy) {
         keys.back().emplace_back(text, length);
@@ -56,6 +68,12 @@ public:
     }
 
 private:
+    static bool isSmall(std::string_view number) {
+        const auto exponent = number.find_first_of("eE");
+        return exponent == std::string_view::npos ? number.find('.') != std::string_view::npos
+                                                  : number[exponent + 1] == '-';
+    }
+
     bool enter() {
         keys.emplace_back();
         if (int(keys.size()) > maximumDepth)
@@ -166,6 +184,7 @@ std::size_t copyNumbers(const Node &node, T *to) {
 } // namespace
 
 struct WireValue::Tree {
+    QByteArray text; ///< that the strings of the document lie in
     rapidjson::Document document;
 };
 
@@ -282,21 +301,24 @@ WireValue::WireValue(const QJsonValue &value) {
 
 std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *error, int maximumDepth) {
     const auto made = std::make_shared<Tree>();
+    made->text = QByteArray(json.constData(), json.size());
+    const int zero = json.indexOf('\0'); // to the parser it is the end
     Guard guard(made->document, maximumDepth);
     rapidjson::ParseResult result;
     const auto generate = [&](rapidjson::Document &) {
-        rapidjson::MemoryStream bytes(json.constData(), std::size_t(json.size()));
-        constexpr unsigned flags = rapidjson::kParseFullPrecisionFlag |
+        rapidjson::InsituStringStream bytes(made->text.data());
+        constexpr unsigned flags = rapidjson::kParseInsituFlag | rapidjson::kParseNumbersAsStringsFlag |
                                    rapidjson::kParseValidateEncodingFlag | rapidjson::kParseIterativeFlag;
         result = rapidjson::Reader().Parse<flags>(bytes, guard);
         return !result.IsError();
     };
     made->document.Populate(generate);
-    if (result.IsError()) {
+    if (result.IsError() || zero >= 0) {
         if (error) {
-            error->offset = std::min(int(result.Offset()), json.size());
+            error->offset = result.IsError() ? std::min(int(result.Offset()), json.size()) : zero;
             error->line = 1 + int(std::count(json.begin(), json.begin() + error->offset, '\n'));
-            error->message = guard.complaint.isEmpty()
+            error->message = !result.IsError() ? QStringLiteral("a zero byte")
+                             : guard.complaint.isEmpty()
                                  ? QString::fromLatin1(rapidjson::GetParseError_En(result.Code()))
                                  : guard.complaint;
         }

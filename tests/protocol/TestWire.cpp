@@ -217,6 +217,14 @@ void TestWire::doublesAreExact() {
         QVERIFY2(value, text.constData());
         QCOMPARE((*value)[std::size_t(0)].number(), number);
     }
+    for (const auto &[text, number] :
+         {std::pair("0e-30", 0.0), std::pair("0.00000000000000000000000e40", 0.0), std::pair("-1e-999", 0.0),
+          std::pair("18446744073709551616", 0x1p64)})
+        QCOMPARE(WireValue::parse(text, nullptr)->number(), number);
+    QVERIFY(!WireValue::parse("1e999", nullptr) && !WireValue::parse("-1000e306", nullptr));
+    WireError error;
+    QVERIFY(!WireValue::parse(QByteArray("{}\0 ", 4), &error));
+    QCOMPARE(error.message, QString("a zero byte"));
     QCOMPARE(compactJson(QJsonValue(qint64(9007199254740993))), QByteArray("9007199254740993"));
     QCOMPARE(compactJson(1700000000.25), QByteArray("1700000000.25"));
 }
