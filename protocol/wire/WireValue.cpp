@@ -301,8 +301,8 @@ WireValue::WireValue(const QJsonValue &value) {
 
 std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *error, int maximumDepth) {
     const auto made = std::make_shared<Tree>();
-    made->text = QByteArray(json.constData(), json.size());
-    const int zero = json.indexOf('\0'); // to the parser it is the end
+    made->text = json + QByteArray(4, '\0'); // a character that is cut off makes the parser read on
+    const int zero = json.indexOf('\0');     // to the parser it is the end
     Guard guard(made->document, maximumDepth);
     rapidjson::ParseResult result;
     const auto generate = [&](rapidjson::Document &) {

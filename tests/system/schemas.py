@@ -221,8 +221,10 @@ def main():
             daemons = dict(zip(ports, [process.connect() for process in processes]))
             for name, daemon in daemons.items():
                 wanted |= declare_all(judge, name, daemon)
-                watchers.append(Watcher(judge, name, ports[name], [t["name"] for t in daemon.call("topics.list")]))
-                watchers[-1].start()
+                names = {topic["name"] for topic in daemon.call("topics.list")}
+                for some in filter(None, (names & {"cloud"}, names - {"cloud"})):  # clouds leave no room for others
+                    watchers.append(Watcher(judge, name, ports[name], some))
+                    watchers[-1].start()
             wait_for("the controllers", lambda: daemons["motorcontrol"].call("motor.state")["ready"])
             call_all(judge, ports, daemons)
             time.sleep(1)  # last words
