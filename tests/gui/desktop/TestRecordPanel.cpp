@@ -82,6 +82,9 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_VERIFY(find<QPushButton>("live")->isEnabled());
     click("live");
     QTRY_COMPARE(state(), QString("live"));
+    click("replay");
+    QTRY_COMPARE(state(), QString("replay"));
+    QTRY_COMPARE_WITH_TIMEOUT(state(), QString("live"), 15000); // played to its end
     QTRY_VERIFY(!find<QPushButton>("live")->isEnabled());
     panel_.reset();
 }
