@@ -19,7 +19,15 @@ void Playback::start(const Options &options, std::function<void()> play) {
     position_ns_ = 0;
     loops_ = 0;
     jump(0);
-    thread_ = std::thread(std::move(play));
+    thread_ = std::thread([this, play = std::move(play)] {
+        waitForBegin();
+        play();
+    });
+}
+
+void Playback::waitForBegin() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    wake_.wait(lock, [this] { return !paused_ || stopping_ || seek_ns_; });
 }
 
 void Playback::stop() {

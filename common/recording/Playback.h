@@ -17,7 +17,8 @@ public:
     struct Options {
         double speed = 1; ///< 1 is real time; 0: everything is due at once
         bool loop = false;
-        bool paused = false; ///< from the beginning
+        bool paused =
+            false; ///< from the beginning: also what holds nothing is at its end only when it goes on
     };
     struct Status {
         double position_s = 0; ///< after the beginning, of what was played last
@@ -53,6 +54,7 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    void waitForBegin();
     void change(const std::function<void()> &what);
     void hold();
     Clock::time_point due(std::int64_t time_ns) const;
