@@ -7,7 +7,6 @@ import socket
 import sys
 import tempfile
 import threading
-import time
 
 from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
 
@@ -18,7 +17,7 @@ except ImportError:
     sys.exit(77)
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
-SECONDS = float(os.environ.get("HERMES_SECONDS", "8"))
+SCANS = 80  # of the drive
 
 
 class Judge:
@@ -74,20 +73,16 @@ class Watcher(threading.Thread):
     def __init__(self, judge, name, port, topics):
         super().__init__(daemon=True)
         self.judge, self.name = judge, name
-        self.daemon_connection = Daemon(port=port, timeout=0.2)
+        self.daemon_connection = Daemon(port=port, timeout=60)
         self.ids = {self.daemon_connection.call("topics.subscribe", topic=topic, queue=100)["subscription"]: topic
                     for topic in topics}
-        self.ending = False
 
     def run(self):
-        while not self.ending:
+        while True:
             try:
                 self.daemon_connection._receive()
-            except (TimeoutError, OSError, ValueError):
-                if self.ending:
-                    return
-                self.daemon_connection.lines = self.daemon_connection.socket.makefile("r", encoding="utf-8")
-                continue
+            except OSError:
+                return  # the daemon has ended
             for subscription, topic in self.ids.items():
                 queue = self.daemon_connection.topics[subscription]
                 while queue:
@@ -185,19 +180,23 @@ def declare_all(judge, name, daemon):
 
 def call(daemon, method, params):
     """The world has places that look alike: there the robot goes on until it knows where it is."""
-    for _ in range(20 if method == "pose.relocalize" else 0):
+    if method != "pose.relocalize":
+        return daemon.call(method, **params)
+
+    def found():
         try:
             return daemon.call(method, **params)
-        except DaemonError:
-            time.sleep(0.5)
-    return daemon.call(method, **params)
+        except DaemonError as error:
+            return None if error.code == -32005 else sys.exit(f"{method}: {error}")
+
+    return wait_for("a place that is like no other", found)
 
 
 def call_all(judge, ports, daemons):
     subscription = None
     for name, method, params in script(ports):
         if method == "pause":
-            time.sleep(SECONDS)
+            wait_for("a drive", lambda: judge.seen.get("scanmatcher topic scan", 0) >= SCANS)
             continue
         if "subscription" in params:
             params = {"subscription": subscription}
@@ -227,9 +226,7 @@ def main():
                     watchers[-1].start()
             wait_for("the controllers", lambda: daemons["motorcontrol"].call("motor.state")["ready"])
             call_all(judge, ports, daemons)
-            time.sleep(1)  # last words
-            for watcher in watchers:
-                watcher.ending = True
+            for watcher in watchers:  # until the last words
                 watcher.join()
         finally:
             for process in processes:
