@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
-#include "daemons/scanmatcher/Answers.h"
+#include "daemons/scanmatcher/MatcherMessages.h"
 #include "vectorlib/io/MapDrawing.h"
 
 #include <vector>

@@ -1,4 +1,4 @@
-#include "daemons/scanmatcher/Answers.h"
+#include "daemons/scanmatcher/MatcherMessages.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"

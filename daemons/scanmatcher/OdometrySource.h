@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/client/Client.h"
-#include "daemons/scanmatcher/Answers.h"
+#include "daemons/scanmatcher/MatcherMessages.h"
 #include "vectorlib/motion/OdometryBuffer.h"
 
 namespace hermes {

@@ -2,7 +2,7 @@
 
 #include "common/daemon/Daemon.h"
 #include "daemons/simulator/MotorLines.h"
-#include "daemons/simulator/SimulatorAnswers.h"
+#include "daemons/simulator/SimulatorMessages.h"
 
 namespace hermes {
 

@@ -4,7 +4,7 @@
 #include "common/recording/Recording.h"
 #include "common/recording/ReplaySource.h"
 #include "daemons/velodynelogger/LidarFeed.h"
-#include "daemons/velodynelogger/LidarMessage.h"
+#include "daemons/velodynelogger/LidarMessages.h"
 #include "daemons/velodynelogger/RecordFolder.h"
 
 #include <QElapsedTimer>

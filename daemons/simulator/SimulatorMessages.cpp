@@ -1,4 +1,4 @@
-#include "daemons/simulator/SimulatorAnswers.h"
+#include "daemons/simulator/SimulatorMessages.h"
 
 #include "protocol/wire/Fields.h"
 

@@ -1,4 +1,4 @@
-#include "daemons/velodynelogger/LidarMessage.h"
+#include "daemons/velodynelogger/LidarMessages.h"
 
 #include "protocol/wire/Fields.h"
 
