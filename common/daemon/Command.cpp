@@ -1,6 +1,7 @@
 #include "common/daemon/Command.h"
 
 #include "common/Log.h"
+#include "protocol/wire/FieldTable.h"
 
 #include <exception>
 
@@ -94,12 +95,7 @@ QJsonObject Command::paramsSchema() const {
         if (field.isRequired())
             required.append(field.name());
     }
-    QJsonObject schema{{QStringLiteral("type"), QStringLiteral("object")},
-                       {QStringLiteral("properties"), properties},
-                       {QStringLiteral("additionalProperties"), false}};
-    if (!required.isEmpty())
-        schema.insert(QStringLiteral("required"), required);
-    return schema;
+    return objectSchema(properties, required);
 }
 
 Result<QJsonObject> Command::accept(const QJsonValue &params) const {

@@ -46,6 +46,8 @@ QString limits(const QJsonObject &schema) {
 QString sizes(const QJsonObject &schema, const char *least, const char *most, const QString &what) {
     const QJsonValue minimum = schema.value(QLatin1String(least));
     const QJsonValue maximum = schema.value(QLatin1String(most));
+    if (minimum.isDouble() && minimum == maximum)
+        return QStringLiteral(" of %1 %2").arg(shown(minimum), what);
     QStringList parts;
     if (minimum.isDouble())
         parts.append(QStringLiteral("at least %1").arg(shown(minimum)));

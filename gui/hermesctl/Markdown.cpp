@@ -58,6 +58,47 @@ QString example(const QString &method, const QJsonObject &pairing) {
                  compactJson(pairing[QStringLiteral("result")].toObject()[QStringLiteral("value")])));
 }
 
+/// A line for each field, those of inner objects by their path; nothing where the schema has none.
+QString fieldLines(const QJsonObject &schema, const QString &path) {
+    if (schema.contains(QStringLiteral("items")))
+        return fieldLines(schema[QStringLiteral("items")].toObject(), path + QStringLiteral("[]"));
+    const QString prefix = path.isEmpty() ? path : path + QLatin1Char('.');
+    const QJsonObject others = schema[QStringLiteral("additionalProperties")].toObject();
+    QString lines = others.isEmpty() ? QString() : fieldLines(others, prefix + QLatin1Char('*'));
+    const QJsonObject properties = schema[QStringLiteral("properties")].toObject();
+    for (auto property = properties.begin(); property != properties.end(); ++property) {
+        const QJsonObject below = property.value().toObject();
+        const QString name = prefix + property.key();
+        lines += QStringLiteral("| `%1` | %2 | %3 |\n")
+                     .arg(name, cell(expectation(below)), cell(text(below, "description")));
+        lines += fieldLines(below, name);
+    }
+    return lines;
+}
+
+QString fieldTable(const QJsonObject &schema) {
+    const QString lines = fieldLines(schema, {});
+    return lines.isEmpty() ? lines
+                           : QStringLiteral("| field | what | meaning |\n|---|---|---|\n%1\n").arg(lines);
+}
+
+QString topicSection(const QJsonObject &topic) {
+    const QJsonObject schema = topic[schemaKey].toObject();
+    return QStringLiteral("### %1\n\n%2.%3\n\nData: %4.\n\n%5")
+        .arg(text(topic, "name"), text(topic, "summary"),
+             topic[QStringLiteral("snapshot")].toBool() ? QStringLiteral(" Begins with the full state.")
+                                                        : QString(),
+             expectation(schema), fieldTable(schema));
+}
+
+/// {x, y, theta}: of an object, or of the objects of a list.
+QString fieldList(const QJsonObject &schema) {
+    if (schema.contains(QStringLiteral("items")))
+        return fieldList(schema[QStringLiteral("items")].toObject());
+    const QStringList names = schema[QStringLiteral("properties")].toObject().keys();
+    return names.isEmpty() ? QString() : QStringLiteral(" {%1}").arg(names.join(QStringLiteral(", ")));
+}
+
 QString methodSection(const QJsonObject &method) {
     const QString name = text(method, "name");
     QString section = QStringLiteral("### %1\n\n%2.\n\n").arg(name, text(method, "summary"));
@@ -65,7 +106,7 @@ QString methodSection(const QJsonObject &method) {
     if (!params.isEmpty())
         section += parameterTable(params);
     const QJsonObject result = method[QStringLiteral("result")].toObject()[schemaKey].toObject();
-    section += QStringLiteral("Result: %1.\n\n").arg(expectation(result));
+    section += QStringLiteral("Result: %1.\n\n").arg(expectation(result)) + fieldTable(result);
     for (const QJsonValue &pairing : method[QStringLiteral("examples")].toArray())
         section += example(name, pairing.toObject());
     return section;
@@ -94,17 +135,11 @@ QString descriptionAsMarkdown(const QJsonObject &description, const QJsonObject 
                        .arg(text(info, "title"), text(info, "description"), text(info, "version"));
     for (const QJsonValue &method : description[QStringLiteral("methods")].toArray())
         page += methodSection(method.toObject());
+    page += QStringLiteral("## Topics\n\n");
+    for (const QJsonValue &topic : description[QStringLiteral("x-topics")].toArray())
+        page += topicSection(topic.toObject());
     page += QStringLiteral(
-        "## Topics\n\n| topic | data | begins with the full state | meaning |\n|---|---|---|---|\n");
-    for (const QJsonValue &topic : description[QStringLiteral("x-topics")].toArray()) {
-        page += QStringLiteral("| `%1` | %2 | %3 | %4 |\n")
-                    .arg(text(topic, "name"), cell(expectation(topic[schemaKey].toObject())),
-                         topic[QStringLiteral("snapshot")].toBool() ? QStringLiteral("yes")
-                                                                    : QStringLiteral("no"),
-                         cell(text(topic, "summary")));
-    }
-    page += QStringLiteral(
-        "\n## Settings\n\n| path | expected | default | applies | meaning |\n|---|---|---|---|---|\n");
+        "## Settings\n\n| path | expected | default | applies | meaning |\n|---|---|---|---|---|\n");
     addSettings(page, settingsSchema, QString());
     return page;
 }
@@ -117,7 +152,8 @@ QString descriptionAsText(const QJsonObject &description) {
     }
     page += QStringLiteral("topics:\n");
     for (const QJsonValue &topic : description[QStringLiteral("x-topics")].toArray())
-        page += QStringLiteral("  %1\n      %2\n").arg(text(topic, "name"), text(topic, "summary"));
+        page += QStringLiteral("  %1%2\n      %3\n")
+                    .arg(text(topic, "name"), fieldList(topic[schemaKey].toObject()), text(topic, "summary"));
     return page.trimmed();
 }
 

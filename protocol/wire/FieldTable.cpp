@@ -60,16 +60,19 @@ QJsonObject orNull(QJsonObject schema) {
     const QJsonValue type = schema.value(QStringLiteral("type"));
     if (type.isString())
         schema.insert(QStringLiteral("type"), QJsonArray{type, QStringLiteral("null")});
+    QJsonArray choices = schema.value(QStringLiteral("enum")).toArray();
+    if (!choices.isEmpty()) {
+        choices.append(QJsonValue::Null);
+        schema.insert(QStringLiteral("enum"), choices);
+    }
     return schema;
 }
 
 QJsonObject FieldTable::schemaOf(const Entry &entry) {
     QJsonObject schema = entry.schema(entry.limits);
-    if (entry.isNullable)
-        schema = orNull(schema);
     for (auto keyword = entry.keywords.begin(); keyword != entry.keywords.end(); ++keyword)
         schema.insert(keyword.key(), keyword.value());
-    return schema;
+    return entry.isNullable ? orNull(schema) : schema;
 }
 
 QJsonObject FieldTable::schema() const {
@@ -80,6 +83,10 @@ QJsonObject FieldTable::schema() const {
         if (!entry.isOptional || entry.isNullable)
             required.append(QLatin1String(entry.name));
     }
+    return objectSchema(properties, required);
+}
+
+QJsonObject objectSchema(const QJsonObject &properties, const QJsonArray &required) {
     QJsonObject schema{{QStringLiteral("type"), QStringLiteral("object")},
                        {QStringLiteral("properties"), properties},
                        {QStringLiteral("additionalProperties"), false}};

@@ -3,6 +3,7 @@
 #include "protocol/wire/WireValue.h"
 #include "protocol/wire/WireWriter.h"
 
+#include <QJsonArray>
 #include <QJsonObject>
 #include <QString>
 #include <functional>
@@ -35,6 +36,9 @@ struct Limits {
 
 /// A schema that allows null too.
 QJsonObject orNull(QJsonObject schema);
+
+/// Of an object that has these members and no others.
+QJsonObject objectSchema(const QJsonObject &properties, const QJsonArray &required);
 
 /// How the fields of a struct are named on the wire and what they mean: writing, checked reading and the JSON
 /// Schema follow from it. Made by Fields<T>.

@@ -107,7 +107,8 @@ QJsonObject arraySchema(const QJsonObject &items, std::size_t least, std::size_t
     schema.insert(QStringLiteral("items"), items);
     if (least > 0)
         schema.insert(QStringLiteral("minItems"), qint64(least));
-    schema.insert(QStringLiteral("maxItems"), qint64(most));
+    if (most < Limits().elements)
+        schema.insert(QStringLiteral("maxItems"), qint64(most));
     return schema;
 }
 

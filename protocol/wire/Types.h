@@ -52,7 +52,14 @@ struct Type<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool
     static void read(WireView in, T &value, const Limits &limits, ReadReport &report) {
         value = T(readInteger(in, limitsOf<T>(limits), report));
     }
-    static QJsonObject schema(const Limits &limits) { return numberSchema("integer", limitsOf<T>(limits)); }
+    /// Tells what small numbers can hold; for others it is beyond interest.
+    static QJsonObject schema(Limits limits) {
+        if (sizeof(T) < sizeof(int))
+            limits = limitsOf<T>(limits);
+        else if (std::is_unsigned_v<T>)
+            limits.least = std::max(limits.least, 0.0);
+        return numberSchema("integer", limits);
+    }
 };
 
 template <>
@@ -107,6 +114,7 @@ struct Type<QJsonObject> {
 };
 
 bool readsAsArray(WireView in, std::size_t least, std::size_t most, ReadReport &report);
+/// Without an upper bound where it is that of all arrays.
 QJsonObject arraySchema(const QJsonObject &items, std::size_t least, std::size_t most);
 
 /// What the lists below share.

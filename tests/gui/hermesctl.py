@@ -67,6 +67,8 @@ class Hermesctl(unittest.TestCase):
         self.assertEqual(json.loads(self.ok("discover", self.address, "--json"))["openrpc"], "1.2.6")
         page = self.ok("doc", self.address)
         self.assertIn("### thermometer.read", page)
+        self.assertIn("| `health[].message` | a string | ", page)
+        self.assertIn("  status {health, restart_for, state}\n", self.ok("discover", self.address))
         self.assertIn("| `period_s` | a number from 0.001 to 60 in s | 0.1 | now |", page)
         self.assertIn("running", self.ok("log", self.address))
 

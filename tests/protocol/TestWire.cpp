@@ -61,6 +61,7 @@ const Fields<Sample> &fieldsOf<Sample>() {
                                    .atMostElements(3)
                                    .add("height", &Sample::height, "How high", "m")
                                    .add("note", &Sample::note, "More")
+                                   .choices({"dry", "wet"})
                                    .orNull()
                                    .add("end", &Sample::end, "Left out, or not known")
                                    .addEach(wheelNames, &Sample::wheels, "Speed of a wheel", "rad/s")
@@ -262,6 +263,7 @@ void TestWire::describesAll() {
     const QJsonValue length = schemaOf<Inner>().value("properties")["length"];
     QCOMPARE(length["unit"], QJsonValue("m"));
     QCOMPARE(length["maximum"], QJsonValue(10));
+    QCOMPARE(properties["note"]["enum"], QJsonValue(QJsonArray{"dry", "wet", QJsonValue::Null}));
     QCOMPARE(properties["note"]["type"], QJsonValue(QJsonArray{"string", "null"}));
     QVERIFY(schema["required"].toArray().contains("note") &&
             !schema["required"].toArray().contains("height"));
