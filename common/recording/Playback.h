@@ -17,8 +17,8 @@ public:
     struct Options {
         double speed = 1; ///< 1 is real time; 0: everything is due at once
         bool loop = false;
-        bool paused =
-            false; ///< from the beginning: also what holds nothing is at its end only when it goes on
+        /// From the beginning. What holds nothing is at its end only when it goes on.
+        bool paused = false;
     };
     struct Status {
         double position_s = 0; ///< after the beginning, of what was played last
