@@ -10,7 +10,7 @@
 namespace hermes {
 namespace {
 
-constexpr int longestName = 30; // nothing pushes STOP out of sight
+constexpr int longestName = 30;
 
 } // namespace
 
@@ -48,6 +48,9 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     stop_->setStyleSheet(
         "QPushButton { background: #c4201d; color: white; border-radius: 6px; padding: 4px 16px; }"
         "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
+
+    for (PlainLabel *const told : {link_, control_, power_})
+        told->setMinimumWidth(1); // it is cut off where there is no room: nothing pushes STOP out of sight
 
     auto *const layout = new QHBoxLayout(this);
     auto *const label = new PlainLabel(tr("Ro&bot"));
