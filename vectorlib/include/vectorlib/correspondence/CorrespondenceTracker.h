@@ -4,6 +4,7 @@
 #include "vectorlib/correspondence/PotentialPairs.h"
 #include "vectorlib/correspondence/RotationVotes.h"
 #include "vectorlib/edges/EdgeRaw2D.h"
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/registration/PointToLineRefinement.h"
 
@@ -205,7 +206,7 @@ private:
                      std::abs(correction.alpha()) <= settings.permitted.dalpha;
         Eigen::Matrix3d toMap = Eigen::Matrix3d::Identity();
         toMap.topLeftCorner<2, 2>() << expected.cos(), -expected.sin(), expected.sin(), expected.cos();
-        m.information = toMap * refinement_.information() * toMap.transpose();
+        m.information = product(toMap, refinement_.information(), toMap);
     }
 
     std::vector<LineSegment2D<double>> fixed_; // in the expected sensor frame

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vectorlib/correspondence/SearchResult.h"
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/tls/LineCovariance.h"
 
 #include <Eigen/LU>
@@ -40,15 +41,16 @@ public:
             for (std::size_t b = 0; b < effects.size(); ++b) {
                 const CorrespondencePair &p = solution.pairs[a], &q = solution.pairs[b];
                 if (p.fixed == q.fixed)
-                    spread += effects[a].byFixed *
-                              at(fixed.lines, p.fixed).ofSegment(at(fixed.segments, p.fixed)) *
-                              effects[b].byFixed.transpose();
+                    spread += product(effects[a].byFixed,
+                                      at(fixed.lines, p.fixed).ofSegment(at(fixed.segments, p.fixed)),
+                                      effects[b].byFixed);
                 if (p.moving == q.moving)
-                    spread += effects[a].byMoving *
-                              at(moving.lines, p.moving).ofSegment(at(moving.segments, p.moving)) *
-                              effects[b].byMoving.transpose();
+                    spread += product(effects[a].byMoving,
+                                      at(moving.lines, p.moving).ofSegment(at(moving.segments, p.moving)),
+                                      effects[b].byMoving);
             }
-        const Eigen::Matrix3d inverse = sums.inverse(), covariance = inverse * spread * inverse;
+        const Eigen::Matrix3d inverse = sums.inverse(); // symmetric
+        const Eigen::Matrix3d covariance = product(inverse, spread, inverse);
         return covariance.allFinite() ? std::optional<Eigen::Matrix3d>(covariance) : std::nullopt;
     }
 
@@ -72,13 +74,18 @@ private:
     // place of the middle along the line. The integrals of 1, s, s^2 are L, 0, L^3 / 12.
     static Effect effectOf(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving,
                            const Transformation2D &pose, Eigen::Matrix3d &sums) {
-        const double length = moving.length(), square = length * length * length / 12;
+        const double length = moving.length(), moment = length * length * length / 12;
         const Vector2D<double> n = fixed.normal(), v = fixed.direction(), middle = pose * moving.middle();
-        const Eigen::Vector3d j(n.x, n.y, v.dot(middle - pose.translation())), k(0, 0, 1);
-        sums += length * j * j.transpose() + square * k * k.transpose();
+        const Eigen::Vector3d j(n.x, n.y, v.dot(middle - pose.translation()));
+        sums += square(length, j);
+        sums(2, 2) += moment;
         const auto effect = [&](double u) {
             Eigen::Matrix<double, 3, 2> by;
-            by << u * length * j + square * k, length * j;
+            for (int i = 0; i < 3; ++i) {
+                by(i, 0) = u * length * j(i);
+                by(i, 1) = length * j(i);
+            }
+            by(2, 0) += moment;
             return by;
         };
         return {effect(v.dot(middle)), effect(moving.direction().dot(moving.middle()))};

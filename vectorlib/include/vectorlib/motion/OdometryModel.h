@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/motion/OdometryTrack.h"
 
 #include <algorithm>
@@ -70,7 +71,7 @@ private:
         Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
         f(0, 2) = from.y() - to.y();
         f(1, 2) = to.x() - from.x();
-        return after - f * before * f.transpose();
+        return after - product(f, before, f);
     }
     static double deviation(double least, double variance) {
         return std::sqrt(least * least + std::max(0.0, variance)); // rounding may make a zero negative

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/registration/PointAgreement.h"
 #include "vectorlib/registration/ScanIndex.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <optional>
 
 namespace vectorlib {
 
@@ -121,11 +122,10 @@ private:
         Eigen::Matrix3d h;
         h << xx + kXY, xy, xa, xy, yy + kXY, ya, xa, ya, aa + kAlpha;
         const Eigen::Vector3d g(x + kXY * off.x, y + kXY * off.y, a + kAlpha * turn);
-        const Eigen::LDLT<Eigen::Matrix3d> ldlt(h);
-        const Eigen::Vector3d d = ldlt.solve(-g);
-        if (ldlt.info() != Eigen::Success || !d.allFinite())
+        const std::optional<Eigen::Vector3d> back = solveSymmetric(h, g);
+        if (!back)
             return pose;
-        return {pose.x() + d(0), pose.y() + d(1), pose.alpha() + d(2)};
+        return {pose.x() - (*back)(0), pose.y() - (*back)(1), pose.alpha() - (*back)(2)};
     }
 
     ScanIndex fixed_, moving_;

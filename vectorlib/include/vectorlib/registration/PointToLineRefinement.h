@@ -1,10 +1,11 @@
 #pragma once
 
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/tls/TlsSums.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <optional>
 
 namespace vectorlib {
 
@@ -30,17 +31,15 @@ public:
         const double uu = w.x * w.x * sums.xx + 2 * w.x * w.y * sums.xy + w.y * w.y * sums.yy;
         const double ur = w.x * n.x * sums.xx + (w.x * n.y + w.y * n.x) * sums.xy + w.y * n.y * sums.yy;
         const Eigen::Vector3d j(n.x, n.y, u);
-        h_.noalias() += (weight * sums.n) * j * j.transpose();
+        h_ += square(weight * sums.n, j);
         h_(2, 2) += weight * uu;
         g_ += (weight * sums.n * r) * j;
         g_(2) += weight * ur;
     }
     /// The step (to be multiplied from the left); identity when the equations are singular.
     Transformation2D step() const {
-        const Eigen::LDLT<Eigen::Matrix3d> ldlt(h_);
-        const Eigen::Vector3d x = ldlt.solve(-g_);
-        return ldlt.info() == Eigen::Success && x.allFinite() ? Transformation2D(x(0), x(1), x(2))
-                                                              : Transformation2D();
+        const std::optional<Eigen::Vector3d> back = solveSymmetric(h_, g_);
+        return back ? Transformation2D(-(*back)(0), -(*back)(1), -(*back)(2)) : Transformation2D();
     }
     const Eigen::Matrix3d &information() const { return h_; }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/tls/LineCovariance.h"
 
@@ -33,11 +34,10 @@ public:
         Eigen::Matrix<double, 3, 2> byFixed, byMoving;
         byFixed << n.x * lever, n.x, n.y * lever, n.y, 1, 0;
         byMoving << 0, -n.x, 0, -n.y, -1, 0;
-        const double square = pair.weight * pair.weight;
-        spread_ += square * byFixed * fixed.ofSegment(pair.fixed) * byFixed.transpose();
-        spread_ += square * byMoving * moving.ofSegment(pair.moving) * byMoving.transpose();
-        const Eigen::Vector2d normal(n.x, n.y);
-        sums_.topLeftCorner<2, 2>() += pair.weight * normal * normal.transpose();
+        const double squared = pair.weight * pair.weight;
+        spread_ += squared * product(byFixed, fixed.ofSegment(pair.fixed), byFixed);
+        spread_ += squared * product(byMoving, moving.ofSegment(pair.moving), byMoving);
+        sums_ += square(pair.weight, Eigen::Vector3d(n.x, n.y, 0));
         sums_(2, 2) += pair.weight;
         return true;
     }
@@ -48,7 +48,7 @@ public:
         if (!solvable_)
             return std::nullopt;
         const Eigen::Matrix3d inverse = sums_.inverse();
-        const Eigen::Matrix3d covariance = inverse * spread_ * inverse;
+        const Eigen::Matrix3d covariance = product(inverse, spread_, inverse); // the inverse is symmetric
         return covariance.allFinite() ? std::optional<Eigen::Matrix3d>(covariance) : std::nullopt;
     }
 

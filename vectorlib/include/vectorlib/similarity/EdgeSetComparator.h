@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/SegmentPair.h"
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
 #include <Eigen/Core>
@@ -101,15 +102,16 @@ public:
         const double c = t.cos(), s = t.sin();
         Vector u;
         u << c, s, t.x(), t.y(), 1;
-        Eigen::Matrix<double, 5, 3> j = Eigen::Matrix<double, 5, 3>::Zero(); // of u by (x, y, alpha)
-        j(2, 0) = j(3, 1) = 1;
-        j(0, 2) = -s;
-        j(1, 2) = c;
-        const Vector mu = m_ * u;
+        Eigen::Matrix<double, 3, 5> j =
+            Eigen::Matrix<double, 3, 5>::Zero(); // of u by (x, y, alpha), transposed
+        j(0, 2) = j(1, 3) = 2;
+        j(2, 0) = -2 * s;
+        j(2, 1) = 2 * c;
+        const Vector mu = product(m_, u);
         CriterionExpansion e;
         e.value = std::max(u.dot(mu), 0.0);
-        e.gradient = 2 * j.transpose() * mu;
-        e.hessian = 2 * j.transpose() * m_ * j;
+        e.gradient = product(j, mu);
+        e.hessian = product(j, m_, j) / 2;
         e.hessian(2, 2) -= 2 * (c * mu(0) + s * mu(1)); // u itself bends by -(cos, sin)
         return e;
     }
@@ -124,7 +126,7 @@ private:
         const Vector2D<double> x = b - a, y = d - c, z = d + c, v = b - 3.0 * a;
         Vector g;
         g << x.cross(z), x.dot(z), -2 * x.y, 2 * x.x, x.cross(v); // (7.17)
-        Matrix m = p.weight * g * g.transpose();
+        Matrix m = square(p.weight, g);
         const double cross = x.cross(y), dot = x.dot(y); // (7.16)
         m(0, 0) += p.weight * cross * cross;
         m(0, 1) += p.weight * cross * dot;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/vectorization/VectorizedLine.h"
 
 #include <Eigen/LU>
@@ -77,7 +78,7 @@ private:
             return u.x * v.x * s.xx + (u.x * v.y + u.y * v.x) * s.xy + u.y * v.y * s.yy;
         }
         void addTo(Block &from, Block &to) const {
-            const Matrix across = normal * normal.transpose();
+            const Matrix across = square(1, normal);
             from.own += (n - 2 * t + tt) * across;
             from.next = (t - tt) * across;
             to.own += tt * across;
@@ -92,16 +93,16 @@ private:
             block.own += hold * Matrix::Identity();
             if (i > 0) {
                 const Block &above = blocks_[i - 1];
-                const Matrix factor = above.next.transpose() * above.own.inverse();
-                block.own -= factor * above.next;
-                block.right -= factor * above.right;
+                const Matrix factor = product(above.next, Matrix(above.own.inverse())); // next is symmetric
+                block.own -= product(factor, above.next);
+                block.right -= product(factor, above.right);
             }
         }
         for (std::size_t i = blocks_.size(); i-- > 0;) {
             Block &block = blocks_[i];
             if (i + 1 < blocks_.size())
-                block.right -= block.next * blocks_[i + 1].right;
-            block.right = block.own.inverse() * block.right;
+                block.right -= product(block.next, blocks_[i + 1].right);
+            block.right = product(Matrix(block.own.inverse()), block.right);
         }
     }
 
