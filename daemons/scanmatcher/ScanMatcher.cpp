@@ -1,4 +1,5 @@
 #include "daemons/scanmatcher/ScanMatcher.h"
+#include "moc_ScanMatcher.cpp" // else it would be compiled apart, vectorlib and all
 
 #include "common/Log.h"
 #include "common/Time.h"

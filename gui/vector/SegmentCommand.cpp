@@ -6,13 +6,14 @@ namespace hermes {
 
 namespace {
 
+using Point = vectorlib::Vector2D<double>;
+
 struct SegmentCommand {
     std::string in;
     OutputOptions output;
     SegmentOptions segment;
 
     void run() const {
-        using Point = vectorlib::Vector2D<double>;
         vectorlib::EarSegmenter<double> segmenter;
         segmenter.settings = segment.over({});
         OutputSet files(output.force);

@@ -16,7 +16,7 @@ namespace {
 using vectorlib::Number;
 using Segments = std::vector<vectorlib::LineSegment2D<double>>;
 
-constexpr double sigma = 0.02; // metres, as in thesis 6.5.2
+constexpr double scanSigma = 0.02; // metres, as in thesis 6.5.2
 constexpr std::size_t fewestPoints = 10;
 
 Segments vectorize(const Algorithm &algorithm, const QualityScan &scan) {
@@ -48,7 +48,7 @@ double score(const Segments &segments, RealScanKind kind) {
 } // namespace
 
 RealScanResult realScanExperiment(const std::vector<vectorlib::CarmenScan> &scans, RealScanKind kind) {
-    const std::vector<Algorithm> algorithms = comparedAlgorithms(sigma, true);
+    const std::vector<Algorithm> algorithms = comparedAlgorithms(scanSigma, true);
     const auto ftls = std::find_if(algorithms.begin(), algorithms.end(),
                                    [](const Algorithm &a) { return a.name == "ftls"; });
     RealScanResult result;

@@ -10,7 +10,7 @@ namespace hermes {
 
 namespace {
 
-constexpr int rays = 2000;
+constexpr int scanRays = 2000;
 
 bool isOutlier(const Scene &scene, vectorlib::Vector2D<float> point, double sigma) {
     for (const auto &edge : scene.edges)
@@ -21,11 +21,11 @@ bool isOutlier(const Scene &scene, vectorlib::Vector2D<float> point, double sigm
 
 SegmentationPanel measure(const Scene &scene, double noise, double outlierShare, std::uint64_t seed) {
     vectorlib::SimulatedScanner<float> scan(seed);
-    scan.rays = rays;
+    scan.rays = scanRays;
     scan.sigma = noise;
     scan.outliers = outlierShare;
     vectorlib::EarSegmenter<float> segment;
-    segment.settings.nominalPoints = rays;
+    segment.settings.nominalPoints = scanRays;
 
     SegmentationPanel panel;
     panel.noise = noise;

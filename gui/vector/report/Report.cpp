@@ -19,7 +19,7 @@ const Ink dots{Ink::Kind::Dots, "scannedpoint", "#009e73", 1.4, "scanned points"
 const Ink still{Ink::Kind::Lines, "staticscan", "#8d99ae", 2.6, "static scan"};
 const Ink registered{Ink::Kind::Lines, "registeredscan", "#111111", 1.2, "registered scan"};
 const Ink link{Ink::Kind::Lines, "correspondence", "#d62828", 1.0, "correspondence"};
-const Ink edge{Ink::Kind::Lines, "mapedge", "#1b2a41", 1.4, "edges of the world"};
+const Ink mapEdge{Ink::Kind::Lines, "mapedge", "#1b2a41", 1.4, "edges of the world"};
 const Ink robot{Ink::Kind::Pose, "robotpose", "#0072b2", 1.2, "pose of the robot"};
 const Ink path{Ink::Kind::Lines, "robotpath", "#56b4e9", 0.8, "path of the robot", true};
 
@@ -106,11 +106,11 @@ std::vector<const Ink *> caseInks() {
 }
 
 std::vector<const Ink *> overallInks() {
-    return {&edge, &robot, &path};
+    return {&mapEdge, &robot, &path};
 }
 
 std::vector<const Ink *> allInks() {
-    return {&still, &registered, &dots, &link, &common, &difference, &edge, &robot, &path};
+    return {&still, &registered, &dots, &link, &common, &difference, &mapEdge, &robot, &path};
 }
 
 Drawing drawScans(const CaseReport &report) {
@@ -151,7 +151,7 @@ Drawing drawSolution(const CaseReport &report, const vectorlib::Solution &soluti
 
 Drawing drawWorld(const World &world) {
     Drawing drawing;
-    drawing.segments(edge, edgesOf(world));
+    drawing.segments(mapEdge, edgesOf(world));
     std::vector<Point> places;
     for (const World::Pose &pose : world.poses)
         places.emplace_back(pose.x, pose.y);

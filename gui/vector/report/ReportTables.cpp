@@ -74,9 +74,10 @@ Json searchOf(const vectorlib::SearchResult &result) {
             {"combinations", result.combinations}};
 }
 
-const std::string columns = "x,y,alpha,reliability,ambiguity_m2,discrepancy_m2,common_m2,shared_angle,"
-                            "matched_share,score,accepted,true,true_positive,true_negative,false_positive,"
-                            "false_negative";
+const std::string solutionColumns =
+    "x,y,alpha,reliability,ambiguity_m2,discrepancy_m2,common_m2,shared_angle,"
+    "matched_share,score,accepted,true,true_positive,true_negative,false_positive,"
+    "false_negative";
 
 void writeRow(std::ostream &out, const CaseReport &report, std::size_t i) {
     const vectorlib::Solution &s = report.result.solutions[i];
@@ -125,7 +126,7 @@ void writeJson(std::ostream &out, const ReportWorld &world, const ReportSettings
 }
 
 void writeCsv(std::ostream &out, const CaseReport &report) {
-    out << "solution," << columns << '\n';
+    out << "solution," << solutionColumns << '\n';
     for (std::size_t i = 0; i < report.result.solutions.size(); ++i) {
         out << i << ',';
         writeRow(out, report, i);
@@ -133,9 +134,9 @@ void writeCsv(std::ostream &out, const CaseReport &report) {
 }
 
 void writeCsv(std::ostream &out, const OverallReport &report) {
-    const std::string noValues(1 + static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ',')),
-                               ',');
-    out << "from,to,solution," << columns << '\n';
+    const std::string noValues(
+        1 + static_cast<std::size_t>(std::count(solutionColumns.begin(), solutionColumns.end(), ',')), ',');
+    out << "from,to,solution," << solutionColumns << '\n';
     for (const CaseReport &c : report.cases) {
         bool any = false;
         for (std::size_t i = 0; i < c.result.solutions.size(); ++i)

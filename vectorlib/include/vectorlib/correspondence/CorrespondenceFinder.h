@@ -239,7 +239,7 @@ private:
     CollinearBundles bundle_;
     BundleBuckets buckets_;
     BundleCombinations combine_;
-    const std::vector<Combination> none_;
+    const std::vector<Combination> none_{};
     const std::vector<Combination> *combinations_ = &none_;
     PairSelection select_;
     ExpectedViewTest view_;

@@ -110,7 +110,8 @@ private:
             return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
         });
         if (!isKeyword || (!lines_.terminated() && fields_.size() == 1))
-            return lines_.errorHere(quoted(keyword), "a CARMEN message such as FLASER, ROBOTLASER1 or ODOM");
+            return lines_.errorHere(vectorlib::quoted(keyword),
+                                    "a CARMEN message such as FLASER, ROBOTLASER1 or ODOM");
         return {}; // PARAM, NEFF, SYNC, RLASER, TRUEPOS and others tell nothing of the front laser
     }
 
@@ -156,10 +157,10 @@ private:
             if (const auto problem = readField(index, what, *value))
                 return problem;
         if (!(scan.angleStep > 0) || !(scan.maxRange > 0))
-            return lines_.errorHere(quoted(fields_[scan.angleStep > 0 ? 5 : 4]),
+            return lines_.errorHere(vectorlib::quoted(fields_[scan.angleStep > 0 ? 5 : 4]),
                                     "a resolution and a maximum range above 0");
         if (std::abs(scan.startAngle) > largestAngle || scan.angleStep > largestAngle)
-            return lines_.errorHere(quoted(fields_[scan.angleStep > largestAngle ? 4 : 2]),
+            return lines_.errorHere(vectorlib::quoted(fields_[scan.angleStep > largestAngle ? 4 : 2]),
                                     "a start angle and a resolution within a turn, in radians");
         scan.maxRange = std::min(scan.maxRange, farthest);
         std::size_t at = 8;
@@ -167,7 +168,7 @@ private:
             return problem;
         const auto remissions = parseCount(fields_[at], maxRays);
         if (!remissions)
-            return lines_.errorHere(quoted(fields_[at]), "the number of remissions");
+            return lines_.errorHere(vectorlib::quoted(fields_[at]), "the number of remissions");
         at += 1 + *remissions;
         if (fields_.size() < at + 14)
             return tooShort("ROBOTLASER1", at + 14);
@@ -186,9 +187,9 @@ private:
         for (std::size_t i = 0; i < *count; ++i) {
             const auto range = parseNumber(fields_[at + 1 + i]);
             if (!range || *range < 0)
-                return lines_.errorHere(quoted(fields_[at + 1 + i]), "range " + std::to_string(i + 1) +
-                                                                         " of " + std::to_string(*count) +
-                                                                         ", a finite number of metres");
+                return lines_.errorHere(vectorlib::quoted(fields_[at + 1 + i]),
+                                        "range " + std::to_string(i + 1) + " of " + std::to_string(*count) +
+                                            ", a finite number of metres");
             scan.ranges.push_back(static_cast<float>(std::min(*range, farthest)));
         }
         at += 1 + *count;
@@ -240,14 +241,15 @@ private:
             if (const auto problem = readField(at + offset, what, *value))
                 return problem;
             if (std::abs(*value) > widest)
-                return lines_.errorHere(quoted(fields_[at + offset]), std::string(what) + " below 1e7");
+                return lines_.errorHere(vectorlib::quoted(fields_[at + offset]),
+                                        std::string(what) + " below 1e7");
         }
         return {};
     }
     Problem readField(std::size_t at, const char *what, double &value) {
         const auto number = parseNumber(fields_[at]);
         if (!number)
-            return lines_.errorHere(quoted(fields_[at]), std::string(what) + ", a finite number");
+            return lines_.errorHere(vectorlib::quoted(fields_[at]), std::string(what) + ", a finite number");
         value = *number;
         return {};
     }

@@ -108,8 +108,8 @@ private:
         for (const std::size_t at : positions_) {
             const auto number = parseNumber(fields_[at]);
             if (!number) {
-                error_ =
-                    lines_.errorHere(quoted(fields_[at]), "a finite number as " + columnName(row_.size()));
+                error_ = lines_.errorHere(vectorlib::quoted(fields_[at]),
+                                          "a finite number as " + columnName(row_.size()));
                 return false;
             }
             row_.push_back(*number);

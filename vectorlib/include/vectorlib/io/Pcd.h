@@ -36,7 +36,7 @@ inline Expected<PcdHeader> readPcdHeader(LineReader &lines) {
             for (const std::string_view field : fields) {
                 const auto count = parseCount(field, keyword == "COUNT" ? 10000 : limit);
                 if (!count || (keyword == "COUNT" && *count == 0)) // a field of no numbers has no place
-                    return lines.errorHere(quoted(field), "a count as " + keyword);
+                    return lines.errorHere(vectorlib::quoted(field), "a count as " + keyword);
                 if (keyword == "COUNT")
                     counts.push_back(*count);
                 else
@@ -45,7 +45,7 @@ inline Expected<PcdHeader> readPcdHeader(LineReader &lines) {
             }
         } else if (keyword == "DATA") {
             if (fields.empty() || fields.front() != "ascii")
-                return lines.errorHere(quoted(text), "DATA ascii");
+                return lines.errorHere(vectorlib::quoted(text), "DATA ascii");
             if (!havePoints)
                 return lines.errorHere("a header without POINTS", "the number of points");
             bool hasX = false, hasY = false;
@@ -64,7 +64,8 @@ inline Expected<PcdHeader> readPcdHeader(LineReader &lines) {
             return header;
         } else if (keyword != "VERSION" && keyword != "SIZE" && keyword != "TYPE" && keyword != "WIDTH" &&
                    keyword != "HEIGHT" && keyword != "VIEWPOINT") {
-            return lines.errorHere(quoted(keyword), "a line of a PCD header such as FIELDS or DATA");
+            return lines.errorHere(vectorlib::quoted(keyword),
+                                   "a line of a PCD header such as FIELDS or DATA");
         }
     }
     return lines.error() ? *lines.error()
@@ -95,7 +96,7 @@ Expected<std::vector<Vector2D<Scalar>>> readPcd(std::istream &in, std::string na
                                    std::to_string(header->width) + " fields");
         const auto x = parseNumber(fields[header->x]), y = parseNumber(fields[header->y]);
         if (!x || !y)
-            return lines.errorHere(quoted(fields[x ? header->y : header->x]),
+            return lines.errorHere(vectorlib::quoted(fields[x ? header->y : header->x]),
                                    std::string("a finite number as ") + (x ? "y" : "x"));
         points.emplace_back(static_cast<Scalar>(*x), static_cast<Scalar>(*y));
         if (!points.back().isFinite()) // a double beyond all floats
