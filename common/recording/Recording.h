@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/daemon/Command.h"
-#include "common/daemon/Health.h"
+#include "common/daemon/PastFaults.h"
 #include "common/recording/FileSync.h"
 #include "common/recording/RecordingSession.h"
 #include "common/settings/Settings.h"
@@ -81,6 +81,7 @@ private:
     double start_ = 0;
     std::optional<Error> error_; ///< that ended it
     std::optional<Error> refreshError_;
+    PastFaults losses_;
     std::vector<Reply> stopping_; ///< who waits for the end
     std::optional<double> free_;  ///< bytes
     QStringList unrepaired_;      ///< why recordings that were cut off could not be completed

@@ -151,6 +151,7 @@ void Recording::updateHealth() {
     double lost = 0;
     for (const double count : now.losses.value_or(NamedCounts()))
         lost += count;
+    const HealthLevel past = losses_.level(lost);
     if (error_)
         health_.set("recording", HealthLevel::Failed, error_->message, values);
     else if (refreshError_)
@@ -158,7 +159,7 @@ void Recording::updateHealth() {
     else if (!unrepaired_.isEmpty())
         health_.set("recording", HealthLevel::Warn, unrepaired_.join("; "), values);
     else if (lost > 0)
-        health_.set("recording", HealthLevel::Warn,
+        health_.set("recording", phase_ == Phase::Idle ? past : HealthLevel::Warn,
                     folder_ + ": not all that was to be recorded is there, see losses", values);
     else
         health_.set("recording", HealthLevel::Ok,

@@ -70,7 +70,16 @@ std::optional<OdometryTrack> OdometrySource::over(double begin, double end) {
     return track;
 }
 
-void OdometrySource::report(Health &health) const {
+QString OdometrySource::pastText() const {
+    QString text;
+    if (refused_ > 0)
+        text += QString("; refused %1 messages, the last: %2").arg(refused_).arg(lastRefused_);
+    if (dropped_ > 0)
+        text += QString("; %1 messages were dropped").arg(dropped_);
+    return text;
+}
+
+void OdometrySource::report(Health &health) {
     const auto set = [&](HealthLevel level, const QString &message) {
         health.set("odometry", level, message, asJson(state()).toObject());
     };
@@ -83,12 +92,8 @@ void OdometrySource::report(Health &health) const {
         set(HealthLevel::Warn, QString("the last %1 scans found no odometry of their time; their poses were "
                                        "expected from the scans alone")
                                    .arg(withoutInARow_));
-    else if (refused_ > 0)
-        set(HealthLevel::Warn, QString("refused %1 messages, the last: %2").arg(refused_).arg(lastRefused_));
-    else if (dropped_ > 0)
-        set(HealthLevel::Warn, QString("%1 messages were dropped").arg(dropped_));
     else
-        set(HealthLevel::Ok, "connected to " + address_);
+        set(faults_.level(double(refused_ + dropped_)), "connected to " + address_ + pastText());
 }
 
 OdometryState OdometrySource::state() const {

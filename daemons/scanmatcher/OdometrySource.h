@@ -1,12 +1,11 @@
 #pragma once
 
 #include "common/client/Client.h"
+#include "common/daemon/PastFaults.h"
 #include "daemons/scanmatcher/MatcherMessages.h"
 #include "vectorlib/motion/OdometryBuffer.h"
 
 namespace hermes {
-
-class Health;
 
 /// The topic of another daemon that tells where the robot is by its wheels: receives, checks, counts, and
 /// hands each scan the odometry of its time.
@@ -19,7 +18,7 @@ public:
     /// What is known from begin to end, seconds since the Unix epoch.
     std::optional<vectorlib::OdometryTrack> over(double begin, double end);
     /// Sets the health item `odometry`, or removes it when there is no source.
-    void report(Health &health) const;
+    void report(Health &health);
     /// Counts: {connected, messages, refused, out_of_order, restarts, dropped, scans_without}.
     OdometryState state() const;
     /// For its signals.
@@ -28,11 +27,14 @@ public:
 private:
     void take(const TopicUpdate &update);
 
+    QString pastText() const;
+
     Client client_;
     QString address_;
     int subscription_ = 0;
     vectorlib::OdometryBuffer buffer_;
     QString lastRefused_;
+    PastFaults faults_;
     quint64 messages_ = 0, refused_ = 0, outOfOrder_ = 0, restarts_ = 0, dropped_ = 0, scansWithout_ = 0,
             unknown_ = 0;
     int withoutInARow_ = 0;

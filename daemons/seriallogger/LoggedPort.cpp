@@ -79,7 +79,7 @@ NmeaCounts LoggedPort::nmeaCounts() const {
     return nmea;
 }
 
-std::pair<HealthLevel, QString> LoggedPort::health() const {
+std::pair<HealthLevel, QString> LoggedPort::health() {
     const PortThread::State state = thread_.state();
     if (state.carrier != Interface::State::Open)
         return {HealthLevel::Failed,
@@ -89,20 +89,21 @@ std::pair<HealthLevel, QString> LoggedPort::health() const {
     if (settings_.silence_s > 0 && silent > settings_.silence_s)
         return {HealthLevel::Stale,
                 QString("no byte on %1 for %2 s").arg(settings_.url).arg(silent, 0, 'f', 1)};
-    if (recording_.lost() > 0)
-        return {HealthLevel::Warn,
-                QString("%1 bytes were lost: the disk was too slow").arg(recording_.lost())};
     quint64 errors = 0;
     for (const quint64 count : state.systemErrors)
         errors += count;
-    if (errors > 0)
-        return {HealthLevel::Warn, QString("the system tells of %1 errors on the line").arg(errors)};
     const nmea::SentenceParser::Counts &counts = view_.fixes().sentences();
     const quint64 wrong = counts.badChecksum + counts.noChecksum + counts.tooLong + counts.badByte +
                           counts.cutShort + view_.fixes().counts().badFields;
-    if (wrong > 1) // the first may have been begun before
-        return {HealthLevel::Warn, QString("%1 NMEA sentences were damaged").arg(wrong)};
-    return {HealthLevel::Ok, "receiving from " + (state.device.isEmpty() ? settings_.url : state.device)};
+    const quint64 damaged = wrong > 1 ? wrong : 0; // the first may have been begun before
+    QString message = "receiving from " + (state.device.isEmpty() ? settings_.url : state.device);
+    if (recording_.lost() > 0)
+        message += QString("; %1 bytes were lost: the disk was too slow").arg(recording_.lost());
+    if (errors > 0)
+        message += QString("; the system tells of %1 errors on the line").arg(errors);
+    if (damaged > 0)
+        message += QString("; %1 NMEA sentences were damaged").arg(damaged);
+    return {faults_.level(double(recording_.lost() + errors + damaged)), message};
 }
 
 } // namespace hermes

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/daemon/Health.h"
+#include "common/daemon/PastFaults.h"
 #include "daemons/seriallogger/PortThread.h"
 #include "daemons/seriallogger/PortView.h"
 #include "daemons/seriallogger/SerialMessages.h"
@@ -25,7 +25,7 @@ public:
     PortThread &thread() { return thread_; }
     PortStatus status() const;
     /// Level and message of its health item.
-    std::pair<HealthLevel, QString> health() const;
+    std::pair<HealthLevel, QString> health();
 
 private:
     NmeaCounts nmeaCounts() const;
@@ -37,6 +37,7 @@ private:
     quint64 bytesAtTick_ = 0;
     double rate_ = 0; ///< bytes a second
     double startedMono_ = 0;
+    PastFaults faults_;
 };
 
 } // namespace hermes

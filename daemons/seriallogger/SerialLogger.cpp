@@ -207,7 +207,7 @@ void SerialLogger::updateHealth() {
         health().set("ports", HealthLevel::Warn, "no port is set; the setting ports lists them");
 }
 
-void SerialLogger::updateHealth(const LoggedPort &port) {
+void SerialLogger::updateHealth(LoggedPort &port) {
     const auto [level, message] = port.health();
     health().set("port " + port.settings().name, level, message, asJson(port.status()).toObject());
 }

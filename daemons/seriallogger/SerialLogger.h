@@ -49,7 +49,7 @@ private:
     void processViews();
     void tick();
     void updateHealth();
-    void updateHealth(const LoggedPort &port);
+    void updateHealth(LoggedPort &port);
     std::vector<PortStatus> portList() const;
     SerialMessage state() const;
 

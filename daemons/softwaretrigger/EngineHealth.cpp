@@ -22,7 +22,7 @@ QStringList TriggerEngine::healthItems() {
     return {"schedule", "targets", "serial_lines", "actions", "firings_log"};
 }
 
-EngineHealth TriggerEngine::health(const QString &item) const {
+EngineHealth TriggerEngine::health(const QString &item) {
     switch (healthItems().indexOf(item)) {
     case 0:
         return scheduleHealth();
@@ -37,7 +37,7 @@ EngineHealth TriggerEngine::health(const QString &item) const {
     }
 }
 
-EngineHealth TriggerEngine::scheduleHealth() const {
+EngineHealth TriggerEngine::scheduleHealth() {
     QJsonObject values = asJson(jitter_.summary()).toObject();
     double missed = 0;
     QStringList problems;
@@ -52,7 +52,7 @@ EngineHealth TriggerEngine::scheduleHealth() const {
     if (!problems.isEmpty())
         return {HealthLevel::Warn, problems.join("; "), values};
     if (missed > 0)
-        return {HealthLevel::Warn, QString("%1 firings were missed").arg(missed), values};
+        return {pastMissed_.level(missed), QString("%1 firings were missed").arg(missed), values};
     return {HealthLevel::Ok, QString("%1 triggers").arg(triggers_.size()), values};
 }
 
@@ -79,13 +79,14 @@ EngineHealth TriggerEngine::actionHealth() const {
             {{"failed", double(failedActions_)}, {"under_way", int(underWay_.size())}}};
 }
 
-EngineHealth TriggerEngine::logHealth() const {
+EngineHealth TriggerEngine::logHealth() {
     const FiringLog::State log = log_.state();
     const QJsonObject values = asJson(log).toObject();
     if (!log.error.isEmpty())
         return {HealthLevel::Failed, log.error, values};
     if (log.lost > 0)
-        return {HealthLevel::Warn, QString("%1 firings are missing in the log").arg(log.lost), values};
+        return {pastLost_.level(double(log.lost)), QString("%1 firings are missing in the log").arg(log.lost),
+                values};
     return {HealthLevel::Ok,
             log.folder.isEmpty() ? QString("none: firings.folder is empty") : QString("writing"), values};
 }

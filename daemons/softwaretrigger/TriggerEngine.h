@@ -5,7 +5,7 @@
 #include "daemons/softwaretrigger/FiringLog.h"
 #include "daemons/softwaretrigger/JitterWindow.h"
 
-#include "common/daemon/Health.h"
+#include "common/daemon/PastFaults.h"
 
 #include <map>
 #include <memory>
@@ -42,7 +42,7 @@ public:
     /// By id.
     std::map<QString, TriggerState> state() const;
     static QStringList healthItems();
-    EngineHealth health(const QString &item) const;
+    EngineHealth health(const QString &item);
 
 Q_SIGNALS:
     /// The last action of a firing has ended.
@@ -62,11 +62,11 @@ private:
     void beginAction(const std::shared_ptr<Firing> &firing, size_t index, const ActionDefinition &action);
     void endIfOver(const std::shared_ptr<Firing> &firing);
     void fireFollowers(const Firing &firing);
-    EngineHealth scheduleHealth() const;
+    EngineHealth scheduleHealth();
     EngineHealth targetHealth() const;
     EngineHealth lineHealth() const;
     EngineHealth actionHealth() const;
-    EngineHealth logHealth() const;
+    EngineHealth logHealth();
 
     FiringLog log_;
     std::unique_ptr<Schedule> schedule_;
@@ -77,6 +77,7 @@ private:
     bool realtime_ = false;
     QString lastFailure_;
     quint64 failedActions_ = 0;
+    PastFaults pastMissed_, pastLost_;
 };
 
 } // namespace hermes

@@ -19,6 +19,21 @@ QString otherSensors(const LidarFeed::Counts &counts) {
     return others.join(", ");
 }
 
+/// What went wrong so far, after a semicolon each.
+QString pastText(quint64 wrong, quint64 lost, const velodyne::GpsReader::Counts &gps) {
+    QString text;
+    if (wrong > 0)
+        text += QString("; %1 packets were no data packets").arg(wrong);
+    if (lost > 0)
+        text += QString("; %1 packets or turns were lost").arg(lost);
+    if (gps.wrongValue + gps.badNmea > 0)
+        text += QString("; of %1 position packets %2 had wrong values, %3 bad NMEA text")
+                    .arg(gps.packets)
+                    .arg(gps.wrongValue)
+                    .arg(gps.badNmea);
+    return text;
+}
+
 } // namespace
 
 LidarGps VelodyneLogger::gpsState() const {
@@ -126,22 +141,14 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
             textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) + " too");
-    else if (wrong > 0)
-        set(HealthLevel::Warn, QString("%1 packets were no data packets of an %2").arg(wrong).arg(sensors));
     else if (counts.model && settings().integer("decode.laser") >= counts.model->lasers)
         set(HealthLevel::Warn, QString("decode.laser is %1, but a %2 has lasers 0 to %3: scans are empty")
                                    .arg(settings().integer("decode.laser"))
                                    .arg(counts.model->name)
                                    .arg(counts.model->lasers - 1));
-    else if (counts.gps.wrongValue + counts.gps.badNmea > 0)
-        set(HealthLevel::Warn, QString("of %1 position packets %2 have wrong values, %3 bad NMEA text")
-                                   .arg(counts.gps.packets)
-                                   .arg(counts.gps.wrongValue)
-                                   .arg(counts.gps.badNmea));
-    else if (lost > 0)
-        set(HealthLevel::Warn, "packets or turns were lost");
     else
-        set(HealthLevel::Ok, "packets come from " + source_.name());
+        set(faults_.level(double(wrong + lost + counts.gps.wrongValue + counts.gps.badNmea)),
+            "packets come from " + source_.name() + pastText(wrong, lost, counts.gps));
 }
 
 } // namespace hermes

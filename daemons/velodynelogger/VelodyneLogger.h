@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "common/daemon/PastFaults.h"
 #include "common/recording/Recording.h"
 #include "common/recording/ReplaySource.h"
 #include "daemons/velodynelogger/LidarFeed.h"
@@ -67,6 +68,7 @@ private:
     QElapsedTimer sinceTick_;
     std::uint64_t packetsAtTick_ = 0, datagramsAtTick_ = 0;
     double packetRate_ = 0; ///< a second
+    PastFaults faults_;
 };
 
 } // namespace hermes

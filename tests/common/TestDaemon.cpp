@@ -1,4 +1,5 @@
 #include "DaemonFixture.h"
+#include "common/daemon/PastFaults.h"
 #include "protocol/wire/Fields.h"
 
 using namespace hermes;
@@ -14,6 +15,7 @@ private Q_SLOTS:
     void settingsOverTheWire();
     void networkNeedsInsecure();
     void healthDegradesAndGoesStale();
+    void whatIsPastIsNoWarning();
     void logIsATopic();
 };
 
@@ -85,6 +87,18 @@ void TestDaemon::networkNeedsInsecure() {
     QVERIFY(insecure.launch());
     const QByteArray status = compactJson(asJson(insecure.status()));
     QVERIFY2(status.contains("\"level\":\"warn\"") && status.contains("\"name\":\"insecure\""), status);
+}
+
+void TestDaemon::whatIsPastIsNoWarning() {
+    const auto warns = [faults = PastFaults()](double count, double mono) mutable {
+        return faults.level(count, mono) == HealthLevel::Warn;
+    };
+    const double end = PastFaults::window_s;
+    QVERIFY(!warns(0, 0));
+    QVERIFY(warns(3, 10) && warns(3, 9.9 + end) && !warns(3, 10 + end));
+    QVERIFY(warns(4, 20 + end) && warns(4, 19.9 + 2 * end) && !warns(4, 1000));
+    QVERIFY(!warns(0, 1001)); // begun anew
+    QVERIFY(warns(1, 1002) && !warns(1, 1002 + end));
 }
 
 void TestDaemon::healthDegradesAndGoesStale() {
