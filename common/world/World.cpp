@@ -14,10 +14,6 @@ bool operator==(const World::Edge &a, const World::Edge &b) {
     return a.x1 == b.x1 && a.y1 == b.y1 && a.x2 == b.x2 && a.y2 == b.y2;
 }
 
-bool operator==(const World::Pose &a, const World::Pose &b) {
-    return a.x == b.x && a.y == b.y && a.theta == b.theta;
-}
-
 bool operator==(const World &a, const World &b) {
     return a.name == b.name && a.edges == b.edges && a.poses == b.poses;
 }
@@ -32,7 +28,7 @@ std::string faultOf(const World::Edge &edge) {
     return {};
 }
 
-std::string faultOf(const World::Pose &pose) {
+std::string faultOf(const vectorlib::Pose2D &pose) {
     const bool finite = std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.theta);
     return finite ? std::string() : "a pose's numbers must be finite";
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vectorlib/geometry/Pose2D.h"
+
 #include <string>
 #include <vector>
 
@@ -11,23 +13,18 @@ struct World {
     struct Edge {
         double x1, y1, x2, y2;
     };
-    /// Metres; heading in radians, counter-clockwise from the x axis.
-    struct Pose {
-        double x, y, theta;
-    };
 
     std::string name;
     std::vector<Edge> edges;
-    std::vector<Pose> poses;
+    std::vector<vectorlib::Pose2D> poses;
 };
 
 bool operator==(const World::Edge &a, const World::Edge &b);
-bool operator==(const World::Pose &a, const World::Pose &b);
 bool operator==(const World &a, const World &b);
 
 /// What is wrong with an edge or a pose, or an empty string: numbers that are not finite, an edge of no
 /// length.
 std::string faultOf(const World::Edge &edge);
-std::string faultOf(const World::Pose &pose);
+std::string faultOf(const vectorlib::Pose2D &pose);
 
 } // namespace hermes

@@ -154,7 +154,7 @@ std::string toText(const World &world) {
     }
     text << "  ],\n  \"poses\": [\n";
     for (std::size_t i = 0; i < world.poses.size(); ++i) {
-        const World::Pose &p = world.poses[i];
+        const vectorlib::Pose2D &p = world.poses[i];
         text << "    [" << toText(p.x) << ", " << toText(p.y) << ", " << toText(p.theta)
              << (i + 1 < world.poses.size() ? "],\n" : "]\n");
     }
@@ -162,14 +162,14 @@ std::string toText(const World &world) {
     return text.str();
 }
 
-std::string faultOf(const World &world) {
+std::string faultIn(const World &world) {
     if (world.edges.empty())
         return "a world needs edges";
     for (const World::Edge &edge : world.edges) {
         if (const std::string fault = faultOf(edge); !fault.empty())
             return fault;
     }
-    for (const World::Pose &pose : world.poses) {
+    for (const vectorlib::Pose2D &pose : world.poses) {
         if (const std::string fault = faultOf(pose); !fault.empty())
             return fault;
     }
@@ -200,7 +200,7 @@ std::optional<World> readWorld(const std::string &path, std::string &error) {
 }
 
 bool writeWorld(const World &world, const std::string &path, std::string &error, bool overwrite) {
-    if (const std::string fault = faultOf(world); !fault.empty()) {
+    if (const std::string fault = faultIn(world); !fault.empty()) {
         error = path + ": not written: " + fault;
         return false;
     }

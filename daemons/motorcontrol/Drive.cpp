@@ -50,8 +50,8 @@ void Drive::configure(const Settings &settings) {
     halt("the settings were changed");
 }
 
-Result<void> Drive::driveTwist(quint64 client, const Twist &twist, double age_s, double now) {
-    const Twist &most = settings_.limits.velocity;
+Result<void> Drive::driveTwist(quint64 client, const Twist2D &twist, double age_s, double now) {
+    const Twist2D &most = settings_.limits.velocity;
     const double sideways = settings_.layout.movesSideways() ? most.vy : 0;
     const auto bounded = checkBounds(std::array<Bounded, 3>{{{"vx", twist.vx, most.vx, "m/s"},
                                                              {"vy", twist.vy, sideways, "m/s"},

@@ -28,7 +28,7 @@ public:
     // controllers not ready, command too old), DeviceFault (a fault is latched), ControlHeld.
     /// age_s: how old the command is, 0 where unknown; the time-out counts from when it was made. Older than
     /// the time-out is refused, and so is one that comes from a future as far away.
-    Result<void> driveTwist(quint64 client, const Twist &twist, double age_s, double now);
+    Result<void> driveTwist(quint64 client, const Twist2D &twist, double age_s, double now);
     Result<void> driveWheels(quint64 client, const WheelValues &speeds, double age_s, double now);
     /// Anyone may stop. Ends the lease unless the client holds it.
     void stop(quint64 client, const QString &who);

@@ -1,5 +1,7 @@
 #include "daemons/motorcontrol/DriveEngine.h"
 
+#include "vectorlib/geometry/Angle.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,7 +9,6 @@
 namespace hermes {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double overspeed = 1.5; // times full duty: faster no wheel turns
 
 } // namespace
@@ -29,7 +30,7 @@ void DriveEngine::configure(const MotorSettings &settings) {
     drive_.configure(settings.drive);
     odometry_.setNoise(settings.odometry);
     tracker_.configure(settings.wheels, settings.countsPerTurn,
-                       overspeed * settings.pid.qpps * 2 * pi / settings.countsPerTurn);
+                       overspeed * settings.pid.qpps * 2 * vectorlib::pi / settings.countsPerTurn);
     faults_.configure(settings);
     for (const auto &controller : controllers_)
         controller->configure(settings);
@@ -132,7 +133,7 @@ void DriveEngine::trackWheels(double now) {
 }
 
 void DriveEngine::command(const WheelValues &setPoint) {
-    const double countsPerRadian = settings_.countsPerTurn / (2 * pi);
+    const double countsPerRadian = settings_.countsPerTurn / (2 * vectorlib::pi);
     std::array<std::array<qint32, 2>, controllerCount> speeds{};
     for (int i = 0; i < wheelCount; ++i) {
         const WheelMount &wheel = settings_.wheels[i];

@@ -16,11 +16,11 @@ WheelValues saturated(const WheelValues &speeds, double wheelSpeed) {
 }
 
 WheelValues ramped(const WheelValues &current, const WheelValues &target, const WheelLayout &layout,
-                   const Twist &acceleration, double dt) {
+                   const Twist2D &acceleration, double dt) {
     WheelValues way{};
     for (int i = 0; i < wheelCount; ++i)
         way[i] = target[i] - current[i];
-    const Twist change = layout.twist(way);
+    const Twist2D change = layout.twist(way);
     // Cycles of dt that the way takes; below 1 it is done at once.
     double cycles = std::max({1.0, std::abs(change.vx) / (acceleration.vx * dt),
                               std::abs(change.vy) / (acceleration.vy * dt),

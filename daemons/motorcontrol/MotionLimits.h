@@ -6,9 +6,9 @@ namespace hermes {
 
 /// What the robot may do, each component for itself, both ways.
 struct MotionLimits {
-    Twist velocity{1, 1, 1.5};   ///< m/s, m/s, rad/s
-    Twist acceleration{1, 1, 3}; ///< m/s^2, m/s^2, rad/s^2
-    double wheelSpeed = 20;      ///< rad/s, what every motor can reach
+    Twist2D velocity{1, 1, 1.5};   ///< m/s, m/s, rad/s
+    Twist2D acceleration{1, 1, 3}; ///< m/s^2, m/s^2, rad/s^2
+    double wheelSpeed = 20;        ///< rad/s, what every motor can reach
 };
 
 /// All speeds divided by one number, so that none is over the limit and the direction of the motion stays.
@@ -18,6 +18,6 @@ WheelValues saturated(const WheelValues &speeds, double wheelSpeed);
 /// All wheels arrive together. What the wheels do beyond the motion of a rigid robot is held to the largest
 /// acceleration that a wheel has in any motion within the limits.
 WheelValues ramped(const WheelValues &current, const WheelValues &target, const WheelLayout &layout,
-                   const Twist &acceleration, double dt);
+                   const Twist2D &acceleration, double dt);
 
 } // namespace hermes

@@ -82,7 +82,7 @@ void MotorControl::declareMotorCommands() {
                    "Drives with this velocity, in the robot's frame, until the next command; to be sent at "
                    "10 Hz or more. Wheels that would be too fast slow all down alike",
                    [](const Call &call, DriveLoop &loop) {
-                       const Twist twist{call.number("vx"), call.number("vy"), call.number("omega")};
+                       const Twist2D twist{call.number("vx"), call.number("vy"), call.number("omega")};
                        return nullOr(
                            loop.drive().driveTwist(call.client, twist, ageOf(call), monotonicNow()));
                    })

@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/MotorController.h"
 
 #include "daemons/motorcontrol/FailureText.h"
+#include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@ using roboclaw::Request;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double setupPause_s = 0.25;       // between attempts at a controller that cannot be set up
 constexpr double setupPatience_s = 0.25;    // a set-up waits for slow adapters, to tell how slow they are
 constexpr double shortestPatience_s = 0.03; // FTDI adapters hold bytes for up to 16 ms
@@ -35,7 +35,7 @@ MotorController::MotorController(int number, const ControllerAddress &address, i
     , onLine_(onLine) {}
 
 void MotorController::configure(const MotorSettings &settings) {
-    const double countsPerRadian = settings.countsPerTurn / (2 * pi);
+    const double countsPerRadian = settings.countsPerTurn / (2 * vectorlib::pi);
     deceleration_ = std::max(
         1u, quint32(std::llround(settings.emergencyDeceleration / settings.wheelRadius * countsPerRadian)));
     watch_.setThreshold(settings.encoder.moving * countsPerRadian);

@@ -43,8 +43,8 @@ struct MotorState {
     bool estop = false;
     MotionHold hold;
     QString halted;
-    Pose pose;
-    Twist twist, target, setPoint;
+    Pose2D pose;
+    Twist2D twist, target, setPoint;
     WheelsMessage wheels;
     quint64 counterJumps = 0;
     std::array<Telemetry::Controller, controllerCount> controllers;

@@ -2,14 +2,13 @@
 
 #include "common/interface/InterfaceUrl.h"
 #include "common/settings/DottedPath.h"
+#include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace hermes {
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 Field positive(const char *name, const char *description, const char *unit, double least, double most,
                double initial) {
@@ -169,7 +168,8 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
             "faults.encoder_moving_rad_s", "at most faults.encoder_commanded_rad_s");
     // Braking from full speed is no fault of an encoder.
     const double rimSpeed = number("motion.motor_share") * number("pid.qpps") /
-                            number("frame.counts_per_turn") * 2 * pi * number("frame.wheel_radius_m");
+                            number("frame.counts_per_turn") * 2 * vectorlib::pi *
+                            number("frame.wheel_radius_m");
     const double twistSpeed =
         number("motion.vx") + number("motion.vy") +
         (number("frame.half_base_m") + number("frame.half_track_m")) * number("motion.omega");
@@ -189,7 +189,8 @@ MotorSettings MotorSettings::from(const Settings &settings) {
                                                                 : WheelLayout::differential(geometry);
     s.drive.limits.velocity = {number("motion.vx"), number("motion.vy"), number("motion.omega")};
     s.drive.limits.acceleration = {number("motion.ax"), number("motion.ay"), number("motion.alpha")};
-    s.drive.limits.wheelSpeed = number("motion.motor_share") * number("pid.qpps") * 2 * pi / s.countsPerTurn;
+    s.drive.limits.wheelSpeed =
+        number("motion.motor_share") * number("pid.qpps") * 2 * vectorlib::pi / s.countsPerTurn;
     s.drive.commandTimeout_s = number("safety.command_timeout_s");
     s.emergencyDeceleration = number("safety.deceleration");
     s.odometry = {number("odometry.position_per_metre"), number("odometry.heading_per_metre"),

@@ -22,17 +22,17 @@ public:
     /// Adds a motion with constant velocity: its displacement in the robot's frame at its begin, as the
     /// forward kinematics gives it for the wheels' turns (vx, vy in m, omega in rad). The arc is exact, the
     /// exponential of SE(2).
-    void move(const Twist &displacement);
+    void move(const Twist2D &displacement);
     /// The robot was moved by an unknown amount of about this standard deviation: pose stays, doubt grows.
     void doubt(double metres, double radians);
     /// Starts again from here, certain.
-    void reset(const Pose &pose);
+    void reset(const Pose2D &pose);
 
-    const Pose &pose() const { return pose_; }
+    const Pose2D &pose() const { return pose_; }
     const Covariance &covariance() const { return covariance_; }
 
 private:
-    Pose pose_;
+    Pose2D pose_;
     Covariance covariance_{};
     OdometryNoise noise_;
 };

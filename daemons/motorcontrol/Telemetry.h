@@ -23,8 +23,8 @@ struct Telemetry {
 
     double stamp = 0, mono = 0; ///< of the readings behind pose and speeds
     bool moved = false;         ///< whether there are new readings in this cycle
-    Pose pose;
-    Twist twist;
+    Pose2D pose;
+    Twist2D twist;
     Odometry::Covariance covariance{};
     WheelValues target{}, setPoint{}, speeds{}, turns{}; ///< rad/s; turns: rad since the start
     double slip = 0;                                     ///< m/s

@@ -11,11 +11,11 @@ double inverseOrZero(double square) {
 
 } // namespace
 
-WheelLayout::WheelLayout(double radius, const std::array<Twist, wheelCount> &rows)
+WheelLayout::WheelLayout(double radius, const std::array<Twist2D, wheelCount> &rows)
     : radius_(radius)
     , rows_(rows) {
-    Twist squares;
-    for (const Twist &row : rows_) {
+    Twist2D squares;
+    for (const Twist2D &row : rows_) {
         squares.vx += row.vx * row.vx;
         squares.vy += row.vy * row.vy;
         squares.omega += row.omega * row.omega;
@@ -33,17 +33,17 @@ WheelLayout WheelLayout::differential(const WheelGeometry &geometry) {
     return {geometry.radius, {{{1, 0, -lever}, {1, 0, lever}, {1, 0, -lever}, {1, 0, lever}}}};
 }
 
-WheelValues WheelLayout::wheelSpeeds(const Twist &twist) const {
+WheelValues WheelLayout::wheelSpeeds(const Twist2D &twist) const {
     WheelValues speeds{};
     for (int i = 0; i < wheelCount; ++i) {
-        const Twist &row = rows_[i];
+        const Twist2D &row = rows_[i];
         speeds[i] = (row.vx * twist.vx + row.vy * twist.vy + row.omega * twist.omega) / radius_;
     }
     return speeds;
 }
 
-Twist WheelLayout::twist(const WheelValues &speeds) const {
-    Twist sum;
+Twist2D WheelLayout::twist(const WheelValues &speeds) const {
+    Twist2D sum;
     for (int i = 0; i < wheelCount; ++i) {
         sum.vx += rows_[i].vx * speeds[i];
         sum.vy += rows_[i].vy * speeds[i];

@@ -23,20 +23,20 @@ public:
     static WheelLayout differential(const WheelGeometry &geometry);
 
     /// Inverse kinematics: rad/s.
-    WheelValues wheelSpeeds(const Twist &twist) const;
+    WheelValues wheelSpeeds(const Twist2D &twist) const;
     /// Forward kinematics: the twist that explains the speeds best (pseudo-inverse).
-    Twist twist(const WheelValues &speeds) const;
+    Twist2D twist(const WheelValues &speeds) const;
     /// Root mean square, at the rim in m/s, of what no motion of a rigid robot explains: wheels that slip, or
     /// an encoder that lies.
     double slip(const WheelValues &speeds) const;
     bool movesSideways() const { return inverseSquares_.vy > 0; }
 
 private:
-    WheelLayout(double radius, const std::array<Twist, wheelCount> &rows);
+    WheelLayout(double radius, const std::array<Twist2D, wheelCount> &rows);
 
     double radius_;
-    std::array<Twist, wheelCount> rows_; // radius * wheel speed = row . twist
-    Twist inverseSquares_;               // 1 / |column|^2, 0 for a column of zeros
+    std::array<Twist2D, wheelCount> rows_; // radius * wheel speed = row . twist
+    Twist2D inverseSquares_;               // 1 / |column|^2, 0 for a column of zeros
 };
 
 } // namespace hermes

@@ -1,12 +1,13 @@
 #include "daemons/motorcontrol/WheelTracker.h"
 
+#include "vectorlib/geometry/Angle.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace hermes {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double silence_s = MotorController::lostAfter_s;
 // Without commands for so long wheels stand, even if they had their largest speed: the controllers' time-out
 // and the time that braking takes. No reading is so exact in its time as shortestRun_s.
@@ -23,7 +24,7 @@ bool wasReset(const std::array<quint32, 2> &before, const std::array<quint32, 2>
 void WheelTracker::configure(const std::array<WheelMount, wheelCount> &wheels, double countsPerTurn,
                              double mostSpeed) {
     wheels_ = wheels;
-    radiansPerCount_ = 2 * pi / countsPerTurn;
+    radiansPerCount_ = 2 * vectorlib::pi / countsPerTurn;
     mostSpeed_ = mostSpeed;
 }
 

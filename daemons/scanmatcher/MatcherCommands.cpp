@@ -5,8 +5,6 @@
 
 namespace hermes {
 
-using vectorlib::Pose2D;
-
 namespace {
 
 // Points alone will do.
@@ -60,7 +58,7 @@ void ScanMatcher::declareMatcherCommands() {
                                         scanSchema()))
                    .param(Field::schema("current", "The scan whose pose in the other's frame is wanted",
                                         scanSchema()))
-                   .param(Field::schema("expected", "Where the current one is expected", schemaOf<Pose>())
+                   .param(Field::schema("expected", "Where the current one is expected", schemaOf<Pose2D>())
                               .byDefault(QJsonObject{{"x", 0}, {"y", 0}, {"theta", 0}}))
                    .gives<PairMatch>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { matchTwo(call, reply); }));
@@ -94,7 +92,7 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
         const vectorlib::ScanReport report = pair.process(current.points, expected);
         const vectorlib::Match &match = pair.match();
         reply.result(
-            asJson(PairMatch{poseOf(match.pose.pose()), match.accepted, match.pairs.size(), match.reliability,
+            asJson(PairMatch{match.pose.pose(), match.accepted, match.pairs.size(), match.reliability,
                              match.ambiguity, match.matchedLength, match.visibleLength, report.totalMs()}));
     });
 }

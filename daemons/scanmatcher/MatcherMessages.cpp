@@ -30,7 +30,7 @@ QString name(Relocalized::Outcome outcome) {
 }
 
 PlaceAnswer answerOf(const Place &place) {
-    PlaceAnswer answer{poseOf(place.pose),
+    PlaceAnswer answer{place.pose,
                        place.score,
                        place.reliability,
                        place.ambiguity,
@@ -44,10 +44,6 @@ PlaceAnswer answerOf(const Place &place) {
 }
 
 } // namespace
-
-Pose poseOf(const vectorlib::Pose2D &pose) {
-    return {pose.x, pose.y, pose.theta};
-}
 
 SearchAnswer answerOf(const Relocalized &search) {
     SearchAnswer answer;

@@ -30,7 +30,7 @@ struct MatcherState {
 
 /// What matcher.match gives.
 struct PairMatch {
-    Pose pose;
+    Pose2D pose;
     bool accepted = false;
     quint64 pairs = 0;
     double reliability = 0, ambiguity = 0, matchedLength = 0, visibleLength = 0, ms = 0;
@@ -38,7 +38,7 @@ struct PairMatch {
 
 /// A place in the map where a scan may have been taken.
 struct PlaceAnswer {
-    Pose pose;
+    Pose2D pose;
     double score = 0, reliability = 0, ambiguity = 0, discrepancy = 0, matchedShare = 0;
     bool accepted = false;
     std::optional<QString> fault;
@@ -70,7 +70,6 @@ struct LoadedMap {
     quint64 segments = 0;
 };
 
-Pose poseOf(const vectorlib::Pose2D &pose);
 SearchAnswer answerOf(const vectorlib::Relocalized &search);
 
 template <>

@@ -57,7 +57,7 @@ Result<vectorlib::OdometrySample> readOdometry(WireView data, double stamp, quin
     if (!message)
         return wrong("odometry", report.text());
     vectorlib::OdometrySample sample{stamp,
-                                     {message->pose.x, message->pose.y, message->pose.theta},
+                                     message->pose,
                                      {message->twist.vx, message->twist.vy, message->twist.omega},
                                      Eigen::Matrix3d(Eigen::Matrix3d::Zero())};
     for (int i = 0; i < 9; ++i) {

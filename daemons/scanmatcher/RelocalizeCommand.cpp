@@ -8,7 +8,7 @@ using vectorlib::Relocalized;
 
 namespace {
 
-QString text(const vectorlib::Pose2D &pose) {
+QString text(const Pose2D &pose) {
     return QString("x %1 m, y %2 m, theta %3 rad")
         .arg(pose.x, 0, 'f', 2)
         .arg(pose.y, 0, 'f', 2)

@@ -42,13 +42,9 @@ ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
     const vectorlib::MapBuilder &builder = tracker.builder;
     const ScanReport &report = builder.report();
     const vectorlib::Match &match = builder.match();
-    const vectorlib::Twist2D &twist = tracker.motion().twist();
     ScanResult result;
     result.stamp = scan.data.stamp;
-    result.pose = {poseOf(report.pose),
-                   {twist.vx, twist.vy, twist.omega},
-                   covariance(match),
-                   toText(report.outcome),
+    result.pose = {report.pose, tracker.motion().twist(), covariance(match), toText(report.outcome),
                    scan.number};
     result.match = {scan.number,
                     match.accepted,
@@ -224,13 +220,13 @@ void ScanMatcher::updateHealth() {
         health().set("source", HealthLevel::Failed,
                      QString("no connection to %1: %2").arg(address, source.lastError()));
     else if (badScans > 0)
-        health().set("source", HealthLevel::Warn,
+        health().set("source", pastBadScans.level(double(badScans)),
                      QString("refused %1 scans, the last: %2").arg(badScans).arg(lastBadScan));
     else
         health().set("source", HealthLevel::Ok, "connected to " + address);
     odometry.report(health());
     const quint64 dropped = droppedBySource + (worker ? worker->dropped() : 0);
-    health().set("queue", dropped ? HealthLevel::Warn : HealthLevel::Ok,
+    health().set("queue", pastDrops.level(double(dropped)),
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
                  asJson(matcherState()).toObject());
     updateTrackingHealth();

@@ -2,6 +2,7 @@
 
 #include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
+#include "common/daemon/PastFaults.h"
 #include "daemons/scanmatcher/MapMirror.h"
 #include "daemons/scanmatcher/OdometrySource.h"
 #include "daemons/scanmatcher/Worker.h"
@@ -78,6 +79,7 @@ private:
             recovered = 0; ///< searches of the whole map after lost scans, and their successes
     std::optional<vectorlib::Relocalized> lastRecovery; ///< since tracking was lost
     quint64 badScans = 0, droppedBySource = 0, unknownFields = 0;
+    PastFaults pastBadScans, pastDrops;
     double lastScan = 0; // monotonic
     QString lastBadScan;
 };

@@ -55,7 +55,7 @@ void Drivetrain::setSwapped(bool swapped) {
         controllers_[i].setAddress(options_.controller[swapped ? 1 - i : i].address);
 }
 
-Twist Drivetrain::advance(double seconds) {
+Twist2D Drivetrain::advance(double seconds) {
     double current = electronics;
     for (RoboClawEmulator &controller : controllers_) {
         controller.advance(seconds, battery_.voltage());
@@ -63,7 +63,7 @@ Twist Drivetrain::advance(double seconds) {
             current += controller.channel(motor).current() * std::abs(controller.channel(motor).duty());
     }
     battery_.draw(current, seconds);
-    Twist twist = options_.base.twistOf(wheelSpeeds());
+    Twist2D twist = options_.base.twistOf(wheelSpeeds());
     const double grip = 1 - options_.slip;
     return {twist.vx * grip, twist.vy * grip, twist.omega * grip};
 }

@@ -35,7 +35,7 @@ public:
     std::vector<RoboClawEmulator::Answer> receive(int line, const std::uint8_t *data, std::size_t size,
                                                   double now);
     /// Lets time pass; gives how the wheels move the robot.
-    Twist advance(double seconds);
+    Twist2D advance(double seconds);
 
     RoboClawEmulator &controller(int number) { return controllers_[std::size_t(number)]; }
     const RoboClawEmulator &controller(int number) const { return controllers_[std::size_t(number)]; }

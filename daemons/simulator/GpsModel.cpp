@@ -34,7 +34,7 @@ velodyne::Pps GpsModel::pps() const {
     return lidarSentence_.empty() ? velodyne::Pps::Synchronizing : velodyne::Pps::Locked;
 }
 
-std::string_view GpsModel::take(std::int64_t now_ns, const vectorlib::Pose2D &pose, const Twist &twist) {
+std::string_view GpsModel::take(std::int64_t now_ns, const Pose2D &pose, const Twist2D &twist) {
     told_.clear();
     if (now_ns >= due_ns_) {
         std::swap(told_, pending_);
@@ -63,7 +63,7 @@ nmea::Position GpsModel::positionOf(double east, double north) const {
             std::remainder(options_.origin.longitude_deg + east / parallel / degree, 360)};
 }
 
-void GpsModel::fix(std::int64_t time_ns, const vectorlib::Pose2D &pose, const Twist &twist) {
+void GpsModel::fix(std::int64_t time_ns, const Pose2D &pose, const Twist2D &twist) {
     const double stamp = double(time_ns) * 1e-9;
     nmea::Rmc rmc;
     nmea::Gga gga;

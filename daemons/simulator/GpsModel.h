@@ -48,7 +48,7 @@ public:
     bool isDue(std::int64_t now_ns) const { return now_ns >= nextFix_ns_ || now_ns >= due_ns_; }
     /// Lets time come to now, when the robot is at that pose and moves so. The sentences that are to be sent
     /// now, most often none; valid until the next call.
-    std::string_view take(std::int64_t now_ns, const vectorlib::Pose2D &pose, const Twist &twist);
+    std::string_view take(std::int64_t now_ns, const Pose2D &pose, const Twist2D &twist);
 
     /// What the lidar got last: a $GPRMC without CR LF, at most 72 characters.
     const std::string &lidarSentence() const { return lidarSentence_; }
@@ -59,7 +59,7 @@ private:
     static constexpr std::int64_t never = INT64_MAX;
 
     std::int64_t timeOfFix(std::int64_t number) const;
-    void fix(std::int64_t time_ns, const vectorlib::Pose2D &pose, const Twist &twist);
+    void fix(std::int64_t time_ns, const Pose2D &pose, const Twist2D &twist);
     nmea::Position positionOf(double east, double north) const;
     void tell(const std::optional<nmea::SentenceText> &sentence);
 

@@ -25,8 +25,8 @@ public:
     double rate() const { return rate_; }         ///< 0 standing, 1 at full speed
     bool isDriving() const { return driving_; }
     bool isFinished() const { return progress_ >= path_.length(); }
-    vectorlib::Pose2D pose() const { return path_.poseAt(progress_); }
-    Twist twist() const { return path_.twistAt(progress_, rate_); }
+    Pose2D pose() const { return path_.poseAt(progress_); }
+    Twist2D twist() const { return path_.twistAt(progress_, rate_); }
 
 private:
     PosePath path_;

@@ -21,7 +21,7 @@ double catmullRom(double a, double b, double c, double d, double t) {
 
 } // namespace
 
-PosePath::PosePath(const std::vector<World::Pose> &poses, double speed, double turnRate) {
+PosePath::PosePath(const std::vector<Pose2D> &poses, double speed, double turnRate) {
     if (poses.empty())
         return;
     std::vector<double> headings = {poses.front().theta};
@@ -32,7 +32,7 @@ PosePath::PosePath(const std::vector<World::Pose> &poses, double speed, double t
     for (std::size_t i = 1; i < poses.size(); ++i) {
         // At the ends of the path the end itself stands in for the missing neighbour.
         const std::size_t before = i < 2 ? i - 1 : i - 2, after = std::min(i + 1, poses.size() - 1);
-        const World::Pose &a = poses[before], &b = poses[i - 1], &c = poses[i], &d = poses[after];
+        const Pose2D &a = poses[before], &b = poses[i - 1], &c = poses[i], &d = poses[after];
         for (int k = 1; k <= samplesPerSpan; ++k) {
             const double t = double(k) / samplesPerSpan;
             Sample sample{0, catmullRom(a.x, b.x, c.x, d.x, t), catmullRom(a.y, b.y, c.y, d.y, t),
@@ -55,10 +55,9 @@ const PosePath::Sample &PosePath::sampleBefore(double progress) const {
     return *(after - 1);
 }
 
-vectorlib::Pose2D PosePath::poseAt(double progress) const {
+Pose2D PosePath::poseAt(double progress) const {
     if (samples_.size() < 2)
-        return samples_.empty() ? vectorlib::Pose2D()
-                                : vectorlib::Pose2D{samples_[0].x, samples_[0].y, samples_[0].theta};
+        return samples_.empty() ? Pose2D() : Pose2D{samples_[0].x, samples_[0].y, samples_[0].theta};
     progress = std::clamp(progress, 0.0, length());
     const Sample &a = sampleBefore(progress), &b = *(&a + 1);
     const double t = (progress - a.progress) / (b.progress - a.progress);
@@ -66,7 +65,7 @@ vectorlib::Pose2D PosePath::poseAt(double progress) const {
             vectorlib::wrapAngle(a.theta + t * (b.theta - a.theta))};
 }
 
-Twist PosePath::twistAt(double progress, double rate) const {
+Twist2D PosePath::twistAt(double progress, double rate) const {
     if (samples_.size() < 2 || rate == 0)
         return {};
     const Sample &a = sampleBefore(std::clamp(progress, 0.0, length())), &b = *(&a + 1);

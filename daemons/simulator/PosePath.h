@@ -15,15 +15,15 @@ class PosePath {
 public:
     PosePath() = default;
     /// speed: m/s; turnRate: rad/s; both positive. Between two poses the heading turns the shorter way.
-    PosePath(const std::vector<World::Pose> &poses, double speed, double turnRate);
+    PosePath(const std::vector<Pose2D> &poses, double speed, double turnRate);
 
     bool isEmpty() const { return samples_.empty(); }
     /// Seconds at full speed from the first pose to the last.
     double length() const { return samples_.empty() ? 0 : samples_.back().progress; }
     /// Beyond the ends it stands at them.
-    vectorlib::Pose2D poseAt(double progress) const;
+    Pose2D poseAt(double progress) const;
     /// While moving along the path at rate (1 is full speed).
-    Twist twistAt(double progress, double rate) const;
+    Twist2D twistAt(double progress, double rate) const;
 
 private:
     struct Sample {

@@ -1,7 +1,5 @@
 #include "daemons/simulator/RobotBody.h"
 
-#include "vectorlib/geometry/Angle.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,11 +9,9 @@ namespace {
 
 using Vector = vectorlib::Vector2D<double>;
 
-constexpr double smallAngle = 1e-4;
-
 } // namespace
 
-Twist WheelBase::twistOf(const std::array<double, 4> &wheels) const {
+Twist2D WheelBase::twistOf(const std::array<double, 4> &wheels) const {
     const auto [fl, fr, rl, rr] = wheels;
     const double quarter = radius / 4;
     if (kind == Kind::Differential)
@@ -24,15 +20,9 @@ Twist WheelBase::twistOf(const std::array<double, 4> &wheels) const {
             quarter * (-fl + fr - rl + rr) / (halfBase + halfTrack)};
 }
 
-vectorlib::Pose2D RobotBody::move(const vectorlib::Pose2D &from, const Twist &twist, double seconds) {
-    const double dx = twist.vx * seconds, dy = twist.vy * seconds, turn = twist.omega * seconds;
-    // The exponential of the twist: exact for a constant one.
-    const bool small = std::abs(turn) < smallAngle;
-    const double a = small ? 1 - turn * turn / 6 : std::sin(turn) / turn;
-    const double b = small ? turn / 2 : (1 - std::cos(turn)) / turn;
-    const double ahead = a * dx - b * dy, left = b * dx + a * dy;
-    const double c = std::cos(from.theta), s = std::sin(from.theta);
-    Vector position(from.x + c * ahead - s * left, from.y + s * ahead + c * left);
+Pose2D RobotBody::move(const Pose2D &from, const Twist2D &twist, double seconds) {
+    const Pose2D to = from * twist.motion(seconds);
+    Vector position(to.x, to.y);
     touching_ = false;
     for (const auto &wall : walls_) {
         if (wall.distance(position) >= radius_)
@@ -47,7 +37,7 @@ vectorlib::Pose2D RobotBody::move(const vectorlib::Pose2D &from, const Twist &tw
         if (touching_ && wall.distance(position) < radius_ - 1e-9)
             position = {from.x, from.y};
     }
-    return {position.x, position.y, vectorlib::wrapAngle(from.theta + turn)};
+    return {position.x, position.y, to.theta};
 }
 
 } // namespace hermes

@@ -20,7 +20,7 @@ struct WheelBase {
 
     /// How the body moves when the wheels turn so fast (rad/s, positive forward) without slip. Least squares
     /// where they fight each other.
-    Twist twistOf(const std::array<double, 4> &wheels) const;
+    Twist2D twistOf(const std::array<double, 4> &wheels) const;
 };
 
 /// The outline of a robot, a circle, that walls stop.
@@ -32,7 +32,7 @@ public:
         , radius_(radius) {}
 
     /// Where it comes to with this twist, along an arc. It slides along walls and never enters one.
-    vectorlib::Pose2D move(const vectorlib::Pose2D &from, const Twist &twist, double seconds);
+    Pose2D move(const Pose2D &from, const Twist2D &twist, double seconds);
     /// A wall held it in the last move.
     bool isTouching() const { return touching_; }
 

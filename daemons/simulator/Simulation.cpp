@@ -43,7 +43,7 @@ void Simulation::restart() {
     follower_.restart();
 }
 
-void Simulation::place(const vectorlib::Pose2D &pose) {
+void Simulation::place(const Pose2D &pose) {
     restart();
     placed_ = true;
     place_ = pose;

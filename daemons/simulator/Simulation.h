@@ -26,8 +26,8 @@ public:
     /// Where the robot truly is.
     struct Truth {
         std::int64_t stamp_ns = 0; ///< since the Unix epoch, of the firing that comes next
-        vectorlib::Pose2D pose;
-        Twist twist;
+        Pose2D pose;
+        Twist2D twist;
         double progress = 0; ///< share of the path, 0 to 1
         bool driving = false;
         bool finished = false;
@@ -44,7 +44,7 @@ public:
     /// Back to the first pose of the path, standing.
     void restart();
     /// Puts the robot anywhere, off its path; restart() brings it back.
-    void place(const vectorlib::Pose2D &pose);
+    void place(const Pose2D &pose);
     LidarModel &lidar() { return lidar_; }
     GpsModel &gps() { return gps_; }
 
@@ -69,12 +69,12 @@ public:
 private:
     void advanceWheels();
     void advancePose(double seconds);
-    vectorlib::Pose2D pose() const { return placed_ ? place_ : follower_.pose(); }
+    Pose2D pose() const { return placed_ ? place_ : follower_.pose(); }
 
     PathFollower follower_;
     Drivetrain drivetrain_;
     RobotBody body_;
-    Twist rolling_; ///< how the wheels move the robot
+    Twist2D rolling_; ///< how the wheels move the robot
     LidarModel lidar_;
     GpsModel gps_;
     velodyne::PositionPacket position_;
@@ -83,7 +83,7 @@ private:
     std::int64_t start_ns_ = 0;
     std::uint64_t firings_ = 0;
     bool placed_ = false;
-    vectorlib::Pose2D place_;
+    Pose2D place_;
 };
 
 } // namespace hermes

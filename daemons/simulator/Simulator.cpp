@@ -229,8 +229,7 @@ Result<QJsonValue> Simulator::drive(bool restart) {
 Result<QJsonValue> Simulator::place(const Call &call) {
     if (worldPath_.isEmpty())
         return Error(ErrorCode::NotReady, "no world is loaded; sim.load loads one");
-    const vectorlib::Pose2D pose{call.number("x"), call.number("y"),
-                                 vectorlib::wrapAngle(call.number("theta"))};
+    const Pose2D pose{call.number("x"), call.number("y"), vectorlib::wrapAngle(call.number("theta"))};
     pump_.with([&](Simulation &simulation) { simulation.place(pose); });
     return QJsonValue();
 }
@@ -301,17 +300,20 @@ void Simulator::publishTruth(const Simulation::Truth &truth) {
 void Simulator::updateHealth() {
     const PacketPump::Counts counts = pump_.counts();
     const LidarFault fault = pump_.fault();
+    const quint64 failed = counts.sendErrors + counts.skipped;
     const QJsonObject values = asJson(counts).toObject();
     if (worldPath_.isEmpty())
         health().set(healthItem, HealthLevel::Ok,
                      "no world is loaded; nothing is sent, and the motors are without power", values);
-    else if (counts.sendErrors > 0 || counts.skipped > 0)
-        health().set(healthItem, HealthLevel::Warn, "packets could not be sent, or not in time", values);
     else if (fault.kind != LidarFault::Kind::None)
         health().set(healthItem, HealthLevel::Warn, "fails as it was asked to: " + toText(fault.kind),
                      values);
     else
-        health().set(healthItem, HealthLevel::Ok, "sending", values);
+        health().set(healthItem, faults_.level(double(failed)),
+                     failed == 0
+                         ? QString("sending")
+                         : QString("sending; %1 packets could not be sent, or not in time").arg(failed),
+                     values);
 }
 
 } // namespace hermes

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "common/daemon/PastFaults.h"
 #include "daemons/simulator/MotorLines.h"
 #include "daemons/simulator/SimulatorMessages.h"
 
@@ -44,6 +45,7 @@ private:
     void updateHealth();
 
     PacketPump pump_;
+    PastFaults faults_;
     MotorLines lines_;
     GpsLine gpsLine_;
     World world_;

@@ -39,8 +39,8 @@ struct FaultState {
 struct SimulatorState {
     QString world;
     double stamp = 0;
-    Pose pose;
-    Twist twist;
+    Pose2D pose;
+    Twist2D twist;
     double progress = 0;
     bool driving = false, finished = false, placed = false, touching = false;
     DrivetrainState motors;

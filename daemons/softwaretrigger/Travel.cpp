@@ -8,7 +8,6 @@
 namespace hermes {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double noise = 1e-3;     // m or rad
 constexpr double allowance = 0.05; // m or rad that a step may exceed what the speed explains
 
@@ -28,8 +27,9 @@ double Travel::speed(const TravelPoint &at) const {
 }
 
 double Travel::between(const TravelPoint &from, const TravelPoint &to) const {
-    return kind_ == Kind::Distance ? std::hypot(to.pose.x - from.pose.x, to.pose.y - from.pose.y)
-                                   : std::abs(std::remainder(to.pose.theta - from.pose.theta, 2 * pi));
+    return kind_ == Kind::Distance
+               ? std::hypot(to.pose.x - from.pose.x, to.pose.y - from.pose.y)
+               : std::abs(std::remainder(to.pose.theta - from.pose.theta, 2 * vectorlib::pi));
 }
 
 Result<std::optional<Travel::Passed>> Travel::add(WireView message) {

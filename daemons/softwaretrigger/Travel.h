@@ -10,8 +10,8 @@ namespace hermes {
 
 /// What is read of a message of an odometry topic.
 struct TravelPoint {
-    Pose pose;
-    Twist twist;
+    Pose2D pose;
+    Twist2D twist;
     double mono = 0;
 };
 
@@ -30,7 +30,7 @@ public:
     struct Passed {
         quint64 n = 0;      ///< which multiple of the step was reached last, from 1
         quint64 missed = 0; ///< multiples before it, since the last message
-        Pose pose;
+        Pose2D pose;
     };
     /// Takes a message. Gives the multiple of the step that it reached, if it did; InvalidParams for what is
     /// no odometry.

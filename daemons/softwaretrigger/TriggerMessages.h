@@ -17,7 +17,7 @@ struct FiringCause {
     QString kind;
     std::optional<quint64> n;
     std::optional<double> dueMono, due, travelled;
-    std::optional<Pose> pose;
+    std::optional<Pose2D> pose;
     std::optional<QJsonValue> value;
     std::optional<QString> trigger, client;
     std::optional<quint64> triggerSeq;

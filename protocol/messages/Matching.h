@@ -11,8 +11,8 @@ namespace hermes {
 
 /// The topic `pose`: where the sensor is after a scan, in the map's frame.
 struct PoseMessage {
-    Pose pose;
-    Twist twist;
+    Pose2D pose;
+    Twist2D twist;
     std::optional<Covariance> covariance;
     QString outcome;
     quint64 scan = 0;

@@ -10,25 +10,25 @@ constexpr double farthest = 1e10; // beyond it differences of poses lose their d
 } // namespace
 
 template <>
-const Fields<Pose> &fieldsOf<Pose>() {
-    static const auto fields = Fields<Pose>()
-                                   .add("x", &Pose::x, "Position", "m")
+const Fields<Pose2D> &fieldsOf<Pose2D>() {
+    static const auto fields = Fields<Pose2D>()
+                                   .add("x", &Pose2D::x, "Position", "m")
                                    .range(-farthest, farthest)
-                                   .add("y", &Pose::y, "Position", "m")
+                                   .add("y", &Pose2D::y, "Position", "m")
                                    .range(-farthest, farthest)
-                                   .add("theta", &Pose::theta, "Heading, counter-clockwise", "rad")
+                                   .add("theta", &Pose2D::theta, "Heading, counter-clockwise", "rad")
                                    .range(-farthest, farthest);
     return fields;
 }
 
 template <>
-const Fields<Twist> &fieldsOf<Twist>() {
-    static const auto fields = Fields<Twist>()
-                                   .add("vx", &Twist::vx, "Forward", "m/s")
+const Fields<Twist2D> &fieldsOf<Twist2D>() {
+    static const auto fields = Fields<Twist2D>()
+                                   .add("vx", &Twist2D::vx, "Forward", "m/s")
                                    .range(-farthest, farthest)
-                                   .add("vy", &Twist::vy, "To the left", "m/s")
+                                   .add("vy", &Twist2D::vy, "To the left", "m/s")
                                    .range(-farthest, farthest)
-                                   .add("omega", &Twist::omega, "Counter-clockwise", "rad/s")
+                                   .add("omega", &Twist2D::omega, "Counter-clockwise", "rad/s")
                                    .range(-farthest, farthest);
     return fields;
 }

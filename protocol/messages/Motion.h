@@ -1,32 +1,22 @@
 #pragma once
 
 #include "protocol/wire/FieldsOf.h"
+#include "vectorlib/geometry/Twist2D.h"
 
 #include <array>
 
 namespace hermes {
 
-/// Position (m) and heading (rad, counter-clockwise) in a frame that whoever has it names.
-struct Pose {
-    double x = 0;
-    double y = 0;
-    double theta = 0;
-};
-
-/// Velocity in the body's own frame: x forward, y left (m/s), omega counter-clockwise (rad/s).
-struct Twist {
-    double vx = 0;
-    double vy = 0;
-    double omega = 0;
-};
+using vectorlib::Pose2D;
+using vectorlib::Twist2D;
 
 /// Of x, y and theta, row by row (m^2, m rad, rad^2).
 using Covariance = std::array<double, 9>;
 
 /// The topic `odometry`.
 struct OdometryMessage {
-    Pose pose;
-    Twist twist;
+    Pose2D pose;
+    Twist2D twist;
     Covariance covariance{};
     double mono = 0;
 };
@@ -34,8 +24,8 @@ struct OdometryMessage {
 /// The topic `truth` of the simulator.
 struct TruthMessage {
     double stamp = 0;
-    Pose pose;
-    Twist twist;
+    Pose2D pose;
+    Twist2D twist;
     double progress = 0;
     bool driving = false;
     bool finished = false;
@@ -43,9 +33,9 @@ struct TruthMessage {
 };
 
 template <>
-const Fields<Pose> &fieldsOf<Pose>();
+const Fields<Pose2D> &fieldsOf<Pose2D>();
 template <>
-const Fields<Twist> &fieldsOf<Twist>();
+const Fields<Twist2D> &fieldsOf<Twist2D>();
 template <>
 const Fields<OdometryMessage> &fieldsOf<OdometryMessage>();
 template <>

@@ -1,5 +1,7 @@
 #include "protocol/velodyne/PacketDecoder.h"
 
+#include "vectorlib/geometry/Angle.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,7 @@ namespace hermes::velodyne {
 
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double degree = vectorlib::pi / 180;
 constexpr std::int64_t turn = 10 * azimuthSteps; // thousandths of a degree
 
 } // namespace

@@ -9,10 +9,10 @@ namespace hermes {
 
 /// The fields of the struct T, one add() after another, each followed by what is to be said of it:
 ///
-///     template <> const Fields<Twist> &fieldsOf<Twist>() {
-///         static const auto fields = Fields<Twist>()
-///             .add("vx", &Twist::vx, "Forward", "m/s")
-///             .add("omega", &Twist::omega, "Counter-clockwise", "rad/s");
+///     template <> const Fields<Twist2D> &fieldsOf<Twist2D>() {
+///         static const auto fields = Fields<Twist2D>()
+///             .add("vx", &Twist2D::vx, "Forward", "m/s")
+///             .add("omega", &Twist2D::omega, "Counter-clockwise", "rad/s");
 ///         return fields;
 ///     }
 ///

@@ -144,7 +144,7 @@ void TestWorld::roomsAreClosed() { // one polygon, free space inside, every pose
         const World::Edge &edge = world->edges[i], &next = world->edges[(i + 1) % world->edges.size()];
         QVERIFY(edge.x2 == next.x1 && edge.y2 == next.y1);
     }
-    for (const World::Pose &pose : world->poses) {
+    for (const Pose2D &pose : world->poses) {
         double turns = 0; // the edges go once around it, counter-clockwise
         for (const World::Edge &e : world->edges) {
             QVERIFY(distance(e, pose.x, pose.y) > 0.35);
@@ -177,12 +177,12 @@ void TestWorld::worldsCanBeDriven() {
     QCOMPARE(int(world->edges.size()), edges);
     QCOMPARE(int(world->poses.size()), poses);
     for (std::size_t i = 0; i < world->poses.size(); ++i) {
-        const World::Pose &pose = world->poses[i];
+        const Pose2D &pose = world->poses[i];
         for (const World::Edge &edge : world->edges)
             QVERIFY(distance(edge, pose.x, pose.y) > 0.35);
         if (i == 0)
             continue;
-        const World::Pose &last = world->poses[i - 1];
+        const Pose2D &last = world->poses[i - 1];
         const double moved = std::hypot(pose.x - last.x, pose.y - last.y);
         QVERIFY(moved > step - 0.07 && moved < step + 0.03);
         QVERIFY(std::abs(std::remainder(pose.theta - last.theta, 2 * M_PI)) < 0.6);

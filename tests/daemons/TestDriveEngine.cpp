@@ -32,7 +32,7 @@ quint64 TestDriveEngine::failures(VirtualDrive &drive) {
 
 // Metres from the odometry to the body.
 double TestDriveEngine::away(VirtualDrive &drive) {
-    const Pose pose = drive.engine.report().pose;
+    const Pose2D pose = drive.engine.report().pose;
     return std::hypot(pose.x - drive.truth.x, pose.y - drive.truth.y);
 }
 

@@ -67,12 +67,12 @@ void TestMatcherOdometry::publishOdometry(const Pose2D &pose, const Twist2D &twi
 
 // The odometry of a motion that ends with this scan.
 void TestMatcherOdometry::advance(const Transformation2D &motion, int scan) {
-    const Twist2D twist = Twist2D::between(motion, scanPeriod);
+    const Twist2D twist = Twist2D::between(motion.pose(), scanPeriod);
     const Transformation2D from = odometry;
     odometry = from * motion;
     for (int k = scan == 0 ? perScan : 1; k <= perScan; ++k) {
         const double stamp = scanPeriod * (scan - 1) + period * k;
-        publishOdometry((from * twist.motion(period * k)).pose(), twist, 1 + stamp, 1e-4 * (stamp + 1));
+        publishOdometry(from.pose() * twist.motion(period * k), twist, 1 + stamp, 1e-4 * (stamp + 1));
     }
     QTRY_VERIFY(taken());
 }

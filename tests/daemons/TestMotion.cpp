@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-Q_DECLARE_METATYPE(hermes::Twist)
+Q_DECLARE_METATYPE(vectorlib::Twist2D)
 Q_DECLARE_METATYPE(hermes::Pose)
 Q_DECLARE_METATYPE(hermes::WheelValues)
 
@@ -16,13 +16,13 @@ using namespace hermes;
 namespace {
 
 const WheelGeometry geometry{0.1, 0.25, 0.2};
-const double pi = std::acos(-1.0);
+using vectorlib::pi;
 
-double distance(const Pose &a, const Pose &b) {
+double distance(const Pose2D &a, const Pose2D &b) {
     return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-Twist randomTwist(std::mt19937 &random) {
+Twist2D randomTwist(std::mt19937 &random) {
     std::uniform_real_distribution<double> value(-2, 2);
     return {value(random), value(random), value(random)};
 }
@@ -52,16 +52,16 @@ private Q_SLOTS:
 };
 
 void TestMotion::wheelsTurnAsNamed_data() {
-    QTest::addColumn<Twist>("twist");
+    QTest::addColumn<Twist2D>("twist");
     QTest::addColumn<WheelValues>("expected"); // radius 0.1, lever 0.45
-    QTest::newRow("forward") << Twist{1, 0, 0} << WheelValues{10, 10, 10, 10};
-    QTest::newRow("left") << Twist{0, 1, 0} << WheelValues{-10, 10, 10, -10};
-    QTest::newRow("counter-clockwise") << Twist{0, 0, 1} << WheelValues{-4.5, 4.5, -4.5, 4.5};
-    QTest::newRow("all") << Twist{0.5, -0.2, 0.4} << WheelValues{5.2, 4.8, 1.2, 8.8};
+    QTest::newRow("forward") << Twist2D{1, 0, 0} << WheelValues{10, 10, 10, 10};
+    QTest::newRow("left") << Twist2D{0, 1, 0} << WheelValues{-10, 10, 10, -10};
+    QTest::newRow("counter-clockwise") << Twist2D{0, 0, 1} << WheelValues{-4.5, 4.5, -4.5, 4.5};
+    QTest::newRow("all") << Twist2D{0.5, -0.2, 0.4} << WheelValues{5.2, 4.8, 1.2, 8.8};
 }
 
 void TestMotion::wheelsTurnAsNamed() {
-    QFETCH(Twist, twist);
+    QFETCH(Twist2D, twist);
     QFETCH(WheelValues, expected);
     const WheelValues speeds = WheelLayout::mecanum(geometry).wheelSpeeds(twist);
     for (int i = 0; i < wheelCount; ++i)
@@ -73,7 +73,7 @@ void TestMotion::mecanumIsTheMatrixOfTheThesis() {
     const double l = geometry.halfBase + geometry.halfTrack;
     const double matrix[4][3] = {{1, 1, -l}, {1, -1, l}, {1, -1, -l}, {1, 1, l}};
     const Wheel order[4] = {Wheel::RearLeft, Wheel::RearRight, Wheel::FrontLeft, Wheel::FrontRight};
-    const Twist twist{0.7, -0.3, 1.1};
+    const Twist2D twist{0.7, -0.3, 1.1};
     const WheelValues speeds = WheelLayout::mecanum(geometry).wheelSpeeds(twist);
     for (int i = 0; i < 4; ++i) {
         const double expected =
@@ -95,10 +95,10 @@ void TestMotion::forwardIsThePseudoInverse() {
     const WheelLayout layout = mecanum ? WheelLayout::mecanum(geometry) : WheelLayout::differential(geometry);
     std::mt19937 random(7);
     for (int run = 0; run < 10000; ++run) {
-        Twist in = randomTwist(random);
+        Twist2D in = randomTwist(random);
         if (!mecanum)
             in.vy = 0;
-        const Twist out = layout.twist(layout.wheelSpeeds(in));
+        const Twist2D out = layout.twist(layout.wheelSpeeds(in));
         QVERIFY(std::abs(out.vx - in.vx) < 1e-12 && std::abs(out.vy - in.vy) < 1e-12 &&
                 std::abs(out.omega - in.omega) < 1e-12);
     }
@@ -141,7 +141,7 @@ void TestMotion::saturationKeepsTheDirection() {
     const WheelLayout layout = WheelLayout::mecanum(geometry);
     const WheelValues wanted = layout.wheelSpeeds({1, 1, 1.5}); // front right: 26.75 rad/s
     const WheelValues given = saturated(wanted, 20);
-    const Twist twist = layout.twist(given);
+    const Twist2D twist = layout.twist(given);
     QVERIFY(std::abs(given[int(Wheel::FrontRight)] - 20) < 1e-12);
     QVERIFY(std::abs(twist.vy / twist.vx - 1) < 1e-12);
     QVERIFY(std::abs(twist.omega / twist.vx - 1.5) < 1e-12);
@@ -151,13 +151,13 @@ void TestMotion::saturationKeepsTheDirection() {
 // 1 m/s at 1 m/s^2 takes longer than the 0.5 rad/s at 3 rad/s^2 that go with it: both arrive together.
 void TestMotion::rampTakesTheTimeOfItsSlowestPart() {
     const WheelLayout layout = WheelLayout::mecanum(geometry);
-    const Twist acceleration{1, 1, 3};
+    const Twist2D acceleration{1, 1, 3};
     const WheelValues target = layout.wheelSpeeds({1, 0, 0.5});
     WheelValues speeds{};
-    Twist before;
+    Twist2D before;
     for (int cycle = 1; cycle <= 50; ++cycle) {
         speeds = ramped(speeds, target, layout, acceleration, 0.02);
-        const Twist now = layout.twist(speeds);
+        const Twist2D now = layout.twist(speeds);
         QVERIFY(std::abs(now.vx - before.vx) <= 0.02 + 1e-12);
         QVERIFY(std::abs(now.omega - now.vx / 2) < 1e-12);
         QCOMPARE(speeds == target, cycle == 50);
@@ -167,7 +167,7 @@ void TestMotion::rampTakesTheTimeOfItsSlowestPart() {
 
 void TestMotion::rampOfSingleWheelsIsLimited() {
     const WheelLayout layout = WheelLayout::mecanum(geometry);
-    const Twist acceleration{1, 1, 3};
+    const Twist2D acceleration{1, 1, 3};
     // The largest wheel acceleration of any motion: (1 + 1 + 0.45 * 3) / 0.1 = 33.5 rad/s^2.
     const WheelValues twisted{10, 10, -10, -10};
     const WheelValues step = ramped({}, twisted, layout, acceleration, 0.02);
@@ -176,22 +176,23 @@ void TestMotion::rampOfSingleWheelsIsLimited() {
 }
 
 void TestMotion::odometryFollowsArcs_data() {
-    QTest::addColumn<Pose>("start");
-    QTest::addColumn<Twist>("displacement");
-    QTest::addColumn<Pose>("end");
-    QTest::newRow("straight") << Pose{} << Twist{2, 0, 0} << Pose{2, 0, 0};
-    QTest::newRow("sideways") << Pose{1, 1, pi / 2} << Twist{0, 2, 0} << Pose{-1, 1, pi / 2};
-    QTest::newRow("quarter circle") << Pose{} << Twist{1, 0, pi / 2} << Pose{2 / pi, 2 / pi, pi / 2};
-    QTest::newRow("full circle") << Pose{3, 4, 1} << Twist{5, -2, 2 * pi} << Pose{3, 4, 1};
-    QTest::newRow("heading wraps") << Pose{0, 0, 3} << Twist{0, 0, 1} << Pose{0, 0, 4 - 2 * pi};
-    QTest::newRow("heading pi, not -pi") << Pose{} << Twist{0, 0, -pi} << Pose{0, 0, pi};
+    QTest::addColumn<Pose2D>("start");
+    QTest::addColumn<Twist2D>("displacement");
+    QTest::addColumn<Pose2D>("end");
+    QTest::newRow("straight") << Pose2D{} << Twist2D{2, 0, 0} << Pose2D{2, 0, 0};
+    QTest::newRow("sideways") << Pose2D{1, 1, pi / 2} << Twist2D{0, 2, 0} << Pose2D{-1, 1, pi / 2};
+    QTest::newRow("quarter circle") << Pose2D{} << Twist2D{1, 0, pi / 2} << Pose2D{2 / pi, 2 / pi, pi / 2};
+    QTest::newRow("full circle") << Pose2D{3, 4, 1} << Twist2D{5, -2, 2 * pi} << Pose2D{3, 4, 1};
+    QTest::newRow("heading wraps") << Pose2D{0, 0, 3} << Twist2D{0, 0, 1} << Pose2D{0, 0, 4 - 2 * pi};
+    QTest::newRow("heading pi, not -pi") << Pose2D{} << Twist2D{0, 0, -pi} << Pose2D{0, 0, pi};
     // Integrated in 200,000 steps.
-    QTest::newRow("general") << Pose{0, 0, 0.3} << Twist{1, -0.4, 1.4} << Pose{0.807012141, 0.575516530, 1.7};
+    QTest::newRow("general") << Pose2D{0, 0, 0.3} << Twist2D{1, -0.4, 1.4}
+                             << Pose2D{0.807012141, 0.575516530, 1.7};
 }
 
 void TestMotion::odometryFollowsArcs() {
     QFETCH(Pose, start);
-    QFETCH(Twist, displacement);
+    QFETCH(Twist2D, displacement);
     QFETCH(Pose, end);
     Odometry odometry;
     odometry.reset(start);
@@ -204,7 +205,7 @@ void TestMotion::odometryFollowsArcs() {
 void TestMotion::odometryIsExactForAnyStep() {
     std::mt19937 random(11);
     for (int run = 0; run < 100; ++run) {
-        const Twist whole = randomTwist(random);
+        const Twist2D whole = randomTwist(random);
         Odometry once, often;
         once.move(whole);
         for (int i = 0; i < 1000; ++i)
@@ -229,7 +230,7 @@ void TestMotion::squareCloses() {
     Odometry odometry;
     WheelValues angles{};
     std::array<qint64, wheelCount> counts{};
-    const auto drive = [&](const Twist &twist, int cycles) {
+    const auto drive = [&](const Twist2D &twist, int cycles) {
         for (int cycle = 0; cycle < cycles; ++cycle) {
             const WheelValues speeds = layout.wheelSpeeds(twist);
             WheelValues moved{};
@@ -273,7 +274,7 @@ void TestMotion::covarianceGrowsWithMotionAndTurn() {
 // What the covariance predicts is what many runs with that noise show.
 void TestMotion::covarianceIsThatOfManyRuns() {
     const OdometryNoise noise{0.02, 0.01, 0.03};
-    const Twist step{0.05, 0.01, 0.02};
+    const Twist2D step{0.05, 0.01, 0.02};
     const int steps = 100, runs = 4000;
     Odometry odometry;
     odometry.setNoise(noise);
@@ -290,7 +291,7 @@ void TestMotion::covarianceIsThatOfManyRuns() {
         Odometry noisy;
         for (int i = 0; i < steps; ++i) {
             noisy.move(step);
-            const Pose &p = noisy.pose();
+            const Pose2D &p = noisy.pose();
             noisy.reset(
                 {p.x + xy * gauss(random), p.y + xy * gauss(random), p.theta + heading * gauss(random)});
         }

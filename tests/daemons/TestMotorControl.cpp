@@ -9,7 +9,7 @@ using namespace hermes;
 
 namespace {
 
-const double pi = std::acos(-1.0);
+using vectorlib::pi;
 
 } // namespace
 

@@ -21,7 +21,7 @@ void TestPathFollower::pathPassesThroughThePoses() {
     const auto first = path.poseAt(-1), last = path.poseAt(path.length() + 1);
     QCOMPARE(first.x, world.poses.front().x);
     QCOMPARE(last.x, world.poses.back().x);
-    for (const World::Pose &pose : world.poses) {
+    for (const Pose2D &pose : world.poses) {
         double nearest = 1e9, heading = 0;
         for (double p = 0; p < path.length(); p += 0.002) {
             const auto at = path.poseAt(p);
@@ -42,7 +42,7 @@ void TestPathFollower::pathKeepsItsLimits() {
         const auto a = path.poseAt(p), b = path.poseAt(p + step);
         QVERIFY(std::hypot(b.x - a.x, b.y - a.y) < 0.8 * step * 1.001);
         QVERIFY(std::abs(vectorlib::wrapAngle(b.theta - a.theta)) < 0.5 * step * 1.001);
-        const Twist twist = path.twistAt(p, 1);
+        const Twist2D twist = path.twistAt(p, 1);
         QVERIFY(std::hypot(twist.vx, twist.vy) <= 0.8 * 1.001 && std::abs(twist.omega) <= 0.5 * 1.001);
         QVERIFY(distanceToWalls(world, {a.x, a.y}) > 0.35);
     }

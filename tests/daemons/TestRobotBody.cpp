@@ -37,7 +37,7 @@ void TestRobotBody::wheelsMoveTheBody() {
     QFETCH(QVector<double>, twist);
     WheelBase base;
     base.kind = mecanum ? WheelBase::Kind::Mecanum : WheelBase::Kind::Differential;
-    const Twist found = base.twistOf({wheels[0], wheels[1], wheels[2], wheels[3]});
+    const Twist2D found = base.twistOf({wheels[0], wheels[1], wheels[2], wheels[3]});
     QVERIFY(std::abs(found.vx - twist[0]) < 1e-12);
     QVERIFY(std::abs(found.vy - twist[1]) < 1e-12);
     QVERIFY(std::abs(found.omega - twist[2]) < 1e-12);
@@ -65,8 +65,8 @@ void TestRobotBody::cornersHoldTheRobot() {
     RobotBody body({{{0, 0}, {5, 0}}, {{0, 1}, {0, 0}}, {{5, 0.7}, {0, 1}}},
                    0.3); // ever narrower to the right
     vectorlib::Pose2D pose{0.5, 0.5, 0};
-    for (const Twist &twist :
-         {Twist{1, 0, 0}, Twist{1, 0.5, 0}, Twist{1, -0.5, 0}, Twist{0, 1, 0}, Twist{-1, 1, 0}}) {
+    for (const Twist2D &twist :
+         {Twist2D{1, 0, 0}, Twist2D{1, 0.5, 0}, Twist2D{1, -0.5, 0}, Twist2D{0, 1, 0}, Twist2D{-1, 1, 0}}) {
         for (int i = 0; i < 5000; ++i) {
             pose = body.move(pose, twist, 0.001);
             const vectorlib::Vector2D<double> at(pose.x, pose.y);

@@ -17,7 +17,7 @@ using namespace hermes;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using vectorlib::pi;
 
 WireValue odometry(double x, double y, double theta, double mono, double vx = 1, double omega = 1) {
     return QJsonValue(QJsonObject{{"pose", QJsonObject{{"x", x}, {"y", y}, {"theta", theta}}},

@@ -87,8 +87,8 @@ private:
             return;
         if (!engine.drive().lease().isHeldBy(driver) && !engine.drive().acquire(driver, "driver", 10, now_))
             return;
-        const hermes::Twist twist{0.4 * std::sin(now_), 0.2 * std::sin(0.7 * now_),
-                                  0.5 * std::cos(1.3 * now_)};
+        const vectorlib::Twist2D twist{0.4 * std::sin(now_), 0.2 * std::sin(0.7 * now_),
+                                       0.5 * std::cos(1.3 * now_)};
         refused += !engine.drive().driveTwist(driver, twist, 0, now_);
         engine.obey();
     }

@@ -108,7 +108,8 @@ void TestGeometry::compensationStraightensAWallSeenWhileMoving() {
     std::vector<float> seconds;
     for (int i = 0; i < 100; ++i) {
         const float t = 0.001f * static_cast<float>(i);
-        points.push_back(twist.motion(t).inverse() * Vector2D<float>(3, -1 + 0.02f * static_cast<float>(i)));
+        points.push_back(Transformation2D(twist.motion(t).inverse()) *
+                         Vector2D<float>(3, -1 + 0.02f * static_cast<float>(i)));
         seconds.push_back(t);
     }
     QVERIFY(std::abs(points.back().x - 3) > 0.05f);

@@ -19,8 +19,7 @@ const Twist2D twist{0.8, -0.2, 0.9};
 // A robot on an arc, 50 times a second; the variance of its heading grows by 1e-4 rad^2 a second.
 OdometrySample onArc(double seconds) {
     const Eigen::Matrix3d growth = Eigen::Vector3d(4e-4, 4e-4, 1e-4).asDiagonal();
-    return {start + seconds, (Transformation2D(3, -2, 2.9) * twist.motion(seconds)).pose(), twist,
-            growth * seconds};
+    return {start + seconds, Pose2D{3, -2, 2.9} * twist.motion(seconds), twist, growth * seconds};
 }
 
 void fill(OdometryBuffer &buffer, int from, int to) {

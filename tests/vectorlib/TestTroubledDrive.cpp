@@ -152,7 +152,7 @@ private:
             if (endOf(trouble_.silent, time))
                 continue;
             const Pose2D now = endOf(trouble_.frozen, time) ? last : poseAt(worldTime[ms]);
-            Twist2D motion = Twist2D::between(Transformation2D(last).inverse() * Transformation2D(now), 0.97);
+            Twist2D motion = Twist2D::between(last.inverse() * now, 0.97);
             told = told * motion.motion(1);
             xy += 4e-4 * std::hypot(motion.vx, motion.vy);
             alpha += 9e-4 * std::abs(motion.omega);
@@ -272,9 +272,7 @@ void TestTroubledDrive::noWallIsMadeUp() {
 
 void TestTroubledDrive::findsTheVelocityOfABentScan() {
     const Twist2D real{0.8, -0.1, 1.0};
-    const auto poseOf = [&](double t) {
-        return (Transformation2D(-1, -2, 0.4) * real.motion(t - turn / 2)).pose();
-    };
+    const auto poseOf = [&](double t) { return Pose2D{-1, -2, 0.4} * real.motion(t - turn / 2); };
     std::mt19937_64 random(1);
     const TimedScan scan = takeScan(room, 0, poseOf, random);
     std::vector<Segment> known;

@@ -70,7 +70,7 @@ void DriveControl::follow() {
     poll();
 }
 
-void DriveControl::steer(const QString &input, const Twist &wish, bool isHeld) {
+void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld) {
     inputs_[input] = {wish, isHeld};
     if (mustCentre_ && !isAnyHeld())
         mustCentre_ = false;
@@ -85,8 +85,8 @@ bool DriveControl::isAnyHeld() const {
     return std::any_of(inputs_.begin(), inputs_.end(), [](const Input &input) { return input.isHeld; });
 }
 
-Twist DriveControl::wish() const {
-    Twist sum;
+Twist2D DriveControl::wish() const {
+    Twist2D sum;
     for (const Input &input : inputs_) {
         if (!input.isHeld)
             continue;

@@ -24,7 +24,7 @@ public:
 
     /// What an input wishes: each of the three from -1 to 1 of the largest speed. isHeld: its dead-man key or
     /// button is down; released it wishes nothing.
-    void steer(const QString &input, const Twist &wish, bool isHeld);
+    void steer(const QString &input, const Twist2D &wish, bool isHeld);
     /// The share of the largest speed that the whole stick means, 0.05 to 1.
     void setLimit(double share);
     double limit() const { return limit_; }
@@ -47,8 +47,8 @@ public:
     /// Who holds the control: "" nobody, "you", or the name of another client.
     QString holder() const;
     /// The velocity that is commanded, and the one that odometry measures.
-    const Twist &commanded() const { return commanded_; }
-    const Twist &measured() const { return measured_; }
+    const Twist2D &commanded() const { return commanded_; }
+    const Twist2D &measured() const { return measured_; }
     /// The refusal of the last command, or what else hinders; empty while all is well.
     const QString &problem() const { return problem_; }
 
@@ -57,7 +57,7 @@ Q_SIGNALS:
 
 private:
     struct Input {
-        Twist wish;
+        Twist2D wish;
         bool isHeld = false;
     };
 
@@ -71,7 +71,7 @@ private:
     void onState(const QJsonValue &state);
     void onOdometry(const TopicUpdate &update);
     /// What all inputs wish together, in m/s and rad/s.
-    Twist wish() const;
+    Twist2D wish() const;
     bool isAnyHeld() const;
     void tell(const QString &problem);
 
@@ -82,7 +82,7 @@ private:
     QTimer timer_, pollTimer_, stopTimer_;
     QMap<QString, Input> inputs_;
     MotionHold hold_;
-    Twist most_{0.5, 0.5, 1}, commanded_, measured_;
+    Twist2D most_{0.5, 0.5, 1}, commanded_, measured_;
     ClockOffset clock_;
     double limit_ = 0.4;
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;

@@ -9,8 +9,8 @@
 namespace hermes {
 namespace {
 
-constexpr double innerShare = 0.68;   // of the radius belongs to the knob, the rest to the ring
-constexpr double fullTurn = M_PI / 3; // of the ring is the whole rate of turn
+constexpr double innerShare = 0.68;            // of the radius belongs to the knob, the rest to the ring
+constexpr double fullTurn = vectorlib::pi / 3; // of the ring is the whole rate of turn
 
 } // namespace
 
@@ -68,7 +68,7 @@ void Stick::mouseMoveEvent(QMouseEvent *event) {
         const QPointF knob = at / (innerShare * 0.6 * radius());
         knob_ = knob / std::max(1.0, std::hypot(knob.x(), knob.y()));
     } else if (grip_ == Grip::Ring) {
-        const double turned = std::remainder(std::atan2(-at.y(), at.x()) - grabbed_, 2 * M_PI);
+        const double turned = std::remainder(std::atan2(-at.y(), at.x()) - grabbed_, 2 * vectorlib::pi);
         turn_ = qBound(-1.0, turned / fullTurn, 1.0);
     } else {
         return;

@@ -48,7 +48,7 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     layout->addWidget(problem_);
 
     connect(stick_, &Stick::moved, this,
-            [this](const Twist &wish, bool isHeld) { drive_.steer("stick", wish, isHeld); });
+            [this](const Twist2D &wish, bool isHeld) { drive_.steer("stick", wish, isHeld); });
     connect(limit_, &QSlider::valueChanged, this, [this](int percent) { drive_.setLimit(percent / 100.0); });
     connect(takeOver_, &QPushButton::clicked, &drive, &DriveControl::takeOver);
     connect(&drive, &DriveControl::changed, this, &DrivePanel::update);
@@ -77,7 +77,7 @@ QWidget *DrivePanel::makeNumbers() {
 }
 
 void DrivePanel::update() {
-    const auto show = [](PlainLabel *const(&labels)[3], const Twist &velocity) {
+    const auto show = [](PlainLabel *const(&labels)[3], const Twist2D &velocity) {
         const double values[]{velocity.vx, velocity.vy, velocity.omega};
         for (int i = 0; i < 3; ++i)
             labels[i]->setText(shortNumber(values[i], 2).replace("-0.00", "0.00"));

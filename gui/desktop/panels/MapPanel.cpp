@@ -42,7 +42,7 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     connect(view_, &MapView::toolChanged, this, &MapPanel::updateTools);
     connect(view_, &MapView::measured, this,
             [this](double distance) { message_->tell(tr("%1 m").arg(distance, 0, 'f', 3)); });
-    connect(view_, &MapView::placed, this, [this](const MapPose &pose) {
+    connect(view_, &MapView::placed, this, [this](const Pose2D &pose) {
         ask("pose.set", {{"x", pose.x}, {"y", pose.y}, {"theta", pose.theta}},
             tr("Placed at %1 m, %2 m, %3°")
                 .arg(pose.x, 0, 'f', 2)

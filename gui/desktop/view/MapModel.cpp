@@ -19,8 +19,12 @@ bool isPlausible(double metresOrRadians) {
     return std::abs(metresOrRadians) <= MapModel::farthest_m; // not NaN
 }
 
-bool isPlausible(const MapPose &pose) {
+bool isPlausible(const Pose2D &pose) {
     return isPlausible(pose.x) && isPlausible(pose.y) && isPlausible(pose.theta);
+}
+
+bool isPlausible(const Twist2D &twist) {
+    return isPlausible(twist.vx) && isPlausible(twist.vy) && isPlausible(twist.omega);
 }
 
 std::optional<QLineF> toLine(double x1, double y1, double x2, double y2) {
@@ -31,22 +35,12 @@ std::optional<QLineF> toLine(double x1, double y1, double x2, double y2) {
 
 } // namespace
 
-QPointF MapPose::operator*(QPointF p) const {
-    const double c = std::cos(theta), s = std::sin(theta);
-    return {x + c * p.x() - s * p.y(), y + s * p.x() + c * p.y()};
+QPointF operator*(const Pose2D &pose, QPointF point) {
+    const double c = std::cos(pose.theta), s = std::sin(pose.theta);
+    return {pose.x + c * point.x() - s * point.y(), pose.y + s * point.x() + c * point.y()};
 }
 
-MapPose MapPose::operator*(const MapPose &inner) const {
-    const QPointF p = *this * QPointF(inner.x, inner.y);
-    return {p.x(), p.y(), std::remainder(theta + inner.theta, 2 * M_PI)};
-}
-
-MapPose MapPose::inverse() const {
-    const double c = std::cos(theta), s = std::sin(theta);
-    return {-c * x - s * y, s * x - c * y, -theta};
-}
-
-void MapModel::Path::add(const MapPose &pose) {
+void MapModel::Path::add(const Pose2D &pose) {
     const QPointF point(pose.x, pose.y);
     if (!way.isEmpty() && QLineF(way.back(), point).length() < pathStep_m)
         return;
@@ -149,12 +143,11 @@ void MapModel::removeEdge(qint64 id) {
 }
 
 void MapModel::onPose(const PoseMessage &message) {
-    const MapPose pose{message.pose.x, message.pose.y, message.pose.theta};
-    if (!isPlausible(pose)) {
+    if (!isPlausible(message.pose)) {
         ++ignored_;
         return Q_EMIT changed();
     }
-    pose_ = pose;
+    pose_ = message.pose;
     outcome_ = shortLine(message.outcome, longestOutcome);
     covariance_ = message.covariance;
     const auto isVariance = [](double v) { return std::abs(v) <= farthest_m * farthest_m; };
@@ -162,9 +155,9 @@ void MapModel::onPose(const PoseMessage &message) {
         covariance_.reset();
         ++ignored_;
     }
-    const MapPose velocity{message.twist.vx, message.twist.vy, message.twist.omega};
-    twist_ = isPlausible(velocity) ? velocity : MapPose();
-    ignored_ += !isPlausible(velocity);
+    const bool isMoving = isPlausible(message.twist);
+    twist_ = isMoving ? message.twist : Twist2D();
+    ignored_ += !isMoving;
     poseScan_ = message.scan;
     matched_.add(*pose_);
     placeScan();
@@ -201,15 +194,15 @@ void MapModel::onScan(const ScanMessage &scan) {
 void MapModel::placeScan() {
     if (poses_.source() && rawScan_.header.turn != poseScan_)
         return;
-    const MapPose at = pose_.value_or(MapPose());
+    const Pose2D at = pose_.value_or(Pose2D());
     const double middle = rawScan_.header.duration_s / 2;
     const std::size_t count = qMin(rawScan_.x.size(), rawScan_.y.size());
     scan_.clear();
     scan_.reserve(int(count));
     for (std::size_t i = 0; i < count; ++i) {
         const double dt = rawScan_.t && i < rawScan_.t->size() ? double((*rawScan_.t)[i]) - middle : 0;
-        const MapPose moved{twist_.x * dt, twist_.y * dt, twist_.theta * dt};
-        const QPointF point = at * (moved * QPointF(double(rawScan_.x[i]), double(rawScan_.y[i])));
+        const QPointF point =
+            at * (twist_.motion(dt) * QPointF(double(rawScan_.x[i]), double(rawScan_.y[i])));
         if (isPlausible(point.x()) && isPlausible(point.y()))
             scan_.append(point);
         else
@@ -225,16 +218,15 @@ void MapModel::onTruth(const TruthMessage &truth) {
     follow(truth_, truth.pose);
 }
 
-void MapModel::follow(Path &path, const Pose &told) {
+void MapModel::follow(Path &path, const Pose2D &pose) {
     if (!pose_ && poses_.source())
         return; // nothing to lay it against yet
-    const MapPose pose{told.x, told.y, told.theta};
     if (!isPlausible(pose)) {
         ++ignored_;
         return Q_EMIT changed();
     }
     if (!path.frame)
-        path.frame = pose_ ? *pose_ * pose.inverse() : MapPose();
+        path.frame = pose_ ? *pose_ * pose.inverse() : Pose2D();
     path.add(*path.frame * pose);
 }
 

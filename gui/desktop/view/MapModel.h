@@ -13,14 +13,8 @@
 
 namespace hermes {
 
-/// Where something stands in the map: metres, radians counter-clockwise.
-struct MapPose {
-    double x = 0, y = 0, theta = 0;
-
-    QPointF operator*(QPointF p) const; ///< a point of this frame in the map
-    MapPose operator*(const MapPose &inner) const;
-    MapPose inverse() const;
-};
+/// A point of the pose's own frame in the frame that the pose is given in; metres.
+QPointF operator*(const Pose2D &pose, QPointF point);
 
 /// Everything that the map view shows of the chosen robot, in the map's frame and in metres, as it comes from
 /// the topics map, pose, scan, scan2d, odometry and truth of whichever daemons have them.
@@ -42,7 +36,7 @@ public:
     const QVector<QLineF> &correspondences() const { return correspondences_; }
 
     /// The sensor's pose as matched; absent before the first scan.
-    const std::optional<MapPose> &pose() const { return pose_; }
+    const std::optional<Pose2D> &pose() const { return pose_; }
     /// Of x, y and theta, row by row; absent when the last scan was lost.
     const std::optional<std::array<double, 9>> &covariance() const { return covariance_; }
     /// "matched", "lost" or "skipped".
@@ -75,9 +69,9 @@ private:
     /// A path and the frame it comes in.
     struct Path {
         QPolygonF way;
-        std::optional<MapPose> frame; // of the source, in the map
+        std::optional<Pose2D> frame; // of the source, in the map
 
-        void add(const MapPose &pose);
+        void add(const Pose2D &pose);
     };
 
     template <typename Message>
@@ -90,7 +84,7 @@ private:
     void onTruth(const TruthMessage &truth);
     void addEdge(const MapEdgeMessage &edge);
     void removeEdge(qint64 id);
-    void follow(Path &path, const Pose &told);
+    void follow(Path &path, const Pose2D &pose);
     void placeScan();
 
     QVector<QLineF> edges_, segments_, correspondences_;
@@ -100,9 +94,9 @@ private:
     int size_ = 0;            // edges that the daemon's map has
     ScanMessage rawScan_;     // waits for its pose
     QPolygonF scan_;
-    MapPose twist_;                  // metres and radians a second, in the frame of the sensor
+    Twist2D twist_;                  // of the sensor
     quint64 poseScan_ = ~quint64(0); // the number of the scan that the pose belongs to
-    std::optional<MapPose> pose_;
+    std::optional<Pose2D> pose_;
     std::optional<std::array<double, 9>> covariance_;
     QString outcome_;
     quint64 ignored_ = 0;

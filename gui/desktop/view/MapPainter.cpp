@@ -177,7 +177,7 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
 }
 
 void MapPainter::paintRobot(QPainter &painter) const {
-    const MapPose pose = *model_.pose();
+    const Pose2D pose = *model_.pose();
     const double r = robotRadius_m_;
     const auto at = [&](double x, double y) { return transform_.map(pose * QPointF(x, y)); };
     painter.setRenderHint(QPainter::Antialiasing, true);

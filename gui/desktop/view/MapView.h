@@ -39,7 +39,7 @@ Q_SIGNALS:
     void followingChanged(bool isFollowing);
     void toolChanged();
     /// The operator has put the robot here; metres and radians in the map's frame.
-    void placed(const hermes::MapPose &pose);
+    void placed(const vectorlib::Pose2D &pose);
     /// Metres; while measuring.
     void measured(double distance_m);
 

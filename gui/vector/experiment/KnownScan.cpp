@@ -7,7 +7,7 @@ namespace hermes {
 
 using Point = vectorlib::Vector2D<double>;
 
-KnownScan::KnownScan(const World &world, const World::Pose &pose, int rays) {
+KnownScan::KnownScan(const World &world, const vectorlib::Pose2D &pose, int rays) {
     const vectorlib::Transformation2D toSensor =
         vectorlib::Transformation2D(pose.x, pose.y, pose.theta).inverse();
     for (const World::Edge &e : world.edges)

@@ -12,7 +12,7 @@ namespace hermes {
 /// correspondences are known for sure. A full turn.
 class KnownScan {
 public:
-    KnownScan(const World &world, const World::Pose &pose, int rays);
+    KnownScan(const World &world, const vectorlib::Pose2D &pose, int rays);
 
     /// The segments of a scan whose ranges have Gaussian noise (standard deviation, metres), each with its
     /// edge as the static partner, in the frame of the true pose: a perfect registration is the identity. One

@@ -27,7 +27,7 @@ struct RegistrationStatistics {
 struct RegistrationRow {
     std::string world;
     std::size_t pose = 0;
-    World::Pose at{0, 0, 0};
+    vectorlib::Pose2D at{0, 0, 0};
     int points = 0;   ///< rays of a scan, P
     double sigma = 0; ///< noise of the range; metres
     bool weighted = false;

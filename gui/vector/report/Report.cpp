@@ -23,10 +23,6 @@ const Ink mapEdge{Ink::Kind::Lines, "mapedge", "#1b2a41", 1.4, "edges of the wor
 const Ink robot{Ink::Kind::Pose, "robotpose", "#0072b2", 1.2, "pose of the robot"};
 const Ink path{Ink::Kind::Lines, "robotpath", "#56b4e9", 0.8, "path of the robot", true};
 
-vectorlib::Pose2D poseOf(const World::Pose &pose) {
-    return {pose.x, pose.y, pose.theta};
-}
-
 std::vector<Point> thinned(const std::vector<vectorlib::Vector2D<float>> &points,
                            const vectorlib::Transformation2D &t) {
     std::vector<Point> result;
@@ -48,10 +44,7 @@ CaseReport reportCase(const World &world, std::size_t number, const ReportSettin
     ScanSettings scan = settings.scan;
     scan.seed = settings.scan.seed * 1000003 + number;
     CaseReport report{
-        number,
-        scanPair(edgesOf(world), poseOf(world.poses.at(number)), poseOf(world.poses.at(number + 1)), scan),
-        {},
-        {}};
+        number, scanPair(edgesOf(world), world.poses.at(number), world.poses.at(number + 1), scan), {}, {}};
     vectorlib::CorrespondenceFinder find;
     find.settings = settings.search;
     report.result = find(report.scans.fixed.segments, report.scans.moving.segments);
@@ -153,11 +146,11 @@ Drawing drawWorld(const World &world) {
     Drawing drawing;
     drawing.segments(mapEdge, edgesOf(world));
     std::vector<Point> places;
-    for (const World::Pose &pose : world.poses)
+    for (const vectorlib::Pose2D &pose : world.poses)
         places.emplace_back(pose.x, pose.y);
     drawing.path(path, places);
-    for (const World::Pose &pose : world.poses)
-        drawing.pose(robot, poseOf(pose));
+    for (const vectorlib::Pose2D &pose : world.poses)
+        drawing.pose(robot, pose);
     return drawing;
 }
 

@@ -136,7 +136,7 @@ void TestMapPanel::measured() {
 }
 
 void TestMapPanel::placedByADrag() {
-    const MapPose at = *model().pose();
+    const Pose2D at = *model().pose();
     const double reach = 40 / scale();
     tool("place");
     drag(pixel(at.x, at.y), pixel(at.x + reach * std::cos(at.theta), at.y + reach * std::sin(at.theta)));

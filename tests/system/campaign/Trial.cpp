@@ -142,7 +142,7 @@ private:
                 return robot_.obey();
             judge_.endJustification("the control was acquired anew");
         }
-        const Twist twist{case_.vx, case_.vy, case_.omega};
+        const Twist2D twist{case_.vx, case_.vy, case_.omega};
         const double age = case_.stamps ? time() - made : 0;
         if (drive.driveTwist(client_, twist, age, now))
             judge_.justify(case_.stamps ? made : time()); // without a stamp it is good from when it comes

@@ -197,12 +197,11 @@ private:
     }
     // The two guesses differ by more than the speed of a robot changes between two scans.
     static bool leaps(const Guess &a, const Guess &b, double seconds) {
-        const auto isFar = [](const Transformation2D &from, const Transformation2D &to) {
-            const Transformation2D way = from.inverse() * to;
-            return way.translation().norm() > leap_m || std::abs(way.alpha()) > leap_rad;
+        const auto isFar = [](const Pose2D &from, const Pose2D &to) {
+            const Pose2D way = from.inverse() * to;
+            return std::hypot(way.x, way.y) > leap_m || std::abs(way.theta) > leap_rad;
         };
-        return isFar(Transformation2D(a.pose), Transformation2D(b.pose)) ||
-               isFar(a.twist.motion(seconds), b.twist.motion(seconds));
+        return isFar(a.pose, b.pose) || isFar(a.twist.motion(seconds), b.twist.motion(seconds));
     }
     void tellHowSure(const Guess &guess) {
         TrackingSettings &track = builder.track.settings;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/Angle.h"
+#include "vectorlib/geometry/Vector2D.h"
 #include "vectorlib/motion/OdometryTrack.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "vectorlib/motion/Twist2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Twist2D.h"
 
 #include <algorithm>
 #include <vector>
@@ -23,7 +24,7 @@ inline float middleTime(const std::vector<float> &seconds) {
 inline void compensateMotion(std::vector<Vector2D<float>> &points, const std::vector<float> &seconds,
                              float reference, const Twist2D &twist) {
     for (std::size_t i = 0; i < points.size() && i < seconds.size(); ++i)
-        points[i] = twist.motion(seconds[i] - reference) * points[i];
+        points[i] = Transformation2D(twist.motion(seconds[i] - reference)) * points[i];
 }
 
 } // namespace vectorlib

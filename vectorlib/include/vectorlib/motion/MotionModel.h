@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/motion/Twist2D.h"
+#include "vectorlib/geometry/Twist2D.h"
 
 namespace vectorlib {
 
@@ -17,8 +17,7 @@ public:
             twist_ = Twist2D();
             velocityKnown_ = false;
         } else {
-            const Twist2D last =
-                Twist2D::between(Transformation2D(pose_).inverse() * Transformation2D(pose), seconds);
+            const Twist2D last = Twist2D::between(pose_.inverse() * pose, seconds);
             const double k = velocityKnown_ ? lastStepShare : 1;
             twist_ = {twist_.vx + k * (last.vx - twist_.vx), twist_.vy + k * (last.vy - twist_.vy),
                       twist_.omega + k * (last.omega - twist_.omega)};
@@ -38,7 +37,7 @@ public:
         const double seconds = stamp - stamp_;
         if (!known_ || !(seconds > 0) || seconds > maxGap)
             return pose_;
-        return (Transformation2D(pose_) * twist_.motion(seconds)).pose();
+        return pose_ * twist_.motion(seconds);
     }
     const Pose2D &pose() const { return pose_; }
     /// Smoothed over the last steps; zero when unknown.

@@ -51,7 +51,8 @@ public:
     Twist2D twist(const OdometryTrack &track, double begin, double end) const {
         if (!(end > begin))
             return {};
-        return Twist2D::between(ofSensor(track.at(begin).inverse() * track.at(end)), end - begin);
+        const Transformation2D motion = ofSensor(track.at(begin).inverse() * track.at(end));
+        return Twist2D::between(motion.pose(), end - begin);
     }
 
 private:

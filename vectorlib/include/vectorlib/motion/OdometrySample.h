@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/motion/Twist2D.h"
+#include "vectorlib/geometry/Twist2D.h"
 
 #include <Eigen/Core>
 

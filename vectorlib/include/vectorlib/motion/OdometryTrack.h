@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/motion/OdometrySample.h"
 
 #include <cstdint>
@@ -16,8 +17,7 @@ public:
         : epoch_(epoch)
         , knots_(std::move(samples)) {
         for (std::size_t i = 0; i + 1 < knots_.size(); ++i)
-            knots_[i].twist = Twist2D::between(Transformation2D(knots_[i].pose).inverse() *
-                                                   Transformation2D(knots_[i + 1].pose),
+            knots_[i].twist = Twist2D::between(knots_[i].pose.inverse() * knots_[i + 1].pose,
                                                knots_[i + 1].stamp - knots_[i].stamp);
     }
 
@@ -27,7 +27,7 @@ public:
     /// says.
     Transformation2D at(double stamp) const {
         const OdometrySample &knot = knots_[knotBefore(stamp)];
-        return Transformation2D(knot.pose) * knot.twist.motion(stamp - knot.stamp);
+        return Transformation2D(knot.pose * knot.twist.motion(stamp - knot.stamp));
     }
     std::optional<Eigen::Matrix3d> covarianceAt(double stamp) const {
         const std::size_t i = knotBefore(stamp);

@@ -2,7 +2,8 @@
 
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/PointSpan.h"
-#include "vectorlib/motion/Twist2D.h"
+#include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/geometry/Twist2D.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -51,8 +52,8 @@ public:
             for (std::size_t k = 0; k < count; k += step) {
                 const Vector2D<double> point(points[k]);
                 const double t = double(seconds[k] - reference);
-                const Vector2D<double> moved = twist.motion(t) * point;
-                if (add(pose.motion(1) * moved, t, known))
+                const Vector2D<double> moved = Transformation2D(twist.motion(t)) * point;
+                if (add(Transformation2D(pose.motion(1)) * moved, t, known))
                     result.bend = std::max(result.bend, (moved - point).norm());
             }
             const Vector6 d = h_.ldlt().solve(-g_);

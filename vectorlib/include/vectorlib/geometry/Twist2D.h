@@ -1,0 +1,31 @@
+#pragma once
+
+#include "vectorlib/geometry/Pose2D.h"
+
+namespace vectorlib {
+
+/// Velocity of a sensor or a robot in its own frame: x forward, y left (m/s), omega counter-clockwise
+/// (rad/s).
+struct Twist2D {
+    double vx = 0;
+    double vy = 0;
+    double omega = 0;
+
+    /// The motion over `seconds` at this velocity, along an arc: the exponential of SE(2).
+    Pose2D motion(double seconds) const {
+        const double a = omega * seconds;
+        const bool isSmall = std::abs(a) < 1e-4; // where the fractions lose digits; the series have 1e-17
+        const double s = isSmall ? 1 - a * a / 6 : std::sin(a) / a;
+        const double c = isSmall ? a / 2 - a * a * a / 24 : (1 - std::cos(a)) / a;
+        return {(s * vx - c * vy) * seconds, (c * vx + s * vy) * seconds, a};
+    }
+    /// The velocity that makes this motion in `seconds`.
+    static Twist2D between(const Pose2D &motion, double seconds) {
+        const double a = motion.theta, half = a / 2;
+        const double k = std::abs(half) < 1e-4 ? 1 - half * half / 3 : half / std::tan(half);
+        return {(k * motion.x + half * motion.y) / seconds, (k * motion.y - half * motion.x) / seconds,
+                a / seconds};
+    }
+};
+
+} // namespace vectorlib
