@@ -55,70 +55,71 @@ Log &Log::instance() {
 
 // Never waits for whoever reads stderr: a terminal that was stopped must not stop the daemon.
 void Log::writeToStderr(QByteArray bytes) {
-    if (lostLines > 0)
-        bytes.prepend(
-            QStringLiteral("(%1 lines of the log are not here: nobody took them)\n").arg(lostLines).toUtf8());
+    if (lostLines_ > 0)
+        bytes.prepend(QStringLiteral("(%1 lines of the log are not here: nobody took them)\n")
+                          .arg(lostLines_)
+                          .toUtf8());
     while (!bytes.isEmpty()) {
         pollfd output{STDERR_FILENO, POLLOUT, 0};
         const bool ready = ::poll(&output, 1, 0) == 1 && (output.revents & POLLOUT);
         const size_t size = std::min(size_t(bytes.size()), size_t(PIPE_BUF)); // so much is written at once
         const ssize_t written = ready ? ::write(STDERR_FILENO, bytes.constData(), size) : -1;
         if (written <= 0) {
-            ++lostLines;
+            ++lostLines_;
             return;
         }
         bytes.remove(0, int(written));
     }
-    lostLines = 0;
+    lostLines_ = 0;
 }
 
 void Log::write(LogLevel level, const QString &source, const QString &text) {
     const LogRecord record{stampNow(), level, source, text};
-    const std::lock_guard<std::mutex> lock(mutex);
-    if (level < minimum)
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (level < minimum_)
         return;
-    records.push_back(record);
-    while (int(records.size()) > capacity)
-        records.pop_front();
-    if (toStderr && hasStandardStreams)
+    records_.push_back(record);
+    while (int(records_.size()) > capacity_)
+        records_.pop_front();
+    if (toStderr_ && hasStandardStreams)
         writeToStderr(line(record));
-    for (const auto &[who, take] : followers)
+    for (const auto &[who, take] : followers_)
         QMetaObject::invokeMethod(
             who, [take = take, record] { take(record); }, Qt::QueuedConnection);
 }
 
 void Log::follow(QObject *who, const std::function<void(const LogRecord &)> &take) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    followers[who] = take;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    followers_[who] = take;
 }
 
 void Log::unfollow(QObject *who) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    followers.erase(who);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    followers_.erase(who);
 }
 
 std::vector<LogMessage> Log::tail(int count) const {
-    const std::lock_guard<std::mutex> lock(mutex);
+    const std::lock_guard<std::mutex> lock(mutex_);
     std::vector<LogMessage> last;
-    for (size_t i = records.size() - std::min(records.size(), size_t(std::max(count, 0))); i < records.size();
-         ++i)
-        last.push_back(records[i].message());
+    for (size_t i = records_.size() - std::min(records_.size(), size_t(std::max(count, 0)));
+         i < records_.size(); ++i)
+        last.push_back(records_[i].message());
     return last;
 }
 
 void Log::setMinimumLevel(LogLevel level) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    minimum = level;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    minimum_ = level;
 }
 
 void Log::setCapacity(int count) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    capacity = std::max(count, 1);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    capacity_ = std::max(count, 1);
 }
 
 void Log::setStderr(bool enabled) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    toStderr = enabled;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    toStderr_ = enabled;
 }
 
 void Log::captureQtMessages() {

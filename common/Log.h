@@ -50,13 +50,13 @@ private:
     Log() = default;
     void writeToStderr(QByteArray bytes);
 
-    mutable std::mutex mutex;
-    std::deque<LogRecord> records;
-    std::map<QObject *, std::function<void(const LogRecord &)>> followers;
-    int capacity = 1000;
-    LogLevel minimum = LogLevel::Info;
-    bool toStderr = true;
-    quint64 lostLines = 0; // not taken by stderr since the last one that was
+    mutable std::mutex mutex_;
+    std::deque<LogRecord> records_;
+    std::map<QObject *, std::function<void(const LogRecord &)>> followers_;
+    int capacity_ = 1000;
+    LogLevel minimum_ = LogLevel::Info;
+    bool toStderr_ = true;
+    quint64 lostLines_ = 0; // not taken by stderr since the last one that was
 };
 
 /// Shorthands: `logWarning("sensor", "no packet for 2 s")`.

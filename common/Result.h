@@ -18,22 +18,22 @@ class Result {
 public:
     template <typename U = T, typename = std::enable_if_t<std::is_convertible_v<U &&, T>>>
     Result(U &&value)
-        : content(std::in_place_type<T>, std::forward<U>(value)) {}
+        : content_(std::in_place_type<T>, std::forward<U>(value)) {}
     Result(Error error)
-        : content(std::move(error)) {}
+        : content_(std::move(error)) {}
 
-    bool ok() const { return std::holds_alternative<T>(content); }
+    bool ok() const { return std::holds_alternative<T>(content_); }
     explicit operator bool() const { return ok(); }
 
-    const T &value() const { return std::get<T>(content); } ///< only when ok()
-    T &value() { return std::get<T>(content); }
-    T take() { return std::move(std::get<T>(content)); }
+    const T &value() const { return std::get<T>(content_); } ///< only when ok()
+    T &value() { return std::get<T>(content_); }
+    T take() { return std::move(std::get<T>(content_)); }
     const T &operator*() const { return value(); }
     const T *operator->() const { return &value(); }
-    const Error &error() const { return std::get<Error>(content); } ///< only when not ok()
+    const Error &error() const { return std::get<Error>(content_); } ///< only when not ok()
 
 private:
-    std::variant<T, Error> content;
+    std::variant<T, Error> content_;
 };
 
 /// Success without a value: `return {};`, or an Error.
@@ -42,16 +42,16 @@ class Result<void> {
 public:
     Result() = default;
     Result(Error error)
-        : failure(std::move(error))
-        , failed(true) {}
+        : failure_(std::move(error))
+        , failed_(true) {}
 
-    bool ok() const { return !failed; }
+    bool ok() const { return !failed_; }
     explicit operator bool() const { return ok(); }
-    const Error &error() const { return failure; } ///< only when not ok()
+    const Error &error() const { return failure_; } ///< only when not ok()
 
 private:
-    Error failure;
-    bool failed = false;
+    Error failure_;
+    bool failed_ = false;
 };
 
 } // namespace hermes

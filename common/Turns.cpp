@@ -25,28 +25,28 @@ Turns &Turns::ofThread() {
 }
 
 void Turns::add(QObject *owner, const std::function<bool()> &step) {
-    works.push_back({owner, step});
+    works_.push_back({owner, step});
     post();
 }
 
 void Turns::post() {
-    if (std::exchange(posted, true))
+    if (std::exchange(posted_, true))
         return;
     QMetaObject::invokeMethod(this, &Turns::run, Qt::QueuedConnection);
 }
 
 void Turns::run() {
-    posted = false;
+    posted_ = false;
     const double end = monotonicNow() + longest_s;
-    while (!works.empty() && monotonicNow() < end) {
-        const Work work = std::move(works.front());
-        works.pop_front();
-        if (!works.empty())
+    while (!works_.empty() && monotonicNow() < end) {
+        const Work work = std::move(works_.front());
+        works_.pop_front();
+        if (!works_.empty())
             post(); // a step may run an event loop of its own, which waits for the others
         if (work.owner && work.step() && work.owner)
-            works.push_back(work);
+            works_.push_back(work);
     }
-    if (!works.empty())
+    if (!works_.empty())
         post();
 }
 

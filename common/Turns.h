@@ -28,8 +28,8 @@ private:
     void post();
     void run();
 
-    std::deque<Work> works;
-    bool posted = false; // a call is in the event queue
+    std::deque<Work> works_;
+    bool posted_ = false; // a call is in the event queue
 };
 
 /// Does this in a thread of its own, one after the other, where it delays nothing that is urgent.

@@ -22,23 +22,23 @@ constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their s
 
 Channel::Channel(Interface *interface, std::unique_ptr<Codec> codec, QObject *parent)
     : QObject(parent)
-    , carrier(interface)
-    , framing(std::move(codec))
-    , canWait(interface->setReceiving(true)) {
-    carrier->setParent(this);
-    connect(carrier, &Interface::opened, this, [this] {
-        if (ended)
+    , carrier_(interface)
+    , framing_(std::move(codec))
+    , canWait_(interface->setReceiving(true)) {
+    carrier_->setParent(this);
+    connect(carrier_, &Interface::opened, this, [this] {
+        if (ended_)
             deliverAll();
-        ++opening;
-        framing->reset();
-        waiting.clear();
-        waitingBytes = 0;
-        readFront.reset();
-        reads = false;
+        ++opening_;
+        framing_->reset();
+        waiting_.clear();
+        waitingBytes_ = 0;
+        readFront_.reset();
+        reads_ = false;
         Q_EMIT opened();
     });
-    connect(carrier, &Interface::closed, this, &Channel::end);
-    connect(carrier, &Interface::received, this, &Channel::receive);
+    connect(carrier_, &Interface::closed, this, &Channel::end);
+    connect(carrier_, &Interface::received, this, &Channel::receive);
 }
 
 Result<Channel *> Channel::make(const QString &text, QObject *parent) {
@@ -58,12 +58,12 @@ Result<Channel *> Channel::make(const QString &text, QObject *parent) {
 }
 
 Result<void> Channel::send(const Outgoing &message) {
-    const EncodedFrame frame = framing->encode(message);
+    const EncodedFrame frame = framing_->encode(message);
     if (frame.error)
         return *frame.error;
-    if (!carrier->write(frame.bytes)) {
+    if (!carrier_->write(frame.bytes)) {
         return Error(isOpen() ? ErrorCode::OverLimit : ErrorCode::Disconnected,
-                     QStringLiteral("%1: %2").arg(carrier->name(),
+                     QStringLiteral("%1: %2").arg(carrier_->name(),
                                                   isOpen() ? QStringLiteral("too much waits to be sent")
                                                            : QStringLiteral("not connected")));
     }
@@ -71,44 +71,44 @@ Result<void> Channel::send(const Outgoing &message) {
 }
 
 void Channel::close(const QString &reason) {
-    waiting.clear(); // nobody wants them
-    waitingBytes = 0;
-    if (ended)
+    waiting_.clear(); // nobody wants them
+    waitingBytes_ = 0;
+    if (ended_)
         deliverAll();
     else
-        carrier->close(reason);
+        carrier_->close(reason);
 }
 
 void Channel::setReceiving(bool on) {
-    receiving = on;
+    receiving_ = on;
     schedule();
 }
 
 bool Channel::isQuiet() const {
-    return waiting.empty() && !framing->isMidFrame() && !carrier->hasUnread();
+    return waiting_.empty() && !framing_->isMidFrame() && !carrier_->hasUnread();
 }
 
 void Channel::receive(const QByteArray &bytes) {
     const QPointer<Channel> alive(this);
     bool hasJumped = false; // a flood of urgent ones is as ordinary as any
-    for (CodecFrame &frame : framing->split(bytes)) {
+    for (CodecFrame &frame : framing_->split(bytes)) {
         frame.arrived = nextArrival();
-        if (urgent && !hasJumped && !frame.error && urgent(frame.bytes)) {
+        if (urgent_ && !hasJumped && !frame.error && urgent_(frame.bytes)) {
             hasJumped = true;
-            give(framing->read(frame), frame.arrived);
+            give(framing_->read(frame), frame.arrived);
             if (!alive)
                 return;
             continue;
         }
-        waitingBytes += frame.bytes.size();
-        waiting.push_back(std::move(frame));
+        waitingBytes_ += frame.bytes.size();
+        waiting_.push_back(std::move(frame));
     }
-    canWait ? schedule() : deliverAll();
+    canWait_ ? schedule() : deliverAll();
 }
 
 void Channel::end(const QString &reason) {
-    ended = reason;
-    if (!canWait || waiting.empty())
+    ended_ = reason;
+    if (!canWait_ || waiting_.empty())
         deliverAll();
     else
         schedule();
@@ -116,21 +116,21 @@ void Channel::end(const QString &reason) {
 
 void Channel::schedule() {
     updateReceiving();
-    if (scheduled || reads || !receiving || waiting.empty())
+    if (scheduled_ || reads_ || !receiving_ || waiting_.empty())
         return;
-    scheduled = true;
+    scheduled_ = true;
     Turns::ofThread().add(this, [this] { return deliverNext(); });
 }
 
 void Channel::updateReceiving() {
-    carrier->setReceiving(waitingBytes < readAheadBytes);
+    carrier_->setReceiving(waitingBytes_ < readAheadBytes);
 }
 
 bool Channel::deliverNext() {
-    scheduled = false;
-    if (!receiving || waiting.empty())
+    scheduled_ = false;
+    if (!receiving_ || waiting_.empty())
         return false;
-    if (waiting.front().bytes.size() > largeFrame && !readFront) {
+    if (waiting_.front().bytes.size() > largeFrame_ && !readFront_) {
         readInBackground();
         return false;
     }
@@ -138,46 +138,46 @@ bool Channel::deliverNext() {
     deliverFront();
     if (!alive)
         return false;
-    if (ended && waiting.empty()) {
+    if (ended_ && waiting_.empty()) {
         deliverAll();
         return false;
     }
     updateReceiving();
-    if (scheduled || !receiving || waiting.empty())
+    if (scheduled_ || !receiving_ || waiting_.empty())
         return false;
-    return scheduled = true;
+    return scheduled_ = true;
 }
 
 void Channel::deliverAll() {
     const QPointer<Channel> alive(this);
-    while (alive && !waiting.empty())
+    while (alive && !waiting_.empty())
         deliverFront();
-    if (alive && ended)
-        Q_EMIT closed(*std::exchange(ended, std::nullopt));
+    if (alive && ended_)
+        Q_EMIT closed(*std::exchange(ended_, std::nullopt));
 }
 
 void Channel::deliverFront() {
-    const CodecFrame frame = std::move(waiting.front());
-    waiting.pop_front();
-    waitingBytes -= frame.bytes.size();
-    const bool isLarge = readFront.has_value();
-    CodecItem item = readFront ? *std::exchange(readFront, std::nullopt) : framing->read(frame);
-    reads = false;
+    const CodecFrame frame = std::move(waiting_.front());
+    waiting_.pop_front();
+    waitingBytes_ -= frame.bytes.size();
+    const bool isLarge = readFront_.has_value();
+    CodecItem item = readFront_ ? *std::exchange(readFront_, std::nullopt) : framing_->read(frame);
+    reads_ = false;
     give(item, frame.arrived);
     if (isLarge)
         inBackground([large = std::move(item)] {}); // to free it takes long, too
 }
 
 void Channel::readInBackground() {
-    reads = true;
-    const auto readIt = [codec = framing, frame = waiting.front(), number = opening,
+    reads_ = true;
+    const auto readIt = [codec = framing_, frame = waiting_.front(), number = opening_,
                          self = QPointer<Channel>(this)] {
         const CodecItem item = codec->read(frame);
         const auto deliver = [self, item, number] {
-            if (!self || !self->reads || self->opening != number)
+            if (!self || !self->reads_ || self->opening_ != number)
                 return;
-            self->reads = false;
-            self->readFront = item;
+            self->reads_ = false;
+            self->readFront_ = item;
             self->schedule();
         };
         if (QCoreApplication *application = QCoreApplication::instance())
@@ -187,8 +187,8 @@ void Channel::readInBackground() {
 }
 
 void Channel::give(const CodecItem &item, double arrived) {
-    arrival = arrived;
-    framing->count(item);
+    arrival_ = arrived;
+    framing_->count(item);
     if (item.error)
         Q_EMIT malformed(*item.error);
     else

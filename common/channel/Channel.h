@@ -23,9 +23,9 @@ public:
     /// The channel for a URL such as `tcp://127.0.0.1:7410?protocol=json`, not yet open.
     static Result<Channel *> make(const QString &url, QObject *parent);
 
-    void open() { carrier->open(); }
+    void open() { carrier_->open(); }
     void close(const QString &reason);
-    bool isOpen() const { return carrier->isOpen(); }
+    bool isOpen() const { return carrier_->isOpen(); }
 
     /// Encodes and writes. Error when the message cannot be encoded, the channel is not open, or too much
     /// waits to be sent.
@@ -35,17 +35,17 @@ public:
     void setReceiving(bool on);
     /// A frame for which it gives true is delivered when it arrives, before all that wait: one of those that
     /// come together.
-    void setUrgent(std::function<bool(const QByteArray &frame)> isUrgent) { urgent = std::move(isUrgent); }
+    void setUrgent(std::function<bool(const QByteArray &frame)> isUrgent) { urgent_ = std::move(isUrgent); }
     /// Reads frames larger than this in the background. For channels of the main thread.
-    void setLargeFrame(int bytes) { largeFrame = bytes; }
+    void setLargeFrame(int bytes) { largeFrame_ = bytes; }
     /// When the message that is being given came, of the clock of bootNow(). No two in a thread came at the
     /// same time: what came first has the smaller one.
-    double arrived() const { return arrival; }
+    double arrived() const { return arrival_; }
     /// Nothing of a message waits here or with the system.
     bool isQuiet() const;
 
-    Interface &interface() { return *carrier; }
-    Codec &codec() { return *framing; }
+    Interface &interface() { return *carrier_; }
+    Codec &codec() { return *framing_; }
 
 Q_SIGNALS:
     void opened();
@@ -65,20 +65,20 @@ private:
     void give(const CodecItem &item, double arrived);
     void updateReceiving();
 
-    Interface *carrier;
-    std::shared_ptr<Codec> framing; // also of who reads in the background
-    std::deque<CodecFrame> waiting;
-    qint64 waitingBytes = 0;
-    double arrival = 0;
-    std::optional<CodecItem> readFront; // what is in the first of them, when it was read in the background
-    std::optional<QString> ended;       // the carrier is closed; what was said before is still delivered
-    std::function<bool(const QByteArray &)> urgent;
-    int largeFrame = std::numeric_limits<int>::max();
-    const bool canWait;
-    bool receiving = true;
-    bool scheduled = false;
-    bool reads = false;  // in the background
-    quint64 opening = 0; // what is read for an earlier one is not wanted
+    Interface *carrier_;
+    std::shared_ptr<Codec> framing_; // also of who reads in the background
+    std::deque<CodecFrame> waiting_;
+    qint64 waitingBytes_ = 0;
+    double arrival_ = 0;
+    std::optional<CodecItem> readFront_; // what is in the first of them, when it was read in the background
+    std::optional<QString> ended_;       // the carrier is closed; what was said before is still delivered
+    std::function<bool(const QByteArray &)> urgent_;
+    int largeFrame_ = std::numeric_limits<int>::max();
+    const bool canWait_;
+    bool receiving_ = true;
+    bool scheduled_ = false;
+    bool reads_ = false;  // in the background
+    quint64 opening_ = 0; // what is read for an earlier one is not wanted
 };
 
 } // namespace hermes

@@ -19,8 +19,8 @@ Client::Client(QObject *parent)
     : QObject(parent) {}
 
 Client::~Client() {
-    if (channel)
-        channel->disconnect(this);
+    if (channel_)
+        channel_->disconnect(this);
 }
 
 Result<void> Client::connectTo(const QString &address) {
@@ -33,49 +33,49 @@ Result<void> Client::connectTo(const QString &address) {
 
 void Client::connectTo(Channel *newChannel) {
     close();
-    channel = newChannel;
-    channel->setParent(this);
-    channel->interface().setReconnecting(true);
-    channel->codec().setFrameLimit(frameBytes);
-    connect(channel, &Channel::opened, this, &Client::onOpened);
-    connect(channel, &Channel::closed, this, &Client::onClosed);
-    connect(channel, &Channel::message, this, &Client::onMessage);
-    connect(channel, &Channel::malformed, this, &Client::refuse);
-    channel->open();
+    channel_ = newChannel;
+    channel_->setParent(this);
+    channel_->interface().setReconnecting(true);
+    channel_->codec().setFrameLimit(frameBytes_);
+    connect(channel_, &Channel::opened, this, &Client::onOpened);
+    connect(channel_, &Channel::closed, this, &Client::onClosed);
+    connect(channel_, &Channel::message, this, &Client::onMessage);
+    connect(channel_, &Channel::malformed, this, &Client::refuse);
+    channel_->open();
 }
 
 void Client::setFrameLimit(int bytes) {
-    frameBytes = bytes;
-    if (channel)
-        channel->codec().setFrameLimit(bytes);
+    frameBytes_ = bytes;
+    if (channel_)
+        channel_->codec().setFrameLimit(bytes);
 }
 
 void Client::close() {
-    if (!channel)
+    if (!channel_)
         return;
-    Channel *const old = channel;
+    Channel *const old = channel_;
     const bool open = old->isOpen();
     old->disconnect(this);
     old->interface().setReconnecting(false);
     old->close(QStringLiteral("closed by this client"));
     old->deleteLater();
-    channel = nullptr;
-    if (open || !waiting.isEmpty())
+    channel_ = nullptr;
+    if (open || !waiting_.isEmpty())
         onClosed(QStringLiteral("closed by this client"));
 }
 
 QString Client::address() const {
-    return channel ? channel->interface().name() : QString();
+    return channel_ ? channel_->interface().name() : QString();
 }
 
 void Client::call(const QString &method, const QJsonValue &params, const Callback &callback,
                   std::chrono::milliseconds timeout) {
-    const qint64 id = ++lastId;
-    waiting.insert(id, callback);
-    const auto sent = isConnected()
-                          ? channel->send(makeRequest(id, method, params))
-                          : Result<void>(Error(ErrorCode::Disconnected,
-                                               QStringLiteral("%1: not connected: %2").arg(method, failure)));
+    const qint64 id = ++lastId_;
+    waiting_.insert(id, callback);
+    const auto sent =
+        isConnected() ? channel_->send(makeRequest(id, method, params))
+                      : Result<void>(Error(ErrorCode::Disconnected,
+                                           QStringLiteral("%1: not connected: %2").arg(method, failure_)));
     if (!sent) {
         QMetaObject::invokeMethod(
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
@@ -92,19 +92,19 @@ void Client::call(const QString &method, const QJsonValue &params, const Callbac
 
 void Client::callForMuch(const QString &method, const QJsonValue &params, const Callback &callback,
                          std::chrono::milliseconds timeout) {
-    ++largeCalls;
-    if (channel)
-        channel->codec().setFrameLimit(qMax(frameBytes, largeFrame));
+    ++largeCalls_;
+    if (channel_)
+        channel_->codec().setFrameLimit(qMax(frameBytes_, largeFrame));
     const auto done = [this, callback](const Result<QJsonValue> &result) {
-        if (--largeCalls == 0)
-            setFrameLimit(frameBytes);
+        if (--largeCalls_ == 0)
+            setFrameLimit(frameBytes_);
         callback(result);
     };
     call(method, params, done, timeout);
 }
 
 bool Client::notify(const QString &method, const QJsonValue &params) {
-    return isConnected() && channel->send(makeNotification(method, params)).ok();
+    return isConnected() && channel_->send(makeNotification(method, params)).ok();
 }
 
 Result<QJsonValue> Client::callAndWait(const QString &method, const QJsonValue &params,
@@ -134,37 +134,37 @@ Result<void> Client::waitConnected(std::chrono::milliseconds timeout) {
     if (isConnected())
         return {};
     return Error(ErrorCode::Disconnected,
-                 failure.isEmpty() ? QStringLiteral("%1: no answer").arg(address()) : failure);
+                 failure_.isEmpty() ? QStringLiteral("%1: no answer").arg(address()) : failure_);
 }
 
 int Client::subscribe(const QString &topic, const QJsonObject &options, const TopicCallback &callback) {
-    const int handle = ++lastHandle;
-    subscriptions[handle] = {topic, options, callback, 0};
+    const int handle = ++lastHandle_;
+    subscriptions_[handle] = {topic, options, callback, 0};
     if (isConnected())
         sendSubscription(handle);
     return handle;
 }
 
 void Client::unsubscribe(int handle) {
-    const auto found = subscriptions.find(handle);
-    if (found == subscriptions.end())
+    const auto found = subscriptions_.find(handle);
+    if (found == subscriptions_.end())
         return;
     if (found->second.id != 0 && isConnected()) {
         call(QStringLiteral("topics.unsubscribe"),
              QJsonObject{{QStringLiteral("subscription"), found->second.id}},
              [](const Result<QJsonValue> &) {});
     }
-    subscriptions.erase(found);
+    subscriptions_.erase(found);
 }
 
 void Client::sendSubscription(int handle) {
-    const Subscription &subscription = subscriptions.at(handle);
+    const Subscription &subscription = subscriptions_.at(handle);
     QJsonObject params = subscription.options;
     params.insert(QStringLiteral("topic"), subscription.topic);
     call(QStringLiteral("topics.subscribe"), params, [this, handle](const Result<QJsonValue> &result) {
         const qint64 id = result ? qMax<qint64>(0, toCount((*result)[QStringLiteral("subscription")])) : 0;
-        const auto found = subscriptions.find(handle);
-        if (found == subscriptions.end()) {
+        const auto found = subscriptions_.find(handle);
+        if (found == subscriptions_.end()) {
             if (result) // ended here before the daemon answered
                 notify(QStringLiteral("topics.unsubscribe"),
                        QJsonObject{{QStringLiteral("subscription"), id}});
@@ -180,18 +180,18 @@ void Client::sendSubscription(int handle) {
 }
 
 void Client::onOpened() {
-    failure.clear();
-    refused = {};
-    for (const auto &subscription : subscriptions)
+    failure_.clear();
+    refused_ = {};
+    for (const auto &subscription : subscriptions_)
         sendSubscription(subscription.first);
     Q_EMIT connected();
 }
 
 void Client::onClosed(const QString &reason) {
-    failure = reason;
-    for (auto &subscription : subscriptions)
+    failure_ = reason;
+    for (auto &subscription : subscriptions_)
         subscription.second.id = 0;
-    const auto calls = std::exchange(waiting, {});
+    const auto calls = std::exchange(waiting_, {});
     for (const Callback &callback : calls)
         callback(Error(ErrorCode::Disconnected, reason));
     Q_EMIT disconnected(reason);
@@ -209,14 +209,14 @@ void Client::onMessage(const QJsonValue &message, const WireValue &topicData) {
 }
 
 void Client::refuse(const RpcError &error) {
-    ++refused.unreadable;
-    refused.last = error.message;
+    ++refused_.unreadable;
+    refused_.last = error.message;
 }
 
 void Client::onResponse(const RpcResponse &response) {
     const qint64 id = toCount(response.id);
-    if (!waiting.contains(id))
-        ++refused.unasked;
+    if (!waiting_.contains(id))
+        ++refused_.unasked;
     else if (response.failed)
         finish(id, response.error);
     else
@@ -224,7 +224,7 @@ void Client::onResponse(const RpcResponse &response) {
 }
 
 void Client::finish(qint64 id, const Result<QJsonValue> &result) {
-    if (const Callback callback = waiting.take(id))
+    if (const Callback callback = waiting_.take(id))
         callback(result);
 }
 
@@ -232,10 +232,10 @@ void Client::onNotification(const RpcRequest &notification, const WireValue &dat
     const QJsonObject params = notification.params.toObject();
     const qint64 id = toCount(params.value(QStringLiteral("subscription")));
     if (notification.method == QStringLiteral("topic") && id > 0) // 0: not subscribed as yet
-        for (const auto &subscription : subscriptions)
+        for (const auto &subscription : subscriptions_)
             if (subscription.second.id == id)
                 return deliver(subscription.first, params, data);
-    ++refused.unasked;
+    ++refused_.unasked;
 }
 
 void Client::deliver(int handle, const QJsonObject &params, const WireValue &data) {
@@ -246,8 +246,8 @@ void Client::deliver(int handle, const QJsonObject &params, const WireValue &dat
     update.dropped = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("dropped")))));
     update.stamp = params.value(QStringLiteral("stamp")).toDouble();
     update.data = data;
-    const auto found = subscriptions.find(handle);
-    if (found != subscriptions.end() && found->second.callback) {
+    const auto found = subscriptions_.find(handle);
+    if (found != subscriptions_.end() && found->second.callback) {
         const TopicCallback callback = found->second.callback;
         callback(update);
     }

@@ -45,7 +45,7 @@ public:
     /// Over a channel of one's own, closed as yet; takes it over.
     void connectTo(Channel *newChannel);
     void close();
-    bool isConnected() const { return channel && channel->isOpen(); }
+    bool isConnected() const { return channel_ && channel_->isOpen(); }
     QString address() const;
     /// What came over this connection and could not be used.
     struct Rejected {
@@ -53,11 +53,11 @@ public:
         quint64 unasked = 0; ///< replies that nobody waits for (any more), topics that nobody subscribed to
         QString last;        ///< what was wrong with the last unreadable one
     };
-    const Rejected &rejected() const { return refused; }
+    const Rejected &rejected() const { return refused_; }
     /// Of messages from now on, in bytes.
     void setFrameLimit(int bytes);
     /// Why the last attempt or connection ended.
-    const QString &lastError() const { return failure; }
+    const QString &lastError() const { return failure_; }
 
     /// Calls a method; the callback gets the result or an error, once, and at the latest after the timeout.
     /// Not connected: fails at once (from the event loop).
@@ -105,15 +105,15 @@ private:
     void sendSubscription(int handle);
     void finish(qint64 id, const Result<QJsonValue> &result);
 
-    Channel *channel = nullptr;
-    QString failure;
-    Rejected refused;
-    int frameBytes = frameLimit;
-    int largeCalls = 0; ///< that wait
-    qint64 lastId = 0;
-    QHash<qint64, Callback> waiting;
-    int lastHandle = 0;
-    std::map<int, Subscription> subscriptions;
+    Channel *channel_ = nullptr;
+    QString failure_;
+    Rejected refused_;
+    int frameBytes_ = frameLimit;
+    int largeCalls_ = 0; ///< that wait
+    qint64 lastId_ = 0;
+    QHash<qint64, Callback> waiting_;
+    int lastHandle_ = 0;
+    std::map<int, Subscription> subscriptions_;
 };
 
 } // namespace hermes

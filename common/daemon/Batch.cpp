@@ -7,25 +7,25 @@
 namespace hermes {
 
 Batch::~Batch() {
-    inBackground([large = std::move(messages)] {}); // to free it may take long
+    inBackground([large = std::move(messages_)] {}); // to free it may take long
 }
 
 void Batch::answer(int i, const QByteArray &frame) {
-    --missing;
-    bytes += frame.size();
+    --missing_;
+    bytes_ += frame.size();
     if (!isTooLarge())
-        frames[size_t(i)] = frame;
-    else if (!frames.empty())
-        frames = {};
+        frames_[size_t(i)] = frame;
+    else if (!frames_.empty())
+        frames_ = {};
 }
 
 std::vector<QByteArray> Batch::take(const Codec &codec) {
-    frames.erase(
-        std::remove_if(frames.begin(), frames.end(), [](const QByteArray &f) { return f.isEmpty(); }),
-        frames.end());
-    if (!frames.empty())
-        codec.joinBatch(frames);
-    return std::move(frames);
+    frames_.erase(
+        std::remove_if(frames_.begin(), frames_.end(), [](const QByteArray &f) { return f.isEmpty(); }),
+        frames_.end());
+    if (!frames_.empty())
+        codec.joinBatch(frames_);
+    return std::move(frames_);
 }
 
 } // namespace hermes

@@ -15,29 +15,29 @@ public:
 
     Batch(const QJsonArray &requests, double when)
         : arrived(when)
-        , messages(requests)
-        , frames(size_t(requests.size()))
-        , missing(requests.size()) {}
+        , messages_(requests)
+        , frames_(size_t(requests.size()))
+        , missing_(requests.size()) {}
     ~Batch();
 
     const double arrived; ///< Channel::arrived()
 
-    bool isBegun() const { return next == messages.size(); } ///< all of it
-    bool isDone() const { return missing == 0; }
-    int takeNext() { return next++; }
-    QJsonValue message(int i) const { return messages.at(i); }
+    bool isBegun() const { return next_ == messages_.size(); } ///< all of it
+    bool isDone() const { return missing_ == 0; }
+    int takeNext() { return next_++; }
+    QJsonValue message(int i) const { return messages_.at(i); }
     /// frame: empty for a notification.
     void answer(int i, const QByteArray &frame);
-    bool isTooLarge() const { return bytes > mostBytes; }
+    bool isTooLarge() const { return bytes_ > mostBytes; }
     /// The pieces of the frame; none when nothing is to be said.
     std::vector<QByteArray> take(const Codec &codec);
 
 private:
-    QJsonArray messages;
-    std::vector<QByteArray> frames;
-    int next = 0;
-    int missing;
-    qint64 bytes = 0;
+    QJsonArray messages_;
+    std::vector<QByteArray> frames_;
+    int next_ = 0;
+    int missing_;
+    qint64 bytes_ = 0;
 };
 
 } // namespace hermes

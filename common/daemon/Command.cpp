@@ -14,16 +14,16 @@ const QString schemaKey = QStringLiteral("schema");
 } // namespace
 
 Command::Command(const QString &name, const QString &text)
-    : commandName(name)
-    , summary(text) {}
+    : commandName_(name)
+    , summary_(text) {}
 
 Command &Command::param(const Field &field) {
-    fields.push_back(field);
+    fields_.push_back(field);
     return *this;
 }
 
 Command &Command::returns(const QJsonObject &schema) {
-    resultSchema = schema;
+    resultSchema_ = schema;
     return *this;
 }
 
@@ -32,13 +32,13 @@ Command &Command::returnsNull() {
 }
 
 Command &Command::example(const QJsonObject &params, const QJsonValue &result) {
-    exampleParams = params;
-    exampleResult = result;
+    exampleParams_ = params;
+    exampleResult_ = result;
     return *this;
 }
 
 Command &Command::with(const QString &keyword, const QJsonValue &value) {
-    extra.insert(keyword, value);
+    extra_.insert(keyword, value);
     return *this;
 }
 
@@ -55,33 +55,33 @@ Command &Command::handler(const Handler &function) {
 }
 
 Command &Command::asyncHandler(const AsyncHandler &function) {
-    run = function;
+    run_ = function;
     return *this;
 }
 
 QJsonObject Command::description() const {
     QJsonArray params;
-    for (const Field &field : fields) {
+    for (const Field &field : fields_) {
         params.append(QJsonObject{{nameKey, field.name()},
                                   {QStringLiteral("required"), field.isRequired()},
                                   {schemaKey, field.schema()}});
     }
-    QJsonObject method = extra;
-    method.insert(nameKey, commandName);
-    method.insert(QStringLiteral("summary"), summary);
+    QJsonObject method = extra_;
+    method.insert(nameKey, commandName_);
+    method.insert(QStringLiteral("summary"), summary_);
     method.insert(QStringLiteral("paramStructure"), QStringLiteral("either"));
     method.insert(QStringLiteral("params"), params);
     method.insert(QStringLiteral("result"),
-                  QJsonObject{{nameKey, QStringLiteral("result")}, {schemaKey, resultSchema}});
-    if (!exampleResult.isUndefined()) {
+                  QJsonObject{{nameKey, QStringLiteral("result")}, {schemaKey, resultSchema_}});
+    if (!exampleResult_.isUndefined()) {
         QJsonArray values;
-        for (auto member = exampleParams.begin(); member != exampleParams.end(); ++member)
+        for (auto member = exampleParams_.begin(); member != exampleParams_.end(); ++member)
             values.append(QJsonObject{{nameKey, member.key()}, {QStringLiteral("value"), member.value()}});
         const QJsonObject pairing{
             {nameKey, QStringLiteral("example")},
             {QStringLiteral("params"), values},
             {QStringLiteral("result"),
-             QJsonObject{{nameKey, QStringLiteral("result")}, {QStringLiteral("value"), exampleResult}}}};
+             QJsonObject{{nameKey, QStringLiteral("result")}, {QStringLiteral("value"), exampleResult_}}}};
         method.insert(QStringLiteral("examples"), QJsonArray{pairing});
     }
     return method;
@@ -90,7 +90,7 @@ QJsonObject Command::description() const {
 QJsonObject Command::paramsSchema() const {
     QJsonObject properties;
     QJsonArray required;
-    for (const Field &field : fields) {
+    for (const Field &field : fields_) {
         properties.insert(field.name(), field.schema());
         if (field.isRequired())
             required.append(field.name());
@@ -101,18 +101,18 @@ QJsonObject Command::paramsSchema() const {
 Result<QJsonObject> Command::accept(const QJsonValue &params) const {
     QJsonObject named = params.toObject();
     const QJsonArray positional = params.toArray();
-    if (positional.size() > int(fields.size())) {
-        return invalidParams({{QStringLiteral("[%1]").arg(fields.size()), positional.at(int(fields.size())),
-                               QStringLiteral("at most %1 parameters").arg(fields.size())}});
+    if (positional.size() > int(fields_.size())) {
+        return invalidParams({{QStringLiteral("[%1]").arg(fields_.size()), positional.at(int(fields_.size())),
+                               QStringLiteral("at most %1 parameters").arg(fields_.size())}});
     }
     for (int i = 0; i < positional.size(); ++i)
-        named.insert(fields[size_t(i)].name(), positional.at(i));
-    if (!validator)
-        validator = std::make_shared<const SchemaValidator>(paramsSchema());
-    const auto violations = validator->check(named);
+        named.insert(fields_[size_t(i)].name(), positional.at(i));
+    if (!validator_)
+        validator_ = std::make_shared<const SchemaValidator>(paramsSchema());
+    const auto violations = validator_->check(named);
     if (!violations.empty())
         return invalidParams(violations);
-    for (const Field &field : fields) {
+    for (const Field &field : fields_) {
         if (!field.defaultValue().isUndefined() && !named.contains(field.name()))
             named.insert(field.name(), field.defaultValue());
     }
@@ -126,15 +126,15 @@ void Command::execute(const QJsonValue &params, Call call, const Reply &reply) c
         if (!accepted)
             return reply.error(accepted.error());
         call.params = *accepted;
-        return run(call, reply);
+        return run_(call, reply);
     } catch (const std::exception &exception) {
         what = QString::fromUtf8(exception.what());
     } catch (...) {
         // ends this call like any other exception
     }
-    logError(commandName, QStringLiteral("exception in the handler: ") + what);
+    logError(commandName_, QStringLiteral("exception in the handler: ") + what);
     reply.error(
-        Error(ErrorCode::InternalError, QStringLiteral("internal error in %1: %2").arg(commandName, what)));
+        Error(ErrorCode::InternalError, QStringLiteral("internal error in %1: %2").arg(commandName_, what)));
 }
 
 } // namespace hermes

@@ -58,9 +58,9 @@ public:
     /// Answers at once or later, through the Reply.
     Command &asyncHandler(const AsyncHandler &function);
 
-    const QString &name() const { return commandName; }
-    bool isUrgent() const { return extra.contains(urgentKey()); }
-    bool needsFresh() const { return extra.contains(freshKey()); }
+    const QString &name() const { return commandName_; }
+    bool isUrgent() const { return extra_.contains(urgentKey()); }
+    bool needsFresh() const { return extra_.contains(freshKey()); }
 
     /// The method object of an OpenRPC document.
     QJsonObject description() const;
@@ -75,15 +75,15 @@ private:
     Result<QJsonObject> accept(const QJsonValue &params) const;
     QJsonObject paramsSchema() const;
 
-    QString commandName;
-    QString summary;
-    std::vector<Field> fields;
-    QJsonObject resultSchema;
-    QJsonObject exampleParams;
-    QJsonValue exampleResult{QJsonValue::Undefined};
-    QJsonObject extra;
-    AsyncHandler run;
-    mutable std::shared_ptr<const SchemaValidator> validator; // made at the first call
+    QString commandName_;
+    QString summary_;
+    std::vector<Field> fields_;
+    QJsonObject resultSchema_;
+    QJsonObject exampleParams_;
+    QJsonValue exampleResult_{QJsonValue::Undefined};
+    QJsonObject extra_;
+    AsyncHandler run_;
+    mutable std::shared_ptr<const SchemaValidator> validator_; // made at the first call
 };
 
 } // namespace hermes

@@ -3,24 +3,24 @@
 namespace hermes {
 
 void CommandRegistry::add(const Command &command) {
-    commands.insert(command.name(), command);
-    urgentNames.removeAll(command.name());
+    commands_.insert(command.name(), command);
+    urgentNames_.removeAll(command.name());
     if (command.isUrgent())
-        urgentNames.append(command.name());
+        urgentNames_.append(command.name());
 }
 
 const Command *CommandRegistry::find(const QString &name) const {
-    const auto found = commands.constFind(name);
-    return found == commands.constEnd() ? nullptr : &*found;
+    const auto found = commands_.constFind(name);
+    return found == commands_.constEnd() ? nullptr : &*found;
 }
 
 void CommandRegistry::execute(const RpcRequest &request, const Call &call, const Reply &reply) const {
-    const auto found = commands.constFind(request.method);
-    if (found != commands.constEnd())
+    const auto found = commands_.constFind(request.method);
+    if (found != commands_.constEnd())
         return found->execute(request.params, call, reply);
     const QString group = request.method.section(QLatin1Char('.'), 0, 0) + QLatin1Char('.');
     QStringList near;
-    for (const QString &name : commands.keys()) {
+    for (const QString &name : commands_.keys()) {
         if (name.startsWith(group))
             near.append(name);
     }
@@ -32,7 +32,7 @@ void CommandRegistry::execute(const RpcRequest &request, const Call &call, const
 
 QJsonArray CommandRegistry::description() const {
     QJsonArray methods;
-    for (const Command &command : commands)
+    for (const Command &command : commands_)
         methods.append(command.description());
     return methods;
 }

@@ -15,7 +15,7 @@ public:
     void add(const Command &command);
     const Command *find(const QString &name) const;
     /// The names of the urgent ones.
-    const QStringList &urgent() const { return urgentNames; }
+    const QStringList &urgent() const { return urgentNames_; }
 
     /// Runs what the request asks for. An unknown method is an error that names the nearest known ones.
     void execute(const RpcRequest &request, const Call &call, const Reply &reply) const;
@@ -24,8 +24,8 @@ public:
     QJsonArray description() const;
 
 private:
-    QMap<QString, Command> commands;
-    QStringList urgentNames;
+    QMap<QString, Command> commands_;
+    QStringList urgentNames_;
 };
 
 } // namespace hermes

@@ -41,29 +41,29 @@ QString toString(DaemonState state) {
 }
 
 Daemon::Daemon(const DaemonIdentity &identity)
-    : self(identity)
-    , topics(this)
-    , healthItems(this)
-    , channels(commands, topics, this)
-    , started(stampNow())
-    , startedMono(monotonicNow()) {
-    if (self.port == 0)
-        self.port = defaultPort(self.name);
+    : self_(identity)
+    , topics_(this)
+    , healthItems_(this)
+    , channels_(commands_, topics_, this)
+    , started_(stampNow())
+    , startedMono_(monotonicNow()) {
+    if (self_.port == 0)
+        self_.port = defaultPort(self_.name);
     declareCommonSettings();
-    addCommonCommands(*this, commands, topics);
-    connect(&channels, &Server::clientGone, this, &Daemon::clientGone);
+    addCommonCommands(*this, commands_, topics_);
+    connect(&channels_, &Server::clientGone, this, &Daemon::clientGone);
     Log::instance().follow(this, [this](const LogRecord &record) {
         publish(
             QStringLiteral("log"), [&record] { return record.message(); }, record.stamp);
     });
-    connect(&configuration, &Settings::changed, this, [this](const QStringList &paths) {
-        if (!launched)
+    connect(&configuration_, &Settings::changed, this, [this](const QStringList &paths) {
+        if (!launched_)
             return;
         applyCommonSettings();
         settingsChanged(paths);
-        publish(QStringLiteral("settings"), [this] { return configuration.values(); });
+        publish(QStringLiteral("settings"), [this] { return configuration_.values(); });
     });
-    healthItems.provide(QStringLiteral("channel"), [this] { updateChannelHealth(); });
+    healthItems_.provide(QStringLiteral("channel"), [this] { updateChannelHealth(); });
 }
 
 Daemon::~Daemon() {
@@ -76,20 +76,20 @@ int Daemon::run(const QStringList &arguments) {
         return *status;
     SignalWatcher signalWatcher(this);
     connect(&signalWatcher, &SignalWatcher::received, this, [this](const QString &name) {
-        logInfo(self.name, name + QStringLiteral(" received"));
+        logInfo(self_.name, name + QStringLiteral(" received"));
         shutDown();
     });
     connect(this, &Daemon::finished, this, [](int status) { QCoreApplication::exit(status); });
     const auto launching = launch();
     if (!launching) {
-        print(stderr, QStringLiteral("hermes-%1: %2\n").arg(self.name, launching.error().message));
+        print(stderr, QStringLiteral("hermes-%1: %2\n").arg(self_.name, launching.error().message));
         return 1;
     }
     return QCoreApplication::exec();
 }
 
 std::optional<int> Daemon::prepare(const QStringList &arguments) {
-    const QString program = QStringLiteral("hermes-") + self.name;
+    const QString program = QStringLiteral("hermes-") + self_.name;
     const auto line = CommandLine::parse(arguments.mid(1));
     if (!line) {
         print(stderr,
@@ -108,7 +108,7 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
         return configured.error().is(ErrorCode::InvalidParams) ? 2 : 1;
     }
     if (line->action == CommandLine::Action::PrintSettings) {
-        return printed(QString::fromUtf8(QJsonDocument(configuration.values()).toJson()));
+        return printed(QString::fromUtf8(QJsonDocument(configuration_.values()).toJson()));
     }
     if (line->action == CommandLine::Action::Check) {
         return printed(QStringLiteral("%1: the settings are valid\n").arg(program));
@@ -118,16 +118,16 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
 
 Result<void> Daemon::configure(const CommandLine &line) {
     if (!line.config.isEmpty()) {
-        const auto loaded = configuration.load(line.config);
+        const auto loaded = configuration_.load(line.config);
         if (!loaded)
             return loaded;
     }
-    const auto set = configuration.set(line.settings);
+    const auto set = configuration_.set(line.settings);
     if (!set)
         return Error(ErrorCode::InvalidParams, QStringLiteral("option --set: ") + set.error().message);
     if (!line.listen.isEmpty()) {
         const auto listen =
-            configuration.set({{QStringLiteral("listen"), QJsonArray::fromStringList(line.listen)}});
+            configuration_.set({{QStringLiteral("listen"), QJsonArray::fromStringList(line.listen)}});
         if (!listen)
             return Error(ErrorCode::InvalidParams,
                          QStringLiteral("option --listen: ") + listen.error().message);
@@ -137,65 +137,65 @@ Result<void> Daemon::configure(const CommandLine &line) {
 }
 
 Result<void> Daemon::launch() {
-    const bool insecure = configuration.flag(QStringLiteral("insecure"));
-    for (const QJsonValue &url : configuration.value(QStringLiteral("listen")).toArray()) {
-        const auto listening = channels.listen(url.toString(), insecure);
+    const bool insecure = configuration_.flag(QStringLiteral("insecure"));
+    for (const QJsonValue &url : configuration_.value(QStringLiteral("listen")).toArray()) {
+        const auto listening = channels_.listen(url.toString(), insecure);
         if (!listening) {
-            channels.close();
+            channels_.close();
             return listening;
         }
     }
     if (insecure) {
-        healthItems.set(
+        healthItems_.set(
             QStringLiteral("insecure"), HealthLevel::Warn,
             QStringLiteral("commands are accepted in plain text, from the network if a channel listens "
                            "there (setting \"insecure\")"));
     }
-    launched = true;
-    startedWith = configuration.values();
+    launched_ = true;
+    startedWith_ = configuration_.values();
     const auto starting = start();
     if (!starting) {
-        logError(self.name, starting.error().message);
+        logError(self_.name, starting.error().message);
         stop();
-        channels.close();
+        channels_.close();
         return starting;
     }
-    if (ownState == DaemonState::Starting)
+    if (ownState_ == DaemonState::Starting)
         setState(DaemonState::Ready);
-    connect(&healthItems, &Health::changed, this, &Daemon::publishStatus);
-    connect(&statusTimer, &QTimer::timeout, this, &Daemon::publishStatus); // an item may have become stale
-    statusTimer.start(500);
+    connect(&healthItems_, &Health::changed, this, &Daemon::publishStatus);
+    connect(&statusTimer_, &QTimer::timeout, this, &Daemon::publishStatus); // an item may have become stale
+    statusTimer_.start(500);
     systemd::notify("READY=1");
     const auto interval = systemd::watchdogInterval();
-    if (interval.count() > 0 && !watchdogByHand) {
-        connect(&watchdog, &QTimer::timeout, this, &Daemon::feedWatchdog);
-        watchdog.start(interval);
+    if (interval.count() > 0 && !watchdogByHand_) {
+        connect(&watchdog_, &QTimer::timeout, this, &Daemon::feedWatchdog);
+        watchdog_.start(interval);
     }
     return {};
 }
 
 void Daemon::shutDown(int status) {
-    if (ownState == DaemonState::Stopping)
+    if (ownState_ == DaemonState::Stopping)
         return;
     setState(DaemonState::Stopping);
     systemd::notify("STOPPING=1");
-    statusTimer.stop();
+    statusTimer_.stop();
     stop();
-    logInfo(self.name, QStringLiteral("stopped"));
-    channels.close();
+    logInfo(self_.name, QStringLiteral("stopped"));
+    channels_.close();
     Q_EMIT finished(status);
 }
 
 DaemonState Daemon::state() const {
-    const bool working = ownState == DaemonState::Ready || ownState == DaemonState::Running;
-    return working && healthItems.worst() >= HealthLevel::Failed ? DaemonState::Degraded : ownState;
+    const bool working = ownState_ == DaemonState::Ready || ownState_ == DaemonState::Running;
+    return working && healthItems_.worst() >= HealthLevel::Failed ? DaemonState::Degraded : ownState_;
 }
 
 void Daemon::setState(DaemonState state) {
-    if (state == ownState || ownState == DaemonState::Stopping)
+    if (state == ownState_ || ownState_ == DaemonState::Stopping)
         return; // news that came too late
-    ownState = state;
-    logInfo(self.name, toString(state));
+    ownState_ = state;
+    logInfo(self_.name, toString(state));
     publishStatus();
 }
 
@@ -204,76 +204,76 @@ void Daemon::feedWatchdog() {
 }
 
 QJsonObject Daemon::description() const {
-    if (!made.isEmpty())
-        return made;
-    made = {{QStringLiteral("openrpc"), QStringLiteral("1.2.6")},
-            {QStringLiteral("info"), QJsonObject{{QStringLiteral("title"), self.title},
-                                                 {QStringLiteral("version"), projectVersion()},
-                                                 {QStringLiteral("description"), self.description}}},
-            {QStringLiteral("methods"), commands.description()},
-            {QStringLiteral("x-topics"), asJson(topics.description())}};
-    return made;
+    if (!made_.isEmpty())
+        return made_;
+    made_ = {{QStringLiteral("openrpc"), QStringLiteral("1.2.6")},
+             {QStringLiteral("info"), QJsonObject{{QStringLiteral("title"), self_.title},
+                                                  {QStringLiteral("version"), projectVersion()},
+                                                  {QStringLiteral("description"), self_.description}}},
+             {QStringLiteral("methods"), commands_.description()},
+             {QStringLiteral("x-topics"), asJson(topics_.description())}};
+    return made_;
 }
 
 void Daemon::forgetDescription() {
-    made = {};
-    madeHash.clear();
+    made_ = {};
+    madeHash_.clear();
 }
 
 QString Daemon::descriptionHash() const {
-    if (madeHash.isEmpty()) {
-        const QByteArray all = compactJson(description()) + compactJson(configuration.schema());
-        madeHash =
+    if (madeHash_.isEmpty()) {
+        const QByteArray all = compactJson(description()) + compactJson(configuration_.schema());
+        madeHash_ =
             QString::fromLatin1(QCryptographicHash::hash(all, QCryptographicHash::Sha256).toHex().left(16));
     }
-    return madeHash;
+    return madeHash_;
 }
 
 DaemonInfo Daemon::info() const {
-    return {self.name,
-            self.title,
+    return {self_.name,
+            self_.title,
             projectVersion(),
             protocolVersion(),
             descriptionHash(),
             QSysInfo::machineHostName(),
             QCoreApplication::applicationPid(),
-            channels.addresses(),
-            started,
-            monotonicNow() - startedMono};
+            channels_.addresses(),
+            started_,
+            monotonicNow() - startedMono_};
 }
 
 DaemonStatus Daemon::status() {
-    std::vector<HealthItem> items = healthItems.list(); // before the state, which follows from them
+    std::vector<HealthItem> items = healthItems_.list(); // before the state, which follows from them
     return {toString(state()), std::move(items),
-            configuration.needRestart(leafPaths(difference(configuration.values(), startedWith)))};
+            configuration_.needRestart(leafPaths(difference(configuration_.values(), startedWith_)))};
 }
 
 void Daemon::publishStatus() {
     // Only a change of a level or of the state is news; ages and counters change all the time.
     QString now = toString(state());
-    for (const HealthItem &item : healthItems.list())
+    for (const HealthItem &item : healthItems_.list())
         now += QLatin1Char(' ') + item.name + QLatin1Char('=') + item.level;
-    if (now == lastStatus)
+    if (now == lastStatus_)
         return;
-    lastStatus = now;
+    lastStatus_ = now;
     publish(QStringLiteral("status"), [this] { return status(); });
 }
 
 void Daemon::updateChannelHealth() {
-    const QJsonObject counters = channels.counters();
+    const QJsonObject counters = channels_.counters();
     const double dropped = counters.value(QStringLiteral("dropped_topic_messages")).toDouble();
     const QString message = QStringLiteral("%1 clients, %2 topic messages dropped for slow readers")
                                 .arg(counters.value(QStringLiteral("clients")).toInt())
                                 .arg(dropped);
-    healthItems.set(QStringLiteral("channel"), HealthLevel::Ok, message, counters);
+    healthItems_.set(QStringLiteral("channel"), HealthLevel::Ok, message, counters);
 }
 
 QString Daemon::helpText() const {
     QString text = QStringLiteral("Usage: hermes-%1 [OPTION]...\n\n%2. %3\n\n")
-                       .arg(self.name, self.title, self.description);
+                       .arg(self_.name, self_.title, self_.description);
     text += CommandLine::help() + QStringLiteral("\nSettings (PATH = default: meaning):\n");
-    for (const QString &path : leafPaths(configuration.defaults())) {
-        QJsonObject schema = configuration.schema();
+    for (const QString &path : leafPaths(configuration_.defaults())) {
+        QJsonObject schema = configuration_.schema();
         for (const QString &key : path.split(QLatin1Char('.')))
             schema = schema.value(QStringLiteral("properties")).toObject().value(key).toObject();
         text += QStringLiteral("  %1 = %2: %3 (%4)\n")

@@ -49,10 +49,10 @@ public:
     Result<void> launch();
     void shutDown(int status = 0);
 
-    const DaemonIdentity &identity() const { return self; }
-    Settings &settings() { return configuration; }
-    Health &health() { return healthItems; }
-    Server &server() { return channels; }
+    const DaemonIdentity &identity() const { return self_; }
+    Settings &settings() { return configuration_; }
+    Health &health() { return healthItems_; }
+    Server &server() { return channels_; }
 
     /// Degraded when ready or running and a health item is at error or stale.
     DaemonState state() const;
@@ -63,9 +63,9 @@ public:
     DaemonInfo info() const;
     DaemonStatus status();
 
-    bool hasSubscribers(const QString &topic) const { return topics.hasSubscribers(topic); }
+    bool hasSubscribers(const QString &topic) const { return topics_.hasSubscribers(topic); }
     /// False while a subscriber with a queue longer than one is behind: for data that can wait.
-    bool hasRoom(const QString &topic) const { return topics.hasRoom(topic); }
+    bool hasRoom(const QString &topic) const { return topics_.hasRoom(topic); }
 
 Q_SIGNALS:
     /// A client has gone; Call::client told who it was.
@@ -76,19 +76,19 @@ Q_SIGNALS:
 protected:
     // For the constructor of a daemon.
     void addSetting(const Field &field) {
-        configuration.declare(field);
+        configuration_.declare(field);
         forgetDescription();
     }
     void addCommand(const Command &command) {
-        commands.add(command);
+        commands_.add(command);
         forgetDescription();
     }
     void addTopic(const Topic &topic) {
-        topics.declare(topic);
+        topics_.declare(topic);
         forgetDescription();
     }
     /// The watchdog of the service manager is fed by feedWatchdog() alone, not by the event loop.
-    void feedWatchdogMyself() { watchdogByHand = true; }
+    void feedWatchdogMyself() { watchdogByHand_ = true; }
 
     // For its work.
     /// To all subscribers; stamp is when the data were true (seconds since the epoch). The data may be a
@@ -96,13 +96,13 @@ protected:
     template <typename Data>
     void publish(const QString &topic, const Data &data, double stamp = stampNow()) {
         if constexpr (std::is_invocable_v<const Data &>)
-            topics.publish(topic, data, stamp);
+            topics_.publish(topic, data, stamp);
         else
-            topics.publish(
+            topics_.publish(
                 topic, [&data] { return Outgoing(data); }, stamp);
     }
     /// The full state of a topic with a snapshot in parts once more, to all subscribers.
-    void publishSnapshot(const QString &topic) { topics.publishSnapshot(topic); }
+    void publishSnapshot(const QString &topic) { topics_.publishSnapshot(topic); }
     /// Ready: can work. Running: works. Fault: cannot, with a health item that says why.
     void setState(DaemonState state);
     void feedWatchdog();
@@ -124,23 +124,23 @@ private:
     QString helpText() const;
     void forgetDescription();
 
-    DaemonIdentity self;
-    Settings configuration;
-    CommandRegistry commands;
-    TopicHub topics;
-    Health healthItems;
-    Server channels;
-    DaemonState ownState = DaemonState::Starting;
-    QJsonObject startedWith; // the settings
-    double started = 0;      // stamp
-    double startedMono = 0;
-    mutable QJsonObject made; // the description, when it was asked for
-    mutable QString madeHash;
-    bool launched = false;
-    bool watchdogByHand = false;
-    QTimer watchdog;
-    QString lastStatus;
-    QTimer statusTimer;
+    DaemonIdentity self_;
+    Settings configuration_;
+    CommandRegistry commands_;
+    TopicHub topics_;
+    Health healthItems_;
+    Server channels_;
+    DaemonState ownState_ = DaemonState::Starting;
+    QJsonObject startedWith_; // the settings
+    double started_ = 0;      // stamp
+    double startedMono_ = 0;
+    mutable QJsonObject made_; // the description, when it was asked for
+    mutable QString madeHash_;
+    bool launched_ = false;
+    bool watchdogByHand_ = false;
+    QTimer watchdog_;
+    QString lastStatus_;
+    QTimer statusTimer_;
 };
 
 /// The whole main() of a daemon.

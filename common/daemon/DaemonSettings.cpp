@@ -45,16 +45,16 @@ void Daemon::declareCommonSettings() {
     const QString channelGroup = QStringLiteral("Channels");
     const QString limitGroup = QStringLiteral("Limits");
     const QString logGroup = QStringLiteral("Log");
-    const QString address = QStringLiteral("tcp://127.0.0.1:%1?protocol=json").arg(self.port);
+    const QString address = QStringLiteral("tcp://127.0.0.1:%1?protocol=json").arg(self_.port);
     addSetting(Field::array(QStringLiteral("listen"), QStringLiteral("URLs at which commands are accepted"),
                             {{QStringLiteral("type"), QStringLiteral("string")}})
                    .with(QStringLiteral("minItems"), 1)
                    .group(channelGroup)
                    .byDefault(QJsonArray{address})
                    .appliesOnRestart());
-    configuration.addRule([this](const QJsonObject &settings) {
+    configuration_.addRule([this](const QJsonObject &settings) {
         // At the start launch() says it, when all settings are known.
-        return checkListen(settings, !launched || settings.value(QStringLiteral("insecure")).toBool());
+        return checkListen(settings, !launched_ || settings.value(QStringLiteral("insecure")).toBool());
     });
     addSetting(Field::boolean(
                    QStringLiteral("insecure"),
@@ -114,16 +114,16 @@ void Daemon::declareCommonSettings() {
 
 void Daemon::applyCommonSettings() {
     SessionLimits limits;
-    limits.frameBytes = configuration.integer(QStringLiteral("limits.frame_bytes"));
-    limits.topicBytes = configuration.integer(QStringLiteral("limits.topic_bytes"));
-    limits.replyBytes = configuration.integer(QStringLiteral("limits.reply_bytes"));
-    limits.batch = configuration.integer(QStringLiteral("limits.batch"));
-    limits.pending = configuration.integer(QStringLiteral("limits.pending"));
-    limits.idle_s = configuration.number(QStringLiteral("limits.idle_s"));
-    channels.setLimits(limits, configuration.integer(QStringLiteral("limits.clients")));
+    limits.frameBytes = configuration_.integer(QStringLiteral("limits.frame_bytes"));
+    limits.topicBytes = configuration_.integer(QStringLiteral("limits.topic_bytes"));
+    limits.replyBytes = configuration_.integer(QStringLiteral("limits.reply_bytes"));
+    limits.batch = configuration_.integer(QStringLiteral("limits.batch"));
+    limits.pending = configuration_.integer(QStringLiteral("limits.pending"));
+    limits.idle_s = configuration_.number(QStringLiteral("limits.idle_s"));
+    channels_.setLimits(limits, configuration_.integer(QStringLiteral("limits.clients")));
     Log::instance().setMinimumLevel(
-        LogLevel(levels.indexOf(configuration.text(QStringLiteral("log.level")))));
-    Log::instance().setCapacity(configuration.integer(QStringLiteral("log.records")));
+        LogLevel(levels.indexOf(configuration_.text(QStringLiteral("log.level")))));
+    Log::instance().setCapacity(configuration_.integer(QStringLiteral("log.records")));
 }
 
 } // namespace hermes

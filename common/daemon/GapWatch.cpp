@@ -8,8 +8,8 @@ namespace hermes {
 
 GapWatch::GapWatch(QObject *parent)
     : QObject(parent) {
-    pulse.setTimerType(Qt::PreciseTimer);
-    connect(&pulse, &QTimer::timeout, this, [this] {
+    pulse_.setTimerType(Qt::PreciseTimer);
+    connect(&pulse_, &QTimer::timeout, this, [this] {
         look();
         Q_EMIT looked();
     });
@@ -17,30 +17,30 @@ GapWatch::GapWatch(QObject *parent)
 
 void GapWatch::watch(double seconds) {
     look();
-    longest = seconds;
-    last = bootNow();
-    if (longest > 0)
-        pulse.start(std::max(1, int(longest * 1000 / 8)));
+    longest_ = seconds;
+    last_ = bootNow();
+    if (longest_ > 0)
+        pulse_.start(std::max(1, int(longest_ * 1000 / 8)));
     else
-        pulse.stop();
+        pulse_.stop();
 }
 
 void GapWatch::look() {
-    if (longest <= 0)
+    if (longest_ <= 0)
         return;
     const double now = bootNow();
-    const double passed = now - last;
-    last = now;
-    if (passed <= longest)
+    const double passed = now - last_;
+    last_ = now;
+    if (passed <= longest_)
         return;
-    until = now;
-    ++number;
-    words = QStringLiteral("this program stood still for %1 s").arg(passed, 0, 'f', 2);
-    Q_EMIT ended(words);
+    until_ = now;
+    ++number_;
+    words_ = QStringLiteral("this program stood still for %1 s").arg(passed, 0, 'f', 2);
+    Q_EMIT ended(words_);
 }
 
 double GapWatch::sinceLast() const {
-    return bootNow() - until;
+    return bootNow() - until_;
 }
 
 } // namespace hermes

@@ -17,11 +17,11 @@ public:
     /// To be called before what was received is acted upon: the sockets may be served before every timer.
     void look();
 
-    quint64 count() const { return number; }
+    quint64 count() const { return number_; }
     /// Since the end of the last one; seconds.
     double sinceLast() const;
     /// "this program stood still for 3.2 s"
-    const QString &text() const { return words; }
+    const QString &text() const { return words_; }
 
 Q_SIGNALS:
     void ended(const QString &text);
@@ -29,12 +29,12 @@ Q_SIGNALS:
     void looked();
 
 private:
-    double longest = 0;
-    double last = 0;  // look; by the clock that goes on while the machine sleeps
-    double until = 0; // the end of the last one
-    quint64 number = 0;
-    QString words;
-    QTimer pulse;
+    double longest_ = 0;
+    double last_ = 0;  // look; by the clock that goes on while the machine sleeps
+    double until_ = 0; // the end of the last one
+    quint64 number_ = 0;
+    QString words_;
+    QTimer pulse_;
 };
 
 } // namespace hermes

@@ -51,7 +51,7 @@ private:
         HealthLevel levelNow() const;
     };
 
-    QMap<QString, Item> items;
+    QMap<QString, Item> items_;
 };
 
 } // namespace hermes

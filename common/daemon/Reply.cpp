@@ -10,13 +10,13 @@ namespace hermes {
 class Reply::State {
 public:
     explicit State(Sink receiver)
-        : sink(std::move(receiver)) {}
+        : sink_(std::move(receiver)) {}
     ~State() {
         give(Error(ErrorCode::InternalError, QStringLiteral("internal error: the command gave no answer")));
     }
 
     void give(Result<QJsonValue> answer) {
-        if (given.exchange(true))
+        if (given_.exchange(true))
             return;
         if (answer && answer->isUndefined()) // of asJson()
             answer = Error(ErrorCode::InternalError,
@@ -24,23 +24,23 @@ public:
         QCoreApplication *application = QCoreApplication::instance();
         if (application && QThread::currentThread() != application->thread()) {
             QMetaObject::invokeMethod(
-                application, [target = std::move(sink), answer] { target(answer); }, Qt::QueuedConnection);
+                application, [target = std::move(sink_), answer] { target(answer); }, Qt::QueuedConnection);
         } else {
-            sink(std::move(answer));
+            sink_(std::move(answer));
         }
-        sink = nullptr;
+        sink_ = nullptr;
     }
 
 private:
-    Sink sink;
-    std::atomic<bool> given{false};
+    Sink sink_;
+    std::atomic<bool> given_{false};
 };
 
 Reply::Reply(Sink sink)
-    : state(std::make_shared<State>(std::move(sink))) {}
+    : state_(std::make_shared<State>(std::move(sink))) {}
 
 void Reply::give(Result<QJsonValue> answer) const {
-    state->give(std::move(answer));
+    state_->give(std::move(answer));
 }
 
 } // namespace hermes

@@ -22,7 +22,7 @@ public:
 
 private:
     class State;
-    std::shared_ptr<State> state;
+    std::shared_ptr<State> state_;
 };
 
 } // namespace hermes

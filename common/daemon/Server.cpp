@@ -30,26 +30,26 @@ void addSession(QJsonObject &sums, Session &session) {
 
 Server::Server(const CommandRegistry &registry, TopicHub &hub, QObject *parent)
     : QObject(parent)
-    , commands(registry)
-    , topics(hub)
-    , gapWatch(this) {
-    connect(&gapWatch, &GapWatch::looked, this, [this] {
-        for (Session *session : qAsConst(sessions))
+    , commands_(registry)
+    , topics_(hub)
+    , gapWatch_(this) {
+    connect(&gapWatch_, &GapWatch::looked, this, [this] {
+        for (Session *session : qAsConst(sessions_))
             session->becomeFresh();
     });
-    idleTimer.setInterval(1000);
-    connect(&idleTimer, &QTimer::timeout, this, [this] {
-        const auto all = sessions.values();
+    idleTimer_.setInterval(1000);
+    connect(&idleTimer_, &QTimer::timeout, this, [this] {
+        const auto all = sessions_.values();
         for (Session *session : all)
             session->checkIdle();
     });
-    idleTimer.start();
+    idleTimer_.start();
 }
 
 void Server::setLimits(const SessionLimits &session, int clients) {
-    limits = session;
-    clientLimit = clients;
-    idleTimer.setInterval(limits.idle_s > 0 && limits.idle_s < 4 ? int(limits.idle_s * 250) + 1 : 1000);
+    limits_ = session;
+    clientLimit_ = clients;
+    idleTimer_.setInterval(limits_.idle_s > 0 && limits_.idle_s < 4 ? int(limits_.idle_s * 250) + 1 : 1000);
 }
 
 Result<void> Server::listen(const QString &text, bool insecure) {
@@ -79,61 +79,62 @@ Result<void> Server::listen(const QString &text, bool insecure) {
         delete *listener;
         return listening;
     }
-    listeners.append(*listener);
+    listeners_.append(*listener);
     logInfo(source,
             QStringLiteral("listening on %1, protocol %2").arg((*listener)->address(), url->protocol()));
     return {};
 }
 
 void Server::close() {
-    for (Listener *listener : qAsConst(listeners))
+    for (Listener *listener : qAsConst(listeners_))
         listener->close();
-    const auto all = sessions.values();
+    const auto all = sessions_.values();
     for (Session *session : all)
         session->close(QStringLiteral("the daemon is stopping"));
 }
 
 QStringList Server::addresses() const {
     QStringList result;
-    for (const Listener *listener : listeners)
+    for (const Listener *listener : listeners_)
         result.append(listener->address());
     return result;
 }
 
 QJsonObject Server::counters() const {
-    QJsonObject sums = past;
-    for (Session *session : sessions)
+    QJsonObject sums = past_;
+    for (Session *session : sessions_)
         addSession(sums, *session);
-    sums.insert(QStringLiteral("clients"), sessions.size());
-    sums.insert(QStringLiteral("clients_in_all"), double(lastId));
+    sums.insert(QStringLiteral("clients"), sessions_.size());
+    sums.insert(QStringLiteral("clients_in_all"), double(lastId_));
     sums.insert(QStringLiteral("clients_in_kept_places"), restricted().size());
-    sums.insert(QStringLiteral("clients_turned_away"), double(turnedAway));
+    sums.insert(QStringLiteral("clients_turned_away"), double(turnedAway_));
     return sums;
 }
 
 void Server::accept(Interface *peer, const QString &protocol) {
     auto *channel = new Channel(peer, makeCodec(protocol), this);
-    auto *session = new Session(++lastId, channel, commands, limits, gapWatch, this);
+    auto *session = new Session(++lastId_, channel, commands_, limits_, gapWatch_, this);
     if (!mayStay(session)) {
         turnAway(session, session->restriction());
         return session->deleteLater();
     }
-    sessions.insert(session->id(), session);
+    sessions_.insert(session->id(), session);
     connect(session, &Session::closed, this,
             [this, session](const QString &reason) { remove(session, reason); });
 }
 
 bool Server::mayStay(Session *session) {
-    if (places() < clientLimit)
+    if (places() < clientLimit_)
         return true;
-    session->restrictTo(QStringLiteral("%1 clients are connected already (limits.clients)").arg(clientLimit));
+    session->restrictTo(
+        QStringLiteral("%1 clients are connected already (limits.clients)").arg(clientLimit_));
     return makeKeptPlace();
 }
 
 // A stop has to find a place however many take one and are silent: whoever was silent for the longest time
 // goes.
 bool Server::makeKeptPlace() {
-    if (commands.urgent().isEmpty())
+    if (commands_.urgent().isEmpty())
         return false;
     const QVector<Session *> all = restricted();
     if (all.size() < keptPlaces)
@@ -146,13 +147,13 @@ bool Server::makeKeptPlace() {
 }
 
 void Server::turnAway(Session *session, const QString &reason) {
-    ++turnedAway;
+    ++turnedAway_;
     // Many may come; a record of each would bury all others.
-    if (const double now = monotonicNow(); now - turnAwayTold > 1) {
-        turnAwayTold = now;
+    if (const double now = monotonicNow(); now - turnAwayTold_ > 1) {
+        turnAwayTold_ = now;
         logWarning(
             source,
-            QStringLiteral("%1 turned away: %2; %3 in all").arg(session->name(), reason).arg(turnedAway));
+            QStringLiteral("%1 turned away: %2; %3 in all").arg(session->name(), reason).arg(turnedAway_));
     }
     session->refuse(RpcError(ErrorCode::OverLimit, reason));
     session->close(reason);
@@ -160,7 +161,7 @@ void Server::turnAway(Session *session, const QString &reason) {
 
 QVector<Session *> Server::restricted() const {
     QVector<Session *> result;
-    std::copy_if(sessions.begin(), sessions.end(), std::back_inserter(result),
+    std::copy_if(sessions_.begin(), sessions_.end(), std::back_inserter(result),
                  [](Session *session) { return session->isRestricted(); });
     return result;
 }
@@ -168,16 +169,16 @@ QVector<Session *> Server::restricted() const {
 // The first who came to a kept place gets one that has become free.
 void Server::givePlaces() {
     for (Session *session : restricted())
-        if (places() < clientLimit)
+        if (places() < clientLimit_)
             session->restrictTo(QString());
 }
 
 void Server::remove(Session *session, const QString &reason) {
-    if (sessions.remove(session->id()) == 0)
+    if (sessions_.remove(session->id()) == 0)
         return;
     logDebug(source, QStringLiteral("client %1 gone: %2").arg(session->name(), reason));
-    addSession(past, *session);
-    topics.forget(&session->topics());
+    addSession(past_, *session);
+    topics_.forget(&session->topics());
     session->deleteLater();
     givePlaces();
     Q_EMIT clientGone(session->id());

@@ -30,8 +30,8 @@ public:
 
     /// Where it listens, with actual ports.
     QStringList addresses() const;
-    Session *session(quint64 id) const { return sessions.value(id); }
-    GapWatch &gaps() { return gapWatch; }
+    Session *session(quint64 id) const { return sessions_.value(id); }
+    GapWatch &gaps() { return gapWatch_; }
     /// Clients now and in all, requests, errors, damaged and oversized frames, dropped topic messages,
     /// clients closed at a limit or turned away.
     QJsonObject counters() const;
@@ -46,22 +46,22 @@ private:
     bool makeKeptPlace();
     void turnAway(Session *session, const QString &reason);
     QVector<Session *> restricted() const;
-    int places() const { return sessions.size() - restricted().size(); }
+    int places() const { return sessions_.size() - restricted().size(); }
     void givePlaces();
     void remove(Session *session, const QString &reason);
 
-    const CommandRegistry &commands;
-    TopicHub &topics;
-    GapWatch gapWatch;
-    SessionLimits limits;
-    int clientLimit = 16;
-    QVector<Listener *> listeners;
-    QMap<quint64, Session *> sessions;
-    quint64 lastId = 0;
-    quint64 turnedAway = 0;
-    double turnAwayTold = 0; // monotonic
-    QJsonObject past;        // the sums of clients that have gone
-    QTimer idleTimer;
+    const CommandRegistry &commands_;
+    TopicHub &topics_;
+    GapWatch gapWatch_;
+    SessionLimits limits_;
+    int clientLimit_ = 16;
+    QVector<Listener *> listeners_;
+    QMap<quint64, Session *> sessions_;
+    quint64 lastId_ = 0;
+    quint64 turnedAway_ = 0;
+    double turnAwayTold_ = 0; // monotonic
+    QJsonObject past_;        // the sums of clients that have gone
+    QTimer idleTimer_;
 };
 
 } // namespace hermes

@@ -36,41 +36,41 @@ void countValues(const QJsonValue &value, int &left) {
 Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registry,
                  const SessionLimits &theLimits, GapWatch &watch, QObject *parent)
     : QObject(parent)
-    , number(id)
-    , channel(theChannel)
-    , commands(registry)
-    , limits(theLimits)
-    , gaps(watch)
-    , queue(*channel, limits.topicBytes, this)
-    , lastSign(monotonicNow()) {
-    channel->setParent(this);
-    channel->codec().setFrameLimit(limits.frameBytes);
-    channel->setLargeFrame(largeFrameBytes);
-    if (!commands.urgent().isEmpty())
-        channel->setUrgent([this](const QByteArray &frame) { return isUrgent(frame); });
+    , number_(id)
+    , channel_(theChannel)
+    , commands_(registry)
+    , limits_(theLimits)
+    , gaps_(watch)
+    , queue_(*channel_, limits_.topicBytes, this)
+    , lastSign_(monotonicNow()) {
+    channel_->setParent(this);
+    channel_->codec().setFrameLimit(limits_.frameBytes);
+    channel_->setLargeFrame(largeFrameBytes);
+    if (!commands_.urgent().isEmpty())
+        channel_->setUrgent([this](const QByteArray &frame) { return isUrgent(frame); });
     // It may have come, and spoken, while the program stood still.
-    gaps.look();
-    freshFor = gaps.sinceLast() < settling_s ? 0 : gaps.count();
-    connect(channel, &Channel::message, this, &Session::receive);
-    connect(channel, &Channel::malformed, this, &Session::refuse);
-    connect(channel, &Channel::closed, this, &Session::end);
-    connect(&channel->interface(), &Interface::closed, this, &Session::updateReceiving);
-    connect(&channel->interface(), &Interface::received, this, [this] { lastSign = monotonicNow(); });
-    connect(&channel->interface(), &Interface::drained, this, [this] { lastSign = monotonicNow(); });
+    gaps_.look();
+    freshFor_ = gaps_.sinceLast() < settling_s ? 0 : gaps_.count();
+    connect(channel_, &Channel::message, this, &Session::receive);
+    connect(channel_, &Channel::malformed, this, &Session::refuse);
+    connect(channel_, &Channel::closed, this, &Session::end);
+    connect(&channel_->interface(), &Interface::closed, this, &Session::updateReceiving);
+    connect(&channel_->interface(), &Interface::received, this, [this] { lastSign_ = monotonicNow(); });
+    connect(&channel_->interface(), &Interface::drained, this, [this] { lastSign_ = monotonicNow(); });
 }
 
 void Session::checkIdle() {
-    const bool waitsForTopics = !queue.isEmpty() && channel->interface().bytesToWrite() == 0;
-    if (limits.idle_s > 0 && !waitsForTopics && monotonicNow() - lastSign > limits.idle_s)
-        expel(QStringLiteral("no sign of life for %1 s").arg(limits.idle_s));
+    const bool waitsForTopics = !queue_.isEmpty() && channel_->interface().bytesToWrite() == 0;
+    if (limits_.idle_s > 0 && !waitsForTopics && monotonicNow() - lastSign_ > limits_.idle_s)
+        expel(QStringLiteral("no sign of life for %1 s").arg(limits_.idle_s));
 }
 
 void Session::close(const QString &reason) {
-    batch.reset(); // nobody wants the rest
-    if (ended)
-        Q_EMIT closed(*std::exchange(ended, std::nullopt));
+    batch_.reset(); // nobody wants the rest
+    if (ended_)
+        Q_EMIT closed(*std::exchange(ended_, std::nullopt));
     else
-        channel->close(reason);
+        channel_->close(reason);
 }
 
 void Session::expel(const QString &reason) {
@@ -79,74 +79,74 @@ void Session::expel(const QString &reason) {
 }
 
 void Session::end(const QString &reason) {
-    if (!batch)
+    if (!batch_)
         Q_EMIT closed(reason);
     else
-        ended = reason;
+        ended_ = reason;
 }
 
 void Session::refuse(const RpcError &error) {
-    ++counts.errors;
+    ++counts_.errors;
     send(makeError(QJsonValue(), error));
 }
 
 void Session::becomeFresh() {
-    if (freshFor != gaps.count() && gaps.sinceLast() >= settling_s && !batch && channel->isQuiet())
-        freshFor = gaps.count();
+    if (freshFor_ != gaps_.count() && gaps_.sinceLast() >= settling_s && !batch_ && channel_->isQuiet())
+        freshFor_ = gaps_.count();
 }
 
 bool Session::isUrgent(const RpcMessage &message) const {
     const auto *request = std::get_if<RpcRequest>(&message);
-    const Command *command = request ? commands.find(request->method) : nullptr;
+    const Command *command = request ? commands_.find(request->method) : nullptr;
     return command && command->isUrgent();
 }
 
 bool Session::isUrgent(const QByteArray &frame) const {
-    if (frame.size() > largestUrgentBytes || pendingStops >= limits.pending)
+    if (frame.size() > largestUrgentBytes || pendingStops_ >= limits_.pending)
         return false;
     const auto isNamed = [&frame](const QString &name) { return frame.contains(name.toUtf8()); };
     // A name may be written with escapes, too.
-    if (!frame.contains('\\') && std::none_of(commands.urgent().begin(), commands.urgent().end(), isNamed))
+    if (!frame.contains('\\') && std::none_of(commands_.urgent().begin(), commands_.urgent().end(), isNamed))
         return false;
-    const CodecItem item = channel->codec().read({frame, std::nullopt});
+    const CodecItem item = channel_->codec().read({frame, std::nullopt});
     return item.message.isObject() && isUrgent(readFrame(item.message).messages.front());
 }
 
 void Session::receive(const QJsonValue &value) {
     if (value.isArray() && !value.toArray().isEmpty())
         return begin(value.toArray());
-    process(readFrame(value).messages.front(), channel->arrived(), [this](const QJsonValue &reply) {
+    process(readFrame(value).messages.front(), channel_->arrived(), [this](const QJsonValue &reply) {
         if (!reply.isUndefined())
             send(reply);
     });
 }
 
 void Session::begin(const QJsonArray &messages) {
-    if (messages.size() > limits.batch) {
+    if (messages.size() > limits_.batch) {
         return refuse(
             RpcError(ErrorCode::OverLimit, QStringLiteral("a batch of %1 messages; at most %2 are allowed")
                                                .arg(messages.size())
-                                               .arg(limits.batch)));
+                                               .arg(limits_.batch)));
     }
-    batch = std::make_shared<Batch>(messages, channel->arrived());
+    batch_ = std::make_shared<Batch>(messages, channel_->arrived());
     updateReceiving();
 }
 
 bool Session::runNextOfBatch() {
-    batchInTurns = false;
-    if (!batch || isOverPending())
+    batchInTurns_ = false;
+    if (!batch_ || isOverPending())
         return false;
-    const std::shared_ptr<Batch> now = batch;
+    const std::shared_ptr<Batch> now = batch_;
     const int i = now->takeNext();
     const QPointer<Session> alive(this);
     const RpcMessage message = readFrame(QJsonArray{now->message(i)}).messages.front();
     process(message, now->arrived, [this, now, i](const QJsonValue &reply) {
         QByteArray frame;
         if (!reply.isUndefined()) {
-            EncodedFrame encoded = channel->codec().encode(reply);
+            EncodedFrame encoded = channel_->codec().encode(reply);
             if (encoded.error) {
-                ++counts.errors;
-                encoded = channel->codec().encode(
+                ++counts_.errors;
+                encoded = channel_->codec().encode(
                     makeError(reply.toObject().value(QStringLiteral("id")), *encoded.error));
             }
             frame = encoded.bytes;
@@ -155,12 +155,12 @@ bool Session::runNextOfBatch() {
         if (now->isDone())
             finish(now);
     });
-    if (!alive || batch != now)
+    if (!alive || batch_ != now)
         return false;
     if (now->isBegun()) {
-        batch.reset();
-        if (ended)
-            Q_EMIT closed(*std::exchange(ended, std::nullopt));
+        batch_.reset();
+        if (ended_)
+            Q_EMIT closed(*std::exchange(ended_, std::nullopt));
     }
     if (alive)
         updateReceiving();
@@ -175,35 +175,35 @@ void Session::finish(const std::shared_ptr<Batch> &done) {
     }
     if (!makeRoom())
         return;
-    for (const QByteArray &piece : done->take(channel->codec()))
-        channel->interface().write(piece);
+    for (const QByteArray &piece : done->take(channel_->codec()))
+        channel_->interface().write(piece);
 }
 
 void Session::process(const RpcMessage &message, double arrived, const Answer &answer) {
     if (const auto *request = std::get_if<RpcRequest>(&message)) {
         run(*request, arrived, answer);
     } else if (const auto *invalid = std::get_if<RpcInvalid>(&message)) {
-        ++counts.errors;
+        ++counts_.errors;
         answer(makeError(invalid->id, invalid->error));
     } else {
-        ++counts.ignored;
+        ++counts_.ignored;
         answer(QJsonValue::Undefined);
     }
 }
 
 std::optional<Error> Session::refusal(const RpcRequest &request) const {
-    const Command *command = commands.find(request.method);
+    const Command *command = commands_.find(request.method);
     if (isRestricted() && !(command && command->isUrgent())) {
-        return Error(ErrorCode::OverLimit, restrictedFor + QStringLiteral("; this place is kept for ") +
-                                               commands.urgent().join(QStringLiteral(" and ")));
+        return Error(ErrorCode::OverLimit, restrictedFor_ + QStringLiteral("; this place is kept for ") +
+                                               commands_.urgent().join(QStringLiteral(" and ")));
     }
-    if (command && command->needsFresh() && freshFor != gaps.count()) {
+    if (command && command->needsFresh() && freshFor_ != gaps_.count()) {
         return Error(ErrorCode::NotReady,
-                     gaps.text() + QStringLiteral("; what was received in that time is void"));
+                     gaps_.text() + QStringLiteral("; what was received in that time is void"));
     }
     int left = mostValues;
     countValues(request.params, left);
-    if (left < 0 && !commands.urgent().isEmpty()) {
+    if (left < 0 && !commands_.urgent().isEmpty()) {
         return Error(ErrorCode::OverLimit,
                      QStringLiteral("the parameters hold more than %1 values").arg(mostValues));
     }
@@ -211,10 +211,10 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
 }
 
 void Session::run(const RpcRequest &request, double arrived, const Answer &answer) {
-    ++counts.requests;
-    gaps.look();
+    ++counts_.requests;
+    gaps_.look();
     Call call;
-    call.client = number;
+    call.client = number_;
     call.clientName = name();
     call.time = arrived;
     const bool isStop = isUrgent(RpcMessage(request));
@@ -226,14 +226,14 @@ void Session::run(const RpcRequest &request, double arrived, const Answer &answe
             if (!alive)
                 return;
             const auto give = [this, alive, isStop, id, answer, result] {
-                --(isStop ? pendingStops : pending);
-                counts.errors += !result.ok();
+                --(isStop ? pendingStops_ : pending_);
+                counts_.errors += !result.ok();
                 if (id.isUndefined())
                     answer(QJsonValue::Undefined);
                 else
                     answer(result ? makeResult(id, *result) : makeError(id, result.error()));
                 if (alive && isStop)
-                    channel->interface().flush();
+                    channel_->interface().flush();
                 if (alive)
                     updateReceiving();
                 return false;
@@ -243,35 +243,35 @@ void Session::run(const RpcRequest &request, double arrived, const Answer &answe
             else
                 Turns::ofThread().add(this, give);
         });
-    ++(isStop ? pendingStops : pending);
+    ++(isStop ? pendingStops_ : pending_);
     if (const auto refused = refusal(request))
         reply.error(*refused);
     else
-        commands.execute(request, call, reply);
+        commands_.execute(request, call, reply);
     *atOnce = false;
     if (alive)
         updateReceiving();
 }
 
 bool Session::isOverPending() const {
-    return std::max(pending, pendingStops) >= limits.pending && channel->isOpen();
+    return std::max(pending_, pendingStops_) >= limits_.pending && channel_->isOpen();
 }
 
 void Session::updateReceiving() {
-    channel->setReceiving(!batch && !isOverPending());
-    if (!batch || batchInTurns || isOverPending())
+    channel_->setReceiving(!batch_ && !isOverPending());
+    if (!batch_ || batchInTurns_ || isOverPending())
         return;
-    batchInTurns = true;
+    batchInTurns_ = true;
     Turns::ofThread().add(this, [this] { return runNextOfBatch(); });
 }
 
 bool Session::makeRoom() {
-    if (!channel->isOpen())
+    if (!channel_->isOpen())
         return false;
-    Interface &carrier = channel->interface();
-    if (carrier.bytesToWrite() > limits.replyBytes)
+    Interface &carrier = channel_->interface();
+    if (carrier.bytesToWrite() > limits_.replyBytes)
         carrier.flush();
-    if (carrier.bytesToWrite() <= limits.replyBytes)
+    if (carrier.bytesToWrite() <= limits_.replyBytes)
         return true;
     expel(QStringLiteral("does not read its replies: %1 bytes are unsent (limits.reply_bytes)")
               .arg(carrier.bytesToWrite()));
@@ -281,12 +281,12 @@ bool Session::makeRoom() {
 void Session::send(const QJsonValue &reply) {
     if (!makeRoom())
         return;
-    const auto sent = channel->send(reply);
+    const auto sent = channel_->send(reply);
     if (sent)
         return;
     logError(name(), QStringLiteral("reply not sent: ") + sent.error().message);
-    ++counts.errors;
-    channel->send(makeError(reply.toObject().value(QStringLiteral("id")), sent.error()));
+    ++counts_.errors;
+    channel_->send(makeError(reply.toObject().value(QStringLiteral("id")), sent.error()));
 }
 
 } // namespace hermes

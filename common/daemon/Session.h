@@ -36,24 +36,24 @@ public:
     Session(quint64 id, Channel *channel, const CommandRegistry &commands, const SessionLimits &limits,
             GapWatch &gaps, QObject *parent);
 
-    quint64 id() const { return number; }
-    QString name() const { return channel->interface().name(); }
-    TopicQueue &topics() { return queue; }
-    const SessionCounters &counters() const { return counts; }
-    const CodecCounters &codecCounters() const { return channel->codec().counters(); }
+    quint64 id() const { return number_; }
+    QString name() const { return channel_->interface().name(); }
+    TopicQueue &topics() { return queue_; }
+    const SessionCounters &counters() const { return counts_; }
+    const CodecCounters &codecCounters() const { return channel_->codec().counters(); }
     /// Closes it when it has been silent for too long.
     void checkIdle();
     /// When bytes came or went last; monotonic.
-    double lastSignOfLife() const { return lastSign; }
+    double lastSignOfLife() const { return lastSign_; }
     void close(const QString &reason);
     /// The same, with the reason in the log.
     void expel(const QString &reason);
     /// Sends an error that answers no request, as to a client that may not stay.
     void refuse(const RpcError &error);
     /// From now on it may only call urgent commands; empty: all.
-    void restrictTo(const QString &reason) { restrictedFor = reason; }
-    bool isRestricted() const { return !restrictedFor.isEmpty(); }
-    const QString &restriction() const { return restrictedFor; }
+    void restrictTo(const QString &reason) { restrictedFor_ = reason; }
+    bool isRestricted() const { return !restrictedFor_.isEmpty(); }
+    const QString &restriction() const { return restrictedFor_; }
     /// After a gap: what comes from now on is new, when nothing of the old is on its way.
     void becomeFresh();
 
@@ -78,21 +78,21 @@ private:
     bool makeRoom();
     void send(const QJsonValue &reply);
 
-    const quint64 number;
-    Channel *channel;
-    const CommandRegistry &commands;
-    const SessionLimits limits;
-    GapWatch &gaps;
-    TopicQueue queue;
-    SessionCounters counts;
-    double lastSign = 0;          // monotonic: bytes came or went
-    int pending = 0;              // requests not yet answered
-    int pendingStops = 0;         // the same, of urgent commands
-    std::shared_ptr<Batch> batch; // not all of it has been begun
-    bool batchInTurns = false;    // it gets its turns
-    std::optional<QString> ended; // closed, with a batch that is still to be run
-    QString restrictedFor;
-    quint64 freshFor; // the count of gaps up to which it is
+    const quint64 number_;
+    Channel *channel_;
+    const CommandRegistry &commands_;
+    const SessionLimits limits_;
+    GapWatch &gaps_;
+    TopicQueue queue_;
+    SessionCounters counts_;
+    double lastSign_ = 0;          // monotonic: bytes came or went
+    int pending_ = 0;              // requests not yet answered
+    int pendingStops_ = 0;         // the same, of urgent commands
+    std::shared_ptr<Batch> batch_; // not all of it has been begun
+    bool batchInTurns_ = false;    // it gets its turns
+    std::optional<QString> ended_; // closed, with a batch that is still to be run
+    QString restrictedFor_;
+    quint64 freshFor_; // the count of gaps up to which it is
 };
 
 } // namespace hermes

@@ -16,12 +16,12 @@ public:
     using SnapshotParts = std::function<Outgoing(qint64 &cursor)>;
 
     Topic(const QString &name, const QString &summary)
-        : topicName(name)
-        , topicSummary(summary) {}
+        : topicName_(name)
+        , topicSummary_(summary) {}
 
     /// The JSON Schema of the data.
     Topic &schema(const QJsonObject &dataSchema) {
-        content = dataSchema;
+        content_ = dataSchema;
         return *this;
     }
     /// The struct, with fields, that its data are.
@@ -31,30 +31,30 @@ public:
     }
     /// Gives the full state with which a subscription begins; nothing: there is none as yet.
     Topic &snapshot(const Snapshot &function) {
-        state = function;
+        state_ = function;
         return *this;
     }
 
     /// For a state that may be large. Changes are published between the parts: a part has what is true when
     /// it is asked for.
     Topic &snapshotParts(const SnapshotParts &function) {
-        parts = function;
+        parts_ = function;
         return *this;
     }
 
-    const QString &name() const { return topicName; }
-    const Snapshot &snapshot() const { return state; }
-    const SnapshotParts &snapshotParts() const { return parts; }
+    const QString &name() const { return topicName_; }
+    const Snapshot &snapshot() const { return state_; }
+    const SnapshotParts &snapshotParts() const { return parts_; }
     TopicDescription description() const {
-        return {topicName, topicSummary, content, bool(state) || bool(parts)};
+        return {topicName_, topicSummary_, content_, bool(state_) || bool(parts_)};
     }
 
 private:
-    QString topicName;
-    QString topicSummary;
-    QJsonObject content;
-    Snapshot state;
-    SnapshotParts parts;
+    QString topicName_;
+    QString topicSummary_;
+    QJsonObject content_;
+    Snapshot state_;
+    SnapshotParts parts_;
 };
 
 } // namespace hermes

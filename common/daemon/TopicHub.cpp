@@ -9,20 +9,20 @@
 namespace hermes {
 
 bool TopicHub::hasSubscribers(const QString &topic) const {
-    const auto entry = topics.constFind(topic);
-    return entry != topics.constEnd() && !entry->queues.isEmpty();
+    const auto entry = topics_.constFind(topic);
+    return entry != topics_.constEnd() && !entry->queues.isEmpty();
 }
 
 bool TopicHub::hasRoom(const QString &topic) const {
-    const auto entry = topics.constFind(topic);
-    return entry == topics.constEnd() ||
+    const auto entry = topics_.constFind(topic);
+    return entry == topics_.constEnd() ||
            std::all_of(entry->queues.begin(), entry->queues.end(),
                        [&topic](TopicQueue *queue) { return queue->hasRoom(topic); });
 }
 
 void TopicHub::publish(const QString &topic, const std::function<Outgoing()> &make, double stamp) {
-    const auto entry = topics.find(topic);
-    if (entry == topics.end())
+    const auto entry = topics_.find(topic);
+    if (entry == topics_.end())
         return logError(QStringLiteral("topics"),
                         QStringLiteral("published \"%1\", which is not declared").arg(topic));
     ++entry->seq;
@@ -36,13 +36,13 @@ void TopicHub::publish(const QString &topic, const std::function<Outgoing()> &ma
 
 Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions &options,
                                     TopicQueue *queue) {
-    const auto entry = topics.find(topic);
-    if (entry == topics.end()) {
-        const QStringList known = topics.keys();
+    const auto entry = topics_.find(topic);
+    if (entry == topics_.end()) {
+        const QStringList known = topics_.keys();
         return Error(ErrorCode::NoSuchTopic, QStringLiteral("no topic \"%1\"; there is %2")
                                                  .arg(topic.left(80), known.join(QStringLiteral(", "))));
     }
-    const quint64 id = ++lastId;
+    const quint64 id = ++lastId_;
     queue->add(id, topic, options);
     if (!entry->queues.contains(queue))
         entry->queues.append(queue);
@@ -55,7 +55,7 @@ Result<quint64> TopicHub::subscribe(const QString &topic, const SubscribeOptions
 }
 
 void TopicHub::sendSnapshot(const QString &topic, quint64 id, TopicQueue *queue) const {
-    const Entry &entry = *topics.constFind(topic);
+    const Entry &entry = *topics_.constFind(topic);
     if (entry.topic.snapshotParts())
         return queue->stream(topic, id, partsOf(topic));
     const Outgoing state = entry.topic.snapshot()();
@@ -67,14 +67,14 @@ TopicQueue::Parts TopicHub::partsOf(const QString &topic) const {
     return [this, topic, cursor = qint64(0)]() mutable -> std::optional<TopicMessage> {
         if (cursor < 0)
             return std::nullopt;
-        const Entry &entry = *topics.constFind(topic);
+        const Entry &entry = *topics_.constFind(topic);
         const Outgoing part = entry.topic.snapshotParts()(cursor);
         return TopicMessage{topic, entry.seq, stampNow(), part};
     };
 }
 
 void TopicHub::publishSnapshot(const QString &topic) {
-    const auto entry = topics.find(topic);
+    const auto entry = topics_.find(topic);
     ++entry->seq;
     const auto queues = entry->queues;
     for (TopicQueue *queue : queues)
@@ -84,18 +84,18 @@ void TopicHub::publishSnapshot(const QString &topic) {
 bool TopicHub::unsubscribe(quint64 id, TopicQueue *queue) {
     const auto topic = queue->remove(id);
     if (topic && !queue->wants(*topic))
-        topics.find(*topic)->queues.removeAll(queue);
+        topics_.find(*topic)->queues.removeAll(queue);
     return topic.has_value();
 }
 
 void TopicHub::forget(TopicQueue *queue) {
-    for (Entry &entry : topics)
+    for (Entry &entry : topics_)
         entry.queues.removeAll(queue);
 }
 
 std::vector<TopicDescription> TopicHub::description() const {
     std::vector<TopicDescription> list;
-    for (const Entry &entry : topics)
+    for (const Entry &entry : topics_)
         list.push_back(entry.topic.description());
     return list;
 }

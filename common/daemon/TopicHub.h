@@ -17,7 +17,7 @@ public:
     explicit TopicHub(QObject *parent)
         : QObject(parent) {}
 
-    void declare(const Topic &topic) { topics.insert(topic.name(), {topic, 0, {}}); }
+    void declare(const Topic &topic) { topics_.insert(topic.name(), {topic, 0, {}}); }
 
     /// Ask before building costly data.
     bool hasSubscribers(const QString &topic) const;
@@ -48,8 +48,8 @@ private:
 
     TopicQueue::Parts partsOf(const QString &topic) const;
 
-    QMap<QString, Entry> topics;
-    quint64 lastId = 0;
+    QMap<QString, Entry> topics_;
+    quint64 lastId_ = 0;
 };
 
 } // namespace hermes

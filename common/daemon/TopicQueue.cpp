@@ -24,12 +24,12 @@ const EncodedFrame &TopicMessage::frame(Codec &codec) const {
 
 TopicQueue::TopicQueue(Channel &target, qint64 limit, QObject *parent)
     : QObject(parent)
-    , channel(target)
-    , byteLimit(limit) {
-    rateTimer.setSingleShot(true);
-    rateTimer.setTimerType(Qt::PreciseTimer);
-    connect(&rateTimer, &QTimer::timeout, this, &TopicQueue::releaseHeld);
-    connect(&channel.interface(), &Interface::drained, this, &TopicQueue::flush);
+    , channel_(target)
+    , byteLimit_(limit) {
+    rateTimer_.setSingleShot(true);
+    rateTimer_.setTimerType(Qt::PreciseTimer);
+    connect(&rateTimer_, &QTimer::timeout, this, &TopicQueue::releaseHeld);
+    connect(&channel_.interface(), &Interface::drained, this, &TopicQueue::flush);
 }
 
 void TopicQueue::add(quint64 id, const QString &topic, const SubscribeOptions &options) {
@@ -37,38 +37,38 @@ void TopicQueue::add(quint64 id, const QString &topic, const SubscribeOptions &o
     subscription.id = id;
     subscription.topic = topic;
     subscription.options = options;
-    subscriptions.push_back(std::move(subscription));
+    subscriptions_.push_back(std::move(subscription));
 }
 
 std::optional<QString> TopicQueue::remove(quint64 id) {
-    const auto found = std::find_if(subscriptions.begin(), subscriptions.end(),
+    const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(),
                                     [id](const Subscription &one) { return one.id == id; });
-    if (found == subscriptions.end())
+    if (found == subscriptions_.end())
         return std::nullopt;
     const QString topic = found->topic;
-    subscriptions.erase(found);
-    const auto gone = std::remove_if(frames.begin(), frames.end(), [this, id](const Frame &frame) {
-        frameBytes -= frame.subscription == id ? frame.bytes.size() : 0;
+    subscriptions_.erase(found);
+    const auto gone = std::remove_if(frames_.begin(), frames_.end(), [this, id](const Frame &frame) {
+        frameBytes_ -= frame.subscription == id ? frame.bytes.size() : 0;
         return frame.subscription == id;
     });
-    frames.erase(gone, frames.end());
+    frames_.erase(gone, frames_.end());
     return topic;
 }
 
 bool TopicQueue::wants(const QString &topic) const {
-    return std::any_of(subscriptions.begin(), subscriptions.end(),
+    return std::any_of(subscriptions_.begin(), subscriptions_.end(),
                        [&topic](const Subscription &one) { return one.topic == topic; });
 }
 
 bool TopicQueue::hasRoom(const QString &topic) const {
-    return frames.empty() ||
-           std::none_of(subscriptions.begin(), subscriptions.end(), [&topic](const Subscription &one) {
+    return frames_.empty() ||
+           std::none_of(subscriptions_.begin(), subscriptions_.end(), [&topic](const Subscription &one) {
                return one.topic == topic && one.options.queue > 1;
            });
 }
 
 void TopicQueue::offer(const TopicMessage &message, quint64 onlyTo) {
-    for (Subscription &subscription : subscriptions) {
+    for (Subscription &subscription : subscriptions_) {
         if (subscription.topic == message.topic && (onlyTo == 0 || subscription.id == onlyTo))
             accept(subscription, message);
     }
@@ -82,8 +82,8 @@ void TopicQueue::accept(Subscription &subscription, const TopicMessage &message)
     if (now < subscription.nextDue) {
         subscription.held = message;
         const int wait_ms = int(std::ceil((subscription.nextDue - now) * 1000));
-        if (!rateTimer.isActive() || rateTimer.remainingTime() > wait_ms)
-            rateTimer.start(wait_ms);
+        if (!rateTimer_.isActive() || rateTimer_.remainingTime() > wait_ms)
+            rateTimer_.start(wait_ms);
         return;
     }
     // A timer that is a little late does not lower the rate; after a pause the phase begins anew.
@@ -96,7 +96,7 @@ void TopicQueue::accept(Subscription &subscription, const TopicMessage &message)
 void TopicQueue::releaseHeld() {
     const double now = monotonicNow();
     double next = 0;
-    for (Subscription &subscription : subscriptions) {
+    for (Subscription &subscription : subscriptions_) {
         if (!subscription.held)
             continue;
         if (subscription.nextDue <= now)
@@ -105,45 +105,45 @@ void TopicQueue::releaseHeld() {
             next = next == 0 ? subscription.nextDue : std::min(next, subscription.nextDue);
     }
     if (next > 0)
-        rateTimer.start(int(std::ceil((next - now) * 1000)));
+        rateTimer_.start(int(std::ceil((next - now) * 1000)));
     flush();
 }
 
 void TopicQueue::enqueue(Subscription &subscription, const TopicMessage &message) {
     while (subscription.waiting >= subscription.options.queue)
         dropOldest(&subscription);
-    const EncodedFrame &frame = message.frame(channel.codec());
+    const EncodedFrame &frame = message.frame(channel_.codec());
     if (frame.error) {
         if (subscription.dropped++ == 0)
             logError(message.topic, frame.error->message);
-        ++droppedInAll;
+        ++droppedInAll_;
         return;
     }
-    frames.push_back({subscription.id,
-                      channel.codec().forSubscription(frame.bytes, subscription.id, subscription.dropped)});
-    frameBytes += frames.back().bytes.size();
+    frames_.push_back({subscription.id,
+                       channel_.codec().forSubscription(frame.bytes, subscription.id, subscription.dropped)});
+    frameBytes_ += frames_.back().bytes.size();
     ++subscription.waiting;
-    while (frameBytes > byteLimit && frames.size() > 1)
+    while (frameBytes_ > byteLimit_ && frames_.size() > 1)
         dropOldest(nullptr);
 }
 
 void TopicQueue::dropOldest(Subscription *of) {
-    const auto oldest = std::find_if(frames.begin(), frames.end(), [of](const Frame &frame) {
+    const auto oldest = std::find_if(frames_.begin(), frames_.end(), [of](const Frame &frame) {
         return !of || frame.subscription == of->id;
     });
-    if (oldest == frames.end())
+    if (oldest == frames_.end())
         return;
     if (Subscription *owner = find(oldest->subscription)) {
         --owner->waiting;
         ++owner->dropped;
     }
-    ++droppedInAll;
-    frameBytes -= oldest->bytes.size();
-    frames.erase(oldest);
+    ++droppedInAll_;
+    frameBytes_ -= oldest->bytes.size();
+    frames_.erase(oldest);
 }
 
 void TopicQueue::stream(const QString &topic, quint64 onlyTo, const Parts &parts) {
-    for (Subscription &subscription : subscriptions)
+    for (Subscription &subscription : subscriptions_)
         if (subscription.topic == topic && (onlyTo == 0 || subscription.id == onlyTo)) {
             subscription.parts = parts;
             subscription.held.reset(); // older than the series
@@ -154,15 +154,15 @@ void TopicQueue::stream(const QString &topic, quint64 onlyTo, const Parts &parts
 void TopicQueue::flush() {
     do
         writeFrames();
-    while (frames.empty() && hasSpace() && enqueueNextPart());
+    while (frames_.empty() && hasSpace() && enqueueNextPart());
 }
 
 bool TopicQueue::hasSpace() const {
-    return channel.isOpen() && channel.interface().bytesToWrite() < handOverBytes;
+    return channel_.isOpen() && channel_.interface().bytesToWrite() < handOverBytes;
 }
 
 bool TopicQueue::enqueueNextPart() {
-    for (Subscription &subscription : subscriptions) {
+    for (Subscription &subscription : subscriptions_) {
         if (!subscription.parts)
             continue;
         if (const auto part = subscription.parts()) {
@@ -175,15 +175,15 @@ bool TopicQueue::enqueueNextPart() {
 }
 
 void TopicQueue::writeFrames() {
-    while (!frames.empty() && hasSpace()) {
-        const Frame frame = std::move(frames.front());
-        frames.pop_front();
-        frameBytes -= frame.bytes.size();
+    while (!frames_.empty() && hasSpace()) {
+        const Frame frame = std::move(frames_.front());
+        frames_.pop_front();
+        frameBytes_ -= frame.bytes.size();
         Subscription *owner = find(frame.subscription);
         if (owner)
             --owner->waiting;
-        if (!channel.interface().write(frame.bytes)) {
-            ++droppedInAll;
+        if (!channel_.interface().write(frame.bytes)) {
+            ++droppedInAll_;
             if (owner)
                 ++owner->dropped;
         }
@@ -191,9 +191,9 @@ void TopicQueue::writeFrames() {
 }
 
 TopicQueue::Subscription *TopicQueue::find(quint64 id) {
-    const auto found = std::find_if(subscriptions.begin(), subscriptions.end(),
+    const auto found = std::find_if(subscriptions_.begin(), subscriptions_.end(),
                                     [id](const Subscription &one) { return one.id == id; });
-    return found == subscriptions.end() ? nullptr : &*found;
+    return found == subscriptions_.end() ? nullptr : &*found;
 }
 
 } // namespace hermes

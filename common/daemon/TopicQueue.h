@@ -50,14 +50,14 @@ public:
     bool wants(const QString &topic) const;
     /// False while messages wait for a reader of this topic who asked for a queue longer than one.
     bool hasRoom(const QString &topic) const;
-    bool isEmpty() const { return subscriptions.empty(); }
-    std::size_t size() const { return subscriptions.size(); } ///< subscriptions
+    bool isEmpty() const { return subscriptions_.empty(); }
+    std::size_t size() const { return subscriptions_.size(); } ///< subscriptions
     /// To every subscription of this topic; or to one of them.
     void offer(const TopicMessage &message, quint64 onlyTo = 0);
     /// A series to every subscription of this topic, or to one of them; in place of one that is on its way.
     /// Each part is asked for when the client has read those before: none is dropped.
     void stream(const QString &topic, quint64 onlyTo, const Parts &parts);
-    quint64 dropped() const { return droppedInAll; }
+    quint64 dropped() const { return droppedInAll_; }
 
 private:
     struct Subscription {
@@ -85,13 +85,13 @@ private:
     bool enqueueNextPart();
     Subscription *find(quint64 id);
 
-    Channel &channel;
-    const qint64 byteLimit;
-    std::vector<Subscription> subscriptions;
-    std::deque<Frame> frames;
-    qint64 frameBytes = 0;
-    quint64 droppedInAll = 0;
-    QTimer rateTimer;
+    Channel &channel_;
+    const qint64 byteLimit_;
+    std::vector<Subscription> subscriptions_;
+    std::deque<Frame> frames_;
+    qint64 frameBytes_ = 0;
+    quint64 droppedInAll_ = 0;
+    QTimer rateTimer_;
 };
 
 } // namespace hermes

@@ -28,26 +28,26 @@ void Farewell::say(int socket, QObject *parent) {
 
 Farewell::Farewell(int own, QObject *parent)
     : QObject(parent)
-    , descriptor(own)
-    , notifier(own, QSocketNotifier::Read) {
+    , descriptor_(own)
+    , notifier_(own, QSocketNotifier::Read) {
     ++number;
-    connect(&notifier, &QSocketNotifier::activated, this, &Farewell::drain);
-    connect(&limit, &QTimer::timeout, this, &QObject::deleteLater);
-    limit.setSingleShot(true);
-    limit.start(longest);
+    connect(&notifier_, &QSocketNotifier::activated, this, &Farewell::drain);
+    connect(&limit_, &QTimer::timeout, this, &QObject::deleteLater);
+    limit_.setSingleShot(true);
+    limit_.start(longest);
 }
 
 Farewell::~Farewell() {
     --number;
-    notifier.setEnabled(false);
-    ::close(descriptor);
+    notifier_.setEnabled(false);
+    ::close(descriptor_);
 }
 
 void Farewell::drain() {
     // TCP drops what MSG_TRUNC receives.
-    if (::recv(descriptor, nullptr, drainAtOnceBytes, MSG_TRUNC | MSG_DONTWAIT) > 0)
+    if (::recv(descriptor_, nullptr, drainAtOnceBytes, MSG_TRUNC | MSG_DONTWAIT) > 0)
         return;
-    notifier.setEnabled(false);
+    notifier_.setEnabled(false);
     deleteLater();
 }
 

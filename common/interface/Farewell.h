@@ -21,9 +21,9 @@ private:
 
     void drain();
 
-    const int descriptor;
-    QSocketNotifier notifier;
-    QTimer limit;
+    const int descriptor_;
+    QSocketNotifier notifier_;
+    QTimer limit_;
 };
 
 } // namespace hermes

@@ -25,14 +25,14 @@ public:
     /// Takes over inner.
     FaultyInterface(Interface *inner, const Faults &faults, QObject *parent);
 
-    QString name() const override { return QStringLiteral("faulty ") + inner->name(); }
-    bool isDatagram() const override { return inner->isDatagram(); }
-    qint64 bytesToWrite() const override { return inner->bytesToWrite(); }
-    quint64 faultCount() const { return faultsMade; } ///< drops and flips so far
+    QString name() const override { return QStringLiteral("faulty ") + inner_->name(); }
+    bool isDatagram() const override { return inner_->isDatagram(); }
+    qint64 bytesToWrite() const override { return inner_->bytesToWrite(); }
+    quint64 faultCount() const { return faultsMade_; } ///< drops and flips so far
 
 protected:
-    void doOpen() override { inner->open(); }
-    void doClose() override { inner->close(); }
+    void doOpen() override { inner_->open(); }
+    void doClose() override { inner_->close(); }
     bool doWrite(const QByteArray &bytes) override;
 
 private:
@@ -42,12 +42,12 @@ private:
     void pass(QByteArray bytes, const Delivery &deliver);
     void later(const QByteArray &bytes, const Delivery &deliver);
 
-    Interface *inner;
-    Faults faults;
-    std::mt19937 random;
-    quint64 faultsMade = 0;
-    std::deque<std::pair<QByteArray, Delivery>> waiting; // in order
-    double lastDue = 0; // monotonic; a later piece is never due before an earlier one
+    Interface *inner_;
+    Faults faults_;
+    std::mt19937 random_;
+    quint64 faultsMade_ = 0;
+    std::deque<std::pair<QByteArray, Delivery>> waiting_; // in order
+    double lastDue_ = 0; // monotonic; a later piece is never due before an earlier one
 };
 
 } // namespace hermes

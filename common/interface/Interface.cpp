@@ -13,66 +13,66 @@ constexpr std::chrono::milliseconds usualLongestRetry{5000};
 
 Interface::Interface(QObject *parent)
     : QObject(parent)
-    , nextRetry(firstRetry)
-    , longestRetry(usualLongestRetry) {
-    retry.setSingleShot(true);
-    connect(&retry, &QTimer::timeout, this, &Interface::open);
+    , nextRetry_(firstRetry)
+    , longestRetry_(usualLongestRetry) {
+    retry_.setSingleShot(true);
+    connect(&retry_, &QTimer::timeout, this, &Interface::open);
 }
 
 void Interface::open() {
-    retry.stop();
-    if (current != State::Closed)
+    retry_.stop();
+    if (current_ != State::Closed)
         return;
-    current = State::Opening;
+    current_ = State::Opening;
     doOpen();
 }
 
 void Interface::setLongestRetry(std::chrono::milliseconds pause) {
-    longestRetry = pause;
-    nextRetry = std::min(nextRetry, pause);
+    longestRetry_ = pause;
+    nextRetry_ = std::min(nextRetry_, pause);
 }
 
 void Interface::close(const QString &reason) {
-    retry.stop();
-    if (current == State::Closed)
+    retry_.stop();
+    if (current_ == State::Closed)
         return;
-    current = State::Closed;
+    current_ = State::Closed;
     doClose();
     Q_EMIT closed(reason);
 }
 
 bool Interface::write(const QByteArray &bytes) {
-    if (!isOpen() || bytesToWrite() + bytes.size() > writeLimit || !doWrite(bytes)) {
-        counts.refusedBytes += quint64(bytes.size());
+    if (!isOpen() || bytesToWrite() + bytes.size() > writeLimit_ || !doWrite(bytes)) {
+        counts_.refusedBytes += quint64(bytes.size());
         return false;
     }
-    counts.bytesOut += quint64(bytes.size());
+    counts_.bytesOut += quint64(bytes.size());
     return true;
 }
 
 void Interface::nowOpen() {
-    if (current != State::Opening)
+    if (current_ != State::Opening)
         return;
-    current = State::Open;
-    ++counts.opened;
-    nextRetry = std::min(firstRetry, longestRetry);
+    current_ = State::Open;
+    ++counts_.opened;
+    nextRetry_ = std::min(firstRetry, longestRetry_);
     Q_EMIT opened();
 }
 
 void Interface::nowClosed(const QString &reason, bool isError) {
-    if (current == State::Closed)
+    if (current_ == State::Closed)
         return;
-    current = State::Closed;
-    counts.errors += isError;
-    if (reconnecting) {
-        retry.start(nextRetry);
-        nextRetry = std::min(nextRetry * 2, longestRetry);
+    current_ = State::Closed;
+    counts_.errors += isError;
+    if (reconnecting_) {
+        retry_.start(nextRetry_);
+        nextRetry_ = std::min(nextRetry_ * 2, longestRetry_);
     }
     Q_EMIT closed(reason);
 }
 
 void Interface::nowReceived(const QByteArray &bytes) {
-    counts.bytesIn += quint64(bytes.size());
+    counts_.bytesIn += quint64(bytes.size());
     Q_EMIT received(bytes);
 }
 

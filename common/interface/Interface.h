@@ -34,8 +34,8 @@ public:
     /// wait.
     bool write(const QByteArray &bytes);
 
-    State state() const { return current; }
-    bool isOpen() const { return current == State::Open; }
+    State state() const { return current_; }
+    bool isOpen() const { return current_ == State::Open; }
     /// Who it speaks to, for messages: "tcp://127.0.0.1:7410".
     virtual QString name() const = 0;
     /// Whether each received() is one whole datagram.
@@ -44,7 +44,7 @@ public:
     virtual void flush() {}
     /// Bytes taken by write() and not yet given to the system.
     virtual qint64 bytesToWrite() const = 0;
-    const InterfaceCounters &counters() const { return counts; }
+    const InterfaceCounters &counters() const { return counts_; }
     /// Stops receiving, and goes on: meanwhile the sender waits. False: this carrier cannot.
     virtual bool setReceiving(bool on) {
         Q_UNUSED(on)
@@ -56,10 +56,10 @@ public:
     /// tell.
     virtual QMap<QString, quint64> systemErrors() const { return {}; }
 
-    void setReconnecting(bool on) { reconnecting = on; }
+    void setReconnecting(bool on) { reconnecting_ = on; }
     /// The pause between attempts grows up to this.
     void setLongestRetry(std::chrono::milliseconds pause);
-    void setWriteLimit(qint64 bytes) { writeLimit = bytes; }
+    void setWriteLimit(qint64 bytes) { writeLimit_ = bytes; }
 
 Q_SIGNALS:
     void opened();
@@ -83,12 +83,12 @@ protected:
     void nowReceived(const QByteArray &bytes);
 
 private:
-    State current = State::Closed;
-    bool reconnecting = false;
-    qint64 writeLimit = defaultWriteLimit;
-    InterfaceCounters counts;
-    QTimer retry;
-    std::chrono::milliseconds nextRetry, longestRetry;
+    State current_ = State::Closed;
+    bool reconnecting_ = false;
+    qint64 writeLimit_ = defaultWriteLimit;
+    InterfaceCounters counts_;
+    QTimer retry_;
+    std::chrono::milliseconds nextRetry_, longestRetry_;
 };
 
 } // namespace hermes

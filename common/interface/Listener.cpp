@@ -4,30 +4,30 @@ namespace hermes {
 
 SinglePeerListener::SinglePeerListener(Interface *onlyCarrier, QObject *parent)
     : Listener(parent)
-    , carrier(onlyCarrier) {
-    carrier->setParent(this);
+    , carrier_(onlyCarrier) {
+    carrier_->setParent(this);
 }
 
 Result<void> SinglePeerListener::listen() {
     QString failure;
     const auto connection =
-        connect(carrier, &Interface::closed, this, [&failure](const QString &reason) { failure = reason; });
-    carrier->open();
+        connect(carrier_, &Interface::closed, this, [&failure](const QString &reason) { failure = reason; });
+    carrier_->open();
     disconnect(connection);
     if (!failure.isEmpty())
         return Error(ErrorCode::InputOutput, failure);
-    lastAddress = carrier->name();
-    Q_EMIT accepted(carrier);
+    lastAddress_ = carrier_->name();
+    Q_EMIT accepted(carrier_);
     return {};
 }
 
 void SinglePeerListener::close() {
-    if (carrier)
-        carrier->close();
+    if (carrier_)
+        carrier_->close();
 }
 
 QString SinglePeerListener::address() const {
-    return lastAddress;
+    return lastAddress_;
 }
 
 } // namespace hermes

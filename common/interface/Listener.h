@@ -38,8 +38,8 @@ public:
     QString address() const override;
 
 private:
-    QPointer<Interface> carrier; // ends with the client it was given to
-    QString lastAddress;
+    QPointer<Interface> carrier_; // ends with the client it was given to
+    QString lastAddress_;
 };
 
 } // namespace hermes

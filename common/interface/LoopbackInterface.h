@@ -15,7 +15,7 @@ public:
     static std::pair<LoopbackInterface *, LoopbackInterface *> pair(QObject *parent);
 
     QString name() const override { return QStringLiteral("loopback"); }
-    qint64 bytesToWrite() const override { return waiting; }
+    qint64 bytesToWrite() const override { return waiting_; }
 
 protected:
     void doOpen() override { nowOpen(); }
@@ -27,8 +27,8 @@ private:
         : Interface(parent) {}
     void deliver(const QByteArray &bytes);
 
-    QPointer<LoopbackInterface> other;
-    qint64 waiting = 0;
+    QPointer<LoopbackInterface> other_;
+    qint64 waiting_ = 0;
 };
 
 } // namespace hermes

@@ -23,7 +23,7 @@ QString systemError() {
 
 PtyInterface::PtyInterface(const InterfaceUrl &address, QObject *parent)
     : Interface(parent)
-    , url(address) {}
+    , url_(address) {}
 
 PtyInterface::~PtyInterface() {
     doClose();
@@ -37,8 +37,8 @@ void PtyInterface::doOpen() {
         doClose();
         return nowClosed(QStringLiteral("cannot open %1: %2").arg(name(), wrong), true);
     }
-    readable = std::make_unique<QSocketNotifier>(farFd, QSocketNotifier::Read);
-    connect(readable.get(), &QSocketNotifier::activated, this, &PtyInterface::readSome);
+    readable_ = std::make_unique<QSocketNotifier>(farFd_, QSocketNotifier::Read);
+    connect(readable_.get(), &QSocketNotifier::activated, this, &PtyInterface::readSome);
     nowOpen();
 }
 
@@ -47,35 +47,35 @@ QString PtyInterface::makePair() {
     termios raw{};
     cfmakeraw(&raw);
     cfsetspeed(&raw, B115200);
-    if (openpty(&farFd, &nearFd, path, &raw, nullptr) != 0)
+    if (openpty(&farFd_, &nearFd_, path, &raw, nullptr) != 0)
         return QStringLiteral("no pseudo-terminal: ") + systemError();
-    for (const int fd : {farFd, nearFd})
+    for (const int fd : {farFd_, nearFd_})
         fcntl(fd, F_SETFD, FD_CLOEXEC);
-    fcntl(farFd, F_SETFL, O_NONBLOCK);
-    nearEnd = QString::fromLocal8Bit(path);
+    fcntl(farFd_, F_SETFL, O_NONBLOCK);
+    nearEnd_ = QString::fromLocal8Bit(path);
     return {};
 }
 
 QString PtyInterface::makeLink() {
-    if (url.path.isEmpty())
+    if (url_.path.isEmpty())
         return {};
-    const QFileInfo link(url.path);
+    const QFileInfo link(url_.path);
     if (link.exists() && !link.isSymLink())
         return QStringLiteral("a file with this name exists that is not a link");
     if (!QDir().mkpath(link.absolutePath()))
         return QStringLiteral("the folder %1 cannot be made").arg(link.absolutePath());
-    QFile::remove(url.path); // of a program that ended without removing it
-    if (symlink(QFile::encodeName(nearEnd).constData(), QFile::encodeName(url.path).constData()) != 0)
+    QFile::remove(url_.path); // of a program that ended without removing it
+    if (symlink(QFile::encodeName(nearEnd_).constData(), QFile::encodeName(url_.path).constData()) != 0)
         return QStringLiteral("the link cannot be made: ") + systemError();
     return {};
 }
 
 void PtyInterface::doClose() {
-    readable.reset();
-    if (!nearEnd.isEmpty() && QFile::symLinkTarget(url.path) == nearEnd)
-        QFile::remove(url.path);
-    nearEnd.clear();
-    for (int *fd : {&farFd, &nearFd}) {
+    readable_.reset();
+    if (!nearEnd_.isEmpty() && QFile::symLinkTarget(url_.path) == nearEnd_)
+        QFile::remove(url_.path);
+    nearEnd_.clear();
+    for (int *fd : {&farFd_, &nearFd_}) {
         if (*fd >= 0)
             ::close(*fd);
         *fd = -1;
@@ -84,33 +84,33 @@ void PtyInterface::doClose() {
 
 qint64 PtyInterface::unread() const {
     int size = 0;
-    return nearFd >= 0 && ioctl(nearFd, FIONREAD, &size) == 0 ? size : 0;
+    return nearFd_ >= 0 && ioctl(nearFd_, FIONREAD, &size) == 0 ? size : 0;
 }
 
 qint64 PtyInterface::discardUnread() {
     const qint64 size = unread();
     if (size > 0)
-        tcflush(nearFd, TCIFLUSH);
+        tcflush(nearFd_, TCIFLUSH);
     return size;
 }
 
 bool PtyInterface::doWrite(const QByteArray &bytes) {
     dropClaim();
     // Nobody reads: bytes are lost, as on a line that nobody listens to.
-    const ssize_t written = ::write(farFd, bytes.constData(), std::size_t(bytes.size()));
+    const ssize_t written = ::write(farFd_, bytes.constData(), std::size_t(bytes.size()));
     return written == bytes.size();
 }
 
 // A program that opens a serial port claims it alone; one that is killed leaves the claim, which would end
 // only with the last opener: nearFd.
 void PtyInterface::dropClaim() {
-    ioctl(nearFd, TIOCNXCL);
+    ioctl(nearFd_, TIOCNXCL);
 }
 
 void PtyInterface::readSome() {
     dropClaim();
     char buffer[4096];
-    const ssize_t size = ::read(farFd, buffer, sizeof buffer);
+    const ssize_t size = ::read(farFd_, buffer, sizeof buffer);
     if (size > 0)
         nowReceived(QByteArray(buffer, int(size)));
 }

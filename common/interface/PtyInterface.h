@@ -19,9 +19,9 @@ public:
     PtyInterface(const InterfaceUrl &address, QObject *parent);
     ~PtyInterface() override;
 
-    QString name() const override { return url.toString(); }
+    QString name() const override { return url_.toString(); }
     /// The near end, e.g. "/dev/pts/3", while open.
-    QString device() const { return nearEnd; }
+    QString device() const { return nearEnd_; }
     qint64 bytesToWrite() const override { return 0; }
     /// Bytes that were written and that no program has read yet; 0 while closed.
     qint64 unread() const;
@@ -39,11 +39,11 @@ private:
     void readSome();
     void dropClaim();
 
-    InterfaceUrl url;
-    QString nearEnd;
-    int farFd = -1;
-    int nearFd = -1; // held open: without any opener the far end could not be read
-    std::unique_ptr<QSocketNotifier> readable;
+    InterfaceUrl url_;
+    QString nearEnd_;
+    int farFd_ = -1;
+    int nearFd_ = -1; // held open: without any opener the far end could not be read
+    std::unique_ptr<QSocketNotifier> readable_;
 };
 
 } // namespace hermes

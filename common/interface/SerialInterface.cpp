@@ -49,14 +49,14 @@ QString choose(const InterfaceUrl &url, const char *option, const char *fallback
 
 SerialInterface::SerialInterface(const InterfaceUrl &address, QObject *parent)
     : Interface(parent)
-    , url(address) {
-    connect(&port, &QSerialPort::readyRead, this, [this] { nowReceived(port.readAll()); });
-    connect(&port, &QSerialPort::bytesWritten, this, &Interface::drained);
-    connect(&port, &QSerialPort::errorOccurred, this, &SerialInterface::fail);
+    , url_(address) {
+    connect(&port_, &QSerialPort::readyRead, this, [this] { nowReceived(port_.readAll()); });
+    connect(&port_, &QSerialPort::bytesWritten, this, &Interface::drained);
+    connect(&port_, &QSerialPort::errorOccurred, this, &SerialInterface::fail);
 }
 
 QString SerialInterface::configure() {
-    const QString baudText = url.option(QStringLiteral("baud"), QStringLiteral("115200"));
+    const QString baudText = url_.option(QStringLiteral("baud"), QStringLiteral("115200"));
     const int baud = baudText.toInt();
     if (baud <= 0)
         return QStringLiteral("baud \"%1\" is not a number above 0").arg(baudText);
@@ -65,46 +65,46 @@ QString SerialInterface::configure() {
     QSerialPort::StopBits stop = QSerialPort::OneStop;
     QSerialPort::FlowControl flow = QSerialPort::NoFlowControl;
     for (const QString &wrong :
-         {choose(url, "data_bits", "8", dataBits, data), choose(url, "parity", "none", parities, parity),
-          choose(url, "stop_bits", "1", stopBits, stop), choose(url, "flow", "none", flows, flow)}) {
+         {choose(url_, "data_bits", "8", dataBits, data), choose(url_, "parity", "none", parities, parity),
+          choose(url_, "stop_bits", "1", stopBits, stop), choose(url_, "flow", "none", flows, flow)}) {
         if (!wrong.isEmpty())
             return wrong;
     }
-    port.setBaudRate(baud);
-    port.setDataBits(data);
-    port.setParity(parity);
-    port.setStopBits(stop);
-    port.setFlowControl(flow);
+    port_.setBaudRate(baud);
+    port_.setDataBits(data);
+    port_.setParity(parity);
+    port_.setStopBits(stop);
+    port_.setFlowControl(flow);
     return {};
 }
 
 void SerialInterface::doOpen() {
-    if (url.path.isEmpty())
+    if (url_.path.isEmpty())
         return nowClosed(
             QStringLiteral("%1: a device is missing, as in serial:///dev/ttyS1?baud=115200").arg(name()),
             true);
     const QString wrong = configure();
     if (!wrong.isEmpty())
         return nowClosed(QStringLiteral("%1: %2").arg(name(), wrong), true);
-    const QString device = QFileInfo(url.path).canonicalFilePath();
+    const QString device = QFileInfo(url_.path).canonicalFilePath();
     if (device.isEmpty())
         return nowClosed(QStringLiteral("cannot open %1: there is no such device").arg(name()), true);
-    port.setPortName(device);
-    if (!port.open(QIODevice::ReadWrite)) {
+    port_.setPortName(device);
+    if (!port_.open(QIODevice::ReadWrite)) {
         const QString reason =
-            port.error() == QSerialPort::PermissionError
-                ? QStringLiteral("in use by another program, or not permitted (%1)").arg(port.errorString())
-                : port.errorString();
+            port_.error() == QSerialPort::PermissionError
+                ? QStringLiteral("in use by another program, or not permitted (%1)").arg(port_.errorString())
+                : port_.errorString();
         return nowClosed(QStringLiteral("cannot open %1: %2").arg(name(), reason), true);
     }
-    port.clear();
-    errorsAtOpening = driverErrors();
+    port_.clear();
+    errorsAtOpening_ = driverErrors();
     nowOpen();
 }
 
 QMap<QString, quint64> SerialInterface::driverErrors() const {
     serial_icounter_struct driver{};
-    if (!port.isOpen() || ioctl(port.handle(), TIOCGICOUNT, &driver) != 0)
+    if (!port_.isOpen() || ioctl(port_.handle(), TIOCGICOUNT, &driver) != 0)
         return {}; // a pseudo-terminal, or a driver that does not count
     return {{QStringLiteral("overrun"), quint64(driver.overrun)},
             {QStringLiteral("buffer_overrun"), quint64(driver.buf_overrun)},
@@ -116,13 +116,13 @@ QMap<QString, quint64> SerialInterface::driverErrors() const {
 QMap<QString, quint64> SerialInterface::systemErrors() const {
     QMap<QString, quint64> errors = driverErrors(); // since the driver was loaded
     for (auto error = errors.begin(); error != errors.end(); ++error)
-        *error -= std::min(*error, errorsAtOpening.value(error.key()));
+        *error -= std::min(*error, errorsAtOpening_.value(error.key()));
     return errors;
 }
 
 void SerialInterface::doClose() {
-    port.flush();
-    port.close();
+    port_.flush();
+    port_.close();
 }
 
 // Not by QSerialPort: for it a port without such lines is a failure of the whole port.
@@ -131,7 +131,7 @@ Result<void> SerialInterface::setSignal(Signal signal, bool on) {
     if (!isOpen())
         return Error(ErrorCode::NotReady, QStringLiteral("%1 is not open").arg(name()));
     const int bit = signal == Signal::Rts ? TIOCM_RTS : TIOCM_DTR;
-    if (::ioctl(port.handle(), on ? TIOCMBIS : TIOCMBIC, &bit) != 0)
+    if (::ioctl(port_.handle(), on ? TIOCMBIS : TIOCMBIC, &bit) != 0)
         return Error(ErrorCode::DeviceFault,
                      QStringLiteral("%1: cannot set %2: %3")
                          .arg(name(), QLatin1String(text), QString::fromLocal8Bit(std::strerror(errno))));
@@ -141,8 +141,8 @@ Result<void> SerialInterface::setSignal(Signal signal, bool on) {
 void SerialInterface::fail(QSerialPort::SerialPortError error) {
     if (error == QSerialPort::NoError || !isOpen())
         return; // doOpen() tells what goes wrong there
-    const QString reason = port.errorString();
-    port.close();
+    const QString reason = port_.errorString();
+    port_.close();
     nowClosed(QStringLiteral("%1: the device is gone or failed: %2").arg(name(), reason), true);
 }
 

@@ -17,9 +17,9 @@ class SerialInterface : public Interface {
 public:
     SerialInterface(const InterfaceUrl &address, QObject *parent);
 
-    QString name() const override { return url.toString(); }
-    void flush() override { port.flush(); }
-    qint64 bytesToWrite() const override { return port.bytesToWrite(); }
+    QString name() const override { return url_.toString(); }
+    void flush() override { port_.flush(); }
+    qint64 bytesToWrite() const override { return port_.bytesToWrite(); }
     /// Of the driver: "overrun" (bytes that came too fast), "buffer_overrun", "framing", "parity", "break".
     QMap<QString, quint64> systemErrors() const override;
 
@@ -32,7 +32,7 @@ public:
 protected:
     void doOpen() override;
     void doClose() override;
-    bool doWrite(const QByteArray &bytes) override { return port.write(bytes) == bytes.size(); }
+    bool doWrite(const QByteArray &bytes) override { return port_.write(bytes) == bytes.size(); }
 
 private:
     /// Takes the settings from the URL; gives what is wrong with them, or an empty text.
@@ -40,9 +40,9 @@ private:
     void fail(QSerialPort::SerialPortError error);
     QMap<QString, quint64> driverErrors() const;
 
-    InterfaceUrl url;
-    mutable QSerialPort port; // handle() is not const
-    QMap<QString, quint64> errorsAtOpening;
+    InterfaceUrl url_;
+    mutable QSerialPort port_; // handle() is not const
+    QMap<QString, quint64> errorsAtOpening_;
 };
 
 } // namespace hermes

@@ -15,104 +15,104 @@ constexpr int readAtOnceBytes = 4 << 10;     // some dozens of requests; then ot
 
 TcpInterface::TcpInterface(const InterfaceUrl &address, QObject *parent)
     : Interface(parent)
-    , url(address)
-    , socket(new QTcpSocket(this)) {
+    , url_(address)
+    , socket_(new QTcpSocket(this)) {
     prepare();
-    connect(socket, &QTcpSocket::connected, this, [this] {
-        socket->setSocketOption(QAbstractSocket::LowDelayOption, 1);
-        socket->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
+    connect(socket_, &QTcpSocket::connected, this, [this] {
+        socket_->setSocketOption(QAbstractSocket::LowDelayOption, 1);
+        socket_->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
         nowOpen();
     });
 }
 
 TcpInterface::TcpInterface(QTcpSocket *connected, QObject *theHost)
     : Interface(theHost)
-    , socket(connected)
-    , host(theHost) {
-    socket->setParent(this);
-    url.scheme = QStringLiteral("tcp");
-    url.host = socket->peerAddress().toString();
-    url.port = socket->peerPort();
-    socket->setSocketOption(QAbstractSocket::LowDelayOption, 1);
-    socket->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
+    , socket_(connected)
+    , host_(theHost) {
+    socket_->setParent(this);
+    url_.scheme = QStringLiteral("tcp");
+    url_.host = socket_->peerAddress().toString();
+    url_.port = socket_->peerPort();
+    socket_->setSocketOption(QAbstractSocket::LowDelayOption, 1);
+    socket_->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
     prepare();
 }
 
 void TcpInterface::prepare() {
-    socket->setReadBufferSize(receiveBufferBytes);
-    connect(socket, &QTcpSocket::readyRead, this, &TcpInterface::readSome);
-    connect(socket, &QTcpSocket::bytesWritten, this, &Interface::drained);
-    connect(socket, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
+    socket_->setReadBufferSize(receiveBufferBytes);
+    connect(socket_, &QTcpSocket::readyRead, this, &TcpInterface::readSome);
+    connect(socket_, &QTcpSocket::bytesWritten, this, &Interface::drained);
+    connect(socket_, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
         const bool peerClosed = error == QAbstractSocket::RemoteHostClosedError;
         const QPointer<TcpInterface> alive(this);
-        if (const QByteArray rest = socket->readAll(); !rest.isEmpty())
+        if (const QByteArray rest = socket_->readAll(); !rest.isEmpty())
             nowReceived(rest); // what it said before it closed
         if (!alive)
             return;
-        const QString reason = peerClosed ? QStringLiteral("closed by the peer") : socket->errorString();
-        socket->abort();
+        const QString reason = peerClosed ? QStringLiteral("closed by the peer") : socket_->errorString();
+        socket_->abort();
         nowClosed(QStringLiteral("%1: %2").arg(name(), reason), !peerClosed);
     });
 }
 
 bool TcpInterface::setReceiving(bool on) {
-    if (on && !receiving)
+    if (on && !receiving_)
         readLater();
-    receiving = on;
+    receiving_ = on;
     return true;
 }
 
 bool TcpInterface::hasUnread() const {
     int unread = 0;
-    return socket->bytesAvailable() > 0 ||
-           (isOpen() && ::ioctl(int(socket->socketDescriptor()), FIONREAD, &unread) == 0 && unread > 0);
+    return socket_->bytesAvailable() > 0 ||
+           (isOpen() && ::ioctl(int(socket_->socketDescriptor()), FIONREAD, &unread) == 0 && unread > 0);
 }
 
 void TcpInterface::readSome() {
-    if (readsOn || !receiving || !isOpen())
+    if (readsOn_ || !receiving_ || !isOpen())
         return;
-    const QByteArray bytes = socket->read(readAtOnceBytes);
-    if (socket->bytesAvailable() > 0)
+    const QByteArray bytes = socket_->read(readAtOnceBytes);
+    if (socket_->bytesAvailable() > 0)
         readLater();
     if (!bytes.isEmpty())
         nowReceived(bytes);
 }
 
 void TcpInterface::readLater() {
-    if (std::exchange(readsOn, true))
+    if (std::exchange(readsOn_, true))
         return;
     const auto readOn = [this] {
-        readsOn = false;
+        readsOn_ = false;
         readSome();
     };
     QMetaObject::invokeMethod(this, readOn, Qt::QueuedConnection);
 }
 
 QString TcpInterface::name() const {
-    return url.toString();
+    return url_.toString();
 }
 
 qint64 TcpInterface::bytesToWrite() const {
-    return socket->bytesToWrite();
+    return socket_->bytesToWrite();
 }
 
 void TcpInterface::doOpen() {
-    receiving = true;
-    if (socket->state() == QAbstractSocket::ConnectedState)
+    receiving_ = true;
+    if (socket_->state() == QAbstractSocket::ConnectedState)
         nowOpen(); // a peer of a server
     else
-        socket->connectToHost(url.host, url.port);
+        socket_->connectToHost(url_.host, url_.port);
 }
 
 void TcpInterface::doClose() {
-    socket->flush();
-    if (host && socket->socketDescriptor() >= 0)
-        Farewell::say(int(socket->socketDescriptor()), host);
-    socket->abort();
+    socket_->flush();
+    if (host_ && socket_->socketDescriptor() >= 0)
+        Farewell::say(int(socket_->socketDescriptor()), host_);
+    socket_->abort();
 }
 
 bool TcpInterface::doWrite(const QByteArray &bytes) {
-    return socket->write(bytes) == bytes.size();
+    return socket_->write(bytes) == bytes.size();
 }
 
 } // namespace hermes

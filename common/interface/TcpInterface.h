@@ -18,7 +18,7 @@ public:
     TcpInterface(QTcpSocket *connected, QObject *host);
 
     QString name() const override;
-    void flush() override { socket->flush(); }
+    void flush() override { socket_->flush(); }
     qint64 bytesToWrite() const override;
     bool setReceiving(bool on) override;
     bool hasUnread() const override;
@@ -33,11 +33,11 @@ private:
     void readSome();
     void readLater();
 
-    InterfaceUrl url;
-    QTcpSocket *socket;
-    QPointer<QObject> host; // of a peer of a server
-    bool readsOn = false;   // the rest is read when others have had their turn
-    bool receiving = true;
+    InterfaceUrl url_;
+    QTcpSocket *socket_;
+    QPointer<QObject> host_; // of a peer of a server
+    bool readsOn_ = false;   // the rest is read when others have had their turn
+    bool receiving_ = true;
 };
 
 } // namespace hermes

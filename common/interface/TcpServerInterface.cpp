@@ -23,48 +23,48 @@ bool isScarce(qintptr descriptor) {
 
 TcpServerInterface::TcpServerInterface(const InterfaceUrl &address, QObject *parent)
     : Listener(parent)
-    , url(address) {
+    , url_(address) {
     // Queued, and no more are accepted meanwhile: else peers who come faster than they are taken would keep
     // the event loop here.
-    server.setMaxPendingConnections(acceptedAtOnce);
-    connect(&server, &QTcpServer::newConnection, this, &TcpServerInterface::takePeers, Qt::QueuedConnection);
+    server_.setMaxPendingConnections(acceptedAtOnce);
+    connect(&server_, &QTcpServer::newConnection, this, &TcpServerInterface::takePeers, Qt::QueuedConnection);
 }
 
 Result<void> TcpServerInterface::listen() {
-    QHostAddress host(url.host == QStringLiteral("localhost") ? QStringLiteral("127.0.0.1") : url.host);
+    QHostAddress host(url_.host == QStringLiteral("localhost") ? QStringLiteral("127.0.0.1") : url_.host);
     if (host.isNull()) {
-        return Error(
-            ErrorCode::InputOutput,
-            QStringLiteral("cannot listen on %1: \"%2\" is not an IP address").arg(url.toString(), url.host));
+        return Error(ErrorCode::InputOutput,
+                     QStringLiteral("cannot listen on %1: \"%2\" is not an IP address")
+                         .arg(url_.toString(), url_.host));
     }
-    if (server.listen(host, url.port)) {
-        ::listen(int(server.socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
+    if (server_.listen(host, url_.port)) {
+        ::listen(int(server_.socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
         return {};
     }
-    QString reason = server.errorString();
-    if (server.serverError() == QAbstractSocket::AddressInUseError) {
+    QString reason = server_.errorString();
+    if (server_.serverError() == QAbstractSocket::AddressInUseError) {
         reason = QStringLiteral("port %1 of %2 is already in use; end the program that uses it or listen "
                                 "elsewhere (--listen URL)")
-                     .arg(url.port)
-                     .arg(url.host);
+                     .arg(url_.port)
+                     .arg(url_.host);
     }
     return Error(ErrorCode::InputOutput,
-                 QStringLiteral("cannot listen on %1: %2").arg(url.toString(), reason));
+                 QStringLiteral("cannot listen on %1: %2").arg(url_.toString(), reason));
 }
 
 void TcpServerInterface::close() {
-    server.close();
+    server_.close();
 }
 
 QString TcpServerInterface::address() const {
-    InterfaceUrl actual = url;
-    if (server.isListening())
-        actual.port = server.serverPort();
+    InterfaceUrl actual = url_;
+    if (server_.isListening())
+        actual.port = server_.serverPort();
     return actual.toString();
 }
 
 void TcpServerInterface::takePeers() {
-    while (QTcpSocket *socket = server.nextPendingConnection())
+    while (QTcpSocket *socket = server_.nextPendingConnection())
         take(socket);
 }
 

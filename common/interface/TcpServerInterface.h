@@ -21,8 +21,8 @@ private:
     void takePeers();
     void take(QTcpSocket *socket);
 
-    InterfaceUrl url;
-    QTcpServer server;
+    InterfaceUrl url_;
+    QTcpServer server_;
 };
 
 } // namespace hermes

@@ -9,31 +9,31 @@ namespace hermes {
 
 UdpInterface::UdpInterface(const InterfaceUrl &address, QObject *parent)
     : Interface(parent)
-    , url(address) {
-    const auto remote = InterfaceUrl::parse(url.option(QStringLiteral("peer")));
+    , url_(address) {
+    const auto remote = InterfaceUrl::parse(url_.option(QStringLiteral("peer")));
     if (remote && remote->port != 0) {
-        peer = QHostAddress(remote->host);
-        peerPort = remote->port;
-        peerFixed = true;
+        peer_ = QHostAddress(remote->host);
+        peerPort_ = remote->port;
+        peerFixed_ = true;
     }
-    connect(&socket, &QUdpSocket::readyRead, this, &UdpInterface::readAll);
+    connect(&socket_, &QUdpSocket::readyRead, this, &UdpInterface::readAll);
 }
 
 QString UdpInterface::name() const {
-    InterfaceUrl actual = url;
+    InterfaceUrl actual = url_;
     if (isOpen())
-        actual.port = socket.localPort();
+        actual.port = socket_.localPort();
     return actual.toString();
 }
 
 quint16 UdpInterface::localPort() const {
-    return socket.localPort();
+    return socket_.localPort();
 }
 
 QMap<QString, quint64> UdpInterface::systemErrors() const {
     quint32 memory[SK_MEMINFO_VARS] = {};
     socklen_t size = sizeof memory;
-    const auto descriptor = socket.socketDescriptor();
+    const auto descriptor = socket_.socketDescriptor();
     if (descriptor < 0 || getsockopt(int(descriptor), SOL_SOCKET, SO_MEMINFO, memory, &size) != 0)
         return {};
     return {{QStringLiteral("datagrams"), memory[SK_MEMINFO_DROPS]}};
@@ -41,36 +41,36 @@ QMap<QString, quint64> UdpInterface::systemErrors() const {
 
 void UdpInterface::doOpen() {
     const QHostAddress host =
-        url.host.isEmpty() ? QHostAddress(QHostAddress::AnyIPv4) : QHostAddress(url.host);
-    const QString peerText = url.option(QStringLiteral("peer"));
-    if (!peerText.isEmpty() && peer.isNull())
-        return nowClosed(QStringLiteral("%1: peer \"%2\" is not IP:PORT").arg(url.toString(), peerText),
+        url_.host.isEmpty() ? QHostAddress(QHostAddress::AnyIPv4) : QHostAddress(url_.host);
+    const QString peerText = url_.option(QStringLiteral("peer"));
+    if (!peerText.isEmpty() && peer_.isNull())
+        return nowClosed(QStringLiteral("%1: peer \"%2\" is not IP:PORT").arg(url_.toString(), peerText),
                          true);
-    if (!socket.bind(host, url.port))
-        return nowClosed(QStringLiteral("cannot bind %1: %2").arg(url.toString(), socket.errorString()),
+    if (!socket_.bind(host, url_.port))
+        return nowClosed(QStringLiteral("cannot bind %1: %2").arg(url_.toString(), socket_.errorString()),
                          true);
-    const int room = url.option(QStringLiteral("receive_buffer")).toInt();
+    const int room = url_.option(QStringLiteral("receive_buffer")).toInt();
     if (room > 0)
-        socket.setSocketOption(QAbstractSocket::ReceiveBufferSizeSocketOption, room);
+        socket_.setSocketOption(QAbstractSocket::ReceiveBufferSizeSocketOption, room);
     nowOpen();
 }
 
 void UdpInterface::doClose() {
-    socket.close();
+    socket_.close();
 }
 
 bool UdpInterface::doWrite(const QByteArray &bytes) {
-    return peerPort != 0 && socket.writeDatagram(bytes, peer, peerPort) == bytes.size();
+    return peerPort_ != 0 && socket_.writeDatagram(bytes, peer_, peerPort_) == bytes.size();
 }
 
 void UdpInterface::readAll() {
-    while (isOpen() && socket.hasPendingDatagrams()) {
-        const QNetworkDatagram datagram = socket.receiveDatagram();
+    while (isOpen() && socket_.hasPendingDatagrams()) {
+        const QNetworkDatagram datagram = socket_.receiveDatagram();
         if (!datagram.isValid())
             continue; // an ICMP report about something sent earlier
-        if (!peerFixed) {
-            peer = datagram.senderAddress();
-            peerPort = quint16(datagram.senderPort());
+        if (!peerFixed_) {
+            peer_ = datagram.senderAddress();
+            peerPort_ = quint16(datagram.senderPort());
         }
         nowReceived(datagram.data());
     }

@@ -32,11 +32,11 @@ protected:
 private:
     void readAll();
 
-    InterfaceUrl url;
-    QUdpSocket socket;
-    QHostAddress peer;
-    quint16 peerPort = 0;
-    bool peerFixed = false;
+    InterfaceUrl url_;
+    QUdpSocket socket_;
+    QHostAddress peer_;
+    quint16 peerPort_ = 0;
+    bool peerFixed_ = false;
 };
 
 } // namespace hermes

@@ -12,9 +12,9 @@ QJsonObject ofType(const char *type) {
 } // namespace
 
 Field::Field(QString name, const QString &description, QJsonObject schema)
-    : fieldName(std::move(name))
-    , content(std::move(schema)) {
-    content.insert(QStringLiteral("description"), description);
+    : fieldName_(std::move(name))
+    , content_(std::move(schema)) {
+    content_.insert(QStringLiteral("description"), description);
 }
 
 Field Field::number(const QString &name, const QString &description) {
@@ -77,7 +77,7 @@ Field &Field::byDefault(const QJsonValue &value) {
 }
 
 Field &Field::optional() {
-    required = false;
+    required_ = false;
     return *this;
 }
 
@@ -90,7 +90,7 @@ Field &Field::appliesOnRestart() {
 }
 
 Field &Field::with(const QString &keyword, const QJsonValue &value) {
-    content.insert(keyword, value);
+    content_.insert(keyword, value);
     return *this;
 }
 

@@ -42,17 +42,17 @@ public:
     /// Any further keyword of the schema.
     Field &with(const QString &keyword, const QJsonValue &value);
 
-    const QString &name() const { return fieldName; }
-    const QJsonObject &schema() const { return content; }
-    bool isRequired() const { return required; }
-    QJsonValue defaultValue() const { return content.value(QStringLiteral("default")); }
+    const QString &name() const { return fieldName_; }
+    const QJsonObject &schema() const { return content_; }
+    bool isRequired() const { return required_; }
+    QJsonValue defaultValue() const { return content_.value(QStringLiteral("default")); }
 
 private:
     Field(QString name, const QString &description, QJsonObject schema);
 
-    QString fieldName;
-    QJsonObject content;
-    bool required = true;
+    QString fieldName_;
+    QJsonObject content_;
+    bool required_ = true;
 };
 
 } // namespace hermes

@@ -123,11 +123,11 @@ struct SchemaValidator::Compiled {
 };
 
 SchemaValidator::SchemaValidator(const QJsonObject &schema)
-    : compiled(new Compiled) {
-    compiled->source = schema;
+    : compiled_(new Compiled) {
+    compiled_->source = schema;
     const QJsonValue adapted = checkable(schema).schema;
     valijson::SchemaParser parser;
-    parser.populateSchema(valijson::adapters::QtJsonAdapter(adapted), compiled->schema);
+    parser.populateSchema(valijson::adapters::QtJsonAdapter(adapted), compiled_->schema);
 }
 
 Result<SchemaValidator> SchemaValidator::make(const QJsonObject &schema) {
@@ -147,16 +147,16 @@ SchemaValidator &SchemaValidator::operator=(SchemaValidator &&) noexcept = defau
 
 std::vector<SchemaViolation> SchemaValidator::check(const QJsonValue &value) const {
     std::vector<SchemaViolation> found;
-    checkStructure(compiled->source, value, QString(), found);
+    checkStructure(compiled_->source, value, QString(), found);
     if (found.size() >= mostViolations)
         return found;
     valijson::Validator validator;
     valijson::ValidationResults results;
-    validator.validate(compiled->schema, valijson::adapters::QtJsonAdapter(value), &results);
+    validator.validate(compiled_->schema, valijson::adapters::QtJsonAdapter(value), &results);
     std::vector<Place> places;
     for (const auto &error : results) {
         if (places.size() < mostViolations)
-            places.push_back(locate(error.context, compiled->source, value));
+            places.push_back(locate(error.context, compiled_->source, value));
     }
     // valijson reports each parent of a bad value too; only the innermost place says something.
     for (const Place &place : places) {

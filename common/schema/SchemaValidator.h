@@ -38,7 +38,7 @@ public:
 
 private:
     struct Compiled;
-    std::unique_ptr<Compiled> compiled;
+    std::unique_ptr<Compiled> compiled_;
 };
 
 /// All violations as one text, separated by "; ".

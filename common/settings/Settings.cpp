@@ -43,7 +43,7 @@ Error fileError(const QString &file, const QString &what) {
 
 Settings::Settings(QObject *parent)
     : QObject(parent)
-    , fullSchema(emptySchema()) {}
+    , fullSchema_(emptySchema()) {}
 
 void Settings::declare(const Field &field) {
     Q_ASSERT_X(!field.defaultValue().isUndefined(), "Settings::declare", qPrintable(field.name()));
@@ -51,30 +51,30 @@ void Settings::declare(const Field &field) {
     const QString applies = QStringLiteral("x-applies");
     if (!property.contains(applies))
         property.insert(applies, QStringLiteral("now"));
-    fullSchema = withProperty(fullSchema, field.name(), property);
-    initial = withValueAt(initial, field.name(), field.defaultValue());
-    current = withValueAt(current, field.name(), field.defaultValue());
-    validator.reset();
+    fullSchema_ = withProperty(fullSchema_, field.name(), property);
+    initial_ = withValueAt(initial_, field.name(), field.defaultValue());
+    current_ = withValueAt(current_, field.name(), field.defaultValue());
+    validator_.reset();
 }
 
 QJsonObject Settings::changes() const {
-    return difference(current, initial);
+    return difference(current_, initial_);
 }
 
 QJsonValue Settings::value(const QString &path) const {
-    return valueAt(current, path);
+    return valueAt(current_, path);
 }
 
 Result<QStringList> Settings::set(const QJsonObject &partial) {
-    return apply(merged(current, partial));
+    return apply(merged(current_, partial));
 }
 
 Result<QStringList> Settings::reset(const QStringList &paths) {
     if (paths.isEmpty())
-        return apply(initial);
-    QJsonObject proposed = current;
+        return apply(initial_);
+    QJsonObject proposed = current_;
     for (const QString &path : paths) {
-        const QJsonValue value = valueAt(initial, path);
+        const QJsonValue value = valueAt(initial_, path);
         if (path.isEmpty() || value.isUndefined()) {
             const SchemaViolation unknown{path, QJsonValue::Undefined,
                                           QStringLiteral("the path of a setting")};
@@ -87,11 +87,11 @@ Result<QStringList> Settings::reset(const QStringList &paths) {
 }
 
 std::vector<SchemaViolation> Settings::check(const QJsonObject &proposed) const {
-    if (!validator)
-        validator.emplace(fullSchema);
-    auto violations = validator->check(proposed);
+    if (!validator_)
+        validator_.emplace(fullSchema_);
+    auto violations = validator_->check(proposed);
     if (violations.empty()) {
-        for (const Rule &rule : rules) {
+        for (const Rule &rule : rules_) {
             for (const SchemaViolation &violation : rule(proposed))
                 violations.push_back(violation);
         }
@@ -105,8 +105,8 @@ Result<QStringList> Settings::apply(const QJsonObject &proposed) {
         return Error(ErrorCode::InvalidSetting, toString(violations),
                      QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
     }
-    const QStringList paths = leafPaths(difference(proposed, current));
-    current = proposed;
+    const QStringList paths = leafPaths(difference(proposed, current_));
+    current_ = proposed;
     if (!paths.isEmpty())
         Q_EMIT changed(paths);
     return paths;
@@ -122,18 +122,18 @@ Result<void> Settings::load(const QString &name) {
         return fileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));
     if (!value->isObject())
         return fileError(name, QStringLiteral("line 1: expected a JSON object"));
-    const auto applied = apply(merged(initial, value->toObject()));
+    const auto applied = apply(merged(initial_, value->toObject()));
     if (!applied) {
         return Error(ErrorCode::InvalidSetting,
                      QStringLiteral("settings file %1: %2").arg(name, applied.error().message),
                      applied.error().data);
     }
-    fileName = name;
+    fileName_ = name;
     return {};
 }
 
 Result<QString> Settings::save(const QString &name) const {
-    const QString target = name.isEmpty() ? fileName : name;
+    const QString target = name.isEmpty() ? fileName_ : name;
     if (target.isEmpty())
         return Error(ErrorCode::InputOutput,
                      QStringLiteral("no settings file to save to: start with --config FILE"));
@@ -149,7 +149,7 @@ Result<QString> Settings::save(const QString &name) const {
 QStringList Settings::needRestart(const QStringList &paths) const {
     QStringList result;
     for (const QString &path : paths) {
-        if (propertyAt(fullSchema, path).value(QStringLiteral("x-applies")) == QStringLiteral("restart"))
+        if (propertyAt(fullSchema_, path).value(QStringLiteral("x-applies")) == QStringLiteral("restart"))
             result.append(path);
     }
     return result;

@@ -24,12 +24,12 @@ public:
 
     /// Declares a setting. It must have a default.
     void declare(const Field &field);
-    void addRule(Rule rule) { rules.push_back(std::move(rule)); }
+    void addRule(Rule rule) { rules_.push_back(std::move(rule)); }
 
     /// The JSON Schema of all settings, with `x-applies` ("now" or "restart") on each.
-    QJsonObject schema() const { return fullSchema; }
-    const QJsonObject &values() const { return current; }
-    const QJsonObject &defaults() const { return initial; }
+    QJsonObject schema() const { return fullSchema_; }
+    const QJsonObject &values() const { return current_; }
+    const QJsonObject &defaults() const { return initial_; }
     /// Only what differs from the defaults.
     QJsonObject changes() const;
 
@@ -63,12 +63,12 @@ private:
     Result<QStringList> apply(const QJsonObject &proposed);
     std::vector<SchemaViolation> check(const QJsonObject &proposed) const;
 
-    QJsonObject fullSchema;
-    QJsonObject initial;
-    QJsonObject current;
-    QString fileName;
-    std::vector<Rule> rules;
-    mutable std::optional<SchemaValidator> validator; // made anew after declare()
+    QJsonObject fullSchema_;
+    QJsonObject initial_;
+    QJsonObject current_;
+    QString fileName_;
+    std::vector<Rule> rules_;
+    mutable std::optional<SchemaValidator> validator_; // made anew after declare()
 };
 
 } // namespace hermes

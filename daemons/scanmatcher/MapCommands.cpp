@@ -17,7 +17,7 @@ void ScanMatcher::declareMapCommands() {
     const Field force = Field::boolean("force", "Overwrite a file that exists").byDefault(false);
     addCommand(Command("map.get", "The whole map")
                    .gives<MapMessage>()
-                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(mirror.full()); }));
+                   .handler([this](const Call &) -> Result<QJsonValue> { return asJson(mirror_.full()); }));
     addCommand(
         Command("map.save", "Writes the map as CSV, so that map.load gives the same map")
             .param(path)
@@ -41,7 +41,7 @@ void ScanMatcher::declareMapCommands() {
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
                    .returnsNull()
                    .asyncHandler([this](const Call &, const Reply &reply) {
-                       worker->post([this, reply](vectorlib::ScanTracker &tracker) {
+                       worker_->post([this, reply](vectorlib::ScanTracker &tracker) {
                            tracker.clear();
                            showNewMap(tracker, reply, QJsonValue());
                        });
@@ -54,28 +54,28 @@ QString ScanMatcher::absolutePath(const QString &path) const {
 
 // The worker gives a copy of the map as it is after the commands before this one, and goes on matching.
 void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &reply) {
-    if (filesUnderWay >= mostFiles)
+    if (filesUnderWay_ >= mostFiles)
         return reply.error(
             {ErrorCode::NotReady, QString("%1 files are being written already").arg(mostFiles)});
-    ++filesUnderWay;
+    ++filesUnderWay_;
     const auto map = std::make_shared<vectorlib::MapDrawing>();
     if (format == "svg")
-        *map = {"Map of " + std::to_string(counts.scans) + " scans", {}, mirror.trajectory(), {}};
+        *map = {"Map of " + std::to_string(counts_.scans) + " scans", {}, mirror_.trajectory(), {}};
     const auto write = [this, map, format, path = absolutePath(call.text("path")), force = call.flag("force"),
                         reply] {
         const Result<SavedMap> saved = writeMapFile(path, format, force, *map);
         reply.give(saved ? Result<QJsonValue>(asJson(*saved)) : saved.error());
-        --filesUnderWay;
+        --filesUnderWay_;
     };
-    worker->post([this, map, write](vectorlib::ScanTracker &tracker) {
+    worker_->post([this, map, write](vectorlib::ScanTracker &tracker) {
         tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { map->segments.push_back(edge); });
-        files.start(write);
+        files_.start(write);
     });
 }
 
 // In the worker, as the scans that come after it belong into the new map.
 void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
-    worker->post([this, path = absolutePath(call.text("path")), reply](vectorlib::ScanTracker &tracker) {
+    worker_->post([this, path = absolutePath(call.text("path")), reply](vectorlib::ScanTracker &tracker) {
         const auto loaded = readMapFile(path);
         if (!loaded)
             return reply.error(loaded.error());
@@ -92,12 +92,12 @@ void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply
     tracker.builder.map.forEach(
         [&](const vectorlib::MapEdge &edge) { edges->emplace_hint(edges->end(), edge.id, edge); });
     QMetaObject::invokeMethod(this, [this, edges = std::move(edges), reply, answer]() mutable {
-        counts = vectorlib::ScanTrackerCounts();
-        lostInARow = 0;
-        lastRecovery.reset();
-        mirror.replace(*edges);
-        if (worker) // where the old map is freed, which takes its time too
-            worker->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
+        counts_ = vectorlib::ScanTrackerCounts();
+        lostInARow_ = 0;
+        lastRecovery_.reset();
+        mirror_.replace(*edges);
+        if (worker_) // where the old map is freed, which takes its time too
+            worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
         publishSnapshot("map");
         reply.result(answer);
     });

@@ -25,21 +25,21 @@ MapChanges takeChanges(vectorlib::VectorMap &map) {
 }
 
 void MapMirror::replace(Edges &other) {
-    edges.swap(other);
-    poses.clear();
-    ++revision;
+    edges_.swap(other);
+    poses_.clear();
+    ++revision_;
 }
 
 MapMessage MapMirror::message(bool cleared) const {
-    return {revision, cleared, {}, {}, qint64(edges.size())};
+    return {revision_, cleared, {}, {}, qint64(edges_.size())};
 }
 
 MapMessage MapMirror::apply(const MapChanges &changes) {
-    ++revision;
+    ++revision_;
     for (const vectorlib::MapEdge &m : changes.changed)
-        edges[m.id] = m;
+        edges_[m.id] = m;
     for (qint64 id : changes.removed)
-        edges.erase(id);
+        edges_.erase(id);
     MapMessage told = message(false);
     for (const vectorlib::MapEdge &m : changes.changed)
         told.edges.push_back(messageOf(m));
@@ -49,17 +49,17 @@ MapMessage MapMirror::apply(const MapChanges &changes) {
 
 MapMessage MapMirror::full() const {
     MapMessage all = message(true);
-    for (const auto &[id, edge] : edges)
+    for (const auto &[id, edge] : edges_)
         all.edges.push_back(messageOf(edge));
     return all;
 }
 
 MapMessage MapMirror::part(qint64 &cursor) const {
     MapMessage some = message(cursor == 0);
-    auto edge = edges.lower_bound(cursor);
-    for (; edge != edges.end() && some.edges.size() < partEdges; ++edge)
+    auto edge = edges_.lower_bound(cursor);
+    for (; edge != edges_.end() && some.edges.size() < partEdges; ++edge)
         some.edges.push_back(messageOf(edge->second));
-    cursor = edge == edges.end() ? -1 : edge->first;
+    cursor = edge == edges_.end() ? -1 : edge->first;
     return some;
 }
 

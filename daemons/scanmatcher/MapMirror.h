@@ -28,7 +28,7 @@ public:
     void replace(Edges &other);
     /// Takes the changes in and gives the data of the topic `map`.
     MapMessage apply(const MapChanges &changes);
-    void addPose(const vectorlib::StampedPose &pose) { poses.push_back(pose); }
+    void addPose(const vectorlib::StampedPose &pose) { poses_.push_back(pose); }
 
     /// The full state in the same form, `cleared` true.
     MapMessage full() const;
@@ -36,15 +36,15 @@ public:
     /// `cleared` is true in the first part, from 0 on.
     MapMessage part(qint64 &cursor) const;
     static constexpr std::size_t partEdges = 1000;
-    const std::vector<vectorlib::StampedPose> &trajectory() const { return poses; }
-    size_t size() const { return edges.size(); }
+    const std::vector<vectorlib::StampedPose> &trajectory() const { return poses_; }
+    size_t size() const { return edges_.size(); }
 
 private:
     MapMessage message(bool cleared) const;
 
-    Edges edges;
-    std::vector<vectorlib::StampedPose> poses;
-    qint64 revision = 0;
+    Edges edges_;
+    std::vector<vectorlib::StampedPose> poses_;
+    qint64 revision_ = 0;
 };
 
 } // namespace hermes

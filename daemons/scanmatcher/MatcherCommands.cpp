@@ -70,7 +70,7 @@ void ScanMatcher::declareMatcherCommands() {
                    .example({{"x", 1.5}, {"y", 0}, {"theta", 1.57}}, QJsonValue())
                    .asyncHandler([this](const Call &call, const Reply &reply) {
                        const Pose2D pose = toPose(call.params);
-                       worker->post([pose, reply](vectorlib::ScanTracker &tracker) {
+                       worker_->post([pose, reply](vectorlib::ScanTracker &tracker) {
                            tracker.place(pose);
                            reply.result(QJsonValue());
                        });
@@ -82,8 +82,8 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     if (!reference || !current)
         return reply.error(reference ? current.error() : reference.error());
     const Pose2D expected = toPose(call.value("expected").toObject());
-    worker->post([reference = reference->data, current = current->data, expected,
-                  reply](vectorlib::ScanTracker &) {
+    worker_->post([reference = reference->data, current = current->data, expected,
+                   reply](vectorlib::ScanTracker &) {
         vectorlib::MapBuilder pair;
         pair.track.settings = vectorlib::TrackingSettings::forPoorExpectation();
         pair.extract.segment.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, reference.rays);

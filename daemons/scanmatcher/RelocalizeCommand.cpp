@@ -29,13 +29,13 @@ void ScanMatcher::declareRelocalization() {
 }
 
 void ScanMatcher::relocalize(bool apply, const Reply &reply) {
-    if (relocalizing) // calls that pile up would keep the scans waiting
+    if (relocalizing_) // calls that pile up would keep the scans waiting
         return reply.error({ErrorCode::NotReady, "another search of the map is under way"});
-    relocalizing = true;
-    worker->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
+    relocalizing_ = true;
+    worker_->post([this, apply, reply](vectorlib::ScanTracker &tracker) {
         const Relocalized found = tracker.relocalize(apply);
         QMetaObject::invokeMethod(this, [this, apply, found, reply] {
-            relocalizing = false;
+            relocalizing_ = false;
             RelocalizeAnswer answer;
             answer.search = answerOf(found);
             if (!found.isFound())
@@ -50,27 +50,27 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
 }
 
 void ScanMatcher::showRecovery(const Relocalized &recovery) {
-    ++recoveries;
-    recovered += recovery.isFound();
+    ++recoveries_;
+    recovered_ += recovery.isFound();
     if (recovery.isFound())
         logInfo("tracking", QString("found in the whole map after %1 lost scans: %2")
-                                .arg(lostInARow)
+                                .arg(lostInARow_)
                                 .arg(text(recovery.places.front().pose)));
-    else if (!lastRecovery || lastRecovery->outcome != recovery.outcome)
+    else if (!lastRecovery_ || lastRecovery_->outcome != recovery.outcome)
         logWarning("tracking", QString("not found in the whole map after %1 lost scans: %2")
-                                   .arg(lostInARow)
+                                   .arg(lostInARow_)
                                    .arg(QString::fromStdString(recovery.text())));
-    lastRecovery = recovery;
+    lastRecovery_ = recovery;
 }
 
 void ScanMatcher::updateTrackingHealth() {
-    QString message = lostInARow > 0 ? QString("lost for %1 scans").arg(lostInARow) : QString("on track");
-    if (lastRecovery)
-        message += "; the whole map was searched: " + QString::fromStdString(lastRecovery->text());
-    health().set("tracking", lostInARow >= 3 ? HealthLevel::Failed : HealthLevel::Ok, message,
-                 {{"lost_in_a_row", lostInARow},
-                  {"recoveries", qint64(recoveries)},
-                  {"recovered", qint64(recovered)}});
+    QString message = lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_) : QString("on track");
+    if (lastRecovery_)
+        message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
+    health().set("tracking", lostInARow_ >= 3 ? HealthLevel::Failed : HealthLevel::Ok, message,
+                 {{"lost_in_a_row", lostInARow_},
+                  {"recoveries", qint64(recoveries_)},
+                  {"recovered", qint64(recovered_)}});
 }
 
 } // namespace hermes

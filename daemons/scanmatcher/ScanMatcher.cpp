@@ -72,16 +72,16 @@ ScanMatcher::ScanMatcher()
               "Turns laser scans into line segments, finds the sensor's pose among those of a vector map, "
               "and lets the "
               "map grow"}) {
-    files.setMaxThreadCount(1);
+    files_.setMaxThreadCount(1);
     declareSettings();
     declareTopics();
     declareMatcherCommands();
     declareMapCommands();
     declareRelocalization();
-    connect(&source, &Client::connected, this, &ScanMatcher::updateHealth);
-    connect(&source, &Client::disconnected, this, &ScanMatcher::updateHealth);
-    connect(&odometry.client(), &Client::connected, this, &ScanMatcher::updateHealth);
-    connect(&odometry.client(), &Client::disconnected, this, &ScanMatcher::updateHealth);
+    connect(&source_, &Client::connected, this, &ScanMatcher::updateHealth);
+    connect(&source_, &Client::disconnected, this, &ScanMatcher::updateHealth);
+    connect(&odometry_.client(), &Client::connected, this, &ScanMatcher::updateHealth);
+    connect(&odometry_.client(), &Client::disconnected, this, &ScanMatcher::updateHealth);
 }
 
 void ScanMatcher::declareTopics() {
@@ -92,13 +92,13 @@ void ScanMatcher::declareTopics() {
     addTopic(Topic("map", "Changes of the map. Begins with the full map. A step of more than 1 in revision "
                           "means that changes were missed: subscribe again or call map.get")
                  .carries<MapMessage>()
-                 .snapshotParts([this](qint64 &cursor) { return mirror.part(cursor); }));
+                 .snapshotParts([this](qint64 &cursor) { return mirror_.part(cursor); }));
     addTopic(Topic("match", "How the last scan was matched").carries<MatchMessage>());
     addTopic(Topic("scan", "What pose, match and segments say of a scan, together").carries<ScanResult>());
 }
 
 Result<void> ScanMatcher::start() {
-    worker = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
+    worker_ = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
         Outcome outcome = outcomeOf(tracker, scan);
         outcome.recovery = tracker.recover();
         QMetaObject::invokeMethod(this, [this, outcome] { show(outcome); });
@@ -113,77 +113,79 @@ Result<void> ScanMatcher::start() {
 }
 
 void ScanMatcher::stop() {
-    source.close();
-    odometry.close();
-    worker.reset();
-    files.waitForDone();
+    source_.close();
+    odometry_.close();
+    worker_.reset();
+    files_.waitForDone();
 }
 
 void ScanMatcher::settingsChanged(const QStringList &paths) {
-    if (!worker)
+    if (!worker_)
         return;
-    worker->setQueueLimit(size_t(settings().integer("source.queue")));
-    worker->post([s = trackerSettings(), sigma = settings().number("matcher.sigma_m")](ScanTracker &tracker) {
-        tracker.apply(s);
-        tracker.builder.extract.vectorize.settings.sigma = sigma;
-    });
-    if (active && !paths.filter("source.").isEmpty())
+    worker_->setQueueLimit(size_t(settings().integer("source.queue")));
+    worker_->post(
+        [s = trackerSettings(), sigma = settings().number("matcher.sigma_m")](ScanTracker &tracker) {
+            tracker.apply(s);
+            tracker.builder.extract.vectorize.settings.sigma = sigma;
+        });
+    if (active_ && !paths.filter("source.").isEmpty())
         connectToSource();
-    if (active && !paths.filter("odometry.").isEmpty())
+    if (active_ && !paths.filter("odometry.").isEmpty())
         connectToOdometry();
 }
 
 void ScanMatcher::begin(bool toMap) {
-    mapping = toMap;
-    worker->post([toMap](ScanTracker &tracker) { tracker.builder.settings.grow = toMap; });
-    active = true;
+    mapping_ = toMap;
+    worker_->post([toMap](ScanTracker &tracker) { tracker.builder.settings.grow = toMap; });
+    active_ = true;
     connectToSource();
     connectToOdometry();
     setState(DaemonState::Running);
 }
 
 void ScanMatcher::pause() {
-    active = false;
-    source.close();
-    odometry.close();
+    active_ = false;
+    source_.close();
+    odometry_.close();
     setState(DaemonState::Ready);
 }
 
 void ScanMatcher::connectToSource() {
-    source.close();
-    source.unsubscribe(subscription);
-    const auto connecting = source.connectTo(settings().text("source.address"));
+    source_.close();
+    source_.unsubscribe(subscription_);
+    const auto connecting = source_.connectTo(settings().text("source.address"));
     if (!connecting) {
         logError("source", connecting.error().message);
         return;
     }
-    subscription =
-        source.subscribe(settings().text("source.topic"), {{"queue", settings().integer("source.queue")}},
-                         [this](const TopicUpdate &update) { takeScan(update); });
+    subscription_ =
+        source_.subscribe(settings().text("source.topic"), {{"queue", settings().integer("source.queue")}},
+                          [this](const TopicUpdate &update) { takeScan(update); });
 }
 
 void ScanMatcher::connectToOdometry() {
-    const auto opened = odometry.open(settings().text("odometry.address"), settings().text("odometry.topic"));
+    const auto opened =
+        odometry_.open(settings().text("odometry.address"), settings().text("odometry.topic"));
     if (!opened)
         logError("odometry", opened.error().message);
     updateHealth();
 }
 
 void ScanMatcher::takeScan(const TopicUpdate &update) {
-    lastScan = monotonicNow();
-    droppedBySource = update.dropped;
-    auto parsed = readScan(update.data, unknownFields);
+    lastScan_ = monotonicNow();
+    droppedBySource_ = update.dropped;
+    auto parsed = readScan(update.data, unknownFields_);
     if (!parsed) {
-        if (badScans++ == 0)
+        if (badScans_++ == 0)
             logWarning("source", parsed.error().message);
-        lastBadScan = parsed.error().message;
+        lastBadScan_ = parsed.error().message;
         return;
     }
     Scan scan = parsed.take();
     if (scan.partial)
         return;
-    scan.data.odometry = odometry.over(scan.data.begin(), scan.data.end());
-    worker->push(std::move(scan));
+    scan.data.odometry = odometry_.over(scan.data.begin(), scan.data.end());
+    worker_->push(std::move(scan));
 }
 
 ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &scan) {
@@ -196,37 +198,37 @@ ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &sc
 }
 
 void ScanMatcher::show(const Outcome &o) {
-    counts = o.counts;
-    lostInARow = o.outcome == ScanReport::Outcome::Lost ? lostInARow + 1 : 0;
-    if (lostInARow == 0)
-        lastRecovery.reset();
+    counts_ = o.counts;
+    lostInARow_ = o.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
+    if (lostInARow_ == 0)
+        lastRecovery_.reset();
     const ScanResult &r = o.result;
-    mirror.addPose({r.stamp, {r.pose.pose.x, r.pose.pose.y, r.pose.pose.theta}});
+    mirror_.addPose({r.stamp, {r.pose.pose.x, r.pose.pose.y, r.pose.pose.theta}});
     publish("scan", r, r.stamp);
     publish("pose", r.pose, r.stamp);
     publish("match", r.match, r.stamp);
     publish("segments", r.segments, r.stamp);
     if (!o.changes.changed.empty() || !o.changes.removed.empty())
-        publish("map", mirror.apply(o.changes), r.stamp);
+        publish("map", mirror_.apply(o.changes), r.stamp);
     if (o.recovery)
         showRecovery(*o.recovery);
 }
 
 void ScanMatcher::updateHealth() {
     const QString address = settings().text("source.address");
-    if (!active)
+    if (!active_)
         health().set("source", HealthLevel::Ok, "not matching");
-    else if (!source.isConnected())
+    else if (!source_.isConnected())
         health().set("source", HealthLevel::Failed,
-                     QString("no connection to %1: %2").arg(address, source.lastError()));
-    else if (badScans > 0)
-        health().set("source", pastBadScans.level(double(badScans)),
-                     QString("refused %1 scans, the last: %2").arg(badScans).arg(lastBadScan));
+                     QString("no connection to %1: %2").arg(address, source_.lastError()));
+    else if (badScans_ > 0)
+        health().set("source", pastBadScans_.level(double(badScans_)),
+                     QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));
     else
         health().set("source", HealthLevel::Ok, "connected to " + address);
-    odometry.report(health());
-    const quint64 dropped = droppedBySource + (worker ? worker->dropped() : 0);
-    health().set("queue", pastDrops.level(double(dropped)),
+    odometry_.report(health());
+    const quint64 dropped = droppedBySource_ + (worker_ ? worker_->dropped() : 0);
+    health().set("queue", pastDrops_.level(double(dropped)),
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
                  asJson(matcherState()).toObject());
     updateTrackingHealth();
@@ -234,23 +236,23 @@ void ScanMatcher::updateHealth() {
 
 MatcherState ScanMatcher::matcherState() const {
     MatcherState state;
-    state.active = active;
-    state.mode = mapping ? "mapping" : "localization";
-    state.scans = quint64(counts.scans);
-    state.matched = quint64(counts.matched);
-    state.lost = quint64(counts.lost);
-    state.skipped = quint64(counts.skipped);
-    state.waiting = worker ? worker->waiting() : 0;
-    state.dropped = worker ? worker->dropped() : 0;
-    state.droppedBySource = droppedBySource;
-    state.refused = badScans;
-    state.unknownFields = unknownFields;
-    state.recoveries = recoveries;
-    state.recovered = recovered;
-    state.byOdometry = quint64(counts.byOdometry);
-    state.odometry = odometry.state();
-    state.msPerScan = counts.totalMs() / std::max<double>(1, double(counts.scans));
-    state.mapSegments = mirror.size();
+    state.active = active_;
+    state.mode = mapping_ ? "mapping" : "localization";
+    state.scans = quint64(counts_.scans);
+    state.matched = quint64(counts_.matched);
+    state.lost = quint64(counts_.lost);
+    state.skipped = quint64(counts_.skipped);
+    state.waiting = worker_ ? worker_->waiting() : 0;
+    state.dropped = worker_ ? worker_->dropped() : 0;
+    state.droppedBySource = droppedBySource_;
+    state.refused = badScans_;
+    state.unknownFields = unknownFields_;
+    state.recoveries = recoveries_;
+    state.recovered = recovered_;
+    state.byOdometry = quint64(counts_.byOdometry);
+    state.odometry = odometry_.state();
+    state.msPerScan = counts_.totalMs() / std::max<double>(1, double(counts_.scans));
+    state.mapSegments = mirror_.size();
     return state;
 }
 

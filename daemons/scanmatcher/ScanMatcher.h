@@ -63,25 +63,25 @@ private:
     QString absolutePath(const QString &path) const;
     MatcherState matcherState() const;
 
-    std::atomic<int> filesUnderWay{0};
-    QThreadPool files; ///< one thread, which writes maps: a disk may take its time
-    std::unique_ptr<Worker> worker;
-    Client source;
-    int subscription = 0;
-    OdometrySource odometry;
-    bool active = false;
-    bool mapping = true; ///< the map grows; else it stays as it is
-    MapMirror mirror;
-    vectorlib::ScanTrackerCounts counts;
-    int lostInARow = 0;
-    bool relocalizing = false; ///< for a command
-    quint64 recoveries = 0,
-            recovered = 0; ///< searches of the whole map after lost scans, and their successes
-    std::optional<vectorlib::Relocalized> lastRecovery; ///< since tracking was lost
-    quint64 badScans = 0, droppedBySource = 0, unknownFields = 0;
-    PastFaults pastBadScans, pastDrops;
-    double lastScan = 0; // monotonic
-    QString lastBadScan;
+    std::atomic<int> filesUnderWay_{0};
+    QThreadPool files_; ///< one thread, which writes maps: a disk may take its time
+    std::unique_ptr<Worker> worker_;
+    Client source_;
+    int subscription_ = 0;
+    OdometrySource odometry_;
+    bool active_ = false;
+    bool mapping_ = true; ///< the map grows; else it stays as it is
+    MapMirror mirror_;
+    vectorlib::ScanTrackerCounts counts_;
+    int lostInARow_ = 0;
+    bool relocalizing_ = false; ///< for a command
+    quint64 recoveries_ = 0,
+            recovered_ = 0; ///< searches of the whole map after lost scans, and their successes
+    std::optional<vectorlib::Relocalized> lastRecovery_; ///< since tracking was lost
+    quint64 badScans_ = 0, droppedBySource_ = 0, unknownFields_ = 0;
+    PastFaults pastBadScans_, pastDrops_;
+    double lastScan_ = 0; // monotonic
+    QString lastBadScan_;
 };
 
 } // namespace hermes

@@ -5,73 +5,73 @@
 namespace hermes {
 
 Worker::Worker(Done done)
-    : whenDone(std::move(done))
-    , thread([this] { run(); }) {}
+    : whenDone_(std::move(done))
+    , thread_([this] { run(); }) {}
 
 Worker::~Worker() {
     {
-        const std::lock_guard lock(mutex);
-        ending = true;
+        const std::lock_guard lock(mutex_);
+        ending_ = true;
     }
-    wake.notify_one();
-    thread.join();
+    wake_.notify_one();
+    thread_.join();
 }
 
 void Worker::push(Scan scan) {
     {
-        const std::lock_guard lock(mutex);
-        if (scans >= limit) {
-            items.erase(std::find_if(items.begin(), items.end(), [](const Item &i) { return !i.job; }));
-            --scans;
-            ++lost;
+        const std::lock_guard lock(mutex_);
+        if (scans_ >= limit_) {
+            items_.erase(std::find_if(items_.begin(), items_.end(), [](const Item &i) { return !i.job; }));
+            --scans_;
+            ++lost_;
         }
-        items.push_back({std::move(scan), {}});
-        ++scans;
+        items_.push_back({std::move(scan), {}});
+        ++scans_;
     }
-    wake.notify_one();
+    wake_.notify_one();
 }
 
 void Worker::post(Job job) {
     {
-        const std::lock_guard lock(mutex);
-        items.push_back({{}, std::move(job)});
+        const std::lock_guard lock(mutex_);
+        items_.push_back({{}, std::move(job)});
     }
-    wake.notify_one();
+    wake_.notify_one();
 }
 
 void Worker::setQueueLimit(size_t count) {
-    const std::lock_guard lock(mutex);
-    limit = std::max<size_t>(1, count);
+    const std::lock_guard lock(mutex_);
+    limit_ = std::max<size_t>(1, count);
 }
 
 quint64 Worker::dropped() const {
-    const std::lock_guard lock(mutex);
-    return lost;
+    const std::lock_guard lock(mutex_);
+    return lost_;
 }
 
 size_t Worker::waiting() const {
-    const std::lock_guard lock(mutex);
-    return scans;
+    const std::lock_guard lock(mutex_);
+    return scans_;
 }
 
 void Worker::run() {
     for (;;) {
         Item item;
         {
-            std::unique_lock lock(mutex);
-            wake.wait(lock, [this] { return ending || !items.empty(); });
-            if (items.empty())
+            std::unique_lock lock(mutex_);
+            wake_.wait(lock, [this] { return ending_ || !items_.empty(); });
+            if (items_.empty())
                 return;
-            item = std::move(items.front());
-            items.pop_front();
+            item = std::move(items_.front());
+            items_.pop_front();
             if (!item.job)
-                --scans;
+                --scans_;
         }
         if (item.job) {
-            item.job(tracker);
+            item.job(tracker_);
         } else {
-            tracker.process(item.scan.data);
-            whenDone(tracker, item.scan);
+            tracker_.process(item.scan.data);
+            whenDone_(tracker_, item.scan);
         }
     }
 }

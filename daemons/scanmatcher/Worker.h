@@ -36,16 +36,16 @@ private:
     };
     void run();
 
-    Done whenDone;
-    vectorlib::ScanTracker tracker; // used by the thread alone
-    mutable std::mutex mutex;
-    std::condition_variable wake;
-    std::deque<Item> items;
-    size_t scans = 0; // among the items
-    size_t limit = 50;
-    quint64 lost = 0;
-    bool ending = false;
-    std::thread thread;
+    Done whenDone_;
+    vectorlib::ScanTracker tracker_; // used by the thread alone
+    mutable std::mutex mutex_;
+    std::condition_variable wake_;
+    std::deque<Item> items_;
+    size_t scans_ = 0; // among the items
+    size_t limit_ = 50;
+    quint64 lost_ = 0;
+    bool ending_ = false;
+    std::thread thread_;
 };
 
 } // namespace hermes

@@ -50,23 +50,23 @@ CodecItem Codec::itemOf(const WireValue &value) {
 
 void Codec::count(const CodecItem &item) {
     if (!item.error)
-        ++counts.messagesIn;
+        ++counts_.messagesIn;
     else if (item.error->is(ErrorCode::OverLimit))
-        ++counts.oversized;
+        ++counts_.oversized;
     else
-        ++counts.malformed;
+        ++counts_.malformed;
 }
 
 EncodedFrame Codec::encode(const Outgoing &message) {
     std::optional<QString> path;
     const QByteArray bytes = frame(message, path);
     if (path) {
-        ++counts.refused;
+        ++counts_.refused;
         return {{},
                 RpcError(ErrorCode::InternalError,
                          QStringLiteral("cannot send %1: not a finite number").arg(*path))};
     }
-    ++counts.messagesOut;
+    ++counts_.messagesOut;
     return {bytes, std::nullopt};
 }
 

@@ -77,22 +77,22 @@ public:
     virtual void reset() = 0;
 
     /// Largest frame accepted by feed(), in bytes without its delimiter.
-    void setFrameLimit(int bytes) { limit = bytes; }
-    int frameLimit() const { return limit; }
-    const CodecCounters &counters() const { return counts; }
+    void setFrameLimit(int bytes) { limit_ = bytes; }
+    int frameLimit() const { return limit_; }
+    const CodecCounters &counters() const { return counts_; }
 
 protected:
     explicit Codec(int frameLimitBytes)
-        : limit(frameLimitBytes) {}
+        : limit_(frameLimitBytes) {}
 
     static CodecItem itemOf(const WireValue &value);
     /// Writes a frame; path: of the number that cannot be written.
     virtual QByteArray frame(const Outgoing &message, std::optional<QString> &path) = 0;
 
-    CodecCounters counts;
+    CodecCounters counts_;
 
 private:
-    int limit;
+    int limit_;
 };
 
 using CodecMaker = std::unique_ptr<Codec> (*)();

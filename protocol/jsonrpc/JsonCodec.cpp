@@ -22,35 +22,35 @@ std::vector<CodecFrame> JsonCodec::split(const QByteArray &bytes) {
 }
 
 void JsonCodec::append(const char *bytes, int size, std::vector<CodecFrame> &frames) {
-    if (skipping)
+    if (skipping_)
         return;
     // One byte more than the limit may wait: the CR of a CR LF.
-    if (line.size() + size > frameLimit() + 1) {
-        skipping = true;
-        line = QByteArray();
+    if (line_.size() + size > frameLimit() + 1) {
+        skipping_ = true;
+        line_ = QByteArray();
         frames.push_back({{},
                           RpcError(ErrorCode::OverLimit,
                                    QStringLiteral("line larger than %1 bytes, skipped").arg(frameLimit()))});
         return;
     }
-    line.append(bytes, size);
+    line_.append(bytes, size);
 }
 
 void JsonCodec::finishLine(std::vector<CodecFrame> &frames) {
-    if (skipping) {
-        skipping = false;
+    if (skipping_) {
+        skipping_ = false;
         return;
     }
-    if (line.endsWith('\r'))
-        line.chop(1);
-    if (line.size() > frameLimit()) {
+    if (line_.endsWith('\r'))
+        line_.chop(1);
+    if (line_.size() > frameLimit()) {
         append("xx", 2, frames); // reaches the limit and reports it
-        skipping = false;
+        skipping_ = false;
         return;
     }
-    if (!line.trimmed().isEmpty())
-        frames.push_back({line, std::nullopt});
-    line = QByteArray();
+    if (!line_.trimmed().isEmpty())
+        frames.push_back({line_, std::nullopt});
+    line_ = QByteArray();
 }
 
 CodecItem JsonCodec::read(const CodecFrame &frame) const {
@@ -66,8 +66,8 @@ CodecItem JsonCodec::read(const CodecFrame &frame) const {
 }
 
 void JsonCodec::reset() {
-    line.clear();
-    skipping = false;
+    line_.clear();
+    skipping_ = false;
 }
 
 void JsonCodec::joinBatch(std::vector<QByteArray> &frames) const {

@@ -15,7 +15,7 @@ public:
 
     std::vector<CodecFrame> split(const QByteArray &bytes) override;
     CodecItem read(const CodecFrame &frame) const override;
-    bool isMidFrame() const override { return skipping || !line.isEmpty(); }
+    bool isMidFrame() const override { return skipping_ || !line_.isEmpty(); }
     void reset() override;
     void joinBatch(std::vector<QByteArray> &frames) const override;
     QByteArray forSubscription(const QByteArray &notification, quint64 subscription,
@@ -28,8 +28,8 @@ private:
     void append(const char *bytes, int size, std::vector<CodecFrame> &frames);
     void finishLine(std::vector<CodecFrame> &frames);
 
-    QByteArray line; // the line begun, without its LF
-    bool skipping = false;
+    QByteArray line_; // the line begun, without its LF
+    bool skipping_ = false;
 };
 
 } // namespace hermes

@@ -26,7 +26,7 @@ void FieldTable::Entry::describe(const char *description, const char *unit) {
 
 void FieldTable::write(WireWriter &out, const void *message) const {
     out.beginObject();
-    for (const Entry &entry : entries) {
+    for (const Entry &entry : entries_) {
         const bool isEmpty = entry.isOptional && entry.isEmpty(message);
         if (isEmpty && !entry.isNullable)
             continue;
@@ -42,7 +42,7 @@ void FieldTable::read(WireView in, void *message, ReadReport &report) const {
     if (in.kind() != WireView::Kind::Object)
         return report.fail(in, QStringLiteral("an object"));
     std::size_t known = 0;
-    for (const Entry &entry : entries) {
+    for (const Entry &entry : entries_) {
         const WireView value = in[entry.name.constData()];
         known += value.kind() != WireView::Kind::Undefined;
         const bool isMissing = value.kind() == WireView::Kind::Undefined;
@@ -78,7 +78,7 @@ QJsonObject FieldTable::schemaOf(const Entry &entry) {
 QJsonObject FieldTable::schema() const {
     QJsonObject properties;
     QJsonArray required;
-    for (const Entry &entry : entries) {
+    for (const Entry &entry : entries_) {
         properties.insert(QLatin1String(entry.name), schemaOf(entry));
         if (!entry.isOptional || entry.isNullable)
             required.append(QLatin1String(entry.name));

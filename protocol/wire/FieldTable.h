@@ -68,7 +68,7 @@ protected:
 
     static QJsonObject schemaOf(const Entry &entry);
 
-    std::vector<Entry> entries;
+    std::vector<Entry> entries_;
 };
 
 } // namespace hermes

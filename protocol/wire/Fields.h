@@ -39,7 +39,7 @@ public:
                 return !(static_cast<const T *>(message)->*member).has_value();
             };
         }
-        entries.push_back(std::move(entry));
+        entries_.push_back(std::move(entry));
         return *this;
     }
 
@@ -58,7 +58,7 @@ public:
                 Type<M>::read(in, (static_cast<T *>(message)->*member)[i], limits, report);
             };
             entry.schema = [](const Limits &limits) { return Type<M>::schema(limits); };
-            entries.push_back(std::move(entry));
+            entries_.push_back(std::move(entry));
         }
         return *this;
     }
@@ -66,7 +66,7 @@ public:
     /// The fields of Part, a member or a base, beside the others.
     template <typename Part, typename Owner>
     Fields &include(Part Owner::*member) {
-        for (FieldTable::Entry entry : fieldsOf<Part>().entries) {
+        for (FieldTable::Entry entry : fieldsOf<Part>().entries_) {
             entry.write = [member, inner = entry.write](WireWriter &out, const void *message) {
                 inner(out, &(static_cast<const T *>(message)->*member));
             };
@@ -78,34 +78,34 @@ public:
                 entry.isEmpty = [member, inner = entry.isEmpty](const void *message) {
                     return inner(&(static_cast<const T *>(message)->*member));
                 };
-            entries.push_back(std::move(entry));
+            entries_.push_back(std::move(entry));
         }
         return *this;
     }
 
     Fields &range(double least, double most) {
-        entries.back().limits.least = least;
-        entries.back().limits.most = most;
+        entries_.back().limits.least = least;
+        entries_.back().limits.most = most;
         return *this;
     }
     Fields &atLeast(double least) { return range(least, std::numeric_limits<double>::max()); }
     Fields &atMostElements(std::size_t count) {
-        entries.back().limits.elements = count;
+        entries_.back().limits.elements = count;
         return *this;
     }
     Fields &choices(const QStringList &allowed) { return with("enum", QJsonArray::fromStringList(allowed)); }
     /// A reader does without it, and leaves it as it is; a writer always writes it.
     Fields &mayBeMissing() {
-        entries.back().mayBeMissing = true;
+        entries_.back().mayBeMissing = true;
         return *this;
     }
     Fields &orNull() {
-        entries.back().isNullable = true;
+        entries_.back().isNullable = true;
         return *this;
     }
     /// Any further keyword of the schema.
     Fields &with(const char *keyword, const QJsonValue &value) {
-        entries.back().keywords.insert(QLatin1String(keyword), value);
+        entries_.back().keywords.insert(QLatin1String(keyword), value);
         return *this;
     }
 

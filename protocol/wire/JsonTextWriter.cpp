@@ -5,55 +5,55 @@
 namespace hermes {
 
 void JsonTextWriter::separate() {
-    if (out.isEmpty())
+    if (out_.isEmpty())
         return;
-    const char last = out.back();
+    const char last = out_.back();
     if (last != '{' && last != '[' && last != ':')
-        out.append(',');
+        out_.append(',');
 }
 
 void JsonTextWriter::separate(char next) {
     separate();
-    out.append(next);
+    out_.append(next);
 }
 
 void JsonTextWriter::quote(const QString &text) {
     static const char digits[] = "0123456789abcdef";
-    out.append('"');
+    out_.append('"');
     for (const char c : text.toUtf8()) {
         if (c == '"' || c == '\\')
-            out.append('\\').append(c);
+            out_.append('\\').append(c);
         else if (c == '\n')
-            out.append("\\n");
+            out_.append("\\n");
         else if (uchar(c) < ' ')
-            out.append("\\u00").append(digits[uchar(c) >> 4]).append(digits[c & 15]);
+            out_.append("\\u00").append(digits[uchar(c) >> 4]).append(digits[c & 15]);
         else
-            out.append(c);
+            out_.append(c);
     }
-    out.append('"');
+    out_.append('"');
 }
 
 template <typename T>
 void JsonTextWriter::digits(T value) {
     separate();
     char buffer[32];
-    out.append(buffer, int(std::to_chars(buffer, buffer + sizeof buffer, value).ptr - buffer));
+    out_.append(buffer, int(std::to_chars(buffer, buffer + sizeof buffer, value).ptr - buffer));
 }
 
 void JsonTextWriter::key(const QString &name) {
     separate();
     quote(name);
-    out.append(':');
+    out_.append(':');
 }
 
 void JsonTextWriter::null() {
     separate();
-    out.append("null");
+    out_.append("null");
 }
 
 void JsonTextWriter::boolean(bool value) {
     separate();
-    out.append(value ? "true" : "false");
+    out_.append(value ? "true" : "false");
 }
 
 void JsonTextWriter::integer(qint64 value) {

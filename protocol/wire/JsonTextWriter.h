@@ -11,16 +11,16 @@ class JsonTextWriter : public WireWriter {
 public:
     void beginObject() override { separate('{'); }
     void key(const QString &name) override;
-    void endObject() override { out.append('}'); }
+    void endObject() override { out_.append('}'); }
     void beginArray() override { separate('['); }
-    void endArray() override { out.append(']'); }
+    void endArray() override { out_.append(']'); }
     void null() override;
     void boolean(bool value) override;
     void integer(qint64 value) override;
     void text(const QString &value) override;
 
-    const QByteArray &bytes() const { return out; }
-    QByteArray take() { return std::move(out); }
+    const QByteArray &bytes() const { return out_; }
+    QByteArray take() { return std::move(out_); }
 
 protected:
     void finite(double value) override;
@@ -33,7 +33,7 @@ private:
     template <typename T>
     void digits(T value);
 
-    QByteArray out;
+    QByteArray out_;
 };
 
 } // namespace hermes

@@ -13,17 +13,17 @@ void JsonValueWriter::finite(float value) {
 }
 
 void JsonValueWriter::put(const QJsonValue &value) {
-    if (open.empty())
-        root = value;
-    else if (open.back().isObject)
-        open.back().object.insert(open.back().key, value);
+    if (open_.empty())
+        root_ = value;
+    else if (open_.back().isObject)
+        open_.back().object.insert(open_.back().key, value);
     else
-        open.back().array.append(value);
+        open_.back().array.append(value);
 }
 
 void JsonValueWriter::close() {
-    const Level level = std::move(open.back());
-    open.pop_back();
+    const Level level = std::move(open_.back());
+    open_.pop_back();
     put(level.isObject ? QJsonValue(level.object) : QJsonValue(level.array));
 }
 

@@ -17,7 +17,7 @@ public:
     Outgoing() = default;
     Outgoing(const QJsonValue &value) {
         if (!value.isUndefined())
-            writer = [value](WireWriter &out) { out.json(value); };
+            writer_ = [value](WireWriter &out) { out.json(value); };
     }
     /// A struct with fields, a list of them, or what QJsonValue is made from.
     template <typename T, typename = std::enable_if_t<!std::is_same_v<std::decay_t<T>, Outgoing>>>
@@ -25,21 +25,21 @@ public:
         if constexpr (std::is_convertible_v<T, QJsonValue>)
             *this = Outgoing(QJsonValue(message));
         else
-            writer = [held = std::make_shared<const T>(std::move(message))](WireWriter &out) {
+            writer_ = [held = std::make_shared<const T>(std::move(message))](WireWriter &out) {
                 Type<T>::write(out, *held);
             };
     }
     static Outgoing writtenBy(std::function<void(WireWriter &)> write) {
         Outgoing made;
-        made.writer = std::move(write);
+        made.writer_ = std::move(write);
         return made;
     }
 
-    bool isNothing() const { return !writer; }
-    void write(WireWriter &out) const { writer ? writer(out) : out.null(); }
+    bool isNothing() const { return !writer_; }
+    void write(WireWriter &out) const { writer_ ? writer_(out) : out.null(); }
 
 private:
-    std::function<void(WireWriter &)> writer;
+    std::function<void(WireWriter &)> writer_;
 };
 
 } // namespace hermes

@@ -33,13 +33,13 @@ QString textOf(const Node &node) {
 class Guard : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, Guard> {
 public:
     Guard(rapidjson::Document &target, int depthLimit)
-        : document(target)
-        , maximumDepth(depthLimit) {}
+        : document_(target)
+        , maximumDepth_(depthLimit) {}
 
     QString complaint;
 
-    bool Null() { return document.Null(); }
-    bool Bool(bool value) { return document.Bool(value); }
+    bool Null() { return document_.Null(); }
+    bool Bool(bool value) { return document_.Bool(value); }
     /// Its grammar is checked already. What is nearer to 0 than any number is 0.
     bool RawNumber(const char *text, unsigned length, bool) {
         const char *const end = text + length;
@@ -47,24 +47,24 @@ public:
         if (!std::memchr(text, '.', length))
             if (const auto read = std::from_chars(text, end, whole);
                 read.ptr == end && read.ec == std::errc())
-                return document.Int64(whole);
+                return document_.Int64(whole);
         double number = 0;
         if (std::from_chars(text, end, number).ec == std::errc::result_out_of_range &&
             !isSmall({text, length}))
             complaint = QStringLiteral("Number too big to be stored in double.");
-        return complaint.isEmpty() && document.Double(number);
+        return complaint.isEmpty() && document_.Double(number);
     }
-    bool String(const char *text, unsigned length, bool copy) { return document.String(text, length, copy); }
+    bool String(const char *text, unsigned length, bool copy) { return document_.String(text, length, copy); }
     bool Key(const char *text, unsigned length, bool copy) {
-        keys.back().emplace_back(text, length);
-        return document.Key(text, length, copy);
+        keys_.back().emplace_back(text, length);
+        return document_.Key(text, length, copy);
     }
-    bool StartObject() { return enter() && document.StartObject(); }
-    bool EndObject(unsigned count) { return leave() && document.EndObject(count); }
-    bool StartArray() { return enter() && document.StartArray(); }
+    bool StartObject() { return enter() && document_.StartObject(); }
+    bool EndObject(unsigned count) { return leave() && document_.EndObject(count); }
+    bool StartArray() { return enter() && document_.StartArray(); }
     bool EndArray(unsigned count) {
-        keys.pop_back();
-        return document.EndArray(count);
+        keys_.pop_back();
+        return document_.EndArray(count);
     }
 
 private:
@@ -75,26 +75,26 @@ private:
     }
 
     bool enter() {
-        keys.emplace_back();
-        if (int(keys.size()) > maximumDepth)
-            complaint = QStringLiteral("nested deeper than %1 levels").arg(maximumDepth);
+        keys_.emplace_back();
+        if (int(keys_.size()) > maximumDepth_)
+            complaint = QStringLiteral("nested deeper than %1 levels").arg(maximumDepth_);
         return complaint.isEmpty();
     }
 
     bool leave() {
-        std::vector<std::string> &names = keys.back();
+        std::vector<std::string> &names = keys_.back();
         std::sort(names.begin(), names.end());
         const auto twice = std::adjacent_find(names.begin(), names.end());
         if (twice != names.end())
             complaint = QStringLiteral("the key \"%1\" occurs twice in one object")
                             .arg(QString::fromStdString(*twice));
-        keys.pop_back();
+        keys_.pop_back();
         return complaint.isEmpty();
     }
 
-    rapidjson::Document &document;
-    const int maximumDepth;
-    std::vector<std::vector<std::string>> keys; // of each object (or array: none) still open
+    rapidjson::Document &document_;
+    const int maximumDepth_;
+    std::vector<std::vector<std::string>> keys_; // of each object (or array: none) still open
 };
 
 void give(const QJsonValue &value, rapidjson::Document &to) {
@@ -189,9 +189,9 @@ struct WireValue::Tree {
 };
 
 WireView::Kind WireView::kind() const {
-    if (!node)
+    if (!node_)
         return Kind::Undefined;
-    switch (nodeOf(node).GetType()) {
+    switch (nodeOf(node_).GetType()) {
     case rapidjson::kFalseType:
     case rapidjson::kTrueType:
         return Kind::Boolean;
@@ -209,15 +209,15 @@ WireView::Kind WireView::kind() const {
 }
 
 bool WireView::boolean() const {
-    return nodeOf(node).IsTrue();
+    return nodeOf(node_).IsTrue();
 }
 
 double WireView::number() const {
-    return nodeOf(node).IsNumber() ? nodeOf(node).GetDouble() : std::numeric_limits<double>::quiet_NaN();
+    return nodeOf(node_).IsNumber() ? nodeOf(node_).GetDouble() : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::optional<qint64> WireView::integer() const {
-    const Node &value = nodeOf(node);
+    const Node &value = nodeOf(node_);
     if (value.IsInt64())
         return value.GetInt64();
     const double number = this->number();
@@ -227,21 +227,21 @@ std::optional<qint64> WireView::integer() const {
 }
 
 QString WireView::text() const {
-    return nodeOf(node).IsString() ? textOf(nodeOf(node)) : QString();
+    return nodeOf(node_).IsString() ? textOf(nodeOf(node_)) : QString();
 }
 
 std::size_t WireView::size() const {
-    const Node &value = nodeOf(node);
+    const Node &value = nodeOf(node_);
     return value.IsArray() ? value.Size() : value.IsObject() ? value.MemberCount() : 0;
 }
 
 WireView WireView::operator[](std::size_t element) const {
-    const Node &value = nodeOf(node);
+    const Node &value = nodeOf(node_);
     return value.IsArray() && element < value.Size() ? WireView(&value[unsigned(element)]) : WireView();
 }
 
 WireView WireView::operator[](const char *name) const {
-    const Node &value = nodeOf(node);
+    const Node &value = nodeOf(node_);
     if (!value.IsObject())
         return {};
     const auto member = value.FindMember(name);
@@ -249,21 +249,21 @@ WireView WireView::operator[](const char *name) const {
 }
 
 std::size_t WireView::numbers(float *to) const {
-    return copyNumbers(nodeOf(node), to);
+    return copyNumbers(nodeOf(node_), to);
 }
 
 std::size_t WireView::numbers(double *to) const {
-    return copyNumbers(nodeOf(node), to);
+    return copyNumbers(nodeOf(node_), to);
 }
 
 void WireView::forEachMember(const std::function<void(const QString &, WireView)> &see) const {
-    if (nodeOf(node).IsObject())
-        for (const auto &member : nodeOf(node).GetObject())
+    if (nodeOf(node_).IsObject())
+        for (const auto &member : nodeOf(node_).GetObject())
             see(textOf(member.name), WireView(&member.value));
 }
 
 QJsonValue WireView::toJson() const {
-    return node ? hermes::toJson(nodeOf(node)) : QJsonValue(QJsonValue::Undefined);
+    return node_ ? hermes::toJson(nodeOf(node_)) : QJsonValue(QJsonValue::Undefined);
 }
 
 QString WireView::described() const {
@@ -295,8 +295,8 @@ WireValue::WireValue(const QJsonValue &value) {
         return true;
     };
     made->document.Populate(generate);
-    node = static_cast<const Node *>(&made->document);
-    tree = made;
+    node_ = static_cast<const Node *>(&made->document);
+    tree_ = made;
 }
 
 std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *error, int maximumDepth) {
@@ -325,8 +325,8 @@ std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *err
         return std::nullopt;
     }
     WireValue value;
-    value.node = static_cast<const Node *>(&made->document);
-    value.tree = made;
+    value.node_ = static_cast<const Node *>(&made->document);
+    value.tree_ = made;
     return value;
 }
 

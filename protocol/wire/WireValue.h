@@ -37,12 +37,12 @@ public:
 
 protected:
     explicit WireView(const void *tree)
-        : node(tree) {}
+        : node_(tree) {}
 
 private:
     friend class WireValue;
 
-    const void *node = nullptr;
+    const void *node_ = nullptr;
 };
 
 /// What is wrong with a text, and where.
@@ -60,7 +60,7 @@ public:
     /// Part of another one's tree.
     WireValue(const WireValue &whole, WireView part)
         : WireView(part)
-        , tree(whole.tree) {}
+        , tree_(whole.tree_) {}
 
     /// Strict JSON: any value may stand at the top, bytes must be UTF-8, a key may occur once in an object,
     /// nesting is limited. Nothing: error says why.
@@ -69,7 +69,7 @@ public:
 private:
     struct Tree;
 
-    std::shared_ptr<const Tree> tree;
+    std::shared_ptr<const Tree> tree_;
 };
 
 } // namespace hermes

@@ -18,9 +18,9 @@ void WireWriter::number(float value) {
 template <typename T>
 void WireWriter::each(const T *values, std::size_t count) {
     beginArray();
-    for (std::size_t i = 0; i < count && !isRefused; ++i) {
+    for (std::size_t i = 0; i < count && !isRefused_; ++i) {
         number(values[i]);
-        if (isRefused)
+        if (isRefused_)
             within(QString::number(i));
     }
     endArray();
@@ -49,7 +49,7 @@ void WireWriter::json(const QJsonValue &value) {
         int i = 0;
         for (const QJsonValue &element : value.toArray()) {
             json(element);
-            if (isRefused)
+            if (isRefused_)
                 return within(QString::number(i));
             ++i;
         }
@@ -61,7 +61,7 @@ void WireWriter::json(const QJsonValue &value) {
         for (auto member = object.begin(); member != object.end(); ++member) {
             key(member.key());
             json(member.value());
-            if (isRefused)
+            if (isRefused_)
                 return within(member.key());
         }
         return endObject();
@@ -72,12 +72,12 @@ void WireWriter::json(const QJsonValue &value) {
 }
 
 void WireWriter::refuse() {
-    isRefused = true;
+    isRefused_ = true;
     null();
 }
 
 void WireWriter::within(const QString &name) {
-    path = path.isEmpty() ? name : name + QLatin1Char('.') + path;
+    path_ = path_.isEmpty() ? name : name + QLatin1Char('.') + path_;
 }
 
 } // namespace hermes

@@ -30,9 +30,9 @@ public:
     virtual void numbers(const double *values, std::size_t count);
     void json(const QJsonValue &value);
 
-    bool hasRefused() const { return isRefused; }
+    bool hasRefused() const { return isRefused_; }
     /// The dotted path of the first number that could not be written; "" is the message itself.
-    const QString &refused() const { return path; }
+    const QString &refused() const { return path_; }
     /// Whoever wrote a member or an element that was refused says which.
     void within(const QString &name);
 
@@ -45,8 +45,8 @@ private:
     template <typename T>
     void each(const T *values, std::size_t count);
 
-    bool isRefused = false;
-    QString path;
+    bool isRefused_ = false;
+    QString path_;
 };
 
 } // namespace hermes
