@@ -63,8 +63,7 @@ Standing standingOf(const Telemetry &t) {
     return standing;
 }
 
-template <>
-const Fields<WheelMessage> &fieldsOf<WheelMessage>() {
+const Fields<WheelMessage> &fieldsOf(Of<WheelMessage>) {
     using W = WheelMessage;
     static const auto fields = Fields<W>()
                                    .add("target", &W::target, "What was commanded", "rad/s")
@@ -74,8 +73,7 @@ const Fields<WheelMessage> &fieldsOf<WheelMessage>() {
     return fields;
 }
 
-template <>
-const Fields<WheelsMessage> &fieldsOf<WheelsMessage>() {
+const Fields<WheelsMessage> &fieldsOf(Of<WheelsMessage>) {
     static const auto fields =
         Fields<WheelsMessage>()
             .addEach(wheelNames, &WheelsMessage::wheels, "Positive turns drive the robot forward")
@@ -83,8 +81,7 @@ const Fields<WheelsMessage> &fieldsOf<WheelsMessage>() {
     return fields;
 }
 
-template <>
-const Fields<Standing::Controller> &fieldsOf<Standing::Controller>() {
+const Fields<Standing::Controller> &fieldsOf(Of<Standing::Controller>) {
     using C = Standing::Controller;
     static const auto fields = Fields<C>()
                                    .add("name", &C::name, "Address and line")
@@ -93,8 +90,7 @@ const Fields<Standing::Controller> &fieldsOf<Standing::Controller>() {
     return fields;
 }
 
-template <>
-const Fields<Standing> &fieldsOf<Standing>() {
+const Fields<Standing> &fieldsOf(Of<Standing>) {
     static const auto fields =
         Fields<Standing>()
             .add("confirmed", &Standing::confirmed,
@@ -104,8 +100,7 @@ const Fields<Standing> &fieldsOf<Standing>() {
     return fields;
 }
 
-template <>
-const Fields<CycleStatistics> &fieldsOf<CycleStatistics>() {
+const Fields<CycleStatistics> &fieldsOf(Of<CycleStatistics>) {
     static const auto fields =
         Fields<CycleStatistics>()
             .add("cycles", &CycleStatistics::cycles, "Since the start")
@@ -115,8 +110,7 @@ const Fields<CycleStatistics> &fieldsOf<CycleStatistics>() {
     return fields;
 }
 
-template <>
-const Fields<CycleState> &fieldsOf<CycleState>() {
+const Fields<CycleState> &fieldsOf(Of<CycleState>) {
     using C = CycleState;
     static const auto fields = Fields<C>()
                                    .add("period_s", &C::period_s, "Of the cycle", "s")
@@ -126,8 +120,7 @@ const Fields<CycleState> &fieldsOf<CycleState>() {
     return fields;
 }
 
-template <>
-const Fields<roboclaw::Bus::Counts> &fieldsOf<roboclaw::Bus::Counts>() {
+const Fields<roboclaw::Bus::Counts> &fieldsOf(Of<roboclaw::Bus::Counts>) {
     using C = roboclaw::Bus::Counts;
     static const auto fields = Fields<C>()
                                    .add("requests", &C::sent, "Sent, repetitions too")
@@ -138,8 +131,7 @@ const Fields<roboclaw::Bus::Counts> &fieldsOf<roboclaw::Bus::Counts>() {
     return fields;
 }
 
-template <>
-const Fields<Telemetry::Controller> &fieldsOf<Telemetry::Controller>() {
+const Fields<Telemetry::Controller> &fieldsOf(Of<Telemetry::Controller>) {
     using C = Telemetry::Controller;
     static const auto fields =
         Fields<C>()
@@ -155,8 +147,7 @@ const Fields<Telemetry::Controller> &fieldsOf<Telemetry::Controller>() {
     return fields;
 }
 
-template <>
-const Fields<MotorState> &fieldsOf<MotorState>() {
+const Fields<MotorState> &fieldsOf(Of<MotorState>) {
     using S = MotorState;
     static const auto fields =
         Fields<S>()

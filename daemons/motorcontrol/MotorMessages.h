@@ -59,19 +59,12 @@ Standing standingOf(const Telemetry &telemetry);
 /// Whether every controller has confirmed that it stands.
 bool allStand(const Telemetry &telemetry);
 
-template <>
-const Fields<WheelMessage> &fieldsOf<WheelMessage>();
-template <>
-const Fields<WheelsMessage> &fieldsOf<WheelsMessage>();
-template <>
-const Fields<Standing::Controller> &fieldsOf<Standing::Controller>();
-template <>
-const Fields<Standing> &fieldsOf<Standing>();
-template <>
-const Fields<CycleState> &fieldsOf<CycleState>();
-template <>
-const Fields<Telemetry::Controller> &fieldsOf<Telemetry::Controller>();
-template <>
-const Fields<MotorState> &fieldsOf<MotorState>();
+const Fields<WheelMessage> &fieldsOf(Of<WheelMessage>);
+const Fields<WheelsMessage> &fieldsOf(Of<WheelsMessage>);
+const Fields<Standing::Controller> &fieldsOf(Of<Standing::Controller>);
+const Fields<Standing> &fieldsOf(Of<Standing>);
+const Fields<CycleState> &fieldsOf(Of<CycleState>);
+const Fields<Telemetry::Controller> &fieldsOf(Of<Telemetry::Controller>);
+const Fields<MotorState> &fieldsOf(Of<MotorState>);
 
 } // namespace hermes

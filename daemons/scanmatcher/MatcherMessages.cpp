@@ -57,8 +57,7 @@ SearchAnswer answerOf(const Relocalized &search) {
     return answer;
 }
 
-template <>
-const Fields<OdometryState> &fieldsOf<OdometryState>() {
+const Fields<OdometryState> &fieldsOf(Of<OdometryState>) {
     using S = OdometryState;
     static const auto fields =
         Fields<S>()
@@ -73,8 +72,7 @@ const Fields<OdometryState> &fieldsOf<OdometryState>() {
     return fields;
 }
 
-template <>
-const Fields<MatcherState> &fieldsOf<MatcherState>() {
+const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
     using S = MatcherState;
     static const auto fields =
         Fields<S>()
@@ -99,8 +97,7 @@ const Fields<MatcherState> &fieldsOf<MatcherState>() {
     return fields;
 }
 
-template <>
-const Fields<PairMatch> &fieldsOf<PairMatch>() {
+const Fields<PairMatch> &fieldsOf(Of<PairMatch>) {
     using M = PairMatch;
     static const auto fields = Fields<M>()
                                    .include(&M::pose)
@@ -114,8 +111,7 @@ const Fields<PairMatch> &fieldsOf<PairMatch>() {
     return fields;
 }
 
-template <>
-const Fields<PlaceAnswer> &fieldsOf<PlaceAnswer>() {
+const Fields<PlaceAnswer> &fieldsOf(Of<PlaceAnswer>) {
     using P = PlaceAnswer;
     static const auto fields =
         Fields<P>()
@@ -131,8 +127,7 @@ const Fields<PlaceAnswer> &fieldsOf<PlaceAnswer>() {
     return fields;
 }
 
-template <>
-const Fields<SearchAnswer> &fieldsOf<SearchAnswer>() {
+const Fields<SearchAnswer> &fieldsOf(Of<SearchAnswer>) {
     using S = SearchAnswer;
     static const auto fields =
         Fields<S>()
@@ -146,8 +141,7 @@ const Fields<SearchAnswer> &fieldsOf<SearchAnswer>() {
     return fields;
 }
 
-template <>
-const Fields<RelocalizeAnswer> &fieldsOf<RelocalizeAnswer>() {
+const Fields<RelocalizeAnswer> &fieldsOf(Of<RelocalizeAnswer>) {
     using R = RelocalizeAnswer;
     static const auto fields = Fields<R>()
                                    .include(&R::search)
@@ -156,8 +150,7 @@ const Fields<RelocalizeAnswer> &fieldsOf<RelocalizeAnswer>() {
     return fields;
 }
 
-template <>
-const Fields<SavedMap> &fieldsOf<SavedMap>() {
+const Fields<SavedMap> &fieldsOf(Of<SavedMap>) {
     static const auto fields = Fields<SavedMap>()
                                    .add("path", &SavedMap::path, "Of the file")
                                    .add("segments", &SavedMap::segments, "Edges written")
@@ -165,8 +158,7 @@ const Fields<SavedMap> &fieldsOf<SavedMap>() {
     return fields;
 }
 
-template <>
-const Fields<LoadedMap> &fieldsOf<LoadedMap>() {
+const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>) {
     static const auto fields = Fields<LoadedMap>().add("segments", &LoadedMap::segments, "Edges read");
     return fields;
 }

@@ -72,21 +72,13 @@ struct LoadedMap {
 
 SearchAnswer answerOf(const vectorlib::Relocalized &search);
 
-template <>
-const Fields<OdometryState> &fieldsOf<OdometryState>();
-template <>
-const Fields<MatcherState> &fieldsOf<MatcherState>();
-template <>
-const Fields<PairMatch> &fieldsOf<PairMatch>();
-template <>
-const Fields<PlaceAnswer> &fieldsOf<PlaceAnswer>();
-template <>
-const Fields<SearchAnswer> &fieldsOf<SearchAnswer>();
-template <>
-const Fields<RelocalizeAnswer> &fieldsOf<RelocalizeAnswer>();
-template <>
-const Fields<SavedMap> &fieldsOf<SavedMap>();
-template <>
-const Fields<LoadedMap> &fieldsOf<LoadedMap>();
+const Fields<OdometryState> &fieldsOf(Of<OdometryState>);
+const Fields<MatcherState> &fieldsOf(Of<MatcherState>);
+const Fields<PairMatch> &fieldsOf(Of<PairMatch>);
+const Fields<PlaceAnswer> &fieldsOf(Of<PlaceAnswer>);
+const Fields<SearchAnswer> &fieldsOf(Of<SearchAnswer>);
+const Fields<RelocalizeAnswer> &fieldsOf(Of<RelocalizeAnswer>);
+const Fields<SavedMap> &fieldsOf(Of<SavedMap>);
+const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>);
 
 } // namespace hermes

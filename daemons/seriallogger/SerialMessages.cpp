@@ -15,8 +15,7 @@ FixValues valuesOf(const Fix &fix) {
     return values;
 }
 
-template <>
-const Fields<LineMessage> &fieldsOf<LineMessage>() {
+const Fields<LineMessage> &fieldsOf(Of<LineMessage>) {
     using L = LineMessage;
     static const auto fields = Fields<L>()
                                    .add("port", &L::port, "That it came from")
@@ -27,8 +26,7 @@ const Fields<LineMessage> &fieldsOf<LineMessage>() {
     return fields;
 }
 
-template <>
-const Fields<FixValues> &fieldsOf<FixValues>() {
+const Fields<FixValues> &fieldsOf(Of<FixValues>) {
     using F = FixValues;
     static const auto fields =
         Fields<F>()
@@ -56,15 +54,13 @@ const Fields<FixValues> &fieldsOf<FixValues>() {
     return fields;
 }
 
-template <>
-const Fields<FixMessage> &fieldsOf<FixMessage>() {
+const Fields<FixMessage> &fieldsOf(Of<FixMessage>) {
     static const auto fields =
         Fields<FixMessage>().add("port", &FixMessage::port, "That it came from").include(&FixMessage::values);
     return fields;
 }
 
-template <>
-const Fields<NmeaCounts> &fieldsOf<NmeaCounts>() {
+const Fields<NmeaCounts> &fieldsOf(Of<NmeaCounts>) {
     using N = NmeaCounts;
     static const auto fields = Fields<N>()
                                    .add("sentences", &N::sentences, "Whole ones")
@@ -81,8 +77,7 @@ const Fields<NmeaCounts> &fieldsOf<NmeaCounts>() {
     return fields;
 }
 
-template <>
-const Fields<PortStatus> &fieldsOf<PortStatus>() {
+const Fields<PortStatus> &fieldsOf(Of<PortStatus>) {
     using P = PortStatus;
     static const auto fields =
         Fields<P>()
@@ -107,8 +102,7 @@ const Fields<PortStatus> &fieldsOf<PortStatus>() {
     return fields;
 }
 
-template <>
-const Fields<SerialMessage> &fieldsOf<SerialMessage>() {
+const Fields<SerialMessage> &fieldsOf(Of<SerialMessage>) {
     using S = SerialMessage;
     static const auto fields = Fields<S>()
                                    .add("ports", &S::ports, "As ports.list gives them")
@@ -117,8 +111,7 @@ const Fields<SerialMessage> &fieldsOf<SerialMessage>() {
     return fields;
 }
 
-template <>
-const Fields<MarkAnswer> &fieldsOf<MarkAnswer>() {
+const Fields<MarkAnswer> &fieldsOf(Of<MarkAnswer>) {
     using M = MarkAnswer;
     static const auto fields = Fields<M>()
                                    .add("stamp", &M::stamp, "Since the Unix epoch", "s")
@@ -126,14 +119,12 @@ const Fields<MarkAnswer> &fieldsOf<MarkAnswer>() {
     return fields;
 }
 
-template <>
-const Fields<SendAnswer> &fieldsOf<SendAnswer>() {
+const Fields<SendAnswer> &fieldsOf(Of<SendAnswer>) {
     static const auto fields = Fields<SendAnswer>().add("sent", &SendAnswer::sent, "Bytes", "byte");
     return fields;
 }
 
-template <>
-const Fields<ExportAnswer> &fieldsOf<ExportAnswer>() {
+const Fields<ExportAnswer> &fieldsOf(Of<ExportAnswer>) {
     static const auto fields = Fields<ExportAnswer>()
                                    .add("path", &ExportAnswer::path, "Of the CSV")
                                    .add("rows", &ExportAnswer::rows, "Without the header");

@@ -73,23 +73,14 @@ struct ExportAnswer {
 
 FixValues valuesOf(const Fix &fix);
 
-template <>
-const Fields<LineMessage> &fieldsOf<LineMessage>();
-template <>
-const Fields<FixValues> &fieldsOf<FixValues>();
-template <>
-const Fields<FixMessage> &fieldsOf<FixMessage>();
-template <>
-const Fields<NmeaCounts> &fieldsOf<NmeaCounts>();
-template <>
-const Fields<PortStatus> &fieldsOf<PortStatus>();
-template <>
-const Fields<SerialMessage> &fieldsOf<SerialMessage>();
-template <>
-const Fields<MarkAnswer> &fieldsOf<MarkAnswer>();
-template <>
-const Fields<SendAnswer> &fieldsOf<SendAnswer>();
-template <>
-const Fields<ExportAnswer> &fieldsOf<ExportAnswer>();
+const Fields<LineMessage> &fieldsOf(Of<LineMessage>);
+const Fields<FixValues> &fieldsOf(Of<FixValues>);
+const Fields<FixMessage> &fieldsOf(Of<FixMessage>);
+const Fields<NmeaCounts> &fieldsOf(Of<NmeaCounts>);
+const Fields<PortStatus> &fieldsOf(Of<PortStatus>);
+const Fields<SerialMessage> &fieldsOf(Of<SerialMessage>);
+const Fields<MarkAnswer> &fieldsOf(Of<MarkAnswer>);
+const Fields<SendAnswer> &fieldsOf(Of<SendAnswer>);
+const Fields<ExportAnswer> &fieldsOf(Of<ExportAnswer>);
 
 } // namespace hermes

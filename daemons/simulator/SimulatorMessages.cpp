@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<LoadedWorld> &fieldsOf<LoadedWorld>() {
+const Fields<LoadedWorld> &fieldsOf(Of<LoadedWorld>) {
     static const auto fields = Fields<LoadedWorld>()
                                    .add("name", &LoadedWorld::name, "Of the world")
                                    .add("edges", &LoadedWorld::edges, "Walls")
@@ -13,8 +12,7 @@ const Fields<LoadedWorld> &fieldsOf<LoadedWorld>() {
     return fields;
 }
 
-template <>
-const Fields<RoboClawEmulator::Counts> &fieldsOf<RoboClawEmulator::Counts>() {
+const Fields<RoboClawEmulator::Counts> &fieldsOf(Of<RoboClawEmulator::Counts>) {
     using C = RoboClawEmulator::Counts;
     static const auto fields = Fields<C>()
                                    .add("requests", &C::requests, "Carried out")
@@ -24,8 +22,7 @@ const Fields<RoboClawEmulator::Counts> &fieldsOf<RoboClawEmulator::Counts>() {
     return fields;
 }
 
-template <>
-const Fields<EmulatorState> &fieldsOf<EmulatorState>() {
+const Fields<EmulatorState> &fieldsOf(Of<EmulatorState>) {
     using E = EmulatorState;
     static const auto fields =
         Fields<E>()
@@ -36,16 +33,14 @@ const Fields<EmulatorState> &fieldsOf<EmulatorState>() {
     return fields;
 }
 
-template <>
-const Fields<LineState> &fieldsOf<LineState>() {
+const Fields<LineState> &fieldsOf(Of<LineState>) {
     static const auto fields = Fields<LineState>()
                                    .add("link", &LineState::link, "That stays the same, or empty")
                                    .add("device", &LineState::device, "Empty while it is pulled");
     return fields;
 }
 
-template <>
-const Fields<GpsLineState> &fieldsOf<GpsLineState>() {
+const Fields<GpsLineState> &fieldsOf(Of<GpsLineState>) {
     using G = GpsLineState;
     static const auto fields =
         Fields<G>()
@@ -55,8 +50,7 @@ const Fields<GpsLineState> &fieldsOf<GpsLineState>() {
     return fields;
 }
 
-template <>
-const Fields<DrivetrainState> &fieldsOf<DrivetrainState>() {
+const Fields<DrivetrainState> &fieldsOf(Of<DrivetrainState>) {
     using D = DrivetrainState;
     static const auto fields = Fields<D>()
                                    .add("wheels_rps", &D::wheels_rps,
@@ -68,8 +62,7 @@ const Fields<DrivetrainState> &fieldsOf<DrivetrainState>() {
     return fields;
 }
 
-template <>
-const Fields<LidarModel::Options> &fieldsOf<LidarModel::Options>() {
+const Fields<LidarModel::Options> &fieldsOf(Of<LidarModel::Options>) {
     using L = LidarModel::Options;
     static const auto fields = Fields<L>()
                                    .add("sigma_m", &L::sigma, "Standard deviation of the lidar's range", "m")
@@ -78,8 +71,7 @@ const Fields<LidarModel::Options> &fieldsOf<LidarModel::Options>() {
     return fields;
 }
 
-template <>
-const Fields<FaultState> &fieldsOf<FaultState>() {
+const Fields<FaultState> &fieldsOf(Of<FaultState>) {
     static const auto fields = Fields<FaultState>()
                                    .add("kind", &FaultState::kind, "What the lidar does wrong")
                                    .choices({"none", "silence", "loss"})
@@ -87,8 +79,7 @@ const Fields<FaultState> &fieldsOf<FaultState>() {
     return fields;
 }
 
-template <>
-const Fields<PacketPump::Counts> &fieldsOf<PacketPump::Counts>() {
+const Fields<PacketPump::Counts> &fieldsOf(Of<PacketPump::Counts>) {
     using C = PacketPump::Counts;
     static const auto fields = Fields<C>()
                                    .add("packets", &C::sent, "Sent")
@@ -100,8 +91,7 @@ const Fields<PacketPump::Counts> &fieldsOf<PacketPump::Counts>() {
     return fields;
 }
 
-template <>
-const Fields<SimulatorState> &fieldsOf<SimulatorState>() {
+const Fields<SimulatorState> &fieldsOf(Of<SimulatorState>) {
     using S = SimulatorState;
     static const auto fields = Fields<S>()
                                    .add("world", &S::world, "File, or empty")

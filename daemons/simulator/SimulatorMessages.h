@@ -50,11 +50,8 @@ struct SimulatorState {
     PacketPump::Counts packets;
 };
 
-template <>
-const Fields<LoadedWorld> &fieldsOf<LoadedWorld>();
-template <>
-const Fields<PacketPump::Counts> &fieldsOf<PacketPump::Counts>();
-template <>
-const Fields<SimulatorState> &fieldsOf<SimulatorState>();
+const Fields<LoadedWorld> &fieldsOf(Of<LoadedWorld>);
+const Fields<PacketPump::Counts> &fieldsOf(Of<PacketPump::Counts>);
+const Fields<SimulatorState> &fieldsOf(Of<SimulatorState>);
 
 } // namespace hermes

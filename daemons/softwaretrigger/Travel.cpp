@@ -13,8 +13,7 @@ constexpr double allowance = 0.05; // m or rad that a step may exceed what the s
 
 } // namespace
 
-template <>
-const Fields<TravelPoint> &fieldsOf<TravelPoint>() {
+const Fields<TravelPoint> &fieldsOf(Of<TravelPoint>) {
     static const auto fields = Fields<TravelPoint>()
                                    .add("pose", &TravelPoint::pose, "As in odometry")
                                    .add("twist", &TravelPoint::twist, "As in odometry")

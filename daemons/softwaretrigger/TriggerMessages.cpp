@@ -5,8 +5,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<FiringCause> &fieldsOf<FiringCause>() {
+const Fields<FiringCause> &fieldsOf(Of<FiringCause>) {
     using C = FiringCause;
     static const auto fields =
         Fields<C>()
@@ -24,8 +23,7 @@ const Fields<FiringCause> &fieldsOf<FiringCause>() {
     return fields;
 }
 
-template <>
-const Fields<ActionOutcome::Failure> &fieldsOf<ActionOutcome::Failure>() {
+const Fields<ActionOutcome::Failure> &fieldsOf(Of<ActionOutcome::Failure>) {
     using F = ActionOutcome::Failure;
     static const auto fields = Fields<F>()
                                    .add("code", &F::code, "Of the error")
@@ -33,8 +31,7 @@ const Fields<ActionOutcome::Failure> &fieldsOf<ActionOutcome::Failure>() {
     return fields;
 }
 
-template <>
-const Fields<ActionOutcome> &fieldsOf<ActionOutcome>() {
+const Fields<ActionOutcome> &fieldsOf(Of<ActionOutcome>) {
     using O = ActionOutcome;
     static const auto fields = Fields<O>()
                                    .add("action", &O::action, "What it is")
@@ -45,8 +42,7 @@ const Fields<ActionOutcome> &fieldsOf<ActionOutcome>() {
     return fields;
 }
 
-template <>
-const Fields<FiringMessage> &fieldsOf<FiringMessage>() {
+const Fields<FiringMessage> &fieldsOf(Of<FiringMessage>) {
     using F = FiringMessage;
     static const auto fields =
         Fields<F>()
@@ -62,8 +58,7 @@ const Fields<FiringMessage> &fieldsOf<FiringMessage>() {
     return fields;
 }
 
-template <>
-const Fields<Jitter> &fieldsOf<Jitter>() {
+const Fields<Jitter> &fieldsOf(Of<Jitter>) {
     static const auto fields =
         Fields<Jitter>()
             .add("count", &Jitter::count, "Firings that it is of, the last 1000 at most")
@@ -73,8 +68,7 @@ const Fields<Jitter> &fieldsOf<Jitter>() {
     return fields;
 }
 
-template <>
-const Fields<FiringLog::State> &fieldsOf<FiringLog::State>() {
+const Fields<FiringLog::State> &fieldsOf(Of<FiringLog::State>) {
     using S = FiringLog::State;
     static const auto fields = Fields<S>()
                                    .add("folder", &S::folder, "Of the log, or empty")
@@ -85,8 +79,7 @@ const Fields<FiringLog::State> &fieldsOf<FiringLog::State>() {
     return fields;
 }
 
-template <>
-const Fields<WatchedState> &fieldsOf<WatchedState>() {
+const Fields<WatchedState> &fieldsOf(Of<WatchedState>) {
     using W = WatchedState;
     static const auto fields = Fields<W>()
                                    .add("messages", &W::messages, "Of the topic")
@@ -96,8 +89,7 @@ const Fields<WatchedState> &fieldsOf<WatchedState>() {
     return fields;
 }
 
-template <>
-const Fields<TriggerState> &fieldsOf<TriggerState>() {
+const Fields<TriggerState> &fieldsOf(Of<TriggerState>) {
     using S = TriggerState;
     static const auto fields = Fields<S>()
                                    .add("armed", &S::armed, "It fires")

@@ -63,14 +63,10 @@ struct TriggerState {
     WatchedState watched;
 };
 
-template <>
-const Fields<Jitter> &fieldsOf<Jitter>();
-template <>
-const Fields<FiringLog::State> &fieldsOf<FiringLog::State>();
-template <>
-const Fields<FiringMessage> &fieldsOf<FiringMessage>();
-template <>
-const Fields<TriggerState> &fieldsOf<TriggerState>();
+const Fields<Jitter> &fieldsOf(Of<Jitter>);
+const Fields<FiringLog::State> &fieldsOf(Of<FiringLog::State>);
+const Fields<FiringMessage> &fieldsOf(Of<FiringMessage>);
+const Fields<TriggerState> &fieldsOf(Of<TriggerState>);
 
 } // namespace hermes
 

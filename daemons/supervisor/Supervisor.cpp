@@ -21,7 +21,7 @@ ProcessEntry toEntry(const QJsonObject &json) {
     const QString name = json["name"].toString();
     ProcessEntry entry{name, "hermes-" + name, {}, defaultPort(name)};
     ReadReport report;
-    fieldsOf<ProcessEntry>().read(WireValue(json), &entry, report);
+    fieldsOf(Of<ProcessEntry>()).read(WireValue(json), &entry, report);
     return entry;
 }
 

@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<LidarGps> &fieldsOf<LidarGps>() {
+const Fields<LidarGps> &fieldsOf(Of<LidarGps>) {
     using G = LidarGps;
     static const auto fields = Fields<G>()
                                    .add("pps", &G::pps, "State of the pulse a second")
@@ -21,8 +20,7 @@ const Fields<LidarGps> &fieldsOf<LidarGps>() {
     return fields;
 }
 
-template <>
-const Fields<LidarMessage> &fieldsOf<LidarMessage>() {
+const Fields<LidarMessage> &fieldsOf(Of<LidarMessage>) {
     using L = LidarMessage;
     static const auto fields =
         Fields<L>()
@@ -57,8 +55,7 @@ const Fields<LidarMessage> &fieldsOf<LidarMessage>() {
     return fields;
 }
 
-template <>
-const Fields<CapturedTurn> &fieldsOf<CapturedTurn>() {
+const Fields<CapturedTurn> &fieldsOf(Of<CapturedTurn>) {
     static const auto fields = Fields<CapturedTurn>()
                                    .add("path", &CapturedTurn::path, "Of the file")
                                    .add("points", &CapturedTurn::points, "Written");

@@ -32,11 +32,8 @@ struct CapturedTurn {
     quint64 points = 0;
 };
 
-template <>
-const Fields<LidarGps> &fieldsOf<LidarGps>();
-template <>
-const Fields<LidarMessage> &fieldsOf<LidarMessage>();
-template <>
-const Fields<CapturedTurn> &fieldsOf<CapturedTurn>();
+const Fields<LidarGps> &fieldsOf(Of<LidarGps>);
+const Fields<LidarMessage> &fieldsOf(Of<LidarMessage>);
+const Fields<CapturedTurn> &fieldsOf(Of<CapturedTurn>);
 
 } // namespace hermes

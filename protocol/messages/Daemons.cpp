@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<DaemonInfo> &fieldsOf<DaemonInfo>() {
+const Fields<DaemonInfo> &fieldsOf(Of<DaemonInfo>) {
     using I = DaemonInfo;
     static const auto fields =
         Fields<I>()
@@ -31,8 +30,7 @@ const Fields<DaemonInfo> &fieldsOf<DaemonInfo>() {
     return fields;
 }
 
-template <>
-const Fields<HealthItem> &fieldsOf<HealthItem>() {
+const Fields<HealthItem> &fieldsOf(Of<HealthItem>) {
     using H = HealthItem;
     static const auto fields =
         Fields<H>()
@@ -48,8 +46,7 @@ const Fields<HealthItem> &fieldsOf<HealthItem>() {
     return fields;
 }
 
-template <>
-const Fields<DaemonStatus> &fieldsOf<DaemonStatus>() {
+const Fields<DaemonStatus> &fieldsOf(Of<DaemonStatus>) {
     using S = DaemonStatus;
     static const auto fields =
         Fields<S>()
@@ -61,8 +58,7 @@ const Fields<DaemonStatus> &fieldsOf<DaemonStatus>() {
     return fields;
 }
 
-template <>
-const Fields<LogMessage> &fieldsOf<LogMessage>() {
+const Fields<LogMessage> &fieldsOf(Of<LogMessage>) {
     using L = LogMessage;
     static const auto fields = Fields<L>()
                                    .add("stamp", &L::stamp, "Since the Unix epoch", "s")
@@ -74,8 +70,7 @@ const Fields<LogMessage> &fieldsOf<LogMessage>() {
     return fields;
 }
 
-template <>
-const Fields<SettingsChange> &fieldsOf<SettingsChange>() {
+const Fields<SettingsChange> &fieldsOf(Of<SettingsChange>) {
     using C = SettingsChange;
     static const auto fields = Fields<C>()
                                    .add("changed", &C::changed, "Paths of the settings that have new values")
@@ -83,14 +78,12 @@ const Fields<SettingsChange> &fieldsOf<SettingsChange>() {
     return fields;
 }
 
-template <>
-const Fields<SavedSettings> &fieldsOf<SavedSettings>() {
+const Fields<SavedSettings> &fieldsOf(Of<SavedSettings>) {
     static const auto fields = Fields<SavedSettings>().add("path", &SavedSettings::path, "Of the file");
     return fields;
 }
 
-template <>
-const Fields<TopicDescription> &fieldsOf<TopicDescription>() {
+const Fields<TopicDescription> &fieldsOf(Of<TopicDescription>) {
     using T = TopicDescription;
     static const auto fields = Fields<T>()
                                    .add("name", &T::name, "As topics.subscribe takes it")
@@ -100,8 +93,7 @@ const Fields<TopicDescription> &fieldsOf<TopicDescription>() {
     return fields;
 }
 
-template <>
-const Fields<SubscriptionAnswer> &fieldsOf<SubscriptionAnswer>() {
+const Fields<SubscriptionAnswer> &fieldsOf(Of<SubscriptionAnswer>) {
     using S = SubscriptionAnswer;
     static const auto fields =
         Fields<S>().add("subscription", &S::subscription, "For topics.unsubscribe; stands in each message");

@@ -60,21 +60,13 @@ struct SubscriptionAnswer {
     quint64 subscription = 0;
 };
 
-template <>
-const Fields<DaemonInfo> &fieldsOf<DaemonInfo>();
-template <>
-const Fields<HealthItem> &fieldsOf<HealthItem>();
-template <>
-const Fields<DaemonStatus> &fieldsOf<DaemonStatus>();
-template <>
-const Fields<LogMessage> &fieldsOf<LogMessage>();
-template <>
-const Fields<SettingsChange> &fieldsOf<SettingsChange>();
-template <>
-const Fields<SavedSettings> &fieldsOf<SavedSettings>();
-template <>
-const Fields<TopicDescription> &fieldsOf<TopicDescription>();
-template <>
-const Fields<SubscriptionAnswer> &fieldsOf<SubscriptionAnswer>();
+const Fields<DaemonInfo> &fieldsOf(Of<DaemonInfo>);
+const Fields<HealthItem> &fieldsOf(Of<HealthItem>);
+const Fields<DaemonStatus> &fieldsOf(Of<DaemonStatus>);
+const Fields<LogMessage> &fieldsOf(Of<LogMessage>);
+const Fields<SettingsChange> &fieldsOf(Of<SettingsChange>);
+const Fields<SavedSettings> &fieldsOf(Of<SavedSettings>);
+const Fields<TopicDescription> &fieldsOf(Of<TopicDescription>);
+const Fields<SubscriptionAnswer> &fieldsOf(Of<SubscriptionAnswer>);
 
 } // namespace hermes

@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<PoseMessage> &fieldsOf<PoseMessage>() {
+const Fields<PoseMessage> &fieldsOf(Of<PoseMessage>) {
     static const auto fields =
         Fields<PoseMessage>()
             .include(&PoseMessage::pose)
@@ -21,8 +20,7 @@ const Fields<PoseMessage> &fieldsOf<PoseMessage>() {
     return fields;
 }
 
-template <>
-const Fields<StepTimes> &fieldsOf<StepTimes>() {
+const Fields<StepTimes> &fieldsOf(Of<StepTimes>) {
     static const auto fields = Fields<StepTimes>()
                                    .add("segment", &StepTimes::segment, "Segmentation", "ms")
                                    .add("vectorize", &StepTimes::vectorize, "Vectorization", "ms")
@@ -31,8 +29,7 @@ const Fields<StepTimes> &fieldsOf<StepTimes>() {
     return fields;
 }
 
-template <>
-const Fields<MatchMessage> &fieldsOf<MatchMessage>() {
+const Fields<MatchMessage> &fieldsOf(Of<MatchMessage>) {
     static const auto fields =
         Fields<MatchMessage>()
             .add("scan", &MatchMessage::scan, "The turn it belongs to")
@@ -53,8 +50,7 @@ const Fields<MatchMessage> &fieldsOf<MatchMessage>() {
     return fields;
 }
 
-template <>
-const Fields<ScanResult> &fieldsOf<ScanResult>() {
+const Fields<ScanResult> &fieldsOf(Of<ScanResult>) {
     static const auto fields =
         Fields<ScanResult>()
             .add("stamp", &ScanResult::stamp, "Of the scan", "s")

@@ -45,13 +45,9 @@ struct ScanResult {
     SegmentsMessage segments;
 };
 
-template <>
-const Fields<PoseMessage> &fieldsOf<PoseMessage>();
-template <>
-const Fields<StepTimes> &fieldsOf<StepTimes>();
-template <>
-const Fields<MatchMessage> &fieldsOf<MatchMessage>();
-template <>
-const Fields<ScanResult> &fieldsOf<ScanResult>();
+const Fields<PoseMessage> &fieldsOf(Of<PoseMessage>);
+const Fields<StepTimes> &fieldsOf(Of<StepTimes>);
+const Fields<MatchMessage> &fieldsOf(Of<MatchMessage>);
+const Fields<ScanResult> &fieldsOf(Of<ScanResult>);
 
 } // namespace hermes

@@ -9,8 +9,7 @@ constexpr double farthest = 1e10; // beyond it differences of poses lose their d
 
 } // namespace
 
-template <>
-const Fields<Pose2D> &fieldsOf<Pose2D>() {
+const Fields<Pose2D> &fieldsOf(Of<Pose2D>) {
     static const auto fields = Fields<Pose2D>()
                                    .add("x", &Pose2D::x, "Position", "m")
                                    .range(-farthest, farthest)
@@ -21,8 +20,7 @@ const Fields<Pose2D> &fieldsOf<Pose2D>() {
     return fields;
 }
 
-template <>
-const Fields<Twist2D> &fieldsOf<Twist2D>() {
+const Fields<Twist2D> &fieldsOf(Of<Twist2D>) {
     static const auto fields = Fields<Twist2D>()
                                    .add("vx", &Twist2D::vx, "Forward", "m/s")
                                    .range(-farthest, farthest)
@@ -33,8 +31,7 @@ const Fields<Twist2D> &fieldsOf<Twist2D>() {
     return fields;
 }
 
-template <>
-const Fields<OdometryMessage> &fieldsOf<OdometryMessage>() {
+const Fields<OdometryMessage> &fieldsOf(Of<OdometryMessage>) {
     static const auto fields =
         Fields<OdometryMessage>()
             .add("pose", &OdometryMessage::pose, "Since odometry.reset")
@@ -46,8 +43,7 @@ const Fields<OdometryMessage> &fieldsOf<OdometryMessage>() {
     return fields;
 }
 
-template <>
-const Fields<TruthMessage> &fieldsOf<TruthMessage>() {
+const Fields<TruthMessage> &fieldsOf(Of<TruthMessage>) {
     static const auto fields =
         Fields<TruthMessage>()
             .add("stamp", &TruthMessage::stamp, "On the clock of the lidar's stamps", "s")

@@ -32,13 +32,9 @@ struct TruthMessage {
     bool touching = false;
 };
 
-template <>
-const Fields<Pose2D> &fieldsOf<Pose2D>();
-template <>
-const Fields<Twist2D> &fieldsOf<Twist2D>();
-template <>
-const Fields<OdometryMessage> &fieldsOf<OdometryMessage>();
-template <>
-const Fields<TruthMessage> &fieldsOf<TruthMessage>();
+const Fields<Pose2D> &fieldsOf(Of<Pose2D>);
+const Fields<Twist2D> &fieldsOf(Of<Twist2D>);
+const Fields<OdometryMessage> &fieldsOf(Of<OdometryMessage>);
+const Fields<TruthMessage> &fieldsOf(Of<TruthMessage>);
 
 } // namespace hermes

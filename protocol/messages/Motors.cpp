@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<LeaseState> &fieldsOf<LeaseState>() {
+const Fields<LeaseState> &fieldsOf(Of<LeaseState>) {
     using L = LeaseState;
     static const auto fields = Fields<L>()
                                    .add("held", &L::held, "A client holds the control")
@@ -16,8 +15,7 @@ const Fields<LeaseState> &fieldsOf<LeaseState>() {
     return fields;
 }
 
-template <>
-const Fields<MotionHold> &fieldsOf<MotionHold>() {
+const Fields<MotionHold> &fieldsOf(Of<MotionHold>) {
     static const auto fields =
         Fields<MotionHold>()
             .add("latched", &MotionHold::latched, "Reason of each cause that holds until motor.reset_estop")
@@ -25,8 +23,7 @@ const Fields<MotionHold> &fieldsOf<MotionHold>() {
     return fields;
 }
 
-template <>
-const Fields<ControllerPower> &fieldsOf<ControllerPower>() {
+const Fields<ControllerPower> &fieldsOf(Of<ControllerPower>) {
     using C = ControllerPower;
     static const auto fields = Fields<C>()
                                    .add("ready", &C::ready, "It answers and has told all of this")
@@ -42,8 +39,7 @@ const Fields<ControllerPower> &fieldsOf<ControllerPower>() {
     return fields;
 }
 
-template <>
-const Fields<PowerMessage> &fieldsOf<PowerMessage>() {
+const Fields<PowerMessage> &fieldsOf(Of<PowerMessage>) {
     static const auto fields =
         Fields<PowerMessage>().add("controllers", &PowerMessage::controllers, "All").atMostElements(100);
     return fields;

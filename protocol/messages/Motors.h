@@ -38,13 +38,9 @@ struct PowerMessage {
     std::vector<ControllerPower> controllers;
 };
 
-template <>
-const Fields<LeaseState> &fieldsOf<LeaseState>();
-template <>
-const Fields<MotionHold> &fieldsOf<MotionHold>();
-template <>
-const Fields<ControllerPower> &fieldsOf<ControllerPower>();
-template <>
-const Fields<PowerMessage> &fieldsOf<PowerMessage>();
+const Fields<LeaseState> &fieldsOf(Of<LeaseState>);
+const Fields<MotionHold> &fieldsOf(Of<MotionHold>);
+const Fields<ControllerPower> &fieldsOf(Of<ControllerPower>);
+const Fields<PowerMessage> &fieldsOf(Of<PowerMessage>);
 
 } // namespace hermes

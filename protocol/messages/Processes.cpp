@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<ProcessEntry> &fieldsOf<ProcessEntry>() {
+const Fields<ProcessEntry> &fieldsOf(Of<ProcessEntry>) {
     using E = ProcessEntry;
     static const auto fields = Fields<E>()
                                    .add("name", &E::name, "Of the process")
@@ -23,8 +22,7 @@ const Fields<ProcessEntry> &fieldsOf<ProcessEntry>() {
     return fields;
 }
 
-template <>
-const Fields<ProcessStatus> &fieldsOf<ProcessStatus>() {
+const Fields<ProcessStatus> &fieldsOf(Of<ProcessStatus>) {
     using S = ProcessStatus;
     static const auto fields = Fields<S>()
                                    .include(&S::entry)
@@ -41,8 +39,7 @@ const Fields<ProcessStatus> &fieldsOf<ProcessStatus>() {
     return fields;
 }
 
-template <>
-const Fields<ProcessesMessage> &fieldsOf<ProcessesMessage>() {
+const Fields<ProcessesMessage> &fieldsOf(Of<ProcessesMessage>) {
     static const auto fields =
         Fields<ProcessesMessage>()
             .add("robot", &ProcessesMessage::robot, "What people call it")

@@ -39,11 +39,8 @@ struct ProcessesMessage {
     std::vector<ProcessStatus> processes;
 };
 
-template <>
-const Fields<ProcessEntry> &fieldsOf<ProcessEntry>();
-template <>
-const Fields<ProcessStatus> &fieldsOf<ProcessStatus>();
-template <>
-const Fields<ProcessesMessage> &fieldsOf<ProcessesMessage>();
+const Fields<ProcessEntry> &fieldsOf(Of<ProcessEntry>);
+const Fields<ProcessStatus> &fieldsOf(Of<ProcessStatus>);
+const Fields<ProcessesMessage> &fieldsOf(Of<ProcessesMessage>);
 
 } // namespace hermes

@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<RecordingError> &fieldsOf<RecordingError>() {
+const Fields<RecordingError> &fieldsOf(Of<RecordingError>) {
     using E = RecordingError;
     static const auto fields = Fields<E>()
                                    .add("code", &E::code, "As of an error reply")
@@ -14,8 +13,7 @@ const Fields<RecordingError> &fieldsOf<RecordingError>() {
     return fields;
 }
 
-template <>
-const Fields<RecordingStatus> &fieldsOf<RecordingStatus>() {
+const Fields<RecordingStatus> &fieldsOf(Of<RecordingStatus>) {
     using S = RecordingStatus;
     static const auto fields =
         Fields<S>()
@@ -34,8 +32,7 @@ const Fields<RecordingStatus> &fieldsOf<RecordingStatus>() {
     return fields;
 }
 
-template <>
-const Fields<RecordingEntry> &fieldsOf<RecordingEntry>() {
+const Fields<RecordingEntry> &fieldsOf(Of<RecordingEntry>) {
     using E = RecordingEntry;
     static const auto fields =
         Fields<E>()
@@ -55,8 +52,7 @@ const Fields<RecordingEntry> &fieldsOf<RecordingEntry>() {
     return fields;
 }
 
-template <>
-const Fields<SourceStatus> &fieldsOf<SourceStatus>() {
+const Fields<SourceStatus> &fieldsOf(Of<SourceStatus>) {
     using S = SourceStatus;
     static const auto fields =
         Fields<S>()

@@ -57,13 +57,9 @@ struct SourceStatus {
     std::optional<QString> error;
 };
 
-template <>
-const Fields<RecordingError> &fieldsOf<RecordingError>();
-template <>
-const Fields<RecordingStatus> &fieldsOf<RecordingStatus>();
-template <>
-const Fields<RecordingEntry> &fieldsOf<RecordingEntry>();
-template <>
-const Fields<SourceStatus> &fieldsOf<SourceStatus>();
+const Fields<RecordingError> &fieldsOf(Of<RecordingError>);
+const Fields<RecordingStatus> &fieldsOf(Of<RecordingStatus>);
+const Fields<RecordingEntry> &fieldsOf(Of<RecordingEntry>);
+const Fields<SourceStatus> &fieldsOf(Of<SourceStatus>);
 
 } // namespace hermes

@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<TurnHeader> &fieldsOf<TurnHeader>() {
+const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>) {
     static const auto fields =
         Fields<TurnHeader>()
             .add("turn", &TurnHeader::turn, "Counts the turns since the source was opened")
@@ -24,8 +23,7 @@ const Fields<TurnHeader> &fieldsOf<TurnHeader>() {
     return fields;
 }
 
-template <>
-const Fields<ScanMessage> &fieldsOf<ScanMessage>() {
+const Fields<ScanMessage> &fieldsOf(Of<ScanMessage>) {
     static const auto fields =
         Fields<ScanMessage>()
             .include(&ScanMessage::header)
@@ -43,8 +41,7 @@ const Fields<ScanMessage> &fieldsOf<ScanMessage>() {
     return fields;
 }
 
-template <>
-const Fields<CloudMessage> &fieldsOf<CloudMessage>() {
+const Fields<CloudMessage> &fieldsOf(Of<CloudMessage>) {
     static const auto fields =
         Fields<CloudMessage>()
             .include(&CloudMessage::header)

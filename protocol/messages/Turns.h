@@ -41,11 +41,8 @@ struct CloudMessage {
     std::vector<quint8> intensity;
 };
 
-template <>
-const Fields<TurnHeader> &fieldsOf<TurnHeader>();
-template <>
-const Fields<ScanMessage> &fieldsOf<ScanMessage>();
-template <>
-const Fields<CloudMessage> &fieldsOf<CloudMessage>();
+const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>);
+const Fields<ScanMessage> &fieldsOf(Of<ScanMessage>);
+const Fields<CloudMessage> &fieldsOf(Of<CloudMessage>);
 
 } // namespace hermes

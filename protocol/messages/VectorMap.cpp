@@ -4,8 +4,7 @@
 
 namespace hermes {
 
-template <>
-const Fields<MapEdgeMessage> &fieldsOf<MapEdgeMessage>() {
+const Fields<MapEdgeMessage> &fieldsOf(Of<MapEdgeMessage>) {
     static const auto fields =
         Fields<MapEdgeMessage>()
             .add("id", &MapEdgeMessage::id, "As long as the edge is in the map")
@@ -23,8 +22,7 @@ const Fields<MapEdgeMessage> &fieldsOf<MapEdgeMessage>() {
     return fields;
 }
 
-template <>
-const Fields<MapMessage> &fieldsOf<MapMessage>() {
+const Fields<MapMessage> &fieldsOf(Of<MapMessage>) {
     static const auto fields =
         Fields<MapMessage>()
             .add("revision", &MapMessage::revision, "Counts the changes of the map")

@@ -25,9 +25,7 @@ struct MapMessage {
     qint64 size = 0;
 };
 
-template <>
-const Fields<MapEdgeMessage> &fieldsOf<MapEdgeMessage>();
-template <>
-const Fields<MapMessage> &fieldsOf<MapMessage>();
+const Fields<MapEdgeMessage> &fieldsOf(Of<MapEdgeMessage>);
+const Fields<MapMessage> &fieldsOf(Of<MapMessage>);
 
 } // namespace hermes

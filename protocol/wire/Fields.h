@@ -9,7 +9,7 @@ namespace hermes {
 
 /// The fields of the struct T, one add() after another, each followed by what is to be said of it:
 ///
-///     template <> const Fields<Twist2D> &fieldsOf<Twist2D>() {
+///     const Fields<Twist2D> &fieldsOf(Of<Twist2D>) {
 ///         static const auto fields = Fields<Twist2D>()
 ///             .add("vx", &Twist2D::vx, "Forward", "m/s")
 ///             .add("omega", &Twist2D::omega, "Counter-clockwise", "rad/s");
@@ -66,7 +66,7 @@ public:
     /// The fields of Part, a member or a base, beside the others.
     template <typename Part, typename Owner>
     Fields &include(Part Owner::*member) {
-        for (FieldTable::Entry entry : fieldsOf<Part>().entries_) {
+        for (FieldTable::Entry entry : fieldsOf(Of<Part>()).entries_) {
             entry.write = [member, inner = entry.write](WireWriter &out, const void *message) {
                 inner(out, &(static_cast<const T *>(message)->*member));
             };

@@ -7,10 +7,10 @@ namespace hermes {
 template <typename T>
 class Fields;
 
-/// The fields of a struct that travels: specialised beside it. Whoever writes, reads or describes it includes
-/// Fields.h.
+/// Names a type. Beside each struct T that travels stands `const Fields<T> &fieldsOf(Of<T>)`, its fields.
+/// Whoever writes, reads or describes it includes Fields.h.
 template <typename T>
-const Fields<T> &fieldsOf();
+struct Of {};
 
 /// How a value of the type T is written, read and described.
 template <typename T, typename = void>

@@ -17,11 +17,11 @@ namespace hermes {
 /// Of structs with fields.
 template <typename T, typename>
 struct Type {
-    static void write(WireWriter &out, const T &value) { fieldsOf<T>().write(out, &value); }
+    static void write(WireWriter &out, const T &value) { fieldsOf(Of<T>()).write(out, &value); }
     static void read(WireView in, T &value, const Limits &, ReadReport &report) {
-        fieldsOf<T>().read(in, &value, report);
+        fieldsOf(Of<T>()).read(in, &value, report);
     }
-    static QJsonObject schema(const Limits &) { return fieldsOf<T>().schema(); }
+    static QJsonObject schema(const Limits &) { return fieldsOf(Of<T>()).schema(); }
 };
 
 /// Numbers, checked against their limits.

@@ -40,8 +40,7 @@ struct Sample {
 
 namespace hermes {
 
-template <>
-const Fields<Inner> &fieldsOf<Inner>() {
+const Fields<Inner> &fieldsOf(Of<Inner>) {
     static const auto fields = Fields<Inner>()
                                    .add("length", &Inner::length, "How long", "m")
                                    .range(0, 10)
@@ -50,8 +49,7 @@ const Fields<Inner> &fieldsOf<Inner>() {
     return fields;
 }
 
-template <>
-const Fields<Sample> &fieldsOf<Sample>() {
+const Fields<Sample> &fieldsOf(Of<Sample>) {
     static constexpr std::array<const char *, 2> wheelNames{"left", "right"};
     static const auto fields = Fields<Sample>()
                                    .add("name", &Sample::name, "Whose")
