@@ -2,7 +2,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Notices that commands have stopped to come. Times are seconds of a clock that never jumps.
 class CommandWatchdog {
@@ -21,4 +21,4 @@ private:
     std::optional<double> last_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

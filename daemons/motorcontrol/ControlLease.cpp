@@ -3,7 +3,7 @@
 #include <QJsonObject>
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 Error ControlLease::heldByAnother() const {
     return Error(ErrorCode::ControlHeld, QString("%1 holds the control").arg(holder_->name),
@@ -58,4 +58,4 @@ LeaseState ControlLease::state(double now) const {
     return {true, holder_->name, std::max(0.0, holder_->until - now)};
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Who may move the robot: one client at a time, until it gives that back, goes away, or sends no motion
 /// command for the time that it asked for. Times are seconds of a clock that never jumps.
@@ -41,4 +41,4 @@ private:
     std::optional<Holder> holder_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 constexpr std::chrono::milliseconds longestRetry{250}; // the robot stands until the line is back
@@ -55,4 +55,4 @@ void ControllerLine::receive(const QByteArray &bytes) {
     wake();
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

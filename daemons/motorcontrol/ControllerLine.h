@@ -6,7 +6,7 @@
 #include <QTimer>
 #include <functional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// A serial line and the master of it.
 class ControllerLine : public QObject {
@@ -36,4 +36,4 @@ private:
     QString advice_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

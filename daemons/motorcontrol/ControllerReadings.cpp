@@ -2,7 +2,7 @@
 
 #include "protocol/roboclaw/Status.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 using roboclaw::Command;
 
@@ -31,4 +31,4 @@ void ControllerReadings::takeSlow(int slow, const roboclaw::Bus::Outcome &outcom
     complete = complete || slow == slowCount - 1;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -5,7 +5,7 @@
 #include <QtGlobal>
 #include <array>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// What a controller has told last. Beside the encoders, which are read in every cycle, there are slow
 /// readings, one of which is read in a cycle.
@@ -33,4 +33,4 @@ struct ControllerReadings {
     int setups = 0;           ///< times it was set up: it may have been without power in between
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

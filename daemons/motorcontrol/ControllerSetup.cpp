@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 using roboclaw::Command;
 using roboclaw::Request;
@@ -109,4 +109,4 @@ QString ControllerSetup::take(const roboclaw::Bus::Outcome &outcome, ControllerR
     return {};
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

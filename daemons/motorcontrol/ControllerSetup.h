@@ -3,7 +3,7 @@
 #include "daemons/motorcontrol/ControllerReadings.h"
 #include "daemons/motorcontrol/MotorSettings.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// What a controller is told and asked before it may drive: its version, the serial time-out and the PID of
 /// both motors, which are written and read back, and every reading that safety needs, once.
@@ -40,4 +40,4 @@ private:
     QString version_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -4,7 +4,7 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 using Clock = std::chrono::steady_clock; // CLOCK_MONOTONIC
@@ -66,4 +66,4 @@ void CycleTimer::tick() {
     cycle_();
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// How punctual the cycle was, over its last window.
 struct CycleStatistics {
@@ -44,4 +44,4 @@ private:
     double latenessSum_ = 0, latenessMax_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

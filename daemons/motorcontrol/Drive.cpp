@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 constexpr double longestStep_s = 0.1; // after a pause the ramp goes on, it does not make up for it
@@ -181,4 +181,4 @@ const WheelValues &Drive::step(double now) {
     return setPoint_;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

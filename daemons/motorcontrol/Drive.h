@@ -6,7 +6,7 @@
 #include "daemons/motorcontrol/MotionLimits.h"
 #include "daemons/motorcontrol/StopLatch.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Whether and how fast the wheels turn: who may command, what is within the limits, and every reason to
 /// stop. Knows no devices; times are seconds of a clock that never jumps. Use from one thread.
@@ -81,4 +81,4 @@ private:
     double lastStep_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

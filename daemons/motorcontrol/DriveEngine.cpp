@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 constexpr double overspeed = 1.5; // times full duty: faster no wheel turns
@@ -158,4 +158,4 @@ Telemetry &DriveEngine::report() {
     return telemetry_;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

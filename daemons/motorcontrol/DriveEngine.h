@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// The work of a cycle: set-points for the controllers, motion from their readings, faults. Knows no clock,
 /// no thread and no line; times are monotonic.
@@ -52,4 +52,4 @@ private:
     bool retired_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

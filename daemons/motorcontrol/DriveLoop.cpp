@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 constexpr int realtimePriority = 20;
@@ -138,4 +138,4 @@ void DriveLoop::report() {
     telemetry.unread += !mail_.reports.post(telemetry);
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

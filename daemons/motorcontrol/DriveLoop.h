@@ -7,7 +7,7 @@
 
 #include <chrono>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// The cycle that drives the motors, in a thread of its own, so that nothing that clients do delays it. All
 /// functions must be called in that thread. Writes no log: that may wait for whoever reads it.
@@ -55,4 +55,4 @@ private:
     double doneLatest_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <functional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 class DriveLoop;
 
@@ -29,4 +29,4 @@ struct DriveMail {
     Mailbox<Telemetry> reports{capacity}; ///< for the daemon; comes after jobs too
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

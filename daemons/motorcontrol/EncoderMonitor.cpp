@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 EncoderMonitor::Mismatch EncoderMonitor::compare(double commanded, double measured) const {
     const bool told = std::abs(commanded) >= settings_.commanded;
@@ -43,4 +43,4 @@ const char *toText(EncoderMonitor::Mismatch mismatch) {
     return "follows its command";
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Compares the speed that one wheel was told with what its encoder says. Speeds in rad/s, times in seconds
 /// of a clock that never jumps.
@@ -31,4 +31,4 @@ private:
 /// For messages: "was told to turn and stands still".
 const char *toText(EncoderMonitor::Mismatch mismatch);
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

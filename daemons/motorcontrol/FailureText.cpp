@@ -1,6 +1,6 @@
 #include "daemons/motorcontrol/FailureText.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 using roboclaw::Bus;
 using roboclaw::Command;
@@ -57,4 +57,4 @@ QString failureText(Command command, Bus::Result result, bool heard) {
                : text;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -4,10 +4,10 @@
 
 #include <QString>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// How a controller fails to answer a command, for people: "answers, but not command 78 (encoders)".
 /// heard: it has answered others.
 QString failureText(roboclaw::Command command, roboclaw::Bus::Result result, bool heard);
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 using Level = Threshold::Level;
@@ -93,4 +93,4 @@ void FaultWatch::forgetWheels() {
         encoder.reset();
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -4,7 +4,7 @@
 #include "daemons/motorcontrol/MotorSettings.h"
 #include "daemons/motorcontrol/Telemetry.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Judges what the controllers measure and how the wheels obey; what is wrong latches in the drive.
 class FaultWatch {
@@ -33,4 +33,4 @@ private:
     std::array<EncoderMonitor, wheelCount> encoders_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

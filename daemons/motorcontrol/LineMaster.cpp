@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 using roboclaw::Bus;
 
@@ -144,4 +144,4 @@ void LineMaster::finished(std::size_t place, Task task, const Bus::Outcome &outc
         served.served[std::size_t(task)] = outcome.result == Bus::Result::Done;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// What goes over a line with one or more controllers on it, one request at a time. Each is made when the
 /// line is free, so that no outdated set-point waits in a queue. Stops go before everything; else the
@@ -57,4 +57,4 @@ private:
     double now_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

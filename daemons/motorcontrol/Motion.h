@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 enum class Wheel { FrontLeft, FrontRight, RearLeft, RearRight };
 
@@ -16,4 +16,4 @@ constexpr std::array<const char *, wheelCount> wheelNames{"front_left", "front_r
 /// One number a wheel, in the order of Wheel. Positive turns drive the robot forward, on both sides.
 using WheelValues = std::array<double, wheelCount>;
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

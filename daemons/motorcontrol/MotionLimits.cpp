@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 WheelValues saturated(const WheelValues &speeds, double wheelSpeed) {
     double over = 1;
@@ -37,4 +37,4 @@ WheelValues ramped(const WheelValues &current, const WheelValues &target, const 
     return result;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -2,7 +2,7 @@
 
 #include "daemons/motorcontrol/WheelLayout.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// What the robot may do, each component for itself, both ways.
 struct MotionLimits {
@@ -20,4 +20,4 @@ WheelValues saturated(const WheelValues &speeds, double wheelSpeed);
 WheelValues ramped(const WheelValues &current, const WheelValues &target, const WheelLayout &layout,
                    const Twist2D &acceleration, double dt);
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

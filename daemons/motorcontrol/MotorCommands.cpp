@@ -2,7 +2,7 @@
 #include "daemons/motorcontrol/MotorControl.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 Field stampField() {
@@ -180,4 +180,4 @@ void MotorControl::declareControlCommands() {
                    }));
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

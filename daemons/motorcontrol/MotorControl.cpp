@@ -11,7 +11,7 @@
 #include <future>
 #include <sys/resource.h>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 constexpr quint64 slowEvery = 5; // cycles between two messages of what changes slowly
@@ -194,4 +194,4 @@ void MotorControl::show(const Telemetry &telemetry) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -7,7 +7,7 @@
 #include <QThread>
 #include <deque>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// The daemon hermes-motorcontrol: drives four wheels through two RoboClaw controllers. Receives and answers
 /// in the main thread; a DriveLoop in its own thread does the rest.
@@ -68,4 +68,4 @@ private:
     quint64 cycles_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 using roboclaw::Bus;
 using roboclaw::Command;
@@ -357,4 +357,4 @@ void MotorController::readyAnswered(Command command, const Bus::Outcome &outcome
     }
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

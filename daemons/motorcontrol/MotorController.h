@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// One RoboClaw. Decides what to ask, never sends: its line calls next() when it is free, and finished() with
 /// the answer.
@@ -157,4 +157,4 @@ private:
     quint64 overruns_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

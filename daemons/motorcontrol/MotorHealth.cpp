@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 constexpr double lateness_s = 0.005; // more of it is worth a look
@@ -113,4 +113,4 @@ MotorState MotorControl::state() const {
             cycleOf(told_)};
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

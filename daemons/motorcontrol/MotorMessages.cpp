@@ -8,6 +8,22 @@
 
 namespace hermes {
 
+// A struct of the protocol: its fields are looked for here.
+const Fields<roboclaw::Bus::Counts> &fieldsOf(Of<roboclaw::Bus::Counts>) {
+    using C = roboclaw::Bus::Counts;
+    static const auto fields = Fields<C>()
+                                   .add("requests", &C::sent, "Sent, repetitions too")
+                                   .add("answers", &C::done, "That were taken")
+                                   .add("timeouts", &C::timeouts, "Requests without an answer")
+                                   .add("crc_errors", &C::crcErrors, "Damaged answers")
+                                   .add("unexpected", &C::unexpected, "Answers to something else");
+    return fields;
+}
+
+} // namespace hermes
+
+namespace hermes::motorcontrol {
+
 bool allStand(const Telemetry &t) {
     return std::all_of(t.controllers.begin(), t.controllers.end(), [](const auto &c) { return c.stands; });
 }
@@ -120,17 +136,6 @@ const Fields<CycleState> &fieldsOf(Of<CycleState>) {
     return fields;
 }
 
-const Fields<roboclaw::Bus::Counts> &fieldsOf(Of<roboclaw::Bus::Counts>) {
-    using C = roboclaw::Bus::Counts;
-    static const auto fields = Fields<C>()
-                                   .add("requests", &C::sent, "Sent, repetitions too")
-                                   .add("answers", &C::done, "That were taken")
-                                   .add("timeouts", &C::timeouts, "Requests without an answer")
-                                   .add("crc_errors", &C::crcErrors, "Damaged answers")
-                                   .add("unexpected", &C::unexpected, "Answers to something else");
-    return fields;
-}
-
 const Fields<Telemetry::Controller> &fieldsOf(Of<Telemetry::Controller>) {
     using C = Telemetry::Controller;
     static const auto fields =
@@ -167,4 +172,4 @@ const Fields<MotorState> &fieldsOf(Of<MotorState>) {
     return fields;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -3,7 +3,7 @@
 #include "daemons/motorcontrol/Telemetry.h"
 #include "protocol/messages/Motors.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// A wheel of the topic `wheels`: rad/s, angle in rad.
 struct WheelMessage {
@@ -67,4 +67,4 @@ const Fields<CycleState> &fieldsOf(Of<CycleState>);
 const Fields<Telemetry::Controller> &fieldsOf(Of<Telemetry::Controller>);
 const Fields<MotorState> &fieldsOf(Of<MotorState>);
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 Field positive(const char *name, const char *description, const char *unit, double least, double most,
@@ -215,4 +215,4 @@ MotorSettings MotorSettings::from(const Settings &settings) {
     return s;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

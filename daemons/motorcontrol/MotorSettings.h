@@ -6,7 +6,7 @@
 #include "daemons/motorcontrol/Odometry.h"
 #include "daemons/motorcontrol/Threshold.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 constexpr int controllerCount = 2;
 
@@ -54,4 +54,4 @@ void declareMotorSettings(const std::function<void(const Field &)> &declare);
 /// What the settings demand of one another.
 std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings);
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

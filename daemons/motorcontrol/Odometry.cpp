@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 double square(double value) {
@@ -40,4 +40,4 @@ void Odometry::reset(const Pose2D &pose) {
     covariance_ = {};
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

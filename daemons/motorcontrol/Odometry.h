@@ -2,7 +2,7 @@
 
 #include "daemons/motorcontrol/Motion.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// How the uncertainty of the odometry grows: standard deviations that add up like a random walk.
 struct OdometryNoise {
@@ -37,4 +37,4 @@ private:
     OdometryNoise noise_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// How often a controller is read, by its last ten readings. Below the least rate until it is a tenth above
 /// it again. Times are seconds of a clock that never jumps.
@@ -37,4 +37,4 @@ private:
     std::size_t next_ = 0, size_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 // An encoder at the border of two counts may jitter by one. So long that a motion at the threshold shows
@@ -66,4 +66,4 @@ void StandstillWatch::watchCreep(bool wasStill, const Counts &counts, double tim
     creepTime_ = time;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -3,7 +3,7 @@
 #include <QtGlobal>
 #include <array>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Whether the two motors of a controller are known to stand: it has acknowledged a set-point of zero, and
 /// what its encoders told since shows no motion. Counts are modulo 2^32, times seconds of a clock that never
@@ -41,4 +41,4 @@ private:
     double speed_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -3,7 +3,7 @@
 #include <QMap>
 #include <QString>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// What keeps the robot from moving until somebody releases it: the emergency stop and the faults, each with
 /// its reason. A cause that is there already keeps its first reason.
@@ -30,4 +30,4 @@ private:
     QMap<QString, QString> causes_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

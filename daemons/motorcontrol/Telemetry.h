@@ -4,7 +4,7 @@
 #include "daemons/motorcontrol/Drive.h"
 #include "daemons/motorcontrol/MotorController.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// What the drive loop tells about one cycle. Stamps are seconds since the epoch. To copy it allocates
 /// nothing.
@@ -39,4 +39,4 @@ struct Telemetry {
     std::array<Threshold::Level, 3> levels{}; ///< battery, current, temperature: the worst
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

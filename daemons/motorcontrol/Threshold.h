@@ -2,7 +2,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Judges a measured value by two thresholds. It counts as a fault when it is beyond that threshold for a
 /// while, without a break: a peak is none. A value that is not finite counts as beyond.
@@ -43,4 +43,4 @@ private:
     std::optional<double> since_;
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

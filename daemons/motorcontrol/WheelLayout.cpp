@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 double inverseOrZero(double square) {
@@ -61,4 +61,4 @@ double WheelLayout::slip(const WheelValues &speeds) const {
     return radius_ * std::sqrt(sum / wheelCount);
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

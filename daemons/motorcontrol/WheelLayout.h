@@ -2,7 +2,7 @@
 
 #include "daemons/motorcontrol/Motion.h"
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// Sizes of the wheel frame in metres.
 struct WheelGeometry {
@@ -39,4 +39,4 @@ private:
     Twist2D inverseSquares_;               // 1 / |column|^2, 0 for a column of zeros
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

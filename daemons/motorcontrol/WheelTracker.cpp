@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 namespace {
 
 constexpr double silence_s = MotorController::lostAfter_s;
@@ -68,4 +68,4 @@ WheelTracker::update(const std::array<const ControllerReadings *, controllerCoun
     return motion;
 }
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::motorcontrol {
 
 /// What the wheels have done since the controllers were read before.
 struct WheelMotion {
@@ -38,4 +38,4 @@ private:
     std::array<int, controllerCount> setups_{};
 };
 
-} // namespace hermes
+} // namespace hermes::motorcontrol

@@ -1,5 +1,5 @@
 #include "daemons/motorcontrol/MotorControl.h"
 
 int main(int argc, char **argv) {
-    return hermes::runDaemon<hermes::MotorControl>(argc, argv);
+    return hermes::runDaemon<hermes::motorcontrol::MotorControl>(argc, argv);
 }

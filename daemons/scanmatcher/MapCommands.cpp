@@ -4,7 +4,7 @@
 
 #include <QDir>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 namespace {
 
@@ -103,4 +103,4 @@ void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply
     });
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

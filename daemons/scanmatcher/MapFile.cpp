@@ -10,7 +10,7 @@
 #include <QSaveFile>
 #include <sstream>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 namespace {
 
@@ -57,4 +57,4 @@ Result<SavedMap> writeMapFile(const QString &path, const QString &format, bool f
     return SavedMap{path, map.segments.size(), quint64(bytes.size())};
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

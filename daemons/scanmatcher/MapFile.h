@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 /// Largest file that readMapFile() takes: some 400,000 edges.
 constexpr qint64 largestMapFile = 64 << 20;
@@ -20,4 +20,4 @@ Result<std::vector<vectorlib::MapEdge>> readMapFile(const QString &path);
 Result<SavedMap> writeMapFile(const QString &path, const QString &format, bool force,
                               const vectorlib::MapDrawing &map);
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -1,6 +1,6 @@
 #include "daemons/scanmatcher/MapMirror.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 namespace {
 
@@ -63,4 +63,4 @@ MapMessage MapMirror::part(qint64 &cursor) const {
     return some;
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 /// What changed in a map since the last time.
 struct MapChanges {
@@ -47,4 +47,4 @@ private:
     qint64 revision_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -3,7 +3,7 @@
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 namespace {
 
@@ -97,4 +97,4 @@ void ScanMatcher::matchTwo(const Call &call, const Reply &reply) {
     });
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

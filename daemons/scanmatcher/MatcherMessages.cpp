@@ -2,7 +2,7 @@
 
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 using vectorlib::Place;
 using vectorlib::Relocalized;
@@ -163,4 +163,4 @@ const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>) {
     return fields;
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

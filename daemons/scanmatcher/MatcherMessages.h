@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 /// What comes as odometry, since the source was opened.
 struct OdometryState {
@@ -81,4 +81,4 @@ const Fields<RelocalizeAnswer> &fieldsOf(Of<RelocalizeAnswer>);
 const Fields<SavedMap> &fieldsOf(Of<SavedMap>);
 const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>);
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -1,6 +1,6 @@
 #include "daemons/scanmatcher/ScanMatcher.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 void ScanMatcher::declareSettings() {
     addSetting(Field::text("source.address", "Daemon that publishes the scans: HOST:PORT or a URL")
@@ -96,4 +96,4 @@ vectorlib::ScanTrackerSettings ScanMatcher::trackerSettings() const {
     return s;
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

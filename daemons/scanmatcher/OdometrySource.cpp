@@ -5,7 +5,7 @@
 #include "daemons/scanmatcher/ReadMessages.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 using vectorlib::OdometryBuffer;
 using vectorlib::OdometryTrack;
@@ -101,4 +101,4 @@ OdometryState OdometrySource::state() const {
             scansWithout_};
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

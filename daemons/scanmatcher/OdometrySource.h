@@ -5,7 +5,7 @@
 #include "daemons/scanmatcher/MatcherMessages.h"
 #include "vectorlib/motion/OdometryBuffer.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 /// The topic of another daemon that tells where the robot is by its wheels: receives, checks, counts, and
 /// hands each scan the odometry of its time.
@@ -40,4 +40,4 @@ private:
     int withoutInARow_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

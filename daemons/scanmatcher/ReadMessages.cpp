@@ -4,7 +4,7 @@
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 namespace {
 
@@ -72,4 +72,4 @@ Result<vectorlib::OdometrySample> readOdometry(WireView data, double stamp, quin
     return sample;
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -4,7 +4,7 @@
 #include "protocol/wire/WireValue.h"
 #include "vectorlib/mapping/TimedScan.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 /// A scan as a logger publishes it.
 struct Scan {
@@ -21,4 +21,4 @@ Result<Scan> readScan(WireView data, quint64 &unknown);
 /// Reads an `odometry` message: pose, twist and covariance must be there.
 Result<vectorlib::OdometrySample> readOdometry(WireView data, double stamp, quint64 &unknown);
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -2,7 +2,7 @@
 #include "daemons/scanmatcher/ScanMatcher.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 using vectorlib::Relocalized;
 
@@ -73,4 +73,4 @@ void ScanMatcher::updateTrackingHealth() {
                   {"recovered", qint64(recovered_)}});
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 using vectorlib::ScanReport;
 using vectorlib::ScanTracker;
@@ -256,4 +256,4 @@ MatcherState ScanMatcher::matcherState() const {
     return state;
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

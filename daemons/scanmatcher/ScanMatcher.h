@@ -12,7 +12,7 @@
 #include <atomic>
 #include <memory>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 /// The daemon hermes-scanmatcher: takes scans from another daemon's topic, finds the sensor's pose, builds
 /// the vector map. Receives and answers in the main thread; matches in a Worker.
@@ -84,4 +84,4 @@ private:
     QString lastBadScan_;
 };
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 Worker::Worker(Done done)
     : whenDone_(std::move(done))
@@ -76,4 +76,4 @@ void Worker::run() {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

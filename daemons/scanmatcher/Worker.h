@@ -9,7 +9,7 @@
 #include <mutex>
 #include <thread>
 
-namespace hermes {
+namespace hermes::scanmatcher {
 
 /// The thread that owns the tracker. Scans wait in a bounded queue that drops its oldest and counts; jobs
 /// (settings, commands) are never dropped and run in order with the scans.
@@ -48,4 +48,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace hermes
+} // namespace hermes::scanmatcher

@@ -1,5 +1,5 @@
 #include "daemons/scanmatcher/ScanMatcher.h"
 
 int main(int argc, char **argv) {
-    return hermes::runDaemon<hermes::ScanMatcher>(argc, argv);
+    return hermes::runDaemon<hermes::scanmatcher::ScanMatcher>(argc, argv);
 }

@@ -6,7 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 bool AppendFile::create(const QString &path) {
     close();
@@ -50,4 +50,4 @@ bool AppendFile::fail(const char *what) {
     return false;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

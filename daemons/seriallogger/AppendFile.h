@@ -2,7 +2,7 @@
 
 #include <QString>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// A new file that only grows, written without buffers of its own, so that what was written survives the end
 /// of the process. Blocks.
@@ -34,4 +34,4 @@ private:
     quint64 size_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

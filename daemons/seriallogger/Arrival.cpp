@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 Arrival Arrival::now() {
     using std::chrono::nanoseconds;
@@ -12,4 +12,4 @@ Arrival Arrival::now() {
     return {count(std::chrono::system_clock::now()), count(std::chrono::steady_clock::now())};
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// When bytes came in, in nanoseconds: since the Unix epoch, and of a clock that never jumps.
 struct Arrival {
@@ -14,4 +14,4 @@ struct Arrival {
     double mono() const { return double(mono_ns) * 1e-9; }
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -65,4 +65,4 @@ std::uint64_t ChunkQueue::lost() const {
     return lost_;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Bytes that came in together, in the order of their arrival.
 struct ChunkBatch {
@@ -54,4 +54,4 @@ private:
     std::uint64_t lost_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

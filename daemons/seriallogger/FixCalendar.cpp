@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 void FixCalendar::set(const nmea::Date &date, const nmea::UtcTime &time, const Arrival &arrival) {
     stamp_ = nmea::toStamp(date, time);
@@ -20,4 +20,4 @@ std::optional<double> FixCalendar::stampOf(const nmea::UtcTime &time, const Arri
     return stamp_;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

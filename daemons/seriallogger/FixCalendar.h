@@ -3,7 +3,7 @@
 #include "daemons/seriallogger/Arrival.h"
 #include "protocol/nmea/UtcTime.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Knows which day a time of day belongs to, from the last sentence that told the date and the time that went
 /// by since.
@@ -21,4 +21,4 @@ private:
     std::int64_t mono_ns_ = 0; ///< when it arrived
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

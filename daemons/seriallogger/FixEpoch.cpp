@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -88,4 +88,4 @@ Fix FixEpoch::fix() const {
     return fix;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// What a GPS receiver said about one moment, in all its sentences; what it does not know is empty.
 struct Fix {
@@ -61,4 +61,4 @@ private:
     std::optional<nmea::Date> date_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

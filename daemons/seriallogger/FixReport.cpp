@@ -7,7 +7,7 @@
 #include "protocol/nmea/Vtg.h"
 #include "protocol/nmea/Zda.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -102,4 +102,4 @@ std::optional<FixReport> FixReport::read(const nmea::Sentence &sentence, nmea::F
     return std::nullopt;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

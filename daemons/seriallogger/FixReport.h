@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// What one sentence of a GPS receiver tells of a fix; what it does not tell is empty.
 struct FixReport {
@@ -27,4 +27,4 @@ struct FixReport {
     static std::optional<FixReport> read(const nmea::Sentence &sentence, nmea::FieldFault &fault);
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -141,4 +141,4 @@ void FixTracker::give(const Sink &sink) {
     sink(fix);
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Finds the sentences in the bytes of a GPS receiver and joins those of the same time of day to one fix,
 /// whatever their order. A fix is given as soon as it tells all that one of the last told; else when a
@@ -67,4 +67,4 @@ private:
     nmea::FieldFault lastFault_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -1,6 +1,6 @@
 #include "daemons/seriallogger/LineSplitter.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 void LineSplitter::feed(std::string_view bytes, const Arrival &arrival, const Sink &sink) {
     for (const char byte : bytes) {
@@ -50,4 +50,4 @@ std::string escaped(std::string_view bytes) {
     return text;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

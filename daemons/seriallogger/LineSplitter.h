@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Splits a stream of bytes into lines ended by CR, LF or both. Empty lines are left out.
 class LineSplitter {
@@ -40,4 +40,4 @@ private:
 /// is lost by it.
 std::string escaped(std::string_view bytes);
 
-} // namespace hermes
+} // namespace hermes::seriallogger

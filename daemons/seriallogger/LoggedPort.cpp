@@ -2,7 +2,7 @@
 
 #include "common/Time.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -106,4 +106,4 @@ std::pair<HealthLevel, QString> LoggedPort::health() {
     return {faults_.level(double(recording_.lost() + errors + damaged)), message};
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -5,7 +5,7 @@
 #include "daemons/seriallogger/PortView.h"
 #include "daemons/seriallogger/SerialMessages.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// One port of the logger: its thread, the queues behind it, and what is made of its bytes. Of the main
 /// thread.
@@ -40,4 +40,4 @@ private:
     PastFaults faults_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -2,7 +2,7 @@
 #include "daemons/seriallogger/SerialLogger.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 void SerialLogger::declareSettings() {
     addSetting(PortSettings::field());
@@ -77,4 +77,4 @@ void SerialLogger::declareCommands() {
             .asyncHandler([this](const Call &call, const Reply &reply) { send(call, reply); }));
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -2,7 +2,7 @@
 
 #include "daemons/seriallogger/SerialIndex.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 using namespace serialindex;
 
@@ -55,4 +55,4 @@ bool PortFile::fail(const AppendFile &file) {
     return false;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// The recording of one port: its bytes as they came (BASE.raw), and beside them when they came (BASE.index,
 /// see SerialIndex.h).
@@ -36,4 +36,4 @@ private:
     QString error_, failedPath_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -5,7 +5,7 @@
 #include <QJsonArray>
 #include <QSet>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -92,4 +92,4 @@ std::vector<SchemaViolation> PortSettings::check(const QJsonObject &settings) {
     return wrong;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

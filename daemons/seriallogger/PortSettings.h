@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// One port as the setting `ports` describes it.
 struct PortSettings {
@@ -26,4 +26,4 @@ struct PortSettings {
     static std::vector<SchemaViolation> check(const QJsonObject &settings);
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

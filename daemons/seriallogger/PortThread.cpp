@@ -8,7 +8,7 @@
 #include <QFileInfo>
 #include <QJsonObject>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -133,4 +133,4 @@ void PortThread::send(const QByteArray &bytes, const Reply &reply) {
     QMetaObject::invokeMethod(&context_, write, Qt::QueuedConnection);
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -9,7 +9,7 @@
 #include <functional>
 #include <optional>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Receives from one port in a thread of its own, so that nothing else holds it up: stamps what comes in and
 /// puts it into the queues of the recording and of the view. Opens the port again when it closes.
@@ -59,4 +59,4 @@ private:
     State state_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -1,6 +1,6 @@
 #include "daemons/seriallogger/PortView.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 void PortView::open() {
     if (kind_ != PortSettings::View::None)
@@ -49,4 +49,4 @@ void PortView::process(const Sinks &sinks) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -5,7 +5,7 @@
 #include "daemons/seriallogger/LineSplitter.h"
 #include "daemons/seriallogger/PortSettings.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// What is shown of the bytes of a port, live or replayed: its lines, and the fixes of a GPS receiver. Of the
 /// main thread, but for the queue.
@@ -48,4 +48,4 @@ private:
     std::optional<Fix> lastFix_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -10,7 +10,7 @@
 
 #include <functional>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -131,4 +131,4 @@ Result<quint64> SerialExport::run(const std::atomic<bool> &cancel) const {
     return count;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -6,7 +6,7 @@
 #include <QString>
 #include <atomic>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// What a CSV made of a recording has a row for: each line, all bytes that came in together (as hexadecimal
 /// digits), or each fix of a GPS receiver.
@@ -23,4 +23,4 @@ struct SerialExport {
     Result<quint64> run(const std::atomic<bool> &cancel) const;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

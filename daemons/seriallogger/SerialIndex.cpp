@@ -2,7 +2,7 @@
 
 #include <QtEndian>
 
-namespace hermes::serialindex {
+namespace hermes::seriallogger::serialindex {
 
 void encode(const Record &record, unsigned char *bytes) {
     qToLittleEndian<quint64>(record.offset, bytes);
@@ -15,4 +15,4 @@ Record decode(const unsigned char *bytes) {
             {qFromLittleEndian<qint64>(bytes + 8), qFromLittleEndian<qint64>(bytes + 16)}};
 }
 
-} // namespace hermes::serialindex
+} // namespace hermes::seriallogger::serialindex

@@ -9,7 +9,7 @@
 /// of bytes that came in together. A chunk ends where the next begins, the last with the file of bytes. A
 /// record is written before its bytes: records that begin at or behind the end of the bytes count for
 /// nothing.
-namespace hermes::serialindex {
+namespace hermes::seriallogger::serialindex {
 
 constexpr std::size_t headerSize = 16;
 /// "HERMESIX", then the version and the size of a record, little endian.
@@ -26,4 +26,4 @@ constexpr std::size_t recordSize = 24;
 void encode(const Record &record, unsigned char *bytes);
 Record decode(const unsigned char *bytes);
 
-} // namespace hermes::serialindex
+} // namespace hermes::seriallogger::serialindex

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 using namespace serialindex;
 
@@ -57,4 +57,4 @@ Error SerialLogReader::wrong(const QString &what) const {
     return diskError(index_.fileName() + ": " + what, index_.fileName());
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

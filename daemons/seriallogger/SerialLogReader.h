@@ -6,7 +6,7 @@
 #include <QFile>
 #include <optional>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Reads the recording of one port from its beginning; of one being written, what was there when it was
 /// opened. Blocks.
@@ -36,4 +36,4 @@ private:
     quint64 offset_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -219,4 +219,4 @@ std::vector<PortStatus> SerialLogger::portList() const {
     return list;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -11,7 +11,7 @@
 #include <QThreadPool>
 #include <atomic>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// hermes-seriallogger: records the bytes of any number of ports as they come, with the time of each; shows
 /// lines and GPS fixes of them, or of a recording.
@@ -66,4 +66,4 @@ private:
     std::atomic<bool> cancelExports_{false};
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

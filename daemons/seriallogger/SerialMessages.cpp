@@ -2,7 +2,7 @@
 
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 FixValues valuesOf(const Fix &fix) {
     FixValues values{
@@ -131,4 +131,4 @@ const Fields<ExportAnswer> &fieldsOf(Of<ExportAnswer>) {
     return fields;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -3,7 +3,7 @@
 #include "daemons/seriallogger/FixEpoch.h"
 #include "protocol/messages/Recordings.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// The topic `lines`: a line of a port.
 struct LineMessage {
@@ -83,4 +83,4 @@ const Fields<MarkAnswer> &fieldsOf(Of<MarkAnswer>);
 const Fields<SendAnswer> &fieldsOf(Of<SendAnswer>);
 const Fields<ExportAnswer> &fieldsOf(Of<ExportAnswer>);
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -121,4 +121,4 @@ bool SerialPlayer::wait(const Track &track) {
     return false;
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

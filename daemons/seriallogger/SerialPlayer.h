@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Plays the bytes of a recording into views of its ports, in a thread of its own, at the pace at which they
 /// came in or any other. Loses nothing: waits where a view has no room.
@@ -55,4 +55,4 @@ private:
     Playback playback_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -7,7 +7,7 @@
 
 #include <chrono>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 namespace {
 
@@ -208,4 +208,4 @@ Result<void> SerialRecorder::repair(const RecordingPlan &plan, QJsonObject &side
     return repairSerialRecording(plan, sidecar);
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

@@ -7,7 +7,7 @@
 #include <memory>
 #include <thread>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 /// Writes what ports receive, in a thread of its own: PREFIX-PORT.raw and PREFIX-PORT.index of each port, and
 /// PREFIX-events.jsonl with marks and what happened to the ports.
@@ -64,4 +64,4 @@ private:
     std::optional<Error> error_;
 };
 
-} // namespace hermes
+} // namespace hermes::seriallogger

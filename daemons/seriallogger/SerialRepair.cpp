@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 using namespace serialindex;
 
@@ -117,4 +117,4 @@ Result<void> repairSerialRecording(const RecordingPlan &plan, QJsonObject &sidec
     return {};
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

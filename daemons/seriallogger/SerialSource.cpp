@@ -2,7 +2,7 @@
 #include "daemons/seriallogger/SerialLogger.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::seriallogger {
 
 ReplaySource::Actions SerialLogger::sourceActions() {
     ReplaySource::Actions actions;
@@ -59,4 +59,4 @@ void SerialLogger::updateSourceHealth() {
                          ", not from the ports; those are recorded all the same");
 }
 
-} // namespace hermes
+} // namespace hermes::seriallogger

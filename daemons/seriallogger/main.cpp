@@ -1,5 +1,5 @@
 #include "daemons/seriallogger/SerialLogger.h"
 
 int main(int argc, char **argv) {
-    return hermes::runDaemon<hermes::SerialLogger>(argc, argv);
+    return hermes::runDaemon<hermes::seriallogger::SerialLogger>(argc, argv);
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// A battery whose voltage falls as it is emptied, and under load.
 class Battery {
@@ -36,4 +36,4 @@ private:
     double current_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

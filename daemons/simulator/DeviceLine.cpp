@@ -1,6 +1,6 @@
 #include "daemons/simulator/DeviceLine.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link) {
     InterfaceUrl url;
@@ -17,4 +17,4 @@ Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link) {
     return pty;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -3,7 +3,7 @@
 #include "common/Result.h"
 #include "common/interface/PtyInterface.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// A simulated device's serial line: the link under which programs find it, if any, and the device.
 struct LineState {
@@ -14,4 +14,4 @@ struct LineState {
 /// Error names what cannot be made.
 Result<std::shared_ptr<PtyInterface>> openDeviceLine(const QString &link);
 
-} // namespace hermes
+} // namespace hermes::simulator

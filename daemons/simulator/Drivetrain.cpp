@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -91,4 +91,4 @@ bool Drivetrain::isMoving() const {
     return false;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

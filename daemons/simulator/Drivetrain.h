@@ -4,7 +4,7 @@
 #include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// What drives the robot: two RoboClaws with two motors each, four wheels, a battery. Time comes from
 /// outside.
@@ -63,4 +63,4 @@ private:
     std::array<double, 2> latency_{}, bunchEnds_{}; // of each line; seconds
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -64,4 +64,4 @@ int wheelNumber(const QString &device) {
     return -1;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

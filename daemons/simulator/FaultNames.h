@@ -2,7 +2,7 @@
 
 #include <QStringList>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// What sim.fault can make fail: the lidar, the lines and controllers of the motors, the battery, the wheels.
 QStringList faultDevices();
@@ -13,4 +13,4 @@ QString faultMismatch(const QString &device, const QString &kind);
 /// Of a wheel by its name, in the order of WheelBase; -1 for other devices.
 int wheelNumber(const QString &device);
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -1,6 +1,6 @@
 #include "daemons/simulator/GpsLine.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 Result<void> GpsLine::open(const QString &link) {
     auto opened = openDeviceLine(link);
@@ -31,4 +31,4 @@ const GpsLineState &GpsLine::state() {
     return state_;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -2,7 +2,7 @@
 
 #include "daemons/simulator/DeviceLine.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// The line of the GPS receiver; bytes sent, and those that no program has read in time.
 struct GpsLineState {
@@ -31,4 +31,4 @@ private:
     GpsLineState state_;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -106,4 +106,4 @@ void GpsModel::tell(const std::optional<nmea::SentenceText> &sentence) {
     byte = char(byte ^ (1 << random_() % 7)); // it stays a text
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// A GPS receiver on the robot: fixes at equal intervals of UTC, told as RMC and GGA a moment later, and the
 /// RMC of each whole second for the lidar that it is wired to. The world's x points east, its y north. Knows
@@ -74,4 +74,4 @@ private:
     std::string pendingLidar_, lidarSentence_;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -2,7 +2,7 @@
 
 #include <random>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// What the simulated sensor does wrong.
 struct LidarFault {
@@ -20,4 +20,4 @@ struct LidarFault {
     }
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

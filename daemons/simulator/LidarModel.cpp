@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -121,4 +121,4 @@ void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWri
     packet.setReturn(block, laser, returns ? velodyne::toDistanceCounts(range) : 0, returns ? intensity : 0);
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

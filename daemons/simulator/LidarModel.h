@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// What an HDL-32E measures in a world of upright walls on a level floor. The sensor stands upright at the
 /// robot's pose.
@@ -60,4 +60,4 @@ private:
     std::vector<Wall> inReach_; ///< of the current firing
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::int64_t MotorChannel::count() const {
     return std::int64_t(std::floor(count_));
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// One channel of a motor controller with its motor and encoder: duty or velocity control with a ramp, and a
 /// motor that follows with a lag. Speeds are in counts/s. Time comes from outside.
@@ -119,4 +119,4 @@ private:
     int wraps_ = 0; // as takeWraps() tells them
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

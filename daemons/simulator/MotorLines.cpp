@@ -5,7 +5,7 @@
 #include <QTimer>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 Result<void> MotorLines::open(const QStringList &links) {
     close();
@@ -53,4 +53,4 @@ void MotorLines::receive(int line, const QByteArray &bytes) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

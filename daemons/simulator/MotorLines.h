@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// The serial lines of the simulated motor controllers: pseudo-terminals under links that stay the same.
 class MotorLines : public QObject {
@@ -41,4 +41,4 @@ private:
     std::vector<Line> lines_;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

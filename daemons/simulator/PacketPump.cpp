@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -130,4 +130,4 @@ PacketPump::Counts PacketPump::counts() const {
     return counts_;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

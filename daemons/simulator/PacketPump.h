@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// Runs a simulation in real time in a thread of its own and sends its packets over UDP, each when it is due,
 /// and one with the position after every 14th.
@@ -71,4 +71,4 @@ private:
     int sincePosition_ = 0; ///< packets
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

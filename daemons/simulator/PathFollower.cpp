@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -35,4 +35,4 @@ void PathFollower::advance(double seconds) {
     driving_ = false;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

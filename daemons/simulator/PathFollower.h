@@ -2,7 +2,7 @@
 
 #include "daemons/simulator/PosePath.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// Moves along a path: speeds up, drives at full speed, comes to rest at the end or when halted. Time comes
 /// from outside.
@@ -36,4 +36,4 @@ private:
     bool driving_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

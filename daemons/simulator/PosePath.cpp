@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -76,4 +76,4 @@ Twist2D PosePath::twistAt(double progress, double rate) const {
     return {c * dx + s * dy, c * dy - s * dx, (b.theta - a.theta) * scale};
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// A smooth path through poses: Catmull-Rom curves of position and of heading. Progress along it counts
 /// seconds at full speed, so that moving one second a second keeps to the limits of speed and turn rate
@@ -38,4 +38,4 @@ private:
     std::vector<Sample> samples_;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 using namespace roboclaw;
 
@@ -175,4 +175,4 @@ std::optional<Bytes> RoboClawEmulator::answerTo(const Request &request) {
     return values ? encodeReply(request, *values, options_.dialect) : std::nullopt;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// A RoboClaw with two motors as it looks from its serial line: bytes in, answers out. It is silent
 /// when a command is unknown. Knows no line and no clock.
@@ -117,4 +117,4 @@ private:
     double temperature_ = 25;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

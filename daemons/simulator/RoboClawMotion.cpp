@@ -1,6 +1,6 @@
 #include "daemons/simulator/RoboClawEmulator.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 using namespace roboclaw;
 
@@ -146,4 +146,4 @@ bool RoboClawEmulator::driveMixed(const Request &request) {
     return true;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 using namespace roboclaw;
 
@@ -232,4 +232,4 @@ std::optional<Values> RoboClawEmulator::readStored(Command command, const Values
     return {};
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

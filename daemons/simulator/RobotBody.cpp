@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -40,4 +40,4 @@ Pose2D RobotBody::move(const Pose2D &from, const Twist2D &twist, double seconds)
     return {position.x, position.y, to.theta};
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

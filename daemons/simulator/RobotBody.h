@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// Four wheels under a robot, in the order front left, front right, rear left, rear right.
 struct WheelBase {
@@ -42,4 +42,4 @@ private:
     bool touching_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -114,4 +114,4 @@ Simulation::Truth Simulation::truth() const {
     return truth;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -5,7 +5,7 @@
 #include "daemons/simulator/LidarModel.h"
 #include "daemons/simulator/PathFollower.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// The robot in its world and the packets its sensor sends, firing after firing. It follows the path of the
 /// world, or goes where its wheels drive it. Knows no clock: time advances with the packets. Not for several
@@ -86,4 +86,4 @@ private:
     Pose2D place_;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -7,7 +7,7 @@
 #include "protocol/wire/Fields.h"
 #include "vectorlib/geometry/Angle.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -316,4 +316,4 @@ void Simulator::updateHealth() {
                      values);
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -5,7 +5,7 @@
 #include "daemons/simulator/MotorLines.h"
 #include "daemons/simulator/SimulatorMessages.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// hermes-simulator: a robot in a world file, with an HDL-32E that sends its packets over UDP, two
 /// RoboClaws that drive it and a GPS receiver on pseudo-terminals.
@@ -52,4 +52,4 @@ private:
     QString worldPath_;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -1,7 +1,7 @@
 #include "common/Log.h"
 #include "daemons/simulator/Simulator.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 void Simulator::declareGpsSettings() {
     addSetting(Field::text("gps.link",
@@ -58,4 +58,4 @@ Result<QJsonValue> Simulator::setGpsFault(const Call &call) {
     return QJsonValue();
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

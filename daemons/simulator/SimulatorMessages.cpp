@@ -2,7 +2,7 @@
 
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 const Fields<LoadedWorld> &fieldsOf(Of<LoadedWorld>) {
     static const auto fields = Fields<LoadedWorld>()
@@ -111,4 +111,4 @@ const Fields<SimulatorState> &fieldsOf(Of<SimulatorState>) {
     return fields;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// A world that was read.
 struct LoadedWorld {
@@ -54,4 +54,4 @@ const Fields<LoadedWorld> &fieldsOf(Of<LoadedWorld>);
 const Fields<PacketPump::Counts> &fieldsOf(Of<PacketPump::Counts>);
 const Fields<SimulatorState> &fieldsOf(Of<SimulatorState>);
 
-} // namespace hermes
+} // namespace hermes::simulator

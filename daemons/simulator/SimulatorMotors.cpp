@@ -2,7 +2,7 @@
 #include "daemons/simulator/FaultNames.h"
 #include "daemons/simulator/Simulator.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 namespace {
 
@@ -168,4 +168,4 @@ DrivetrainState Simulator::motorState(Drivetrain &drivetrain) const {
     return state;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -1,6 +1,6 @@
 #include "daemons/simulator/Simulator.h"
 
-namespace hermes {
+namespace hermes::simulator {
 
 void Simulator::addNumber(const char *group, const char *name, const char *text, const char *unit,
                           double least, double most, double value) {
@@ -92,4 +92,4 @@ Simulation::Options Simulator::options() {
     return options;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace hermes {
+namespace hermes::simulator {
 
 std::string UdpSender::open(const std::string &host, std::uint16_t port) {
     close();
@@ -45,4 +45,4 @@ bool UdpSender::send(const std::uint8_t *bytes, std::size_t size) {
     return sent == ssize_t(size) || errno == ECONNREFUSED;
 }
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace hermes {
+namespace hermes::simulator {
 
 /// Sends datagrams to one address. Blocks no one: what the system does not take is refused.
 class UdpSender {
@@ -25,4 +25,4 @@ private:
     int socket_ = -1;
 };
 
-} // namespace hermes
+} // namespace hermes::simulator

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 ActionRunner::ActionRunner(QObject *parent)
     : QObject(parent)
@@ -58,4 +58,4 @@ void ActionRunner::run(const ActionDefinition &action, const Done &done) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -6,7 +6,7 @@
 #include "daemons/softwaretrigger/SerialLines.h"
 #include "daemons/softwaretrigger/Targets.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Does what triggers do. No action waits for another.
 class ActionRunner : public QObject {
@@ -32,4 +32,4 @@ private:
     Pulses pulses_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -5,7 +5,7 @@
 #include <QStringList>
 #include <utility>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 QJsonValue lookUp(QJsonValue data, const QString &path) {
     if (path.isEmpty())
@@ -48,4 +48,4 @@ std::optional<bool> Condition::becomesTrue(const QJsonValue &data) {
     return !std::exchange(held_, *now) && *now;
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -4,7 +4,7 @@
 #include <QString>
 #include <optional>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// The value at a dotted path with numbers for elements of arrays; undefined where there is none. "" is the
 /// whole.
@@ -31,4 +31,4 @@ private:
     bool held_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

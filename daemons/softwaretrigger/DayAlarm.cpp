@@ -9,7 +9,7 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 DayAlarm::DayAlarm(const DayTime &time, Function function)
     : time_(time)
@@ -49,4 +49,4 @@ void DayAlarm::awake() {
         function_(verdict);
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

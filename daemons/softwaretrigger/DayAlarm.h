@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Calls a function at a time of each day, by the clock of the system, which tells when it is set.
 class DayAlarm : public QObject {
@@ -27,4 +27,4 @@ private:
     std::unique_ptr<QSocketNotifier> notifier_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -3,7 +3,7 @@
 #include <QDateTime>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 DayTime::DayTime(const QTime &at, bool utc, double now)
     : at_(at)
@@ -34,4 +34,4 @@ double DayTime::firstAfter(double stamp) const {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

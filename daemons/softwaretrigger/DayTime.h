@@ -3,7 +3,7 @@
 #include <QTime>
 #include <QtGlobal>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// When a daily time comes, by a wall clock that may be set at any moment. No I/O: told the time, in seconds
 /// since the epoch. A time that a step forward jumps over, or that is noticed more than a second late, is
@@ -32,4 +32,4 @@ private:
     double last_ = 0; // that fired
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr double shortestPeriod_s = 0.001, longestPeriod_s = 7 * 86400.0;
@@ -171,4 +171,4 @@ QJsonObject triggerSchema() {
                   {"id", "when", "actions"});
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -7,7 +7,7 @@
 #include <QTime>
 #include <vector>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// What fires a trigger by itself. Command: nothing does, only trigger.fire. Trigger: the firing of another.
 enum class Cause { Period, Distance, Angle, TimeOfDay, Condition, Trigger, Command };
@@ -62,4 +62,4 @@ std::vector<SchemaViolation> checkTriggers(const QJsonObject &settings);
 /// The time of a day from "HH:MM", "HH:MM:SS" or "HH:MM:SS.mmm"; not valid for other text.
 QTime timeOfDay(const QString &text);
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -2,7 +2,7 @@
 #include "daemons/softwaretrigger/TriggerEngine.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 std::map<QString, TriggerState> TriggerEngine::state() const {
     std::map<QString, TriggerState> result;
@@ -91,4 +91,4 @@ EngineHealth TriggerEngine::logHealth() {
             log.folder.isEmpty() ? QString("none: firings.folder is empty") : QString("writing"), values};
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr int largestResult = 1000; // bytes of JSON; a larger result is not repeated
@@ -61,4 +61,4 @@ QByteArray Firing::csvRows() const {
     return rows;
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// One firing of a trigger, from its begin to the end of its last action.
 struct Firing {
@@ -34,4 +34,4 @@ struct Firing {
     static QByteArray csvHeader();
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

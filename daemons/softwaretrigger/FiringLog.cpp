@@ -8,7 +8,7 @@
 
 #include <sys/stat.h>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr int mostWaiting = 1000; // rows
@@ -105,4 +105,4 @@ FiringLog::State FiringLog::state() const {
     return state_;
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -6,7 +6,7 @@
 #include <QThreadPool>
 #include <mutex>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// CSV files of rows in a folder, written by a thread of its own, each row given to the system at once. A
 /// file is never overwritten; a new one begins at each start and when the size is reached. Rows that cannot
@@ -49,4 +49,4 @@ private:
 /// A field of a CSV row: quoted where it must be.
 QByteArray csvField(const QString &text);
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <gpiod.h>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 bool GpioLines::isAvailable() {
     return true;
@@ -54,4 +54,4 @@ void GpioLines::close() {
     lines_.clear();
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

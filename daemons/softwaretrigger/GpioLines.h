@@ -8,7 +8,7 @@
 struct gpiod_chip;
 struct gpiod_line;
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Lines of GPIO chips as outputs, by libgpiod, which is optional at build time. A line is taken, and low,
 /// from the first use on.
@@ -30,4 +30,4 @@ private:
     QHash<QString, Line> lines_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

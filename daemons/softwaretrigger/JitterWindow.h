@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// How late firings were.
 struct Jitter {
@@ -42,4 +42,4 @@ private:
     std::size_t next_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

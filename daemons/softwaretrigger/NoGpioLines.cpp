@@ -1,7 +1,7 @@
 // GpioLines in a build without libgpiod.
 #include "daemons/softwaretrigger/GpioLines.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 bool GpioLines::isAvailable() {
     return false;
@@ -15,4 +15,4 @@ Result<void> GpioLines::set(const QString &chip, int offset, bool) {
 
 void GpioLines::close() {}
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

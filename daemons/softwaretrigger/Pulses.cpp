@@ -3,7 +3,7 @@
 #include <QTimer>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 void Pulses::start(const QString &line, double length_s, const Set &set, const Done &done) {
     if (active_.contains(line))
@@ -20,4 +20,4 @@ void Pulses::start(const QString &line, double length_s, const Set &set, const D
                        });
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

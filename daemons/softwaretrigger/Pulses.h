@@ -6,7 +6,7 @@
 #include <QSet>
 #include <functional>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Pulses on output lines: on, and off again after a time. Two pulses of the same line do not overlap.
 class Pulses : public QObject {
@@ -26,4 +26,4 @@ private:
     QSet<QString> active_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -8,7 +8,7 @@
 #include <QJsonArray>
 #include <QRegularExpression>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 using Violations = std::vector<SchemaViolation>;
@@ -176,4 +176,4 @@ std::vector<SchemaViolation> checkTriggers(const QJsonObject &settings) {
     return found;
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -6,7 +6,7 @@
 #include <sys/prctl.h>
 #include <vector>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr int realtimePriority = 10; // below the motors'
@@ -110,4 +110,4 @@ void Schedule::callDue() {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

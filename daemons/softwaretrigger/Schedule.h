@@ -9,7 +9,7 @@
 #include <mutex>
 #include <thread>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Calls functions at t0 + n T, for any number of periods at a time. A thread of its own waits for absolute
 /// times of the monotonic clock, so that delays do not add up and steps of the wall clock do not matter. What
@@ -66,4 +66,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -5,7 +5,7 @@
 #include <QJsonObject>
 #include <QTimer>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr std::chrono::milliseconds sendLimit{2000};
@@ -127,4 +127,4 @@ QStringList SerialLines::closed() const {
     return result;
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -8,7 +8,7 @@
 #include <map>
 #include <memory>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// The serial lines that triggers write to, one port a URL; opened again by themselves. RTS and DTR are low
 /// from the opening on where a trigger pulses them.
@@ -55,4 +55,4 @@ private:
     std::map<QString, Line> lines_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -1,7 +1,7 @@
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 SoftwareTrigger::SoftwareTrigger()
     : Daemon({"softwaretrigger", "Software trigger",
@@ -79,4 +79,4 @@ void SoftwareTrigger::provideHealth() {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -5,7 +5,7 @@
 
 #include <QThread>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Fires triggers, each of which does its actions: by period, way, time of day, a condition on a topic, the
 /// firing of another, or by command. The definitions are the setting `triggers`.
@@ -46,4 +46,4 @@ private:
     TriggerEngine *engine_ = nullptr; ///< lives in thread_, while running
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

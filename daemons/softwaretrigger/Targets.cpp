@@ -3,7 +3,7 @@
 #include "common/Log.h"
 #include "common/client/DaemonAddress.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 void Targets::use(const QSet<QString> &daemons) {
     for (auto target = targets_.begin(); target != targets_.end();) {
@@ -64,4 +64,4 @@ QStringList Targets::unreachable() const {
     return result;
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -7,7 +7,7 @@
 #include <map>
 #include <memory>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Connections to the daemons that triggers name, one each; they connect again by themselves, and none waits
 /// for another.
@@ -38,4 +38,4 @@ private:
     std::map<QString, Target> targets_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

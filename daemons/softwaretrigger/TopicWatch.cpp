@@ -2,7 +2,7 @@
 
 #include "common/schema/SchemaText.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr int queueLength = 1000; // messages that wait here rather than being thinned
@@ -103,4 +103,4 @@ QString ConditionWatch::take(const TopicUpdate &update) {
     return {};
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

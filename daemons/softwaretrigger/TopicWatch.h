@@ -6,7 +6,7 @@
 
 #include <QPointer>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Watches a topic of a daemon, across its restarts.
 class TopicWatch : public QObject, public Watch {
@@ -62,4 +62,4 @@ private:
     Condition condition_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

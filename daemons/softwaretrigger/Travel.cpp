@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr double noise = 1e-3;     // m or rad
@@ -64,4 +64,4 @@ Result<std::optional<Travel::Passed>> Travel::add(WireView message) {
     return std::optional<Passed>(result);
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// What is read of a message of an odometry topic.
 struct TravelPoint {
@@ -53,4 +53,4 @@ private:
     quint64 passed_ = 0, jumps_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

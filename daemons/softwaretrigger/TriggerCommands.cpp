@@ -3,7 +3,7 @@
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 Field idField() {
@@ -158,4 +158,4 @@ void SoftwareTrigger::fireNow(const Call &call, const Reply &reply) {
         reply.error(begun.error());
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -3,7 +3,7 @@
 #include "common/Realtime.h"
 #include "common/Time.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 constexpr int realtimePriority = 10; // below the motors'
@@ -148,4 +148,4 @@ void TriggerEngine::endIfOver(const std::shared_ptr<Firing> &firing) {
         firing->ended(message);
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -11,7 +11,7 @@
 #include <memory>
 #include <set>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// A health item as the engine reports it.
 struct EngineHealth {
@@ -46,7 +46,7 @@ public:
 
 Q_SIGNALS:
     /// The last action of a firing has ended.
-    void fired(const hermes::FiringMessage &firing);
+    void fired(const hermes::softwaretrigger::FiringMessage &firing);
 
 private:
     struct Trigger {
@@ -80,4 +80,4 @@ private:
     PastFaults pastMissed_, pastLost_;
 };
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

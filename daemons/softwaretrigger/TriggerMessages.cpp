@@ -3,7 +3,7 @@
 #include "daemons/softwaretrigger/Definition.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 const Fields<FiringCause> &fieldsOf(Of<FiringCause>) {
     using C = FiringCause;
@@ -104,4 +104,4 @@ const Fields<TriggerState> &fieldsOf(Of<TriggerState>) {
     return fields;
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Why a trigger fired; beside its kind what that kind has to tell.
 struct FiringCause {
@@ -68,6 +68,6 @@ const Fields<FiringLog::State> &fieldsOf(Of<FiringLog::State>);
 const Fields<FiringMessage> &fieldsOf(Of<FiringMessage>);
 const Fields<TriggerState> &fieldsOf(Of<TriggerState>);
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger
 
-Q_DECLARE_METATYPE(hermes::FiringMessage)
+Q_DECLARE_METATYPE(hermes::softwaretrigger::FiringMessage)

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 namespace {
 
 class PeriodWatch : public Watch {
@@ -73,4 +73,4 @@ QString watchedDaemon(const TriggerDefinition &definition) {
     return definition.text("daemon"); // only the causes that watch a topic have it
 }
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

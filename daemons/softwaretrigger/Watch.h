@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-namespace hermes {
+namespace hermes::softwaretrigger {
 
 /// Why a trigger fires now.
 struct Occasion {
@@ -41,4 +41,4 @@ public:
 /// The daemon whose topic a definition watches; empty for none.
 QString watchedDaemon(const TriggerDefinition &definition);
 
-} // namespace hermes
+} // namespace hermes::softwaretrigger

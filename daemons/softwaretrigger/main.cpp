@@ -1,5 +1,5 @@
 #include "daemons/softwaretrigger/SoftwareTrigger.h"
 
 int main(int argc, char **argv) {
-    return hermes::runDaemon<hermes::SoftwareTrigger>(argc, argv);
+    return hermes::runDaemon<hermes::softwaretrigger::SoftwareTrigger>(argc, argv);
 }

@@ -4,7 +4,7 @@
 #include <QList>
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::supervisor {
 
 std::optional<ProcessUsage> ProcessUsage::of(qint64 pid) {
     QFile stat(QString("/proc/%1/stat").arg(pid));
@@ -24,4 +24,4 @@ std::optional<ProcessUsage> ProcessUsage::of(qint64 pid) {
     return usage;
 }
 
-} // namespace hermes
+} // namespace hermes::supervisor

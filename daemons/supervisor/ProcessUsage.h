@@ -3,7 +3,7 @@
 #include <QtGlobal>
 #include <optional>
 
-namespace hermes {
+namespace hermes::supervisor {
 
 /// What a process has used so far, from /proc (proc(5)).
 struct ProcessUsage {
@@ -14,4 +14,4 @@ struct ProcessUsage {
     static std::optional<ProcessUsage> of(qint64 pid);
 };
 
-} // namespace hermes
+} // namespace hermes::supervisor

@@ -9,7 +9,7 @@
 #include <csignal>
 #include <sys/prctl.h>
 
-namespace hermes {
+namespace hermes::supervisor {
 namespace {
 
 constexpr int longestLine = 4096;
@@ -216,4 +216,4 @@ void SupervisedProcess::setState(State state) {
     Q_EMIT changed();
 }
 
-} // namespace hermes
+} // namespace hermes::supervisor

@@ -8,7 +8,7 @@
 #include <deque>
 #include <sys/types.h>
 
-namespace hermes {
+namespace hermes::supervisor {
 
 /// One process that is kept running. When it ends by itself with an error it is started again, after a
 /// back-off that doubles; a wrong command line (exit status 2) is not tried again, nor is an end in order
@@ -79,4 +79,4 @@ private:
 
 QString toString(SupervisedProcess::State state);
 
-} // namespace hermes
+} // namespace hermes::supervisor

@@ -6,7 +6,7 @@
 #include <QHostInfo>
 #include <QSet>
 
-namespace hermes {
+namespace hermes::supervisor {
 namespace {
 
 // A name will do.
@@ -240,4 +240,4 @@ void Supervisor::stop() {
         processes_.pop_back();
 }
 
-} // namespace hermes
+} // namespace hermes::supervisor

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-namespace hermes {
+namespace hermes::supervisor {
 
 /// Starts and watches the daemons of one host: those of its setting `processes`, in that order; ends them in
 /// reverse order.
@@ -39,4 +39,4 @@ private:
     QTimer timer_;
 };
 
-} // namespace hermes
+} // namespace hermes::supervisor

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <new>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -91,4 +91,4 @@ void DatagramRing::interrupt(bool on) {
     filled_.notify_one();
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

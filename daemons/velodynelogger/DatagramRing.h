@@ -8,7 +8,7 @@
 #include <memory>
 #include <mutex>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// A bounded queue of datagrams between two threads, one that pushes and one that pops. Its memory is taken
 /// once; neither side locks or allocates for a datagram.
@@ -50,4 +50,4 @@ private:
     bool interrupted_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

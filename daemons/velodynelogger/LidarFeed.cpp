@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -236,4 +236,4 @@ velodyne::GpsReader::State LidarFeed::gps() const {
     return stream_.gps().state();
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -5,7 +5,7 @@
 #include "daemons/velodynelogger/PcapPlayer.h"
 #include "daemons/velodynelogger/TurnQueue.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// From the sensor or a capture file to turns: receives or plays datagrams, hands each to the recorder,
 /// decodes them and keeps the finished turns until they are taken. Of one laser always, of all lasers only
@@ -122,4 +122,4 @@ private:
     PcapPlayer player_;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -2,7 +2,7 @@
 
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 const Fields<LidarGps> &fieldsOf(Of<LidarGps>) {
     using G = LidarGps;
@@ -62,4 +62,4 @@ const Fields<CapturedTurn> &fieldsOf(Of<CapturedTurn>) {
     return fields;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -2,7 +2,7 @@
 
 #include "protocol/messages/Recordings.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// What the position packets of the sensor tell; nothing of it before the first.
 struct LidarGps {
@@ -36,4 +36,4 @@ const Fields<LidarGps> &fieldsOf(Of<LidarGps>);
 const Fields<LidarMessage> &fieldsOf(Of<LidarMessage>);
 const Fields<CapturedTurn> &fieldsOf(Of<CapturedTurn>);
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -1,6 +1,6 @@
 #include "daemons/velodynelogger/LiveSource.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -65,4 +65,4 @@ LiveSource::Counts LiveSource::counts() const {
     return counts;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

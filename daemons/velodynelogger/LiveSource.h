@@ -4,7 +4,7 @@
 #include "daemons/velodynelogger/Recorder.h"
 #include "daemons/velodynelogger/UdpReceiver.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Live packets: one thread receives and hands them to the recorder, another decodes. However slow decoding
 /// is, the recording gets everything; what the decoder cannot take is dropped and counted.
@@ -44,4 +44,4 @@ private:
     std::thread thread_;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

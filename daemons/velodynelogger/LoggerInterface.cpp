@@ -3,7 +3,7 @@
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 void VelodyneLogger::declareSettings() {
     QStringList models;
@@ -141,4 +141,4 @@ void VelodyneLogger::declareRecordCommands() {
             [this] { publish("lidar", [this] { return lidarState(); }); });
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

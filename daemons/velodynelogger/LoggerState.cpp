@@ -1,7 +1,7 @@
 // What the Velodyne logger tells about itself: the topic lidar, status of source and recording, health.
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -151,4 +151,4 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
             "packets come from " + source_.name() + pastText(wrong, lost, counts.gps));
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

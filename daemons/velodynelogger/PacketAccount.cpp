@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -68,4 +68,4 @@ void PacketAccount::follow(const Datagram &datagram) {
         ++counts_.sensorClockJumps;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// What a recording holds by kind, and what its data packets say of those that are missing: every sensor
 /// stamps them in even steps.
@@ -38,4 +38,4 @@ private:
     std::int64_t lastReceive_ns_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

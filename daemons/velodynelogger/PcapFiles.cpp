@@ -1,6 +1,6 @@
 #include "daemons/velodynelogger/PcapFiles.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -83,4 +83,4 @@ QJsonArray toJson(const std::vector<PcapFiles::File> &files) {
     return list;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// The capture files of one recording: goes on in a new one where one gets too long or too old, always with a
 /// whole datagram. Not for several threads at once.
@@ -43,4 +43,4 @@ private:
 
 QJsonArray toJson(const std::vector<PcapFiles::File> &files);
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

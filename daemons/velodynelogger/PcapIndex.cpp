@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -64,4 +64,4 @@ PcapIndex::Mark PcapIndex::before(std::int64_t time_ns) const {
     return found == marks_.rend() ? begin_ : *found;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

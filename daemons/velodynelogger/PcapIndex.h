@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Reads captures through in a thread of its own, to tell how long it plays and where to begin to read for a
 /// time. What is damaged ends it: the length is that of what can be played.
@@ -43,4 +43,4 @@ private:
     std::optional<std::int64_t> duration_ns_;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 PcapPlayer::PcapPlayer(Sink sink, Jump jump, End end)
     : sink_(std::move(sink))
@@ -104,4 +104,4 @@ bool PcapPlayer::rewind(const PcapIndex::Mark &mark) {
     return opened;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Plays the datagrams of capture files, one after the other, in a thread of its own, at the pace at which
 /// they were received or any other.
@@ -55,4 +55,4 @@ private:
     Playback playback_;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -94,4 +94,4 @@ Result<void> repairPcapFiles(const RecordingPlan &plan, QJsonObject &sidecar) {
     return {};
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

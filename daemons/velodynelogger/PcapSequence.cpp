@@ -1,6 +1,6 @@
 #include "daemons/velodynelogger/PcapSequence.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 bool PcapSequence::open(const std::vector<std::string> &paths) {
     paths_ = paths;
@@ -25,4 +25,4 @@ bool PcapSequence::seek(const Place &place) {
     return reader_.seek(place.inFile);
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Reads capture files one after the other as if they were one, as a recording that went on in new files.
 class PcapSequence {
@@ -35,4 +35,4 @@ private:
     PcapReader reader_;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

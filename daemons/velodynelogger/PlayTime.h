@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// How far into a capture a record lies when it is played. Steps back and steps of more than a minute are a
 /// clock that was set, not time that passed: they count as nothing.
@@ -40,4 +40,4 @@ private:
     std::int64_t now_ns_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

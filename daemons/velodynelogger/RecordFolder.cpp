@@ -4,7 +4,7 @@
 
 #include <QDir>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 Result<QString> RecordFolder::newFile(const QString &name, const QString &suffix) const {
     const Result<void> fine = checkName("name", name);
@@ -19,4 +19,4 @@ Result<QString> RecordFolder::newFile(const QString &name, const QString &suffix
     return path;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

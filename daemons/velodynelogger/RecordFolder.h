@@ -4,7 +4,7 @@
 
 #include <QString>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// The folder of the settings in which captured turns are kept, beside the recordings.
 class RecordFolder {
@@ -20,4 +20,4 @@ private:
     QString path_;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

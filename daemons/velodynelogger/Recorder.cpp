@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -173,4 +173,4 @@ Result<void> Recorder::repair(const RecordingPlan &plan, QJsonObject &sidecar) {
     return repairPcapFiles(plan, sidecar);
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -6,7 +6,7 @@
 
 #include <thread>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Writes datagrams to capture files in a thread of its own, so that a slow disk does not hold up receiving.
 /// What does not fit the bounded queue is dropped and counted. What was pushed is in the file, safe from the
@@ -58,4 +58,4 @@ private:
     Progress progress_; ///< guarded by the mutex
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -6,7 +6,7 @@
 
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -45,4 +45,4 @@ Result<void> writeTurn(const QString &path, const velodyne::Turn &turn, TurnForm
     return {};
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -5,10 +5,10 @@
 
 #include <QString>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Writes a turn to a new file. It appears under its name when it is complete; a file that exists is not
 /// touched. InputOutput with data.path on failure.
 Result<void> writeTurn(const QString &path, const velodyne::Turn &turn, TurnFormat format);
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

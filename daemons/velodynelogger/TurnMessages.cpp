@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -56,4 +56,4 @@ CloudMessage toCloudMessage(const velodyne::Turn &turn) {
     return message;
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -3,7 +3,7 @@
 #include "protocol/messages/Turns.h"
 #include "protocol/velodyne/TurnAssembler.h"
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Of a turn of one laser. The points come in the reverse of the order in which the sensor measured them.
 ScanMessage toScanMessage(const velodyne::Turn &turn);
@@ -11,4 +11,4 @@ ScanMessage toScanMessage(const velodyne::Turn &turn);
 /// Of a turn of all lasers; coordinates are rounded to 1 mm.
 CloudMessage toCloudMessage(const velodyne::Turn &turn);
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -5,7 +5,7 @@
 #include <deque>
 #include <memory>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Finished turns that wait to be taken: so many, the rest is dropped and counted. Not for several threads at
 /// once.
@@ -43,4 +43,4 @@ private:
     std::uint64_t dropped_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -96,4 +96,4 @@ void appendPoint(std::string &text, const velodyne::Turn &turn, const velodyne::
     text += '\n';
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Kinds of file that a turn can be written to, all of them text.
 enum class TurnFormat {
@@ -23,4 +23,4 @@ std::string turnHeader(const velodyne::Turn &turn, TurnFormat format);
 void appendPoint(std::string &text, const velodyne::Turn &turn, const velodyne::Point &point,
                  TurnFormat format);
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -108,4 +108,4 @@ UdpReceiver::Counts UdpReceiver::counts() const {
     return {received_, kernelDrops_, tooLong_, data_.bufferBytes()};
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

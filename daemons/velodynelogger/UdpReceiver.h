@@ -6,7 +6,7 @@
 #include <functional>
 #include <thread>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// Receives the datagrams of a sensor's data port, and of its position port where one is given, in a thread
 /// of its own, stamped by the kernel, and counts those that the kernel had to drop. Does not allocate for a
@@ -69,4 +69,4 @@ private:
     std::atomic<std::uint64_t> tooLong_{0};
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

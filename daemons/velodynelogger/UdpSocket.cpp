@@ -8,7 +8,7 @@
 #include <cstring>
 #include <ctime>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -162,4 +162,4 @@ const Datagram &UdpSocket::datagram(std::size_t i) const {
     return batch_->datagrams[i];
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

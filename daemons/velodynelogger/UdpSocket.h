@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// A UDP port from which many datagrams are taken at once, each with the kernel's stamp.
 class UdpSocket {
@@ -47,4 +47,4 @@ private:
     std::uint32_t allDrops_ = 0; ///< as the kernel counts; may wrap
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -7,7 +7,7 @@
 
 #include <QThreadPool>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 namespace {
 
@@ -277,4 +277,4 @@ void VelodyneLogger::tick() {
     publish("lidar", [this] { return lidarState(); });
 }
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

@@ -10,7 +10,7 @@
 
 #include <QElapsedTimer>
 
-namespace hermes {
+namespace hermes::velodynelogger {
 
 /// hermes-velodynelogger: receives a Velodyne lidar or replays a capture, publishes the horizontal ring
 /// and thinned turns of all lasers, records to pcap.
@@ -71,4 +71,4 @@ private:
     PastFaults faults_;
 };
 
-} // namespace hermes
+} // namespace hermes::velodynelogger

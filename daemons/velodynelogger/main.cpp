@@ -1,5 +1,5 @@
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
 int main(int argc, char **argv) {
-    return hermes::runDaemon<hermes::VelodyneLogger>(argc, argv);
+    return hermes::runDaemon<hermes::velodynelogger::VelodyneLogger>(argc, argv);
 }

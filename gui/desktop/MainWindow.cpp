@@ -15,7 +15,7 @@
 #include <QSettings>
 #include <QToolBar>
 
-namespace hermes {
+namespace hermes::desktop {
 
 MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent)
     : QMainWindow(parent)
@@ -94,4 +94,4 @@ void MainWindow::closeEvent(QCloseEvent *event) {
     event->accept();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -6,7 +6,7 @@
 
 class QDockWidget;
 
-namespace hermes {
+namespace hermes::desktop {
 
 struct PanelKind;
 
@@ -32,4 +32,4 @@ private:
     std::vector<QDockWidget *> docks_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -13,7 +13,7 @@ static void loadIcons() {
     Q_INIT_RESOURCE(icons);
 }
 
-namespace hermes::theme {
+namespace hermes::desktop::theme {
 namespace {
 
 /// The icons are drawn with "currentColor", which becomes a colour here.
@@ -121,4 +121,4 @@ QIcon icon(const QString &name) {
     return drawn(name, QApplication::palette().color(QPalette::ButtonText));
 }
 
-} // namespace hermes::theme
+} // namespace hermes::desktop::theme

@@ -7,7 +7,7 @@
 #include <QIcon>
 #include <QPalette>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// Colours and icons of the operator's program. Each colour has one meaning, and never stands alone.
 namespace theme {
@@ -26,4 +26,4 @@ QIcon icon(Condition condition);
 QIcon icon(const QString &name);
 
 } // namespace theme
-} // namespace hermes
+} // namespace hermes::desktop

@@ -7,7 +7,7 @@
 #include <QHBoxLayout>
 #include <QPushButton>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 30;
@@ -134,4 +134,4 @@ void TopBar::showPower(WireView told) {
                               .arg(shortNumber(volts, 1), shortNumber(amperes, 1), shortNumber(hottest, 0)));
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -7,7 +7,7 @@
 class QComboBox;
 class QPushButton;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class PlainLabel;
 
@@ -32,4 +32,4 @@ private:
     QPushButton *release_, *stop_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 int main(int argc, char **argv) {
     QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::ctl {
 namespace {
 
 Result<double> positive(const QString &option, const QString &text) {
@@ -91,4 +91,4 @@ Result<Arguments> Arguments::parse(const QStringList &list) {
     return result;
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

@@ -5,7 +5,7 @@
 #include <QStringList>
 #include <chrono>
 
-namespace hermes {
+namespace hermes::ctl {
 
 /// The command line of hermesctl.
 struct Arguments {
@@ -28,4 +28,4 @@ struct Arguments {
     static Result<Arguments> parse(const QStringList &arguments);
 };
 
-} // namespace hermes
+} // namespace hermes::ctl

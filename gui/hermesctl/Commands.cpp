@@ -17,7 +17,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace hermes {
+namespace hermes::ctl {
 namespace {
 
 QString pretty(const QJsonValue &value) {
@@ -174,4 +174,4 @@ Result<void> showLog(Client &client, const Arguments &arguments) {
     return Error(ErrorCode::Disconnected, client.lastError());
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

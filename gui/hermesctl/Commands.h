@@ -3,7 +3,7 @@
 #include "gui/hermesctl/Arguments.h"
 #include "gui/hermesctl/Connection.h"
 
-namespace hermes {
+namespace hermes::ctl {
 
 /// A command of hermesctl that speaks to one daemon: prints its result to stdout.
 using DaemonCommand = Result<void> (*)(Client &client, const Arguments &arguments);
@@ -40,4 +40,4 @@ void checkOutput();
 /// Prints a line to stdout at once.
 void printLine(const QString &text);
 
-} // namespace hermes
+} // namespace hermes::ctl

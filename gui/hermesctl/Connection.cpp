@@ -2,7 +2,7 @@
 
 #include <QTimer>
 
-namespace hermes {
+namespace hermes::ctl {
 
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout) {
     QEventLoop loop;
@@ -56,4 +56,4 @@ SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QStri
     return await<SessionReplies>([&](auto done) { callAll(calls, method, timeout, &context, done); });
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

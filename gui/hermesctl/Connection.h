@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-namespace hermes {
+namespace hermes::ctl {
 
 /// Connects, with one attempt. Error: who did not answer and why.
 Result<void> connectOnce(Client &client, const QString &address, std::chrono::milliseconds timeout);
@@ -35,4 +35,4 @@ T await(const Begin &begin) {
 SessionReplies callAllAndWait(const std::vector<SessionCall> &calls, const QString &method,
                               std::chrono::milliseconds timeout);
 
-} // namespace hermes
+} // namespace hermes::ctl

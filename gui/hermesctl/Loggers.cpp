@@ -6,7 +6,7 @@
 #include <QJsonArray>
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::ctl {
 namespace {
 
 Result<QStringList> addressesOf(const Arguments &arguments) {
@@ -76,4 +76,4 @@ Result<Loggers> Loggers::find(const Arguments &arguments) {
     return loggers;
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

@@ -4,7 +4,7 @@
 #include "gui/hermesctl/Connection.h"
 #include "gui/session/SessionMember.h"
 
-namespace hermes {
+namespace hermes::ctl {
 
 /// The loggers of a robot, and the connections to them.
 struct Loggers {
@@ -15,4 +15,4 @@ struct Loggers {
     static Result<Loggers> find(const Arguments &arguments);
 };
 
-} // namespace hermes
+} // namespace hermes::ctl

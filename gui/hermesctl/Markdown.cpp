@@ -6,7 +6,7 @@
 #include <QJsonArray>
 #include <QStringList>
 
-namespace hermes {
+namespace hermes::ctl {
 namespace {
 
 const QString nameKey = QStringLiteral("name");
@@ -157,4 +157,4 @@ QString descriptionAsText(const QJsonObject &description) {
     return page.trimmed();
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

@@ -3,7 +3,7 @@
 #include <QJsonObject>
 #include <QString>
 
-namespace hermes {
+namespace hermes::ctl {
 
 /// The reference of a daemon in Markdown, from its description (OpenRPC) and the schema of its settings.
 QString descriptionAsMarkdown(const QJsonObject &description, const QJsonObject &settingsSchema);
@@ -11,4 +11,4 @@ QString descriptionAsMarkdown(const QJsonObject &description, const QJsonObject 
 /// The same for a terminal, one line a method and topic.
 QString descriptionAsText(const QJsonObject &description);
 
-} // namespace hermes
+} // namespace hermes::ctl

@@ -8,7 +8,7 @@
 
 #include <QDateTime>
 
-namespace hermes {
+namespace hermes::ctl {
 namespace {
 
 QString seconds(double from, double to) {
@@ -140,4 +140,4 @@ Result<void> recordList(const Arguments &arguments) {
     return problemOf(list->problems);
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::ctl {
 namespace {
 
 /// The one that a person means by a name or an id.
@@ -64,4 +64,4 @@ Result<void> replay(const Arguments &arguments) {
     return result;
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

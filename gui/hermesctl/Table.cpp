@@ -2,7 +2,7 @@
 
 #include "gui/hermesctl/Commands.h"
 
-namespace hermes {
+namespace hermes::ctl {
 
 void printTable(const std::vector<QStringList> &rows) {
     std::vector<int> widths;
@@ -19,4 +19,4 @@ void printTable(const std::vector<QStringList> &rows) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

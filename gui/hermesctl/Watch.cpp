@@ -5,7 +5,7 @@
 #include <QEventLoop>
 #include <cstdio>
 
-namespace hermes {
+namespace hermes::ctl {
 namespace {
 
 QString csvField(const QJsonValue &value) {
@@ -82,4 +82,4 @@ Result<void> watch(Client &client, const Arguments &arguments) {
     return result;
 }
 
-} // namespace hermes
+} // namespace hermes::ctl

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 using namespace hermes;
+using namespace hermes::ctl;
 
 namespace {
 

@@ -21,7 +21,7 @@
 #include <map>
 #include <sstream>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -82,7 +82,7 @@ struct ExperimentCommand {
         std::size_t drawn = 0;
         for (const PairResult &pair : results)
             if (!pair.isWithin(pair.match.pose, 0.10) && drawn++ < pictures)
-                hermes::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair);
+                vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair);
     }
     void criterion(OutputSet &files, std::ostream &csv) const {
         const std::vector<Surface> surfaces = criterionSurfaces();
@@ -172,7 +172,7 @@ private:
         const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
         writeCsv(csv, panels);
         for (const SegmentationPanel &panel : panels)
-            hermes::draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
+            vector::draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
                                          std::to_string(std::lround(100 * panel.outlierShare)) +
                                          "percent.svg"),
                          scene, panel);
@@ -188,7 +188,7 @@ private:
             throw Failure(log + ": no scan has returns on half of its rays");
         writeCsv(csv, result);
         writeLatex(open(files, ".tex"), name, result);
-        hermes::draw(open(files, ".svg"), name, result);
+        vector::draw(open(files, ".svg"), name, result);
     }
     vectorlib::CarmenLog readLog() const {
         if (log.empty())
@@ -324,4 +324,4 @@ void addExperimentCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

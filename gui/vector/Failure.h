@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Why a command could not do its work; the message is for people. The program exits with status 1.
 struct Failure : std::runtime_error {
@@ -19,4 +19,4 @@ T valueOrFail(vectorlib::Expected<T> result) {
     return std::move(*result);
 }
 
-} // namespace hermes
+} // namespace hermes::vector

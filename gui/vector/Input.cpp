@@ -14,7 +14,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace fs = std::filesystem;
 
@@ -164,4 +164,4 @@ PlainFile::~PlainFile() {
         fs::remove(path_, ignored);
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// A file to read, plain or gzip-compressed, or standard input for `-`. A file that breaks off in the middle
 /// of its compressed data makes the stream bad instead of ending it.
@@ -54,4 +54,4 @@ private:
     bool temporary_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Where the worlds are that came with this program; empty when that cannot be told.
 inline std::filesystem::path installedWorlds() {
@@ -12,4 +12,4 @@ inline std::filesystem::path installedWorlds() {
                  : program.parent_path().parent_path() / "share" / "hermes" / "worlds";
 }
 
-} // namespace hermes
+} // namespace hermes::vector

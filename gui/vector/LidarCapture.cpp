@@ -5,7 +5,7 @@
 
 #include <arpa/inet.h>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
         ": UDP datagrams of 1206 bytes whose blocks begin with FF EE");
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -8,7 +8,7 @@
 
 #include <functional>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Which of the sensors in a capture is read: the first, or the first that meets what is given.
 struct SensorOptions {
@@ -42,4 +42,4 @@ private:
     LidarStream stream_;
 };
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <sstream>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -158,4 +158,4 @@ void addMapCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

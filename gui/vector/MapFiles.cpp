@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 
-namespace hermes {
+namespace hermes::vector {
 
 const std::vector<std::string> &MapFile::extensions() {
     static const std::vector<std::string> known = {".csv", ".svg", ".geojson", ".dxf", ".pgm"};
@@ -48,4 +48,4 @@ void MapFile::write(const vectorlib::MapDrawing &map) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -3,7 +3,7 @@
 #include "gui/vector/Output.h"
 #include "vectorlib/io/MapDrawing.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 /// A map file whose kind follows from its extension: csv, svg, geojson, dxf, pgm (with a yaml file beside
 /// it).
@@ -23,4 +23,4 @@ private:
     std::ostream *yaml_ = nullptr;
 };
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::vector {
 
 using vectorlib::Transformation2D;
 
@@ -77,4 +77,4 @@ nlohmann::ordered_json MapRun::errors() const {
             {"final_drift_deg", std::abs(drift.alpha()) * degrees}};
 }
 
-} // namespace hermes
+} // namespace hermes::vector

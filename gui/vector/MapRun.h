@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Builds a map from scans and keeps account of it.
 class MapRun {
@@ -31,4 +31,4 @@ private:
     std::size_t partial_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -110,4 +110,4 @@ MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink 
     return isCapture(options.path) ? readCapture(options, sink) : readLog(options, sink);
 }
 
-} // namespace hermes
+} // namespace hermes::vector

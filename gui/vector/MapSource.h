@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// One scan on its way into a map.
 struct MapScan : vectorlib::TimedScan {
@@ -42,4 +42,4 @@ using MapScanSink = std::function<void(MapScan &, std::size_t number, std::size_
 /// what came before it.
 MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink &sink);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -7,7 +7,7 @@
 
 #include <iostream>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -181,4 +181,4 @@ void addMatchCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

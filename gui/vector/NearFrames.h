@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// The frames in which the two sets of pairs are worked on: their own, or, where the segments lie so far from
 /// the origin that an error of rotation would turn into one of translation (erratum 13), one with the origin
@@ -50,4 +50,4 @@ private:
     Point fixed_, moving_;
 };
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -8,7 +8,7 @@
 #include "vectorlib/observation/Observer.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -129,4 +129,4 @@ void addObserveCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,7 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::string example(const std::string &text) {
            "usage, 1 any other failure.";
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Where a command's results go.
 struct OutputOptions {
@@ -59,4 +59,4 @@ void addMatchCommand(CLI::App &app);
 void addReportCommand(CLI::App &app);
 void addRingCommand(CLI::App &app);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace fs = std::filesystem;
 
@@ -146,4 +146,4 @@ void OutputSet::commit() {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::vector

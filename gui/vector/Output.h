@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// What a command writes. Every file is written under a temporary name beside its target and takes its place
 /// in commit(); when the command fails, is interrupted or commit() is not reached, no trace is left. `-` and
@@ -32,4 +32,4 @@ private:
 /// Makes the program remove its temporary files when a signal ends it.
 void removeTemporariesOnSignal();
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,7 +5,7 @@
 #include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/Pcd.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 std::vector<vectorlib::Vector2D<double>> loadPoints(const std::string &path) {
     Input input(path);
@@ -14,4 +14,4 @@ std::vector<vectorlib::Vector2D<double>> loadPoints(const std::string &path) {
                            : vectorlib::readCsvPoints<double>(input.stream(), input.name()));
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// The points of a CSV or (by extension .pcd) PCD file in their order; metres. Throws Failure.
 std::vector<vectorlib::Vector2D<double>> loadPoints(const std::string &path);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-namespace hermes {
+namespace hermes::vector {
 
 Progress::Progress(std::string what)
     : what_(std::move(what))
@@ -30,4 +30,4 @@ void Progress::update(std::size_t done, std::size_t total) {
     std::fflush(stderr);
 }
 
-} // namespace hermes
+} // namespace hermes::vector

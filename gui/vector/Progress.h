@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// One line on stderr that says how far long work has come; silent when stderr is no terminal.
 class Progress {
@@ -22,4 +22,4 @@ private:
     std::chrono::steady_clock::time_point last_;
 };
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -10,7 +10,7 @@
 
 #include <iostream>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -121,4 +121,4 @@ void addRegisterCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

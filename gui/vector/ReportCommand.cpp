@@ -5,7 +5,7 @@
 #include "gui/vector/SearchOptions.h"
 #include "gui/vector/report/Worlds.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -115,4 +115,4 @@ void addReportCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

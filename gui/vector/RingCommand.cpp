@@ -6,7 +6,7 @@
 
 #include <iostream>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -130,4 +130,4 @@ void addRingCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -2,7 +2,7 @@
 
 #include "gui/vector/Options.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 void SearchOptions::addTo(CLI::App &command, const std::string &discrepancy) {
     const auto number = [&command](const char *name, std::optional<double> &value, const std::string &what,
@@ -31,4 +31,4 @@ vectorlib::SearchSettings SearchOptions::over(vectorlib::SearchSettings s) const
     return s;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// The options of the correspondence search: --max-dx --max-dy --max-dalpha --reliability --ambiguity
 /// --k-alpha --k-xy --discrepancy. Defaults are those of the thesis appendices.
@@ -21,4 +21,4 @@ private:
     std::optional<double> maxDx_, maxDy_, maxDalpha_, reliability_, ambiguity_, kAlpha_, kXy_, discrepancy_;
 };
 
-} // namespace hermes
+} // namespace hermes::vector

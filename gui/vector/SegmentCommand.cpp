@@ -2,7 +2,7 @@
 #include "gui/vector/Points.h"
 #include "vectorlib/io/Svg.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -70,4 +70,4 @@ void addSegmentCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

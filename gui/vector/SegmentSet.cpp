@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace hermes {
+namespace hermes::vector {
 
 using Kind = SegmentSet::Kind;
 
@@ -96,4 +96,4 @@ SegmentSet loadSegmentSet(const std::string &path, const SegmentSetSettings &set
     return set;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// How segments are made of points, and how sure segments are.
 struct SegmentSetSettings {
@@ -31,4 +31,4 @@ struct SegmentSet {
 /// Throws Failure.
 SegmentSet loadSegmentSet(const std::string &path, const SegmentSetSettings &settings);
 
-} // namespace hermes
+} // namespace hermes::vector

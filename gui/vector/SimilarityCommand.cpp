@@ -6,7 +6,7 @@
 #include "vectorlib/io/Number.h"
 #include "vectorlib/similarity/EdgeSetComparator.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -58,4 +58,4 @@ void addSimilarityCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <numeric>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -146,4 +146,4 @@ void addVectorizeCommand(CLI::App &app) {
     sub->callback([command] { command->run(); });
 }
 
-} // namespace hermes
+} // namespace hermes::vector

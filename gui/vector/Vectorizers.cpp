@@ -9,7 +9,7 @@
 
 #include <stdexcept>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -43,4 +43,4 @@ bool addVectorizer(const NamedVectorizer &vectorizer) {
     return true;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// A vectorizer at work: the lines of a cluster, which stand until it is called again.
 template <typename Scalar>
@@ -38,4 +38,4 @@ Vectorize<Scalar> makeVectorizer(const vectorlib::VectorizerSettings &settings) 
         };
 }
 
-} // namespace hermes
+} // namespace hermes::vector

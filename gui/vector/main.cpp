@@ -3,6 +3,8 @@
 
 #include <iostream>
 
+using namespace hermes::vector;
+
 namespace {
 
 constexpr int failed = 1;
@@ -17,17 +19,17 @@ int main(int argc, char **argv) {
     app.set_version_flag("--version", "hermes-vector " HERMES_VERSION);
     app.require_subcommand(0, 1); // none is told below: CLI11 would not name a wrong one
     app.footer("hermes-vector COMMAND --help says more and shows an example.");
-    hermes::addSegmentCommand(app);
-    hermes::addVectorizeCommand(app);
-    hermes::addRegisterCommand(app);
-    hermes::addSimilarityCommand(app);
-    hermes::addMatchCommand(app);
-    hermes::addObserveCommand(app);
-    hermes::addMapCommand(app);
-    hermes::addRingCommand(app);
-    hermes::addExperimentCommand(app);
-    hermes::addReportCommand(app);
-    hermes::removeTemporariesOnSignal();
+    addSegmentCommand(app);
+    addVectorizeCommand(app);
+    addRegisterCommand(app);
+    addSimilarityCommand(app);
+    addMatchCommand(app);
+    addObserveCommand(app);
+    addMapCommand(app);
+    addRingCommand(app);
+    addExperimentCommand(app);
+    addReportCommand(app);
+    removeTemporariesOnSignal();
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty())
@@ -37,7 +39,7 @@ int main(int argc, char **argv) {
             return app.exit(e); // prints the help or the version
         std::cerr << "hermes-vector: " << e.what() << "\nSee hermes-vector --help.\n";
         return wrongUsage;
-    } catch (const hermes::Failure &e) {
+    } catch (const Failure &e) {
         std::cerr << "hermes-vector: " << e.what() << '\n';
         return failed;
     } catch (const std::exception &e) {

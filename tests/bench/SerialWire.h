@@ -35,7 +35,7 @@ public:
     SerialWire(double baud, const std::vector<std::uint8_t> &addresses)
         : byte_s_(10 / baud) { // 8N1: ten bits a byte
         for (const std::uint8_t address : addresses) {
-            hermes::RoboClawEmulator::Options options;
+            hermes::simulator::RoboClawEmulator::Options options;
             options.address = address;
             emulators_.emplace_back(options);
         }
@@ -148,7 +148,7 @@ private:
 
     const double byte_s_;
     std::uint8_t first_ = 0;
-    std::vector<hermes::RoboClawEmulator> emulators_;
+    std::vector<hermes::simulator::RoboClawEmulator> emulators_;
     std::string device_;
     int far_ = -1, near_ = -1;   // near is held open: without any opener the far end could not be read
     double hear_ = 0, tell_ = 0; // when each direction is free again

@@ -51,7 +51,7 @@ void searchMap(benchmark::State &state) {
             find(hall.map, scan, Transformation2D(hall.middle.x, hall.middle.y, 0.2)).solutions.size());
 }
 
-void searchScans(benchmark::State &state, const hermes::ScanPair &scans) {
+void searchScans(benchmark::State &state, const hermes::vector::ScanPair &scans) {
     CorrespondenceFinder find;
     for (auto _ : state)
         benchmark::DoNotOptimize(find(scans.fixed.segments, scans.moving.segments).solutions.size());
@@ -71,12 +71,12 @@ bool addPillars() {
         std::cerr << error << '\n';
         return false;
     }
-    const Segments edges = hermes::edgesOf(*world);
+    const Segments edges = hermes::vector::edgesOf(*world);
     for (std::size_t i = 0; i + 1 < world->poses.size(); ++i) {
         const auto pose = [&](std::size_t k) {
             return Pose2D{world->poses[k].x, world->poses[k].y, world->poses[k].theta};
         };
-        const hermes::ScanPair scans = hermes::scanPair(edges, pose(i), pose(i + 1), {});
+        const hermes::vector::ScanPair scans = hermes::vector::scanPair(edges, pose(i), pose(i + 1), {});
         benchmark::RegisterBenchmark("search between two scans of pillars", [scans](benchmark::State &state) {
             searchScans(state, scans);
         })->Arg(int64_t(i));

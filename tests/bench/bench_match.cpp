@@ -143,15 +143,15 @@ int main(int argc, char **argv) {
     benchmark::AddCustomContext("compiler", BENCH_COMPILER);
     benchmark::Initialize(&argc, argv);
     const auto log = [&](const char *name) {
-        hermes::Input input(folder + "/" + name + "-corrected.log.gz");
-        return hermes::valueOrFail(readCarmenLog(input.stream(), input.name()));
+        hermes::vector::Input input(folder + "/" + name + "-corrected.log.gz");
+        return hermes::vector::valueOrFail(readCarmenLog(input.stream(), input.name()));
     };
     try {
         add("intel, consecutive", pairsOf(log("intel"), 1, 1000));
         const CarmenLog freiburg = log("freiburg-079");
         add("freiburg-079, first 1000", pairsOf(freiburg, 1, 1000));
         add("freiburg-079, every 5th", pairsOf(freiburg, 5, 1000));
-    } catch (const hermes::Failure &failure) {
+    } catch (const hermes::vector::Failure &failure) {
         std::cerr << failure.what() << '\n';
         return 1;
     }

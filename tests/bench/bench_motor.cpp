@@ -22,8 +22,9 @@ double percentile(std::vector<double> values, double share) {
     return *at;
 }
 
-std::unique_ptr<hermes::MotorControl> start(const SerialWire &first, const SerialWire &second, int baud) {
-    auto daemon = std::make_unique<hermes::MotorControl>();
+std::unique_ptr<hermes::motorcontrol::MotorControl> start(const SerialWire &first, const SerialWire &second,
+                                                          int baud) {
+    auto daemon = std::make_unique<hermes::motorcontrol::MotorControl>();
     const auto url = [baud](int number, const SerialWire &wire) {
         return QString("controllers.%1.url=serial://%2?baud=%3")
             .arg(number)

@@ -90,7 +90,7 @@ void TestDaemon::networkNeedsInsecure() {
 }
 
 void TestDaemon::whatIsPastIsNoWarning() {
-    const auto warns = [faults = PastFaults()](double count, double mono) mutable {
+    auto warns = [faults = PastFaults()](double count, double mono) mutable {
         return faults.level(count, mono) == HealthLevel::Warn;
     };
     const double end = PastFaults::window_s;

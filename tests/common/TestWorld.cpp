@@ -8,6 +8,7 @@
 #include <limits>
 
 using namespace hermes;
+using vectorlib::Pose2D;
 
 namespace {
 

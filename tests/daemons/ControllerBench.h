@@ -38,27 +38,28 @@ public:
 
     explicit ControllerBench(int count = 2, double timeout_s = 0.2) {
         hermes::Settings values;
-        hermes::declareMotorSettings([&](const hermes::Field &field) { values.declare(field); });
-        settings = hermes::MotorSettings::from(values);
+        hermes::motorcontrol::declareMotorSettings(
+            [&](const hermes::Field &field) { values.declare(field); });
+        settings = hermes::motorcontrol::MotorSettings::from(values);
         settings.serialTimeout_s = timeout_s;
-        std::vector<hermes::MotorController *> onLine;
+        std::vector<hermes::motorcontrol::MotorController *> onLine;
         for (int i = 0; i < count; ++i) {
             settings.controllers[std::size_t(i)].url = "serial:///dev/line";
-            auto controller =
-                std::make_unique<hermes::MotorController>(i + 1, settings.controllers[std::size_t(i)], count);
+            auto controller = std::make_unique<hermes::motorcontrol::MotorController>(
+                i + 1, settings.controllers[std::size_t(i)], count);
             controller->configure(settings);
             onLine.push_back(controller.get());
             controllers_.push_back(std::move(controller));
-            hermes::RoboClawEmulator::Options options;
+            hermes::simulator::RoboClawEmulator::Options options;
             options.address = std::uint8_t(0x80 + i);
             emulators_.emplace_back(options);
         }
-        line = std::make_unique<hermes::LineMaster>(onLine);
+        line = std::make_unique<hermes::motorcontrol::LineMaster>(onLine);
         line->setOpen();
     }
 
-    hermes::MotorController &controller(int i) { return *controllers_[std::size_t(i)]; }
-    hermes::RoboClawEmulator &emulator(int i) { return emulators_[std::size_t(i)]; }
+    hermes::motorcontrol::MotorController &controller(int i) { return *controllers_[std::size_t(i)]; }
+    hermes::simulator::RoboClawEmulator &emulator(int i) { return emulators_[std::size_t(i)]; }
     double now() const { return now_; }
     /// Counts/s of the fastest motor of all.
     double fastest() const {
@@ -87,8 +88,8 @@ public:
         return std::all_of(controllers_.begin(), controllers_.end(), [](auto &c) { return c->isReady(); });
     }
 
-    hermes::MotorSettings settings;
-    std::unique_ptr<hermes::LineMaster> line;
+    hermes::motorcontrol::MotorSettings settings;
+    std::unique_ptr<hermes::motorcontrol::LineMaster> line;
     qint32 speed = 0;
     /// Seconds by which each answer is late, as by an adapter that holds bytes.
     double latency = 0;
@@ -142,8 +143,8 @@ private:
         }
     }
 
-    std::vector<std::unique_ptr<hermes::MotorController>> controllers_;
-    std::vector<hermes::RoboClawEmulator> emulators_;
+    std::vector<std::unique_ptr<hermes::motorcontrol::MotorController>> controllers_;
+    std::vector<hermes::simulator::RoboClawEmulator> emulators_;
     double now_ = 1, nextCycle_ = 1;
     std::deque<Late> answers_;
 };

@@ -8,6 +8,8 @@
 
 namespace hermes {
 
+using namespace velodynelogger;
+
 /// Everything that a feed says.
 class LidarListener {
 public:

@@ -10,6 +10,8 @@
 
 namespace hermes {
 
+using namespace scanmatcher;
+
 /// A daemon that publishes the scans and the odometry that a test tells it.
 class ScanSource : public Daemon {
 public:

@@ -12,8 +12,8 @@ class MotorFixture : protected DaemonClient {
 protected:
     static constexpr double countsPerTurn = 38000, radius = 0.1; // m
 
-    static hermes::RoboClawEmulator::Options controllerAt(int address) {
-        hermes::RoboClawEmulator::Options options;
+    static hermes::simulator::RoboClawEmulator::Options controllerAt(int address) {
+        hermes::simulator::RoboClawEmulator::Options options;
         options.address = std::uint8_t(address);
         return options;
     }
@@ -29,7 +29,7 @@ protected:
         folder_ = std::make_unique<QTemporaryDir>();
         plug({controllerAt(0x80), controllerAt(0x81)});
     }
-    void plug(const std::vector<hermes::RoboClawEmulator::Options> &controllers) {
+    void plug(const std::vector<hermes::simulator::RoboClawEmulator::Options> &controllers) {
         rig_.reset();
         rig_ = std::make_unique<RoboClawRig>(folder_->filePath("line"), controllers);
     }
@@ -48,7 +48,7 @@ protected:
 
     /// The client may be silent for 1 s, as it is when the machine stalls.
     void launch(const QStringList &settings = {}) {
-        daemon_ = std::make_unique<hermes::MotorControl>();
+        daemon_ = std::make_unique<hermes::motorcontrol::MotorControl>();
         QStringList arguments{"motorcontrol",
                               "--listen",
                               "tcp://127.0.0.1:0",
@@ -102,5 +102,5 @@ protected:
 
     std::unique_ptr<QTemporaryDir> folder_;
     std::unique_ptr<RoboClawRig> rig_;
-    std::unique_ptr<hermes::MotorControl> daemon_;
+    std::unique_ptr<hermes::motorcontrol::MotorControl> daemon_;
 };

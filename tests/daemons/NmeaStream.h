@@ -18,7 +18,7 @@ public:
     /// Each as the topic fix shows it.
     QList<QJsonObject> fixes;
     QList<int> givenAt_ms; ///< by the time of the bytes that made each fix known
-    hermes::FixTracker tracker{hermes::nmea::ChecksumRule::Strict};
+    hermes::seriallogger::FixTracker tracker{hermes::nmea::ChecksumRule::Strict};
 
     void feed(int ms, const QByteArray &bytes) {
         pauseUntil(ms);
@@ -37,10 +37,12 @@ public:
     bool live = false; ///< a clock runs; else only the bytes tell the time, as in a recording
 
 private:
-    static hermes::Arrival at(int ms) { return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000}; }
-    hermes::FixTracker::Sink sink() {
-        return [this](const hermes::Fix &fix) {
-            fixes << asJson(valuesOf(fix)).toObject();
+    static hermes::seriallogger::Arrival at(int ms) {
+        return {std::int64_t(ms) * 1000000, std::int64_t(ms) * 1000000};
+    }
+    hermes::seriallogger::FixTracker::Sink sink() {
+        return [this](const hermes::seriallogger::Fix &fix) {
+            fixes << hermes::asJson(valuesOf(fix)).toObject();
             givenAt_ms << now_ms_;
         };
     }

@@ -10,7 +10,7 @@
 /// product.
 class RoboClawClient {
 public:
-    explicit RoboClawClient(hermes::Drivetrain &drivetrain, int line = 0)
+    explicit RoboClawClient(hermes::simulator::Drivetrain &drivetrain, int line = 0)
         : drivetrain_(drivetrain)
         , line_(line) {}
 
@@ -69,13 +69,13 @@ public:
     double delay = 0; ///< of the last answer; seconds
 
 private:
-    hermes::Drivetrain &drivetrain_;
+    hermes::simulator::Drivetrain &drivetrain_;
     int line_;
     double now_ = 0;
 };
 
 /// The drivetrain goes on by so many seconds.
-inline void pass(hermes::Drivetrain &drivetrain, double seconds) {
+inline void pass(hermes::simulator::Drivetrain &drivetrain, double seconds) {
     for (int i = 0; i < int(std::lround(seconds * 1000)); ++i)
         drivetrain.advance(0.001);
 }

@@ -36,7 +36,7 @@
 /// of a second; those of the serial server do not.
 class RoboClawRig {
 public:
-    using Emulator = hermes::RoboClawEmulator;
+    using Emulator = hermes::simulator::RoboClawEmulator;
 
     static constexpr double standing = 0.005; ///< m/s below which rims and body stand
     static constexpr double countsPerTurn = 38000;
@@ -311,8 +311,8 @@ private:
     int far_ = -1, near_ = -1; // near is held open, so that the far end can be read before a program comes
     std::atomic<double> voltage_{25};
     std::atomic<double> lastMoved_{0}, lastDriven_{0};
-    const hermes::WheelBase base_;
-    hermes::RobotBody body_; // no walls
+    const hermes::simulator::WheelBase base_;
+    hermes::simulator::RobotBody body_; // no walls
     vectorlib::Pose2D pose_;
     double rimSpeed_ = 0; // m/s
     WireEar ear_;

@@ -13,6 +13,8 @@
 
 namespace hermes {
 
+using namespace seriallogger;
+
 inline const Arrival first{1700000000000000000, 5000000000};
 
 /// So many seconds after the first arrival; the stamp's clock may step on its own.

@@ -10,6 +10,8 @@
 
 namespace hermes {
 
+using namespace seriallogger;
+
 inline const QByteArray rmc("$GPRMC,123519,A,4807.038,N,01131.000,E,022.4,084.4,230394,003.1,W*6A\r\n");
 inline const QByteArray gga("$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n");
 

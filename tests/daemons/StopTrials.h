@@ -27,7 +27,7 @@ protected:
     /// is another test.
     void setUp() {
         ::setpriority(PRIO_PROCESS, 0, -15);
-        hermes::RoboClawEmulator::Options first, second;
+        hermes::simulator::RoboClawEmulator::Options first, second;
         second.address = 0x81;
         rig_ = std::make_unique<RoboClawRig>(QString(), std::vector{first, second});
         startDaemon();

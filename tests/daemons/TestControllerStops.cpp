@@ -8,6 +8,8 @@
 #include <random>
 
 using namespace hermes;
+using namespace hermes::simulator;
+using namespace hermes::motorcontrol;
 using roboclaw::Command;
 
 Q_DECLARE_METATYPE(decltype(ControllerBench::passes))

@@ -11,9 +11,10 @@
 #include <limits>
 #include <memory>
 
-Q_DECLARE_METATYPE(std::function<void(hermes::Drive &)>)
+Q_DECLARE_METATYPE(std::function<void(hermes::motorcontrol::Drive &)>)
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
 
 namespace {
 

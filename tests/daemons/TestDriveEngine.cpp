@@ -7,6 +7,8 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
+using namespace hermes::simulator;
 
 class TestDriveEngine : public QObject {
     Q_OBJECT

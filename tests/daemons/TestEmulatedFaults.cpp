@@ -2,6 +2,7 @@
 #include "RoboClawClient.h"
 
 using namespace hermes;
+using namespace hermes::simulator;
 
 class TestEmulatedFaults : public QObject {
     Q_OBJECT

@@ -8,6 +8,7 @@
 #include <atomic>
 
 using namespace hermes;
+using namespace hermes::simulator;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include <set>
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 using velodyne::Turn;
 
 namespace {

@@ -6,6 +6,7 @@
 #include "vectorlib/geometry/Transformation2D.h"
 
 using namespace hermes;
+using namespace hermes::simulator;
 using vectorlib::Transformation2D;
 using Point = vectorlib::Vector2D<double>;
 

@@ -4,6 +4,7 @@
 #include <QFile>
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 
 class TestLidarRecordings : public QObject {
     Q_OBJECT

@@ -5,6 +5,7 @@
 #include <QProcess>
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 using velodyne::Turn;
 
 class TestLidarReplay : public QObject {

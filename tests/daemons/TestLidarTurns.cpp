@@ -3,6 +3,7 @@
 #include "daemons/velodynelogger/TurnText.h"
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 using velodyne::Turn;
 
 class TestLidarTurns : public QObject {

@@ -12,6 +12,7 @@
 #include <fstream>
 
 using namespace hermes;
+using namespace hermes::scanmatcher;
 
 namespace {
 

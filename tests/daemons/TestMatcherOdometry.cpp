@@ -3,6 +3,7 @@
 #include "MatcherFixture.h"
 
 using namespace hermes;
+using namespace hermes::scanmatcher;
 using vectorlib::Pose2D;
 using vectorlib::Transformation2D;
 using vectorlib::Twist2D;

@@ -8,10 +8,11 @@
 #include <random>
 
 Q_DECLARE_METATYPE(vectorlib::Twist2D)
-Q_DECLARE_METATYPE(hermes::Pose)
-Q_DECLARE_METATYPE(hermes::WheelValues)
+Q_DECLARE_METATYPE(vectorlib::Pose2D)
+Q_DECLARE_METATYPE(hermes::motorcontrol::WheelValues)
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
 
 namespace {
 
@@ -191,9 +192,9 @@ void TestMotion::odometryFollowsArcs_data() {
 }
 
 void TestMotion::odometryFollowsArcs() {
-    QFETCH(Pose, start);
+    QFETCH(Pose2D, start);
     QFETCH(Twist2D, displacement);
-    QFETCH(Pose, end);
+    QFETCH(Pose2D, end);
     Odometry odometry;
     odometry.reset(start);
     odometry.move(displacement);

@@ -6,6 +6,8 @@
 #include <QUrl>
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
+using namespace hermes::simulator;
 
 class TestMotorClients : public QObject, MotorFixture {
     Q_OBJECT

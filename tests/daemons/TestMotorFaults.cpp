@@ -5,6 +5,8 @@
 Q_DECLARE_METATYPE(std::function<void(RoboClawRig &)>)
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
+using namespace hermes::simulator;
 
 class TestMotorFaults : public QObject, MotorFixture {
     Q_OBJECT

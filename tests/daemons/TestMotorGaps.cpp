@@ -6,6 +6,7 @@
 #include <csignal>
 
 using namespace hermes;
+using namespace hermes::simulator;
 
 class TestMotorGaps : public QObject, StopTrials {
     Q_OBJECT

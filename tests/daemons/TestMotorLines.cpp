@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 using namespace hermes;
+using namespace hermes::simulator;
 using namespace hermes::roboclaw;
 
 namespace {

@@ -4,6 +4,8 @@
 #include "MotorFixture.h"
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
+using namespace hermes::simulator;
 
 class TestMotorNoise : public QObject, MotorFixture {
     Q_OBJECT

@@ -8,6 +8,7 @@
 #include <thread>
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include "vectorlib/geometry/Angle.h"
 
 using namespace hermes;
+using namespace hermes::simulator;
 
 class TestPathFollower : public QObject {
     Q_OBJECT

@@ -5,6 +5,7 @@
 #include <new>
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 
 class TestPlayTime : public QObject {
     Q_OBJECT

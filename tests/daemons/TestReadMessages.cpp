@@ -7,6 +7,7 @@
 #include <cmath>
 
 using namespace hermes;
+using namespace hermes::scanmatcher;
 
 namespace {
 

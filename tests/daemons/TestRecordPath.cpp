@@ -8,6 +8,7 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 
 /// The way of a packet from the receiver to the file, in one thread, so that its allocations can be counted.
 class TestRecordPath : public QObject {

@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 
 using namespace hermes;
+using namespace hermes::velodynelogger;
 
 namespace {
 

@@ -13,6 +13,8 @@
 #include <unistd.h>
 
 using namespace hermes;
+using namespace hermes::seriallogger;
+using namespace hermes::velodynelogger;
 using Clock = std::chrono::steady_clock;
 
 namespace {

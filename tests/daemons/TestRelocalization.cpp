@@ -7,6 +7,7 @@
 #include <random>
 
 using namespace hermes;
+using namespace hermes::scanmatcher;
 using vectorlib::Pose2D;
 using Segments = std::vector<vectorlib::LineSegment2D<double>>;
 using Point = vectorlib::Vector2D<double>;

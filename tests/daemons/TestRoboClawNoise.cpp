@@ -8,6 +8,7 @@
 #include <random>
 
 using namespace hermes;
+using namespace hermes::simulator;
 using namespace hermes::roboclaw;
 
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 using namespace hermes;
+using namespace hermes::simulator;
 
 class TestRobotBody : public QObject {
     Q_OBJECT

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 
 using namespace hermes;
+using namespace hermes::scanmatcher;
 
 class TestScanMatcher : public QObject, MatcherFixture {
     Q_OBJECT

@@ -1,6 +1,7 @@
 #include "SerialFilesFixture.h"
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 class TestSerialExport : public QObject, SerialFilesFixture {
     Q_OBJECT

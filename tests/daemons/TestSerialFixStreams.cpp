@@ -5,6 +5,7 @@
 #include <random>
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 namespace {
 

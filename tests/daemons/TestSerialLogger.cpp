@@ -3,6 +3,7 @@
 #include "common/Time.h"
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 class TestSerialLogger : public QObject, SerialLoggerFixture {
     Q_OBJECT

@@ -4,6 +4,7 @@
 #include <random>
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 class TestSerialRecorder : public QObject, SerialFilesFixture {
     Q_OBJECT

@@ -9,6 +9,7 @@
 #include <QUdpSocket>
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 class TestSerialRecording : public QObject, SerialLoggerFixture {
     Q_OBJECT

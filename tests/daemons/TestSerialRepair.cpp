@@ -5,6 +5,7 @@
 #include <limits>
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 class TestSerialRepair : public QObject, SerialFilesFixture {
     Q_OBJECT

@@ -6,6 +6,7 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::seriallogger;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include <ctime>
 
 using namespace hermes;
+using namespace hermes::simulator;
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 using namespace hermes;
+using namespace hermes::softwaretrigger;
 
 class TestSoftwareTrigger : public QObject, TriggerFixture {
     Q_OBJECT

@@ -6,6 +6,7 @@
 #include <csignal>
 
 using namespace hermes;
+using namespace hermes::supervisor;
 
 /// The supervisor with real processes: small shell scripts, and a daemon of ours.
 class TestSupervisor : public QObject {

@@ -1,6 +1,7 @@
 #include "TriggerFixture.h"
 
 using namespace hermes;
+using namespace hermes::softwaretrigger;
 
 class TestTriggerConditions : public QObject, TriggerFixture {
     Q_OBJECT

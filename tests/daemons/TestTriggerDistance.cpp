@@ -3,6 +3,9 @@
 #include "TriggerFixture.h"
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
+using namespace hermes::simulator;
+using namespace hermes::softwaretrigger;
 
 class TestTriggerDistance : public QObject, private MotorFixture {
     Q_OBJECT

@@ -14,6 +14,7 @@
 #include <thread>
 
 using namespace hermes;
+using namespace hermes::softwaretrigger;
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 using namespace hermes;
+using namespace hermes::softwaretrigger;
 
 class TestTriggerRules : public QObject, private TriggerFixture {
     Q_OBJECT

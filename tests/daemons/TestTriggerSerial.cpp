@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 using namespace hermes;
+using namespace hermes::softwaretrigger;
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include "tests/support/FreePort.h"
 
 using namespace hermes;
+using namespace hermes::softwaretrigger;
 
 class TestTriggerTargets : public QObject, TriggerFixture {
     Q_OBJECT

@@ -3,6 +3,7 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
 
 /// Counters become motions; what was lost is told from what was really driven.
 class TestWheelTracker : public QObject {

@@ -13,6 +13,7 @@ public:
     TargetDaemon()
         : Daemon({"target", "Target", "For tests", 1}) {
         using namespace hermes;
+        using namespace hermes::softwaretrigger;
         addTopic(Topic("readings", "Readings"));
         addTopic(Topic("odometry", "As that of the motor control"));
         addCommand(Command("count", "Counts its calls")
@@ -67,7 +68,7 @@ protected:
         target_.reset();
     }
     void startTrigger(const QStringList &settings = {}) {
-        trigger_ = std::make_unique<hermes::SoftwareTrigger>();
+        trigger_ = std::make_unique<hermes::softwaretrigger::SoftwareTrigger>();
         QStringList arguments{"softwaretrigger", "--listen", "tcp://127.0.0.1:0"};
         if (!config_.isEmpty())
             arguments += {"--config", config_};
@@ -109,6 +110,6 @@ protected:
 
     std::unique_ptr<TargetDaemon> target_;
     QString targetAddress_, config_;
-    std::unique_ptr<hermes::SoftwareTrigger> trigger_;
+    std::unique_ptr<hermes::softwaretrigger::SoftwareTrigger> trigger_;
     QMap<QString, QList<QJsonValue>> fired_; ///< by id, in the order of their ends
 };

@@ -44,9 +44,9 @@ public:
         run(seconds, 0.001);
     }
 
-    hermes::DriveEngine engine;
-    hermes::LineMaster line;
-    hermes::Drivetrain robot;
+    hermes::motorcontrol::DriveEngine engine;
+    hermes::motorcontrol::LineMaster line;
+    hermes::simulator::Drivetrain robot;
     vectorlib::Pose2D truth; ///< of the body; it began at zero
     quint64 bytes = 0, flipped = 0;
     int refused = 0;         ///< motion commands
@@ -63,10 +63,11 @@ private:
         hermes::roboclaw::Bytes bytes;
     };
 
-    static hermes::MotorSettings defaults() {
+    static hermes::motorcontrol::MotorSettings defaults() {
         hermes::Settings settings;
-        hermes::declareMotorSettings([&](const hermes::Field &field) { settings.declare(field); });
-        return hermes::MotorSettings::from(settings);
+        hermes::motorcontrol::declareMotorSettings(
+            [&](const hermes::Field &field) { settings.declare(field); });
+        return hermes::motorcontrol::MotorSettings::from(settings);
     }
 
     void moveRobot(double seconds) {
@@ -159,7 +160,7 @@ private:
     double flips_;
     bool asks_ = true;
     std::mt19937_64 random_{5};
-    hermes::RobotBody body_; // no walls
+    hermes::simulator::RobotBody body_; // no walls
     double now_ = 1, nextCycle_ = 1;
     quint64 cycles_ = 0;
     std::deque<Late> answers_;

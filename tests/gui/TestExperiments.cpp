@@ -6,6 +6,7 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::vector;
 
 // hermes-vector experiment: its scenes, its measure of error, the files that it leaves.
 class TestExperiments : public QObject {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 using namespace hermes;
+using namespace hermes::vector;
 
 /// AFTLS with post-processing beside Douglas-Peucker and split-and-merge as published, by the measures of
 /// Schaefer et al., 2018, at equal numbers of vertices J up to 50, as there.

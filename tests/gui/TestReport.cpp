@@ -7,6 +7,7 @@
 #include <QXmlStreamReader>
 
 using namespace hermes;
+using namespace hermes::vector;
 
 namespace {
 

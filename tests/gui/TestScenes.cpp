@@ -3,6 +3,7 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::vector;
 
 /// What the experiments of thesis figures 6.8 to 6.10 show, for N up to 20,000. Long.
 class TestScenes : public QObject {

@@ -7,6 +7,7 @@
 #include "tests/support/Patience.h"
 
 using namespace hermes;
+using namespace hermes::ctl;
 
 class TestSessions : public QObject {
     Q_OBJECT

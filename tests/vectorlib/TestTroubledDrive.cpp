@@ -153,7 +153,7 @@ private:
                 continue;
             const Pose2D now = endOf(trouble_.frozen, time) ? last : poseAt(worldTime[ms]);
             Twist2D motion = Twist2D::between(last.inverse() * now, 0.97);
-            told = told * motion.motion(1);
+            told = told * Transformation2D(motion.motion(1));
             xy += 4e-4 * std::hypot(motion.vx, motion.vy);
             alpha += 9e-4 * std::abs(motion.omega);
             const double gap = time - lastTime;

@@ -5,7 +5,7 @@
 
 #include <QHostInfo>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 QString clientName() {
@@ -263,4 +263,4 @@ void DriveControl::tell(const QString &problem) {
     Q_EMIT changed();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

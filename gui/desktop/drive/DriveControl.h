@@ -7,7 +7,7 @@
 
 #include <QMap>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// Drives the chosen robot: takes what stick, keys and gamepad wish, asks for the control, sends motion
 /// commands at 20 Hz with their time, and stops. Whatever ends a drive (released, focus lost, link lost,
@@ -91,4 +91,4 @@ private:
     QString problem_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

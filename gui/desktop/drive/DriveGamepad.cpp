@@ -4,7 +4,7 @@
 #include <QGamepadManager>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 /// Sticks do not come back to the very middle.
@@ -52,4 +52,4 @@ void DriveGamepad::plug(int device) {
     });
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

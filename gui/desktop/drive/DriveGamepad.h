@@ -4,7 +4,7 @@
 
 class QGamepad;
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The first gamepad that is plugged in: the left stick drives, the right one turns, as long as the left
 /// shoulder button (the dead-man key) is held; the red button (B) is STOP.
@@ -20,4 +20,4 @@ private:
     QGamepad *pad_ = nullptr;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -8,7 +8,7 @@
 #include <QLineEdit>
 #include <QPlainTextEdit>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr double slow = 0.3;
@@ -102,4 +102,4 @@ void DriveKeys::letGo() {
     drive_.halt();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

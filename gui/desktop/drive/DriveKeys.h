@@ -4,7 +4,7 @@
 
 #include <QSet>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The keyboard as an input, wherever in the window the focus is: arrows or WASD drive, Q and E turn, Shift
 /// is slow, Space and Esc are STOP. Keys that somebody types into a field do not drive; Esc stops even there,
@@ -27,4 +27,4 @@ private:
     QSet<int> down_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -6,7 +6,7 @@
 #include <QPainter>
 #include <QtMath>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr double innerShare = 0.68;            // of the radius belongs to the knob, the rest to the ring
@@ -100,4 +100,4 @@ void Stick::letGo() {
     update();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

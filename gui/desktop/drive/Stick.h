@@ -4,7 +4,7 @@
 
 #include <QWidget>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The stick on the screen: drag the knob ahead or aside to drive, the ring around it to turn. It goes back
 /// to the middle when it is let go.
@@ -39,4 +39,4 @@ private:
     double grabbed_ = 0; // angle at which the ring was taken
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

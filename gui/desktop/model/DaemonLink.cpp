@@ -8,7 +8,7 @@
 #include <QJsonArray>
 #include <QPointer>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 40;
@@ -216,4 +216,4 @@ void DaemonLink::poll() {
     });
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -9,7 +9,7 @@
 #include <QSet>
 #include <QTimer>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// How a daemon is, at one glance. Each has one colour, one icon and one word (Theme.h).
 enum class Condition { Ready, Busy, Warning, Fault, Unreachable };
@@ -100,4 +100,4 @@ private:
     bool isPolling_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

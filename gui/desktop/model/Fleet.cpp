@@ -2,7 +2,7 @@
 
 #include "common/interface/InterfaceUrl.h"
 
-namespace hermes {
+namespace hermes::desktop {
 
 Fleet::Fleet(QObject *parent)
     : QObject(parent) {
@@ -62,4 +62,4 @@ void Fleet::choose(DaemonLink *daemon) {
     Q_EMIT daemonChosen(daemon);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

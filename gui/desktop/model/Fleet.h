@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// One robot: the daemons of one host. They are found through its supervisor, at their usual ports, or by
 /// address.
@@ -84,8 +84,8 @@ public:
 Q_SIGNALS:
     /// Robots or daemons came or went, or the condition of one changed.
     void changed();
-    void robotChosen(hermes::Robot *robot);
-    void daemonChosen(hermes::DaemonLink *daemon);
+    void robotChosen(hermes::desktop::Robot *robot);
+    void daemonChosen(hermes::desktop::DaemonLink *daemon);
 
 private:
     Robot &robotAt(const QString &host);
@@ -96,4 +96,4 @@ private:
     QPointer<DaemonLink> daemon_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

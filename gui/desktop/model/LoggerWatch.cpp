@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr double rateOver_s = 10;
@@ -105,4 +105,4 @@ double LoggerWatch::secondsLeft() const {
     return bytes1 > bytes0 && t1 > t0 ? least * (t1 - t0) / (bytes1 - bytes0) : -1;
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

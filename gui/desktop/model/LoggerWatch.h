@@ -5,7 +5,7 @@
 
 #include <deque>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The loggers of the chosen robot, and what record.status says of each, asked once a second.
 class LoggerWatch : public QObject {
@@ -45,4 +45,4 @@ private:
     std::deque<std::pair<double, double>> progress_; // monotonic seconds, bytes
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

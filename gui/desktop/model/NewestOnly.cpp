@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace hermes {
+namespace hermes::desktop {
 
 NewestOnly::NewestOnly(std::chrono::milliseconds period, Client::TopicCallback callback, QObject *parent)
     : QObject(parent)
@@ -29,4 +29,4 @@ void NewestOnly::pass() {
     callback_(*std::exchange(newest_, std::nullopt)); // may end the subscription
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

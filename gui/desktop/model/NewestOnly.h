@@ -5,7 +5,7 @@
 #include <QTimer>
 #include <optional>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// Passes the newest message on, and no more of them than one a period, whatever the daemon sends. For topics
 /// of which each message says everything.
@@ -27,4 +27,4 @@ private:
     std::optional<TopicUpdate> newest_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -3,7 +3,7 @@
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 30;
@@ -142,4 +142,4 @@ void Robot::takeProcesses(WireView data) {
     Q_EMIT changed();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

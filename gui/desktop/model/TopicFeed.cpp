@@ -1,6 +1,6 @@
 #include "gui/desktop/model/TopicFeed.h"
 
-namespace hermes {
+namespace hermes::desktop {
 
 TopicFeed::TopicFeed(Fleet &fleet, const QString &topic, const QJsonObject &options,
                      const Client::TopicCallback &callback, QObject *parent)
@@ -63,4 +63,4 @@ void TopicFeed::update() {
     Q_EMIT sourceChanged();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

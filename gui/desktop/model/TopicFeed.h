@@ -2,7 +2,7 @@
 
 #include "gui/desktop/model/Fleet.h"
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// A topic of the chosen robot, from whichever of its daemons has it: subscribes when one appears, moves on
 /// when the robot or its daemons change.
@@ -44,4 +44,4 @@ private:
     bool isEnabled_ = true;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -3,7 +3,7 @@
 #include <QJsonArray>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 /// Longer lists are no set of numbers to choose from: a scan has thousands.
@@ -99,4 +99,4 @@ void TopicSampler::take(const TopicId &topic, const TopicUpdate &update) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

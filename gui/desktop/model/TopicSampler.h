@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// One number in the messages of a topic, e.g. {"127.0.0.1:7410", "odometry", "pose.x"}.
 struct FieldId {
@@ -59,4 +59,4 @@ private:
     quint64 unusable_ = 0;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -16,7 +16,7 @@
 #include <QSplitter>
 #include <QVBoxLayout>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 /// The parameters of a method as one object's schema.
@@ -209,4 +209,4 @@ void CommandsPanel::update() {
     call_->setEnabled(daemon_ && daemon_->isConnected() && !method_.isEmpty() && form_->isValid());
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -10,7 +10,7 @@ class QListWidget;
 class QPlainTextEdit;
 class QPushButton;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class PlainLabel;
 class SchemaForm;
@@ -40,4 +40,4 @@ private:
     QString method_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -12,7 +12,7 @@
 #include <QVBoxLayout>
 #include <QtMath>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 enum Column { NameColumn, StateColumn };
@@ -221,4 +221,4 @@ void DaemonsPanel::ask(const QString &method) {
     });
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

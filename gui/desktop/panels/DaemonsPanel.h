@@ -10,7 +10,7 @@ class QPushButton;
 class QTreeWidget;
 class QTreeWidgetItem;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class MessageLabel;
 class PlainLabel;
@@ -42,4 +42,4 @@ private:
     bool isUpdating_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -8,7 +8,7 @@
 #include <QSlider>
 #include <QVBoxLayout>
 
-namespace hermes {
+namespace hermes::desktop {
 
 DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     : QWidget(parent)
@@ -99,4 +99,4 @@ void DrivePanel::update() {
     problem_->tell(problem, true);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

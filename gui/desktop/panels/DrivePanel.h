@@ -7,7 +7,7 @@
 class QPushButton;
 class QSlider;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class MessageLabel;
 class PlainLabel;
@@ -33,4 +33,4 @@ private:
     QPushButton *takeOver_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 const QStringList levels{"debug", "info", "warning", "error"};
@@ -163,4 +163,4 @@ void LogPanel::refill() {
     refresh();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -13,7 +13,7 @@ class QComboBox;
 class QLineEdit;
 class QPlainTextEdit;
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The log of all daemons of all robots in one list, with filters by level and text.
 class LogPanel : public QWidget {
@@ -53,4 +53,4 @@ private:
     QSet<const DaemonLink *> followed_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -12,7 +12,7 @@
 #include <QVBoxLayout>
 #include <QtMath>
 
-namespace hermes {
+namespace hermes::desktop {
 
 MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
@@ -159,4 +159,4 @@ void MapPanel::updateTools() {
     relocalize_->setEnabled(isThere && matcher->hasMethod("pose.relocalize"));
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

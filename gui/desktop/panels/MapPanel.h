@@ -5,7 +5,7 @@
 class QAction;
 class QToolBar;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class MessageLabel;
 
@@ -34,4 +34,4 @@ private:
     QAction *follow_, *measure_, *place_, *relocalize_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

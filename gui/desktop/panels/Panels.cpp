@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 QWidget *makeDrivePanel(Fleet &, DriveControl &drive) {
@@ -46,4 +46,4 @@ bool addPanelKind(const PanelKind &kind) {
     return true;
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

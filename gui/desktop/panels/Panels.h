@@ -5,7 +5,7 @@
 #include <QWidget>
 #include <vector>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// A panel of the operator's window: what is in a dock, and where that lies at first.
 struct PanelKind {
@@ -28,4 +28,4 @@ QWidget *makePanel(Fleet &fleet, DriveControl &) {
     return new Panel(fleet);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

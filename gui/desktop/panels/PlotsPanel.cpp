@@ -18,7 +18,7 @@
 #include <QtCharts/QLineSeries>
 #include <QtCharts/QValueAxis>
 
-namespace hermes {
+namespace hermes::desktop {
 
 using namespace QtCharts;
 
@@ -259,4 +259,4 @@ Result<void> PlotsPanel::exportTo(const QString &file) const {
     return {};
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -16,7 +16,7 @@ class QPushButton;
 class QTreeWidget;
 class QTreeWidgetItem;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class MessageLabel;
 
@@ -52,4 +52,4 @@ private:
     bool isListing_ = false;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -12,7 +12,7 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 60;
@@ -230,4 +230,4 @@ void RecordPanel::showSessions() {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

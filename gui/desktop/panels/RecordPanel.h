@@ -10,7 +10,7 @@ class QLineEdit;
 class QPushButton;
 class QTreeWidget;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class MessageLabel;
 class PlainLabel;
@@ -48,4 +48,4 @@ private:
     QTreeWidget *sessions_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

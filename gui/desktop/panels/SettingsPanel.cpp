@@ -12,7 +12,7 @@
 #include <QScrollArea>
 #include <QVBoxLayout>
 
-namespace hermes {
+namespace hermes::desktop {
 
 SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
@@ -159,4 +159,4 @@ void SettingsPanel::update() {
     form_->setEnabled(isThere);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -8,7 +8,7 @@
 class QLineEdit;
 class QPushButton;
 
-namespace hermes {
+namespace hermes::desktop {
 
 class MessageLabel;
 class PlainLabel;
@@ -37,4 +37,4 @@ private:
     QPushButton *apply_, *revert_, *defaults_, *save_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -1,6 +1,6 @@
 #include "gui/desktop/view/Clipping.h"
 
-namespace hermes {
+namespace hermes::desktop {
 
 std::optional<QLineF> clipped(const QLineF &line, const QRectF &rect) {
     double from = 0, to = 1;
@@ -25,4 +25,4 @@ QPolygonF recent(const QPolygonF &path, const QRectF &rect, double longest) {
     return first > 0 ? QPolygonF(path.mid(first)) : path;
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -5,7 +5,7 @@
 #include <QRectF>
 #include <optional>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The part of a line within a rectangle, by Liang and Barsky; nothing: it does not meet it.
 std::optional<QLineF> clipped(const QLineF &line, const QRectF &rect);
@@ -13,4 +13,4 @@ std::optional<QLineF> clipped(const QLineF &line, const QRectF &rect);
 /// The end of a path, back to where the part of it within the rectangle is longer than so much.
 QPolygonF recent(const QPolygonF &path, const QRectF &rect, double longest);
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr double pathStep_m = 0.02;
@@ -230,4 +230,4 @@ void MapModel::follow(Path &path, const Pose2D &pose) {
     path.add(*path.frame * pose);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

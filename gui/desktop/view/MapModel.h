@@ -11,7 +11,7 @@
 #include <array>
 #include <optional>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// A point of the pose's own frame in the frame that the pose is given in; metres.
 QPointF operator*(const Pose2D &pose, QPointF point);
@@ -105,4 +105,4 @@ private:
     TopicFeed maps_, poses_, results_, scans_, odometryFeed_, truthFeed_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

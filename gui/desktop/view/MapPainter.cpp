@@ -7,7 +7,7 @@
 #include <QPainterPath>
 #include <QtMath>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 struct Colours {
@@ -246,4 +246,4 @@ void MapPainter::paintMatch(QPainter &painter) const {
     painter.drawText(box.topLeft() + QPointF(8, 4 + height + metrics.ascent()), lines[1]);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

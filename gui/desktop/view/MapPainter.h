@@ -7,7 +7,7 @@
 
 class QPainter;
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// What of the map is drawn.
 struct MapLayers {
@@ -54,4 +54,4 @@ private:
 /// 80 pixels.
 double gridStep_m(double pixelsPerMetre);
 
-} // namespace hermes
+} // namespace hermes::desktop

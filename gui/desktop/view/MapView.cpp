@@ -7,7 +7,7 @@
 #include <QWheelEvent>
 #include <QtMath>
 
-namespace hermes {
+namespace hermes::desktop {
 
 MapView::MapView(const MapModel &model, QWidget *parent)
     : QWidget(parent)
@@ -174,4 +174,4 @@ void MapView::keyPressEvent(QKeyEvent *event) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

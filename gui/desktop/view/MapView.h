@@ -5,7 +5,7 @@
 #include <QWidget>
 #include <functional>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The map: pan with the mouse, zoom with the wheel or + and -, F follows the robot, 0 shows everything.
 class MapView : public QWidget {
@@ -69,4 +69,4 @@ private:
     QPointF dragged_;                // metres
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

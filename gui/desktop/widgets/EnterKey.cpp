@@ -5,7 +5,7 @@
 #include <QApplication>
 #include <QKeyEvent>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 bool tick(QAbstractItemView &view) {
@@ -39,4 +39,4 @@ bool EnterKey::eventFilter(QObject *watched, QEvent *event) {
     return view && tick(*view);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -4,7 +4,7 @@
 
 class QWidget;
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// Enter does what Space does in other programs, where it is STOP in this one: it presses the button and
 /// ticks the item that has the focus.
@@ -20,4 +20,4 @@ private:
     QWidget &window_;
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

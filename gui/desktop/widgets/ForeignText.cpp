@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 QString cut(const QString &text, int longest, bool keepsLines) {
@@ -42,4 +42,4 @@ QString shortNumber(double value, int decimals) {
     return std::abs(value) < 1e7 ? QString::number(value, 'f', decimals) : QString::number(value, 'g', 3);
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

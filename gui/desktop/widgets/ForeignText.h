@@ -4,7 +4,7 @@
 #include <QString>
 #include <optional>
 
-namespace hermes {
+namespace hermes::desktop {
 
 // What daemons say is foreign: it may be a megabyte long, hold control characters or look like HTML.
 
@@ -19,4 +19,4 @@ QString shortNumber(double value, int decimals);
 /// Of a stamp in seconds since the epoch; nothing where no clock of a robot can stand.
 std::optional<QDateTime> timeOf(double stamp);
 
-} // namespace hermes
+} // namespace hermes::desktop

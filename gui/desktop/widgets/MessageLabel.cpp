@@ -2,7 +2,7 @@
 
 #include "gui/desktop/Theme.h"
 
-namespace hermes {
+namespace hermes::desktop {
 
 MessageLabel::MessageLabel(QWidget *parent)
     : PlainLabel(QString(), parent) {
@@ -21,4 +21,4 @@ void MessageLabel::tell(const QString &text, bool isError) {
     show();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -2,7 +2,7 @@
 
 #include "gui/desktop/widgets/PlainLabel.h"
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// Where a panel tells how something ended, beside what caused it; hidden until there is something to tell.
 class MessageLabel : public PlainLabel {
@@ -14,4 +14,4 @@ public Q_SLOTS:
     void tell(const QString &text, bool isError = false);
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

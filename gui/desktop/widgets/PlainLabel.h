@@ -4,7 +4,7 @@
 
 #include <QLabel>
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// A label for text that may be foreign: plain, and not longer than somebody reads.
 class PlainLabel : public QLabel {
@@ -23,4 +23,4 @@ public:
     }
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

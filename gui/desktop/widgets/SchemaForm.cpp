@@ -13,7 +13,7 @@
 #include <QVBoxLayout>
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn };
@@ -282,4 +282,4 @@ void SchemaForm::setFilter(const QString &text) {
         heading->setVisible(text.isEmpty() && !heading->text().isEmpty());
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

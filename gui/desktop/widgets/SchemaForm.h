@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-namespace hermes {
+namespace hermes::desktop {
 
 class PlainLabel;
 class ValueEditor;
@@ -76,4 +76,4 @@ private:
     std::map<QString, QString> errors_; // expected, by dotted path
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::desktop {
 namespace {
 
 constexpr int longestText = 10000, longestChoice = 100, mostChoices = 1000;
@@ -138,4 +138,4 @@ void ValueEditor::step(int count) {
     Q_EMIT edited();
 }
 
-} // namespace hermes
+} // namespace hermes::desktop

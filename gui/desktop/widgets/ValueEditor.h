@@ -7,7 +7,7 @@ class QCheckBox;
 class QComboBox;
 class QLineEdit;
 
-namespace hermes {
+namespace hermes::desktop {
 
 /// The input for one value of a JSON Schema: a check box, a choice, or a line of text. Numbers go up and down
 /// by their step with the arrow keys; arrays and objects are written as JSON. A value too long for a line
@@ -44,4 +44,4 @@ private:
     QJsonValue longValue_{QJsonValue::Undefined}; // not editable here
 };
 
-} // namespace hermes
+} // namespace hermes::desktop

@@ -7,7 +7,7 @@
 #include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
 #include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -35,4 +35,4 @@ std::vector<Algorithm> polylineExtractors(double sigma) {
     return all;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -2,7 +2,7 @@
 
 #include "gui/vector/Vectorizers.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 /// One of the vectorizers, chosen at run time.
 struct Algorithm {
@@ -19,4 +19,4 @@ std::vector<Algorithm> comparedAlgorithms(double sigma, bool polyline);
 /// own ends (SAM), and with our post-processing (SAM+).
 std::vector<Algorithm> polylineExtractors(double sigma);
 
-} // namespace hermes
+} // namespace hermes::vector

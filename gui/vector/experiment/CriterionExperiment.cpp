@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -142,4 +142,4 @@ std::vector<Plot> plotsOf(const std::vector<CriterionTime> &times) {
     return plots;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

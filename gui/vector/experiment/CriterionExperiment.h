@@ -3,7 +3,7 @@
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Thesis figures 7.3 to 7.6: the area criterion of the segment from (0, 0) to (1, 0) m and a second one,
 /// m^4: shifted along it and then turned; scaled and turned; turned and then shifted; scaled, turned by 45
@@ -27,4 +27,4 @@ void writeCsv(std::ostream &out, const std::vector<Surface> &surfaces);
 void writeCsv(std::ostream &out, const std::vector<CriterionTime> &times);
 std::vector<Plot> plotsOf(const std::vector<CriterionTime> &times);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -10,7 +10,7 @@
 
 extern char **environ;
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -63,4 +63,4 @@ std::optional<std::string> runGnuplot(const std::string &script) {
     return contents(out.get());
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -3,7 +3,7 @@
 #include "vectorlib/observation/Ray.h"
 #include "vectorlib/vectorization/VectorizedLine.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 using Point = vectorlib::Vector2D<double>;
 
@@ -57,4 +57,4 @@ std::vector<vectorlib::SegmentPair> KnownScan::pairs(double noise, double minLen
     return pairs;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

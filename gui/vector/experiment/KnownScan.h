@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// A scanner at a pose of a world of which every ray knows the edge that it meets: scans whose
 /// correspondences are known for sure. A full turn.
@@ -30,4 +30,4 @@ private:
     std::vector<std::vector<Ray>> runs_;                  // of rays that meet the same edge
 };
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace hermes {
+namespace hermes::vector {
 
 using vectorlib::Transformation2D;
 
@@ -130,4 +130,4 @@ void draw(std::ostream &svg, const vectorlib::CarmenLog &log, const PairResult &
     picture.write(svg);
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -9,7 +9,7 @@
 #include <ostream>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 struct PairsOptions {
     std::size_t every = 1; ///< match each N-th scan with the next N-th one
@@ -43,4 +43,4 @@ void writeCsv(std::ostream &out, const std::vector<PairResult> &pairs);
 /// Both scans, laid on each other as found; the second one also as the reference says.
 void draw(std::ostream &svg, const vectorlib::CarmenLog &log, const PairResult &pair);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::vector {
 
 using vectorlib::Number;
 
@@ -146,4 +146,4 @@ void writeLatex(std::ostream &out, const std::string &title, const Figures &figu
     out << "\\end{document}\n";
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// One curve of a plot: named, in a colour (#rrggbb), through its points. A point that is not finite
 /// interrupts it.
@@ -58,4 +58,4 @@ void writeGnuplot(std::ostream &out, const Surface &surface);
 /// A LaTeX document with all figures that pdflatex compiles (pgfplots).
 void writeLatex(std::ostream &out, const std::string &title, const Figures &figures);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -198,4 +198,4 @@ std::vector<Plot> plotsOf(const std::string &title, const std::vector<QualityRow
     return plots;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

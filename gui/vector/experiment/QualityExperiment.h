@@ -4,7 +4,7 @@
 #include "gui/vector/experiment/QualityScan.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 /// How well an extractor does with so many vertices: the measures of Schaefer et al., 2018 at equal J. Means
 /// over the scans of which every extractor makes polylines of at most J vertices.
@@ -32,4 +32,4 @@ void writeCsv(std::ostream &out, const std::vector<QualityRow> &rows);
 /// one for all, which has the title.
 std::vector<Plot> plotsOf(const std::string &title, const std::vector<QualityRow> &rows);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -94,4 +94,4 @@ std::size_t countVertices(const Edges &polyline) {
     return vertices;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// A cluster of a scan: the points that an extractor gets, and the rays from the scanner at the origin that
 /// they came from.
@@ -57,4 +57,4 @@ private:
 /// J of a polyline: consecutive edges share a vertex where one begins exactly where the other ends.
 std::size_t countVertices(const Edges &polyline);
 
-} // namespace hermes
+} // namespace hermes::vector

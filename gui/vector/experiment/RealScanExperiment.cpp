@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -122,4 +122,4 @@ void writeLatex(std::ostream &out, const std::string &title, const RealScanResul
     out << "\\end{tabular}\n\\end{document}\n";
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Which scan of a log an experiment shows, by the lines that FTLS finds in it.
 enum class RealScanKind {
@@ -41,4 +41,4 @@ void draw(std::ostream &svg, const std::string &title, const RealScanResult &res
 /// The same with the table, as a LaTeX document.
 void writeLatex(std::ostream &out, const std::string &title, const RealScanResult &result);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -4,7 +4,7 @@
 #include "vectorlib/io/Number.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -93,4 +93,4 @@ void writeCsv(std::ostream &out, const std::vector<RegistrationRow> &rows) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// What many registrations at one pose came to. Lengths in metres, angles in radians. Ambiguities are divided
 /// by the weight of the pairs, so that those with and without weights can be compared.
@@ -57,4 +57,4 @@ Plot dispersionPlot(const World &world, const std::vector<RegistrationRow> &rows
 /// Paper figure 9: a circle at every pose, and inside it one whose area is the reliability.
 Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &rows);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -9,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -143,4 +143,4 @@ Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &row
             true};
 }
 
-} // namespace hermes
+} // namespace hermes::vector

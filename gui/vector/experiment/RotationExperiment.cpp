@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace hermes {
+namespace hermes::vector {
 
 std::vector<RotationRow> rotationExperiment(const ExperimentOptions &options) {
     constexpr int levels = 36, exactPairs = 2, setsPerRun = 50;
@@ -60,4 +60,4 @@ Plot plotOf(const std::vector<RotationRow> &rows) {
             {mitsuta, wahba}};
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -3,7 +3,7 @@
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 /// How the mean rotation scatters about the truth when one pair of a set is turned at random; radians.
 struct RotationRow {
@@ -19,4 +19,4 @@ std::vector<RotationRow> rotationExperiment(const ExperimentOptions &options);
 void writeCsv(std::ostream &out, const std::vector<RotationRow> &rows);
 Plot plotOf(const std::vector<RotationRow> &rows);
 
-} // namespace hermes
+} // namespace hermes::vector

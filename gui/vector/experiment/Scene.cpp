@@ -2,7 +2,7 @@
 
 #include "vectorlib/observation/Observer.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 using Segment = vectorlib::LineSegment2D<float>;
 using Point = vectorlib::Vector2D<float>;
@@ -94,4 +94,4 @@ double errorArea(const std::vector<Segment> &truth, const std::vector<Segment> &
     return area;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

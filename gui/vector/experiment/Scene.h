@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// A world of an experiment, with the scanner at its origin; metres, free space on the left.
 struct Scene {
@@ -33,4 +33,4 @@ Scene roomWithSmallObjects();
 double errorArea(const std::vector<vectorlib::LineSegment2D<float>> &truth,
                  const std::vector<vectorlib::LineSegment2D<float>> &extracted);
 
-} // namespace hermes
+} // namespace hermes::vector

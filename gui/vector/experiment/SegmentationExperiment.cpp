@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -83,4 +83,4 @@ void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel)
     picture.write(svg);
 }
 
-} // namespace hermes
+} // namespace hermes::vector

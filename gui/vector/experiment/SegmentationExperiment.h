@@ -6,7 +6,7 @@
 #include <ostream>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// One panel of thesis figures 5.6 and 5.7: a scan with noise and outliers, and what the segmentation made of
 /// it.
@@ -30,4 +30,4 @@ void writeCsv(std::ostream &out, const std::vector<SegmentationPanel> &panels);
 /// Clusters in colours, outliers in red, the true edges beneath.
 void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// Microseconds that a function takes, the best of three measurements of enough repetitions each.
 template <typename Function>
@@ -26,4 +26,4 @@ double timeOf(Function function) {
     return best;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

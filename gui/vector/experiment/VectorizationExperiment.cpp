@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -162,4 +162,4 @@ std::vector<Plot> plotsOf(const std::string &title, const std::vector<ResultRow>
     return plots;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

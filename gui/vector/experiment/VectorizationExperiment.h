@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// One result: an algorithm on so many points.
 struct ResultRow {
@@ -38,4 +38,4 @@ void writeCsv(std::ostream &out, const std::vector<ResultRow> &rows);
 /// one) over the number of points.
 std::vector<Plot> plotsOf(const std::string &title, const std::vector<ResultRow> &rows);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <map>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::vector<Plot> weightingPlots(const std::vector<RegistrationRow> &rows) {
     return plots;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

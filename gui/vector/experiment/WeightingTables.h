@@ -2,7 +2,7 @@
 
 #include "gui/vector/experiment/RegistrationExperiment.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 /// What one world says about weighting and ambiguity.
 struct WeightingRow {
@@ -24,4 +24,4 @@ std::vector<Table> weightingTables(const std::vector<WeightingRow> &rows);
 /// The ratio of D_t and of D_alpha over the number of points, a curve for each world.
 std::vector<Plot> weightingPlots(const std::vector<RegistrationRow> &rows);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hermes {
+namespace hermes::vector {
 
 using vectorlib::Fixed;
 using Point = Drawing::Point;
@@ -180,4 +180,4 @@ std::string latexText(const std::string &text) {
     return result;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// How a kind of thing is drawn; the same in SVG and in LaTeX.
 struct Ink {
@@ -60,4 +60,4 @@ void writeSvgLegend(std::ostream &out, const std::vector<const Ink *> &inks, dou
 /// Text as it must be written in LaTeX.
 std::string latexText(const std::string &text);
 
-} // namespace hermes
+} // namespace hermes::vector

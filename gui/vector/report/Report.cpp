@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-namespace hermes {
+namespace hermes::vector {
 
 using Point = vectorlib::Vector2D<double>;
 using vectorlib::Fixed;
@@ -229,4 +229,4 @@ std::string summaryOf(const OverallReport &report) {
            "; wrong pairs in the first-ranked solutions: " + std::to_string(report.falsePositives()) + ".";
 }
 
-} // namespace hermes
+} // namespace hermes::vector

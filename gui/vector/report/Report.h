@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace hermes {
+namespace hermes::vector {
 
 /// With what a report is made. The defaults are those of the thesis appendices.
 struct ReportSettings {
@@ -84,4 +84,4 @@ void forEachAccepted(const OverallReport &report,
 /// One sentence.
 std::string summaryOf(const OverallReport &report);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -1,6 +1,6 @@
 #include "gui/vector/report/Report.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace {
 
@@ -102,4 +102,4 @@ void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSetting
     out << "\\hline\n\\end{longtable}\n" << latexText(summaryOf(report)) << "\n\\end{document}\n";
 }
 
-} // namespace hermes
+} // namespace hermes::vector

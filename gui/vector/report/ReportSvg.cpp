@@ -2,7 +2,7 @@
 
 #include "vectorlib/io/Svg.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 using vectorlib::Fixed;
 using vectorlib::xmlText;
@@ -112,4 +112,4 @@ void writeSvg(std::ostream &out, const ReportWorld &world, const ReportSettings 
     out << "</svg>\n";
 }
 
-} // namespace hermes
+} // namespace hermes::vector

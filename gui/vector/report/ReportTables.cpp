@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace hermes {
+namespace hermes::vector {
 
 using Json = nlohmann::ordered_json;
 using vectorlib::Number;
@@ -150,4 +150,4 @@ void writeCsv(std::ostream &out, const OverallReport &report) {
     }
 }
 
-} // namespace hermes
+} // namespace hermes::vector

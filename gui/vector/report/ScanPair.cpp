@@ -3,7 +3,7 @@
 #include "vectorlib/edges/EdgeExtractor.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 using Point = vectorlib::Vector2D<double>;
 using Segment = vectorlib::LineSegment2D<double>;
@@ -98,4 +98,4 @@ bool ScanPair::isTrue(const vectorlib::Solution &solution) const {
     return error.translation().norm() <= 0.10 && std::abs(error.alpha()) <= 2 * vectorlib::pi / 180;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace hermes {
+namespace hermes::vector {
 
 using Segments = std::vector<vectorlib::LineSegment2D<double>>;
 
@@ -51,4 +51,4 @@ struct ScanPair {
 ScanPair scanPair(const Segments &world, const vectorlib::Pose2D &first, const vectorlib::Pose2D &second,
                   const ScanSettings &settings);
 
-} // namespace hermes
+} // namespace hermes::vector

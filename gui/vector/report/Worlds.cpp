@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <map>
 
-namespace hermes {
+namespace hermes::vector {
 
 namespace fs = std::filesystem;
 
@@ -59,4 +59,4 @@ ReportSettings settingsFor(const std::string &name) {
     return settings;
 }
 
-} // namespace hermes
+} // namespace hermes::vector

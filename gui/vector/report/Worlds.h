@@ -2,7 +2,7 @@
 
 #include "gui/vector/report/Report.h"
 
-namespace hermes {
+namespace hermes::vector {
 
 /// A world by the name of its file, or, where there is no such file, by the name of one that is installed
 /// with the program (share/hermes/worlds). Throws Failure.
@@ -11,4 +11,4 @@ ReportWorld findWorld(const std::string &name);
 /// The settings of the thesis appendices for a world of this name; the default ones for others.
 ReportSettings settingsFor(const std::string &name);
 
-} // namespace hermes
+} // namespace hermes::vector

@@ -10,6 +10,8 @@
 
 namespace hermes {
 
+using namespace desktop;
+
 /// The operator's window on the daemons of a robot, and hands that click and type in it.
 class OpenWindow {
 public:

@@ -11,6 +11,8 @@
 
 namespace hermes {
 
+using namespace desktop;
+
 /// Daemons as processes of their own on free ports, for the operator's program to connect to. They end with
 /// this object.
 class RobotProcesses {

@@ -6,6 +6,8 @@
 #include <sys/resource.h>
 
 using namespace hermes;
+using namespace hermes::desktop;
+using namespace hermes::simulator;
 
 /// The window on a robot behind a link with 300 ms delay either way and 5 % loss: the motor control is a
 /// process on the far computer, its controllers are emulated here, where times are taken at the far end of

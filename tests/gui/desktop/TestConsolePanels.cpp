@@ -14,6 +14,7 @@
 #include <QXYSeries>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// The console, the log and the plots of a robot in the simulator.
 class TestConsolePanels : public QObject {

@@ -11,6 +11,7 @@
 #include <csignal>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// A supervisor with two daemons, one of them in Python, which the window has never heard of.
 class TestDaemonsPanel : public QObject {

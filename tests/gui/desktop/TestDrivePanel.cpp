@@ -7,6 +7,7 @@
 #include <QPushButton>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// Drives the simulated robot with stick and keys, as an operator does.
 class TestDrivePanel : public QObject {

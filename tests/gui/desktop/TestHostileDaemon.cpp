@@ -13,6 +13,7 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// The window on a good motor control and on a daemon that says whatever no daemon should: the window lives,
 /// its event loop turns, and STOP reaches the motors.

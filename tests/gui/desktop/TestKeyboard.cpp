@@ -13,6 +13,7 @@
 #include <QtTest>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// Everything in the window is within reach of the keyboard.
 class TestKeyboard : public QObject {

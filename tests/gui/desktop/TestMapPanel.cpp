@@ -14,6 +14,7 @@
 #include <QXmlStreamReader>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// The map of a robot that stands in a simulated hall.
 class TestMapPanel : public QObject {

@@ -8,6 +8,7 @@
 #include <QTreeWidget>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// Records what the simulated lidar sends, with a serial logger beside it, and replays it.
 class TestRecordPanel : public QObject {

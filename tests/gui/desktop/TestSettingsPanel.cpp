@@ -7,6 +7,7 @@
 #include <QLabel>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// Changes the settings of a motor control without motors, as an operator does.
 class TestSettingsPanel : public QObject {

@@ -10,6 +10,7 @@
 #include <csignal>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 /// How fast the window is: bounds that hold on a busy machine; each figure is a line "figure NAME VALUE
 /// UNIT".

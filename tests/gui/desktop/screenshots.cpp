@@ -11,6 +11,7 @@
 #include <cstdio>
 
 using namespace hermes;
+using namespace hermes::desktop;
 
 class Screenshots : public QObject {
     Q_OBJECT

@@ -233,7 +233,7 @@ std::optional<int> StandJudge::lostController() const {
 }
 
 void StandJudge::watchGuard() {
-    hermes::DriveEngine &engine = robot_.engine;
+    hermes::motorcontrol::DriveEngine &engine = robot_.engine;
     const bool drivable = engine.controller(0).isReady() && engine.controller(1).isReady() && !stalledSince_;
     for (int controller = 0; controller < 2; ++controller) {
         const bool swapped = sinceOf("controllers", "swapped").has_value();

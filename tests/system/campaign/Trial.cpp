@@ -10,6 +10,8 @@
 namespace campaign {
 
 using namespace hermes;
+using namespace hermes::motorcontrol;
+using namespace hermes::simulator;
 
 namespace {
 

@@ -18,7 +18,8 @@ public:
     /// Called after each step of at most a millisecond.
     using Watch = std::function<void()>;
 
-    VirtualRobot(const hermes::MotorSettings &settings, const hermes::Drivetrain::Options &options)
+    VirtualRobot(const hermes::motorcontrol::MotorSettings &settings,
+                 const hermes::simulator::Drivetrain::Options &options)
         : engine(settings)
         , robot(options) {
         if (options.ownLines) {
@@ -69,8 +70,8 @@ public:
     }
     bool isPulled(int line) const { return lines_[std::size_t(line)].pulled; }
 
-    hermes::DriveEngine engine;
-    hermes::Drivetrain robot;
+    hermes::motorcontrol::DriveEngine engine;
+    hermes::simulator::Drivetrain robot;
 
 private:
     static constexpr double period = 0.02, byteTime = 1 / 11520.0, longestStep = 0.001; // seconds
@@ -80,9 +81,9 @@ private:
         hermes::roboclaw::Bytes bytes;
     };
     struct Line {
-        explicit Line(const std::vector<hermes::MotorController *> &controllers)
+        explicit Line(const std::vector<hermes::motorcontrol::MotorController *> &controllers)
             : master(controllers) {}
-        hermes::LineMaster master;
+        hermes::motorcontrol::LineMaster master;
         std::vector<Late> answers;
         bool pulled = false;
     };
