@@ -98,6 +98,7 @@ private Q_SLOTS:
     void refusesNumbersThatAreNone();
     void floatsAreShortAndExact();
     void doublesAreExact();
+    void decimalsAreRoundedOnce();
     void describesAll();
     void hugeNumbersAreNoIntegers();
     void leftOutIsNotNull();
@@ -247,6 +248,25 @@ static void requireClosed(const QJsonObject &schema, const QString &path) {
     for (auto property = properties.begin(); property != properties.end(); ++property) {
         QVERIFY2(!property.value()["description"].toString().isEmpty(), qPrintable(path + property.key()));
         requireClosed(property.value().toObject(), path + '.' + property.key());
+    }
+}
+
+void TestWire::decimalsAreRoundedOnce() {
+    std::mt19937_64 random(3);
+    QByteArrayList texts{"-0.0", "0.000000000000001", "9.99999999999999", "99999999999999.9",
+                         "-123456789012345.6"};
+    for (int i = 0; i < 100000; ++i) {
+        const int length = 2 + int(random() % 17), point = 1 + int(random() % quint64(length - 1));
+        QByteArray text(point == 1 ? "" : QByteArray(1, char('1' + random() % 9)));
+        while (text.size() < length)
+            text += char('0' + random() % 10);
+        texts.append((random() % 2 ? "-" : "") + text.insert(point, '.'));
+    }
+    for (const QByteArray &text : texts) {
+        const auto read = WireValue::parse(text, nullptr);
+        QVERIFY2(read, text);
+        const double expected = std::strtod(text.constData(), nullptr), found = read->number();
+        QVERIFY2(found == expected && std::signbit(found) == std::signbit(expected), text);
     }
 }
 
