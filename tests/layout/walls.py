@@ -31,6 +31,10 @@ QT_ALLOWED = {"vectorlib": set(), "protocol": {"QByteArray", "QString", "QString
 ROOMS = ("geometry", "simd", "tls", "segmentation", "vectorization", "edges", "observation", "registration", "similarity",
          "correspondence", "motion", "mapping", "io")
 OURS = ("vectorlib", "protocol", "common", "daemons", "gui")
+# The namespace of each program's code; what is shared is in hermes.
+NAMESPACES = {**{folder: "hermes::" + folder.split("/")[1] for folder in ALLOWED if folder.startswith("daemons/")},
+              "gui/desktop": "hermes::desktop", "gui/hermesctl": "hermes::ctl", "gui/vector": "hermes::vector"}
+NAMESPACE = re.compile(r"^namespace (hermes[\w:]*) \{")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -74,6 +78,14 @@ def complaint(path, include, root):
     return f"{zone} may include only {', '.join(sorted(allowed))} (and itself)"
 
 
+def namespace_complaint(path, namespace):
+    """Why the file may not open this namespace, or None."""
+    own = NAMESPACES.get("/".join(path.split("/")[:2]))
+    # Fields of a struct of the protocol are looked for in hermes.
+    fine = own is None or namespace.startswith(own) or (namespace == "hermes" and path.endswith("Messages.cpp"))
+    return None if fine else f"{os.path.dirname(path)} has the namespace {own}"
+
+
 def self_test():
     crossing = [("vectorlib/include/vectorlib/io/Csv.h", "QString"), ("vectorlib/include/vectorlib/io/Csv.h", "QtCore/QFile"),
                 ("vectorlib/include/vectorlib/io/Csv.h", "common/Result.h"), ("protocol/jsonrpc/A.cpp", "QTcpSocket"),
@@ -84,6 +96,8 @@ def self_test():
     fine = [("vectorlib/include/vectorlib/io/A.h", "vectorlib/edges/MapEdge.h"), ("daemons/scanmatcher/A.cpp", "vectorlib/mapping/MapBuilder.h"), ("daemons/scanmatcher/A.cpp", "daemons/scanmatcher/B.h"),
             ("protocol/jsonrpc/A.cpp", "QJsonObject"), ("common/A.cpp", "protocol/jsonrpc/JsonRpc.h"), ("gui/A.cpp", "vector")]
     wrong = [f"not caught: {p} including {i}" for p, i in crossing if not complaint(p, i, "/nonexistent")]
+    if not namespace_complaint("daemons/supervisor/A.h", "hermes") or namespace_complaint("gui/vector/A.h", "hermes::vector"):
+        wrong.append("namespaces are judged wrongly")
     return wrong + [f"wrongly refused: {p} including {i}" for p, i in fine if complaint(p, i, "/nonexistent")]
 
 
@@ -99,6 +113,9 @@ def main():
                 path = os.path.relpath(os.path.join(folder, name), root)
                 with open(os.path.join(root, path), encoding="utf-8") as source:
                     for number, line in enumerate(source, 1):
+                        opened = NAMESPACE.match(line)
+                        if opened and (why := namespace_complaint(path, opened.group(1))):
+                            errors.append(f"{path}:{number}: {line.strip()}: {why}")
                         match = INCLUDE.match(line)
                         if match:
                             count += 1

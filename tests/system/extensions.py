@@ -31,8 +31,8 @@ PROBE = """
 #include <cstdio>
 #include <stdexcept>
 
-static const hermes::PanelKind probe = {Qt::LeftDockWidgetArea, "Probe", "probe",
-    [](hermes::Fleet &, hermes::DriveControl &) -> QWidget * {
+static const hermes::desktop::PanelKind probe = {Qt::LeftDockWidgetArea, "Probe", "probe",
+    [](hermes::desktop::Fleet &, hermes::desktop::DriveControl &) -> QWidget * {
         QTimer::singleShot(0, [] {
             for (QWidget *widget : QApplication::allWidgets())
                 if (qobject_cast<QDockWidget *>(widget))
@@ -41,10 +41,10 @@ static const hermes::PanelKind probe = {Qt::LeftDockWidgetArea, "Probe", "probe"
         });
         return new QWidget;
     }};
-static const bool added = hermes::addPanelKind(probe);
+static const bool added = hermes::desktop::addPanelKind(probe);
 static const bool refused = [] {
     try {
-        return hermes::addPanelKind(probe);
+        return hermes::desktop::addPanelKind(probe);
     } catch (const std::invalid_argument &e) {
         std::puts(e.what());
         return false;
@@ -56,7 +56,7 @@ TWIN = """
 #include "gui/vector/Vectorizers.h"
 #include <cstdlib>
 
-static const bool refused = std::getenv("TWIN") && hermes::addVectorizer({"ftls", "", {}});
+static const bool refused = std::getenv("TWIN") && hermes::vector::addVectorizer({"ftls", "", {}});
 """
 
 
