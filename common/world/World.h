@@ -19,12 +19,4 @@ struct World {
     std::vector<vectorlib::Pose2D> poses;
 };
 
-bool operator==(const World::Edge &a, const World::Edge &b);
-bool operator==(const World &a, const World &b);
-
-/// What is wrong with an edge or a pose, or an empty string: numbers that are not finite, an edge of no
-/// length.
-std::string faultOf(const World::Edge &edge);
-std::string faultOf(const vectorlib::Pose2D &pose);
-
 } // namespace hermes

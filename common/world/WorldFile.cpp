@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cerrno>
-#include <cstdio>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -14,6 +14,8 @@ namespace hermes {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr double shortestEdge = 1e-6; // metres
 
 /// What is wrong, and in which line; 0 where no line can be told.
 struct Fault {
@@ -129,51 +131,15 @@ World toWorld(const Document &document) {
     for (const auto &row : rows(document, "edges", 4, "[x1, y1, x2, y2] in metres")) {
         world.edges.push_back({row[0], row[1], row[2], row[3]});
         const std::size_t i = world.edges.size() - 1;
-        if (const std::string fault = faultOf(world.edges.back()); !fault.empty())
-            throw Fault{document.lineOf("edges", i), "edges[" + std::to_string(i) + "]: " + fault};
+        if (std::hypot(row[2] - row[0], row[3] - row[1]) < shortestEdge)
+            throw Fault{document.lineOf("edges", i),
+                        "edges[" + std::to_string(i) + "]: an edge must not begin where it ends"};
     }
     if (!document.root.contains("poses"))
         return world;
     for (const auto &row : rows(document, "poses", 3, "[x, y, theta] in metres and radians"))
         world.poses.push_back({row[0], row[1], row[2]});
     return world;
-}
-
-/// The shortest text that reads back to the same number.
-std::string toText(double value) {
-    return Json(value).dump();
-}
-
-std::string toText(const World &world) {
-    std::ostringstream text;
-    text << "{\n  \"name\": " << Json(world.name).dump() << ",\n  \"edges\": [\n";
-    for (std::size_t i = 0; i < world.edges.size(); ++i) {
-        const World::Edge &e = world.edges[i];
-        text << "    [" << toText(e.x1) << ", " << toText(e.y1) << ", " << toText(e.x2) << ", "
-             << toText(e.y2) << (i + 1 < world.edges.size() ? "],\n" : "]\n");
-    }
-    text << "  ],\n  \"poses\": [\n";
-    for (std::size_t i = 0; i < world.poses.size(); ++i) {
-        const vectorlib::Pose2D &p = world.poses[i];
-        text << "    [" << toText(p.x) << ", " << toText(p.y) << ", " << toText(p.theta)
-             << (i + 1 < world.poses.size() ? "],\n" : "]\n");
-    }
-    text << "  ]\n}\n";
-    return text.str();
-}
-
-std::string faultIn(const World &world) {
-    if (world.edges.empty())
-        return "a world needs edges";
-    for (const World::Edge &edge : world.edges) {
-        if (const std::string fault = faultOf(edge); !fault.empty())
-            return fault;
-    }
-    for (const vectorlib::Pose2D &pose : world.poses) {
-        if (const std::string fault = faultOf(pose); !fault.empty())
-            return fault;
-    }
-    return {};
 }
 
 } // namespace
@@ -197,26 +163,6 @@ std::optional<World> readWorld(const std::string &path, std::string &error) {
         return std::nullopt;
     }
     return parseWorld(text.str(), path, error);
-}
-
-bool writeWorld(const World &world, const std::string &path, std::string &error, bool overwrite) {
-    if (const std::string fault = faultIn(world); !fault.empty()) {
-        error = path + ": not written: " + fault;
-        return false;
-    }
-    std::FILE *file = std::fopen(path.c_str(), overwrite ? "wb" : "wbx");
-    if (!file) {
-        error =
-            path + ": cannot be created: " + (errno == EEXIST ? "it exists already" : std::strerror(errno));
-        return false;
-    }
-    const std::string text = toText(world);
-    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    if (std::fclose(file) == 0 && written)
-        return true;
-    error = path + ": cannot be written: " + std::strerror(errno);
-    std::remove(path.c_str());
-    return false;
 }
 
 } // namespace hermes

@@ -14,8 +14,4 @@ std::optional<World> readWorld(const std::string &path, std::string &error);
 /// The same from text; path only names it in messages.
 std::optional<World> parseWorld(const std::string &text, const std::string &path, std::string &error);
 
-/// Writes what readWorld reads, one edge or pose a line. False and error on failure; an existing file is kept
-/// unless overwrite, and nothing half-written is left.
-bool writeWorld(const World &world, const std::string &path, std::string &error, bool overwrite = false);
-
 } // namespace hermes

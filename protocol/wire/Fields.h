@@ -88,7 +88,6 @@ public:
         entries_.back().limits.most = most;
         return *this;
     }
-    Fields &atLeast(double least) { return range(least, std::numeric_limits<double>::max()); }
     Fields &atMostElements(std::size_t count) {
         entries_.back().limits.elements = count;
         return *this;

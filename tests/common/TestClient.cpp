@@ -1,8 +1,8 @@
 #include "common/Log.h"
 #include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
-#include "common/interface/FaultyInterface.h"
 #include "common/interface/TcpInterface.h"
+#include "tests/support/FaultyInterface.h"
 
 #include <QtTest>
 

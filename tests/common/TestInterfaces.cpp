@@ -1,9 +1,9 @@
-#include "common/interface/FaultyInterface.h"
 #include "common/interface/InterfaceRegistry.h"
-#include "common/interface/LoopbackInterface.h"
 #include "common/interface/TcpInterface.h"
 #include "common/interface/TcpServerInterface.h"
 #include "common/interface/UdpInterface.h"
+#include "tests/support/FaultyInterface.h"
+#include "tests/support/LoopbackInterface.h"
 
 #include <QtTest>
 

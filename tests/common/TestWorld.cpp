@@ -37,10 +37,8 @@ class TestWorld : public QObject {
     Q_OBJECT
 
 private Q_SLOTS:
-    void readsWhatItWrote();
     void refusesBadFiles_data();
     void refusesBadFiles();
-    void keepsExistingFiles();
     void saysWhichFileIsMissing();
     void worldsCanBeDriven_data();
     void worldsCanBeDriven();
@@ -48,23 +46,6 @@ private Q_SLOTS:
     void roomsAreClosed_data();
     void roomsAreClosed();
 };
-
-void TestWorld::readsWhatItWrote() {
-    QTemporaryDir folder;
-    const std::string path = folder.filePath(QStringLiteral("w.json")).toStdString();
-    World world;
-    world.name = "a \"room\"";
-    world.edges = {{0, 0, 1.0 / 3, 0}, {1e-3, 2, -7.25, 1e6}};
-    world.poses = {{0.1, 0.2, 3.14159265358979}};
-    std::string error;
-    QVERIFY2(writeWorld(world, path, error), error.c_str());
-    const auto read = readWorld(path, error);
-    QVERIFY2(read.has_value(), error.c_str());
-    QVERIFY(*read == world);
-    world.edges.push_back({1, 1, 1, 1});
-    QVERIFY(!writeWorld(world, path + "2", error));
-    QVERIFY(!QFile::exists(folder.filePath(QStringLiteral("w.json2"))));
-}
 
 void TestWorld::refusesBadFiles_data() {
     QTest::addColumn<QByteArray>("text");
@@ -108,17 +89,6 @@ void TestWorld::refusesBadFiles() {
     QVERIFY(parseWorld(square, "w", error).has_value());
     QVERIFY(!parseWorld(text.toStdString(), "w", error).has_value());
     QVERIFY2(QByteArray::fromStdString(error).startsWith(message), error.c_str());
-}
-
-void TestWorld::keepsExistingFiles() {
-    QTemporaryDir folder;
-    const std::string path = folder.filePath(QStringLiteral("w.json")).toStdString();
-    std::string error;
-    const World world = *parseWorld(square, "w", error);
-    QVERIFY(writeWorld(world, path, error));
-    QVERIFY(!writeWorld(world, path, error));
-    QVERIFY2(error.find("exists already") != std::string::npos, error.c_str());
-    QVERIFY(writeWorld(world, path, error, true));
 }
 
 void TestWorld::saysWhichFileIsMissing() {

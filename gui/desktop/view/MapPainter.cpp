@@ -26,6 +26,7 @@ Colours colours() {
             QColor(0x6a, 0x71, 0x78), QColor(0xd9, 0x53, 0x00), QColor(0x3b, 0x41, 0x47)};
 }
 
+constexpr double robotRadius_m = 0.3; // as large as it is drawn
 /// One pixel lines are fast without smoothing; beyond so many lines nobody sees the difference.
 constexpr int smoothUpTo = 2000;
 /// Pixels of lines that are drawn smoothly, and at all: a picture is not to take longer than 50 ms.
@@ -168,7 +169,7 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
     painter.setBrush(fill);
     painter.translate(transform_.map(QPointF(model_.pose()->x, model_.pose()->y)));
     const double spread = qMin(180.0, qRadiansToDegrees(normal95 * enlarged * std::sqrt(qMax(0.0, c[8]))));
-    const double radius = 2.5 * robotRadius_m_ * scale(), heading = qRadiansToDegrees(model_.pose()->theta);
+    const double radius = 2.5 * robotRadius_m * scale(), heading = qRadiansToDegrees(model_.pose()->theta);
     painter.drawPie(QRectF(-radius, -radius, 2 * radius, 2 * radius), qRound(16 * (heading - spread)),
                     qRound(16 * 2 * spread));
     painter.rotate(-qRadiansToDegrees(std::atan2(2 * c[1], c[0] - c[4]) / 2));
@@ -178,7 +179,7 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
 
 void MapPainter::paintRobot(QPainter &painter) const {
     const Pose2D pose = *model_.pose();
-    const double r = robotRadius_m_;
+    const double r = robotRadius_m;
     const auto at = [&](double x, double y) { return transform_.map(pose * QPointF(x, y)); };
     painter.setRenderHint(QPainter::Antialiasing, true);
     QColor fill = colours().robot;

@@ -18,13 +18,11 @@ struct MapLayers {
 /// Draws a map model. World to screen is `transform` (metres to pixels, y up).
 class MapPainter {
 public:
-    MapPainter(const MapModel &model, const MapLayers &layers, const QTransform &transform, const QSize &size,
-               double robotRadius_m)
+    MapPainter(const MapModel &model, const MapLayers &layers, const QTransform &transform, const QSize &size)
         : model_(model)
         , layers_(layers)
         , transform_(transform)
-        , size_(size)
-        , robotRadius_m_(robotRadius_m) {}
+        , size_(size) {}
 
     void paint(QPainter &painter) const;
 
@@ -47,7 +45,6 @@ private:
     const MapLayers layers_;
     const QTransform transform_;
     const QSize size_;
-    const double robotRadius_m_;
 };
 
 /// The distance between lines of the grid at so many pixels a metre: 1, 2 or 5 times a power of ten, some

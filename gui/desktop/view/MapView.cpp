@@ -81,7 +81,7 @@ void MapView::zoomAt(QPointF pixel, double factor) {
 }
 
 void MapView::render(QPainter &painter) const {
-    MapPainter(model_, layers_, transform(), size(), robotRadius_m_).paint(painter);
+    MapPainter(model_, layers_, transform(), size()).paint(painter);
 }
 
 void MapView::paintEvent(QPaintEvent *) {

@@ -28,7 +28,6 @@ public:
     /// Shows all of the map.
     void fit();
     void zoom(double factor);
-    void setRobotRadius(double radius_m) { robotRadius_m_ = radius_m; }
     /// World to screen: metres to pixels, y up.
     QTransform transform() const;
     /// Draws what the view shows, without the tools.
@@ -62,7 +61,6 @@ private:
     Tool tool_ = Tool::Pan;
     bool isFollowing_ = true;
     bool wasFitted_ = false;
-    double robotRadius_m_ = 0.3;
     double pixelsPerMetre_ = 40;
     QPointF centre_;                 // metres
     std::optional<QPointF> pressed_; // metres; pixels while panning

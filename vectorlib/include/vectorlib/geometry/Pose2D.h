@@ -16,9 +16,6 @@ struct Pose2D {
         const double c = std::cos(theta), s = std::sin(theta);
         return {x + c * inner.x - s * inner.y, y + s * inner.x + c * inner.y, wrapAngle(theta + inner.theta)};
     }
-    friend bool operator==(const Pose2D &a, const Pose2D &b) {
-        return a.x == b.x && a.y == b.y && a.theta == b.theta;
-    }
     Pose2D inverse() const {
         const double c = std::cos(theta), s = std::sin(theta);
         return {-c * x - s * y, s * x - c * y, wrapAngle(-theta)};

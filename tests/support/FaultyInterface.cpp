@@ -1,4 +1,4 @@
-#include "common/interface/FaultyInterface.h"
+#include "tests/support/FaultyInterface.h"
 
 #include "common/Time.h"
 

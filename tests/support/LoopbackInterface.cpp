@@ -1,4 +1,4 @@
-#include "common/interface/LoopbackInterface.h"
+#include "tests/support/LoopbackInterface.h"
 
 namespace hermes {
 
