@@ -11,7 +11,8 @@ struct Loggers {
     std::vector<std::unique_ptr<Client>> clients;
     SessionMembers members;
 
-    /// Those that --daemons names, of which each must be one; else those at the default ports of the host.
+    /// Those that --daemons names, or else those at the default ports of the host. A named one that is none
+    /// or does not answer is among the silent: nothing begins without it, but the others can be stopped.
     static Result<Loggers> find(const Arguments &arguments);
 };
 

@@ -38,6 +38,9 @@ Result<void> replay(const Arguments &arguments) {
     const Result<Loggers> loggers = Loggers::find(arguments);
     if (!loggers)
         return loggers.error();
+    if (const QStringList &silent = loggers->members.silent;
+        !arguments.daemons.isEmpty() && !silent.isEmpty())
+        return sessionError("nothing is replayed", silent);
     SessionRecorder recorder(loggers->members);
     const auto list = await<SessionList>([&](auto done) { recorder.list(0, done); });
     const Result<RecordedSession> session = theSession(list, arguments.words.first());

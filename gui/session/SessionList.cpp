@@ -78,7 +78,7 @@ QStringList RecordedSession::absent() const {
     }
     QStringList lines;
     for (const QString &logger : expected - present)
-        lines.append(logger + ": it took part, but does not answer");
+        lines.append(logger + ": it took part, but does not answer or was not asked");
     return lines;
 }
 

@@ -29,8 +29,9 @@ void SessionPlayer::call(const std::vector<SessionCall> &calls, const QString &m
 
 void SessionPlayer::play(const RecordedSession &session, const Options &options) {
     if (isPlaying_) {
+        end();
         next_ = {session, options};
-        return end();
+        return;
     }
     session_ = session;
     options_ = options;
@@ -48,6 +49,7 @@ void SessionPlayer::play(const RecordedSession &session, const Options &options)
 }
 
 void SessionPlayer::end() {
+    next_.reset();
     isEnding_ = isPlaying_;
     if (timer_.isActive())
         timer_.start(std::chrono::milliseconds(0));
@@ -85,9 +87,12 @@ void SessionPlayer::open() {
 }
 
 void SessionPlayer::onOpened(const SessionReplies &replies) {
-    playing_.clear();
+    const auto isPlayed = [this](const SessionMember &member) { // since the pass before
+        return std::any_of(playing_.begin(), playing_.end(),
+                           [&](const SessionMember &one) { return one.name == member.name; });
+    };
     for (const SessionReply &reply : replies)
-        if (reply.result || reply.result.error().is(ErrorCode::TimedOut))
+        if ((reply.result || reply.result.error().is(ErrorCode::TimedOut)) && !isPlayed(reply.member))
             playing_.push_back(reply.member);
     if (goesOn(firstError(replies)))
         call(callsOf(playing_, {{"paused", false}}), "source.pause", &SessionPlayer::onReleased);
@@ -114,6 +119,14 @@ void SessionPlayer::onPositions(const SessionReplies &replies) {
         goLive({});
 }
 
+/// Where the logger keeps its part.
+QString SessionPlayer::folderOf(const QString &logger) const {
+    for (const SessionPart &part : session_.parts)
+        if (part.member.name == logger)
+            return part.entry["folder"].toString();
+    return {};
+}
+
 Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
     if (const Result<void> fine = firstError(replies); !fine)
         return fine.error();
@@ -125,12 +138,15 @@ Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
         const QString state = source["state"].toString(), error = source["error"].toString();
         if (!error.isEmpty())
             return Error(ErrorCode::InputOutput, name + ": " + error);
-        if (state != "replay" && state != "ended") {
+        const QString shown = source["name"].toString();
+        const bool isOurs = shown.isEmpty() || folderOf(name).isEmpty() || shown == folderOf(name);
+        if ((state != "replay" && state != "ended") || !isOurs) {
             playing_.erase(std::remove_if(playing_.begin(), playing_.end(),
                                           [&](const SessionMember &one) { return one.name == name; }),
                            playing_.end()); // somebody else's now
-            return Error(ErrorCode::NotReady,
-                         QString("%1: its source was changed to \"%2\" meanwhile").arg(name, state));
+            return Error(
+                ErrorCode::NotReady,
+                QString("%1: its source was changed to \"%2\" meanwhile").arg(name, isOurs ? state : shown));
         }
         end = end && state == "ended";
         position_s = std::max(position_s, source["position_s"].toDouble());

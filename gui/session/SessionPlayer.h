@@ -41,6 +41,7 @@ private:
     void onReleased(const SessionReplies &replies);
     void poll();
     void onPositions(const SessionReplies &replies);
+    QString folderOf(const QString &logger) const;
     Result<bool> isAtEnd(const SessionReplies &replies);
     void goLive(const Result<void> &result);
 

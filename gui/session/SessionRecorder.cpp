@@ -86,22 +86,23 @@ void SessionRecorder::list(int most, const Done<SessionList> &done) {
 }
 
 void SessionRecorder::start(const QString &name, const Done<Result<SessionReplies>> &done) {
-    status([=](const States &states) {
+    status([=, members = members_](const States &states) { // all steps are with the same loggers
         const auto listed = [=](const SessionReplies &lists) {
             QStringList lines = obstacles(states, lists, name);
-            if (members_.all.empty())
+            if (members.all.empty())
                 lines.append("no logger is connected");
             if (!lines.isEmpty())
                 return done(sessionError("nothing was begun", lines));
-            begin(name, done);
+            begin(members, name, done);
         };
-        callAll(callsOf(members_.all), "record.list", members_.timeout, this, listed);
+        callAll(callsOf(members.all), "record.list", members.timeout, this, listed);
     });
 }
 
-void SessionRecorder::begin(const QString &name, const Done<Result<SessionReplies>> &done) {
+void SessionRecorder::begin(const SessionMembers &members, const QString &name,
+                            const Done<Result<SessionReplies>> &done) {
     const QJsonObject params{{"name", name}, {"session", QUuid::createUuid().toString(QUuid::WithoutBraces)}};
-    callAll(callsOf(members_.all, params), "record.start", members_.timeout, this,
+    callAll(callsOf(members.all, params), "record.start", members.timeout, this,
             [=](const SessionReplies &replies) {
                 if (complaints(replies).isEmpty())
                     done(replies);
@@ -131,11 +132,12 @@ void SessionRecorder::takeBack(const QString &name, const SessionReplies &replie
 }
 
 void SessionRecorder::stop(const Done<Result<Stopped>> &done) {
-    status([=](const States &states) { end(states, done); });
+    status([=, members = members_](const States &states) { end(members, states, done); });
 }
 
 /// Those that record; and where none does, the sessions that were ended by an error are told.
-void SessionRecorder::end(const States &states, const Done<Result<Stopped>> &done) {
+void SessionRecorder::end(const SessionMembers &members, const States &states,
+                          const Done<Result<Stopped>> &done) {
     std::vector<SessionMember> active;
     QSet<QString> ids, failed;
     for (const SessionReply &state : states.replies) {
@@ -154,12 +156,11 @@ void SessionRecorder::end(const States &states, const Done<Result<Stopped>> &don
     if (ids.isEmpty() && stopped.problems.isEmpty())
         return done(Error(ErrorCode::NotReady, "nothing is being recorded"));
     callAll(callsOf(active), "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
-        callAll(callsOf(members_.all), "record.list", members_.timeout, this,
-                [=](const SessionReplies &lists) {
-                    Stopped checked = stopped;
-                    check(checked, ids, ends, SessionList::of(lists));
-                    done(checked);
-                });
+        callAll(callsOf(members.all), "record.list", members.timeout, this, [=](const SessionReplies &lists) {
+            Stopped checked = stopped;
+            check(checked, ids, ends, SessionList::of(lists));
+            done(checked);
+        });
     });
 }
 

@@ -42,10 +42,10 @@ public:
     void list(int most, const Done<SessionList> &done);
 
 private:
-    void begin(const QString &name, const Done<Result<SessionReplies>> &done);
+    void begin(const SessionMembers &members, const QString &name, const Done<Result<SessionReplies>> &done);
     void takeBack(const QString &name, const SessionReplies &replies,
                   const Done<Result<SessionReplies>> &done);
-    void end(const States &states, const Done<Result<Stopped>> &done);
+    void end(const SessionMembers &members, const States &states, const Done<Result<Stopped>> &done);
 
     SessionMembers members_;
 };

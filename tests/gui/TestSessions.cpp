@@ -24,6 +24,8 @@ private Q_SLOTS:
     void aReplayThatFailsEndsForAll();
     void aReplayEndsWhenItIsTold();
     void aReplayFollowsAnother();
+    void anEndIsForTheNextReplayToo();
+    void allGoLiveWhenALaterPassFails();
 
 private:
     SessionMembers members() const;
@@ -195,7 +197,7 @@ void TestSessions::aListSaysWhatASessionHolds() {
     QCOMPARE(first.bytes(), 40.0);
     QCOMPARE(countsText(first.parts[0].entry["counts"]), QString("lines 4"));
     QCOMPARE(first.faults(), QStringList("b lost: lines 1"));
-    QCOMPARE(first.absent(), QStringList("a: it took part, but does not answer"));
+    QCOMPARE(first.absent(), QStringList("a: it took part, but does not answer or was not asked"));
     QCOMPARE(found.problems.size(), 2);
     QVERIFY(found.problems[0].startsWith("a: record.list: not connected"));
     QVERIFY(found.problems[1].startsWith("c: odd: "));
@@ -303,6 +305,33 @@ void TestSessions::aReplayFollowsAnother() {
     QTRY_COMPARE(robot_->asked.count("a: is released"), 2);
     QTRY_COMPARE(ends, 2);
     QVERIFY(!player.isPlaying());
+}
+
+void TestSessions::anEndIsForTheNextReplayToo() {
+    const RecordedSession first = record("run1"), second = record("run2");
+    SessionPlayer player;
+    int ends = 0;
+    connect(&player, &SessionPlayer::ended, [&] { ++ends; });
+    a_->positionsToEnd = 1000;
+    player.play(first, {});
+    QTRY_COMPARE(robot_->asked.count("a: is released"), 1);
+    player.play(second, {});
+    player.end();
+    QTRY_COMPARE(ends, 1);
+    QVERIFY(!player.isPlaying() && a_->source == "live" && b_->source == "live");
+}
+
+void TestSessions::allGoLiveWhenALaterPassFails() {
+    const RecordedSession session = record("run1");
+    SessionPlayer player;
+    std::optional<Result<void>> ended;
+    connect(&player, &SessionPlayer::ended, [&](const Result<void> &result) { ended = result; });
+    player.play(session, {1, true, timeout_});
+    QTRY_COMPARE(robot_->asked.count("a: is released"), 1);
+    a_->openError = "the file is gone";
+    QTRY_VERIFY(ended);
+    QVERIFY(!ended->ok());
+    QVERIFY2(a_->source == "live" && b_->source == "live", qPrintable(a_->source + ' ' + b_->source));
 }
 
 QTEST_GUILESS_MAIN(TestSessions)
