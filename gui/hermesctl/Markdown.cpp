@@ -30,6 +30,35 @@ QString cell(QString content) {
     return content.replace(QLatin1Char('|'), QStringLiteral("\\|"));
 }
 
+/// A line for each field, those of inner objects by their path; nothing where the schema has none.
+QString fieldLines(const QJsonObject &schema, const QString &path) {
+    if (schema.contains(QStringLiteral("items")))
+        return fieldLines(schema[QStringLiteral("items")].toObject(), path + QStringLiteral("[]"));
+    const QString prefix = path.isEmpty() ? path : path + QLatin1Char('.');
+    const QJsonObject others = schema[QStringLiteral("additionalProperties")].toObject();
+    QString lines = others.isEmpty() ? QString() : fieldLines(others, prefix + QLatin1Char('*'));
+    const QJsonObject properties = schema[QStringLiteral("properties")].toObject();
+    const QJsonArray required = schema[QStringLiteral("required")].toArray();
+    for (auto property = properties.begin(); property != properties.end(); ++property) {
+        const QJsonObject below = property.value().toObject();
+        const QString name = prefix + property.key();
+        const bool mayBeMissing = !required.contains(property.key());
+        lines += QStringLiteral("| `%1` | %2%3 | %4 |\n")
+                     .arg(name, cell(expectation(below)),
+                          mayBeMissing ? QStringLiteral("; may be missing") : QString(),
+                          cell(text(below, "description")));
+        lines += fieldLines(below, name);
+    }
+    return lines;
+}
+
+/// Of a value that is called path; nothing for one without fields.
+QString fieldTable(const QJsonObject &schema, const QString &path = {}) {
+    const QString lines = fieldLines(schema, path);
+    return lines.isEmpty() ? lines
+                           : QStringLiteral("| field | what | meaning |\n|---|---|---|\n%1\n").arg(lines);
+}
+
 QString parameterTable(const QJsonArray &params) {
     QString table = QStringLiteral("| parameter | expected | default | meaning |\n|---|---|---|---|\n");
     for (const QJsonValue &param : params) {
@@ -41,7 +70,10 @@ QString parameterTable(const QJsonArray &params) {
                      .arg(text(param, "name"), cell(expectation(schema)), cell(fallback),
                           cell(text(schema, "description")));
     }
-    return table + QLatin1Char('\n');
+    table += QLatin1Char('\n');
+    for (const QJsonValue &param : params)
+        table += fieldTable(param[schemaKey].toObject(), text(param, "name"));
+    return table;
 }
 
 QString example(const QString &method, const QJsonObject &pairing) {
@@ -56,30 +88,6 @@ QString example(const QString &method, const QJsonObject &pairing) {
         .arg(QString::fromUtf8(compactJson(request)),
              QString::fromUtf8(
                  compactJson(pairing[QStringLiteral("result")].toObject()[QStringLiteral("value")])));
-}
-
-/// A line for each field, those of inner objects by their path; nothing where the schema has none.
-QString fieldLines(const QJsonObject &schema, const QString &path) {
-    if (schema.contains(QStringLiteral("items")))
-        return fieldLines(schema[QStringLiteral("items")].toObject(), path + QStringLiteral("[]"));
-    const QString prefix = path.isEmpty() ? path : path + QLatin1Char('.');
-    const QJsonObject others = schema[QStringLiteral("additionalProperties")].toObject();
-    QString lines = others.isEmpty() ? QString() : fieldLines(others, prefix + QLatin1Char('*'));
-    const QJsonObject properties = schema[QStringLiteral("properties")].toObject();
-    for (auto property = properties.begin(); property != properties.end(); ++property) {
-        const QJsonObject below = property.value().toObject();
-        const QString name = prefix + property.key();
-        lines += QStringLiteral("| `%1` | %2 | %3 |\n")
-                     .arg(name, cell(expectation(below)), cell(text(below, "description")));
-        lines += fieldLines(below, name);
-    }
-    return lines;
-}
-
-QString fieldTable(const QJsonObject &schema) {
-    const QString lines = fieldLines(schema, {});
-    return lines.isEmpty() ? lines
-                           : QStringLiteral("| field | what | meaning |\n|---|---|---|\n%1\n").arg(lines);
 }
 
 QString topicSection(const QJsonObject &topic) {
