@@ -1,8 +1,27 @@
 #include "daemons/scanmatcher/ScanMatcher.h"
 
+#include "common/interface/InterfaceRegistry.h"
+#include "common/settings/DottedPath.h"
+
 namespace hermes::scanmatcher {
+namespace {
+
+std::vector<SchemaViolation> checkAddresses(const QJsonObject &settings) {
+    std::vector<SchemaViolation> wrong;
+    for (const QString &path : {QString("source.address"), QString("odometry.address")}) {
+        const QString address = valueAt(settings, path).toString();
+        const auto url = InterfaceUrl::parse(address);
+        const bool isNone = address.isEmpty() && path == "odometry.address";
+        if (!isNone && (!url || !interfaceSchemes().contains(url->scheme)))
+            wrong.push_back({path, address, "HOST:PORT or a URL, as tcp://127.0.0.1:7420"});
+    }
+    return wrong;
+}
+
+} // namespace
 
 void ScanMatcher::declareSettings() {
+    settings().addRule(checkAddresses);
     addSetting(Field::text("source.address", "Daemon that publishes the scans: HOST:PORT or a URL")
                    .byDefault("127.0.0.1:7420")
                    .group("Source"));

@@ -17,14 +17,24 @@ constexpr int mayBeWithout = 3; // scans in a row: a reset leaves out one or two
 
 } // namespace
 
+OdometrySource::OdometrySource() {
+    QObject::connect(&client_, &Client::connected, [this] { fault_.clear(); });
+    QObject::connect(&client_, &Client::subscriptionFailed, [this](int, const RpcError &error) {
+        fault_ = error.message;
+        logError("odometry", fault_);
+    });
+}
+
 Result<void> OdometrySource::open(const QString &address, const QString &topic) {
     close();
     address_ = address;
     if (address.isEmpty())
         return {};
     const auto connecting = client_.connectTo(address);
-    if (!connecting)
+    if (!connecting) {
+        fault_ = connecting.error().message;
         return connecting;
+    }
     subscription_ =
         client_.subscribe(topic, {{"queue", queue}}, [this](const TopicUpdate &update) { take(update); });
     return {};
@@ -35,14 +45,17 @@ void OdometrySource::close() {
     client_.unsubscribe(subscription_);
     buffer_.restart();
     address_.clear();
+    fault_.clear();
     withoutInARow_ = 0;
 }
 
 void OdometrySource::take(const TopicUpdate &update) {
     dropped_ = update.dropped;
+    fault_.clear();
     const auto sample = readOdometry(update.data, update.stamp, unknown_);
     if (!sample) {
-        if (refused_++ == 0)
+        ++refused_;
+        if (lastRefused_ != sample.error().message)
             logWarning("odometry", sample.error().message);
         lastRefused_ = sample.error().message;
         return;
@@ -87,7 +100,10 @@ void OdometrySource::report(Health &health) {
         health.remove("odometry");
     else if (!client_.isConnected())
         set(HealthLevel::Warn, QString("no connection to %1: %2; poses are expected from the scans alone")
-                                   .arg(address_, client_.lastError()));
+                                   .arg(address_, fault_.isEmpty() ? client_.lastError() : fault_));
+    else if (!fault_.isEmpty())
+        set(HealthLevel::Warn, QString("no odometry from %1: %2; poses are expected from the scans alone")
+                                   .arg(address_, fault_));
     else if (withoutInARow_ >= mayBeWithout)
         set(HealthLevel::Warn, QString("the last %1 scans found no odometry of their time; their poses were "
                                        "expected from the scans alone")

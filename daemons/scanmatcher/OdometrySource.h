@@ -11,6 +11,8 @@ namespace hermes::scanmatcher {
 /// hands each scan the odometry of its time.
 class OdometrySource {
 public:
+    OdometrySource();
+
     /// An empty address: there is no odometry. Error: a bad address only.
     Result<void> open(const QString &address, const QString &topic);
     void close();
@@ -31,6 +33,7 @@ private:
 
     Client client_;
     QString address_;
+    QString fault_; // why there will be none
     int subscription_ = 0;
     vectorlib::OdometryBuffer buffer_;
     QString lastRefused_;

@@ -14,6 +14,8 @@ using vectorlib::ScanTracker;
 
 namespace {
 
+constexpr double longestSilence_s = 3;
+
 QString toText(ScanReport::Outcome outcome) {
     switch (outcome) {
     case ScanReport::Outcome::Matched:
@@ -78,7 +80,16 @@ ScanMatcher::ScanMatcher()
     declareMatcherCommands();
     declareMapCommands();
     declareRelocalization();
-    connect(&source_, &Client::connected, this, &ScanMatcher::updateHealth);
+    connect(&source_, &Client::connected, this, [this] {
+        lastScan_ = monotonicNow();
+        sourceFault_.clear();
+        updateHealth();
+    });
+    connect(&source_, &Client::subscriptionFailed, this, [this](int, const RpcError &error) {
+        sourceFault_ = error.message;
+        logError("source", sourceFault_);
+        updateHealth();
+    });
     connect(&source_, &Client::disconnected, this, &ScanMatcher::updateHealth);
     connect(&odometry_.client(), &Client::connected, this, &ScanMatcher::updateHealth);
     connect(&odometry_.client(), &Client::disconnected, this, &ScanMatcher::updateHealth);
@@ -153,9 +164,11 @@ void ScanMatcher::pause() {
 void ScanMatcher::connectToSource() {
     source_.close();
     source_.unsubscribe(subscription_);
+    sourceFault_.clear();
     const auto connecting = source_.connectTo(settings().text("source.address"));
     if (!connecting) {
-        logError("source", connecting.error().message);
+        sourceFault_ = connecting.error().message;
+        logError("source", sourceFault_);
         return;
     }
     subscription_ =
@@ -173,10 +186,12 @@ void ScanMatcher::connectToOdometry() {
 
 void ScanMatcher::takeScan(const TopicUpdate &update) {
     lastScan_ = monotonicNow();
+    sourceFault_.clear();
     droppedBySource_ = update.dropped;
     auto parsed = readScan(update.data, unknownFields_);
     if (!parsed) {
-        if (badScans_++ == 0)
+        ++badScans_;
+        if (lastBadScan_ != parsed.error().message)
             logWarning("source", parsed.error().message);
         lastBadScan_ = parsed.error().message;
         return;
@@ -220,7 +235,14 @@ void ScanMatcher::updateHealth() {
         health().set("source", HealthLevel::Ok, "not matching");
     else if (!source_.isConnected())
         health().set("source", HealthLevel::Failed,
-                     QString("no connection to %1: %2").arg(address, source_.lastError()));
+                     QString("no connection to %1: %2")
+                         .arg(address, sourceFault_.isEmpty() ? source_.lastError() : sourceFault_));
+    else if (!sourceFault_.isEmpty())
+        health().set("source", HealthLevel::Failed,
+                     QString("no scans from %1: %2").arg(address, sourceFault_));
+    else if (const double silent_s = monotonicNow() - lastScan_; silent_s > longestSilence_s)
+        health().set("source", HealthLevel::Warn,
+                     QString("no scan from %1 for %2 s").arg(address).arg(silent_s, 0, 'f', 0));
     else if (badScans_ > 0)
         health().set("source", pastBadScans_.level(double(badScans_)),
                      QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));

@@ -80,7 +80,8 @@ private:
     std::optional<vectorlib::Relocalized> lastRecovery_; ///< since tracking was lost
     quint64 badScans_ = 0, droppedBySource_ = 0, unknownFields_ = 0;
     PastFaults pastBadScans_, pastDrops_;
-    double lastScan_ = 0; // monotonic
+    double lastScan_ = 0; // monotonic; or when it began to wait for one
+    QString sourceFault_; // why there will be none
     QString lastBadScan_;
 };
 

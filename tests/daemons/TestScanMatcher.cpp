@@ -21,6 +21,7 @@ private Q_SLOTS:
     void loadOfABadFileNamesTheLine();
     void localizationLeavesTheMapAlone();
     void refusedScansAreCountedAndShown();
+    void aWrongSourceIsNamed();
     void lossOfTheSourceIsShownAndMended();
     void matchesTwoScans();
     void mapTopicBeginsWithTheFullMap();
@@ -137,6 +138,19 @@ void TestScanMatcher::refusedScansAreCountedAndShown() {
     QTRY_COMPARE(call("matcher.state")["refused"].toInt(), 2);
     QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
     drive(0, 3); // and goes on
+}
+
+void TestScanMatcher::aWrongSourceIsNamed() {
+    drive(0, 3);
+    const auto message = [this] { return healthItem("source")["message"].toString(); };
+    call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scn2d"}}}}}});
+    QTRY_VERIFY2(message().contains("no topic \"scn2d\""), qPrintable(message()));
+    QCOMPARE(healthItem("source")["level"].toString(), QString("error"));
+    call("settings.set", {{"values", QJsonObject{{"source", QJsonObject{{"topic", "scan2d"}}}}}});
+    QTRY_VERIFY2(message().startsWith("no scan from"), qPrintable(message())); // after some seconds
+    QCOMPARE(healthItem("source")["level"].toString(), QString("warn"));
+    drive(3, 6);
+    QCOMPARE(healthItem("source")["level"].toString(), QString("ok"));
 }
 
 void TestScanMatcher::lossOfTheSourceIsShownAndMended() {
