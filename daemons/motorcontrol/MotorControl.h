@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "common/daemon/PastFaults.h"
 #include "daemons/motorcontrol/DriveLoop.h"
 #include "daemons/motorcontrol/MotorMessages.h"
 
@@ -64,6 +65,7 @@ private:
         double until; // monotonic
     };
     std::vector<WaitingStop> stops_;
+    std::array<PastFaults, controllerCount> answers_;
     std::array<QString, controllerCount> logged_; // how the controllers are
     quint64 cycles_ = 0;
 };

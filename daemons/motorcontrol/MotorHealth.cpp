@@ -32,10 +32,14 @@ void MotorControl::updateHealth() {
         const Telemetry::Controller &c = told_.controllers[i];
         const QString advice = c.advice.isEmpty() ? QString() : "; " + c.advice;
         const QString text = c.name + ": " + (c.ready ? c.version : c.error) + advice;
+        const quint64 faults = c.counts.timeouts + c.counts.crcErrors + c.counts.unexpected;
+        const HealthLevel past = answers_[i].level(double(faults));
         const HealthLevel level = !c.ready             ? HealthLevel::Failed
-                                  : c.advice.isEmpty() ? HealthLevel::Ok
+                                  : c.advice.isEmpty() ? past
                                                        : HealthLevel::Warn;
-        health().set(QString("controller_%1").arg(i + 1), level, text, asJson(c).toObject());
+        const QString pastText =
+            faults > 0 ? QString("; %1 answers were damaged or did not come").arg(faults) : QString();
+        health().set(QString("controller_%1").arg(i + 1), level, text + pastText, asJson(c).toObject());
         if (text != logged_[i])
             c.ready ? logInfo("controllers", text) : logWarning("controllers", text);
         logged_[i] = text;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "daemons/motorcontrol/Motion.h"
+#include "daemons/motorcontrol/Wheels.h"
 
 namespace hermes::motorcontrol {
 

@@ -70,12 +70,14 @@ EngineHealth TriggerEngine::lineHealth() const {
             runner_->serialLines().toJson()};
 }
 
-EngineHealth TriggerEngine::actionHealth() const {
+EngineHealth TriggerEngine::actionHealth() {
     bool failing = false; // the last firing of any
     for (const auto &[id, trigger] : triggers_)
         failing = failing || (trigger.last && !trigger.last->ok);
-    return {failing ? HealthLevel::Warn : HealthLevel::Ok,
-            failing ? lastFailure_ : QString("%1 have failed").arg(failedActions_),
+    const HealthLevel past = pastFailures_.level(double(failedActions_));
+    const QString last = failedActions_ > 0 ? ", the last: " + lastFailure_ : QString();
+    return {failing ? past : HealthLevel::Ok,
+            QString("%1 have failed").arg(failedActions_) + last,
             {{"failed", double(failedActions_)}, {"under_way", int(underWay_.size())}}};
 }
 

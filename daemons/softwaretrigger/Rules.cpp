@@ -1,3 +1,4 @@
+#include "common/Project.h"
 #include "common/client/DaemonAddress.h"
 #include "common/interface/InterfaceRegistry.h"
 #include "daemons/softwaretrigger/Definition.h"
@@ -115,7 +116,7 @@ void Checker::checkDaemon(const QString &member, const QJsonValue &daemon) {
     const auto address = daemonAddress(daemon.toString());
     const auto url = address ? InterfaceUrl::parse(*address) : Result<InterfaceUrl>(address.error());
     if (!url)
-        return refuse(member, daemon, url.error().message);
+        return refuse(member, daemon, "one of " + daemonNames().join(", ") + ", or HOST:PORT, or a URL");
     if (!interfaceSchemes().contains(url->scheme))
         return refuse(member, daemon, "an address with one of " + interfaceSchemes().join(", "));
     if (url->scheme == "tcp" && url->port == 0)

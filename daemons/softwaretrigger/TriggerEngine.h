@@ -65,7 +65,7 @@ private:
     EngineHealth scheduleHealth();
     EngineHealth targetHealth() const;
     EngineHealth lineHealth() const;
-    EngineHealth actionHealth() const;
+    EngineHealth actionHealth();
     EngineHealth logHealth();
 
     FiringLog log_;
@@ -77,7 +77,7 @@ private:
     bool realtime_ = false;
     QString lastFailure_;
     quint64 failedActions_ = 0;
-    PastFaults pastMissed_, pastLost_;
+    PastFaults pastMissed_, pastLost_, pastFailures_;
 };
 
 } // namespace hermes::softwaretrigger
