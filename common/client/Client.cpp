@@ -162,7 +162,7 @@ void Client::sendSubscription(int handle) {
     QJsonObject params = subscription.options;
     params.insert(QStringLiteral("topic"), subscription.topic);
     call(QStringLiteral("topics.subscribe"), params, [this, handle](const Result<QJsonValue> &result) {
-        const qint64 id = result ? qMax<qint64>(0, toCount((*result)[QStringLiteral("subscription")])) : 0;
+        const qint64 id = result ? toCount((*result)[QStringLiteral("subscription")]) : 0;
         const auto found = subscriptions_.find(handle);
         if (found == subscriptions_.end()) {
             if (result) // ended here before the daemon answered
@@ -175,7 +175,12 @@ void Client::sendSubscription(int handle) {
                 Q_EMIT subscriptionFailed(handle, result.error());
             return;
         }
-        found->second.id = id;
+        if (id <= 0)
+            Q_EMIT subscriptionFailed(handle,
+                                      Error(ErrorCode::InvalidParams,
+                                            QStringLiteral("the reply to topics.subscribe: found no number "
+                                                           "as subscription, expected one from 1")));
+        found->second.id = qMax<qint64>(0, id);
     });
 }
 
@@ -245,7 +250,9 @@ void Client::deliver(int handle, const QJsonObject &params, const WireValue &dat
     update.seq = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("seq")))));
     update.dropped = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("dropped")))));
     update.stamp = params.value(QStringLiteral("stamp")).toDouble();
-    update.data = data;
+    // Of a message in a batch they were read with the rest.
+    update.data =
+        data.kind() == WireView::Kind::Undefined ? WireValue(params.value(QStringLiteral("data"))) : data;
     const auto found = subscriptions_.find(handle);
     if (found != subscriptions_.end() && found->second.callback) {
         const TopicCallback callback = found->second.callback;

@@ -64,7 +64,8 @@ EncodedFrame Codec::encode(const Outgoing &message) {
         ++counts_.refused;
         return {{},
                 RpcError(ErrorCode::InternalError,
-                         QStringLiteral("cannot send %1: not a finite number").arg(*path))};
+                         QStringLiteral("cannot send %1: not a finite number")
+                             .arg(path->isEmpty() ? QStringLiteral("the message") : *path))};
     }
     ++counts_.messagesOut;
     return {bytes, std::nullopt};
@@ -85,6 +86,8 @@ EncodedFrame Codec::encodeTopic(const QString &topic, quint64 seq, double stamp,
         out.integer(qint64(seq));
         out.key(QStringLiteral("stamp"));
         out.number(stamp);
+        if (out.hasRefused())
+            return out.within(QStringLiteral("params.stamp"));
         out.key(QStringLiteral("data"));
         data.write(out);
         if (out.hasRefused()) {

@@ -3,6 +3,11 @@
 #include "protocol/wire/Fields.h"
 
 namespace hermes {
+namespace {
+
+constexpr double latest = 1e10; // seconds: beyond it stamps lose their digits
+
+} // namespace
 
 const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>) {
     static const auto fields =
@@ -10,6 +15,7 @@ const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>) {
             .add("turn", &TurnHeader::turn, "Counts the turns since the source was opened")
             .mayBeMissing()
             .add("stamp", &TurnHeader::stamp, "Of the first firing, since the Unix epoch", "s")
+            .range(-latest, latest)
             .add("duration_s", &TurnHeader::duration_s, "From the first firing to the last", "s")
             .mayBeMissing()
             .add("partial", &TurnHeader::partial, "The first, the last, or one that was cut")

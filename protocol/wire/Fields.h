@@ -63,7 +63,7 @@ public:
         return *this;
     }
 
-    /// The fields of Part, a member or a base, beside the others.
+    /// The fields of Part, a member, beside the others.
     template <typename Part, typename Owner>
     Fields &include(Part Owner::*member) {
         for (FieldTable::Entry entry : fieldsOf(Of<Part>()).entries_) {

@@ -79,8 +79,12 @@ public:
             complaint = QStringLiteral("Number too big to be stored in double.");
         return complaint.isEmpty() && document_.Double(number);
     }
-    bool String(const char *text, unsigned length, bool copy) { return document_.String(text, length, copy); }
+    bool String(const char *text, unsigned length, bool copy) {
+        return isWhole(text, length) && document_.String(text, length, copy);
+    }
     bool Key(const char *text, unsigned length, bool copy) {
+        if (!isWhole(text, length))
+            return false;
         keys_.back().emplace_back(text, length);
         return document_.Key(text, length, copy);
     }
@@ -99,6 +103,20 @@ private:
                                                   : number[exponent + 1] == '-';
     }
 
+    // The parser lets half of a pair of surrogates pass where it is the second one.
+    bool isWhole(const char *text, unsigned length) {
+        const char *const end = text + length;
+        for (const char *at = text; at != end; ++at) {
+            at = static_cast<const char *>(std::memchr(at, 0xED, std::size_t(end - at)));
+            if (!at)
+                return true;
+            if (end - at > 1 && static_cast<unsigned char>(at[1]) >= 0xA0) {
+                complaint = QStringLiteral("half of a surrogate pair");
+                return false;
+            }
+        }
+        return true;
+    }
     bool enter() {
         keys_.emplace_back();
         if (int(keys_.size()) > maximumDepth_)

@@ -47,12 +47,8 @@ void WireWriter::json(const QJsonValue &value) {
     case QJsonValue::Array: {
         beginArray();
         int i = 0;
-        for (const QJsonValue &element : value.toArray()) {
-            json(element);
-            if (isRefused_)
-                return within(QString::number(i));
-            ++i;
-        }
+        for (const QJsonValue &element : value.toArray())
+            json(element, QString::number(i++));
         return endArray();
     }
     case QJsonValue::Object: {
@@ -60,15 +56,20 @@ void WireWriter::json(const QJsonValue &value) {
         const QJsonObject object = value.toObject();
         for (auto member = object.begin(); member != object.end(); ++member) {
             key(member.key());
-            json(member.value());
-            if (isRefused_)
-                return within(member.key());
+            json(member.value(), member.key());
         }
         return endObject();
     }
     default:
         return null();
     }
+}
+
+void WireWriter::json(const QJsonValue &value, const QString &name) {
+    const bool before = isRefused_;
+    json(value);
+    if (isRefused_ && !before)
+        within(name);
 }
 
 void WireWriter::refuse() {

@@ -28,6 +28,7 @@ public:
     /// An array of them: packed where the wire has that.
     virtual void numbers(const float *values, std::size_t count);
     virtual void numbers(const double *values, std::size_t count);
+    /// What cannot be written is null; the first of it is refused.
     void json(const QJsonValue &value);
 
     bool hasRefused() const { return isRefused_; }
@@ -41,6 +42,7 @@ protected:
     virtual void finite(float value) = 0;
 
 private:
+    void json(const QJsonValue &value, const QString &name);
     void refuse();
     template <typename T>
     void each(const T *values, std::size_t count);

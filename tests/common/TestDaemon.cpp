@@ -97,8 +97,8 @@ void TestDaemon::whatIsPastIsNoWarning() {
     QVERIFY(!warns(0, 0));
     QVERIFY(warns(3, 10) && warns(3, 9.9 + end) && !warns(3, 10 + end));
     QVERIFY(warns(4, 20 + end) && warns(4, 19.9 + 2 * end) && !warns(4, 1000));
-    QVERIFY(!warns(0, 1001)); // begun anew
-    QVERIFY(warns(1, 1002) && !warns(1, 1002 + end));
+    QVERIFY(warns(3, 1001 + end) && !warns(3, 1001 + 2 * end) && !warns(0, 1002 + 2 * end)); // begun anew
+    QVERIFY(warns(1, 1003 + 2 * end) && !warns(1, 1003 + 3 * end));
 }
 
 void TestDaemon::healthDegradesAndGoesStale() {

@@ -223,7 +223,8 @@ void TestWire::doublesAreExact() {
         QCOMPARE(WireValue::parse(text, nullptr)->number(), number);
     QVERIFY(!WireValue::parse("1e999", nullptr) && !WireValue::parse("-1000e306", nullptr));
     WireError error;
-    for (const char *cut : {"\"\xe2", "\"\xf0\x9f", "\"\\u00", "[\"a", "tr", "-", "1e"})
+    for (const char *cut : {"\"\\udc00\"", "{\"a\\udc00\":1}", "\"\\ud800\"", "\"\xe2", "\"\xf0\x9f",
+                            "\"\\u00", "[\"a", "tr", "-", "1e"})
         QVERIFY2(!WireValue::parse(cut, &error), cut);
     QVERIFY(!WireValue::parse(QByteArray("{}\0 ", 4), &error));
     QCOMPARE(error.message, QString("a zero byte"));

@@ -191,8 +191,11 @@ void DaemonLink::onDescription(const QJsonValue &description) {
 void DaemonLink::onStatus(WireView status) {
     ReadReport report;
     status_ = readMessage<DaemonStatus>(status, report).value_or(DaemonStatus());
+    const QString asked = "daemon.status: ";
     if (report.hasFailed())
-        nonsense_ = "daemon.status: " + shortLine(report.text());
+        nonsense_ = asked + shortLine(report.text());
+    else if (nonsense_.startsWith(asked))
+        nonsense_.clear();
     worst_ = worstItem(status_);
     Q_EMIT changed();
 }
