@@ -89,7 +89,7 @@ public:
     }
 
     const ScanReport &report() const { return report_; }
-    /// The match of the last scan; pairs refer to matchedNumbers() and edges().
+    /// The match of the last scan; pairs refer to candidates() and edges().
     const Match &match() const { return match_; }
     /// Map edges that the last scan was compared with, by index of the match's static set.
     const std::vector<int> &candidates() const { return numbers_; }

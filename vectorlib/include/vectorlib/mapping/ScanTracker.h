@@ -168,7 +168,7 @@ private:
             }
             const ScanReport &report = builder.find(scan.points, guess.pose);
             if (report.outcome != ScanReport::Outcome::Matched)
-                return {true, tries > 1, report.outcome == ScanReport::Outcome::Lost ? -1.0 : 0.0};
+                return {tries == 1, tries > 1, report.outcome == ScanReport::Outcome::Lost ? -1.0 : 0.0};
             if (!isStraightened(scan))
                 break;
             const TwistCorrection::Result wrong = twistError(scan);
