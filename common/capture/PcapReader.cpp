@@ -30,7 +30,7 @@ PcapReader::PcapReader()
 
 PcapReader::~PcapReader() = default;
 
-bool PcapReader::open(const std::string &path) {
+Outcome<void> PcapReader::open(const std::string &path) {
     close();
     path_ = path;
     error_.clear();
@@ -38,7 +38,7 @@ bool PcapReader::open(const std::string &path) {
     std::FILE *file = std::fopen(path.c_str(), "rb");
     if (!file) {
         error_ = path + ": cannot be opened: " + std::strerror(errno);
-        return false;
+        return error_;
     }
     canSeek_ = !isPcapng(file);
     char message[PCAP_ERRBUF_SIZE] = "";
@@ -46,7 +46,7 @@ bool PcapReader::open(const std::string &path) {
     if (!pcap_) {
         std::fclose(file);
         error_ = path + ": not a capture that can be read, pcap or pcapng expected: " + message;
-        return false;
+        return error_;
     }
     linkType_ = pcap_datalink(pcap_.get());
     if (!isKnownLinkType(linkType_)) {
@@ -54,9 +54,9 @@ bool PcapReader::open(const std::string &path) {
         error_ = path + ": link type " + std::to_string(linkType_) +
                  (name ? std::string(" (") + name + ")" : "") + " is not read; read are " + knownLinkTypes();
         close();
-        return false;
+        return error_;
     }
-    return true;
+    return {};
 }
 
 PcapReader::Next PcapReader::next(Datagram &datagram) {
@@ -104,7 +104,7 @@ PcapReader::Place PcapReader::place() const {
     return {pcap_ ? ::ftello(pcap_file(pcap_.get())) : 0, counts_.records};
 }
 
-bool PcapReader::seek(const Place &place) {
+Outcome<void> PcapReader::seek(const Place &place) {
     if (place.offset == 0)
         return open(std::string(path_));
     if ((!pcap_ && !open(std::string(path_))) || !canSeek_ ||
@@ -112,10 +112,10 @@ bool PcapReader::seek(const Place &place) {
         if (error_.empty())
             error_ = path_ + ": cannot be read from byte " + std::to_string(place.offset) + " on";
         close();
-        return false;
+        return error_;
     }
     counts_.records = place.records;
-    return true;
+    return {};
 }
 
 void PcapReader::close() {

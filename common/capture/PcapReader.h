@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/Outcome.h"
 #include "common/capture/Datagram.h"
 
 #include <memory>
@@ -34,8 +35,7 @@ public:
     PcapReader(const PcapReader &) = delete;
     PcapReader &operator=(const PcapReader &) = delete;
 
-    /// False on failure; error() says why.
-    bool open(const std::string &path);
+    Outcome<void> open(const std::string &path);
     /// The payload stays valid until the next call.
     Next next(Datagram &datagram);
     void close();
@@ -44,11 +44,11 @@ public:
     Place place() const;
     /// Only classic pcap can be read from a place in the middle; a pcapng tells on the way what to know.
     bool canSeek() const { return canSeek_; }
-    /// Goes on at a place that a reader of the same file told. False on failure; error() says why.
-    bool seek(const Place &place);
+    /// Goes on at a place that a reader of the same file told.
+    Outcome<void> seek(const Place &place);
 
     const std::string &path() const { return path_; }
-    const std::string &error() const { return error_; }
+    const std::string &error() const { return error_; } ///< after Next::Failed, or what could not be opened
     const Counts &counts() const { return counts_; }
 
 private:

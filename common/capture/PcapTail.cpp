@@ -38,13 +38,12 @@ bool readRecord(std::FILE *file, std::array<std::uint8_t, frameHeaderSize + maxi
 
 } // namespace
 
-PcapTail readPcapTail(const std::string &path, std::uint64_t from,
-                      const std::function<void(const Datagram &)> &sink) {
+Outcome<PcapTail> readPcapTail(const std::string &path, std::uint64_t from,
+                               const std::function<void(const Datagram &)> &sink) {
     PcapTail tail;
     const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file || ::fseeko(file.get(), 0, SEEK_END) != 0) {
-        tail.error = path + ": cannot be read: " + std::strerror(errno);
-        return tail;
+        return path + ": cannot be read: " + std::strerror(errno);
     }
     tail.fileBytes = std::uint64_t(::ftello(file.get()));
     if (tail.fileBytes < PcapWriter::fileHeaderBytes)
@@ -52,8 +51,7 @@ PcapTail readPcapTail(const std::string &path, std::uint64_t from,
     std::uint8_t magic[4];
     std::rewind(file.get());
     if (std::fread(magic, sizeof magic, 1, file.get()) != 1 || littleEndian(magic) != PcapWriter::magic) {
-        tail.error = path + ": it does not begin as a capture of nanoseconds";
-        return tail;
+        return path + ": it does not begin as a capture of nanoseconds";
     }
     const std::uint64_t first = PcapWriter::fileHeaderBytes;
     tail.wholeBytes = from > tail.fileBytes ? first : std::max(from, first);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/Outcome.h"
 #include "common/capture/Datagram.h"
 
 #include <functional>
@@ -14,12 +15,11 @@ struct PcapTail {
     std::uint64_t fileBytes = 0;
     std::int64_t first_ns = 0; ///< stamps of the first and last of the packets
     std::int64_t last_ns = 0;
-    std::string error; ///< why the file could not be read; it names it
 };
 
 /// Reads the records from a byte on where one begins, the first of the file where from is less than that of
 /// the first; stops at the first that is not whole or not ours. sink sees each datagram.
-PcapTail readPcapTail(const std::string &path, std::uint64_t from,
-                      const std::function<void(const Datagram &)> &sink);
+Outcome<PcapTail> readPcapTail(const std::string &path, std::uint64_t from,
+                               const std::function<void(const Datagram &)> &sink);
 
 } // namespace hermes

@@ -23,7 +23,7 @@ PcapWriter::~PcapWriter() {
     close();
 }
 
-bool PcapWriter::open(const std::string &path, bool overwrite) {
+Outcome<void> PcapWriter::open(const std::string &path, bool overwrite) {
     close();
     path_ = path;
     error_.clear();
@@ -34,26 +34,23 @@ bool PcapWriter::open(const std::string &path, bool overwrite) {
     if (file_ < 0) {
         error_ =
             path + ": cannot be created: " + (errno == EEXIST ? "it exists already" : std::strerror(errno));
-        return false;
+        return error_;
     }
     for (const std::uint32_t field : {magic, version, 0u, 0u, snapLength, std::uint32_t(LinkType::Ethernet)})
         appendLittleEndian(field);
-    if (flush())
-        return true;
-    ::unlink(path.c_str());
-    return false;
+    const Outcome<void> written = flush();
+    if (!written)
+        ::unlink(path.c_str());
+    return written;
 }
 
-bool PcapWriter::write(const Datagram &datagram) {
+Outcome<void> PcapWriter::write(const Datagram &datagram) {
     if (!isOpen()) {
-        if (error_.empty())
-            error_ = "no capture file is open";
-        return false;
+        return error_.empty() ? "no capture file is open" : error_;
     }
     if (datagram.size > maximumPayload) {
-        error_ =
-            path_ + ": a datagram of " + std::to_string(datagram.size) + " bytes is larger than UDP allows";
-        return false;
+        return path_ + ": a datagram of " + std::to_string(datagram.size) +
+               " bytes is larger than UDP allows";
     }
     const std::uint32_t length = std::uint32_t(frameHeaderSize + datagram.size);
     appendLittleEndian(std::uint32_t(datagram.stamp_ns / second_ns));
@@ -64,12 +61,12 @@ bool PcapWriter::write(const Datagram &datagram) {
     append(header.data(), header.size());
     append(datagram.payload, datagram.size);
     ++bufferedPackets_;
-    return buffer_.size() < bufferSize || flush();
+    return buffer_.size() < bufferSize ? Outcome<void>() : flush();
 }
 
-bool PcapWriter::flush() {
+Outcome<void> PcapWriter::flush() {
     if (!isOpen())
-        return error_.empty();
+        return sinceOpen();
     std::size_t done = 0;
     while (done < buffer_.size()) {
         const ssize_t count = ::write(file_, buffer_.data() + done, buffer_.size() - done);
@@ -83,22 +80,26 @@ bool PcapWriter::flush() {
     writtenPackets_ += bufferedPackets_;
     buffer_.clear();
     bufferedPackets_ = 0;
-    return true;
+    return {};
 }
 
-bool PcapWriter::close() {
+Outcome<void> PcapWriter::close() {
     if (!isOpen())
-        return error_.empty();
-    if (!flush())
-        return false;
+        return sinceOpen();
+    if (const Outcome<void> flushed = flush(); !flushed)
+        return flushed;
     const int result = ::close(file_);
     file_ = -1;
     if (result != 0)
         error_ = path_ + ": cannot be closed: " + std::strerror(errno);
-    return error_.empty();
+    return sinceOpen();
 }
 
-bool PcapWriter::fail(const std::string &what) {
+Outcome<void> PcapWriter::sinceOpen() const {
+    return error_.empty() ? Outcome<void>() : error_;
+}
+
+Outcome<void> PcapWriter::fail(const std::string &what) {
     error_ = path_ + ": cannot be written after byte " + std::to_string(writtenBytes_) + ": " + what;
     if (bufferedPackets_ > 0)
         error_ += "; " + std::to_string(bufferedPackets_) + " packets are lost";
@@ -109,7 +110,7 @@ bool PcapWriter::fail(const std::string &what) {
     file_ = -1;
     buffer_.clear();
     bufferedPackets_ = 0;
-    return false;
+    return error_;
 }
 
 void PcapWriter::append(const void *bytes, std::size_t size) {

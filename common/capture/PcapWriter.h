@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/Outcome.h"
 #include "common/capture/Datagram.h"
 
 #include <string>
@@ -22,19 +23,17 @@ public:
     PcapWriter &operator=(const PcapWriter &) = delete;
 
     /// Fails on an existing file unless overwrite; leaves nothing behind when it fails.
-    bool open(const std::string &path, bool overwrite = false);
-    /// Collects the datagram and writes when enough are collected. False when the file is not open, the
-    /// datagram is larger than UDP allows, or writing failed; error() says which, and the file is closed
-    /// after a write error.
-    bool write(const Datagram &datagram);
+    Outcome<void> open(const std::string &path, bool overwrite = false);
+    /// Collects the datagram and writes when enough are collected. Fails when the file is not open, the
+    /// datagram is larger than UDP allows, or writing failed; the file is closed after a write error.
+    Outcome<void> write(const Datagram &datagram);
     /// Writes what is collected.
-    bool flush();
-    /// Flushes and closes. False when something could not be written.
-    bool close();
+    Outcome<void> flush();
+    /// Flushes and closes. Fails when something could not be written.
+    Outcome<void> close();
 
     bool isOpen() const { return file_ >= 0; }
     const std::string &path() const { return path_; }
-    const std::string &error() const { return error_; }
     std::uint64_t packets() const { return writtenPackets_ + bufferedPackets_; }
     std::uint64_t bytes() const { return writtenBytes_ + buffer_.size(); }
     /// Of these, what the last flush or error left in the file.
@@ -42,13 +41,14 @@ public:
     std::uint64_t writtenBytes() const { return writtenBytes_; }
 
 private:
-    bool fail(const std::string &what);
+    Outcome<void> fail(const std::string &what);
+    Outcome<void> sinceOpen() const; // what an earlier call failed by
     void append(const void *bytes, std::size_t size);
     void appendLittleEndian(std::uint32_t value);
 
     int file_ = -1;
     std::string path_;
-    std::string error_;
+    std::string error_; // that ended writing
     std::vector<std::uint8_t> buffer_;
     std::uint64_t writtenPackets_ = 0;
     std::uint64_t writtenBytes_ = 0;

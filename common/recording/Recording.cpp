@@ -60,7 +60,7 @@ void Recording::run(QThreadPool &pool, std::function<Done()> job) {
 }
 
 void Recording::open() {
-    closed_ = false;
+    closed_ = checking_ = syncing_ = false;
     timer_.start(idlePeriod_ms);
     run(disk_, [this, options = options()]() -> Done {
         const RecordingSession::Completed completed = RecordingSession::completeAll(options, writer_);
@@ -86,7 +86,9 @@ void Recording::close() {
     disk_.waitForDone();
     syncs_.waitForDone();
     if (session_.isOpen()) {
-        const Result<void> result = session_.finish(RecordingEnd::Stopped, {});
+        const bool isEnding = phase_ == Phase::Ending; // its job was dropped above
+        const Result<void> result =
+            session_.finish(isEnding ? endReason_ : RecordingEnd::Stopped, isEnding ? error_ : std::nullopt);
         if (!result)
             logError("recording", result.error().message);
     }
@@ -102,6 +104,8 @@ void Recording::start(const Call &call, const Reply &reply) {
     if (fine && phase_ != Phase::Idle)
         fine = Error(ErrorCode::NotReady,
                      QString("\"%1\" is being recorded; record.stop ends it").arg(name_.name));
+    if (const QString obstacle = obstacle_ ? obstacle_() : QString(); fine && !obstacle.isEmpty())
+        fine = Error(ErrorCode::NotReady, obstacle);
     if (!fine)
         return reply.error(fine.error());
     phase_ = Phase::Starting;
@@ -144,6 +148,7 @@ void Recording::giveToStopping(const Result<QJsonValue> &result) {
 
 void Recording::end(RecordingEnd reason, const std::optional<Error> &error) {
     phase_ = Phase::Ending;
+    endReason_ = reason;
     error_ = error; // told at once, not when the disk is done
     run(disk_, [this, reason, error]() -> Done {
         const Result<void> result = session_.finish(reason, error);

@@ -32,6 +32,8 @@ public:
     static std::vector<SchemaViolation> checkSettings(const QJsonObject &settings);
     std::vector<Command> commands();
 
+    /// Why nothing can be recorded now; empty: it can.
+    void setObstacle(std::function<QString()> obstacle) { obstacle_ = std::move(obstacle); }
     void open();
     void close();
 
@@ -79,6 +81,8 @@ private:
     SessionName name_; ///< of this recording or the last
     QString folder_;
     double start_ = 0;
+    std::function<QString()> obstacle_;
+    RecordingEnd endReason_ = RecordingEnd::Stopped;
     std::optional<Error> error_; ///< that ended it
     std::optional<Error> refreshError_;
     PastFaults losses_;

@@ -81,6 +81,9 @@ Result<QJsonValue> ReplaySource::open(const Call &call) {
         return invalidParams(ways, QString("one of live: true%1 and recording: NAME expected")
                                        .arg(actions_.pcap ? ", pcap: FILE" : ""));
     }
+    if (actions_.records && actions_.records())
+        return Error(ErrorCode::NotReady,
+                     "what comes from another source would be recorded; record.stop ends the recording");
     const Result<void> result = live                    ? actions_.live(call)
                                 : call.has("recording") ? openRecording(call)
                                                         : actions_.pcap(call);
@@ -91,9 +94,6 @@ Result<QJsonValue> ReplaySource::open(const Call &call) {
 }
 
 Result<void> ReplaySource::openRecording(const Call &call) {
-    if (actions_.records && actions_.records())
-        return Error(ErrorCode::NotReady,
-                     "what is replayed would be recorded; record.stop ends the recording");
     const Result<StoredRecording> stored =
         StoredRecording::find(settings_.text("record.folder"), call.text("recording"), logger_);
     return stored ? actions_.recording(call, *stored) : stored.error();

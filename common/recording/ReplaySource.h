@@ -22,7 +22,7 @@ public:
         std::function<Result<void>(const Call &, const StoredRecording &)> recording;
         std::function<Result<void>(const Call &)> pcap;    ///< none: files are not played
         std::function<std::optional<double>()> duration_s; ///< of a replay; nothing: not known as yet
-        std::function<bool()> records; ///< what is replayed would be recorded now; none: it never is
+        std::function<bool()> records; ///< the source is being recorded now; none: it never is
         std::function<void()> changed;
     };
 

@@ -54,4 +54,18 @@ Result<QStringList> StoredRecording::files() const {
     return paths;
 }
 
+Result<void> StoredRecording::isWhole() const {
+    for (const QJsonValue &file : sidecar.value("files").toArray()) {
+        const QString path = QDir(folder).filePath(file["name"].toString());
+        const qint64 size = QFileInfo(path).size(), recorded = qint64(file["bytes"].toDouble());
+        if (size < recorded)
+            return diskError(QString("%1: it has %2 bytes, and %3 were recorded; the others are missing")
+                                 .arg(path)
+                                 .arg(size)
+                                 .arg(recorded),
+                             path);
+    }
+    return {};
+}
+
 } // namespace hermes

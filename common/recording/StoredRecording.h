@@ -20,6 +20,8 @@ struct StoredRecording {
     /// The paths of its files, in order; none where nothing was to be recorded. InputOutput: a name leads out
     /// of the folder.
     Result<QStringList> files() const;
+    /// InputOutput: a file is shorter than it was recorded; it names the first.
+    Result<void> isWhole() const;
 };
 
 } // namespace hermes

@@ -144,25 +144,22 @@ World toWorld(const Document &document) {
 
 } // namespace
 
-std::optional<World> parseWorld(const std::string &text, const std::string &path, std::string &error) {
+Outcome<World> parseWorld(const std::string &text, const std::string &path) {
     try {
         return toWorld(parse(text));
     } catch (const Fault &fault) {
-        error = path + ":" + (fault.line > 0 ? std::to_string(fault.line) + ":" : "") + " " + fault.what;
-        return std::nullopt;
+        return path + ":" + (fault.line > 0 ? std::to_string(fault.line) + ":" : "") + " " + fault.what;
     }
 }
 
-std::optional<World> readWorld(const std::string &path, std::string &error) {
+Outcome<World> readWorld(const std::string &path) {
     std::ifstream file(path, std::ios::binary);
     std::stringstream text;
     if (file)
         text << file.rdbuf();
-    if (!file || file.bad()) {
-        error = path + ": cannot be read: " + std::strerror(errno);
-        return std::nullopt;
-    }
-    return parseWorld(text.str(), path, error);
+    if (!file || file.bad())
+        return path + ": cannot be read: " + std::strerror(errno);
+    return parseWorld(text.str(), path);
 }
 
 } // namespace hermes

@@ -12,7 +12,7 @@ namespace hermes::seriallogger {
 
 namespace {
 
-constexpr double longest_s = 1e8; // of a replay, whatever its index says
+constexpr double slack_s = 60;
 constexpr std::chrono::milliseconds roomPeriod{5};
 
 /// Those of the recording, or what is usual where its sidecar does not tell.
@@ -80,7 +80,9 @@ Result<void> SerialPlayer::advance(Track &track) {
         return piece.error();
     track.piece = piece.take();
     const double time_s = delay_s_ + track.piece.arrival.mono() - startMono_s_;
-    track.time_ns = std::max(track.time_ns, std::int64_t(std::clamp(time_s, 0.0, longest_s) * 1e9));
+    const double most_s =
+        delay_s_ + 2 * length_s_ + slack_s; // whatever the index says: the clocks may differ
+    track.time_ns = std::max(track.time_ns, std::int64_t(std::clamp(time_s, 0.0, most_s) * 1e9));
     return {};
 }
 

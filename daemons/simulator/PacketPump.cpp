@@ -29,14 +29,14 @@ PacketPump::~PacketPump() {
     stop();
 }
 
-std::string PacketPump::start(const World &world, const Simulation::Options &options, const std::string &host,
-                              std::uint16_t port, std::uint16_t positionPort) {
+Outcome<void> PacketPump::start(const World &world, const Simulation::Options &options,
+                                const std::string &host, std::uint16_t port, std::uint16_t positionPort) {
     stop();
-    std::string error = data_.open(host, port);
-    if (error.empty() && positionPort > 0)
-        error = position_.open(host, positionPort);
-    if (!error.empty())
-        return error;
+    Outcome<void> opened = data_.open(host, port);
+    if (opened && positionPort > 0)
+        opened = position_.open(host, positionPort);
+    if (!opened)
+        return opened;
     simulation_ = Simulation(world, options, utcNow_ns());
     random_.seed(std::minstd_rand::result_type(options.seed));
     counts_ = Counts();

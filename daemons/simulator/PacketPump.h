@@ -39,10 +39,9 @@ public:
     /// As of the VLP-16 and VLS-128; the manual of the HDL-32E does not tell.
     static constexpr int packetsPerPosition = 14;
 
-    /// Opens the sockets and starts. host is an IPv4 address; positionPort 0: no position packets. An empty
-    /// string on success, else what failed.
-    std::string start(const World &world, const Simulation::Options &options, const std::string &host,
-                      std::uint16_t port, std::uint16_t positionPort = 0);
+    /// Opens the sockets and starts. host is an IPv4 address; positionPort 0: no position packets.
+    Outcome<void> start(const World &world, const Simulation::Options &options, const std::string &host,
+                        std::uint16_t port, std::uint16_t positionPort = 0);
     void stop();
 
     /// Runs the function between two packets. Does nothing unless the pump is running.

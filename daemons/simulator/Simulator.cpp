@@ -185,16 +185,16 @@ void Simulator::settingsChanged(const QStringList &paths) {
 }
 
 Result<void> Simulator::load(const QString &path) {
-    std::string error;
-    const std::optional<World> world = readWorld(path.toStdString(), error);
+    const Outcome<World> world = readWorld(path.toStdString());
     if (!world)
-        return Error(ErrorCode::InputOutput, QString::fromStdString(error), QJsonObject{{"path", path}});
-    error = pump_.start(*world, options(), settings().text("lidar.host").toStdString(),
-                        quint16(settings().integer("lidar.port")),
-                        quint16(settings().integer("lidar.position_port")));
-    if (!error.empty()) {
+        return Error(ErrorCode::InputOutput, QString::fromStdString(world.error()),
+                     QJsonObject{{"path", path}});
+    const Outcome<void> started = pump_.start(*world, options(), settings().text("lidar.host").toStdString(),
+                                              quint16(settings().integer("lidar.port")),
+                                              quint16(settings().integer("lidar.position_port")));
+    if (!started) {
         setState(DaemonState::Fault);
-        return Error(ErrorCode::InputOutput, QString::fromStdString(error));
+        return Error(ErrorCode::InputOutput, QString::fromStdString(started.error()));
     }
     world_ = *world;
     worldPath_ = path;

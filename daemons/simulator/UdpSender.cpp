@@ -9,7 +9,7 @@
 
 namespace hermes::simulator {
 
-std::string UdpSender::open(const std::string &host, std::uint16_t port) {
+Outcome<void> UdpSender::open(const std::string &host, std::uint16_t port) {
     close();
     sockaddr_in address{};
     address.sin_family = AF_INET;

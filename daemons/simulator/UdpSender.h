@@ -1,8 +1,9 @@
 #pragma once
 
+#include "common/Outcome.h"
+
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 namespace hermes::simulator {
 
@@ -14,8 +15,8 @@ public:
     UdpSender(const UdpSender &) = delete;
     UdpSender &operator=(const UdpSender &) = delete;
 
-    /// host is an IPv4 address; an empty string on success, else what failed.
-    std::string open(const std::string &host, std::uint16_t port);
+    /// host is an IPv4 address.
+    Outcome<void> open(const std::string &host, std::uint16_t port);
     void close();
     bool isOpen() const { return socket_ >= 0; }
     /// False when the system refuses. That nobody listens is no refusal, as with a real sensor.

@@ -22,25 +22,25 @@ LidarFeed::LidarFeed(Recorder &recorder, Notify turnReady)
     , turnReady_(std::move(turnReady))
     , live_(recorder, [this](const Datagram &datagram) { decode(datagram); })
     , player_([this](const Datagram &datagram) { play(datagram); }, [this] { jump(); },
-              [this](const std::string &error) {
+              [this](const Outcome<void> &played) {
                   finish();
-                  ended_(error);
+                  ended_(played);
               }) {}
 
 LidarFeed::~LidarFeed() {
     close();
 }
 
-std::string LidarFeed::openLive(const std::string &address, std::uint16_t port, int bufferBytes,
-                                const Options &options) {
+Outcome<void> LidarFeed::openLive(const std::string &address, std::uint16_t port, int bufferBytes,
+                                  const Options &options) {
     close();
     lossless_ = false;
     begin(options);
     return live_.start({address, port, options.positionPort, bufferBytes});
 }
 
-std::string LidarFeed::openPcap(const std::vector<std::string> &paths, const Playback::Options &play,
-                                const Options &options, Ended ended, const PlayTime &begin) {
+Outcome<void> LidarFeed::openPcap(const std::vector<std::string> &paths, const Playback::Options &play,
+                                  const Options &options, Ended ended, const PlayTime &begin) {
     close();
     ended_ = std::move(ended);
     lossless_ = play.speed == 0;

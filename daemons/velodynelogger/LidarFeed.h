@@ -43,7 +43,7 @@ public:
     };
     using Turn = TurnQueue::Turn;
     using Notify = std::function<void()>;
-    using Ended = std::function<void(const std::string &error)>;
+    using Ended = PcapPlayer::End;
     /// Gets the next complete turn of all lasers, or null when the source ended before.
     using Capture = std::function<void(const velodyne::Turn *turn)>;
 
@@ -51,13 +51,13 @@ public:
     LidarFeed(Recorder &recorder, Notify turnReady);
     ~LidarFeed();
 
-    /// An empty string on success, else what failed. Whatever was open is closed first.
-    std::string openLive(const std::string &address, std::uint16_t port, int bufferBytes,
-                         const Options &options);
+    /// Whatever was open is closed first.
+    Outcome<void> openLive(const std::string &address, std::uint16_t port, int bufferBytes,
+                           const Options &options);
     /// ended is called in another thread when the captures have been played to their end, or to the error
     /// given.
-    std::string openPcap(const std::vector<std::string> &paths, const Playback::Options &play,
-                         const Options &options, Ended ended, const PlayTime &begin = {});
+    Outcome<void> openPcap(const std::vector<std::string> &paths, const Playback::Options &play,
+                           const Options &options, Ended ended, const PlayTime &begin = {});
     /// Delivers the turns that were under way as partial ones.
     void close();
 
@@ -77,8 +77,8 @@ public:
     Counts counts() const;
     velodyne::GpsReader::State gps() const;
     std::uint16_t port() const { return live_.port(); } ///< of live reception
-    std::string receiveError() const { return live_.error(); }
-    const std::string &positionError() const { return live_.positionError(); }
+    std::optional<std::string> receiveError() const { return live_.error(); }
+    const std::optional<std::string> &positionError() const { return live_.positionError(); }
 
 private:
     using Assembler = std::unique_ptr<velodyne::TurnAssembler>;

@@ -20,15 +20,15 @@ LiveSource::~LiveSource() {
     stop();
 }
 
-std::string LiveSource::start(const UdpReceiver::Options &options) {
+Outcome<void> LiveSource::start(const UdpReceiver::Options &options) {
     stop();
     drops_ = 0;
     stopping_ = false;
     ring_.interrupt(false);
-    const std::string error = receiver_.start(options);
-    if (error.empty())
+    const Outcome<void> started = receiver_.start(options);
+    if (started)
         thread_ = std::thread([this] { run(); });
-    return error;
+    return started;
 }
 
 void LiveSource::stop() {

@@ -20,14 +20,14 @@ public:
     ~LiveSource();
 
     /// As UdpReceiver.
-    std::string start(const UdpReceiver::Options &options);
+    Outcome<void> start(const UdpReceiver::Options &options);
     /// What was received has been decoded when it returns.
     void stop();
 
     std::uint16_t port() const { return receiver_.port(); }
     Counts counts() const;
-    std::string error() const { return receiver_.error(); }
-    const std::string &positionError() const { return receiver_.positionError(); }
+    std::optional<std::string> error() const { return receiver_.error(); }
+    const std::optional<std::string> &positionError() const { return receiver_.positionError(); }
 
 private:
     void take(const Datagram &datagram);

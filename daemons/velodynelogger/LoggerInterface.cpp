@@ -116,6 +116,9 @@ void VelodyneLogger::declareSourceCommands() {
     addCommand(Command("source.close", "Stops receiving or replaying")
                    .returnsNull()
                    .handler([this](const Call &) -> Result<QJsonValue> {
+                       if (recording_.isActive())
+                           return Error(ErrorCode::NotReady,
+                                        "it is being recorded; record.stop ends the recording");
                        closeSource();
                        return QJsonValue();
                    }));

@@ -94,8 +94,8 @@ LidarMessage VelodyneLogger::lidarState() const {
 
 void VelodyneLogger::updateHealth() {
     updateSourceHealth(feed_.counts());
-    if (source_.state() == State::Live && !feed_.positionError().empty())
-        health().set("position packets", HealthLevel::Warn, QString::fromStdString(feed_.positionError()));
+    if (source_.state() == State::Live && feed_.positionError())
+        health().set("position packets", HealthLevel::Warn, QString::fromStdString(*feed_.positionError()));
     else
         health().remove("position packets");
 }
@@ -120,12 +120,11 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
         health().set("lidar", level, message, values);
     };
     const QString sensors = QString::fromStdString(velodyne::sensorNames());
-    const std::string receiveError = feed_.receiveError();
+    const auto receiveError = feed_.receiveError();
     if (source_.state() == State::None)
         set(HealthLevel::Warn, "no source is open; source.open opens one");
-    else if (!receiveError.empty() || !source_.error().isEmpty())
-        set(HealthLevel::Failed,
-            receiveError.empty() ? source_.error() : QString::fromStdString(receiveError));
+    else if (receiveError || !source_.error().isEmpty())
+        set(HealthLevel::Failed, receiveError ? QString::fromStdString(*receiveError) : source_.error());
     else if (source_.state() == State::Ended && (counts.decoded || counts.other == 0))
         set(HealthLevel::Ok, source_.name() + " has been played to its end");
     else if (source_.state() == State::Live && sincePacket_.elapsed() > 3000)

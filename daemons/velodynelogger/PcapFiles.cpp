@@ -15,37 +15,37 @@ std::string PcapFiles::pathOf(std::size_t number) const {
         .toStdString();
 }
 
-std::string PcapFiles::open(const RecordingPlan &plan) {
-    writer_.close();
+Outcome<void> PcapFiles::open(const RecordingPlan &plan) {
+    writer_.close(); // of what is left of a recording that failed
     plan_ = plan;
     files_.clear();
     return next();
 }
 
-std::string PcapFiles::next() {
-    if (writer_.isOpen() && !writer_.close())
-        return writer_.error();
+Outcome<void> PcapFiles::next() {
+    if (writer_.isOpen())
+        if (const Outcome<void> closed = writer_.close(); !closed)
+            return closed;
     note();
     const std::string path = pathOf(files_.size() + 1);
-    if (!writer_.open(path))
-        return writer_.error();
+    if (const Outcome<void> opened = writer_.open(path); !opened)
+        return opened;
     files_.push_back({path.substr(path.rfind('/') + 1)});
     opened_ = std::chrono::steady_clock::now();
     note();
     return {};
 }
 
-std::string PcapFiles::write(const Datagram &datagram) {
+Outcome<void> PcapFiles::write(const Datagram &datagram) {
     const bool full = double(writer_.bytes() + overhead + datagram.size) > plan_.fileBytes;
     const std::chrono::duration<double> age = std::chrono::steady_clock::now() - opened_;
     if (writer_.packets() > 0 && (full || age.count() >= plan_.fileSeconds)) {
-        const std::string error = next();
-        if (!error.empty())
-            return error;
+        if (const Outcome<void> begun = next(); !begun)
+            return begun;
     }
-    if (!writer_.write(datagram)) {
+    if (const Outcome<void> written = writer_.write(datagram); !written) {
         note();
-        return writer_.error();
+        return written;
     }
     File &file = files_.back();
     file.first_ns = file.first_ns ? file.first_ns : datagram.stamp_ns;
@@ -53,16 +53,16 @@ std::string PcapFiles::write(const Datagram &datagram) {
     return {};
 }
 
-std::string PcapFiles::flush() {
-    const bool done = writer_.flush();
+Outcome<void> PcapFiles::flush() {
+    const Outcome<void> flushed = writer_.flush();
     note();
-    return done ? std::string() : writer_.error();
+    return flushed;
 }
 
-std::string PcapFiles::close() {
-    const bool done = writer_.close();
+Outcome<void> PcapFiles::close() {
+    const Outcome<void> closed = writer_.close();
     note();
-    return done ? std::string() : writer_.error();
+    return closed;
 }
 
 void PcapFiles::note() {

@@ -19,19 +19,18 @@ public:
         std::int64_t last_ns = 0;
     };
 
-    /// An empty string on success, else what failed; as of all that follows.
-    std::string open(const RecordingPlan &plan);
-    std::string write(const Datagram &datagram);
+    Outcome<void> open(const RecordingPlan &plan);
+    Outcome<void> write(const Datagram &datagram);
     /// What was written is the system's from here on: it outlives this process.
-    std::string flush();
+    Outcome<void> flush();
     /// Ends the last file. Keeps files().
-    std::string close();
+    Outcome<void> close();
 
     const std::vector<File> &files() const { return files_; }
     std::string path() const { return pathOf(files_.size()); } ///< of the last
 
 private:
-    std::string next();
+    Outcome<void> next();
     std::string pathOf(std::size_t number) const;
     void note();
 

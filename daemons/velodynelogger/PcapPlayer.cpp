@@ -13,11 +13,11 @@ PcapPlayer::~PcapPlayer() {
     stop();
 }
 
-std::string PcapPlayer::start(const std::vector<std::string> &paths, const Playback::Options &options,
-                              const PlayTime &begin) {
+Outcome<void> PcapPlayer::start(const std::vector<std::string> &paths, const Playback::Options &options,
+                                const PlayTime &begin) {
     stop();
-    if (!reader_.open(paths))
-        return reader_.error();
+    if (const Outcome<void> opened = reader_.open(paths); !opened)
+        return opened;
     time_ = begin_ = begin;
     atTarget_ = false;
     index_.start(paths, begin);
@@ -49,9 +49,9 @@ void PcapPlayer::run() {
                 return;
             continue;
         }
-        const std::string error = next == PcapReader::Next::Failed ? reader_.error() : std::string();
-        if (!playback_.options().loop || !error.empty() || !played) {
-            end_(error);
+        const bool failed = next == PcapReader::Next::Failed;
+        if (!playback_.options().loop || failed || !played) {
+            end_(failed ? Outcome<void>(reader_.error()) : Outcome<void>());
             return;
         }
         played = false;
@@ -98,10 +98,10 @@ bool PcapPlayer::goTo(std::int64_t time_ns) {
 bool PcapPlayer::rewind(const PcapIndex::Mark &mark) {
     jump_();
     time_ = mark.before;
-    const bool opened = reader_.seek(mark.place);
-    if (!opened)
-        end_(reader_.error());
-    return opened;
+    const Outcome<void> found = reader_.seek(mark.place);
+    if (!found)
+        end_(found);
+    return found.ok();
 }
 
 } // namespace hermes::velodynelogger

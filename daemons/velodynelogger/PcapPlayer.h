@@ -18,15 +18,15 @@ public:
     using Jump = std::function<void()>;
     /// Called in the playing thread when the last file has come to its end, or with the error that ended it
     /// before. Not called after stop().
-    using End = std::function<void(const std::string &error)>;
+    using End = std::function<void(const Outcome<void> &played)>;
 
     PcapPlayer(Sink sink, Jump jump, End end);
     ~PcapPlayer();
 
-    /// An empty string on success, else what failed. At speed 0 as fast as the sink takes it. begin: when the
+    /// At speed 0 as fast as the sink takes it. begin: when the
     /// first datagram is played, and what is a jump of the clock.
-    std::string start(const std::vector<std::string> &paths, const Playback::Options &options,
-                      const PlayTime &begin = {});
+    Outcome<void> start(const std::vector<std::string> &paths, const Playback::Options &options,
+                        const PlayTime &begin = {});
     void stop();
 
     /// A seek goes on at the first datagram at or after its time; beyond the end is the end.

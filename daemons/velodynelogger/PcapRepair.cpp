@@ -41,9 +41,11 @@ void add(QJsonObject &object, const char *member, double count) {
 Result<bool> repairFile(const QString &path, QJsonObject &entry, PacketAccount &account) {
     const double known = entry.value("bytes").toDouble();
     const auto sink = [&account](const Datagram &datagram) { account.add(datagram); };
-    const PcapTail tail = readPcapTail(path.toStdString(), std::uint64_t(std::max(0.0, known)), sink);
-    if (!tail.error.empty())
-        return diskError(QString::fromStdString(tail.error), path);
+    const Outcome<PcapTail> read =
+        readPcapTail(path.toStdString(), std::uint64_t(std::max(0.0, known)), sink);
+    if (!read)
+        return diskError(QString::fromStdString(read.error()), path);
+    const PcapTail &tail = *read;
     QFile file(path);
     if (tail.wholeBytes == 0) { // killed as it began the file
         if (!file.remove())

@@ -2,7 +2,7 @@
 
 namespace hermes::velodynelogger {
 
-bool PcapSequence::open(const std::vector<std::string> &paths) {
+Outcome<void> PcapSequence::open(const std::vector<std::string> &paths) {
     paths_ = paths;
     file_ = 0;
     return reader_.open(paths_.at(0));
@@ -18,9 +18,10 @@ PcapReader::Next PcapSequence::next(Datagram &datagram) {
     }
 }
 
-bool PcapSequence::seek(const Place &place) {
-    if (place.file != file_ && !reader_.open(paths_.at(place.file)))
-        return false;
+Outcome<void> PcapSequence::seek(const Place &place) {
+    if (place.file != file_)
+        if (const Outcome<void> opened = reader_.open(paths_.at(place.file)); !opened)
+            return opened;
     file_ = place.file;
     return reader_.seek(place.inFile);
 }

@@ -15,8 +15,8 @@ public:
         PcapReader::Place inFile;
     };
 
-    /// Opens the first; the others when it is their turn. False on failure; error() says why.
-    bool open(const std::vector<std::string> &paths);
+    /// Opens the first; the others when it is their turn.
+    Outcome<void> open(const std::vector<std::string> &paths);
     /// The payload stays valid until the next call.
     PcapReader::Next next(Datagram &datagram);
     void close() { reader_.close(); }
@@ -25,8 +25,8 @@ public:
     Place place() const { return {file_, reader_.place()}; }
     /// Within this file: see PcapReader.
     bool canSeek() const { return reader_.canSeek(); }
-    /// Goes on at a place that was told for the same files. False on failure; error() says why.
-    bool seek(const Place &place);
+    /// Goes on at a place that was told for the same files.
+    Outcome<void> seek(const Place &place);
     const std::string &error() const { return reader_.error(); }
 
 private:

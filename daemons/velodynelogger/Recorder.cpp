@@ -38,16 +38,16 @@ Recorder::~Recorder() {
 
 Result<void> Recorder::begin(const RecordingPlan &plan) {
     end();
-    const std::string error = files_.open(plan);
+    const Outcome<void> opened = files_.open(plan);
     account_ = PacketAccount();
     queueDrops_ = kernelDrops_ = tooLong_ = 0;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         progress_ = Progress();
     }
-    publish(error);
-    if (!error.empty())
-        return diskError(QString::fromStdString(error), plan.folder);
+    publish(opened);
+    if (!opened)
+        return diskError(QString::fromStdString(opened.error()), plan.folder);
     stopping_ = false;
     accepting_ = true;
     thread_ = std::thread([this] { run(); });
@@ -86,13 +86,13 @@ void Recorder::noteLosses(std::uint64_t kernel, std::uint64_t tooLong) {
 
 void Recorder::run() {
     preferThisThread();
-    std::string error;
+    Outcome<void> written;
     bool stopping = false;
-    while (error.empty() && !stopping) {
+    while (written && !stopping) {
         stopping = stopping_; // before the queue is looked at for the last time
         bool more = true;
-        while (error.empty() && more)
-            error = writeWaiting(more);
+        while (written && more)
+            written = writeWaiting(more);
         if (!stopping)
             std::this_thread::sleep_for(period);
     }
@@ -102,27 +102,27 @@ void Recorder::run() {
     Datagram datagram;
     for (; ring_.front(datagram); ring_.pop()) // nothing but after an error
         account_.add(datagram);
-    const std::string closing = files_.close();
-    publish(error.empty() ? closing : error);
+    const Outcome<void> closed = files_.close();
+    publish(written ? closed : written);
 }
 
-std::string Recorder::writeWaiting(bool &more) {
+Outcome<void> Recorder::writeWaiting(bool &more) {
     Datagram datagram;
-    std::string error;
+    Outcome<void> written;
     std::size_t count = 0;
-    for (; error.empty() && count < datagramsAtOnce && ring_.front(datagram); ++count) {
+    for (; written && count < datagramsAtOnce && ring_.front(datagram); ++count) {
         account_.add(datagram);
-        error = files_.write(datagram);
+        written = files_.write(datagram);
         ring_.pop();
     }
-    if (error.empty())
-        error = files_.flush();
+    if (written)
+        written = files_.flush();
     more = count == datagramsAtOnce;
-    publish(error);
-    return error;
+    publish(written);
+    return written;
 }
 
-void Recorder::publish(const std::string &error) {
+void Recorder::publish(const Outcome<void> &written) {
     const std::vector<PcapFiles::File> &files = files_.files();
     const std::lock_guard<std::mutex> lock(mutex_);
     // Files before the last that is known here have not changed.
@@ -133,7 +133,7 @@ void Recorder::publish(const std::string &error) {
     progress_.path = files.empty() ? std::string() : files_.path();
     progress_.counts = account_.counts();
     progress_.position = account_.position();
-    progress_.error = error;
+    progress_.error = written ? std::nullopt : std::optional(written.error());
 }
 
 RecordingState Recorder::state() const {
@@ -164,8 +164,8 @@ RecordingState Recorder::state() const {
                     {"too_long", double(tooLong_)},
                     {"unwritten", double(counts.packets - written)}};
     state.gps = gpsOf(progress.position, counts.position);
-    if (!progress.error.empty())
-        state.error = diskError(QString::fromStdString(progress.error), state.path);
+    if (progress.error)
+        state.error = diskError(QString::fromStdString(*progress.error), state.path);
     return state;
 }
 

@@ -37,12 +37,12 @@ private:
         std::vector<PcapFiles::File> files;
         PacketAccount::Counts counts;
         std::vector<std::uint8_t> position; ///< the last position packet
-        std::string error;
+        std::optional<std::string> error;
     };
 
     void run();
-    std::string writeWaiting(bool &more);
-    void publish(const std::string &error);
+    Outcome<void> writeWaiting(bool &more);
+    void publish(const Outcome<void> &written);
 
     DatagramRing ring_;
     std::atomic<bool> accepting_{false};

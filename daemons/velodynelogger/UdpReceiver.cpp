@@ -26,16 +26,17 @@ UdpReceiver::~UdpReceiver() {
     stop();
 }
 
-std::string UdpReceiver::start(const Options &options) {
+Outcome<void> UdpReceiver::start(const Options &options) {
     stop();
     failed_ = false;
     received_ = kernelDrops_ = tooLong_ = 0;
-    const std::string error = data_.open(options.address, options.port, options.bufferBytes);
-    if (!error.empty())
-        return error;
-    positionError_.clear();
+    if (const auto opened = data_.open(options.address, options.port, options.bufferBytes); !opened)
+        return opened;
+    positionError_.reset();
     if (options.positionPort != 0)
-        positionError_ = position_.open(options.address, options.positionPort, options.bufferBytes);
+        if (const auto opened = position_.open(options.address, options.positionPort, options.bufferBytes);
+            !opened)
+            positionError_ = opened.error();
     wake_ = ::eventfd(0, EFD_CLOEXEC);
     if (wake_ < 0) {
         const std::string why = std::strerror(errno);

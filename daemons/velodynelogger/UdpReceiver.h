@@ -39,17 +39,16 @@ public:
     explicit UdpReceiver(Sink sink);
     ~UdpReceiver();
 
-    /// An empty string on success, else what failed. A position port that cannot be opened does not hold up
-    /// the data: positionError() tells of it.
-    std::string start(const Options &options);
+    /// A position port that cannot be opened does not hold up the data: positionError() tells of it.
+    Outcome<void> start(const Options &options);
     void stop();
 
     bool isRunning() const { return thread_.joinable(); }
     std::uint16_t port() const { return data_.port(); } ///< the one bound
     Counts counts() const;
-    /// Why receiving ended by itself, or an empty string.
-    std::string error() const { return failed_ ? error_ : std::string(); }
-    const std::string &positionError() const { return positionError_; }
+    /// Why receiving ended by itself; nothing while it goes on.
+    std::optional<std::string> error() const { return failed_ ? std::optional(error_) : std::nullopt; }
+    const std::optional<std::string> &positionError() const { return positionError_; }
 
 private:
     void run();
@@ -59,7 +58,7 @@ private:
     Sink sink_;
     UdpSocket data_;
     UdpSocket position_;
-    std::string positionError_;
+    std::optional<std::string> positionError_;
     int wake_ = -1; ///< an eventfd that ends the wait
     std::thread thread_;
     std::atomic<bool> failed_{false};

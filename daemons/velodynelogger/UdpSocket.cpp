@@ -81,7 +81,7 @@ UdpSocket::~UdpSocket() {
     close();
 }
 
-std::string UdpSocket::open(const std::string &address, std::uint16_t port, int bufferBytes) {
+Outcome<void> UdpSocket::open(const std::string &address, std::uint16_t port, int bufferBytes) {
     close();
     sockaddr_in local{};
     local.sin_family = AF_INET;
@@ -90,17 +90,17 @@ std::string UdpSocket::open(const std::string &address, std::uint16_t port, int 
         return address + ": a local IPv4 address such as 0.0.0.0 expected";
     socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (socket_ < 0)
-        return fail("no UDP socket");
+        return failed("no UDP socket");
     setOptions(bufferBytes);
     if (::bind(socket_, reinterpret_cast<const sockaddr *>(&local), sizeof local) != 0)
-        return fail("UDP port " + std::to_string(port) + " of " + address + " cannot be opened");
+        return failed("UDP port " + std::to_string(port) + " of " + address + " cannot be opened");
     socklen_t size = sizeof local;
     ::getsockname(socket_, reinterpret_cast<sockaddr *>(&local), &size);
     port_ = ntohs(local.sin_port);
     return {};
 }
 
-std::string UdpSocket::fail(const std::string &what) {
+std::string UdpSocket::failed(const std::string &what) {
     const std::string message = what + ": " + std::strerror(errno);
     close();
     return message;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/Outcome.h"
 #include "common/capture/Datagram.h"
 
 #include <memory>
@@ -14,7 +15,7 @@ public:
     ~UdpSocket();
 
     /// As UdpReceiver::start().
-    std::string open(const std::string &address, std::uint16_t port, int bufferBytes);
+    Outcome<void> open(const std::string &address, std::uint16_t port, int bufferBytes);
     void close();
 
     /// Takes what waits, up to a batch. False when the socket failed; errno says why.
@@ -33,7 +34,7 @@ public:
 private:
     struct Batch;
 
-    std::string fail(const std::string &what);
+    std::string failed(const std::string &what);
     void setOptions(int bufferBytes);
 
     std::unique_ptr<Batch> batch_;

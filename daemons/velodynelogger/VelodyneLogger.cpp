@@ -38,6 +38,11 @@ VelodyneLogger::VelodyneLogger()
     declareTopics();
     declareSourceCommands();
     declareRecordCommands();
+    recording_.setObstacle([this]() -> QString {
+        if (source_.state() == State::Live)
+            return {};
+        return "only what is received is recorded; source.open {live: true} receives";
+    });
     connect(&second_, &QTimer::timeout, this, &VelodyneLogger::tick);
     retry_.setSingleShot(true);
     connect(&retry_, &QTimer::timeout, this, &VelodyneLogger::publishTurns);
@@ -90,11 +95,11 @@ Result<void> VelodyneLogger::openLive() {
     const QString name = QString("udp://%1:%2").arg(address).arg(port);
     source_.close();
     updateClouds();
-    const std::string error = feed_.openLive(address.toStdString(), quint16(port),
-                                             settings().integer("source.receive_buffer_bytes"), options());
-    if (!error.empty()) {
+    const auto live = feed_.openLive(address.toStdString(), quint16(port),
+                                     settings().integer("source.receive_buffer_bytes"), options());
+    if (!live) {
         opened(State::None, {});
-        return diskError(QString::fromStdString(error), name);
+        return diskError(QString::fromStdString(live.error()), name);
     }
     opened(State::Live, name);
     return {};
@@ -102,12 +107,12 @@ Result<void> VelodyneLogger::openLive() {
 
 Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &paths,
                                       const Playback::Options &play, const LidarFeed::Options &options,
-                                      const PlayTime &begin) {
+                                      const PlayTime &begin, const Result<void> &whole) {
     std::vector<std::string> files;
     for (const QString &path : paths) {
         PcapReader probe; // a wrong name does not close what is open
-        if (!probe.open(path.toStdString()))
-            return diskError(QString::fromStdString(probe.error()), path);
+        if (const auto found = probe.open(path.toStdString()); !found)
+            return diskError(QString::fromStdString(found.error()), path);
         files.push_back(path.toStdString());
     }
     source_.close();
@@ -116,13 +121,13 @@ Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &pa
         replayEnd_ = result;
         publishTurns();
     });
-    const auto tell = [ended, name](const std::string &failure) {
-        ended(failure.empty() ? Result<void>() : diskError(QString::fromStdString(failure), name));
+    const auto tell = [ended, name, whole](const Outcome<void> &played) {
+        ended(played ? whole : diskError(QString::fromStdString(played.error()), name));
     };
-    const std::string error = feed_.openPcap(files, play, options, tell, begin);
-    if (!error.empty()) {
+    const auto replay = feed_.openPcap(files, play, options, tell, begin);
+    if (!replay) {
         opened(State::None, {});
-        return diskError(QString::fromStdString(error), name);
+        return diskError(QString::fromStdString(replay.error()), name);
     }
     opened(State::Replay, name);
     return {};
@@ -170,7 +175,8 @@ Result<void> VelodyneLogger::openRecording(const Call &call, const StoredRecordi
                      : files.error();
     return openPcap(stored.folder, *files, replayOptions(call), replayedOptions(call),
                     PlayTime(std::int64_t(stored.start_s * 1e9), std::int64_t(stored.length_s * 1e9),
-                             std::int64_t(call.number("delay_s") * 1e9)));
+                             std::int64_t(call.number("delay_s") * 1e9)),
+                    stored.isWhole());
 }
 
 void VelodyneLogger::closeSource() {

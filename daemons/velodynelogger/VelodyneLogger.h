@@ -34,8 +34,10 @@ private:
     LidarFeed::Options options();
     LidarFeed::Options replayedOptions(const Call &call);
     Result<void> openLive();
+    /// whole: what is told when all was played.
     Result<void> openPcap(const QString &name, const QStringList &paths, const Playback::Options &play,
-                          const LidarFeed::Options &options, const PlayTime &begin = {});
+                          const LidarFeed::Options &options, const PlayTime &begin = {},
+                          const Result<void> &whole = {});
     Result<void> openRecording(const Call &call, const StoredRecording &stored);
     ReplaySource::Actions sourceActions();
     void closeSource();

@@ -152,11 +152,9 @@ private:
         return files.open((std::filesystem::path(folder) / (name + suffix)).string());
     }
     World world(const std::string &place) const {
-        std::string error;
-        std::optional<World> found =
-            readWorld((std::filesystem::path(worlds) / (place + ".json")).string(), error);
+        Outcome<World> found = readWorld((std::filesystem::path(worlds) / (place + ".json")).string());
         if (!found)
-            throw Failure(error + "; --worlds names the folder of the worlds");
+            throw Failure(found.error() + "; --worlds names the folder of the worlds");
         found->name = place; // whatever it calls itself: the name goes into scripts and documents
         return *found;
     }

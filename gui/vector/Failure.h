@@ -1,6 +1,7 @@
 #pragma once
 
-#include "vectorlib/io/Expected.h"
+#include "common/Outcome.h"
+#include "vectorlib/io/InputError.h"
 
 #include <stdexcept>
 
@@ -10,6 +11,14 @@ namespace hermes::vector {
 struct Failure : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// The value, or a Failure with the message.
+template <typename T>
+T valueOrFail(Outcome<T> outcome) {
+    if (!outcome)
+        throw Failure(outcome.error());
+    return outcome.take();
+}
 
 /// The value, or a Failure with the reader's message.
 template <typename T>

@@ -49,8 +49,8 @@ LidarCapture::LidarCapture(const std::string &path, const SensorOptions &options
     , options_(options)
     , file_(path)
     , stream_(streamOf(options, model)) {
-    if (!reader_.open(file_.path()))
-        throw Failure(file_.inWordsOfOriginal(reader_.error()));
+    if (const Outcome<void> opened = reader_.open(file_.path()); !opened)
+        throw Failure(file_.inWordsOfOriginal(opened.error()));
 }
 
 std::string LidarCapture::read(velodyne::TurnAssembler &assembler,

@@ -46,12 +46,9 @@ struct ObserveCommand {
 
     std::vector<Segment> loadWorld() const {
         Input input(in);
-        std::string error;
-        const std::optional<World> world = parseWorld(input.readAll(), input.name(), error);
-        if (!world)
-            throw Failure(error);
+        const World world = valueOrFail(parseWorld(input.readAll(), input.name()));
         std::vector<Segment> edges;
-        for (const World::Edge &e : world->edges)
+        for (const World::Edge &e : world.edges)
             edges.emplace_back(Point(e.x1, e.y1), Point(e.x2, e.y2));
         return edges;
     }

@@ -65,10 +65,9 @@ void addViews(const std::string &name, Segments (*make)(std::size_t)) {
 }
 
 bool addPillars() {
-    std::string error;
-    const auto world = hermes::readWorld(BENCH_WORLDS "/pillars.json", error);
+    const auto world = hermes::readWorld(BENCH_WORLDS "/pillars.json");
     if (!world) {
-        std::cerr << error << '\n';
+        std::cerr << world.error() << '\n';
         return false;
     }
     const Segments edges = hermes::vector::edgesOf(*world);

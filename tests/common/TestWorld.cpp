@@ -22,12 +22,11 @@ double distance(const World::Edge &e, double x, double y) {
 }
 
 /// A world of deploy/worlds.
-std::optional<World> shipped(const QString &name) {
-    std::string error;
+Outcome<World> shipped(const QString &name) {
     const QString path = qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/" + name + ".json";
-    const auto world = readWorld(path.toStdString(), error);
+    const auto world = readWorld(path.toStdString());
     if (!world)
-        qWarning("%s", error.c_str());
+        qWarning("%s", world.error().c_str());
     return world;
 }
 
@@ -85,18 +84,18 @@ void TestWorld::refusesBadFiles_data() {
 void TestWorld::refusesBadFiles() {
     QFETCH(QByteArray, text);
     QFETCH(QByteArray, message);
-    std::string error;
-    QVERIFY(parseWorld(square, "w", error).has_value());
-    QVERIFY(!parseWorld(text.toStdString(), "w", error).has_value());
-    QVERIFY2(QByteArray::fromStdString(error).startsWith(message), error.c_str());
+    QVERIFY(parseWorld(square, "w").ok());
+    const auto world = parseWorld(text.toStdString(), "w");
+    QVERIFY(!world);
+    QVERIFY2(QByteArray::fromStdString(world.error()).startsWith(message), world.error().c_str());
 }
 
 void TestWorld::saysWhichFileIsMissing() {
-    std::string error;
-    QVERIFY(!readWorld("/nonexistent/w.json", error).has_value());
-    QCOMPARE(QByteArray::fromStdString(error),
+    const auto world = readWorld("/nonexistent/w.json");
+    QVERIFY(!world);
+    QCOMPARE(QByteArray::fromStdString(world.error()),
              QByteArray("/nonexistent/w.json: cannot be read: No such file or directory"));
-    QVERIFY(!readWorld("/", error).has_value());
+    QVERIFY(!readWorld("/"));
 }
 
 void TestWorld::roomsAreClosed_data() {
@@ -108,7 +107,7 @@ void TestWorld::roomsAreClosed_data() {
 void TestWorld::roomsAreClosed() { // one polygon, free space inside, every pose in it
     QFETCH(int, edges);
     const auto world = shipped(QString::fromLatin1(QTest::currentDataTag()));
-    QVERIFY(world.has_value());
+    QVERIFY(world.ok());
     QCOMPARE(world->edges.size(), std::size_t(edges));
     QVERIFY(world->poses.size() >= 10);
     for (std::size_t i = 0; i < world->edges.size(); ++i) {
@@ -143,7 +142,7 @@ void TestWorld::worldsCanBeDriven() {
     QFETCH(int, poses);
     QFETCH(double, step);
     const auto world = shipped(name);
-    QVERIFY(world.has_value());
+    QVERIFY(world.ok());
     QCOMPARE(QString::fromStdString(world->name), name);
     QCOMPARE(int(world->edges.size()), edges);
     QCOMPARE(int(world->poses.size()), poses);
@@ -165,7 +164,7 @@ void TestWorld::worldsCanBeDriven() {
 
 void TestWorld::stairsGrowQuadratically() {
     const auto world = shipped("quadratic");
-    QVERIFY(world.has_value());
+    QVERIFY(world.ok());
     int treads = 0;
     for (const World::Edge &edge : world->edges)
         if (edge.x2 < edge.x1) { // with free space below

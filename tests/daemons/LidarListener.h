@@ -21,9 +21,9 @@ public:
     std::string error;
     LidarFeed feed{recorder, [this] { ++ready; }};
 
-    std::string openPcap(const std::string &path, double speed, bool loop = false, bool paused = false) {
-        return feed.openPcap({path}, {speed, loop, paused}, {}, [this](const std::string &why) {
-            error = why;
+    Outcome<void> openPcap(const std::string &path, double speed, bool loop = false, bool paused = false) {
+        return feed.openPcap({path}, {speed, loop, paused}, {}, [this](const Outcome<void> &played) {
+            error = played ? std::string() : played.error();
             ended = true;
         });
     }
@@ -78,8 +78,8 @@ inline QString makeCapture(const QTemporaryDir &folder, int count) {
     const QString path = folder.filePath(QStringLiteral("made.pcap"));
     const Sensor sensor;
     PcapWriter writer;
-    if (!writer.open(path.toStdString()))
-        qFatal("%s", writer.error().c_str());
+    if (const auto done = writer.open(path.toStdString()); !done)
+        qFatal("%s", done.error().c_str());
     for (int i = 0; i < count; ++i)
         writer.write(sensorDatagram(sensor.packet(i), sensor.stamp(i)));
     return path;

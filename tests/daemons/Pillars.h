@@ -9,11 +9,10 @@
 
 /// The room with eight pillars that the demo drives through.
 inline hermes::World pillars() {
-    std::string error;
-    const auto world = hermes::readWorld(
-        qEnvironmentVariable("HERMES_SOURCE").toStdString() + "/deploy/worlds/pillars.json", error);
+    const auto world = hermes::readWorld(qEnvironmentVariable("HERMES_SOURCE").toStdString() +
+                                         "/deploy/worlds/pillars.json");
     if (!world)
-        qFatal("%s", error.c_str());
+        qFatal("%s", world.error().c_str());
     return *world;
 }
 

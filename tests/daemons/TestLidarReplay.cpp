@@ -36,7 +36,7 @@ void TestLidarReplay::replayGivesWhatDirectDecodingGives() {
     if (path.isEmpty())
         QSKIP("the recordings of real sensors are not here; HERMES_DATA names their folder");
     LidarListener listener;
-    QCOMPARE(listener.openPcap(path.toStdString(), speed), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), speed));
     QVERIFY(listener.waitForEnd());
     QCOMPARE(listener.error, std::string());
     QVERIFY(listener.turns.size() >= 3);
@@ -49,7 +49,7 @@ void TestLidarReplay::fastReplayWaitsForItsReader() {
     QTemporaryDir folder;
     const QString path = makeCapture(folder, 6000); // 34 turns
     LidarListener listener;
-    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 0));
     QTRY_COMPARE(listener.ready.load(), 16);                   // the queue is full
     QCOMPARE(listener.feed.counts().turns, std::uint64_t(16)); // answers meanwhile
     QVERIFY(!listener.ended);
@@ -64,7 +64,7 @@ void TestLidarReplay::replayKeepsItsPace() {
     LidarListener listener;
     QElapsedTimer timer;
     timer.start();
-    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 1));
     QVERIFY(listener.waitForEnd());
     QVERIFY(timer.elapsed() > 540);
     QVERIFY(same(listener.turns, decode(path)));
@@ -75,7 +75,7 @@ void TestLidarReplay::cutCaptureGivesAllBeforeTheCut() {
     const QString path = makeCapture(folder, 500);
     QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
     LidarListener listener;
-    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 0));
     QVERIFY(listener.waitForEnd());
     QVERIFY2(listener.error.find(path.toStdString() + ": record 301 at byte 379224 cannot be read") == 0,
              listener.error.c_str());
@@ -90,7 +90,7 @@ void TestLidarReplay::replayLoops() {
     QTemporaryDir folder;
     const QString path = makeCapture(folder, 500);
     LidarListener listener;
-    QCOMPARE(listener.openPcap(path.toStdString(), 0, true), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 0, true));
     QTRY_VERIFY((listener.take(), listener.turns.size() >= 12));
     QVERIFY(!listener.ended);
     listener.feed.close();
@@ -106,7 +106,7 @@ void TestLidarReplay::replayLoops() {
     // A file that is cut is played to the cut, once.
     QVERIFY(QFile::resize(path, 24 + 300 * (16 + 42 + 1206) + 700));
     LidarListener cut;
-    QCOMPARE(cut.openPcap(path.toStdString(), 0, true), std::string());
+    QVERIFY(cut.openPcap(path.toStdString(), 0, true));
     QVERIFY(cut.waitForEnd());
     QVERIFY(!cut.error.empty());
     QCOMPARE(cut.feed.counts().packets.packets, std::uint64_t(300));
@@ -146,12 +146,12 @@ void TestLidarReplay::replaySeeks() {
                 const std::lock_guard<std::mutex> lock(mutex);
                 stamps.push_back(datagram.stamp_ns);
             },
-            [&] { ++jumps; }, [](const std::string &) {});
+            [&] { ++jumps; }, [](const Outcome<void> &) {});
         const auto played = [&] {
             const std::lock_guard<std::mutex> lock(mutex);
             return stamps;
         };
-        QCOMPARE(player.start({path.toStdString()}, {1, false, false}), std::string());
+        QVERIFY(player.start({path.toStdString()}, {1, false, false}));
         QTRY_VERIFY(player.duration_s().has_value());
         QVERIFY(std::abs(*player.duration_s() - 11999 * 552.96e-6) < 1e-5);
         Playback &playback = player.playback();
@@ -173,7 +173,7 @@ void TestLidarReplay::replayPauses() {
     QTemporaryDir folder;
     const QString path = makeCapture(folder, 3000); // 1.659 s
     LidarListener listener;
-    QCOMPARE(listener.openPcap(path.toStdString(), 1), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 1));
     QTRY_VERIFY(listener.feed.counts().packets.packets > 100);
     listener.feed.player().playback().setPaused(true);
     std::uint64_t packets = 0; // one may be on its way
@@ -194,7 +194,7 @@ void TestLidarReplay::closingEndsAWaitingReplay() {
     QTemporaryDir folder;
     const QString path = makeCapture(folder, 6000);
     LidarListener listener;
-    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 0));
     QTRY_COMPARE(listener.ready.load(), 16);
     listener.feed.close(); // does not hang
     QVERIFY(!listener.ended);

@@ -22,7 +22,7 @@ void TestLidarTurns::allLasersOfATurn() {
     LidarListener listener;
     std::atomic<std::size_t> points{0};
     std::atomic<int> clouds{0};
-    QCOMPARE(listener.openPcap(path.toStdString(), 1, false, true), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 1, false, true));
     listener.feed.captureTurn([&](const Turn *turn) {
         points = turn ? turn->points.size() : 0;
         ++clouds;
@@ -39,13 +39,13 @@ void TestLidarTurns::aCaptureEndsWithItsSource() {
     LidarListener listener;
     std::atomic<int> refused{0};
     const auto capture = [&refused](const Turn *turn) { refused += turn == nullptr; };
-    QCOMPARE(listener.openPcap(path.toStdString(), 1, false, true), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 1, false, true));
     listener.feed.captureTurn(capture);
     listener.feed.captureTurn(capture); // both are told
     listener.feed.player().playback().setPaused(false);
     QVERIFY(listener.waitForEnd());
     QCOMPARE(refused.load(), 2);
-    QCOMPARE(listener.feed.openLive("127.0.0.1", 0, 1 << 20, {}), std::string());
+    QVERIFY(listener.feed.openLive("127.0.0.1", 0, 1 << 20, {}));
     listener.feed.captureTurn(capture);
     listener.feed.cancelCaptures();
     QCOMPARE(refused.load(), 3);
@@ -59,7 +59,7 @@ void TestLidarTurns::cloudsAreThinned() {
     thinning.maximumPoints = 1000;
     thinning.turnStep = 2;
     listener.feed.wantClouds(thinning);
-    QCOMPARE(listener.openPcap(path.toStdString(), 0), std::string());
+    QVERIFY(listener.openPcap(path.toStdString(), 0));
     QVERIFY(listener.waitForEnd());
     QCOMPARE(listener.turns.size(), std::size_t(35));
     QCOMPARE(listener.clouds.size(), std::size_t(18));
@@ -81,7 +81,7 @@ void TestLidarTurns::nobodyReadsClouds() {
         LidarListener listener;
         if (wanted)
             listener.feed.wantClouds(LidarFeed::Thinning());
-        QCOMPARE(listener.openPcap(path.toStdString(), 2), std::string()); // the queue holds 0.8 s of scans
+        QVERIFY(listener.openPcap(path.toStdString(), 2)); // the queue holds 0.8 s of scans
         for (int i = 0; i < 3000 && !listener.ended; ++i) {
             QTest::qWait(5);
             while (const LidarFeed::Turn turn = listener.feed.takeTurn())

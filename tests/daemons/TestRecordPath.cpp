@@ -24,14 +24,14 @@ void TestRecordPath::aPacketCostsNoAllocation() {
     DatagramRing ring(100000);
     PacketAccount account;
     PcapFiles files;
-    QCOMPARE(files.open({folder.path(), "velodynelogger", 1e9, 3600}), std::string());
+    QVERIFY(files.open({folder.path(), "velodynelogger", 1e9, 3600}));
     const auto record = [&](const Datagram &pushed) {
         QVERIFY(ring.push(pushed));
         ring.wake();
         Datagram datagram;
         QVERIFY(ring.front(datagram));
         account.add(datagram);
-        QVERIFY(files.write(datagram).empty());
+        QVERIFY(files.write(datagram));
         ring.pop();
     };
     const auto recordAll = [&](int first, int end) {
@@ -41,7 +41,7 @@ void TestRecordPath::aPacketCostsNoAllocation() {
             if (i % 14 == 0)
                 record(sensorDatagram(position, sensor.stamp(i)));
         }
-        QVERIFY(files.flush().empty());
+        QVERIFY(files.flush());
     };
     recordAll(0, 100);
     const std::size_t before = allocations;

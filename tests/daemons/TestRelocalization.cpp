@@ -15,12 +15,11 @@ using Point = vectorlib::Vector2D<double>;
 namespace {
 
 Segments pillars() {
-    std::string error;
     const auto world =
-        readWorld(qEnvironmentVariable("HERMES_SOURCE").toStdString() + "/deploy/worlds/pillars.json", error);
+        readWorld(qEnvironmentVariable("HERMES_SOURCE").toStdString() + "/deploy/worlds/pillars.json");
     Segments walls;
     if (!world)
-        qWarning("%s", error.c_str());
+        qWarning("%s", world.error().c_str());
     else
         for (const World::Edge &e : world->edges)
             walls.emplace_back(Point(e.x1, e.y1), Point(e.x2, e.y2));

@@ -72,7 +72,7 @@ void TestSimulation::packetsAreSentAtTheirRate() {
     const double processor = processorSeconds();
     QElapsedTimer timer;
     timer.start();
-    QCOMPARE(pump.start(pillars(), {}, "127.0.0.1", receiver.localPort()), std::string());
+    QVERIFY(pump.start(pillars(), {}, "127.0.0.1", receiver.localPort()));
     std::size_t turns = 0;
     velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
         QVERIFY(turns == 0 || std::abs(double(turn.points.size()) - 2170) < 3);
@@ -105,7 +105,7 @@ void TestSimulation::packetsAreSentAtTheirRate() {
 
 void TestSimulation::pumpRefusesBadAddresses() {
     PacketPump pump([](const Simulation::Truth &) {});
-    QCOMPARE(pump.start(pillars(), {}, "nowhere", 2368),
+    QCOMPARE(pump.start(pillars(), {}, "nowhere", 2368).error(),
              std::string("nowhere: an IPv4 address such as 127.0.0.1 expected"));
     bool ran = false;
     pump.with([&](Simulation &) { ran = true; });
@@ -117,7 +117,7 @@ void TestSimulation::faultsSwallowPackets() {
     QVERIFY(receiver.bind(QHostAddress(QHostAddress::LocalHost), 0));
     PacketPump pump([](const Simulation::Truth &) {});
     pump.setFault({LidarFault::Kind::Silence, 0});
-    QCOMPARE(pump.start(pillars(), {}, "127.0.0.1", receiver.localPort()), std::string());
+    QVERIFY(pump.start(pillars(), {}, "127.0.0.1", receiver.localPort()));
     QTRY_VERIFY(pump.counts().swallowed > 50);
     QVERIFY(!receiver.hasPendingDatagrams());
     QCOMPARE(pump.counts().sent, std::uint64_t(0));

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     FUZZ_REQUIRE(file >= 0 && write(file, data, size) == ssize_t(size));
     using Next = hermes::PcapReader::Next;
     hermes::PcapReader reader;
-    const bool opened = reader.open("/proc/self/fd/" + std::to_string(file));
+    const auto opened = reader.open("/proc/self/fd/" + std::to_string(file));
     hermes::Datagram datagram;
     Next next = Next::Datagram;
     unsigned sum = 0;

@@ -27,7 +27,7 @@ void appendForeign(const QString &path, quint16 port) {
     d.payload = reinterpret_cast<const std::uint8_t *>(payload.constData());
     d.size = std::size_t(payload.size());
     if (!writer.open(copy.toStdString()) || !writer.write(d) || !writer.close())
-        qFatal("%s", writer.error().c_str());
+        qFatal("%s cannot be written", qPrintable(copy));
     const QByteArray record = contents(copy).mid(int(PcapWriter::fileHeaderBytes));
     QFile::remove(copy);
     write(path, contents(path) + record);

@@ -65,8 +65,8 @@ inline void writeCapture(const QString &path, int packets,
                          const std::vector<CapturedSensor> &sensors = {CapturedSensor()}) {
     using namespace hermes;
     PcapWriter writer;
-    if (!writer.open(path.toStdString(), true))
-        qFatal("%s", writer.error().c_str());
+    if (const auto done = writer.open(path.toStdString(), true); !done)
+        qFatal("%s", done.error().c_str());
     int azimuth = 18000;
     for (int p = 0; p < packets; ++p) {
         velodyne::DataPacketWriter packet;
@@ -86,8 +86,8 @@ inline void writeCapture(const QString &path, int packets,
             writer.write(d);
         }
     }
-    if (!writer.close())
-        qFatal("%s", writer.error().c_str());
+    if (const auto done = writer.close(); !done)
+        qFatal("%s", done.error().c_str());
 }
 
 /// A folder whose files are removed before every test.

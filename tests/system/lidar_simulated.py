@@ -14,7 +14,7 @@ import tempfile
 import threading
 import time
 
-from support import BINARIES, SOURCE, Daemon, Process, free_port, wait_for
+from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
 import velodyne_reference as reference
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
@@ -135,6 +135,8 @@ def drive(folder):
         wait_for("keeping of the time", lambda: abs(simulator.call("sim.state")["stamp"] - before["stamp"] -
                                                     (time.monotonic() - begin)) < 0.5, 10)  # after a stall of the machine
         assert after["driving"] and abs(after["twist"]["vx"] - 0.8) < 0.01, after
+        for method, params in (("source.open", {"pcap": recorded}), ("source.open", {"live": True}), ("source.close", {})):
+            check_refused(logger, method, "being recorded" if method == "source.close" else "would be recorded", **params)
         status = logger.call("record.stop")
         assert not any(status["losses"].values()) and status["counts"]["packets"] > 8000, status
         check_tshark(recorded, status["counts"]["packets"])
@@ -148,6 +150,15 @@ def drive(folder):
         for process in processes:
             if process.process.poll() is None:
                 process.stop()
+
+
+def check_refused(daemon, method, words, **params):
+    try:
+        daemon.call(method, **params)
+    except DaemonError as error:
+        assert words in str(error), error
+    else:
+        raise AssertionError(f"{method} {params} was not refused")
 
 
 def check_state(lidar, logger):
@@ -181,6 +192,7 @@ def check_replay(logger, recorded):
             assert abs(x - point.x) < 2e-5 and abs(y - point.y) < 2e-5, (scan["turn"], x, y, point)
         if turn is not expected[-1]:
             scan = next(scans)
+    check_refused(logger, "record.start", "only what is received", name="replayed")
 
 
 def check_end(processes):

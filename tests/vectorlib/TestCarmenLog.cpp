@@ -39,7 +39,7 @@ private Q_SLOTS:
     void frontLaser() {
         const auto log = read("# a comment\nPARAM robot_max 3 host 0\r\n" +
                               flaser("1 2 81.9 0", pose(1, 2, 0.5) + pose(3, 4, 0.25)));
-        QVERIFY2(log.hasValue(), log ? "" : log.error().message().c_str());
+        QVERIFY2(log.ok(), log ? "" : log.error().message().c_str());
         QCOMPARE(log->scans.size(), std::size_t(1));
         const CarmenScan &scan = log->scans[0];
         QCOMPARE(scan.line, std::size_t(3));
@@ -73,7 +73,7 @@ private Q_SLOTS:
     void robotLaser() {
         const auto log = read("ROBOTLASER1 0 -1.5 3.0 0.5 20 0.01 0 3 1 19.9 20 2 7 8 " + pose(1, 2, 3) +
                               pose(4, 5, 6) + "0 0 0.1 0.2 0 12.5 host 12.6\n");
-        QVERIFY2(log.hasValue(), log ? "" : log.error().message().c_str());
+        QVERIFY2(log.ok(), log ? "" : log.error().message().c_str());
         const CarmenScan &scan = log->scans[0];
         QCOMPARE(scan.startAngle, -1.5);
         QCOMPARE(scan.angleStep, 0.5);

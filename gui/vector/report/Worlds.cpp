@@ -40,16 +40,12 @@ ReportWorld findWorld(const std::string &name) {
         if (const fs::path installed = installedWorlds() / (name + ".json"); fs::exists(installed, error))
             path = installed;
     Input input(path.string());
-    std::string fault;
-    std::optional<World> world = parseWorld(input.readAll(), input.name(), fault);
-    if (!world)
-        throw Failure(fault);
-    if (world->poses.size() < 2)
-        throw Failure(input.name() + ": found " + std::to_string(world->poses.size()) +
+    World world = valueOrFail(parseWorld(input.readAll(), input.name()));
+    if (world.poses.size() < 2)
+        throw Failure(input.name() + ": found " + std::to_string(world.poses.size()) +
                       " poses, a report needs two or more");
-    const auto found = known.find(world->name);
-    return {std::move(*world),
-            found != known.end() ? found->second.description : "A world of line segments."};
+    const auto found = known.find(world.name);
+    return {std::move(world), found != known.end() ? found->second.description : "A world of line segments."};
 }
 
 ReportSettings settingsFor(const std::string &name) {

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "vectorlib/error/Result.h"
+
 #include <cstddef>
 #include <string>
-#include <utility>
-#include <variant>
 
 namespace vectorlib {
 
@@ -21,27 +21,7 @@ struct InputError {
     }
 };
 
-/// A value, or the error why there is none.
 template <typename T>
-class Expected {
-public:
-    Expected(T value)
-        : state_(std::move(value)) {}
-    Expected(InputError error)
-        : state_(std::move(error)) {}
-
-    bool hasValue() const { return state_.index() == 0; }
-    explicit operator bool() const { return hasValue(); }
-    T &value() { return std::get<0>(state_); }
-    const T &value() const { return std::get<0>(state_); }
-    T &operator*() { return value(); }
-    const T &operator*() const { return value(); }
-    T *operator->() { return &value(); }
-    const T *operator->() const { return &value(); }
-    const InputError &error() const { return std::get<1>(state_); }
-
-private:
-    std::variant<T, InputError> state_;
-};
+using Expected = Result<T, InputError>;
 
 } // namespace vectorlib

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "vectorlib/edges/MapEdge.h"
-#include "vectorlib/io/Expected.h"
+#include "vectorlib/io/InputError.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Tum.h"
 

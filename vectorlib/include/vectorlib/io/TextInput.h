@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/io/Expected.h"
+#include "vectorlib/io/InputError.h"
 
 #include <array>
 #include <charconv>
