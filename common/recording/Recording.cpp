@@ -104,8 +104,8 @@ void Recording::start(const Call &call, const Reply &reply) {
     if (fine && phase_ != Phase::Idle)
         fine = Error(ErrorCode::NotReady,
                      QString("\"%1\" is being recorded; record.stop ends it").arg(name_.name));
-    if (const QString obstacle = obstacle_ ? obstacle_() : QString(); fine && !obstacle.isEmpty())
-        fine = Error(ErrorCode::NotReady, obstacle);
+    if (fine && condition_)
+        fine = condition_();
     if (!fine)
         return reply.error(fine.error());
     phase_ = Phase::Starting;

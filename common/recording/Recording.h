@@ -32,8 +32,8 @@ public:
     static std::vector<SchemaViolation> checkSettings(const QJsonObject &settings);
     std::vector<Command> commands();
 
-    /// Why nothing can be recorded now; empty: it can.
-    void setObstacle(std::function<QString()> obstacle) { obstacle_ = std::move(obstacle); }
+    /// Asked before one begins, whether it may.
+    void setCondition(std::function<Result<void>()> condition) { condition_ = std::move(condition); }
     void open();
     void close();
 
@@ -81,7 +81,7 @@ private:
     SessionName name_; ///< of this recording or the last
     QString folder_;
     double start_ = 0;
-    std::function<QString()> obstacle_;
+    std::function<Result<void>()> condition_;
     RecordingEnd endReason_ = RecordingEnd::Stopped;
     std::optional<Error> error_; ///< that ended it
     std::optional<Error> refreshError_;

@@ -70,6 +70,12 @@ SourceStatus ReplaySource::status() const {
     return status;
 }
 
+Result<void> ReplaySource::mayChange() const {
+    if (actions_.records && actions_.records())
+        return Error(ErrorCode::NotReady, "the source is being recorded; record.stop ends the recording");
+    return {};
+}
+
 Result<QJsonValue> ReplaySource::open(const Call &call) {
     const bool live = call.has("live") && call.flag("live");
     if (live + call.has("pcap") + call.has("recording") != 1) {
@@ -81,9 +87,8 @@ Result<QJsonValue> ReplaySource::open(const Call &call) {
         return invalidParams(ways, QString("one of live: true%1 and recording: NAME expected")
                                        .arg(actions_.pcap ? ", pcap: FILE" : ""));
     }
-    if (actions_.records && actions_.records())
-        return Error(ErrorCode::NotReady,
-                     "what comes from another source would be recorded; record.stop ends the recording");
+    if (const Result<void> fine = mayChange(); !fine)
+        return fine.error();
     const Result<void> result = live                    ? actions_.live(call)
                                 : call.has("recording") ? openRecording(call)
                                                         : actions_.pcap(call);

@@ -38,6 +38,8 @@ public:
     const QString &error() const { return error_; }
     SourceStatus status() const;
 
+    /// Not while it is being recorded.
+    Result<void> mayChange() const;
     /// None, until opened(). What the one before tells of its end counts for nothing.
     void close();
     void opened(State state, const QString &name);

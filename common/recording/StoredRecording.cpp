@@ -57,12 +57,13 @@ Result<QStringList> StoredRecording::files() const {
 Result<void> StoredRecording::isWhole() const {
     for (const QJsonValue &file : sidecar.value("files").toArray()) {
         const QString path = QDir(folder).filePath(file["name"].toString());
-        const qint64 size = QFileInfo(path).size(), recorded = qint64(file["bytes"].toDouble());
-        if (size < recorded)
+        const double recorded = file["bytes"].toDouble(); // whatever stands there
+        const qint64 size = QFileInfo(path).size();
+        if (double(size) < recorded)
             return diskError(QString("%1: it has %2 bytes, and %3 were recorded; the others are missing")
                                  .arg(path)
                                  .arg(size)
-                                 .arg(recorded),
+                                 .arg(recorded, 0, 'f', 0),
                              path);
     }
     return {};

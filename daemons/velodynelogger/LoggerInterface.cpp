@@ -116,9 +116,8 @@ void VelodyneLogger::declareSourceCommands() {
     addCommand(Command("source.close", "Stops receiving or replaying")
                    .returnsNull()
                    .handler([this](const Call &) -> Result<QJsonValue> {
-                       if (recording_.isActive())
-                           return Error(ErrorCode::NotReady,
-                                        "it is being recorded; record.stop ends the recording");
+                       if (const Result<void> fine = source_.mayChange(); !fine)
+                           return fine.error();
                        closeSource();
                        return QJsonValue();
                    }));

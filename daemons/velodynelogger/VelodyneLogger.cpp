@@ -38,10 +38,11 @@ VelodyneLogger::VelodyneLogger()
     declareTopics();
     declareSourceCommands();
     declareRecordCommands();
-    recording_.setObstacle([this]() -> QString {
+    recording_.setCondition([this]() -> Result<void> {
         if (source_.state() == State::Live)
             return {};
-        return "only what is received is recorded; source.open {live: true} receives";
+        return Error(ErrorCode::NotReady,
+                     "only what is received is recorded; source.open {live: true} receives");
     });
     connect(&second_, &QTimer::timeout, this, &VelodyneLogger::tick);
     retry_.setSingleShot(true);
@@ -135,7 +136,7 @@ Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &pa
 
 void VelodyneLogger::opened(State state, const QString &name) {
     replayEnd_.reset();
-    sincePublished_.start();
+    sinceRoom_.start();
     packetsAtTick_ = datagramsAtTick_ = 0;
     packetRate_ = 0;
     sincePacket_.start();
@@ -238,7 +239,10 @@ void VelodyneLogger::updateClouds() {
 /// A replay without loss waits for readers who are behind, but not for one that reads no more.
 bool VelodyneLogger::mayPublish() {
     const bool patient = source_.state() == State::Replay && feed_.player().playback().options().speed == 0;
-    return !patient || (hasRoom("scan2d") && hasRoom("cloud")) || sincePublished_.elapsed() >= patience_ms;
+    const bool hasRoomNow = !patient || (hasRoom("scan2d") && hasRoom("cloud"));
+    if (hasRoomNow)
+        sinceRoom_.start();
+    return hasRoomNow || sinceRoom_.elapsed() >= patience_ms;
 }
 
 /// One turn, and the next after whatever else waits in the event loop: on a slow machine a message may take
@@ -251,7 +255,6 @@ void VelodyneLogger::publishTurns() {
     }
     const LidarFeed::Turn turn = feed_.takeTurn(), cloud = feed_.takeCloud();
     if (turn || cloud) {
-        sincePublished_.start();
         if (turn)
             publish(
                 "scan2d", [&] { return toScanMessage(*turn); }, double(turn->begin_ns) * 1e-9);

@@ -61,8 +61,8 @@ private:
     LidarFeed feed_;
     ReplaySource source_{"packets", identity().name, settings(), feed_.player().playback(), sourceActions()};
     QTimer second_;
-    QTimer retry_; ///< of publishing: the next turn, or what a reader had no room for
-    QElapsedTimer sincePublished_;
+    QTimer retry_;            ///< of publishing: the next turn, or what a reader had no room for
+    QElapsedTimer sinceRoom_; ///< every reader had room
     bool cloudsWanted_ = false;
     QElapsedTimer sinceCapture_;            ///< since the last capture.turn
     std::optional<Result<void>> replayEnd_; ///< the replay is at its end; what waits is yet to be published
