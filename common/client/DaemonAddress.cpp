@@ -1,6 +1,7 @@
 #include "common/client/DaemonAddress.h"
 
 #include "common/Project.h"
+#include "common/interface/InterfaceRegistry.h"
 
 #include <QStringList>
 
@@ -17,6 +18,18 @@ Result<QString> daemonAddress(const QString &word, const QString &host) {
     }
     const QString bracketed = host.contains(QLatin1Char(':')) ? QStringLiteral("[%1]").arg(host) : host;
     return QStringLiteral("%1:%2").arg(bracketed).arg(port);
+}
+
+Result<void> checkAddress(const QString &address) {
+    const Result<InterfaceUrl> url = InterfaceUrl::parse(address);
+    if (!url)
+        return Error(ErrorCode::InvalidParams, QStringLiteral("HOST:PORT or a URL, as tcp://127.0.0.1:7420"));
+    if (!interfaceSchemes().contains(url->scheme))
+        return Error(ErrorCode::InvalidParams, QStringLiteral("an address with one of ") +
+                                                   interfaceSchemes().join(QStringLiteral(", ")));
+    if (url->scheme == QStringLiteral("tcp") && url->port == 0)
+        return Error(ErrorCode::InvalidParams, QStringLiteral("an address with a port"));
+    return {};
 }
 
 } // namespace hermes

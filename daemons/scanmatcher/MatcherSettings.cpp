@@ -1,6 +1,6 @@
 #include "daemons/scanmatcher/ScanMatcher.h"
 
-#include "common/interface/InterfaceRegistry.h"
+#include "common/client/DaemonAddress.h"
 #include "common/settings/DottedPath.h"
 
 namespace hermes::scanmatcher {
@@ -10,10 +10,10 @@ std::vector<SchemaViolation> checkAddresses(const QJsonObject &settings) {
     std::vector<SchemaViolation> wrong;
     for (const QString &path : {QString("source.address"), QString("odometry.address")}) {
         const QString address = valueAt(settings, path).toString();
-        const auto url = InterfaceUrl::parse(address);
-        const bool isNone = address.isEmpty() && path == "odometry.address";
-        if (!isNone && (!url || !interfaceSchemes().contains(url->scheme)))
-            wrong.push_back({path, address, "HOST:PORT or a URL, as tcp://127.0.0.1:7420"});
+        if (address.isEmpty() && path == "odometry.address")
+            continue;
+        if (const Result<void> fine = checkAddress(address); !fine)
+            wrong.push_back({path, address, fine.error().message});
     }
     return wrong;
 }

@@ -54,8 +54,9 @@ void OdometrySource::take(const TopicUpdate &update) {
     fault_.clear();
     const auto sample = readOdometry(update.data, update.stamp, unknown_);
     if (!sample) {
+        const bool isFirst = faults_.level(double(refused_ + dropped_)) == HealthLevel::Ok; // for a minute
         ++refused_;
-        if (lastRefused_ != sample.error().message)
+        if (isFirst)
             logWarning("odometry", sample.error().message);
         lastRefused_ = sample.error().message;
         return;

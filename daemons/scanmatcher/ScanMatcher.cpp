@@ -190,8 +190,9 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
     droppedBySource_ = update.dropped;
     auto parsed = readScan(update.data, unknownFields_);
     if (!parsed) {
+        const bool isFirst = pastBadScans_.level(double(badScans_)) == HealthLevel::Ok; // for a minute
         ++badScans_;
-        if (lastBadScan_ != parsed.error().message)
+        if (isFirst)
             logWarning("source", parsed.error().message);
         lastBadScan_ = parsed.error().message;
         return;

@@ -114,13 +114,10 @@ void Checker::checkAction(const QString &base, const QJsonObject &action) {
 
 void Checker::checkDaemon(const QString &member, const QJsonValue &daemon) {
     const auto address = daemonAddress(daemon.toString());
-    const auto url = address ? InterfaceUrl::parse(*address) : Result<InterfaceUrl>(address.error());
-    if (!url)
+    if (!address)
         return refuse(member, daemon, "one of " + daemonNames().join(", ") + ", or HOST:PORT, or a URL");
-    if (!interfaceSchemes().contains(url->scheme))
-        return refuse(member, daemon, "an address with one of " + interfaceSchemes().join(", "));
-    if (url->scheme == "tcp" && url->port == 0)
-        refuse(member, daemon, "an address with a port");
+    if (const Result<void> fine = checkAddress(*address); !fine)
+        refuse(member, daemon, fine.error().message);
 }
 
 void Checker::checkSerial(const QString &base, const QJsonObject &action) {
