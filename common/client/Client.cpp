@@ -1,11 +1,15 @@
 #include "common/client/Client.h"
 
+#include "protocol/wire/JsonText.h"
+
 #include <QEventLoop>
 #include <QTimer>
 #include <cmath>
 
 namespace hermes {
 namespace {
+
+constexpr double latestStamp = 1e10; // seconds: beyond it stamps lose their digits
 
 /// A whole number from 0 to 2^53; negative: it is none.
 qint64 toCount(const QJsonValue &value) {
@@ -249,7 +253,12 @@ void Client::deliver(int handle, const QJsonObject &params, const WireValue &dat
     update.topic = params.value(QStringLiteral("topic")).toString();
     update.seq = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("seq")))));
     update.dropped = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("dropped")))));
-    update.stamp = params.value(QStringLiteral("stamp")).toDouble();
+    update.stamp = params.value(QStringLiteral("stamp")).toDouble(latestStamp + 1);
+    if (std::abs(update.stamp) > latestStamp)
+        return refuse(
+            {ErrorCode::InvalidParams,
+             QStringLiteral("topic %1: stamp: found %2, expected seconds since the Unix epoch")
+                 .arg(update.topic, QString::fromUtf8(compactJson(params.value(QStringLiteral("stamp")))))});
     // Of a message in a batch they were read with the rest.
     update.data =
         data.kind() == WireView::Kind::Undefined ? WireValue(params.value(QStringLiteral("data"))) : data;

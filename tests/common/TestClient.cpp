@@ -4,6 +4,7 @@
 #include "common/interface/TcpInterface.h"
 #include "tests/support/FaultyInterface.h"
 
+#include <QTcpServer>
 #include <QtTest>
 
 using namespace hermes;
@@ -39,6 +40,7 @@ private Q_SLOTS:
     void reconnectsAndSubscribesAgain();
     void subscribesBeforeConnecting();
     void unknownTopicIsReported();
+    void malformedEnvelopesAreRefused();
     void closesFromInsideACallback();
     void everyRequestEndsOverABadLine_data();
     void everyRequestEndsOverABadLine();
@@ -143,6 +145,36 @@ void TestClient::unknownTopicIsReported() {
     client.connectTo(address);
     client.subscribe("absent", {}, {});
     QTRY_VERIFY2(message.contains("absent"), qPrintable(message));
+}
+
+void TestClient::malformedEnvelopesAreRefused() {
+    QTcpServer server;
+    QVERIFY(server.listen(QHostAddress(QHostAddress::LocalHost)));
+    Client client;
+    int updates = 0, failures = 0;
+    connect(&client, &Client::subscriptionFailed, [&] { ++failures; });
+    QVERIFY(client.connectTo(QString("127.0.0.1:%1").arg(server.serverPort())));
+    client.subscribe("a", {}, [&](const TopicUpdate &) { ++updates; });
+    client.subscribe("b", {}, [](const TopicUpdate &) {});
+    QTRY_VERIFY(server.hasPendingConnections());
+    QTcpSocket *const peer = server.nextPendingConnection();
+    QTRY_VERIFY(peer->bytesAvailable() > 0);
+    const int first = QJsonDocument::fromJson(peer->readLine()).object()["id"].toInt();
+    peer->write(QString(R"({"jsonrpc":"2.0","id":%1,"result":{"subscription":5}})").arg(first).toUtf8() +
+                '\n');
+    peer->write(QString(R"({"jsonrpc":"2.0","id":%1,"result":{}})").arg(first + 1).toUtf8() + '\n');
+    const QByteArrayList wrong{"null", "\"a\"", "-1.7e308", "1e11"};
+    for (const QByteArray &stamp : wrong + QByteArrayList{"1.5"})
+        peer->write(
+            R"({"jsonrpc":"2.0","method":"topic","params":{"subscription":5,"topic":"a","seq":1,"stamp":)" +
+            stamp +
+            R"(,"data":1}})"
+            "\n");
+    QTRY_COMPARE(updates, 1);
+    QCOMPARE(client.rejected().unreadable, quint64(wrong.size()));
+    QVERIFY2(client.rejected().last.startsWith("topic a: stamp: found 1"),
+             qPrintable(client.rejected().last));
+    QCOMPARE(failures, 1); // a reply without a subscription is no success
 }
 
 void TestClient::closesFromInsideACallback() {
