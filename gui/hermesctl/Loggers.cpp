@@ -64,10 +64,11 @@ Result<Loggers> Loggers::find(const Arguments &arguments) {
             faults.append(addresses->at(i) + ": " + (why.isEmpty() ? "no answer" : why));
     }
     faults += identify(loggers.members, daemons) + loggers.members.silent;
-    if (!arguments.daemons.isEmpty())
+    if (!arguments.daemons.isEmpty()) {
         loggers.members.silent = faults;
-    if (!arguments.daemons.isEmpty() && loggers.members.all.empty())
-        return Error(ErrorCode::Disconnected, faults.join("; "));
+        if (loggers.members.all.empty())
+            return Error(ErrorCode::Disconnected, faults.join("; "));
+    }
     if (loggers.members.all.empty())
         return Error(
             ErrorCode::Disconnected,
