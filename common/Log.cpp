@@ -12,6 +12,8 @@
 namespace hermes {
 namespace {
 
+constexpr int longestText = 4000; // characters
+
 // Begun without standard streams, the first device that is opened would be "stderr" and get the log. Before
 // main(), as Qt opens files of its own.
 const bool hasStandardStreams = [] {
@@ -28,6 +30,19 @@ void fromQt(QtMsgType type, const QMessageLogContext &context, const QString &te
                            : type == QtWarningMsg ? LogLevel::Warning
                                                   : LogLevel::Failure;
     Log::instance().write(level, QLatin1String(context.category ? context.category : "qt"), text);
+}
+
+/// What others have named may stand in it: nothing that begins a line or moves a terminal's cursor.
+QString oneLine(const QString &text) {
+    QString line;
+    for (const QChar c : text.left(longestText)) {
+        const bool isControl = c.category() == QChar::Other_Control || c == QChar::LineSeparator ||
+                               c == QChar::ParagraphSeparator;
+        line += isControl ? QStringLiteral("\\u%1").arg(c.unicode(), 4, 16, QLatin1Char('0')) : QString(c);
+    }
+    if (text.size() > longestText)
+        line += QStringLiteral("... (%1 characters)").arg(text.size());
+    return line;
 }
 
 QByteArray line(const LogRecord &record) {
@@ -74,7 +89,7 @@ void Log::writeToStderr(QByteArray bytes) {
 }
 
 void Log::write(LogLevel level, const QString &source, const QString &text) {
-    const LogRecord record{stampNow(), level, source, text};
+    const LogRecord record{stampNow(), level, source, oneLine(text)};
     const std::lock_guard<std::mutex> lock(mutex_);
     if (level < minimum_)
         return;

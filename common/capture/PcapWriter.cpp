@@ -101,8 +101,6 @@ Outcome<void> PcapWriter::sinceOpen() const {
 
 Outcome<void> PcapWriter::fail(const std::string &what) {
     error_ = path_ + ": cannot be written after byte " + std::to_string(writtenBytes_) + ": " + what;
-    if (bufferedPackets_ > 0)
-        error_ += "; " + std::to_string(bufferedPackets_) + " packets are lost";
     // Part of the buffer may have been written: cut it off, so that the file ends with a whole record.
     if (::ftruncate(file_, off_t(writtenBytes_)) != 0)
         error_ += "; the file may end in a broken record";

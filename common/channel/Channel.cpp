@@ -90,6 +90,7 @@ bool Channel::isQuiet() const {
 
 void Channel::receive(const QByteArray &bytes) {
     const QPointer<Channel> alive(this);
+    const bool wasForeign = framing_->greeting().isForeign();
     bool hasJumped = false; // a flood of urgent ones is as ordinary as any
     for (CodecFrame &frame : framing_->split(bytes)) {
         frame.arrived = nextArrival();
@@ -102,6 +103,11 @@ void Channel::receive(const QByteArray &bytes) {
         }
         waitingBytes_ += frame.bytes.size();
         waiting_.push_back(std::move(frame));
+    }
+    if (framing_->greeting().isForeign()) {
+        if (!wasForeign)
+            Q_EMIT foreign(RpcError(ErrorCode::InvalidRequest, framing_->greeting().reason()));
+        return;
     }
     canWait_ ? schedule() : deliverAll();
 }

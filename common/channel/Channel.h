@@ -53,6 +53,8 @@ Q_SIGNALS:
     void message(const QJsonValue &message, const hermes::WireValue &topicData);
     /// A frame that could not be read; the peer of a server is owed an answer.
     void malformed(const hermes::RpcError &error);
+    /// The peer speaks another protocol: nothing that it says until the next opening is read.
+    void foreign(const hermes::RpcError &error);
 
 private:
     void receive(const QByteArray &bytes);

@@ -45,6 +45,7 @@ void Client::connectTo(Channel *newChannel) {
     connect(channel_, &Channel::closed, this, &Client::onClosed);
     connect(channel_, &Channel::message, this, &Client::onMessage);
     connect(channel_, &Channel::malformed, this, &Client::refuse);
+    connect(channel_, &Channel::foreign, this, &Client::refuse);
     channel_->open();
 }
 

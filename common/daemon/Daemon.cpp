@@ -152,7 +152,7 @@ Result<void> Daemon::launch() {
                            "there (setting \"insecure\")"));
     }
     launched_ = true;
-    startedWith_ = configuration_.values();
+    configuration_.begin();
     const auto starting = start();
     if (!starting) {
         logError(self_.name, starting.error().message);
@@ -244,8 +244,7 @@ DaemonInfo Daemon::info() const {
 
 DaemonStatus Daemon::status() {
     std::vector<HealthItem> items = healthItems_.list(); // before the state, which follows from them
-    return {toString(state()), std::move(items),
-            configuration_.needRestart(leafPaths(difference(configuration_.values(), startedWith_)))};
+    return {toString(state()), std::move(items), configuration_.waiting()};
 }
 
 void Daemon::publishStatus() {

@@ -131,8 +131,7 @@ private:
     Health healthItems_;
     Server channels_;
     DaemonState ownState_ = DaemonState::Starting;
-    QJsonObject startedWith_; // the settings
-    double started_ = 0;      // stamp
+    double started_ = 0; // stamp
     double startedMono_ = 0;
     mutable QJsonObject made_; // the description, when it was asked for
     mutable QString madeHash_;

@@ -115,10 +115,12 @@ void Server::accept(Interface *peer, const QString &protocol) {
     auto *channel = new Channel(peer, makeCodec(protocol), this);
     auto *session = new Session(++lastId_, channel, commands_, limits_, gapWatch_, this);
     if (!mayStay(session)) {
-        turnAway(session, session->restriction());
+        turnAway(session, {ErrorCode::OverLimit, session->restriction()});
         return session->deleteLater();
     }
     sessions_.insert(session->id(), session);
+    connect(session, &Session::foreign, this,
+            [this, session](const RpcError &error) { turnAway(session, error); });
     connect(session, &Session::closed, this,
             [this, session](const QString &reason) { remove(session, reason); });
 }
@@ -142,21 +144,22 @@ bool Server::makeKeptPlace() {
     Session *const longest = *std::min_element(all.begin(), all.end(), [](Session *a, Session *b) {
         return a->lastSignOfLife() < b->lastSignOfLife();
     });
-    turnAway(longest, longest->restriction() + QStringLiteral("; the place is for another one now"));
+    turnAway(longest, {ErrorCode::OverLimit,
+                       longest->restriction() + QStringLiteral("; the place is for another one now")});
     return true;
 }
 
-void Server::turnAway(Session *session, const QString &reason) {
+void Server::turnAway(Session *session, const RpcError &reason) {
     ++turnedAway_;
     // Many may come; a record of each would bury all others.
     if (const double now = monotonicNow(); now - turnAwayTold_ > 1) {
         turnAwayTold_ = now;
-        logWarning(
-            source,
-            QStringLiteral("%1 turned away: %2; %3 in all").arg(session->name(), reason).arg(turnedAway_));
+        logWarning(source, QStringLiteral("%1 turned away: %2; %3 in all")
+                               .arg(session->name(), reason.message)
+                               .arg(turnedAway_));
     }
-    session->refuse(RpcError(ErrorCode::OverLimit, reason));
-    session->close(reason);
+    session->refuse(reason);
+    session->close(reason.message);
 }
 
 QVector<Session *> Server::restricted() const {

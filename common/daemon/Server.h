@@ -44,7 +44,7 @@ private:
     void accept(Interface *peer, const QString &protocol);
     bool mayStay(Session *session);
     bool makeKeptPlace();
-    void turnAway(Session *session, const QString &reason);
+    void turnAway(Session *session, const RpcError &reason);
     QVector<Session *> restricted() const;
     int places() const { return sessions_.size() - restricted().size(); }
     void givePlaces();

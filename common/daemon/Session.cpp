@@ -53,6 +53,7 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     freshFor_ = gaps_.sinceLast() < settling_s ? 0 : gaps_.count();
     connect(channel_, &Channel::message, this, &Session::receive);
     connect(channel_, &Channel::malformed, this, &Session::refuse);
+    connect(channel_, &Channel::foreign, this, &Session::foreign);
     connect(channel_, &Channel::closed, this, &Session::end);
     connect(&channel_->interface(), &Interface::closed, this, &Session::updateReceiving);
     connect(&channel_->interface(), &Interface::received, this, [this] { lastSign_ = monotonicNow(); });

@@ -59,6 +59,8 @@ public:
 
 Q_SIGNALS:
     void closed(const QString &reason);
+    /// It does not speak the protocol of the channel.
+    void foreign(const hermes::RpcError &error);
 
 private:
     using Answer = std::function<void(const QJsonValue &)>; // takes undefined for "no reply"

@@ -44,7 +44,7 @@ RecordingSession::Options Recording::options() const {
     options.fileBytes = settings_.number("record.file_bytes");
     options.fileSeconds = settings_.number("record.file_s");
     options.floorBytes = settings_.number("record.free_floor_bytes");
-    options.settings = settings_.values();
+    options.settings = settings_.inForce();
     return options;
 }
 

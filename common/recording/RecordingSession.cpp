@@ -38,11 +38,20 @@ QString toUtc(double stamp) {
     return QDateTime::fromMSecsSinceEpoch(qint64(stamp * 1e3), Qt::UTC).toString(Qt::ISODateWithMs);
 }
 
-/// Room that stays taken until the recording ends. Not every file system can; then there is none.
-void reserve(const QString &path) {
+/// Room that stays taken until the recording ends. Not every file system can; then there is none. Error: the
+/// disk is full.
+Result<void> reserve(const QString &path) {
     QFile file(path);
-    if (file.open(QIODevice::ReadWrite) && ::posix_fallocate(file.handle(), 0, reserveBytes) != 0)
+    if (!file.open(QIODevice::ReadWrite))
+        return diskError(path + ": cannot be made: " + file.errorString(), path);
+    const int error = ::posix_fallocate(file.handle(), 0, reserveBytes);
+    if (error != 0)
         file.resize(0);
+    if (error != ENOSPC && error != EDQUOT)
+        return {};
+    return diskError(
+        QString("%1: no room for the description of the recording: %2").arg(path, qt_error_string(error)),
+        path);
 }
 
 } // namespace
@@ -97,7 +106,9 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
                                      .arg(*room * 1e-6, 0, 'f', 1)
                                      .arg(options.floorBytes * 1e-6, 0, 'f', 1),
                                  *folder));
-    reserve(ownReserve());
+    result = reserve(ownReserve());
+    if (!result)
+        return refused(result.error());
     result = writer_.begin(plan_);
     if (result) // without a sidecar on the disk nobody could complete what the end of the power cuts off
         result = Sidecar::write(sidecarPath(), describe(), true);
@@ -148,8 +159,7 @@ Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Erro
     content.insert("complete", !broken);
     if (failure)
         content.insert("error", failure->message);
-    QFile::remove(ownReserve());
-    const Result<void> written = Sidecar::write(sidecarPath(), content, true);
+    const Result<void> written = Sidecar::write(sidecarPath(), content, true, ownReserve());
     lock_.release();
     return failure ? Result<void>(*failure) : written;
 }

@@ -41,17 +41,19 @@ Result<QJsonObject> Sidecar::read(const QString &path) {
     return content;
 }
 
-Result<void> Sidecar::write(const QString &path, const QJsonObject &content, bool durable) {
+Result<void> Sidecar::write(const QString &path, const QJsonObject &content, bool durable,
+                            const QString &room) {
     const QByteArray bytes = QJsonDocument(content).toJson();
-    const QString draft = draftPath(path);
+    const QString draft = room.isEmpty() ? draftPath(path) : room;
     QFile file(draft);
     const auto failed = [&](const QString &why) {
         QFile::remove(draft);
         return diskError(path + ": cannot be written: " + why, path);
     };
-    if (!file.open(QIODevice::WriteOnly | QIODevice::Truncate))
+    if (!file.open(QIODevice::ReadWrite)) // nothing of it is given back before it is written
         return failed(file.errorString());
-    if (file.write(bytes) != bytes.size() || !file.flush() || (durable && ::fsync(file.handle()) != 0))
+    if (file.write(bytes) != bytes.size() || !file.flush() || !file.resize(bytes.size()) ||
+        (durable && ::fsync(file.handle()) != 0))
         return failed(file.errorString());
     file.close();
     if (std::rename(QFile::encodeName(draft).constData(), QFile::encodeName(path).constData()) != 0)

@@ -19,8 +19,10 @@ public:
     }
     /// Refuses what is no sidecar; the message names the file and what is wrong.
     static Result<QJsonObject> read(const QString &path);
-    /// durable: on the disk when it returns.
-    static Result<void> write(const QString &path, const QJsonObject &content, bool durable);
+    /// durable: on the disk when it returns. room: a file that becomes the sidecar; what it takes of the disk
+    /// is there however full that is.
+    static Result<void> write(const QString &path, const QJsonObject &content, bool durable,
+                              const QString &room = QString());
 };
 
 } // namespace hermes

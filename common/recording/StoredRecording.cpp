@@ -1,5 +1,6 @@
 #include "common/recording/StoredRecording.h"
 
+#include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
 #include "common/recording/SessionFolder.h"
 #include "common/recording/Sidecar.h"
@@ -49,7 +50,10 @@ Result<QStringList> StoredRecording::files() const {
         if (name.isEmpty() || name.contains('/') || name.startsWith('.'))
             return diskError(QString("%1: a file \"%2\" cannot be of this recording").arg(folder, name),
                              folder);
-        paths << QDir(folder).filePath(name);
+        const Result<QString> found = findNamedFile(QDir(folder).filePath(name), {folder});
+        if (!found)
+            return found.error();
+        paths << *found;
     }
     return paths;
 }

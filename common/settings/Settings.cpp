@@ -53,7 +53,7 @@ void Settings::declare(const Field &field) {
         property.insert(applies, QStringLiteral("now"));
     fullSchema_ = withProperty(fullSchema_, field.name(), property);
     initial_ = withValueAt(initial_, field.name(), field.defaultValue());
-    current_ = withValueAt(current_, field.name(), field.defaultValue());
+    put(withValueAt(current_, field.name(), field.defaultValue()));
     validator_.reset();
 }
 
@@ -62,7 +62,7 @@ QJsonObject Settings::changes() const {
 }
 
 QJsonValue Settings::value(const QString &path) const {
-    return valueAt(current_, path);
+    return valueAt(inForce_, path);
 }
 
 Result<QStringList> Settings::set(const QJsonObject &partial) {
@@ -106,10 +106,27 @@ Result<QStringList> Settings::apply(const QJsonObject &proposed) {
                      QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
     }
     const QStringList paths = leafPaths(difference(proposed, current_));
-    current_ = proposed;
+    put(proposed);
     if (!paths.isEmpty())
         Q_EMIT changed(paths);
     return paths;
+}
+
+void Settings::put(const QJsonObject &values) {
+    QJsonObject next = values;
+    if (begun_)
+        for (const QString &path : needRestart(leafPaths(values)))
+            next = withValueAt(next, path, valueAt(inForce_, path));
+    current_ = values;
+    inForce_ = next;
+}
+
+void Settings::begin() {
+    begun_ = true;
+}
+
+QStringList Settings::waiting() const {
+    return leafPaths(difference(current_, inForce_));
 }
 
 Result<void> Settings::load(const QString &name) {

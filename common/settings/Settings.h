@@ -29,11 +29,13 @@ public:
     /// The JSON Schema of all settings, with `x-applies` ("now" or "restart") on each.
     QJsonObject schema() const { return fullSchema_; }
     const QJsonObject &values() const { return current_; }
+    /// The same, but for changes that wait for a restart.
+    const QJsonObject &inForce() const { return inForce_; }
     const QJsonObject &defaults() const { return initial_; }
     /// Only what differs from the defaults.
     QJsonObject changes() const;
 
-    /// A value by its dotted path; a path that was not declared gives undefined.
+    /// A value in force, by its dotted path; a path that was not declared gives undefined.
     QJsonValue value(const QString &path) const;
     double number(const QString &path) const { return value(path).toDouble(); }
     int integer(const QString &path) const { return int(value(path).toDouble()); }
@@ -52,8 +54,12 @@ public:
     /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name.
     Result<QString> save(const QString &file = QString()) const;
 
-    /// Those of the paths whose change waits for a restart.
+    /// The program starts its work: from now on those that apply on restart stay in force as they are.
+    void begin();
+    /// Those of the paths that apply on restart.
     QStringList needRestart(const QStringList &paths) const;
+    /// The paths whose change waits for a restart.
+    QStringList waiting() const;
 
 Q_SIGNALS:
     /// After a change that was applied, with the dotted paths of the values that differ.
@@ -61,11 +67,14 @@ Q_SIGNALS:
 
 private:
     Result<QStringList> apply(const QJsonObject &proposed);
+    void put(const QJsonObject &values);
     std::vector<SchemaViolation> check(const QJsonObject &proposed) const;
 
     QJsonObject fullSchema_;
     QJsonObject initial_;
     QJsonObject current_;
+    QJsonObject inForce_;
+    bool begun_ = false;
     QString fileName_;
     std::vector<Rule> rules_;
     mutable std::optional<SchemaValidator> validator_; // made anew after declare()

@@ -2,6 +2,7 @@
 
 #include "protocol/wire/Fields.h"
 
+#include <QLocale>
 #include <algorithm>
 #include <cmath>
 
@@ -30,8 +31,7 @@ Result<void> checkBounds(const Values &values) {
         const QString expected = QString("a number from %1 to %2 %3").arg(-v.limit).arg(v.limit).arg(v.unit);
         text += QString("%1%2 is %3, expected %4")
                     .arg(text.isEmpty() ? "" : "; ", v.name)
-                    .arg(v.value)
-                    .arg(expected);
+                    .arg(QString::number(v.value, 'g', QLocale::FloatingPointShortest), expected);
         errors.append(QJsonObject{{"path", v.name},
                                   {"value", std::isfinite(v.value) ? QJsonValue(v.value) : QJsonValue()},
                                   {"expected", expected}});

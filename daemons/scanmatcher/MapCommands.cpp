@@ -13,7 +13,7 @@ constexpr int mostFiles = 4; // that may wait to be written, each with its copy 
 } // namespace
 
 void ScanMatcher::declareMapCommands() {
-    const Field path = Field::text("path", "File; relative to map.folder");
+    const Field path = Field::text("path", "File below map.folder, relative to it");
     const Field force = Field::boolean("force", "Overwrite a file that exists").byDefault(false);
     addCommand(Command("map.get", "The whole map")
                    .gives<MapMessage>()
@@ -48,8 +48,9 @@ void ScanMatcher::declareMapCommands() {
                    }));
 }
 
-QString ScanMatcher::absolutePath(const QString &path) const {
-    return QDir(const_cast<ScanMatcher *>(this)->settings().text("map.folder")).absoluteFilePath(path);
+MapPath ScanMatcher::mapPath(const Call &call) {
+    const QDir folder(settings().text("map.folder"));
+    return {folder.absoluteFilePath(call.text("path")), folder.absolutePath()};
 }
 
 // The worker gives a copy of the map as it is after the commands before this one, and goes on matching.
@@ -61,9 +62,8 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
     const auto map = std::make_shared<vectorlib::MapDrawing>();
     if (format == "svg")
         *map = {"Map of " + std::to_string(counts_.scans) + " scans", {}, mirror_.trajectory(), {}};
-    const auto write = [this, map, format, path = absolutePath(call.text("path")), force = call.flag("force"),
-                        reply] {
-        const Result<SavedMap> saved = writeMapFile(path, format, force, *map);
+    const auto write = [this, map, format, file = mapPath(call), force = call.flag("force"), reply] {
+        const Result<SavedMap> saved = writeMapFile(file, format, force, *map);
         reply.give(saved ? Result<QJsonValue>(asJson(*saved)) : saved.error());
         --filesUnderWay_;
     };
@@ -75,8 +75,8 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
 
 // In the worker, as the scans that come after it belong into the new map.
 void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
-    worker_->post([this, path = absolutePath(call.text("path")), reply](vectorlib::ScanTracker &tracker) {
-        const auto loaded = readMapFile(path);
+    worker_->post([this, file = mapPath(call), reply](vectorlib::ScanTracker &tracker) {
+        const auto loaded = readMapFile(file);
         if (!loaded)
             return reply.error(loaded.error());
         tracker.clear();

@@ -11,13 +11,19 @@ namespace hermes::scanmatcher {
 /// Largest file that readMapFile() takes: some 400,000 edges.
 constexpr qint64 largestMapFile = 64 << 20;
 
+/// A file that a client named, and the folder below which it has to be.
+struct MapPath {
+    QString path;
+    QString folder;
+};
+
 /// Reads what writeMapFile() wrote as csv. Waits for the disk. InputOutput with data.path.
-Result<std::vector<vectorlib::MapEdge>> readMapFile(const QString &path);
+Result<std::vector<vectorlib::MapEdge>> readMapFile(const MapPath &file);
 
 /// Writes a map as csv, svg, geojson or dxf (only svg takes more than its segments); the file appears when it
-/// is complete. Waits for the disk. InputOutput with data.path, also where the
-/// file exists and force is not set.
-Result<SavedMap> writeMapFile(const QString &path, const QString &format, bool force,
+/// is complete. Waits for the disk. InputOutput with data.path, also where the file
+/// exists and force is not set.
+Result<SavedMap> writeMapFile(const MapPath &file, const QString &format, bool force,
                               const vectorlib::MapDrawing &map);
 
 } // namespace hermes::scanmatcher

@@ -3,6 +3,7 @@
 #include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
 #include "common/daemon/PastFaults.h"
+#include "daemons/scanmatcher/MapFile.h"
 #include "daemons/scanmatcher/MapMirror.h"
 #include "daemons/scanmatcher/OdometrySource.h"
 #include "daemons/scanmatcher/Worker.h"
@@ -60,7 +61,7 @@ private:
     /// In the worker's thread, when the map is another one: hands it over to the main thread, then answers.
     void showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
-    QString absolutePath(const QString &path) const;
+    MapPath mapPath(const Call &call);
     MatcherState matcherState() const;
 
     std::atomic<int> filesUnderWay_{0};

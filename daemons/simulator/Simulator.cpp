@@ -1,6 +1,7 @@
 #include "daemons/simulator/Simulator.h"
 
 #include "common/Log.h"
+#include "common/files/NamedFile.h"
 #include "common/world/WorldFile.h"
 #include "daemons/simulator/FaultNames.h"
 #include "protocol/messages/Motion.h"
@@ -12,6 +13,7 @@ namespace hermes::simulator {
 namespace {
 
 constexpr auto healthItem = "lidar";
+constexpr qint64 largestWorldFile = 16 << 20; // some 300,000 edges
 
 TruthMessage messageOf(const Simulation::Truth &truth) {
     return {double(truth.stamp_ns) * 1e-9,
@@ -185,7 +187,10 @@ void Simulator::settingsChanged(const QStringList &paths) {
 }
 
 Result<void> Simulator::load(const QString &path) {
-    const Outcome<World> world = readWorld(path.toStdString());
+    const Result<QByteArray> text = readNamedFile(path, namedFilesFolders(settings()), largestWorldFile);
+    if (!text)
+        return text.error();
+    const Outcome<World> world = parseWorld(text->toStdString(), path.toStdString());
     if (!world)
         return Error(ErrorCode::InputOutput, QString::fromStdString(world.error()),
                      QJsonObject{{"path", path}});

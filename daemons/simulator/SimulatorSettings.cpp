@@ -1,3 +1,4 @@
+#include "common/files/NamedFile.h"
 #include "daemons/simulator/Simulator.h"
 
 namespace hermes::simulator {
@@ -13,11 +14,11 @@ void Simulator::addNumber(const char *group, const char *name, const char *text,
 }
 
 void Simulator::declareSettings() {
-    // All but the noise have effect with the next world that is loaded.
     addSetting(Field::text("world", "World file to load at the start; none waits for sim.load")
                    .byDefault("")
                    .appliesOnRestart()
                    .group("World"));
+    addSetting(namedFilesField());
     addSetting(Field::integer("seed", "Of the noise: the same seed gives the same noise")
                    .range(0, 4294967295.0)
                    .byDefault(1)

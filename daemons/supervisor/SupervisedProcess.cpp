@@ -2,10 +2,12 @@
 
 #include "common/Log.h"
 #include "common/Time.h"
+#include "daemons/supervisor/ProcessFamily.h"
 #include "daemons/supervisor/ProcessUsage.h"
 
 #include <QCoreApplication>
 #include <QFileInfo>
+#include <QUuid>
 #include <csignal>
 #include <sys/prctl.h>
 
@@ -39,13 +41,14 @@ QString toString(SupervisedProcess::State state) {
 }
 
 void SupervisedProcess::Child::setupChildProcess() {
-    ::setpgid(0, 0); // those that it starts are of its group
+    ::setpgid(0, 0); // Ctrl-C in a terminal is for the supervisor, which ends them in order
     prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 
 SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
     : QObject(parent)
-    , entry_(entry) {
+    , entry_(entry)
+    , family_(QUuid::createUuid().toString(QUuid::Id128)) {
     process_.setProcessChannelMode(QProcess::MergedChannels);
     process_.setStandardInputFile(QProcess::nullDevice());
     connect(&process_, &QProcess::readyRead, this, &SupervisedProcess::readOutput);
@@ -58,7 +61,6 @@ SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
     connect(&process_, &QProcess::started, this, [this] {
         logInfo("process",
                 QString("%1: started with process id %2").arg(entry_.name).arg(process_.processId()));
-        group_ = pid_t(process_.processId());
         Q_EMIT changed();
     });
     retry_.setSingleShot(true);
@@ -83,13 +85,7 @@ SupervisedProcess::~SupervisedProcess() {
     if (!process_.waitForFinished(int(killAfter.count())))
         process_.kill();
     process_.waitForFinished(1000);
-    endGroup();
-}
-
-void SupervisedProcess::endGroup() {
-    if (group_ > 1)
-        ::kill(-group_, SIGKILL);
-    group_ = 0;
+    ProcessFamily::end(family_);
 }
 
 void SupervisedProcess::start() {
@@ -101,6 +97,9 @@ void SupervisedProcess::start() {
     state_ = State::Running; // at once: a stop may come before the news that it has started
     started_ = measured_ = monotonicNow();
     used_s_ = cpu_ = 0;
+    QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
+    environment.insert(ProcessFamily::variable, family_);
+    process_.setProcessEnvironment(environment);
     process_.start(found(entry_.program), entry_.arguments);
 }
 
@@ -123,8 +122,10 @@ void SupervisedProcess::restart() {
 
 void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
     kill_.stop();
-    endGroup();
+    ProcessFamily::end(family_);
     readOutput();
+    if (!partialLine_.isEmpty())
+        keepLine(std::exchange(partialLine_, {}));
     lastExit_ =
         status == QProcess::NormalExit ? QString("exit status %1").arg(code) : QString("killed by a signal");
     logInfo("process", QString("%1: ended, %2").arg(entry_.name, lastExit_));
@@ -162,17 +163,22 @@ void SupervisedProcess::readOutput() {
             end = longestLine;
         if (end < 0)
             return;
-        lines_.push_back(
-            QString::fromUtf8(partialLine_.constData(), int(std::min<qsizetype>(end, longestLine))));
+        keepLine(partialLine_.left(int(std::min<qsizetype>(end, longestLine))));
         partialLine_.remove(0, int(end) + (partialLine_[int(end)] == '\n' ? 1 : 0));
-        if (lines_.size() > keptLines)
-            lines_.pop_front();
     }
 }
 
+void SupervisedProcess::keepLine(const QByteArray &line) {
+    lines_.push_back(QString::fromUtf8(line));
+    if (lines_.size() > keptLines)
+        lines_.pop_front();
+}
+
 QStringList SupervisedProcess::output(int lines) const {
-    const auto from = lines_.size() - std::min(lines_.size(), std::size_t(std::max(0, lines)));
-    return QStringList(lines_.begin() + std::ptrdiff_t(from), lines_.end());
+    QStringList all(lines_.begin(), lines_.end());
+    if (!partialLine_.isEmpty())
+        all.append(QString::fromUtf8(partialLine_));
+    return all.mid(std::max(0, all.size() - lines));
 }
 
 ProcessStatus SupervisedProcess::status() const {

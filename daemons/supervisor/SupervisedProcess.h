@@ -6,7 +6,6 @@
 #include <QProcess>
 #include <QTimer>
 #include <deque>
-#include <sys/types.h>
 
 namespace hermes::supervisor {
 
@@ -40,7 +39,7 @@ public:
     void measure();
     ProcessStatus status() const;
     const QString &lastExit() const { return lastExit_; }
-    /// The last lines that it wrote to stdout and stderr, oldest first.
+    /// The last lines that it wrote to stdout and stderr, oldest first; also one that is not ended.
     QStringList output(int lines) const;
 
 Q_SIGNALS:
@@ -57,14 +56,13 @@ private:
     void onFailedToStart();
     void retryLater();
     void readOutput();
-    /// Those that it started and left behind.
-    void endGroup();
+    void keepLine(const QByteArray &line);
     void setState(State state);
 
     ProcessEntry entry_;
     Child process_;
     State state_ = State::Stopped;
-    pid_t group_ = 0;
+    const QString family_;
     QTimer retry_, kill_;
     std::chrono::milliseconds backOff_ = firstBackOff;
     int restarts_ = 0;

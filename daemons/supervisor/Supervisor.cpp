@@ -105,7 +105,7 @@ void Supervisor::declareCommands() {
             }));
     addCommand(
         Command("process.add", "Adds a process to the settings; settings.save keeps it")
-            .param(Field::text("name", "Of the process").with("minLength", 1))
+            .param(Field::text("name", "Of the process"))
             .param(Field::text("program", "Path or name (hermes-NAME)").optional())
             .param(Field::array("arguments", "Command line", {{"type", "string"}}).optional())
             .param(Field::integer("port", "Where it accepts commands (the usual one of NAME)")

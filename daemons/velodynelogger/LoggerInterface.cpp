@@ -1,4 +1,5 @@
 // What the Velodyne logger offers: its settings, topics and commands.
+#include "common/files/NamedFile.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
@@ -35,6 +36,7 @@ void VelodyneLogger::declareSettings() {
                    .byDefault("")
                    .appliesOnRestart()
                    .group("Source"));
+    addSetting(namedFilesField());
     addSetting(Field::boolean("source.loop", "That replay begins anew at its end")
                    .byDefault(false)
                    .appliesOnRestart()

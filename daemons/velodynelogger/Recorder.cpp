@@ -40,7 +40,7 @@ Result<void> Recorder::begin(const RecordingPlan &plan) {
     end();
     const Outcome<void> opened = files_.open(plan);
     account_ = PacketAccount();
-    queueDrops_ = kernelDrops_ = tooLong_ = 0;
+    queueDrops_ = kernelDrops_ = tooLong_ = afterFailure_ = 0;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         progress_ = Progress();
@@ -61,19 +61,25 @@ void Recorder::end() {
     stopping_ = true;
     if (thread_.joinable())
         thread_.join();
+    failed_ = false;
+    while (pushing_) // the counts, too
+        std::this_thread::yield();
 }
 
 void Recorder::push(const Datagram &datagram, bool wait) {
     pushing_ = true;
-    while (accepting_) {
-        if (ring_.push(datagram))
-            break;
-        if (!wait) {
+    bool isTaken = false;
+    while (accepting_ && !isTaken) {
+        isTaken = ring_.push(datagram);
+        if (!isTaken && !wait) {
             ++queueDrops_;
-            break;
+            isTaken = true;
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (!isTaken)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    if (!isTaken)
+        afterFailure_ += failed_;
     pushing_ = false;
 }
 
@@ -96,6 +102,7 @@ void Recorder::run() {
         if (!stopping)
             std::this_thread::sleep_for(period);
     }
+    failed_ = !written;
     accepting_ = false;
     while (pushing_)
         std::this_thread::yield();
@@ -162,7 +169,7 @@ RecordingState Recorder::state() const {
                     {"kernel", double(kernelDrops_)},
                     {"queue", double(queueDrops_)},
                     {"too_long", double(tooLong_)},
-                    {"unwritten", double(counts.packets - written)}};
+                    {"unwritten", double(counts.packets - written + afterFailure_)}};
     state.gps = gpsOf(progress.position, counts.position);
     if (progress.error)
         state.error = diskError(QString::fromStdString(*progress.error), state.path);

@@ -1,6 +1,7 @@
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
 #include "common/Log.h"
+#include "common/files/NamedFile.h"
 #include "daemons/velodynelogger/TurnFile.h"
 #include "daemons/velodynelogger/TurnMessages.h"
 #include "protocol/wire/Fields.h"
@@ -155,9 +156,12 @@ ReplaySource::Actions VelodyneLogger::sourceActions() {
                 "port is of a replay, live it is the setting source.port");
         return openLive();
     };
-    actions.pcap = [this](const Call &call) {
+    actions.pcap = [this](const Call &call) -> Result<void> {
         const QString pcap = call.text("pcap");
-        return openPcap(pcap, {pcap}, replayOptions(call), replayedOptions(call));
+        const Result<QString> found = findNamedFile(pcap, namedFilesFolders(settings()));
+        if (!found)
+            return found.error();
+        return openPcap(pcap, {*found}, replayOptions(call), replayedOptions(call));
     };
     actions.recording = [this](const Call &call, const StoredRecording &stored) {
         return openRecording(call, stored);

@@ -22,6 +22,16 @@ std::vector<Kind> &kinds() {
 
 } // namespace
 
+std::vector<CodecFrame> Codec::split(const QByteArray &bytes) {
+    greeting_.look(bytes);
+    return greeting_.isForeign() ? std::vector<CodecFrame>() : splitFrames(bytes);
+}
+
+void Codec::reset() {
+    greeting_ = {};
+    forgetFrame();
+}
+
 std::vector<CodecItem> Codec::feed(const QByteArray &bytes) {
     std::vector<CodecItem> items;
     for (const CodecFrame &frame : split(bytes)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "protocol/jsonrpc/Greeting.h"
 #include "protocol/jsonrpc/RpcError.h"
 #include "protocol/wire/Outgoing.h"
 #include "protocol/wire/WireValue.h"
@@ -50,9 +51,11 @@ class Codec {
 public:
     virtual ~Codec() = default;
 
-    /// Takes bytes as they arrive, split anywhere, and gives the frames completed by them in order. Costs
-    /// little, whatever is in them.
-    virtual std::vector<CodecFrame> split(const QByteArray &bytes) = 0;
+    /// Takes bytes as they arrive, split anywhere, and gives the frames completed by them in order: none when
+    /// the peer turned out to speak another protocol. Costs little, whatever is in them.
+    std::vector<CodecFrame> split(const QByteArray &bytes);
+    /// Of the connection.
+    const Greeting &greeting() const { return greeting_; }
     /// Reads a frame. Costs as much as it is long; may be called in any thread.
     virtual CodecItem read(const CodecFrame &frame) const = 0;
     /// Both at once.
@@ -73,8 +76,8 @@ public:
     virtual QByteArray forSubscription(const QByteArray &notification, quint64 subscription,
                                        quint64 dropped) const = 0;
 
-    /// Forgets a frame begun (after the carrier was opened anew). Counters stay.
-    virtual void reset() = 0;
+    /// Begins anew, as the carrier was opened anew. Counters stay.
+    void reset();
 
     /// Largest frame accepted by feed(), in bytes without its delimiter.
     void setFrameLimit(int bytes) { limit_ = bytes; }
@@ -86,6 +89,9 @@ protected:
         : limit_(frameLimitBytes) {}
 
     static CodecItem itemOf(const WireValue &value);
+    virtual std::vector<CodecFrame> splitFrames(const QByteArray &bytes) = 0;
+    /// Forgets a frame begun.
+    virtual void forgetFrame() = 0;
     /// Writes a frame; path: of the number that cannot be written.
     virtual QByteArray frame(const Outgoing &message, std::optional<QString> &path) = 0;
 
@@ -93,6 +99,7 @@ protected:
 
 private:
     int limit_;
+    Greeting greeting_;
 };
 
 using CodecMaker = std::unique_ptr<Codec> (*)();

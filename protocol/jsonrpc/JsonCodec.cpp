@@ -6,7 +6,7 @@
 
 namespace hermes {
 
-std::vector<CodecFrame> JsonCodec::split(const QByteArray &bytes) {
+std::vector<CodecFrame> JsonCodec::splitFrames(const QByteArray &bytes) {
     std::vector<CodecFrame> frames;
     const char *position = bytes.constData();
     const char *const end = position + bytes.size();
@@ -65,7 +65,7 @@ CodecItem JsonCodec::read(const CodecFrame &frame) const {
             {}};
 }
 
-void JsonCodec::reset() {
+void JsonCodec::forgetFrame() {
     line_.clear();
     skipping_ = false;
 }

@@ -13,15 +13,15 @@ public:
     JsonCodec()
         : Codec(defaultFrameLimit) {}
 
-    std::vector<CodecFrame> split(const QByteArray &bytes) override;
     CodecItem read(const CodecFrame &frame) const override;
     bool isMidFrame() const override { return skipping_ || !line_.isEmpty(); }
-    void reset() override;
     void joinBatch(std::vector<QByteArray> &frames) const override;
     QByteArray forSubscription(const QByteArray &notification, quint64 subscription,
                                quint64 dropped) const override;
 
 protected:
+    std::vector<CodecFrame> splitFrames(const QByteArray &bytes) override;
+    void forgetFrame() override;
     QByteArray frame(const Outgoing &message, std::optional<QString> &path) override;
 
 private:

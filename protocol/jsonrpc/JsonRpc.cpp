@@ -1,5 +1,7 @@
 #include "protocol/jsonrpc/JsonRpc.h"
 
+#include <cmath>
+
 namespace hermes {
 namespace {
 
@@ -11,8 +13,12 @@ const QString paramsKey = QStringLiteral("params");
 const QString resultKey = QStringLiteral("result");
 const QString errorKey = QStringLiteral("error");
 
+// Beyond it the reply would have another one.
+constexpr double largestId = 9007199254740991.0;
+
 bool isId(const QJsonValue &value) {
-    return value.isString() || value.isDouble() || value.isNull();
+    return value.isString() || value.isNull() ||
+           (value.isDouble() && std::abs(value.toDouble()) <= largestId);
 }
 
 RpcInvalid invalid(const QJsonValue &id, const QString &why) {
@@ -54,7 +60,8 @@ RpcMessage readMessage(const QJsonValue &value) {
     const QJsonObject object = value.toObject();
     const QJsonValue id = object.value(idKey);
     if (!id.isUndefined() && !isId(id))
-        return invalid(id, QStringLiteral("\"id\" must be a string, a number or null"));
+        return invalid(
+            id, QStringLiteral("\"id\" must be a string, null, or a number from -(2^53 - 1) to 2^53 - 1"));
     if (object.value(versionKey) != version)
         return invalid(id, QStringLiteral("\"jsonrpc\" must be \"2.0\""));
     if (object.contains(methodKey))

@@ -7,8 +7,8 @@ namespace hermes {
 const Fields<ProcessEntry> &fieldsOf(Of<ProcessEntry>) {
     using E = ProcessEntry;
     static const auto fields = Fields<E>()
-                                   .add("name", &E::name, "Of the process")
-                                   .with("minLength", 1)
+                                   .add("name", &E::name, "Of the process: letters, digits, space, and ._-")
+                                   .with("pattern", "^[A-Za-z0-9_][A-Za-z0-9_. -]{0,63}$")
                                    .add("program", &E::program, "Path or name (hermes-NAME)")
                                    .with("minLength", 1)
                                    .mayBeMissing()

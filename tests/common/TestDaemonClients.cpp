@@ -14,6 +14,9 @@ private Q_SLOTS:
     void clientLimit();
     void idleClientIsClosed();
     void oversizedRequest();
+    void whoSpeaksAnotherProtocolIsTurnedAway_data();
+    void whoSpeaksAnotherProtocolIsTurnedAway();
+    void aNameForgesNoLineOfTheLog();
 };
 
 void TestDaemonClients::clientThatNeverReadsIsClosed() {
@@ -84,6 +87,56 @@ void TestDaemonClients::oversizedRequest() {
     QCOMPARE(error["code"].toInt(), -32007);
     QVERIFY(client.ask("daemon.info").contains("result"));
     QCOMPARE(daemon->server().counters()["oversized_frames"].toInt(), 1);
+}
+
+void TestDaemonClients::whoSpeaksAnotherProtocolIsTurnedAway_data() {
+    QTest::addColumn<QByteArray>("beginning");
+    QTest::addColumn<QString>("name");
+    QTest::newRow("HTTP") << QByteArray(
+                                 "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: text/plain\r\n\r\n")
+                          << "HTTP";
+    QTest::newRow("TLS") << QByteArray("\x16\x03\x01\x00\x05\x01\x00\x00\n", 9) << "TLS";
+}
+
+// Sent whole, in pieces, and with a method longer than a frame may be: no command of its body is run.
+void TestDaemonClients::whoSpeaksAnotherProtocolIsTurnedAway() {
+    QFETCH(QByteArray, beginning);
+    QFETCH(QString, name);
+    RawClient good(address());
+    good.ask("daemon.info");
+    const QByteArray commands =
+        "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"settings.set\",\"params\":{\"values\":{\"gain\":5}}}\n";
+    const auto say = [this, name](const QByteArray &bytes, int piece) {
+        RawClient page(address());
+        QVERIFY(page.socket.waitForConnected());
+        for (int i = 0; i < bytes.size() && page.socket.state() == QAbstractSocket::ConnectedState;
+             i += piece) {
+            page.socket.write(bytes.mid(i, piece));
+            page.socket.flush();
+            QTest::qWait(0);
+        }
+        QTRY_COMPARE(page.socket.state(), QAbstractSocket::UnconnectedState);
+        const QByteArray told = page.socket.readAll();
+        QVERIFY2(told.contains("this is " + name.toUtf8()) && !told.contains("result"), told);
+    };
+    const QByteArray all = beginning + commands.repeated(100);
+    say(all, all.size());
+    say(all, 7);
+    if (name == "HTTP")
+        say(QByteArray(3 << 20, 'M') + all, 1 << 20);
+    QCOMPARE(daemon->settings().integer("gain"), 1);
+    QVERIFY(good.ask("daemon.info").contains("result"));
+    QVERIFY(daemon->server().counters()["clients_turned_away"].toInt() >= 2);
+    QVERIFY(compactJson(asJson(Log::instance().tail(5))).contains("turned away: this is " + name.toUtf8()));
+}
+
+void TestDaemonClients::aNameForgesNoLineOfTheLog() {
+    logWarning("test", QString("name\n2026-01-01T00:00:00.000Z error forged: \x1b[2J") + QChar(0x2028) +
+                           QString(100000, 'x'));
+    const QString text = Log::instance().tail(1).at(0).text;
+    QVERIFY2(text.startsWith("name\\u000a2026") && text.contains("\\u001b[2J\\u2028"),
+             qPrintable(text.left(100)));
+    QVERIFY2(text.size() < 5000 && text.endsWith("characters)"), qPrintable(text.right(40)));
 }
 
 QTEST_GUILESS_MAIN(TestDaemonClients)

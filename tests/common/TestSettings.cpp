@@ -12,6 +12,7 @@ private Q_SLOTS:
     void refusesAllOrNothing_data();
     void refusesAllOrNothing();
     void appliesPartialObject();
+    void restartMeansRestart();
     void namesEveryViolation();
     void resetsSomeOrAll();
     void schemaTellsAll();
@@ -82,6 +83,20 @@ void TestSettings::appliesPartialObject() {
     QCOMPARE(settings->number("motor.radius_m"), 0.1);
     QCOMPARE(settings->needRestart(*result), QStringList{"mode"});
     QCOMPARE(settings->changes(), (QJsonObject{{"motor", QJsonObject{{"ticks", 4e9}}}, {"mode", "file"}}));
+}
+
+void TestSettings::restartMeansRestart() {
+    const QString first = settings->text("mode");
+    settings->begin();
+    QVERIFY(settings->set({{"mode", "file"}, {"motor", QJsonObject{{"ticks", 7}}}}));
+    QCOMPARE(settings->text("mode"), first);
+    QCOMPARE(settings->integer("motor.ticks"), 7);
+    QCOMPARE(settings->waiting(), QStringList{"mode"});
+    QCOMPARE(settings->values()["mode"].toString(),
+             QString("file")); // what settings.get shows and save() keeps
+    QCOMPARE(settings->inForce()["mode"].toString(), first);
+    QVERIFY(settings->reset());
+    QVERIFY(settings->waiting().isEmpty());
 }
 
 void TestSettings::namesEveryViolation() {

@@ -1,9 +1,12 @@
 #include "common/recording/Sidecar.h"
 #include "common/recording/StoredRecording.h"
+#include "tests/support/Files.h"
 
 #include <QDir>
 #include <QTemporaryDir>
 #include <QtTest>
+
+#include <sys/stat.h>
 
 using namespace hermes;
 
@@ -31,6 +34,7 @@ QJsonObject with(const char *member, const QJsonValue &value) {
 class TestStoredRecording : public QObject {
     Q_OBJECT
 private Q_SLOTS:
+    void initTestCase();
     void tellsFilesAndTime();
     void lengths_data();
     void lengths();
@@ -39,7 +43,6 @@ private Q_SLOTS:
 
 private:
     Result<StoredRecording> find(const QJsonObject &content, const QString &name = "run") {
-        QDir(folder_.path()).mkpath("run");
         if (!Sidecar::write(Sidecar::path(folder_.filePath("run"), "logger"), content, false))
             qFatal("the sidecar cannot be written");
         return StoredRecording::find(folder_.path(), name, "logger");
@@ -47,6 +50,14 @@ private:
 
     QTemporaryDir folder_;
 };
+
+void TestStoredRecording::initTestCase() {
+    QDir(folder_.path()).mkpath("run");
+    put(folder_.filePath("run/logger-0001.pcap"), "packets");
+    put(folder_.filePath("run/b"), "");
+    QVERIFY(QFile::link("/etc/passwd", folder_.filePath("run/link")));
+    QCOMPARE(::mkfifo(QFile::encodeName(folder_.filePath("run/pipe")).constData(), 0600), 0);
+}
 
 void TestStoredRecording::tellsFilesAndTime() {
     const Result<StoredRecording> found = find(usual());
@@ -85,6 +96,10 @@ void TestStoredRecording::refusals_data() {
     row("no start", with("start", "now"), ErrorCode::InputOutput);
     row("a start beyond all stamps", with("start", 1e18), ErrorCode::InputOutput);
     row("a file elsewhere", with("files", QJsonArray{QJsonObject{{"name", "../secret"}}}),
+        ErrorCode::InputOutput);
+    row("a pipe", with("files", QJsonArray{QJsonObject{{"name", "pipe"}}}), ErrorCode::InputOutput);
+    row("a link out", with("files", QJsonArray{QJsonObject{{"name", "link"}}}), ErrorCode::InputOutput);
+    row("a file that is missing", with("files", QJsonArray{QJsonObject{{"name", "c"}}}),
         ErrorCode::InputOutput);
     row("a file without name", with("files", QJsonArray{1}), ErrorCode::InputOutput);
 }

@@ -20,6 +20,7 @@ private Q_SLOTS:
     void wrongCommandLineIsNotTriedAgain();
     void missingProgramIsTold();
     void stubbornProcessIsKilled();
+    void whatAProcessLeavesBehindIsKilled_data();
     void whatAProcessLeavesBehindIsKilled();
     void restartsInAStormEndInOneProcess();
     void keepsTheLastOutput();
@@ -155,8 +156,17 @@ void TestSupervisor::stubbornProcessIsKilled() {
     QTRY_COMPARE_WITH_TIMEOUT(stateOf("one"), QString("stopped"), 8000);
 }
 
+void TestSupervisor::whatAProcessLeavesBehindIsKilled_data() {
+    QTest::addColumn<QString>("script");
+    QTest::newRow("child") << "sleep 600 & echo $!; wait";
+    QTest::newRow("session of its own") << "setsid sh -c 'echo $$; exec sleep 600' & wait";
+    QTest::newRow("daemon") << "(setsid sh -c 'echo $$; exec sleep 600' &) ; sleep 600";
+    QTest::newRow("of a process that has ended") << "setsid sh -c 'echo $$; exec sleep 600' & sleep 0.2";
+}
+
 void TestSupervisor::whatAProcessLeavesBehindIsKilled() {
-    launch({shell("one", "sleep 600 & echo $!; wait")});
+    QFETCH(QString, script);
+    launch({shell("one", script)});
     const auto output = [this] { return call("process.output", {{"name", "one"}})->toArray(); };
     QTRY_COMPARE(output().size(), 1);
     const pid_t left = output()[0].toString().toInt();
@@ -186,9 +196,12 @@ void TestSupervisor::keepsTheLastOutput() {
     const auto lines = [this](int count) {
         return call("process.output", {{"name", "one"}, {"lines", count}})->toArray();
     };
-    QTRY_COMPARE(lines(1), QJsonArray{"line 299"});
+    QTRY_COMPARE(lines(2), (QJsonArray{"line 299", "no end"}));
     QCOMPARE(lines(200).size(), 200);
-    QCOMPARE(lines(200)[0].toString(), QString("line 100"));
+    QCOMPARE(lines(200)[0].toString(), QString("line 101"));
+    QVERIFY(call("process.stop", {{"name", "one"}}).ok());
+    QTRY_COMPARE(stateOf("one"), QString("stopped"));
+    QCOMPARE(lines(1), QJsonArray{"no end"});
 }
 
 void TestSupervisor::reportsUse() {
@@ -229,7 +242,9 @@ void TestSupervisor::refusals() {
     QVERIFY(message("process.remove", {{"name", "none"}}).contains("no process \"none\""));
     QVERIFY2(message("process.add", shell("one", "true")).contains("processes.1.name"),
              qPrintable(message("process.add", shell("one", "true"))));
-    QVERIFY(message("process.add", {{"name", ""}}).contains("name"));
+    for (const QString &name : {QString(), QString("a\nb"), QString("../a"), QString("a/b"),
+                                QString(100000, 'a'), QString(".a"), QString("a") + QChar(0x1b) + "[2J"})
+        QVERIFY2(message("process.add", {{"name", name}}).contains("name"), qPrintable(name.left(20)));
     QVERIFY(message("process.add", {{"name", "x"}, {"port", 70000}}).contains("port"));
 }
 

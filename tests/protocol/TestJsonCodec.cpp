@@ -6,6 +6,8 @@
 
 using namespace hermes;
 
+Q_DECLARE_METATYPE(hermes::Greeting::Speaker)
+
 // Framing and strict parsing.
 class TestJsonCodec : public QObject {
     Q_OBJECT
@@ -25,6 +27,8 @@ private Q_SLOTS:
     void notFiniteNumbersAreNamed();
     void randomBytesNeverCrash();
     void unknownCodecIsNull();
+    void knowsWhoSpeaks_data();
+    void knowsWhoSpeaks();
 };
 
 void TestJsonCodec::accepts_data() {
@@ -210,6 +214,51 @@ void TestJsonCodec::unknownCodecIsNull() {
     QCOMPARE(codecNames(), QStringList{"json"});
     QVERIFY_EXCEPTION_THROWN(addCodec("json", makeCodecOf<JsonCodec>), std::invalid_argument);
     QCOMPARE(codecNames(), QStringList{"json"});
+}
+
+void TestJsonCodec::knowsWhoSpeaks_data() {
+    using Speaker = Greeting::Speaker;
+    QTest::addColumn<QByteArray>("text");
+    QTest::addColumn<Greeting::Speaker>("speaker");
+    const auto row = [](const char *name, const QByteArray &text, Speaker speaker) {
+        QTest::newRow(name) << text << speaker;
+    };
+    const QByteArray body = "Host: x\r\n\r\n{\"jsonrpc\":\"2.0\",\"method\":\"a\"}\n";
+    row("POST", "POST / HTTP/1.1\r\n" + body, Speaker::Http);
+    row("GET of a WebSocket", "GET /chat HTTP/1.1\r\n" + body, Speaker::Http);
+    row("OPTIONS", "OPTIONS * HTTP/1.1\r\n" + body, Speaker::Http);
+    row("invented method", "x!#$%&'*+-.^_`|~9 / HTTP/1.1\r\n" + body, Speaker::Http);
+    row("very long method", QByteArray(70000, 'm') + " / HTTP/1.1\r\n" + body, Speaker::Http);
+    row("HTTP/2", "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + body, Speaker::Http);
+    row("after white space", "\r\n \tPOST / HTTP/1.1\r\n" + body, Speaker::Http);
+    row("TLS 1.3", QByteArray("\x16\x03\x01\x02\x00\x01", 6) + body, Speaker::Tls);
+    row("message", "{\"jsonrpc\":\"2.0\",\"method\":\"a\"}\n", Speaker::Ours);
+    row("batch", "\n [1]\n", Speaker::Ours);
+    row("words", "hello world\n", Speaker::Ours);
+    row("one word", "hello\nPOST / HTTP/1.1\r\n", Speaker::Ours);
+    row("text", "\"POST / HTTP\"\n", Speaker::Ours);
+    row("two spaces", "POST  / HTTP/1.1\r\n", Speaker::Ours);
+    row("half of one", "POST ", Speaker::Unknown);
+    row("nothing", "", Speaker::Unknown);
+    row("zeros", QByteArray(10, '\0'), Speaker::Ours);
+    row("half of TLS", "\x16 {}\n", Speaker::Ours);
+}
+
+void TestJsonCodec::knowsWhoSpeaks() {
+    QFETCH(QByteArray, text);
+    QFETCH(Greeting::Speaker, speaker);
+    for (const int piece : {text.size() + 1, 1, 3}) {
+        JsonCodec codec;
+        size_t items = 0;
+        for (int i = 0; i < text.size(); i += piece)
+            items += codec.feed(text.mid(i, piece)).size();
+        QCOMPARE(codec.greeting().speaker(), speaker);
+        if (codec.greeting().isForeign())
+            QCOMPARE(items, size_t(0));
+        QCOMPARE(codec.feed("\n[1]\n").empty(), codec.greeting().isForeign());
+        codec.reset();
+        QCOMPARE(codec.feed("[1]\n").size(), size_t(1));
+    }
 }
 
 QTEST_APPLESS_MAIN(TestJsonCodec)

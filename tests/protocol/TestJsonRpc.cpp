@@ -64,6 +64,12 @@ void TestJsonRpc::invalidKeepsIdWhereReadable_data() {
     QTest::addColumn<QJsonValue>("id");
     QTest::newRow("number") << QByteArray(R"({"id":7,"method":"a"})") << QJsonValue(7);
     QTest::newRow("string") << QByteArray(R"({"jsonrpc":"2.0","id":"k","method":2})") << QJsonValue("k");
+    QTest::newRow("large") << QByteArray(R"({"jsonrpc":"2.0","id":9007199254740991,"method":5})")
+                           << QJsonValue(9007199254740991.0);
+    for (const char *number :
+         {"9007199254740992", "9007199254740993", "-9007199254740993", "123456789012345678901234567890"})
+        QTest::newRow(number) << QByteArray(R"({"jsonrpc":"2.0","method":"a","id":)") + number + '}'
+                              << QJsonValue();
     QTest::newRow("object") << QByteArray(R"({"jsonrpc":"2.0","id":{},"method":"a"})") << QJsonValue();
     QTest::newRow("none") << QByteArray(R"({"jsonrpc":"2.0","params":[]})") << QJsonValue();
 }

@@ -191,18 +191,22 @@ class Recording(unittest.TestCase):
             finally:
                 sender.kill()
                 sender.communicate()
-            status = logger.daemon.call("record.status")
-            self.assertEqual(status["error"]["code"], INPUT_OUTPUT, status)
-            self.assertTrue(status["error"]["data"]["path"].startswith(recorded), status)
             with self.assertRaises(DaemonError) as caught:
                 logger.daemon.call("record.stop")
             self.assertEqual(caught.exception.code, INPUT_OUTPUT)
+            status = logger.daemon.call("record.status")
+            self.assertEqual(status["error"]["code"], INPUT_OUTPUT, status)
+            self.assertTrue(status["error"]["data"]["path"].startswith(recorded), status)
             self.assertEqual(logger.daemon.call("daemon.status")["state"], "degraded")
             numbers = [load.number_of(payload) for path in load.captures(recorded) for _, payload in load.records(path)
                        if len(payload) == load.DATA]
             self.assertEqual(numbers, list(range(len(numbers))))
             sidecar = sidecar_of(recorded)
             self.assertEqual(sidecar["counts"]["packets"], sum(entry["packets"] for entry in sidecar["files"]))
+            self.assertEqual(sidecar["counts"], status["counts"])
+            self.assertEqual(sidecar["losses"], status["losses"])  # told in one place, and nowhere else otherwise
+            self.assertNotIn("lost", sidecar["error"])
+            self.assertFalse([name for name in os.listdir(recorded) if name.startswith(".")], "the reserve is left")
             self.assertGreater(len(numbers), 1000)
             shutil.rmtree(recorded)  # room again: the daemon lives
             logger.daemon.call("record.start", name="next")

@@ -1,0 +1,231 @@
+#include "common/files/NamedFile.h"
+
+#include <QDir>
+#include <QFileInfo>
+#include <QUuid>
+#include <algorithm>
+
+#include <climits>
+#include <cstdio>
+#include <cstdlib>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace hermes {
+namespace {
+
+/// A descriptor that is closed when it is no longer needed.
+class Descriptor {
+public:
+    explicit Descriptor(int number = -1)
+        : number_(number) {}
+    Descriptor(Descriptor &&other) noexcept
+        : number_(std::exchange(other.number_, -1)) {}
+    Descriptor &operator=(Descriptor &&other) noexcept {
+        std::swap(number_, other.number_);
+        return *this;
+    }
+    ~Descriptor() {
+        if (number_ >= 0)
+            ::close(number_);
+    }
+    operator int() const { return number_; }
+
+private:
+    int number_;
+};
+
+Error fileError(const QString &path, const QString &what) {
+    return {ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, what),
+            QJsonObject{{QStringLiteral("path"), path}}};
+}
+
+/// Without links; empty, and errno says why.
+QString realPath(const QString &path) {
+    char *const real = ::realpath(QFile::encodeName(path).constData(), nullptr);
+    const QString result = real ? QFile::decodeName(real) : QString();
+    ::free(real);
+    return result;
+}
+
+/// path: without links.
+bool isBelow(const QString &path, const QString &folder) {
+    const QString real = realPath(folder);
+    return !real.isEmpty() &&
+           path.startsWith(real.endsWith(QLatin1Char('/')) ? real : real + QLatin1Char('/'));
+}
+
+/// Nothing: the name can be one.
+Result<void> checkPath(const QString &path) {
+    const bool hasControls = std::any_of(path.begin(), path.end(), [](QChar c) {
+        return c.category() == QChar::Other_Control || c == QChar::LineSeparator ||
+               c == QChar::ParagraphSeparator;
+    });
+    if (path.isEmpty() || hasControls || path.toUtf8().size() >= PATH_MAX) {
+        return fileError(path.left(100), QStringLiteral("expected the path of a file, without control "
+                                                        "characters and of less than %1 bytes")
+                                             .arg(PATH_MAX));
+    }
+    return {};
+}
+
+/// path: without links.
+Result<void> checkFolders(const QString &named, const QString &path, const QStringList &folders) {
+    if (std::any_of(folders.begin(), folders.end(),
+                    [&path](const QString &folder) { return isBelow(path, folder); }))
+        return {};
+    const bool isLinked = path != QDir::cleanPath(QFileInfo(named).absoluteFilePath());
+    return fileError(named, QStringLiteral("%1not below %2, where files may be named")
+                                .arg(isLinked ? QStringLiteral("this is %1, ").arg(path) : QString(),
+                                     folders.join(QStringLiteral(" or "))));
+}
+
+/// The folder of the path, which has no links, for openat(); nothing: errno says why.
+Descriptor openFolder(const QString &path) {
+    Descriptor folder(::open("/", O_PATH | O_DIRECTORY | O_CLOEXEC));
+    for (const QString &step : path.split(QLatin1Char('/'), Qt::SkipEmptyParts)) {
+        folder = Descriptor(::openat(folder, QFile::encodeName(step).constData(),
+                                     O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+        if (folder < 0)
+            break;
+    }
+    return folder;
+}
+
+/// For reading; open() of a device or a pipe may do something, or wait, so it is looked at first.
+Result<Descriptor> openRegular(const QString &path) {
+    const QFileInfo file(path);
+    const Descriptor folder = openFolder(file.path());
+    const QByteArray name = QFile::encodeName(file.fileName());
+    struct stat status {};
+    if (folder < 0 || ::fstatat(folder, name.constData(), &status, AT_SYMLINK_NOFOLLOW) != 0)
+        return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+    if (!S_ISREG(status.st_mode))
+        return fileError(path, QStringLiteral("not a regular file"));
+    Descriptor opened(
+        ::openat(folder, name.constData(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+    if (opened < 0 || ::fstat(opened, &status) != 0)
+        return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+    if (!S_ISREG(status.st_mode))
+        return fileError(path, QStringLiteral("not a regular file"));
+    return opened;
+}
+
+struct Opened {
+    QString path;
+    Descriptor file;
+};
+
+Result<Opened> openNamed(const QString &path, const QStringList &folders) {
+    if (const Result<void> fine = checkPath(path); !fine)
+        return fine.error();
+    const QString found = realPath(path);
+    if (found.isEmpty())
+        return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+    if (const Result<void> fine = checkFolders(path, found, folders); !fine)
+        return fine.error();
+    Result<Descriptor> file = openRegular(found);
+    if (!file)
+        return file.error();
+    return Opened{found, std::move(*file)};
+}
+
+bool writeAll(int file, const QByteArray &bytes) {
+    qsizetype done = 0;
+    while (done < bytes.size()) {
+        const ssize_t written = ::write(file, bytes.constData() + done, size_t(bytes.size() - done));
+        if (written < 0 && errno != EINTR)
+            return false;
+        done += std::max<ssize_t>(written, 0);
+    }
+    return ::fsync(file) == 0;
+}
+
+} // namespace
+
+Field namedFilesField() {
+    return Field::array(QStringLiteral("files.folders"),
+                        QStringLiteral("Folders below which clients may name files to be read"),
+                        {{QStringLiteral("type"), QStringLiteral("string")}})
+        .byDefault(QJsonArray{QStringLiteral("/")})
+        .appliesOnRestart()
+        .group(QStringLiteral("Files"));
+}
+
+QStringList namedFilesFolders(const Settings &settings) {
+    QStringList folders;
+    for (const QJsonValue &folder : settings.value(QStringLiteral("files.folders")).toArray())
+        folders.append(folder.toString());
+    return folders;
+}
+
+Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes) {
+    const Result<Opened> opened = openNamed(path, folders);
+    if (!opened)
+        return opened.error();
+    // What /proc shows has no size, and some of it no end.
+    struct stat status {};
+    ::fstat(opened->file, &status);
+    if (status.st_size == 0 || status.st_size > mostBytes)
+        return fileError(
+            path, QStringLiteral("it has %1 bytes, expected 1 to %2").arg(status.st_size).arg(mostBytes));
+    QByteArray bytes(int(status.st_size), Qt::Uninitialized);
+    int done = 0;
+    while (done < bytes.size()) {
+        const ssize_t read = ::read(opened->file, bytes.data() + done, size_t(bytes.size() - done));
+        if (read < 0 && errno != EINTR)
+            return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+        if (read == 0) // it was cut meanwhile
+            break;
+        done += int(std::max<ssize_t>(read, 0));
+    }
+    bytes.truncate(done);
+    return bytes;
+}
+
+Result<QString> findNamedFile(const QString &path, const QStringList &folders) {
+    const Result<Opened> opened = openNamed(path, folders);
+    return opened ? Result<QString>(opened->path) : opened.error();
+}
+
+Result<void> writeNamedFile(const QString &path, const QStringList &folders, const QByteArray &bytes,
+                            bool replace) {
+    if (const Result<void> fine = checkPath(path); !fine)
+        return fine.error();
+    const QFileInfo named(QDir::cleanPath(QFileInfo(path).absoluteFilePath()));
+    const QString parent = realPath(named.path());
+    if (parent.isEmpty())
+        return fileError(path, QStringLiteral("cannot be written: its folder: ") + qt_error_string());
+    const QString target = QDir(parent).filePath(named.fileName());
+    if (const Result<void> fine = checkFolders(path, target, folders); !fine)
+        return fine.error();
+    const auto failed = [&path] {
+        return fileError(path, QStringLiteral("cannot be written: ") + qt_error_string());
+    };
+    const Descriptor folder = openFolder(parent);
+    if (folder < 0)
+        return failed();
+    const QByteArray name = QFile::encodeName(named.fileName());
+    struct stat status {};
+    const bool exists = ::fstatat(folder, name.constData(), &status, AT_SYMLINK_NOFOLLOW) == 0;
+    if (exists && !S_ISREG(status.st_mode))
+        return fileError(path, QStringLiteral("not a regular file"));
+    if (exists && !replace)
+        return fileError(path, QStringLiteral("exists already, expected a new name or force: true"));
+    const QByteArray draft = ".hermes-" + QUuid::createUuid().toByteArray(QUuid::Id128);
+    const Descriptor file(
+        ::openat(folder, draft.constData(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
+    const bool isWritten = file >= 0 && writeAll(file, bytes);
+    // A file system may not know how not to replace; then it was seen above that there is nothing.
+    if (isWritten &&
+        (::renameat2(folder, draft.constData(), folder, name.constData(), replace ? 0 : RENAME_NOREPLACE) ==
+             0 ||
+         (errno == EINVAL && ::renameat(folder, draft.constData(), folder, name.constData()) == 0)))
+        return {};
+    const Error error = failed();
+    ::unlinkat(folder, draft.constData(), 0);
+    return error;
+}
+
+} // namespace hermes

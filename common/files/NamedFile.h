@@ -1,0 +1,33 @@
+#pragma once
+
+#include "common/Result.h"
+#include "common/schema/Field.h"
+#include "common/settings/Settings.h"
+
+#include <QByteArray>
+#include <QStringList>
+
+namespace hermes {
+
+/// Files that clients name. All of a program's are opened here: regular files below folders that the settings
+/// allow, never a device, a pipe or a socket, whatever links lead to; without waiting for anybody, and never
+/// more than a limit. Links are resolved first, and what they lead to has to be below the folders, too; then
+/// the file is opened without following any, so that nobody can change them meanwhile. Errors: InputOutput
+/// with data.path.
+
+/// The setting `files.folders`: below which clients may name files to read.
+Field namedFilesField();
+QStringList namedFilesFolders(const Settings &settings);
+
+/// The whole file. path: absolute, or relative to the working directory.
+Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes);
+
+/// The path without links of a file that could be opened so: for readers that open it themselves.
+Result<QString> findNamedFile(const QString &path, const QStringList &folders);
+
+/// Writes the file so that it is on the disk as a whole, or not at all. replace: a regular file that is
+/// there.
+Result<void> writeNamedFile(const QString &path, const QStringList &folders, const QByteArray &bytes,
+                            bool replace);
+
+} // namespace hermes
