@@ -143,7 +143,8 @@ bool Session::runNextOfBatch() {
     const RpcMessage message = readFrame(QJsonArray{now->message(i)}).messages.front();
     process(message, now->arrived, [this, now, i](const QJsonValue &reply) {
         QByteArray frame;
-        if (!reply.isUndefined()) {
+        const bool isWanted = channel_->isOpen() && !now->isTooLarge(); // to encode it may take long
+        if (!reply.isUndefined() && isWanted) {
             EncodedFrame encoded = channel_->codec().encode(reply);
             if (encoded.error) {
                 ++counts_.errors;

@@ -2,6 +2,7 @@
 
 #include <QDir>
 #include <QFileInfo>
+#include <QJsonObject>
 #include <QUuid>
 #include <algorithm>
 
@@ -62,7 +63,9 @@ Result<void> checkPath(const QString &path) {
         return c.category() == QChar::Other_Control || c == QChar::LineSeparator ||
                c == QChar::ParagraphSeparator;
     });
-    if (path.isEmpty() || hasControls || path.toUtf8().size() >= PATH_MAX) {
+    const QString name = path.section(QLatin1Char('/'), -1);
+    if (name.isEmpty() || name == QStringLiteral(".") || name == QStringLiteral("..") || hasControls ||
+        path.toUtf8().size() >= PATH_MAX) {
         return fileError(path.left(100), QStringLiteral("expected the path of a file, without control "
                                                         "characters and of less than %1 bytes")
                                              .arg(PATH_MAX));
@@ -144,22 +147,6 @@ bool writeAll(int file, const QByteArray &bytes) {
 
 } // namespace
 
-Field namedFilesField() {
-    return Field::array(QStringLiteral("files.folders"),
-                        QStringLiteral("Folders below which clients may name files to be read"),
-                        {{QStringLiteral("type"), QStringLiteral("string")}})
-        .byDefault(QJsonArray{QStringLiteral("/")})
-        .appliesOnRestart()
-        .group(QStringLiteral("Files"));
-}
-
-QStringList namedFilesFolders(const Settings &settings) {
-    QStringList folders;
-    for (const QJsonValue &folder : settings.value(QStringLiteral("files.folders")).toArray())
-        folders.append(folder.toString());
-    return folders;
-}
-
 Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes) {
     const Result<Opened> opened = openNamed(path, folders);
     if (!opened)
@@ -193,7 +180,7 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
                             bool replace) {
     if (const Result<void> fine = checkPath(path); !fine)
         return fine.error();
-    const QFileInfo named(QDir::cleanPath(QFileInfo(path).absoluteFilePath()));
+    const QFileInfo named(path);
     const QString parent = realPath(named.path());
     if (parent.isEmpty())
         return fileError(path, QStringLiteral("cannot be written: its folder: ") + qt_error_string());

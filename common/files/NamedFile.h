@@ -1,8 +1,6 @@
 #pragma once
 
 #include "common/Result.h"
-#include "common/schema/Field.h"
-#include "common/settings/Settings.h"
 
 #include <QByteArray>
 #include <QStringList>
@@ -14,10 +12,6 @@ namespace hermes {
 /// more than a limit. Links are resolved first, and what they lead to has to be below the folders, too; then
 /// the file is opened without following any, so that nobody can change them meanwhile. Errors: InputOutput
 /// with data.path.
-
-/// The setting `files.folders`: below which clients may name files to read.
-Field namedFilesField();
-QStringList namedFilesFolders(const Settings &settings);
 
 /// The whole file. path: absolute, or relative to the working directory.
 Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes);

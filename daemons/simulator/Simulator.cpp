@@ -1,6 +1,7 @@
 #include "daemons/simulator/Simulator.h"
 
 #include "common/Log.h"
+#include "common/files/FilesSetting.h"
 #include "common/files/NamedFile.h"
 #include "common/world/WorldFile.h"
 #include "daemons/simulator/FaultNames.h"

@@ -1,4 +1,4 @@
-#include "common/files/NamedFile.h"
+#include "common/files/FilesSetting.h"
 #include "daemons/simulator/Simulator.h"
 
 namespace hermes::simulator {

@@ -61,6 +61,8 @@ SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
     connect(&process_, &QProcess::started, this, [this] {
         logInfo("process",
                 QString("%1: started with process id %2").arg(entry_.name).arg(process_.processId()));
+        if (state_ == State::Stopping)
+            process_.terminate();
         Q_EMIT changed();
     });
     retry_.setSingleShot(true);
@@ -81,6 +83,7 @@ SupervisedProcess::~SupervisedProcess() {
     process_.disconnect(this);
     if (!isAlive())
         return;
+    process_.waitForStarted(int(killAfter.count()));
     process_.terminate();
     if (!process_.waitForFinished(int(killAfter.count())))
         process_.kill();
@@ -109,7 +112,8 @@ void SupervisedProcess::stop() {
     if (!isAlive())
         return setState(State::Stopped);
     setState(State::Stopping);
-    process_.terminate();
+    if (process_.state() == QProcess::Running)
+        process_.terminate(); // else when it is: until then it would take the signal for one to this program
     kill_.start(killAfter);
 }
 

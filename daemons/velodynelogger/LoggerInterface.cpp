@@ -1,5 +1,5 @@
 // What the Velodyne logger offers: its settings, topics and commands.
-#include "common/files/NamedFile.h"
+#include "common/files/FilesSetting.h"
 #include "daemons/velodynelogger/VelodyneLogger.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"

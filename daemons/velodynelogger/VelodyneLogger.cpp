@@ -1,6 +1,7 @@
 #include "daemons/velodynelogger/VelodyneLogger.h"
 
 #include "common/Log.h"
+#include "common/files/FilesSetting.h"
 #include "common/files/NamedFile.h"
 #include "daemons/velodynelogger/TurnFile.h"
 #include "daemons/velodynelogger/TurnMessages.h"

@@ -1,5 +1,6 @@
 #include "protocol/jsonrpc/Codec.h"
 
+#include "protocol/jsonrpc/CborCodec.h"
 #include "protocol/jsonrpc/JsonCodec.h"
 
 #include <stdexcept>
@@ -16,6 +17,7 @@ std::vector<Kind> &kinds() {
     // A new framing is one line here.
     static std::vector<Kind> all = {
         {QStringLiteral("json"), makeCodecOf<JsonCodec>},
+        {QStringLiteral("cbor"), makeCodecOf<CborCodec>},
     };
     return all;
 }

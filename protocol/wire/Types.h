@@ -120,8 +120,11 @@ QJsonObject arraySchema(const QJsonObject &items, std::size_t least, std::size_t
 /// What the lists below share.
 template <typename List, typename T>
 struct ListType {
+    static constexpr bool isPacked =
+        std::is_floating_point_v<T> || std::is_same_v<T, quint8> || std::is_same_v<T, quint16>;
+
     static void write(WireWriter &out, const List &values) {
-        if constexpr (std::is_floating_point_v<T>)
+        if constexpr (isPacked)
             return out.numbers(values.data(), std::size_t(values.size()));
         out.beginArray();
         std::size_t i = 0;
@@ -136,10 +139,11 @@ struct ListType {
 
     static void readElements(WireView in, List &values, const Limits &limits, ReadReport &report) {
         std::size_t first = 0;
-        if constexpr (std::is_floating_point_v<T>) { // many at once; what is wrong is looked at one by one
+        if constexpr (isPacked) { // many at once; what is wrong is looked at one by one
             const Limits within = limitsOf<T>(limits);
             const std::size_t count = in.numbers(values.data());
-            while (first < count && values[first] >= within.least && values[first] <= within.most)
+            while (first < count && double(values[first]) >= within.least &&
+                   double(values[first]) <= within.most)
                 ++first;
         }
         for (std::size_t i = first; i < in.size(); ++i) {

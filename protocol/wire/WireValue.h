@@ -30,19 +30,23 @@ public:
     /// As many numbers of the array as come one after another from its beginning; at most size().
     std::size_t numbers(float *to) const;
     std::size_t numbers(double *to) const;
+    std::size_t numbers(quint8 *to) const;
+    std::size_t numbers(quint16 *to) const;
     void forEachMember(const std::function<void(const QString &name, WireView value)> &see) const;
     QJsonValue toJson() const;
     /// For an error message: `text "abc"`, `12`, `an array of 3`.
     QString described() const;
 
 protected:
-    explicit WireView(const void *tree)
-        : node_(tree) {}
+    explicit WireView(const void *tree, std::optional<std::size_t> element = std::nullopt)
+        : node_(tree)
+        , element_(element) {}
 
 private:
     friend class WireValue;
 
     const void *node_ = nullptr;
+    std::optional<std::size_t> element_; // of packed numbers
 };
 
 /// What is wrong with a text, and where.
@@ -65,6 +69,11 @@ public:
     /// Strict JSON: any value may stand at the top, bytes must be UTF-8, a key may occur once in an object,
     /// nesting is limited. Nothing: error says why.
     static std::optional<WireValue> parse(const QByteArray &json, WireError *error, int maximumDepth = 100);
+
+    /// One item of CBOR (RFC 8949) that JSON could hold, too; arrays of numbers may be typed arrays (RFC
+    /// 8746) of integers, floats and doubles in either byte order. Limits and errors as of parse().
+    static std::optional<WireValue> parseCbor(const QByteArray &cbor, WireError *error,
+                                              int maximumDepth = 100);
 
 private:
     struct Tree;

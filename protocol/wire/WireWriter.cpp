@@ -19,7 +19,10 @@ template <typename T>
 void WireWriter::each(const T *values, std::size_t count) {
     beginArray();
     for (std::size_t i = 0; i < count && !isRefused_; ++i) {
-        number(values[i]);
+        if constexpr (std::is_integral_v<T>)
+            integer(values[i]);
+        else
+            number(values[i]);
         if (isRefused_)
             within(QString::number(i));
     }
@@ -31,6 +34,14 @@ void WireWriter::numbers(const float *values, std::size_t count) {
 }
 
 void WireWriter::numbers(const double *values, std::size_t count) {
+    each(values, count);
+}
+
+void WireWriter::numbers(const quint8 *values, std::size_t count) {
+    each(values, count);
+}
+
+void WireWriter::numbers(const quint16 *values, std::size_t count) {
     each(values, count);
 }
 

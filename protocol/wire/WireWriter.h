@@ -28,6 +28,8 @@ public:
     /// An array of them: packed where the wire has that.
     virtual void numbers(const float *values, std::size_t count);
     virtual void numbers(const double *values, std::size_t count);
+    virtual void numbers(const quint8 *values, std::size_t count);
+    virtual void numbers(const quint16 *values, std::size_t count);
     /// What cannot be written is null; the first of it is refused.
     void json(const QJsonValue &value);
 

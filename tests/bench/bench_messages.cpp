@@ -1,5 +1,7 @@
-// A turn of 1,800 points as a message: from points to bytes and from bytes to points, beside QJsonDocument.
+// A turn of 1,800 points as a message: from points to bytes and from bytes to points, in both framings,
+// beside QJsonDocument.
 #include "common/daemon/TopicHub.h"
+#include "protocol/jsonrpc/CborCodec.h"
 #include "protocol/jsonrpc/JsonCodec.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/wire/Fields.h"
@@ -32,7 +34,7 @@ const ScanMessage &scan() {
     return made;
 }
 
-QByteArray framed(JsonCodec &codec) {
+QByteArray framed(Codec &codec) {
     return codec.forSubscription(codec.encodeTopic("scan2d", 1, 1.7e9, scan()).bytes, 1, 0);
 }
 
@@ -54,8 +56,9 @@ std::vector<T> vectorOf(const QJsonValue &value) {
     return values;
 }
 
+template <typename Framing>
 void pointsToBytes(benchmark::State &state) {
-    JsonCodec codec;
+    Framing codec;
     for (auto _ : state)
         benchmark::DoNotOptimize(framed(codec).size());
     state.counters["bytes"] = framed(codec).size();
@@ -72,8 +75,9 @@ void pointsToBytesByQt(benchmark::State &state) {
     }
 }
 
+template <typename Framing>
 void bytesToPoints(benchmark::State &state) {
-    JsonCodec codec;
+    Framing codec;
     const QByteArray bytes = framed(codec);
     for (auto _ : state) {
         const std::vector<CodecItem> items = codec.feed(bytes);
@@ -122,9 +126,11 @@ void nobodySubscribes(benchmark::State &state) {
 
 } // namespace
 
-BENCHMARK(pointsToBytes)->Name("points to bytes");
+BENCHMARK(pointsToBytes<JsonCodec>)->Name("points to bytes");
+BENCHMARK(pointsToBytes<CborCodec>)->Name("points to bytes, cbor");
 BENCHMARK(pointsToBytesByQt)->Name("points to bytes, QJsonDocument");
-BENCHMARK(bytesToPoints)->Name("bytes to points");
+BENCHMARK(bytesToPoints<JsonCodec>)->Name("bytes to points");
+BENCHMARK(bytesToPoints<CborCodec>)->Name("bytes to points, cbor");
 BENCHMARK(bytesToPointsByQt)->Name("bytes to points, QJsonDocument");
 BENCHMARK(secondSubscriber)->Name("a second subscriber");
 BENCHMARK(nobodySubscribes)->Name("no subscriber");

@@ -148,11 +148,28 @@ void TestNamedFile::refusesToRead() {
 
 void TestNamedFile::refusesToWrite_data() {
     QTest::addColumn<QString>("path");
-    for (const char *path :
-         {"other/new", "allowed/../other/new", "allowed/way-out/new", "allowed/outside", "allowed/inside",
-          "allowed/dangling", "allowed/pipe", "allowed/zero", "allowed/sub", "allowed/none/new", "allowed",
-          "/dev/null", "/proc/self/fd/2", "/proc/self/cwd/new", "allowed/.", "allowed/sub/..",
-          "allowed/map/new", "allowed/new\n", ""})
+    for (const char *path : {"other/new",
+                             "allowed/../other/new",
+                             "allowed/way-out/new",
+                             "allowed/outside",
+                             "allowed/inside",
+                             "allowed/dangling",
+                             "allowed/pipe",
+                             "allowed/zero",
+                             "allowed/sub",
+                             "allowed/none/new",
+                             "allowed",
+                             "/dev/null",
+                             "/proc/self/fd/2",
+                             "/proc/self/cwd/new",
+                             "allowed/.",
+                             "allowed/sub/..",
+                             "allowed/new/",
+                             "allowed/new/.",
+                             "allowed/way-out/../new",
+                             "allowed/map/new",
+                             "allowed/new\n",
+                             ""})
         QTest::newRow(path) << QString(path);
     QTest::newRow("NUL") << QString("allowed/new") + QChar(0) + "x";
     QTest::newRow("long name") << "allowed/" + QString(300, 'x');

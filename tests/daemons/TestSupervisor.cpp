@@ -215,7 +215,7 @@ void TestSupervisor::reportsUse() {
 void TestSupervisor::addAndRemove() {
     launch({});
     QVERIFY(call("process.add", shell("one", "exec sleep 100")).ok());
-    QTRY_COMPARE(stateOf("one"), QString("running"));
+    QTRY_VERIFY(process("one")["pid"].toInt() > 0);
     const int pid = process("one")["pid"].toInt();
     QVERIFY(call("process.remove", {{"name", "one"}}).ok());
     QVERIFY(process("one").isEmpty());

@@ -223,7 +223,7 @@ class Sessions(unittest.TestCase):
         os.remove(load.captures(os.path.join(self.records, "run1"))[0])
         told = self.ctl("replay", "run1", status=1)
         self.assertIn("velodynelogger: ", told)
-        self.assertIn("0001.pcap: cannot be opened", told)
+        self.assertIn("0001.pcap: cannot be read", told)
         self.check_live()
 
     def test_all_or_none(self):

@@ -27,7 +27,7 @@ private Q_SLOTS:
 
 private:
     // Of the processor, in one turn of the event loop; and what Qt takes here to paint so many lines.
-    double busyMost_ms = 50;
+    double busyMost_ms = 50 * slowness;
     static double paintingTime_ms();
 
     /// Looks at everything that the window shows of the daemon.
