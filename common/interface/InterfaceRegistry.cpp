@@ -1,5 +1,7 @@
 #include "common/interface/InterfaceRegistry.h"
 
+#include "common/interface/LocalInterface.h"
+#include "common/interface/LocalServerInterface.h"
 #include "common/interface/PtyInterface.h"
 #include "common/interface/SerialInterface.h"
 #include "common/interface/TcpInterface.h"
@@ -38,6 +40,7 @@ Listener *makeSinglePeer(const InterfaceUrl &url, QObject *parent) {
 // A new kind of carrier is one line here.
 const Kind kinds[] = {
     {"tcp", Reach::Network, make<TcpInterface>, makeServer<TcpServerInterface>},
+    {"local", Reach::Computer, make<LocalInterface>, makeServer<LocalServerInterface>},
     {"udp", Reach::Network, make<UdpInterface>, makeSinglePeer<UdpInterface>},
     {"serial", Reach::Computer, make<SerialInterface>, makeSinglePeer<SerialInterface>},
     {"pty", Reach::Computer, make<PtyInterface>, makeSinglePeer<PtyInterface>},

@@ -1,6 +1,20 @@
 #include "common/interface/Listener.h"
 
+#include "common/Log.h"
+
+#include <sys/resource.h>
+
 namespace hermes {
+
+bool Listener::isScarce(qintptr descriptor) {
+    constexpr rlim_t spareDescriptors = 8;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || rlim_t(descriptor) + spareDescriptors < limit.rlim_cur)
+        return false;
+    logWarning(QStringLiteral("server"),
+               QStringLiteral("a client is turned away: the file descriptors are nearly used up"));
+    return true;
+}
 
 SinglePeerListener::SinglePeerListener(Interface *onlyCarrier, QObject *parent)
     : Listener(parent)

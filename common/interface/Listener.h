@@ -25,6 +25,9 @@ Q_SIGNALS:
 protected:
     explicit Listener(QObject *parent)
         : QObject(parent) {}
+    /// Whether so few descriptors are left that files and devices need them; said in the log. With none left
+    /// accept() fails, and the event loop spins.
+    static bool isScarce(qintptr descriptor);
 };
 
 /// A listener for carriers that have no connections (UDP, a serial line): the carrier itself is the one peer.

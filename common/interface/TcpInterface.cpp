@@ -98,10 +98,16 @@ qint64 TcpInterface::bytesToWrite() const {
 
 void TcpInterface::doOpen() {
     receiving_ = true;
-    if (socket_->state() == QAbstractSocket::ConnectedState)
+    if (isConnected())
         nowOpen(); // a peer of a server
     else
         socket_->connectToHost(url_.host, url_.port);
+}
+
+void TcpInterface::takeConnected(qintptr descriptor) {
+    receiving_ = true;
+    socket_->setSocketDescriptor(descriptor);
+    nowOpen();
 }
 
 void TcpInterface::doClose() {

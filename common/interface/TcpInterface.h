@@ -27,6 +27,9 @@ protected:
     void doOpen() override;
     void doClose() override;
     bool doWrite(const QByteArray &bytes) override;
+    bool isConnected() const { return socket_->state() == QAbstractSocket::ConnectedState; }
+    /// Goes on with a socket that somebody else has connected.
+    void takeConnected(qintptr descriptor);
 
 private:
     void prepare();

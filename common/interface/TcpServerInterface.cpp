@@ -1,23 +1,13 @@
 #include "common/interface/TcpServerInterface.h"
 
-#include "common/Log.h"
 #include "common/interface/TcpInterface.h"
 
-#include <sys/resource.h>
 #include <sys/socket.h>
 
 namespace hermes {
 namespace {
 
-// Descriptors that clients leave for files and devices. With none left accept() fails, and the event loop
-// spins.
-constexpr rlim_t spareDescriptors = 8;
 constexpr int acceptedAtOnce = 4;
-
-bool isScarce(qintptr descriptor) {
-    rlimit limit{};
-    return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 && rlim_t(descriptor) + spareDescriptors >= limit.rlim_cur;
-}
 
 } // namespace
 
@@ -69,12 +59,8 @@ void TcpServerInterface::takePeers() {
 }
 
 void TcpServerInterface::take(QTcpSocket *socket) {
-    if (isScarce(socket->socketDescriptor())) {
-        logWarning(QStringLiteral("server"),
-                   QStringLiteral("a client is turned away: the file descriptors are nearly used up"));
-        delete socket;
-        return;
-    }
+    if (isScarce(socket->socketDescriptor()))
+        return delete socket;
     auto *peer = new TcpInterface(socket, this);
     peer->open();
     Q_EMIT accepted(peer);

@@ -19,6 +19,7 @@ struct Carrier {
 
 const Carrier carriers[] = {
     {"tcp", "tcp://127.0.0.1:0", "tcp://127.0.0.1:PORT", 500000},
+    {"local", "local://FOLDER/socket", "local://FOLDER/socket", 500000},
     {"udp", "udp://127.0.0.1:0", "udp://127.0.0.1:0?peer=127.0.0.1:PORT", 20000},
     {"serial line", "pty://FOLDER/line", "serial://FOLDER/line?baud=115200", 3000},
 };

@@ -1,11 +1,17 @@
 #include "common/interface/InterfaceRegistry.h"
+#include "common/interface/LocalAddress.h"
+#include "common/interface/LocalInterface.h"
+#include "common/interface/LocalServerInterface.h"
 #include "common/interface/TcpInterface.h"
 #include "common/interface/TcpServerInterface.h"
 #include "common/interface/UdpInterface.h"
 #include "tests/support/FaultyInterface.h"
 #include "tests/support/LoopbackInterface.h"
 
+#include <QTemporaryDir>
 #include <QtTest>
+
+#include <sys/stat.h>
 
 using namespace hermes;
 
@@ -22,6 +28,8 @@ private Q_SLOTS:
     void closedInterfaceRefusesAndCounts();
     void writeLimitRefusesWhole();
     void udpKeepsDatagramsWhole();
+    void localSocketsNameTheirPeer();
+    void localSocketsReplaceOnlyWhatIsDead();
     void loopbackIsAsynchronous();
     void faultsAreRepeatable();
     void faultyKeepsOrderWithDelays();
@@ -178,6 +186,69 @@ void TestInterfaces::udpKeepsDatagramsWhole() {
     QSignalSpy closed(&second, &Interface::closed);
     second.open();
     QCOMPARE(closed.count(), 1); // the port is in use
+}
+
+void TestInterfaces::localSocketsNameTheirPeer() {
+    QTemporaryDir folder;
+    const auto url = *InterfaceUrl::parse("local://" + folder.filePath("socket"));
+    LocalServerInterface server(url, nullptr);
+    QVERIFY(server.listen());
+    struct stat status {};
+    QCOMPARE(::stat(QFile::encodeName(url.path).constData(), &status), 0);
+    QCOMPARE(status.st_mode & 0777u, 0600u);
+    std::unique_ptr<Interface> peer;
+    connect(&server, &Listener::accepted, this, [&peer](Interface *arrived) { peer.reset(arrived); });
+    LocalInterface client(url, nullptr);
+    client.open();
+    QVERIFY(client.isOpen());
+    QTRY_VERIFY(peer);
+    QVERIFY2(peer->name().contains(QString("process %1 of user %2").arg(::getpid()).arg(::getuid())),
+             qPrintable(peer->name()));
+    QSignalSpy received(peer.get(), &Interface::received), answered(&client, &Interface::received);
+    QSignalSpy closed(&client, &Interface::closed);
+    QVERIFY(client.write("to the server") && peer->write("and back"));
+    QTRY_COMPARE(received.count(), 1);
+    QTRY_COMPARE(answered.count(), 1);
+    peer->close();
+    QTRY_COMPARE(closed.count(), 1);
+}
+
+void TestInterfaces::localSocketsReplaceOnlyWhatIsDead() {
+    QTemporaryDir folder;
+    const auto at = [&folder](const QString &name) {
+        return *InterfaceUrl::parse("local://" + folder.filePath(name));
+    };
+    const auto problem = [](const InterfaceUrl &url) {
+        LocalServerInterface server(url, nullptr);
+        const auto listening = server.listen();
+        return listening ? QString() : listening.error().message;
+    };
+    LocalServerInterface first(at("socket"), nullptr);
+    QVERIFY(first.listen());
+    QVERIFY(problem(at("socket")).contains("another program listens there"));
+    QVERIFY(QFile::exists(folder.filePath("socket")));
+    first.close();
+    QVERIFY(!QFile::exists(folder.filePath("socket")));
+    // As of a program that was killed.
+    const Result<LocalAddress> address = LocalAddress::of(folder.filePath("dead"));
+    const int left = LocalAddress::makeSocket();
+    QCOMPARE(::bind(left, address->get(), address->size()), 0);
+    LocalAddress::closeSocket(left);
+    QCOMPARE(problem(at("dead")), QString());
+    QFile file(folder.filePath("file"));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    QVERIFY(problem(at("file")).contains("no socket"));
+    QVERIFY(file.exists());
+    QVERIFY(QFile::link(folder.filePath("file"), folder.filePath("link")));
+    QVERIFY(problem(at("link")).contains("no socket"));
+    QVERIFY(problem(at("missing/socket")).contains("No such file"));
+    QVERIFY(problem(at(QString(120, 'x'))).contains("1 to 107 bytes"));
+    QVERIFY(problem(*InterfaceUrl::parse("local://" + folder.filePath("s") + "?mode=999")).contains("mode"));
+    LocalInterface nobody(at("nobody"), nullptr);
+    QSignalSpy closed(&nobody, &Interface::closed);
+    nobody.open();
+    QCOMPARE(closed.count(), 1);
+    QVERIFY(closed[0][0].toString().contains("No such file"));
 }
 
 void TestInterfaces::loopbackIsAsynchronous() {

@@ -1,0 +1,109 @@
+#include "common/interface/LocalServerInterface.h"
+
+#include "common/interface/LocalAddress.h"
+#include "common/interface/LocalInterface.h"
+
+#include <QJsonObject>
+#include <cerrno>
+#include <sys/stat.h>
+
+namespace hermes {
+namespace {
+
+constexpr int acceptedAtOnce = 4; // then others have their turn
+constexpr uint ownerOnly = 0600;
+
+struct stat statusOf(const char *path) {
+    struct stat status {};
+    if (::lstat(path, &status) != 0)
+        status = {};
+    return status;
+}
+
+/// Whether a program listens there.
+bool isAlive(const LocalAddress &address) {
+    const int probe = LocalAddress::makeSocket();
+    const bool connected = ::connect(probe, address.get(), address.size()) == 0 || errno == EAGAIN;
+    LocalAddress::closeSocket(probe);
+    return connected;
+}
+
+} // namespace
+
+LocalServerInterface::LocalServerInterface(const InterfaceUrl &address, QObject *parent)
+    : Listener(parent)
+    , url_(address) {}
+
+LocalServerInterface::~LocalServerInterface() {
+    LocalServerInterface::close();
+}
+
+Error LocalServerInterface::refuse(const QString &why) const {
+    return {ErrorCode::InputOutput, QStringLiteral("cannot listen on %1: %2").arg(url_.toString(), why),
+            QJsonObject{{QStringLiteral("path"), url_.path}}};
+}
+
+Result<void> LocalServerInterface::listen() {
+    const Result<LocalAddress> address = LocalAddress::of(url_.path);
+    if (!address)
+        return refuse(address.error().message);
+    bool isMode = true;
+    const QString modeText = url_.option(QStringLiteral("mode"));
+    const uint mode = modeText.isEmpty() ? ownerOnly : modeText.toUInt(&isMode, 8);
+    if (!isMode || mode > 0777)
+        return refuse(QStringLiteral("mode \"%1\", expected permissions as 0660").arg(modeText));
+    const struct stat before = statusOf(address->path());
+    if (before.st_ino != 0 && !S_ISSOCK(before.st_mode))
+        return refuse(QStringLiteral("a file of this name exists that is no socket"));
+    if (before.st_ino != 0 && isAlive(*address))
+        return refuse(QStringLiteral("another program listens there"));
+    if (before.st_ino != 0)
+        ::unlink(address->path());
+    descriptor_ = LocalAddress::makeSocket();
+    // Nobody connects before it listens, and then the permissions are those that were asked for.
+    if (descriptor_ < 0 || ::bind(descriptor_, address->get(), address->size()) != 0 ||
+        ::chmod(address->path(), mode) != 0 || ::listen(descriptor_, SOMAXCONN) != 0) {
+        const Error error = refuse(qt_error_string());
+        LocalAddress::closeSocket(std::exchange(descriptor_, -1));
+        return error;
+    }
+    file_ = statusOf(address->path()).st_ino;
+    arrivals_ = std::make_unique<QSocketNotifier>(descriptor_, QSocketNotifier::Read);
+    connect(arrivals_.get(), &QSocketNotifier::activated, this, &LocalServerInterface::takePeers);
+    return {};
+}
+
+void LocalServerInterface::close() {
+    if (descriptor_ < 0)
+        return;
+    arrivals_.reset();
+    LocalAddress::closeSocket(std::exchange(descriptor_, -1));
+    const QByteArray path = QFile::encodeName(url_.path);
+    if (statusOf(path.constData()).st_ino == file_) // else another program has the name by now
+        ::unlink(path.constData());
+}
+
+void LocalServerInterface::takePeers() {
+    for (int i = 0; i < acceptedAtOnce; ++i) {
+        const int descriptor = ::accept4(descriptor_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+        if (descriptor < 0)
+            return;
+        take(descriptor);
+    }
+}
+
+void LocalServerInterface::take(int descriptor) {
+    ucred peer{};
+    socklen_t size = sizeof peer;
+    if (isScarce(descriptor) || ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0)
+        return LocalAddress::closeSocket(descriptor);
+    auto *socket = new QTcpSocket;
+    socket->setSocketDescriptor(descriptor);
+    auto *carrier = new LocalInterface(
+        socket, QStringLiteral("%1 (process %2 of user %3)").arg(address()).arg(peer.pid).arg(peer.uid),
+        this);
+    carrier->open();
+    Q_EMIT accepted(carrier);
+}
+
+} // namespace hermes
