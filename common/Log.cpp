@@ -36,8 +36,8 @@ void fromQt(QtMsgType type, const QMessageLogContext &context, const QString &te
 QString oneLine(const QString &text) {
     QString line;
     for (const QChar c : text.left(longestText)) {
-        const bool isControl = c.category() == QChar::Other_Control || c == QChar::LineSeparator ||
-                               c == QChar::ParagraphSeparator;
+        const bool isControl = c.category() == QChar::Other_Control || c.category() == QChar::Other_Format ||
+                               c == QChar::LineSeparator || c == QChar::ParagraphSeparator;
         line += isControl ? QStringLiteral("\\u%1").arg(c.unicode(), 4, 16, QLatin1Char('0')) : QString(c);
     }
     if (text.size() > longestText)
@@ -89,10 +89,10 @@ void Log::writeToStderr(QByteArray bytes) {
 }
 
 void Log::write(LogLevel level, const QString &source, const QString &text) {
-    const LogRecord record{stampNow(), level, source, oneLine(text)};
     const std::lock_guard<std::mutex> lock(mutex_);
     if (level < minimum_)
         return;
+    const LogRecord record{stampNow(), level, source, oneLine(text)};
     records_.push_back(record);
     while (int(records_.size()) > capacity_)
         records_.pop_front();

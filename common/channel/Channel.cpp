@@ -16,6 +16,11 @@ double nextArrival() {
     return last = std::max(bootNow(), last + 1e-9);
 }
 
+// What a frame costs that waits; one may be empty.
+qint64 costOf(const CodecFrame &frame) {
+    return frame.bytes.size() + qint64(sizeof(CodecFrame));
+}
+
 constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their sender does
 
 } // namespace
@@ -23,13 +28,16 @@ constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their s
 Channel::Channel(Interface *interface, std::unique_ptr<Codec> codec, QObject *parent)
     : QObject(parent)
     , carrier_(interface)
-    , framing_(std::move(codec))
+    , firstFraming_(std::move(codec))
+    , framing_(firstFraming_)
     , canWait_(interface->setReceiving(true)) {
     carrier_->setParent(this);
     connect(carrier_, &Interface::opened, this, [this] {
         if (ended_)
             deliverAll();
         ++opening_;
+        if (framing_ != firstFraming_)
+            firstFraming_->succeed(*std::exchange(framing_, firstFraming_));
         framing_->reset();
         waiting_.clear();
         waitingBytes_ = 0;
@@ -79,6 +87,11 @@ void Channel::close(const QString &reason) {
         carrier_->close(reason);
 }
 
+void Channel::setCodec(std::unique_ptr<Codec> codec) {
+    codec->succeed(*framing_);
+    framing_ = std::move(codec);
+}
+
 void Channel::setReceiving(bool on) {
     receiving_ = on;
     schedule();
@@ -101,7 +114,7 @@ void Channel::receive(const QByteArray &bytes) {
                 return;
             continue;
         }
-        waitingBytes_ += frame.bytes.size();
+        waitingBytes_ += costOf(frame);
         waiting_.push_back(std::move(frame));
     }
     if (framing_->greeting().isForeign()) {
@@ -165,7 +178,7 @@ void Channel::deliverAll() {
 void Channel::deliverFront() {
     const CodecFrame frame = std::move(waiting_.front());
     waiting_.pop_front();
-    waitingBytes_ -= frame.bytes.size();
+    waitingBytes_ -= costOf(frame);
     const bool isLarge = readFront_.has_value();
     CodecItem item = readFront_ ? *std::exchange(readFront_, std::nullopt) : framing_->read(frame);
     reads_ = false;

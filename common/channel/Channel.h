@@ -38,6 +38,8 @@ public:
     void setUrgent(std::function<bool(const QByteArray &frame)> isUrgent) { urgent_ = std::move(isUrgent); }
     /// Reads frames larger than this in the background. For channels of the main thread.
     void setLargeFrame(int bytes) { largeFrame_ = bytes; }
+    /// Goes on in another framing until the carrier is opened anew.
+    void setCodec(std::unique_ptr<Codec> codec);
     /// When the message that is being given came, of the clock of bootNow(). No two in a thread came at the
     /// same time: what came first has the smaller one.
     double arrived() const { return arrival_; }
@@ -68,6 +70,7 @@ private:
     void updateReceiving();
 
     Interface *carrier_;
+    const std::shared_ptr<Codec> firstFraming_;
     std::shared_ptr<Codec> framing_; // also of who reads in the background
     std::deque<CodecFrame> waiting_;
     qint64 waitingBytes_ = 0;

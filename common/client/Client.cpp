@@ -9,6 +9,9 @@
 namespace hermes {
 namespace {
 
+// A daemon that is slow to agree changes its framing nevertheless: there is no going on without its answer.
+constexpr std::chrono::hours longestAgreement{24};
+
 constexpr double latestStamp = 1e10; // seconds: beyond it stamps lose their digits
 
 /// A whole number from 0 to 2^53; negative: it is none.
@@ -45,7 +48,6 @@ void Client::connectTo(Channel *newChannel) {
     connect(channel_, &Channel::closed, this, &Client::onClosed);
     connect(channel_, &Channel::message, this, &Client::onMessage);
     connect(channel_, &Channel::malformed, this, &Client::refuse);
-    connect(channel_, &Channel::foreign, this, &Client::refuse);
     channel_->open();
 }
 
@@ -59,7 +61,8 @@ void Client::close() {
     if (!channel_)
         return;
     Channel *const old = channel_;
-    const bool open = old->isOpen();
+    const bool open = old->isOpen() && !agreeing_;
+    agreeing_ = false;
     old->disconnect(this);
     old->interface().setReconnecting(false);
     old->close(QStringLiteral("closed by this client"));
@@ -75,12 +78,17 @@ QString Client::address() const {
 
 void Client::call(const QString &method, const QJsonValue &params, const Callback &callback,
                   std::chrono::milliseconds timeout) {
+    send(method, params, callback, timeout, isConnected());
+}
+
+void Client::send(const QString &method, const QJsonValue &params, const Callback &callback,
+                  std::chrono::milliseconds timeout, bool mayBeSent) {
     const qint64 id = ++lastId_;
     waiting_.insert(id, callback);
     const auto sent =
-        isConnected() ? channel_->send(makeRequest(id, method, params))
-                      : Result<void>(Error(ErrorCode::Disconnected,
-                                           QStringLiteral("%1: not connected: %2").arg(method, failure_)));
+        mayBeSent ? channel_->send(makeRequest(id, method, params))
+                  : Result<void>(Error(ErrorCode::Disconnected,
+                                       QStringLiteral("%1: not connected: %2").arg(method, failure_)));
     if (!sent) {
         QMetaObject::invokeMethod(
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
@@ -192,6 +200,24 @@ void Client::sendSubscription(int handle) {
 void Client::onOpened() {
     failure_.clear();
     refused_ = {};
+    preferred_.isEmpty() ? begin() : agree();
+}
+
+void Client::agree() {
+    agreeing_ = true;
+    const auto done = [this](const Result<QJsonValue> &result) {
+        agreeing_ = false;
+        if (!channel_ || !channel_->isOpen())
+            return;
+        if (auto codec = makeCodec(preferred_); result && codec)
+            channel_->setCodec(std::move(codec));
+        begin();
+    };
+    send(QStringLiteral("protocol.use"), QJsonObject{{QStringLiteral("name"), preferred_}}, done,
+         longestAgreement, true);
+}
+
+void Client::begin() {
     for (const auto &subscription : subscriptions_)
         sendSubscription(subscription.first);
     Q_EMIT connected();

@@ -45,7 +45,10 @@ public:
     /// Over a channel of one's own, closed as yet; takes it over.
     void connectTo(Channel *newChannel);
     void close();
-    bool isConnected() const { return channel_ && channel_->isOpen(); }
+    /// Asks for this framing at each connection from now on, before it is told as connected; a daemon that
+    /// does not know it goes on in that of the address.
+    void prefer(const QString &protocol) { preferred_ = protocol; }
+    bool isConnected() const { return channel_ && channel_->isOpen() && !agreeing_; }
     QString address() const;
     /// What came over this connection and could not be used.
     struct Rejected {
@@ -96,6 +99,10 @@ private:
     };
 
     void onOpened();
+    void agree();
+    void begin();
+    void send(const QString &method, const QJsonValue &params, const Callback &callback,
+              std::chrono::milliseconds timeout, bool mayBeSent);
     void onClosed(const QString &reason);
     void onMessage(const QJsonValue &message, const WireValue &topicData);
     void refuse(const RpcError &error);
@@ -107,6 +114,8 @@ private:
 
     Channel *channel_ = nullptr;
     QString failure_;
+    QString preferred_;
+    bool agreeing_ = false; ///< on a framing
     Rejected refused_;
     int frameBytes_ = frameLimit;
     int largeCalls_ = 0; ///< that wait

@@ -50,6 +50,11 @@ Command &Command::fresh() {
     return with(freshKey(), true);
 }
 
+Command &Command::unlisted() {
+    isListed_ = false;
+    return *this;
+}
+
 Command &Command::handler(const Handler &function) {
     return asyncHandler([function](const Call &call, const Reply &reply) { reply.give(function(call)); });
 }

@@ -53,6 +53,8 @@ public:
     Command &urgent();
     /// `x-fresh`: not carried out when it was received before the program had stood still.
     Command &fresh();
+    /// Not in the description: it is of the connection, not of the daemon.
+    Command &unlisted();
     /// Answers at once.
     Command &handler(const Handler &function);
     /// Answers at once or later, through the Reply.
@@ -61,6 +63,7 @@ public:
     const QString &name() const { return commandName_; }
     bool isUrgent() const { return extra_.contains(urgentKey()); }
     bool needsFresh() const { return extra_.contains(freshKey()); }
+    bool isListed() const { return isListed_; }
 
     /// The method object of an OpenRPC document.
     QJsonObject description() const;
@@ -83,6 +86,7 @@ private:
     QJsonValue exampleResult_{QJsonValue::Undefined};
     QJsonObject extra_;
     AsyncHandler run_;
+    bool isListed_ = true;
     mutable std::shared_ptr<const SchemaValidator> validator_; // made at the first call
 };
 

@@ -33,7 +33,8 @@ void CommandRegistry::execute(const RpcRequest &request, const Call &call, const
 QJsonArray CommandRegistry::description() const {
     QJsonArray methods;
     for (const Command &command : commands_)
-        methods.append(command.description());
+        if (command.isListed())
+            methods.append(command.description());
     return methods;
 }
 

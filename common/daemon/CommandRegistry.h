@@ -20,7 +20,7 @@ public:
     /// Runs what the request asks for. An unknown method is an error that names the nearest known ones.
     void execute(const RpcRequest &request, const Call &call, const Reply &reply) const;
 
-    /// The method objects of an OpenRPC document, ordered by name.
+    /// The method objects of an OpenRPC document, ordered by name, of those that are listed.
     QJsonArray description() const;
 
 private:

@@ -33,6 +33,23 @@ void addDaemonCommands(Daemon &daemon, CommandRegistry &commands) {
                      }));
 }
 
+void addProtocolCommand(Daemon &daemon, CommandRegistry &commands) {
+    commands.add(
+        Command(QStringLiteral("protocol.use"),
+                QStringLiteral("After the reply this connection goes on in another framing, both ways"))
+            .param(
+                Field::text(QStringLiteral("name"), QStringLiteral("Of the framing")).choices(codecNames()))
+            .returnsNull()
+            .unlisted()
+            .handler([&daemon](const Call &call) -> Result<QJsonValue> {
+                Session *session = daemon.server().session(call.client);
+                if (!session)
+                    return Error(ErrorCode::NotReady, QStringLiteral("the client is gone"));
+                const Result<void> agreed = session->useProtocol(call.text("name"));
+                return agreed ? Result<QJsonValue>(QJsonValue()) : agreed.error();
+            }));
+}
+
 QJsonValue changeReply(Daemon &daemon, const QStringList &paths) {
     return asJson(SettingsChange{paths, daemon.settings().needRestart(paths)});
 }
@@ -167,6 +184,7 @@ void addCommonCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topi
     addDaemonCommands(daemon, commands);
     addSettingsCommands(daemon, commands);
     addTopicCommands(daemon, commands, topics);
+    addProtocolCommand(daemon, commands);
     commands.add(
         Command(QStringLiteral("log.tail"), QStringLiteral("The last records of the log, oldest first"))
             .param(Field::integer(QStringLiteral("count"), QStringLiteral("How many"))

@@ -113,6 +113,8 @@ QJsonObject Server::counters() const {
 
 void Server::accept(Interface *peer, const QString &protocol) {
     auto *channel = new Channel(peer, makeCodec(protocol), this);
+    if (peer->isConnection()) // else what one stranger says would end it for all
+        channel->codec().watchForStrangers();
     auto *session = new Session(++lastId_, channel, commands_, limits_, gapWatch_, this);
     if (!mayStay(session)) {
         turnAway(session, {ErrorCode::OverLimit, session->restriction()});

@@ -91,6 +91,20 @@ void Session::refuse(const RpcError &error) {
     send(makeError(QJsonValue(), error));
 }
 
+Result<void> Session::useProtocol(const QString &name) {
+    if (!makeCodec(name))
+        return invalidParams({{QStringLiteral("name"), name,
+                               QStringLiteral("one of ") + codecNames().join(QStringLiteral(", "))}});
+    if (batch_ || pending_ + pendingStops_ > 1 || !queue_.isEmpty())
+        return Error(
+            ErrorCode::NotReady,
+            QStringLiteral("a client changes its framing before it subscribes, and while it waits for "
+                           "nothing else"));
+    const auto change = [this, name] { channel_->setCodec(makeCodec(name)); };
+    QMetaObject::invokeMethod(channel_, change, Qt::QueuedConnection); // the reply has gone by then
+    return {};
+}
+
 void Session::becomeFresh() {
     if (freshFor_ != gaps_.count() && gaps_.sinceLast() >= settling_s && !batch_ && channel_->isQuiet())
         freshFor_ = gaps_.count();
@@ -106,8 +120,10 @@ bool Session::isUrgent(const QByteArray &frame) const {
     if (frame.size() > largestUrgentBytes || pendingStops_ >= limits_.pending)
         return false;
     const auto isNamed = [&frame](const QString &name) { return frame.contains(name.toUtf8()); };
-    // A name may be written with escapes, too.
-    if (!frame.contains('\\') && std::none_of(commands_.urgent().begin(), commands_.urgent().end(), isNamed))
+    // A name may be written with escapes, too, in CBOR in pieces.
+    constexpr char textInPieces = 0x7f;
+    if (!frame.contains('\\') && !frame.contains(textInPieces) &&
+        std::none_of(commands_.urgent().begin(), commands_.urgent().end(), isNamed))
         return false;
     const CodecItem item = channel_->codec().read({frame, std::nullopt});
     return item.message.isObject() && isUrgent(readFrame(item.message).messages.front());

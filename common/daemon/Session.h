@@ -54,6 +54,9 @@ public:
     void restrictTo(const QString &reason) { restrictedFor_ = reason; }
     bool isRestricted() const { return !restrictedFor_.isEmpty(); }
     const QString &restriction() const { return restrictedFor_; }
+    /// Goes on in this framing after the reply to the request that is being carried out: the only one that is
+    /// under way, and before the first subscription.
+    Result<void> useProtocol(const QString &name);
     /// After a gap: what comes from now on is new, when nothing of the old is on its way.
     void becomeFresh();
 

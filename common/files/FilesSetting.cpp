@@ -1,5 +1,7 @@
 #include "common/files/FilesSetting.h"
 
+#include <QJsonArray>
+
 namespace hermes {
 
 Field namedFilesField() {

@@ -1,11 +1,14 @@
 #include "common/files/NamedFile.h"
 
 #include <QDir>
+#include <QFile>
 #include <QFileInfo>
 #include <QJsonObject>
 #include <QUuid>
 #include <algorithm>
+#include <utility>
 
+#include <cerrno>
 #include <climits>
 #include <cstdio>
 #include <cstdlib>
@@ -57,7 +60,7 @@ bool isBelow(const QString &path, const QString &folder) {
            path.startsWith(real.endsWith(QLatin1Char('/')) ? real : real + QLatin1Char('/'));
 }
 
-/// Nothing: the name can be one.
+/// Whether the text can be the path of a file.
 Result<void> checkPath(const QString &path) {
     const bool hasControls = std::any_of(path.begin(), path.end(), [](QChar c) {
         return c.category() == QChar::Other_Control || c == QChar::LineSeparator ||
@@ -118,6 +121,7 @@ Result<Descriptor> openRegular(const QString &path) {
 struct Opened {
     QString path;
     Descriptor file;
+    qint64 bytes; ///< none: it is empty, or one of /proc, some of which have no end
 };
 
 Result<Opened> openNamed(const QString &path, const QStringList &folders) {
@@ -131,7 +135,17 @@ Result<Opened> openNamed(const QString &path, const QStringList &folders) {
     Result<Descriptor> file = openRegular(found);
     if (!file)
         return file.error();
-    return Opened{found, std::move(*file)};
+    struct stat status {};
+    ::fstat(*file, &status);
+    return Opened{found, std::move(*file), status.st_size};
+}
+
+/// So that the name is on the disk, too.
+Result<void> syncFolder(const QString &path) {
+    const Descriptor folder(::open(QFile::encodeName(path).constData(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (folder >= 0 && ::fsync(folder) == 0)
+        return {};
+    return fileError(path, QStringLiteral("cannot be synchronized: ") + qt_error_string());
 }
 
 bool writeAll(int file, const QByteArray &bytes) {
@@ -151,13 +165,10 @@ Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders
     const Result<Opened> opened = openNamed(path, folders);
     if (!opened)
         return opened.error();
-    // What /proc shows has no size, and some of it no end.
-    struct stat status {};
-    ::fstat(opened->file, &status);
-    if (status.st_size == 0 || status.st_size > mostBytes)
+    if (opened->bytes == 0 || opened->bytes > mostBytes)
         return fileError(
-            path, QStringLiteral("it has %1 bytes, expected 1 to %2").arg(status.st_size).arg(mostBytes));
-    QByteArray bytes(int(status.st_size), Qt::Uninitialized);
+            path, QStringLiteral("it has %1 bytes, expected 1 to %2").arg(opened->bytes).arg(mostBytes));
+    QByteArray bytes(int(opened->bytes), Qt::Uninitialized);
     int done = 0;
     while (done < bytes.size()) {
         const ssize_t read = ::read(opened->file, bytes.data() + done, size_t(bytes.size() - done));
@@ -171,9 +182,14 @@ Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders
     return bytes;
 }
 
-Result<QString> findNamedFile(const QString &path, const QStringList &folders) {
+Result<QString> findNamedFile(const QString &path, const QStringList &folders, qint64 leastBytes) {
     const Result<Opened> opened = openNamed(path, folders);
-    return opened ? Result<QString>(opened->path) : opened.error();
+    if (!opened)
+        return opened.error();
+    if (opened->bytes < leastBytes)
+        return fileError(
+            path, QStringLiteral("it has %1 bytes, expected at least %2").arg(opened->bytes).arg(leastBytes));
+    return opened->path;
 }
 
 Result<void> writeNamedFile(const QString &path, const QStringList &folders, const QByteArray &bytes,
@@ -203,13 +219,14 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
     const QByteArray draft = ".hermes-" + QUuid::createUuid().toByteArray(QUuid::Id128);
     const Descriptor file(
         ::openat(folder, draft.constData(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
-    const bool isWritten = file >= 0 && writeAll(file, bytes);
+    const bool isWritten =
+        file >= 0 && (!exists || ::fchmod(file, status.st_mode & 0777) == 0) && writeAll(file, bytes);
     // A file system may not know how not to replace; then it was seen above that there is nothing.
-    if (isWritten &&
-        (::renameat2(folder, draft.constData(), folder, name.constData(), replace ? 0 : RENAME_NOREPLACE) ==
-             0 ||
-         (errno == EINVAL && ::renameat(folder, draft.constData(), folder, name.constData()) == 0)))
-        return {};
+    if (isWritten && (::renameat2(folder, draft.constData(), folder, name.constData(),
+                                  replace ? 0 : RENAME_NOREPLACE) == 0 ||
+                      ((errno == EINVAL || errno == ENOSYS) &&
+                       ::renameat(folder, draft.constData(), folder, name.constData()) == 0)))
+        return syncFolder(parent);
     const Error error = failed();
     ::unlinkat(folder, draft.constData(), 0);
     return error;

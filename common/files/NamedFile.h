@@ -7,7 +7,7 @@
 
 namespace hermes {
 
-/// Files that clients name. All of a program's are opened here: regular files below folders that the settings
+/// Files that clients locate: regular files below folders that the settings
 /// allow, never a device, a pipe or a socket, whatever links lead to; without waiting for anybody, and never
 /// more than a limit. Links are resolved first, and what they lead to has to be below the folders, too; then
 /// the file is opened without following any, so that nobody can change them meanwhile. Errors: InputOutput
@@ -16,8 +16,9 @@ namespace hermes {
 /// The whole file. path: absolute, or relative to the working directory.
 Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes);
 
-/// The path without links of a file that could be opened so: for readers that open it themselves.
-Result<QString> findNamedFile(const QString &path, const QStringList &folders);
+/// The path without links of a file that could be opened so, of leastBytes or more: for readers that open it
+/// themselves, and follow links that somebody puts there meanwhile.
+Result<QString> findNamedFile(const QString &path, const QStringList &folders, qint64 leastBytes = 1);
 
 /// Writes the file so that it is on the disk as a whole, or not at all. replace: a regular file that is
 /// there.

@@ -40,6 +40,8 @@ public:
     virtual QString name() const = 0;
     /// Whether each received() is one whole datagram.
     virtual bool isDatagram() const { return false; }
+    /// Whether it is the end of a connection of its own: somebody else's comes as another interface.
+    virtual bool isConnection() const { return false; }
     /// Gives what waits to the system now, as far as it takes it.
     virtual void flush() {}
     /// Bytes taken by write() and not yet given to the system.

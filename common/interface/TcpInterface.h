@@ -18,6 +18,7 @@ public:
     TcpInterface(QTcpSocket *connected, QObject *host);
 
     QString name() const override;
+    bool isConnection() const override { return true; }
     void flush() override { socket_->flush(); }
     qint64 bytesToWrite() const override;
     bool setReceiving(bool on) override;

@@ -26,6 +26,8 @@ QString draftPath(const QString &path) {
 
 Result<QJsonObject> Sidecar::read(const QString &path) {
     QFile file(path);
+    if (QFileInfo(path).exists() && !QFileInfo(path).isFile())
+        return diskError(path + ": not a regular file", path);
     if (!file.open(QIODevice::ReadOnly))
         return diskError(path + ": cannot be read: " + file.errorString(), path);
     if (file.size() > largest)

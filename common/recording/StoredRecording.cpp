@@ -50,7 +50,7 @@ Result<QStringList> StoredRecording::files() const {
         if (name.isEmpty() || name.contains('/') || name.startsWith('.'))
             return diskError(QString("%1: a file \"%2\" cannot be of this recording").arg(folder, name),
                              folder);
-        const Result<QString> found = findNamedFile(QDir(folder).filePath(name), {folder});
+        const Result<QString> found = findNamedFile(QDir(folder).filePath(name), {folder}, 0);
         if (!found)
             return found.error();
         paths << *found;

@@ -54,7 +54,8 @@ public:
     /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name.
     Result<QString> save(const QString &file = QString()) const;
 
-    /// The program starts its work: from now on those that apply on restart stay in force as they are.
+    /// The program starts its work: from now on those that apply on restart keep in force the value they
+    /// have.
     void begin();
     /// Those of the paths that apply on restart.
     QStringList needRestart(const QStringList &paths) const;

@@ -165,6 +165,7 @@ void ScanMatcher::connectToSource() {
     source_.close();
     source_.unsubscribe(subscription_);
     sourceFault_.clear();
+    source_.prefer("cbor");
     const auto connecting = source_.connectTo(settings().text("source.address"));
     if (!connecting) {
         sourceFault_ = connecting.error().message;

@@ -81,7 +81,7 @@ void Simulator::declareCommands() {
                    .example({{"world", "deploy/worlds/pillars.json"}},
                             QJsonObject{{"name", "pillars"}, {"edges", 36}, {"poses", 39}})
                    .handler([this](const Call &call) -> Result<QJsonValue> {
-                       const Result<void> loaded = load(call.text("world"));
+                       const Result<void> loaded = loadNamed(call.text("world"));
                        if (!loaded)
                            return loaded.error();
                        return asJson(LoadedWorld{QString::fromStdString(world_.name), world_.edges.size(),
@@ -159,7 +159,7 @@ Result<void> Simulator::start() {
         setState(DaemonState::Ready);
         return {};
     }
-    const Result<void> loaded = load(world);
+    const Result<void> loaded = load(world, readWorld(world.toStdString()));
     if (loaded && settings().flag("robot.autostart"))
         drive(false);
     return loaded;
@@ -187,11 +187,12 @@ void Simulator::settingsChanged(const QStringList &paths) {
     });
 }
 
-Result<void> Simulator::load(const QString &path) {
+Result<void> Simulator::loadNamed(const QString &path) {
     const Result<QByteArray> text = readNamedFile(path, namedFilesFolders(settings()), largestWorldFile);
-    if (!text)
-        return text.error();
-    const Outcome<World> world = parseWorld(text->toStdString(), path.toStdString());
+    return text ? load(path, parseWorld(text->toStdString(), path.toStdString())) : text.error();
+}
+
+Result<void> Simulator::load(const QString &path, const Outcome<World> &world) {
     if (!world)
         return Error(ErrorCode::InputOutput, QString::fromStdString(world.error()),
                      QJsonObject{{"path", path}});

@@ -32,7 +32,8 @@ private:
     Drivetrain::Options drivetrainOptions();
     GpsModel::Options gpsOptions();
     /// Puts the robot at the first pose of a world file and begins to send.
-    Result<void> load(const QString &path);
+    Result<void> loadNamed(const QString &path);
+    Result<void> load(const QString &path, const Outcome<World> &world);
     Result<QJsonValue> drive(bool restart);
     Result<QJsonValue> place(const Call &call);
     Result<QJsonValue> setNoise(const Call &call);

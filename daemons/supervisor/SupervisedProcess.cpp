@@ -41,7 +41,8 @@ QString toString(SupervisedProcess::State state) {
 }
 
 void SupervisedProcess::Child::setupChildProcess() {
-    ::setpgid(0, 0); // Ctrl-C in a terminal is for the supervisor, which ends them in order
+    ::setpgid(0, 0); // those that it starts are of its group, and Ctrl-C in a terminal is for the supervisor,
+                     // which ends them in order
     prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 
@@ -61,6 +62,7 @@ SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
     connect(&process_, &QProcess::started, this, [this] {
         logInfo("process",
                 QString("%1: started with process id %2").arg(entry_.name).arg(process_.processId()));
+        group_ = pid_t(process_.processId());
         if (state_ == State::Stopping)
             process_.terminate();
         Q_EMIT changed();
@@ -88,6 +90,13 @@ SupervisedProcess::~SupervisedProcess() {
     if (!process_.waitForFinished(int(killAfter.count())))
         process_.kill();
     process_.waitForFinished(1000);
+    endFamily();
+}
+
+void SupervisedProcess::endFamily() {
+    if (group_ > 1)
+        ::kill(-group_, SIGKILL); // also those that have cleared their environment
+    group_ = 0;
     ProcessFamily::end(family_);
 }
 
@@ -113,7 +122,9 @@ void SupervisedProcess::stop() {
         return setState(State::Stopped);
     setState(State::Stopping);
     if (process_.state() == QProcess::Running)
-        process_.terminate(); // else when it is: until then it would take the signal for one to this program
+        process_.terminate();
+    // Else when it has started: until then the child has the handlers of this program, and SIGTERM would look
+    // like one to it.
     kill_.start(killAfter);
 }
 
@@ -126,7 +137,7 @@ void SupervisedProcess::restart() {
 
 void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
     kill_.stop();
-    ProcessFamily::end(family_);
+    endFamily();
     readOutput();
     if (!partialLine_.isEmpty())
         keepLine(std::exchange(partialLine_, {}));

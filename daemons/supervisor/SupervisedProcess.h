@@ -6,6 +6,7 @@
 #include <QProcess>
 #include <QTimer>
 #include <deque>
+#include <sys/types.h>
 
 namespace hermes::supervisor {
 
@@ -57,12 +58,15 @@ private:
     void retryLater();
     void readOutput();
     void keepLine(const QByteArray &line);
+    /// Those that it started and left behind.
+    void endFamily();
     void setState(State state);
 
     ProcessEntry entry_;
     Child process_;
     State state_ = State::Stopped;
     const QString family_;
+    pid_t group_ = 0;
     QTimer retry_, kill_;
     std::chrono::milliseconds backOff_ = firstBackOff;
     int restarts_ = 0;

@@ -62,7 +62,7 @@ void Recorder::end() {
     if (thread_.joinable())
         thread_.join();
     failed_ = false;
-    while (pushing_) // the counts, too
+    while (pushing_) // one that began before may still count
         std::this_thread::yield();
 }
 
@@ -84,7 +84,7 @@ void Recorder::push(const Datagram &datagram, bool wait) {
 }
 
 void Recorder::noteLosses(std::uint64_t kernel, std::uint64_t tooLong) {
-    if (!accepting_)
+    if (!accepting_ && !failed_)
         return;
     kernelDrops_ += kernel;
     tooLong_ += tooLong;

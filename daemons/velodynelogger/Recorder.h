@@ -52,7 +52,7 @@ private:
     std::atomic<std::uint64_t> kernelDrops_{0};
     std::atomic<std::uint64_t> tooLong_{0};
     std::atomic<bool> failed_{false};
-    std::atomic<std::uint64_t> afterFailure_{0}; ///< what came until end()
+    std::atomic<std::uint64_t> afterFailure_{0}; ///< packets, until end()
     std::thread thread_;
     PcapFiles files_;       ///< of the thread while it runs
     PacketAccount account_; ///< of the thread while it runs

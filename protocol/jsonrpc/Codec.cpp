@@ -25,13 +25,21 @@ std::vector<Kind> &kinds() {
 } // namespace
 
 std::vector<CodecFrame> Codec::split(const QByteArray &bytes) {
-    greeting_.look(bytes);
+    if (watches_)
+        greeting_.look(bytes);
     return greeting_.isForeign() ? std::vector<CodecFrame>() : splitFrames(bytes);
 }
 
 void Codec::reset() {
     greeting_ = {};
     forgetFrame();
+}
+
+void Codec::succeed(const Codec &other) {
+    counts_ = other.counts_;
+    limit_ = other.limit_;
+    greeting_ = other.greeting_;
+    watches_ = other.watches_;
 }
 
 std::vector<CodecItem> Codec::feed(const QByteArray &bytes) {

@@ -51,6 +51,8 @@ class Codec {
 public:
     virtual ~Codec() = default;
 
+    /// Looks who speaks, in the first bytes: for connections that anybody may make.
+    void watchForStrangers() { watches_ = true; }
     /// Takes bytes as they arrive, split anywhere, and gives the frames completed by them in order: none when
     /// the peer turned out to speak another protocol. Costs little, whatever is in them.
     std::vector<CodecFrame> split(const QByteArray &bytes);
@@ -78,6 +80,8 @@ public:
 
     /// Begins anew, as the carrier was opened anew. Counters stay.
     void reset();
+    /// Takes the place of another one on an open connection: limit, counters, and who speaks.
+    void succeed(const Codec &other);
 
     /// Largest frame accepted by feed(), in bytes without its delimiter.
     void setFrameLimit(int bytes) { limit_ = bytes; }
@@ -100,6 +104,7 @@ protected:
 private:
     int limit_;
     Greeting greeting_;
+    bool watches_ = false;
 };
 
 using CodecMaker = std::unique_ptr<Codec> (*)();

@@ -4,6 +4,7 @@
 #include <QtEndian>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace hermes {
 namespace {
@@ -26,6 +27,23 @@ std::optional<TypedArray> typedArray(quint64 tag) {
     }
     constexpr quint64 clampedBytes = 68;
     return tag == clampedBytes ? std::optional(TypedArray{Kind::UInt8, false}) : std::nullopt;
+}
+
+template <typename T>
+bool areFinite(const char *bytes, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        T value;
+        std::memcpy(&value, bytes + i * sizeof(T), sizeof(T));
+        if (!std::isfinite(value))
+            return false;
+    }
+    return true;
+}
+
+bool areFinite(Kind kind, const char *bytes, std::size_t size) {
+    return kind == Kind::Float    ? areFinite<float>(bytes, size / sizeof(float))
+           : kind == Kind::Double ? areFinite<double>(bytes, size / sizeof(double))
+                                  : true;
 }
 
 /// Hands an item on to the tree.
@@ -119,7 +137,8 @@ private:
 
     bool readBytes(const std::optional<TypedArray> &array) {
         if (!array)
-            return refuse(QStringLiteral("bytes, expected a typed array where there are bytes"));
+            return refuse(QStringLiteral(
+                "bytes, expected a typed array of integers, floats or doubles where there are bytes"));
         const int begin = room_.size();
         for (;;) {
             const qsizetype size = in_.currentStringChunkSize();
@@ -143,6 +162,8 @@ private:
         if (array->isSwapped)
             for (std::size_t i = 0; i < bytes; i += each)
                 std::reverse(first + i, first + i + each);
+        if (!areFinite(array->kind, first, bytes))
+            return refuse(QStringLiteral("a number that is not finite"));
         return tree_.packed(array->kind, first, unsigned(bytes));
     }
 

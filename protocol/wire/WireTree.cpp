@@ -95,7 +95,8 @@ std::size_t PackedNumbers::copy(T *to) const {
         using From = decltype(number);
         const std::size_t count = size();
         if constexpr (std::is_same_v<From, T>) {
-            std::memcpy(to, bytes, count * sizeof(T));
+            if (count > 0) // else there may be no place either
+                std::memcpy(to, bytes, count * sizeof(T));
             return count;
         } else {
             std::size_t i = 0;

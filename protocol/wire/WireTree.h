@@ -12,7 +12,8 @@ namespace hermes {
 using Node = rapidjson::Value;
 
 /// Numbers of one kind, one after another, as CBOR has them; in the byte order of this machine. In the tree
-/// they are an object whose only member has a name that no message can have: the address of its kind.
+/// they are an object with one member, whose name lies in names[]: its place there, not its text, is the
+/// kind, and no message can have that.
 struct PackedNumbers {
     enum class Kind { UInt8, UInt16, UInt32, UInt64, Int8, Int16, Int32, Int64, Float, Double };
     static constexpr char names[] = "0123456789";

@@ -94,6 +94,7 @@ void TestMapFiles::largeMapsHoldNothingUp() {
 void TestMapFiles::aSlowDiskHoldsNothingUp() {
     writeMap(folder->filePath("slow.csv"), 10);
     diskHolds = true;
+    const auto release = qScopeGuard([] { diskHolds = false; });
     std::optional<Result<QJsonValue>> loaded;
     client_->call("map.load", QJsonObject{{"path", "slow.csv"}},
                   [&](const Result<QJsonValue> &result) { loaded = result; });

@@ -21,6 +21,8 @@ inline void requireSame(const std::vector<CodecItem> &a, const std::vector<Codec
 template <typename Framing>
 void fuzzCodec(const QByteArray &bytes, int limit, int piece) {
     Framing whole, split;
+    whole.watchForStrangers();
+    split.watchForStrangers();
     whole.setFrameLimit(limit);
     split.setFrameLimit(limit);
     const std::vector<CodecItem> items = whole.feed(bytes);

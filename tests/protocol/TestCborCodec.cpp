@@ -139,6 +139,8 @@ void TestCborCodec::refuses_data() {
     row("half a float", hex("d8554501020304ff"), "multiple of 4");
     row("typed array of 2^40 bytes", hex("d8555b0000010000000000"), "more than there are");
     row("floats of 16 bytes", hex("d85750000102030405060708090a0b0c0d0e0f"), "bytes, expected a typed array");
+    row("floats that are not finite", hex("d855480000c03f0000c07f"), "not finite");
+    row("doubles, the same", hex("d852487ff0000000000000"), "not finite");
     row("infinity", hex("f97c00"), "not finite");
     row("not a number", hex("fb7ff8000000000000"), "not finite");
     row("simple value", hex("f0"), "JSON does not have");
@@ -237,7 +239,9 @@ void TestCborCodec::numbersOfMessagesAreChecked() {
         WireError error;
         const auto value = WireValue::parseCbor(bytes.mid(4), &error);
         ReadReport report;
-        return value && readMessage<ScanMessage>(*value, report) ? QString() : report.text();
+        if (!value)
+            return error.message;
+        return readMessage<ScanMessage>(*value, report) ? QString() : report.text();
     };
     QCOMPARE(problem({}), QString());
     QCOMPARE(problem({}, "\x01", "\x01"), QString());
@@ -246,7 +250,7 @@ void TestCborCodec::numbersOfMessagesAreChecked() {
     const QByteArray badBytes(reinterpret_cast<const char *>(&bad), 4),
         goodBytes(reinterpret_cast<const char *>(&good), 4);
     const QString text = problem({}, goodBytes, badBytes);
-    QVERIFY2(text.contains("x.1") && text.contains("number"), qPrintable(text));
+    QVERIFY2(text.contains("not finite"), qPrintable(text));
     // Shorts where bytes are expected: those that fit.
     std::vector<quint8> bytes(3);
     WireError error;

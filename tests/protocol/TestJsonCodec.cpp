@@ -249,6 +249,7 @@ void TestJsonCodec::knowsWhoSpeaks() {
     QFETCH(Greeting::Speaker, speaker);
     for (const int piece : {text.size() + 1, 1, 3}) {
         JsonCodec codec;
+        codec.watchForStrangers();
         size_t items = 0;
         for (int i = 0; i < text.size(); i += piece)
             items += codec.feed(text.mid(i, piece)).size();
