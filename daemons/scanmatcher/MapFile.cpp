@@ -5,6 +5,7 @@
 #include "vectorlib/io/GeoJson.h"
 #include "vectorlib/io/MapCsv.h"
 
+#include <QDir>
 #include <QJsonObject>
 #include <sstream>
 
@@ -34,6 +35,7 @@ Result<SavedMap> writeMapFile(const MapPath &file, const QString &format, bool f
     else
         vectorlib::writeMapCsv(text, map.segments);
     const QByteArray bytes = QByteArray::fromStdString(text.str());
+    QDir().mkpath(file.folder); // where it cannot be made this is told next
     if (const Result<void> written = writeNamedFile(file.path, {file.folder}, bytes, force); !written)
         return written.error();
     return SavedMap{file.path, map.segments.size(), quint64(bytes.size())};

@@ -95,10 +95,11 @@ void ScanMatcher::declareSettings() {
                    .range(0.01, 20)
                    .byDefault(3)
                    .group("Matching"));
-    addSetting(Field::text("map.folder", "Below it are the files of maps that clients name")
-                   .byDefault(".")
-                   .appliesOnRestart()
-                   .group("Map"));
+    addSetting(
+        Field::text("map.folder", "Below it are the files of maps that clients name; made when missing")
+            .byDefault(".")
+            .appliesOnRestart()
+            .group("Map"));
 }
 
 vectorlib::ScanTrackerSettings ScanMatcher::trackerSettings() const {

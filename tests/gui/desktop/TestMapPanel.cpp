@@ -186,7 +186,7 @@ void TestMapPanel::savedByCommand() {
     auto *const commands = window_->panel<CommandsPanel>("commands");
     auto *const methods = commands->findChild<QListWidget *>("methods");
     methods->setCurrentItem(methods->findItems("map.save", Qt::MatchExactly).value(0));
-    const QString file = robot_->path("saved.csv");
+    const QString file = robot_->path("maps/saved.csv");
     OpenWindow::type(commands->findChild<QWidget *>("path")->findChild<QLineEdit *>(), file);
     OpenWindow::click(commands, "call");
     QTRY_VERIFY2(QFileInfo(file).size() > 1000,
