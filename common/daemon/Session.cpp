@@ -76,6 +76,8 @@ void Session::close(const QString &reason) {
 
 void Session::expel(const QString &reason) {
     logWarning(QStringLiteral("server"), QStringLiteral("closing client %1: %2").arg(name(), reason));
+    if (channel_->interface().bytesToWrite() <= limits_.replyBytes)
+        channel_->send(makeError(QJsonValue(), RpcError(ErrorCode::OverLimit, reason)));
     close(reason);
 }
 

@@ -103,7 +103,9 @@ void Recording::start(const Call &call, const Reply &reply) {
         fine = checkName("session", name.session);
     if (fine && phase_ != Phase::Idle)
         fine = Error(ErrorCode::NotReady,
-                     QString("\"%1\" is being recorded; record.stop ends it").arg(name_.name));
+                     phase_ == Phase::Starting
+                         ? QString("another recording is about to begin; record.stop ends it")
+                         : QString("\"%1\" is being recorded; record.stop ends it").arg(name_.name));
     if (fine && condition_)
         fine = condition_();
     if (!fine)

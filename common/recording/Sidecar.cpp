@@ -1,5 +1,6 @@
 #include "common/recording/Sidecar.h"
 
+#include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
 #include "common/recording/FileSync.h"
 
@@ -25,16 +26,11 @@ QString draftPath(const QString &path) {
 } // namespace
 
 Result<QJsonObject> Sidecar::read(const QString &path) {
-    QFile file(path);
-    if (QFileInfo(path).exists() && !QFileInfo(path).isFile())
-        return diskError(path + ": not a regular file", path);
-    if (!file.open(QIODevice::ReadOnly))
-        return diskError(path + ": cannot be read: " + file.errorString(), path);
-    if (file.size() > largest)
-        return diskError(path + QString(": %1 bytes, a sidecar has at most %2").arg(file.size()).arg(largest),
-                         path);
+    const Result<QByteArray> text = readNamedFile(path, {QFileInfo(path).path()}, largest);
+    if (!text)
+        return text.error();
     QJsonParseError problem;
-    const QJsonObject content = QJsonDocument::fromJson(file.readAll(), &problem).object();
+    const QJsonObject content = QJsonDocument::fromJson(*text, &problem).object();
     if (problem.error != QJsonParseError::NoError)
         return diskError(
             QString("%1: at byte %2: %3").arg(path).arg(problem.offset).arg(problem.errorString()), path);

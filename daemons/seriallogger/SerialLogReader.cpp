@@ -1,6 +1,9 @@
 #include "daemons/seriallogger/SerialLogReader.h"
 
+#include "common/files/NamedFile.h"
 #include "common/recording/DiskError.h"
+
+#include <QFileInfo>
 
 #include <algorithm>
 
@@ -12,6 +15,9 @@ Result<void> SerialLogReader::open(const QString &base) {
     index_.setFileName(base + ".index");
     raw_.setFileName(base + ".raw");
     for (QFile *file : {&index_, &raw_}) {
+        const Result<QString> found = findNamedFile(file->fileName(), {QFileInfo(base).path()}, 0);
+        if (!found)
+            return found.error();
         if (!file->open(QIODevice::ReadOnly))
             return diskError(file->fileName() + ": cannot be read: " + file->errorString(), file->fileName());
     }

@@ -184,7 +184,7 @@ void SupervisedProcess::readOutput() {
 }
 
 void SupervisedProcess::keepLine(const QByteArray &line) {
-    lines_.push_back(QString::fromUtf8(line));
+    lines_.push_back(QString::fromUtf8(line.constData(), line.size())); // zeros, too
     if (lines_.size() > keptLines)
         lines_.pop_front();
 }
@@ -192,7 +192,7 @@ void SupervisedProcess::keepLine(const QByteArray &line) {
 QStringList SupervisedProcess::output(int lines) const {
     QStringList all(lines_.begin(), lines_.end());
     if (!partialLine_.isEmpty())
-        all.append(QString::fromUtf8(partialLine_));
+        all.append(QString::fromUtf8(partialLine_.constData(), partialLine_.size()));
     return all.mid(std::max(0, all.size() - lines));
 }
 

@@ -149,22 +149,28 @@ void Supervisor::settingsChanged(const QStringList &) {
 
 void Supervisor::reconcile() {
     std::vector<std::unique_ptr<SupervisedProcess>> next;
+    std::vector<std::pair<SupervisedProcess *, ProcessEntry>> changes; // told when the list is whole again
+    std::vector<SupervisedProcess *> starts;
     for (const QJsonValue &json : settings().value("processes").toArray()) {
         const ProcessEntry entry = toEntry(json.toObject());
         const auto known = std::find_if(processes_.begin(), processes_.end(), [&](const auto &process) {
             return process && process->entry().name == entry.name;
         });
         if (known != processes_.end()) {
-            (*known)->setEntry(entry);
             next.push_back(std::move(*known));
+            changes.emplace_back(next.back().get(), entry);
             continue;
         }
         next.push_back(std::make_unique<SupervisedProcess>(entry));
         connect(next.back().get(), &SupervisedProcess::changed, this, &Supervisor::update);
         if (entry.autostart)
-            next.back()->start();
+            starts.push_back(next.back().get());
     }
     std::swap(processes_, next);
+    for (const auto &[process, entry] : changes)
+        process->setEntry(entry);
+    for (SupervisedProcess *const process : starts)
+        process->start();
     for (auto &process : next)
         if (process)
             dismiss(std::move(process));

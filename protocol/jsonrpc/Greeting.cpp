@@ -26,25 +26,39 @@ Greeting::Speaker Greeting::look(const QByteArray &bytes) {
     return speaker_;
 }
 
-// METHOD SP, then the target: a path or "*" (RFC 9112, 3.2; browsers write nothing else but to proxies).
-// Which method does not matter: a page can invent one.
+// METHOD SP and a path or "*" is HTTP (RFC 9112, 3); which method does not matter, a page can invent one. So
+// is whatever else the first line begins with, if it ends in the version of HTTP: no message does.
 Greeting::Speaker Greeting::next(char byte) {
+    if (place_ == Place::Start && isSpace(byte))
+        return Speaker::Unknown;
+    if (byte == '\n')
+        return endsInVersion() ? Speaker::Http : Speaker::Ours;
+    if (byte != '\r') {
+        std::memmove(tail_, tail_ + 1, sizeof tail_ - 1);
+        tail_[sizeof tail_ - 1] = byte;
+    }
     switch (place_) {
     case Place::Start:
-        if (isSpace(byte))
-            return Speaker::Unknown;
-        place_ = byte == tlsHandshake ? Place::Record : Place::Method;
-        return byte == tlsHandshake || isTokenCharacter(byte) ? Speaker::Unknown : Speaker::Ours;
+        place_ = byte == tlsHandshake ? Place::Record : isTokenCharacter(byte) ? Place::Method : Place::Rest;
+        return byte >= 0 && byte < '\t' ? Speaker::Ours : Speaker::Unknown; // the length of a frame
     case Place::Record:
-        return byte == tlsMajorVersion ? Speaker::Tls : Speaker::Ours;
+        place_ = Place::Rest;
+        return byte == tlsMajorVersion ? Speaker::Tls : Speaker::Unknown;
     case Place::Method:
-        if (byte == ' ')
-            place_ = Place::Target;
-        return byte == ' ' || isTokenCharacter(byte) ? Speaker::Unknown : Speaker::Ours;
+        place_ = byte == ' ' ? Place::Target : isTokenCharacter(byte) ? Place::Method : Place::Rest;
+        return Speaker::Unknown;
     case Place::Target:
-        return byte == '/' || byte == '*' ? Speaker::Http : Speaker::Ours;
+        place_ = Place::Rest;
+        return byte == '/' || byte == '*' ? Speaker::Http : Speaker::Unknown;
+    case Place::Rest:
+        break;
     }
-    return Speaker::Ours;
+    return Speaker::Unknown;
+}
+
+bool Greeting::endsInVersion() const {
+    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+    return std::memcmp(tail_, " HTTP/", 6) == 0 && isDigit(tail_[6]) && tail_[7] == '.' && isDigit(tail_[8]);
 }
 
 QString Greeting::reason() const {

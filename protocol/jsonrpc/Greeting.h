@@ -20,12 +20,14 @@ public:
     QString reason() const;
 
 private:
-    enum class Place { Start, Record, Method, Target };
+    enum class Place { Start, Record, Method, Target, Rest };
 
     Speaker next(char byte);
+    bool endsInVersion() const;
 
     Speaker speaker_ = Speaker::Unknown;
     Place place_ = Place::Start;
+    char tail_[9] = {}; // of the first line: as long as " HTTP/1.1"
 };
 
 } // namespace hermes

@@ -88,7 +88,7 @@ private:
             isTaken = number(double(float(in_.toFloat16())));
         else if (in_.isBool())
             isTaken = tree_.Bool(in_.toBool());
-        else if (in_.isNull() || in_.isUndefined())
+        else if (in_.isNull())
             isTaken = tree_.Null();
         else
             return in_.isInvalid() ? broken() : refuse(QStringLiteral("a value that JSON does not have"));

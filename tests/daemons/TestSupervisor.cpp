@@ -26,6 +26,7 @@ private Q_SLOTS:
     void keepsTheLastOutput();
     void reportsUse();
     void addAndRemove();
+    void changedEntryIsStartedAnew_data();
     void changedEntryIsStartedAnew();
     void refusals();
     void childrenEndWithAKilledSupervisor();
@@ -192,16 +193,17 @@ void TestSupervisor::restartsInAStormEndInOneProcess() {
 void TestSupervisor::keepsTheLastOutput() {
     launch({shell(
         "one",
-        "i=0; while [ $i -lt 300 ]; do echo line $i; i=$((i+1)); done; printf 'no end'; exec sleep 100")});
+        "i=0; while [ $i -lt 300 ]; do echo line $i; i=$((i+1)); done; printf 'no\\0 end'; exec sleep 100")});
+    const QString zero = QString("no") + QChar(0) + " end";
     const auto lines = [this](int count) {
         return call("process.output", {{"name", "one"}, {"lines", count}})->toArray();
     };
-    QTRY_COMPARE(lines(2), (QJsonArray{"line 299", "no end"}));
+    QTRY_COMPARE(lines(2), (QJsonArray{"line 299", zero}));
     QCOMPARE(lines(200).size(), 200);
     QCOMPARE(lines(200)[0].toString(), QString("line 101"));
     QVERIFY(call("process.stop", {{"name", "one"}}).ok());
     QTRY_COMPARE(stateOf("one"), QString("stopped"));
-    QCOMPARE(lines(1), QJsonArray{"no end"});
+    QCOMPARE(lines(1), QJsonArray{zero});
 }
 
 void TestSupervisor::reportsUse() {
@@ -222,11 +224,23 @@ void TestSupervisor::addAndRemove() {
     QTRY_VERIFY(::kill(pid, 0) != 0);
 }
 
+void TestSupervisor::changedEntryIsStartedAnew_data() {
+    QTest::addColumn<bool>("last");
+    QTest::newRow("the first") << false;
+    QTest::newRow("the last") << true;
+}
+
 void TestSupervisor::changedEntryIsStartedAnew() {
-    launch({shell("one", "echo first; exec sleep 100"), shell("two", "exec sleep 100")});
+    QFETCH(bool, last);
+    const auto inOrder = [last](const QJsonObject &one, const QJsonObject &two) {
+        return last ? QJsonArray{two, one} : QJsonArray{one, two};
+    };
+    launch(inOrder(shell("one", "echo first; exec sleep 100"), shell("two", "exec sleep 100")));
+    QTRY_COMPARE(call("process.output", {{"name", "one"}})->toArray(), QJsonArray{"first"});
     QTRY_COMPARE(stateOf("two"), QString("running"));
     const int pid = process("two")["pid"].toInt();
-    const QJsonArray changed{shell("one", "echo second; exec sleep 100"), shell("two", "exec sleep 100")};
+    const QJsonArray changed =
+        inOrder(shell("one", "echo second; exec sleep 100"), shell("two", "exec sleep 100"));
     QVERIFY(call("settings.set", {{"values", QJsonObject{{"processes", changed}}}}).ok());
     QTRY_COMPARE(call("process.output", {{"name", "one"}, {"lines", 1}})->toArray(), QJsonArray{"second"});
     QCOMPARE(process("two")["pid"].toInt(), pid);

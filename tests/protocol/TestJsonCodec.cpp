@@ -237,11 +237,18 @@ void TestJsonCodec::knowsWhoSpeaks_data() {
     row("words", "hello world\n", Speaker::Ours);
     row("one word", "hello\nPOST / HTTP/1.1\r\n", Speaker::Ours);
     row("text", "\"POST / HTTP\"\n", Speaker::Ours);
-    row("two spaces", "POST  / HTTP/1.1\r\n", Speaker::Ours);
+    for (const char *line :
+         {"POST  / HTTP/1.1", "POST http://h/ HTTP/1.1", "CONNECT h:1 HTTP/1.1", "POST ?x HTTP/1.1",
+          "POST\t/ HTTP/1.1", "\vPOST x HTTP/1.0", "{} x HTTP/1.1", " / HTTP/1.1"})
+        row(line, line + QByteArray("\r\n") + body, Speaker::Http);
+    row("no version", "say HTTP/1.x\r\n", Speaker::Ours);
+    row("a message about HTTP", "{\"a\":\" HTTP/1.1\"}\n", Speaker::Ours);
     row("half of one", "POST ", Speaker::Unknown);
     row("nothing", "", Speaker::Unknown);
+    row("length of a frame", QByteArray("\0\0\1", 3), Speaker::Ours);
     row("zeros", QByteArray(10, '\0'), Speaker::Ours);
     row("half of TLS", "\x16 {}\n", Speaker::Ours);
+    row("a line that has not ended", "{\"a\":", Speaker::Unknown);
 }
 
 void TestJsonCodec::knowsWhoSpeaks() {

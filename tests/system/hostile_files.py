@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Files that clients name, given to the running daemons: pipes, devices, /proc, links, names with NUL. Each is refused within a
 second with the reason, nothing outside of the daemon's folder changes, the daemon goes on answering and ends when it is told to."""
+import json
 import os
 import socket
 import stat
@@ -113,6 +114,42 @@ def check_writing(folder, traps):
     print(f"scanmatcher: {len(names)} names not written")
 
 
+def check_recordings(folder):
+    """Folders of recordings in which pipes and links stand for what the loggers write."""
+    records = os.path.join(folder, "records")
+    sidecar = {"format": "hermes recording 1", "start": 1000, "end": 1001, "start_mono": 1, "end_mono": 2, "ended": "stopped",
+               "complete": True}
+    for name, content in (("velodynelogger", {"files": [{"name": "velodynelogger-0001.pcap", "bytes": 0}]}),
+                          ("seriallogger", {"files": [{"name": "seriallogger-gps.raw", "port": "gps", "bytes": 0}]})):
+        for kind in ("sidecar", "link", "data", "index"):
+            os.makedirs(os.path.join(records, kind), exist_ok=True)
+        os.mkfifo(os.path.join(records, "sidecar", name + ".json"))
+        os.symlink("/dev/zero", os.path.join(records, "link", name + ".json"))
+        for kind in ("data", "index"):
+            with open(os.path.join(records, kind, name + ".json"), "w", encoding="utf-8") as file:
+                json.dump({**sidecar, "logger": name, "name": kind, "session": kind, **content}, file)
+    os.mkfifo(os.path.join(records, "data", "velodynelogger-0001.pcap"))
+    os.symlink("/dev/zero", os.path.join(records, "index", "velodynelogger-0001.pcap"))
+    for kind, pipe, file in (("data", "raw", "index"), ("index", "index", "raw")):
+        os.mkfifo(os.path.join(records, kind, "seriallogger-gps." + pipe))
+        with open(os.path.join(records, kind, "seriallogger-gps." + file), "wb"):
+            pass
+    for name, settings in (("velodynelogger", {"source.port": free_port(0, socket.SOCK_DGRAM), "source.position_port": 0}),
+                           ("seriallogger", {"ports": '[{"name": "gps", "url": "tcp://127.0.0.1:1"}]'})):
+        process = started(name, folder, **settings, **{"record.folder": records, "record.free_floor_bytes": 0})
+        with process.connect() as logger:
+            assert {entry["name"] for entry in logger.call("record.list")} == {"sidecar", "link", "data", "index"}
+            for kind in ("sidecar", "link", "data", "index"):
+                refuse(logger, process.process, "source.open", (INPUT_OUTPUT,), recording=kind)
+                if name == "seriallogger":
+                    refuse(logger, process.process, "record.export", (INPUT_OUTPUT,), name=kind, port="gps")
+            logger.call("record.start", name="good " + name)
+            logger.call("record.stop")
+        begun = time.monotonic()
+        assert process.stop() == 0 and time.monotonic() - begun < 3, f"{name} did not end"
+        print(f"{name}: recordings refused")
+
+
 def check_allowed_folders(folder):
     """A robot that lets clients name files below one folder only."""
     allowed = os.path.join(folder, "allowed")
@@ -136,5 +173,6 @@ if __name__ == "__main__":
         all_traps = make_traps(os.path.join(here, "traps"))
         check_reading(here, all_traps)
         check_writing(here, all_traps)
+        check_recordings(here)
         check_allowed_folders(here)
     sys.exit(0)
