@@ -125,6 +125,12 @@ void Settings::begin() {
     begun_ = true;
 }
 
+void Settings::takeWaiting(const QStringList &butFor) {
+    for (const QString &path : waiting())
+        if (!butFor.contains(path))
+            inForce_ = withValueAt(inForce_, path, valueAt(current_, path));
+}
+
 QStringList Settings::waiting() const {
     return leafPaths(difference(current_, inForce_));
 }

@@ -57,6 +57,8 @@ public:
     /// The program starts its work: from now on those that apply on restart keep in force the value they
     /// have.
     void begin();
+    /// Part of the program begins anew: what waits for a restart is in force, but for these paths.
+    void takeWaiting(const QStringList &butFor);
     /// Those of the paths that apply on restart.
     QStringList needRestart(const QStringList &paths) const;
     /// The paths whose change waits for a restart.

@@ -14,6 +14,8 @@ namespace hermes::simulator {
 namespace {
 
 constexpr auto healthItem = "lidar";
+const QStringList takenAtTheStart{"listen",      "insecure",     "files.folders", "world",
+                                  "motors.link", "motors.link2", "gps.link"};
 constexpr qint64 largestWorldFile = 16 << 20; // some 300,000 edges
 
 TruthMessage messageOf(const Simulation::Truth &truth) {
@@ -196,6 +198,7 @@ Result<void> Simulator::load(const QString &path, const Outcome<World> &world) {
     if (!world)
         return Error(ErrorCode::InputOutput, QString::fromStdString(world.error()),
                      QJsonObject{{"path", path}});
+    settings().takeWaiting(takenAtTheStart);
     const Outcome<void> started = pump_.start(*world, options(), settings().text("lidar.host").toStdString(),
                                               quint16(settings().integer("lidar.port")),
                                               quint16(settings().integer("lidar.position_port")));

@@ -97,6 +97,14 @@ void TestSettings::restartMeansRestart() {
     QCOMPARE(settings->inForce()["mode"].toString(), first);
     QVERIFY(settings->set({{"mode", first}})); // back to what is in force
     QVERIFY(settings->waiting().isEmpty());
+    QVERIFY(settings->set({{"mode", "file"}}));
+    settings->takeWaiting({"mode"});
+    QCOMPARE(settings->text("mode"), first);
+    settings->takeWaiting({});
+    QCOMPARE(settings->text("mode"), QString("file"));
+    QVERIFY(settings->waiting().isEmpty());
+    QVERIFY(settings->set({{"mode", first}}));
+    settings->takeWaiting({});
     QVERIFY(settings->set({{"mode", "file"}}) && settings->reset());
     QVERIFY(settings->waiting().isEmpty());
 }
