@@ -113,7 +113,7 @@ template std::size_t PackedNumbers::copy(quint8 *) const;
 template std::size_t PackedNumbers::copy(quint16 *) const;
 
 bool TreeBuilder::String(const char *text, unsigned length, bool copy) {
-    return isWhole(text, length) && document_.String(text, length, copy);
+    return count() && isWhole(text, length) && document_.String(text, length, copy);
 }
 
 bool TreeBuilder::Key(const char *text, unsigned length, bool copy) {
@@ -129,7 +129,7 @@ bool TreeBuilder::EndArray(unsigned count) {
 }
 
 bool TreeBuilder::packed(PackedNumbers::Kind kind, const char *bytes, unsigned byteCount) {
-    return document_.StartObject() && document_.Key(PackedNumbers::names + int(kind), 1, false) &&
+    return count() && document_.StartObject() && document_.Key(PackedNumbers::names + int(kind), 1, false) &&
            document_.String(bytes, byteCount, false) && document_.EndObject(1);
 }
 
@@ -148,7 +148,17 @@ bool TreeBuilder::isWhole(const char *text, unsigned length) {
     return true;
 }
 
+// Once each: arrays and objects, too.
+bool TreeBuilder::count() {
+    constexpr int mostValues = 2000000; // a map of 100,000 edges has some 1,300,000
+    if (++values_ > mostValues)
+        complaint = QStringLiteral("more than %1 values").arg(mostValues);
+    return complaint.isEmpty();
+}
+
 bool TreeBuilder::enter() {
+    if (!count())
+        return false;
     keys_.emplace_back();
     if (int(keys_.size()) > maximumDepth_)
         complaint = QStringLiteral("nested deeper than %1 levels").arg(maximumDepth_);

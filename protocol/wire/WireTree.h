@@ -35,7 +35,8 @@ struct PackedNumbers {
     std::size_t copy(T *to) const;
 };
 
-/// Takes what a parser finds into the document, and stops where it is nested too deeply or a key comes twice.
+/// Takes what a parser finds into the document, and stops where it is nested too deeply, a key comes twice,
+/// or there are too many values: each takes far more memory than it has bytes.
 class TreeBuilder {
 public:
     TreeBuilder(rapidjson::Document &target, int depthLimit)
@@ -45,10 +46,10 @@ public:
     /// What is wrong; empty: nothing.
     QString complaint;
 
-    bool Null() { return document_.Null(); }
-    bool Bool(bool value) { return document_.Bool(value); }
-    bool Int64(qint64 value) { return document_.Int64(value); }
-    bool Double(double value) { return document_.Double(value); }
+    bool Null() { return count() && document_.Null(); }
+    bool Bool(bool value) { return count() && document_.Bool(value); }
+    bool Int64(qint64 value) { return count() && document_.Int64(value); }
+    bool Double(double value) { return count() && document_.Double(value); }
     bool String(const char *text, unsigned length, bool copy);
     bool Key(const char *text, unsigned length, bool copy);
     bool StartObject() { return enter() && document_.StartObject(); }
@@ -63,10 +64,12 @@ protected:
 
 private:
     bool isWhole(const char *text, unsigned length);
+    bool count();
     bool enter();
     bool leave();
 
     const int maximumDepth_;
+    int values_ = 0;
     std::vector<std::vector<std::string>> keys_; // of each object (or array: none) still open
 };
 

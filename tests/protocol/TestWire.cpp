@@ -91,6 +91,7 @@ QJsonObject sampleJson() {
 class TestWire : public QObject {
     Q_OBJECT
 private Q_SLOTS:
+    void valuesAreLimited();
     void goesAroundUnchanged();
     void namesWhatIsWrong_data();
     void namesWhatIsWrong();
@@ -316,6 +317,20 @@ void TestWire::leftOutIsNotNull() {
     QCOMPARE(schemaOf<Sample>()["properties"].toObject()["end"].toObject()["type"],
              QJsonValue(QJsonArray{"number", "null"}));
     QVERIFY(!schemaOf<Sample>()["required"].toArray().contains("end"));
+}
+
+// Two bytes of a frame may take a hundred of memory.
+void TestWire::valuesAreLimited() {
+    const auto complaint = [](const QByteArray &json) {
+        WireError error;
+        return WireValue::parse(json, &error) ? QString() : error.message;
+    };
+    QCOMPARE(complaint('[' + QByteArray("0,").repeated(1999998) + "0]"), QString());
+    QCOMPARE(complaint('[' + QByteArray("0,").repeated(1999999) + "0]"), QString("more than 2000000 values"));
+    QVERIFY(complaint('[' + QByteArray("{},").repeated(3000000) + "0]").contains("more than"));
+    WireError error;
+    QVERIFY(!WireValue::parseCbor('\x9f' + QByteArray(3000000, '\xa0') + '\xff', &error));
+    QVERIFY(error.message.contains("more than 2000000 values"));
 }
 
 QTEST_APPLESS_MAIN(TestWire)
