@@ -169,8 +169,7 @@ RecordingState Recorder::state() const {
                     {"kernel", double(kernelDrops_)},
                     {"queue", double(queueDrops_)},
                     {"too_long", double(tooLong_)},
-                    {"unwritten", double(counts.packets - written)},
-                    {"after_failure", double(afterFailure_)}};
+                    {"unwritten", double(counts.packets - written + afterFailure_)}};
     state.gps = gpsOf(progress.position, counts.position);
     if (progress.error)
         state.error = diskError(QString::fromStdString(*progress.error), state.path);
