@@ -57,16 +57,8 @@ void CborCodec::forgetFrame() {
     toSkip_ = 0;
 }
 
-CodecItem CborCodec::read(const CodecFrame &frame) const {
-    if (frame.error)
-        return {QJsonValue::Undefined, frame.error, {}};
-    WireError error;
-    if (const auto value = WireValue::parseCbor(frame.bytes, &error))
-        return itemOf(*value);
-    return {QJsonValue::Undefined,
-            RpcError(ErrorCode::ParseError,
-                     QStringLiteral("parse error at byte %1: %2").arg(error.offset).arg(error.message)),
-            {}};
+std::optional<WireValue> CborCodec::parse(const QByteArray &bytes, WireError *error) const {
+    return WireValue::parseCbor(bytes, error);
 }
 
 QByteArray CborCodec::frame(const Outgoing &message, std::optional<QString> &path) {

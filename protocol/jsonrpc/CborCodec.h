@@ -14,7 +14,6 @@ public:
     CborCodec()
         : Codec(defaultFrameLimit) {}
 
-    CodecItem read(const CodecFrame &frame) const override;
     bool isMidFrame() const override { return toSkip_ > 0 || !frame_.isEmpty(); }
     void joinBatch(std::vector<QByteArray> &frames) const override;
     QByteArray forSubscription(const QByteArray &notification, quint64 subscription,
@@ -22,6 +21,7 @@ public:
 
 protected:
     std::vector<CodecFrame> splitFrames(const QByteArray &bytes) override;
+    std::optional<WireValue> parse(const QByteArray &frame, WireError *error) const override;
     void forgetFrame() override;
     QByteArray frame(const Outgoing &message, std::optional<QString> &path) override;
 

@@ -30,6 +30,18 @@ std::vector<CodecFrame> Codec::split(const QByteArray &bytes) {
     return greeting_.isForeign() ? std::vector<CodecFrame>() : splitFrames(bytes);
 }
 
+CodecItem Codec::read(const CodecFrame &frame) const {
+    if (frame.error)
+        return {QJsonValue::Undefined, frame.error, {}};
+    WireError error;
+    if (const auto value = parse(frame.bytes, &error))
+        return itemOf(*value);
+    return {QJsonValue::Undefined,
+            RpcError(ErrorCode::ParseError,
+                     QStringLiteral("parse error at byte %1: %2").arg(error.offset).arg(error.message)),
+            {}};
+}
+
 void Codec::reset() {
     greeting_ = {};
     forgetFrame();

@@ -59,7 +59,7 @@ public:
     /// Of the connection.
     const Greeting &greeting() const { return greeting_; }
     /// Reads a frame. Costs as much as it is long; may be called in any thread.
-    virtual CodecItem read(const CodecFrame &frame) const = 0;
+    CodecItem read(const CodecFrame &frame) const;
     /// Both at once.
     std::vector<CodecItem> feed(const QByteArray &bytes);
     /// Counts an item that read() gave.
@@ -94,6 +94,8 @@ protected:
 
     static CodecItem itemOf(const WireValue &value);
     virtual std::vector<CodecFrame> splitFrames(const QByteArray &bytes) = 0;
+    /// Nothing: error says why.
+    virtual std::optional<WireValue> parse(const QByteArray &frame, WireError *error) const = 0;
     /// Forgets a frame begun.
     virtual void forgetFrame() = 0;
     /// Writes a frame; path: of the number that cannot be written.

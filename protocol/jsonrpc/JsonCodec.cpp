@@ -53,16 +53,8 @@ void JsonCodec::finishLine(std::vector<CodecFrame> &frames) {
     line_ = QByteArray();
 }
 
-CodecItem JsonCodec::read(const CodecFrame &frame) const {
-    if (frame.error)
-        return {QJsonValue::Undefined, frame.error, {}};
-    WireError error;
-    if (const auto value = WireValue::parse(frame.bytes, &error))
-        return itemOf(*value);
-    return {QJsonValue::Undefined,
-            RpcError(ErrorCode::ParseError,
-                     QStringLiteral("parse error at byte %1: %2").arg(error.offset).arg(error.message)),
-            {}};
+std::optional<WireValue> JsonCodec::parse(const QByteArray &bytes, WireError *error) const {
+    return WireValue::parse(bytes, error);
 }
 
 void JsonCodec::forgetFrame() {

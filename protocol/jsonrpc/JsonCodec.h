@@ -13,7 +13,6 @@ public:
     JsonCodec()
         : Codec(defaultFrameLimit) {}
 
-    CodecItem read(const CodecFrame &frame) const override;
     bool isMidFrame() const override { return skipping_ || !line_.isEmpty(); }
     void joinBatch(std::vector<QByteArray> &frames) const override;
     QByteArray forSubscription(const QByteArray &notification, quint64 subscription,
@@ -21,6 +20,7 @@ public:
 
 protected:
     std::vector<CodecFrame> splitFrames(const QByteArray &bytes) override;
+    std::optional<WireValue> parse(const QByteArray &frame, WireError *error) const override;
     void forgetFrame() override;
     QByteArray frame(const Outgoing &message, std::optional<QString> &path) override;
 

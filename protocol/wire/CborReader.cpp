@@ -217,10 +217,7 @@ std::optional<WireValue> WireValue::parseCbor(const QByteArray &cbor, WireError 
                       int(std::clamp<qint64>(in.currentOffset(), 0, cbor.size())), 1};
         return std::nullopt;
     }
-    WireValue value;
-    value.node_ = static_cast<const Node *>(&made->document);
-    value.tree_ = made;
-    return value;
+    return WireValue(made);
 }
 
 } // namespace hermes

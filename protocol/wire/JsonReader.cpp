@@ -95,10 +95,7 @@ std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *err
         }
         return std::nullopt;
     }
-    WireValue value;
-    value.node_ = static_cast<const Node *>(&made->document);
-    value.tree_ = made;
-    return value;
+    return WireValue(made);
 }
 
 } // namespace hermes

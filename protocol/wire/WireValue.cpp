@@ -246,6 +246,10 @@ QString WireView::described() const {
     return {};
 }
 
+WireValue::WireValue(const std::shared_ptr<const Tree> &whole)
+    : WireView(static_cast<const Node *>(&whole->document))
+    , tree_(whole) {}
+
 WireValue::WireValue(const QJsonValue &value) {
     if (value.isUndefined())
         return;
@@ -255,8 +259,7 @@ WireValue::WireValue(const QJsonValue &value) {
         return true;
     };
     made->document.Populate(generate);
-    node_ = static_cast<const Node *>(&made->document);
-    tree_ = made;
+    *this = WireValue(made);
 }
 
 } // namespace hermes

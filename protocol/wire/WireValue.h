@@ -78,6 +78,8 @@ public:
 private:
     struct Tree;
 
+    explicit WireValue(const std::shared_ptr<const Tree> &whole);
+
     std::shared_ptr<const Tree> tree_;
 };
 

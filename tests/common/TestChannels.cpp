@@ -167,7 +167,6 @@ void TestChannels::goOnWithAnOldDaemon() {
     QTcpSocket *const peer = server.nextPendingConnection();
     QTRY_VERIFY(peer->canReadLine());
     QVERIFY(peer->readLine().contains("protocol.use"));
-    QTest::qWait(50);
     QVERIFY(!client.isConnected());
     peer->write(
         "{\"jsonrpc\":\"2.0\",\"id\":1,\"error\":{\"code\":-32601,\"message\":\"no such method\"}}\n");

@@ -113,7 +113,7 @@ void TestDaemonClients::whoSpeaksAnotherProtocolIsTurnedAway() {
              i += piece) {
             page.socket.write(bytes.mid(i, piece));
             page.socket.flush();
-            QTest::qWait(0);
+            QCoreApplication::processEvents();
         }
         QTRY_COMPARE(page.socket.state(), QAbstractSocket::UnconnectedState);
         const QByteArray told = page.socket.readAll();
