@@ -20,6 +20,15 @@ Result<QString> daemonAddress(const QString &word, const QString &host) {
     return QStringLiteral("%1:%2").arg(bracketed).arg(port);
 }
 
+QString asOwner(const QString &address) {
+    const bool isTcp =
+        !address.contains(QStringLiteral("://")) || address.startsWith(QStringLiteral("tcp://"));
+    if (!isTcp)
+        return address;
+    const QLatin1Char joint(address.contains(QLatin1Char('?')) ? '&' : '?');
+    return address + joint + QStringLiteral("own=1");
+}
+
 Result<void> checkAddress(const QString &address) {
     const Result<InterfaceUrl> url = InterfaceUrl::parse(address);
     if (!url)

@@ -10,6 +10,7 @@ namespace {
 
 const QString nameKey = QStringLiteral("name");
 const QString schemaKey = QStringLiteral("schema");
+const QString roleKey = QStringLiteral("x-role");
 
 } // namespace
 
@@ -18,6 +19,8 @@ Command::Command(const QString &name, const QString &text)
     , summary_(text) {}
 
 Command &Command::param(const Field &field) {
+    if (const auto role = roleFrom(field.schema().value(roleKey).toString()))
+        restricted_.emplace_back(fields_.size(), *role);
     fields_.push_back(field);
     return *this;
 }
@@ -39,6 +42,11 @@ Command &Command::example(const QJsonObject &params, const QJsonValue &result) {
 
 Command &Command::with(const QString &keyword, const QJsonValue &value) {
     extra_.insert(keyword, value);
+    return *this;
+}
+
+Command &Command::needs(Role role) {
+    role_ = role;
     return *this;
 }
 
@@ -74,6 +82,7 @@ QJsonObject Command::description() const {
     QJsonObject method = extra_;
     method.insert(nameKey, commandName_);
     method.insert(QStringLiteral("summary"), summary_);
+    method.insert(roleKey, toString(role_));
     method.insert(QStringLiteral("paramStructure"), QStringLiteral("either"));
     method.insert(QStringLiteral("params"), params);
     method.insert(QStringLiteral("result"),
@@ -124,13 +133,35 @@ Result<QJsonObject> Command::accept(const QJsonValue &params) const {
     return named;
 }
 
+Error Command::notFor(const Call &call, Role needed, const QString &what) const {
+    return {ErrorCode::NotAuthorised,
+            QStringLiteral("%1%2 is for the role %3, this client has %4; %5")
+                .arg(commandName_, what, toString(needed), toString(call.role), call.moreRights),
+            QJsonObject{{QStringLiteral("role"), toString(call.role)},
+                        {QStringLiteral("needed"), toString(needed)}}};
+}
+
+std::optional<Error> Command::refusal(const Call &call) const {
+    for (const auto &[index, needed] : restricted_) {
+        const Field &field = fields_[index];
+        const QJsonValue given = call.params.value(field.name());
+        if (call.role < needed && !given.isUndefined() && given != field.defaultValue())
+            return notFor(call, needed, QStringLiteral(" with ") + field.name());
+    }
+    return std::nullopt;
+}
+
 void Command::execute(const QJsonValue &params, Call call, const Reply &reply) const {
     QString what = QStringLiteral("unknown exception");
     try {
+        if (call.role < role_)
+            return reply.error(notFor(call, role_, QString()));
         const auto accepted = accept(params);
         if (!accepted)
             return reply.error(accepted.error());
         call.params = *accepted;
+        if (const auto refused = refusal(call))
+            return reply.error(*refused);
         return run_(call, reply);
     } catch (const std::exception &exception) {
         what = QString::fromUtf8(exception.what());

@@ -2,6 +2,7 @@
 
 #include "common/Result.h"
 #include "common/daemon/Reply.h"
+#include "common/daemon/Role.h"
 #include "common/schema/Field.h"
 #include "common/schema/SchemaValidator.h"
 #include "protocol/wire/FieldsOf.h"
@@ -16,9 +17,11 @@ namespace hermes {
 /// One call of a command, its parameters already checked against the declaration and completed with defaults.
 struct Call {
     QJsonObject params;
-    quint64 client = 0; ///< who calls; the same for one connection as long as it lasts
-    QString clientName; ///< for messages
-    double time = 0;    ///< when it came, before all that came later; of the clock of bootNow()
+    quint64 client = 0;         ///< who calls; the same for one connection as long as it lasts
+    QString clientName;         ///< for messages
+    Role role = Role::Engineer; ///< of who calls
+    QString moreRights;         ///< how that client could get more of them
+    double time = 0;            ///< when it came, before all that came later; of the clock of bootNow()
 
     bool has(const char *name) const { return params.contains(QLatin1String(name)); }
     QJsonValue value(const char *name) const { return params.value(QLatin1String(name)); }
@@ -37,6 +40,7 @@ public:
 
     Command(const QString &name, const QString &summary);
 
+    /// One with `x-role`: only who has that role may give it another value than the default.
     Command &param(const Field &field);
     /// The JSON Schema of the result, e.g. {{"type", "number"}}.
     Command &returns(const QJsonObject &schema);
@@ -49,6 +53,8 @@ public:
     Command &example(const QJsonObject &params, const QJsonValue &result);
     /// Any further keyword of the description, e.g. "x-needs-lease".
     Command &with(const QString &keyword, const QJsonValue &value);
+    /// `x-role`: who may call it; without a word, operators.
+    Command &needs(Role role);
     /// `x-urgent`: a stop. Goes before all other work, and a place is kept for clients that call it.
     Command &urgent();
     /// `x-fresh`: not carried out when it was received before the program had stood still.
@@ -61,6 +67,7 @@ public:
     Command &asyncHandler(const AsyncHandler &function);
 
     const QString &name() const { return commandName_; }
+    Role role() const { return role_; }
     bool isUrgent() const { return extra_.contains(urgentKey()); }
     bool needsFresh() const { return extra_.contains(freshKey()); }
     bool isListed() const { return isListed_; }
@@ -77,15 +84,19 @@ private:
     static QString freshKey() { return QStringLiteral("x-fresh"); }
     Result<QJsonObject> accept(const QJsonValue &params) const;
     QJsonObject paramsSchema() const;
+    Error notFor(const Call &call, Role needed, const QString &what) const;
+    std::optional<Error> refusal(const Call &call) const;
 
     QString commandName_;
     QString summary_;
     std::vector<Field> fields_;
+    std::vector<std::pair<std::size_t, Role>> restricted_; // of those
     QJsonObject resultSchema_;
     QJsonObject exampleParams_;
     QJsonValue exampleResult_{QJsonValue::Undefined};
     QJsonObject extra_;
     AsyncHandler run_;
+    Role role_ = Role::Operator;
     bool isListed_ = true;
     mutable std::shared_ptr<const SchemaValidator> validator_; // made at the first call
 };

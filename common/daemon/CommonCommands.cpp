@@ -14,15 +14,19 @@ constexpr std::size_t mostSubscriptions = 100; // of a client
 void addDaemonCommands(Daemon &daemon, CommandRegistry &commands) {
     commands.add(
         Command(QStringLiteral("rpc.discover"), QStringLiteral("This description, an OpenRPC document"))
+            .needs(Role::Observer)
             .gives<QJsonObject>()
             .handler([&daemon](const Call &) { return QJsonValue(daemon.description()); }));
     commands.add(Command(QStringLiteral("daemon.info"), QStringLiteral("Who this daemon is"))
+                     .needs(Role::Observer)
                      .gives<DaemonInfo>()
-                     .handler([&daemon](const Call &) { return asJson(daemon.info()); }));
+                     .handler([&daemon](const Call &call) { return asJson(daemon.info(call.role)); }));
     commands.add(Command(QStringLiteral("daemon.status"), QStringLiteral("Its state and its health items"))
+                     .needs(Role::Observer)
                      .gives<DaemonStatus>()
                      .handler([&daemon](const Call &) { return asJson(daemon.status()); }));
     commands.add(Command(QStringLiteral("daemon.shutdown"), QStringLiteral("Ends the daemon in order"))
+                     .needs(Role::Engineer)
                      .returnsNull()
                      .handler([&daemon](const Call &call) {
                          logInfo(QStringLiteral("daemon"),
@@ -37,6 +41,7 @@ void addProtocolCommand(Daemon &daemon, CommandRegistry &commands) {
     commands.add(
         Command(QStringLiteral("protocol.use"),
                 QStringLiteral("After the reply this connection goes on in another framing, both ways"))
+            .needs(Role::Observer)
             .param(
                 Field::text(QStringLiteral("name"), QStringLiteral("Of the framing")).choices(codecNames()))
             .returnsNull()
@@ -71,10 +76,12 @@ Result<QJsonValue> getSettings(Daemon &daemon, const Call &call) {
 
 void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
     commands.add(Command(QStringLiteral("settings.schema"), QStringLiteral("The JSON Schema of the settings"))
+                     .needs(Role::Observer)
                      .gives<QJsonObject>()
                      .handler([&daemon](const Call &) { return QJsonValue(daemon.settings().schema()); }));
     commands.add(
         Command(QStringLiteral("settings.get"), QStringLiteral("All settings, or the value at a path"))
+            .needs(Role::Observer)
             .param(Field::text(QStringLiteral("path"), QStringLiteral("Dotted path")).byDefault(QString()))
             .param(Field::boolean(QStringLiteral("changes"),
                                   QStringLiteral("Only what differs from the defaults"))
@@ -85,6 +92,7 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
     commands.add(
         Command(QStringLiteral("settings.set"),
                 QStringLiteral("Changes settings: all of the partial object, or nothing"))
+            .needs(Role::Engineer)
             .param(Field::object(QStringLiteral("values"), QStringLiteral("Partial object of settings")))
             .gives<SettingsChange>()
             .example(
@@ -100,6 +108,7 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
             }));
     commands.add(
         Command(QStringLiteral("settings.reset"), QStringLiteral("Puts settings back to their defaults"))
+            .needs(Role::Engineer)
             .param(Field::array(QStringLiteral("paths"), QStringLiteral("Dotted paths; none: all settings"),
                                 schemaOf<QString>())
                        .byDefault(QJsonArray()))
@@ -115,6 +124,7 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
             }));
     commands.add(Command(QStringLiteral("settings.save"),
                          QStringLiteral("Writes what differs from the defaults to the file of --config"))
+                     .needs(Role::Engineer)
                      .gives<SavedSettings>()
                      .handler([&daemon](const Call &) -> Result<QJsonValue> {
                          const auto file = daemon.settings().save();
@@ -127,6 +137,7 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
 void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topics) {
     commands.add(
         Command(QStringLiteral("topics.list"), QStringLiteral("The topics and the schemas of their data"))
+            .needs(Role::Observer)
             .gives<std::vector<TopicDescription>>()
             .handler([&topics](const Call &) { return asJson(topics.description()); }));
     commands.add(
@@ -134,6 +145,7 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
             QStringLiteral("topics.subscribe"),
             QStringLiteral("Sends a topic to this client as notifications `topic` {subscription, topic, seq, "
                            "dropped, stamp, data}"))
+            .needs(Role::Observer)
             .param(Field::text(QStringLiteral("topic"), QStringLiteral("Name of the topic")))
             .param(Field::number(QStringLiteral("max_rate_hz"),
                                  QStringLiteral("Thin to this rate; 0: every message"))
@@ -164,6 +176,7 @@ void addTopicCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topic
             }));
     commands.add(
         Command(QStringLiteral("topics.unsubscribe"), QStringLiteral("Ends a subscription of this client"))
+            .needs(Role::Observer)
             .param(
                 Field::integer(QStringLiteral("subscription"), QStringLiteral("What topics.subscribe gave"))
                     .range(1, 9007199254740992.0))
@@ -187,6 +200,7 @@ void addCommonCommands(Daemon &daemon, CommandRegistry &commands, TopicHub &topi
     addProtocolCommand(daemon, commands);
     commands.add(
         Command(QStringLiteral("log.tail"), QStringLiteral("The last records of the log, oldest first"))
+            .needs(Role::Observer)
             .param(Field::integer(QStringLiteral("count"), QStringLiteral("How many"))
                        .range(1, 100000)
                        .byDefault(100))

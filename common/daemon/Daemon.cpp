@@ -229,7 +229,7 @@ QString Daemon::descriptionHash() const {
     return madeHash_;
 }
 
-DaemonInfo Daemon::info() const {
+DaemonInfo Daemon::info(Role asking) const {
     return {self_.name,
             self_.title,
             projectVersion(),
@@ -239,7 +239,8 @@ DaemonInfo Daemon::info() const {
             QCoreApplication::applicationPid(),
             channels_.addresses(),
             started_,
-            monotonicNow() - startedMono_};
+            monotonicNow() - startedMono_,
+            toString(asking)};
 }
 
 DaemonStatus Daemon::status() {

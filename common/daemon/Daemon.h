@@ -60,7 +60,8 @@ public:
     QJsonObject description() const;
     /// Changes when anything in the description changes.
     QString descriptionHash() const;
-    DaemonInfo info() const;
+    /// As told to a client of that role.
+    DaemonInfo info(Role asking = Role::Engineer) const;
     DaemonStatus status();
 
     bool hasSubscribers(const QString &topic) const { return topics_.hasSubscribers(topic); }

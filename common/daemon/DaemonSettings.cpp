@@ -62,6 +62,18 @@ void Daemon::declareCommonSettings() {
                    .group(channelGroup)
                    .byDefault(false)
                    .appliesOnRestart());
+    addSetting(
+        Field::text(QStringLiteral("access.plain"),
+                    QStringLiteral("Role of clients without a certificate: programs of the daemon's own user "
+                                   "over TCP, lines, UDP, and the network where insecure is true"))
+            .choices(roleNames())
+            .group(channelGroup)
+            .byDefault(toString(Role::Operator)));
+    addSetting(Field::text(QStringLiteral("access.others"),
+                           QStringLiteral("Role of programs of other users of this computer"))
+                   .choices(roleNames())
+                   .group(channelGroup)
+                   .byDefault(toString(Role::Observer)));
     addSetting(Field::integer(QStringLiteral("limits.frame_bytes"),
                               QStringLiteral("Largest request of a new client"))
                    .unit(QStringLiteral("B"))
@@ -121,6 +133,9 @@ void Daemon::applyCommonSettings() {
     limits.pending = configuration_.integer(QStringLiteral("limits.pending"));
     limits.idle_s = configuration_.number(QStringLiteral("limits.idle_s"));
     channels_.setLimits(limits, configuration_.integer(QStringLiteral("limits.clients")));
+    channels_.setAccess(
+        {roleFrom(configuration_.text(QStringLiteral("access.plain"))).value_or(Role::Observer),
+         roleFrom(configuration_.text(QStringLiteral("access.others"))).value_or(Role::Observer)});
     Log::instance().setMinimumLevel(
         LogLevel(levels.indexOf(configuration_.text(QStringLiteral("log.level")))));
     Log::instance().setCapacity(configuration_.integer(QStringLiteral("log.records")));

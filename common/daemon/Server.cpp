@@ -3,6 +3,7 @@
 #include "common/Log.h"
 #include "common/Time.h"
 #include "common/interface/InterfaceRegistry.h"
+#include "common/interface/OwnSocket.h"
 
 #include <QStringList>
 #include <algorithm>
@@ -24,6 +25,15 @@ void addSession(QJsonObject &sums, Session &session) {
     addTo(sums, QStringLiteral("malformed_frames"), codec.malformed);
     addTo(sums, QStringLiteral("oversized_frames"), codec.oversized);
     addTo(sums, QStringLiteral("dropped_topic_messages"), session.topics().dropped());
+}
+
+QString howToGetMore(const Peer &peer) {
+    if (peer.place == Peer::Place::Elsewhere)
+        return QStringLiteral("access.plain sets what clients without a certificate may do");
+    if (roleOf(peer, {Role::Observer, Role::Engineer}) == Role::Engineer)
+        return QStringLiteral("access.others sets what other users of this computer may do");
+    return QStringLiteral("the daemon's own user has all rights over its Unix socket, which hermesctl, the "
+                          "window and docs/examples/hermes.py use; access.plain sets what others may do");
 }
 
 } // namespace
@@ -69,24 +79,57 @@ Result<void> Server::listen(const QString &text, bool insecure) {
                          "(--set insecure=true)")
                          .arg(text));
     }
-    const auto listener = makeListener(*url, this);
-    if (!listener)
+    // The one beside it first: who comes as soon as this one listens finds it.
+    auto own = listenForOwn(*url);
+    const auto listener = begin(*url);
+    if (!listener) {
+        delete (own ? *own : nullptr);
         return listener.error();
-    connect(*listener, &Listener::accepted, this,
-            [this, protocol = url->protocol()](Interface *peer) { accept(peer, protocol); });
-    const auto listening = (*listener)->listen();
-    if (!listening) {
-        delete *listener;
-        return listening;
     }
+    const auto actual = InterfaceUrl::parse((*listener)->address());
+    if (url->port == 0 && actual)
+        own = listenForOwn({actual->scheme, actual->host, actual->port, actual->path, url->options});
     listeners_.append(*listener);
+    if (!own)
+        logWarning(source, QStringLiteral("%1; hermesctl and the window come over TCP, as %2")
+                               .arg(own.error().message, toString(access_.plain)));
+    else if (*own)
+        ownListeners_.append(*own);
     logInfo(source,
             QStringLiteral("listening on %1, protocol %2").arg((*listener)->address(), url->protocol()));
     return {};
 }
 
+Result<Listener *> Server::begin(const InterfaceUrl &url) {
+    const auto listener = makeListener(url, this);
+    if (!listener)
+        return listener;
+    connect(*listener, &Listener::accepted, this,
+            [this, protocol = url.protocol()](Interface *peer) { accept(peer, protocol); });
+    const auto listening = (*listener)->listen();
+    if (listening)
+        return listener;
+    delete *listener;
+    return listening.error();
+}
+
+Result<Listener *> Server::listenForOwn(const InterfaceUrl &tcp) {
+    const auto own = ownSocketOf(tcp);
+    return own ? begin(*own) : Result<Listener *>(nullptr);
+}
+
+void Server::setAccess(const Access &access) {
+    access_ = access;
+    for (Session *session : qAsConst(sessions_))
+        giveRole(session);
+}
+
+void Server::giveRole(Session *session) const {
+    session->setRole(roleOf(session->peer(), access_), howToGetMore(session->peer()));
+}
+
 void Server::close() {
-    for (Listener *listener : qAsConst(listeners_))
+    for (Listener *listener : listeners_ + ownListeners_)
         listener->close();
     const auto all = sessions_.values();
     for (Session *session : all)
@@ -116,6 +159,7 @@ void Server::accept(Interface *peer, const QString &protocol) {
     if (peer->isConnection()) // else what one stranger says would end it for all
         channel->codec().watchForStrangers();
     auto *session = new Session(++lastId_, channel, commands_, limits_, gapWatch_, this);
+    giveRole(session);
     if (!mayStay(session)) {
         turnAway(session, {ErrorCode::OverLimit, session->restriction()});
         return session->deleteLater();

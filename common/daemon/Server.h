@@ -23,7 +23,10 @@ public:
 
     /// For clients that come from now on.
     void setLimits(const SessionLimits &session, int clients);
-    /// Adds a listener. Error: an unknown scheme or protocol, a port in use, an address that is open to the
+    /// For all clients, at once.
+    void setAccess(const Access &access);
+    /// Adds a listener; beside one at a TCP address on loopback, one for programs of the daemon's own user
+    /// (OwnSocket.h). Error: an unknown scheme or protocol, a port in use, an address that is open to the
     /// network although insecure is false.
     Result<void> listen(const QString &url, bool insecure);
     void close();
@@ -41,7 +44,10 @@ Q_SIGNALS:
     void clientGone(quint64 client);
 
 private:
+    Result<Listener *> begin(const InterfaceUrl &url);
+    Result<Listener *> listenForOwn(const InterfaceUrl &tcp);
     void accept(Interface *peer, const QString &protocol);
+    void giveRole(Session *session) const;
     bool mayStay(Session *session);
     bool makeKeptPlace();
     void turnAway(Session *session, const RpcError &reason);
@@ -55,7 +61,9 @@ private:
     GapWatch gapWatch_;
     SessionLimits limits_;
     int clientLimit_ = 16;
+    Access access_;
     QVector<Listener *> listeners_;
+    QVector<Listener *> ownListeners_; // beside those
     QMap<quint64, Session *> sessions_;
     quint64 lastId_ = 0;
     quint64 turnedAway_ = 0;

@@ -236,6 +236,8 @@ void Session::run(const RpcRequest &request, double arrived, const Answer &answe
     Call call;
     call.client = number_;
     call.clientName = name();
+    call.role = role_;
+    call.moreRights = more_;
     call.time = arrived;
     const bool isStop = isUrgent(RpcMessage(request));
     const QPointer<Session> alive(this);

@@ -54,6 +54,12 @@ public:
     void restrictTo(const QString &reason) { restrictedFor_ = reason; }
     bool isRestricted() const { return !restrictedFor_.isEmpty(); }
     const QString &restriction() const { return restrictedFor_; }
+    /// What it may do from now on; how it could do more is told to who may not.
+    void setRole(Role role, const QString &more) {
+        role_ = role;
+        more_ = more;
+    }
+    Peer peer() const { return channel_->interface().peer(); }
     /// Goes on in this framing after the reply to the request that is being carried out: the only one that is
     /// under way, and before the first subscription.
     Result<void> useProtocol(const QString &name);
@@ -97,6 +103,8 @@ private:
     bool batchInTurns_ = false;    // it gets its turns
     std::optional<QString> ended_; // closed, with a batch that is still to be run
     QString restrictedFor_;
+    Role role_ = Role::Observer;
+    QString more_;
     quint64 freshFor_; // the count of gaps up to which it is
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/interface/Peer.h"
+
 #include <QByteArray>
 #include <QMap>
 #include <QObject>
@@ -42,6 +44,8 @@ public:
     virtual bool isDatagram() const { return false; }
     /// Whether it is the end of a connection of its own: somebody else's comes as another interface.
     virtual bool isConnection() const { return false; }
+    /// Who is at the other end, while open.
+    virtual Peer peer() const { return {}; }
     /// Gives what waits to the system now, as far as it takes it.
     virtual void flush() {}
     /// Bytes taken by write() and not yet given to the system.

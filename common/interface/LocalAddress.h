@@ -4,6 +4,7 @@
 
 #include <QFile>
 
+#include <cstddef>
 #include <cstring>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -11,7 +12,8 @@
 
 namespace hermes {
 
-/// The address of a Unix socket: a path of at most 107 bytes.
+/// The address of a Unix socket: a path of at most 107 bytes; one that begins with @ is an abstract name,
+/// which belongs to the network namespace as a port does: unix(7).
 class LocalAddress {
 public:
     static Result<LocalAddress> of(const QString &path) {
@@ -26,10 +28,16 @@ public:
                              .arg(name.size()));
         made.address_.sun_family = AF_UNIX;
         std::memcpy(made.address_.sun_path, name.constData(), std::size_t(name.size()));
+        made.size_ = sizeof made.address_;
+        if (name.startsWith('@')) {
+            made.address_.sun_path[0] = '\0';
+            made.size_ = socklen_t(offsetof(sockaddr_un, sun_path) + std::size_t(name.size()));
+        }
         return made;
     }
     const sockaddr *get() const { return reinterpret_cast<const sockaddr *>(&address_); }
-    socklen_t size() const { return sizeof address_; }
+    socklen_t size() const { return size_; }
+    bool isFile() const { return address_.sun_path[0] != '\0'; }
     const char *path() const { return address_.sun_path; }
 
     /// Does not wait.
@@ -41,6 +49,7 @@ public:
 
 private:
     sockaddr_un address_{};
+    socklen_t size_ = 0;
 };
 
 } // namespace hermes

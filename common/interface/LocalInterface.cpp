@@ -11,9 +11,10 @@ LocalInterface::LocalInterface(const InterfaceUrl &address, QObject *parent)
     , path_(address.path)
     , name_(address.toString()) {}
 
-LocalInterface::LocalInterface(QTcpSocket *connected, const QString &name, QObject *theHost)
+LocalInterface::LocalInterface(QTcpSocket *connected, const QString &name, uint user, QObject *theHost)
     : TcpInterface(connected, theHost)
-    , name_(name) {}
+    , name_(name)
+    , user_(user) {}
 
 // The kernel connects at once, or says why not.
 void LocalInterface::doOpen() {

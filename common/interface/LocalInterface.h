@@ -10,10 +10,11 @@ class LocalInterface : public TcpInterface {
     Q_OBJECT
 public:
     LocalInterface(const InterfaceUrl &address, QObject *parent);
-    /// Takes over the socket of a peer of a server; name says who that is.
-    LocalInterface(QTcpSocket *connected, const QString &name, QObject *host);
+    /// Takes over the socket of a peer of a server; name and user say who that is.
+    LocalInterface(QTcpSocket *connected, const QString &name, uint user, QObject *host);
 
     QString name() const override { return name_; }
+    Peer peer() const override { return {Peer::Place::UnixSocket, user_}; }
 
 protected:
     void doOpen() override;
@@ -21,6 +22,7 @@ protected:
 private:
     const QString path_;
     const QString name_;
+    const std::optional<uint> user_; // of a peer of a server
 };
 
 } // namespace hermes

@@ -43,6 +43,18 @@ Error LocalServerInterface::refuse(const QString &why) const {
             QJsonObject{{QStringLiteral("path"), url_.path}}};
 }
 
+Result<void> LocalServerInterface::makeFree(const LocalAddress &address) const {
+    const struct stat before = statusOf(address.path());
+    if (before.st_ino == 0)
+        return {};
+    if (!S_ISSOCK(before.st_mode))
+        return refuse(QStringLiteral("a file of this name exists that is no socket"));
+    if (isAlive(address))
+        return refuse(QStringLiteral("another program listens there"));
+    ::unlink(address.path());
+    return {};
+}
+
 Result<void> LocalServerInterface::listen() {
     const Result<LocalAddress> address = LocalAddress::of(url_.path);
     if (!address)
@@ -52,22 +64,17 @@ Result<void> LocalServerInterface::listen() {
     const uint mode = modeText.isEmpty() ? ownerOnly : modeText.toUInt(&isMode, 8);
     if (!isMode || mode > 0777)
         return refuse(QStringLiteral("mode \"%1\", expected permissions as 0660").arg(modeText));
-    const struct stat before = statusOf(address->path());
-    if (before.st_ino != 0 && !S_ISSOCK(before.st_mode))
-        return refuse(QStringLiteral("a file of this name exists that is no socket"));
-    if (before.st_ino != 0 && isAlive(*address))
-        return refuse(QStringLiteral("another program listens there"));
-    if (before.st_ino != 0)
-        ::unlink(address->path());
+    if (const auto free = address->isFile() ? makeFree(*address) : Result<void>(); !free)
+        return free;
     descriptor_ = LocalAddress::makeSocket();
     // Nobody connects before it listens, and then the permissions are those that were asked for.
     if (descriptor_ < 0 || ::bind(descriptor_, address->get(), address->size()) != 0 ||
-        ::chmod(address->path(), mode) != 0 || ::listen(descriptor_, SOMAXCONN) != 0) {
+        (address->isFile() && ::chmod(address->path(), mode) != 0) || ::listen(descriptor_, SOMAXCONN) != 0) {
         const Error error = refuse(qt_error_string());
         LocalAddress::closeSocket(std::exchange(descriptor_, -1));
         return error;
     }
-    file_ = statusOf(address->path()).st_ino;
+    file_ = address->isFile() ? statusOf(address->path()).st_ino : 0;
     arrivals_ = std::make_unique<QSocketNotifier>(descriptor_, QSocketNotifier::Read);
     connect(arrivals_.get(), &QSocketNotifier::activated, this, &LocalServerInterface::takePeers);
     return {};
@@ -79,7 +86,7 @@ void LocalServerInterface::close() {
     arrivals_.reset();
     LocalAddress::closeSocket(std::exchange(descriptor_, -1));
     const QByteArray path = QFile::encodeName(url_.path);
-    if (statusOf(path.constData()).st_ino == file_) // else another program has the name by now
+    if (file_ != 0 && statusOf(path.constData()).st_ino == file_) // else another program has the name by now
         ::unlink(path.constData());
 }
 
@@ -101,7 +108,7 @@ void LocalServerInterface::take(int descriptor) {
     socket->setSocketDescriptor(descriptor);
     auto *carrier = new LocalInterface(
         socket, QStringLiteral("%1 (process %2 of user %3)").arg(address()).arg(peer.pid).arg(peer.uid),
-        this);
+        peer.uid, this);
     carrier->open();
     Q_EMIT accepted(carrier);
 }

@@ -8,10 +8,12 @@
 
 namespace hermes {
 
+class LocalAddress;
+
 /// Listens on a Unix socket and yields one LocalInterface a peer; each is named after the process and the
 /// user that the system says it is. The socket is a file that only its owner may open, unless the option
 /// `mode` says otherwise: local:///run/hermes/motorcontrol.sock?mode=0660. One that a program left behind is
-/// replaced.
+/// replaced. A path that begins with @ is an abstract name, which no file has and anyone may open.
 class LocalServerInterface : public Listener {
     Q_OBJECT
 public:
@@ -24,12 +26,13 @@ public:
 
 private:
     Error refuse(const QString &why) const;
+    Result<void> makeFree(const LocalAddress &address) const;
     void takePeers();
     void take(int descriptor);
 
     const InterfaceUrl url_;
     int descriptor_ = -1;
-    quint64 file_ = 0; // its inode
+    quint64 file_ = 0; // its inode, 0: it is none
     std::unique_ptr<QSocketNotifier> arrivals_;
 };
 

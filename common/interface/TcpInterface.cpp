@@ -1,6 +1,8 @@
 #include "common/interface/TcpInterface.h"
 
 #include "common/interface/Farewell.h"
+#include "common/interface/OwnSocket.h"
+#include "common/interface/SocketOwner.h"
 
 #include <sys/ioctl.h>
 #include <utility>
@@ -99,9 +101,20 @@ qint64 TcpInterface::bytesToWrite() const {
 void TcpInterface::doOpen() {
     receiving_ = true;
     if (isConnected())
-        nowOpen(); // a peer of a server
+        return nowOpen(); // a peer of a server
+    const int own = url_.option(QStringLiteral("own")).isEmpty() ? -1 : connectToOwnSocket(url_);
+    if (own >= 0)
+        takeConnected(own);
     else
         socket_->connectToHost(url_.host, url_.port);
+}
+
+Peer TcpInterface::peer() const {
+    const QHostAddress theirs = socket_->peerAddress(), ours = socket_->localAddress();
+    if (!theirs.isLoopback() && theirs != ours)
+        return {};
+    return {Peer::Place::Computer,
+            ownerOfSocket({theirs, socket_->peerPort()}, {ours, socket_->localPort()})};
 }
 
 void TcpInterface::takeConnected(qintptr descriptor) {

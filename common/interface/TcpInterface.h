@@ -9,7 +9,8 @@
 
 namespace hermes {
 
-/// A byte stream over TCP: a client that connects to an address, or the server's side of one connection.
+/// A byte stream over TCP: a client that connects to an address, or the server's side of one connection. With
+/// the option `own=1` a client tries the daemon's Unix socket first (OwnSocket.h).
 class TcpInterface : public Interface {
     Q_OBJECT
 public:
@@ -19,6 +20,7 @@ public:
 
     QString name() const override;
     bool isConnection() const override { return true; }
+    Peer peer() const override;
     void flush() override { socket_->flush(); }
     qint64 bytesToWrite() const override;
     bool setReceiving(bool on) override;

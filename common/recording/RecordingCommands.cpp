@@ -100,9 +100,11 @@ std::vector<Command> Recording::commands() {
             .gives<RecordingStatus>()
             .asyncHandler([this](const Call &, const Reply &reply) { stop(reply); }),
         Command("record.status", "The recording under way or the last")
+            .needs(Role::Observer)
             .gives<RecordingStatus>()
             .handler([this](const Call &) { return asJson(status()); }),
         Command("record.list", "The recordings in the folder, the latest first")
+            .needs(Role::Observer)
             .gives<std::vector<RecordingEntry>>()
             .asyncHandler([this](const Call &, const Reply &reply) { list(reply); })};
 }

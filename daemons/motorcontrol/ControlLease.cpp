@@ -13,7 +13,8 @@ Error ControlLease::heldByAnother() const {
 Result<void> ControlLease::acquire(quint64 client, const QString &name, double timeout_s, double now) {
     if (holder_ && holder_->client != client)
         return heldByAnother();
-    holder_ = Holder{client, name, timeout_s, now + timeout_s};
+    const auto wanted = holder_ ? holder_->wanted : std::nullopt;
+    holder_ = Holder{client, name, timeout_s, now + timeout_s, wanted};
     return {};
 }
 
@@ -22,7 +23,7 @@ std::optional<QString> ControlLease::takeOver(quint64 client, const QString &nam
     std::optional<QString> loser;
     if (holder_ && holder_->client != client)
         loser = holder_->name;
-    holder_ = Holder{client, name, timeout_s, now + timeout_s};
+    holder_ = Holder{client, name, timeout_s, now + timeout_s, std::nullopt};
     return loser;
 }
 
@@ -35,6 +36,11 @@ Result<void> ControlLease::renew(quint64 client, double now) {
         return heldByAnother();
     holder_->until = now + holder_->timeout_s;
     return {};
+}
+
+void ControlLease::ask(quint64 client, const QString &name) {
+    if (holder_ && holder_->client != client)
+        holder_->wanted = name;
 }
 
 bool ControlLease::release(quint64 client) {
@@ -55,7 +61,7 @@ std::optional<QString> ControlLease::expire(double now) {
 LeaseState ControlLease::state(double now) const {
     if (!holder_)
         return {};
-    return {true, holder_->name, std::max(0.0, holder_->until - now)};
+    return {true, holder_->name, std::max(0.0, holder_->until - now), holder_->wanted};
 }
 
 } // namespace hermes::motorcontrol

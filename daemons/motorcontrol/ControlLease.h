@@ -18,6 +18,8 @@ public:
     /// A motion command of that client. ControlHeld, with data.holder, when it may not: null: nobody holds
     /// it.
     Result<void> renew(quint64 client, double now);
+    /// Tells the holder that another client would like to have it: state().wanted, until it changes hands.
+    void ask(quint64 client, const QString &name);
     /// True when that client held it.
     bool release(quint64 client);
     /// Whoever holds it: for stops.
@@ -34,6 +36,7 @@ private:
         QString name;
         double timeout_s;
         double until;
+        std::optional<QString> wanted;
     };
 
     Error heldByAnother() const;

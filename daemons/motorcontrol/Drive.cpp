@@ -138,6 +138,10 @@ Result<void> Drive::takeOver(quint64 client, const QString &name, double timeout
     return {};
 }
 
+void Drive::ask(quint64 client, const QString &name) {
+    lease_.ask(client, name);
+}
+
 void Drive::release(quint64 client) {
     if (lease_.release(client))
         halt("the control was released");

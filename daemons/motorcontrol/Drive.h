@@ -41,6 +41,8 @@ public:
     /// Takes the control from whoever holds it, and halts when that is another client.
     Result<void> takeOver(quint64 client, const QString &name, double timeout_s, double now);
     void release(quint64 client);
+    /// Tells the holder that this client would like to have the control.
+    void ask(quint64 client, const QString &name);
     void clientGone(quint64 client);
     /// The program stood still, as text says: whoever held the control may know nothing of it. Halts, and
     /// ends the lease.

@@ -16,6 +16,14 @@ double ageOf(const Call &call) {
     return call.has("stamp") ? stampNow() - call.number("stamp") : 0;
 }
 
+Field clientField() {
+    return Field::text("client", "Name of the client, for others").with("maxLength", 100).byDefault("");
+}
+
+QString clientName(const Call &call) {
+    return call.text("client").isEmpty() ? call.clientName : call.text("client");
+}
+
 Result<QJsonValue> nullOr(const Result<void> &result) {
     if (!result)
         return result.error();
@@ -43,6 +51,7 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
                    .range(0, 10)
                    .byDefault(0))
         .gives<Standing>()
+        .needs(Role::Observer)
         .urgent()
         .asyncHandler([this, stop](const Call &call, const Reply &reply) {
             const double until = monotonicNow() + call.number("wait_s");
@@ -126,6 +135,7 @@ void MotorControl::declareMotorCommands() {
         }));
     addCommand(Command("motor.state",
                        "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
+                   .needs(Role::Observer)
                    .gives<MotorState>()
                    .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
     addCommand(
@@ -146,7 +156,7 @@ void MotorControl::declareControlCommands() {
             "Gives this client the control: only it may move the robot, as long as it sends motion "
             "commands at least every timeout_s and stays connected",
             [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
-                const QString name = call.text("client").isEmpty() ? call.clientName : call.text("client");
+                const QString name = clientName(call);
                 const double now = monotonicNow();
                 const double timeout_s = call.number("timeout_s");
                 const auto acquired = call.flag("take_over")
@@ -156,14 +166,14 @@ void MotorControl::declareControlCommands() {
                     return acquired.error();
                 return asJson(loop.drive().lease().state(now));
             })
-            .param(
-                Field::text("client", "Name of the client, for others").with("maxLength", 100).byDefault(""))
+            .param(clientField())
             .param(Field::number("timeout_s", "Without a motion command for so long the control ends")
                        .unit("s")
                        .range(0.1, 60)
                        .byDefault(1))
             .param(Field::boolean("take_over", "Take it from another client that holds it: the robot stops, "
                                                "and the other one is refused from then on")
+                       .with("x-role", toString(Role::Engineer))
                        .byDefault(false))
             .gives<LeaseState>()
             .example({{"client", "joystick"}, {"timeout_s", 1}},
@@ -173,7 +183,17 @@ void MotorControl::declareControlCommands() {
                                loop.drive().release(call.client);
                                return QJsonValue();
                            }));
+    addCommand(loopCommand("control.ask",
+                           "Asks who holds the control to give it back: its state names this client as the "
+                           "one who wants it, until it changes hands",
+                           [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+                               loop.drive().ask(call.client, clientName(call));
+                               return asJson(loop.drive().lease().state(monotonicNow()));
+                           })
+                   .param(clientField())
+                   .gives<LeaseState>());
     addCommand(Command("control.state", "Who holds the control, and for how long without a further command")
+                   .needs(Role::Observer)
                    .gives<LeaseState>()
                    .handler([this](const Call &) -> Result<QJsonValue> {
                        return asJson(told_.lease.state(monotonicNow()));

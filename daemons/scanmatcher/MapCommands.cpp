@@ -16,16 +16,19 @@ void ScanMatcher::declareMapCommands() {
     const Field path = Field::text("path", "File below map.folder, relative to it");
     const Field force = Field::boolean("force", "Overwrite a file that exists").byDefault(false);
     addCommand(Command("map.get", "The whole map")
+                   .needs(Role::Observer)
                    .gives<MapMessage>()
                    .handler([this](const Call &) -> Result<QJsonValue> { return asJson(mirror_.full()); }));
     addCommand(
         Command("map.save", "Writes the map as CSV, so that map.load gives the same map")
+            .needs(Role::Engineer)
             .param(path)
             .param(force)
             .gives<SavedMap>()
             .asyncHandler([this](const Call &call, const Reply &reply) { saveMap("csv", call, reply); }));
     addCommand(
         Command("map.export", "Writes the map in another format")
+            .needs(Role::Engineer)
             .param(Field::text("format", "Of the file").choices({"svg", "csv", "geojson", "dxf"}))
             .param(path)
             .param(force)
@@ -35,6 +38,7 @@ void ScanMatcher::declareMapCommands() {
             .asyncHandler(
                 [this](const Call &call, const Reply &reply) { saveMap(call.text("format"), call, reply); }));
     addCommand(Command("map.load", "Replaces the map by one that map.save wrote")
+                   .needs(Role::Engineer)
                    .param(path)
                    .gives<LoadedMap>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { loadMap(call, reply); }));

@@ -51,6 +51,7 @@ void ScanMatcher::declareMatcherCommands() {
                    }));
     addCommand(
         Command("matcher.state", "Mode, counts of scans, waiting and dropped ones, milliseconds a scan")
+            .needs(Role::Observer)
             .gives<MatcherState>()
             .handler([this](const Call &) -> Result<QJsonValue> { return asJson(matcherState()); }));
     addCommand(Command("matcher.match", "Matches two scans with each other; map and pose are not touched")

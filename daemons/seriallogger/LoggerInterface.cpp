@@ -36,6 +36,7 @@ void SerialLogger::declareSourceCommands() {
             .param(Field::number("speed", "Of the replay: 1 real time").range(0.001, 1000).byDefault(1)));
     addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic serial says, now")
+                   .needs(Role::Observer)
                    .gives<SerialMessage>()
                    .handler([this](const Call &) { return asJson(state()); }));
 }
@@ -58,6 +59,7 @@ void SerialLogger::declareCommands() {
                      QJsonObject{{"path", "/data/drive/seriallogger-gps-lines.csv"}, {"rows", 4711}})
             .asyncHandler([this](const Call &call, const Reply &reply) { exportRecording(call, reply); }));
     addCommand(Command("ports.list", "State of each port, and what came from it")
+                   .needs(Role::Observer)
                    .gives<std::vector<PortStatus>>()
                    .handler([this](const Call &) { return asJson(portList()); }));
     addCommand(Command("mark", "Puts a text with the time into the events of the recording")

@@ -78,6 +78,7 @@ void Simulator::declareTopics() {
 
 void Simulator::declareCommands() {
     addCommand(Command("sim.load", "Loads a world file and puts the robot, standing, at its first pose")
+                   .needs(Role::Engineer)
                    .param(Field::text("world", "World file (JSON)"))
                    .gives<LoadedWorld>()
                    .example({{"world", "deploy/worlds/pillars.json"}},
@@ -90,6 +91,7 @@ void Simulator::declareCommands() {
                                                  world_.poses.size()});
                    }));
     addCommand(Command("sim.state", "World, true pose, progress along the path, packets sent and left out")
+                   .needs(Role::Observer)
                    .gives<SimulatorState>()
                    .handler([this](const Call &) -> Result<QJsonValue> { return asJson(state()); }));
     addCommand(Command("sim.drive", "Follows the path of the world from where the robot is on it")

@@ -39,12 +39,14 @@ void SoftwareTrigger::declareCommands() {
                                          {"method", "mark"},
                                          {"params", QJsonObject{{"text", "tick"}}}}};
     addCommand(Command("trigger.list", "All triggers: their definitions, and how they are")
+                   .needs(Role::Observer)
                    .returns({{"type", "array"}, {"items", listedSchema()}})
                    .handler([this](const Call &) { return list(); }));
     addCommand(
         Command("trigger.define",
                 "Adds a trigger, or replaces the one of that id; settings.save keeps it. A period, a "
                 "way and a day begin anew where `when` changes, else they go on")
+            .needs(Role::Engineer)
             .param(schemaField("id"))
             .param(Field::schema("when", "What fires it", memberSchema("when")))
             .param(schemaField("actions"))
@@ -54,6 +56,7 @@ void SoftwareTrigger::declareCommands() {
                      QJsonObject{{"id", "tick"}, {"when", when}, {"actions", actions}, {"armed", true}})
             .handler([this](const Call &call) { return define(call.params); }));
     addCommand(Command("trigger.remove", "Removes a trigger")
+                   .needs(Role::Engineer)
                    .param(idField())
                    .returnsNull()
                    .handler([this](const Call &call) { return remove(call.text("id")); }));

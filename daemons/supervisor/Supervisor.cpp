@@ -84,6 +84,7 @@ void Supervisor::declareSettings() {
 
 void Supervisor::declareCommands() {
     addCommand(Command("process.list", "All processes, how they are and what they use")
+                   .needs(Role::Observer)
                    .gives<ProcessesMessage>()
                    .handler([this](const Call &) { return asJson(list()); }));
     addCommand(processCommand("process.start", "Starts a process", &SupervisedProcess::start));
@@ -93,6 +94,7 @@ void Supervisor::declareCommands() {
         processCommand("process.restart", "Ends a process and starts it again", &SupervisedProcess::restart));
     addCommand(
         Command("process.output", "The last lines that a process wrote")
+            .needs(Role::Observer)
             .param(Field::text("name", "Of the process"))
             .param(
                 Field::integer("lines", "How many").range(1, int(SupervisedProcess::keptLines)).byDefault(50))
@@ -105,6 +107,7 @@ void Supervisor::declareCommands() {
             }));
     addCommand(
         Command("process.add", "Adds a process to the settings; settings.save keeps it")
+            .needs(Role::Engineer)
             .param(Field::text("name", "Of the process"))
             .param(Field::text("program", "Path or name (hermes-NAME)").optional())
             .param(Field::array("arguments", "Command line", {{"type", "string"}}).optional())
@@ -116,6 +119,7 @@ void Supervisor::declareCommands() {
             .example({{"name", "camera"}, {"program", "/opt/robot/camera.py"}, {"port", 7480}}, QJsonValue())
             .handler([this](const Call &call) { return add(call); }));
     addCommand(Command("process.remove", "Ends a process and takes it out of the settings")
+                   .needs(Role::Engineer)
                    .param(Field::text("name", "Of the process"))
                    .returnsNull()
                    .handler([this](const Call &call) { return remove(call.text("name")); }));

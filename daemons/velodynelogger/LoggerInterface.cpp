@@ -107,7 +107,9 @@ void VelodyneLogger::declareSourceCommands() {
     addCommand(
         source_
             .openCommand("Receives live, or replays a capture file or a recording; what was open is closed")
-            .param(Field::text("pcap", "Capture file to replay, pcap or pcapng").optional())
+            .param(Field::text("pcap", "Capture file to replay, pcap or pcapng")
+                       .with("x-role", toString(Role::Engineer))
+                       .optional())
             .param(Field::integer("port", "Of the replay only the sensor that sends to this port is decoded")
                        .range(1, 65535)
                        .optional())
@@ -126,6 +128,7 @@ void VelodyneLogger::declareSourceCommands() {
     addCommand(source_.seekCommand());
     addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic lidar says, now")
+                   .needs(Role::Observer)
                    .gives<LidarMessage>()
                    .handler([this](const Call &) { return asJson(lidarState()); }));
     addCommand(

@@ -8,7 +8,9 @@
 import collections
 import itertools
 import json
+import os
 import socket
+import struct
 
 
 class DaemonError(Exception):
@@ -19,11 +21,27 @@ class DaemonError(Exception):
         self.code, self.message, self.data = error["code"], error["message"], error.get("data")
 
 
+def own_socket(host, port):
+    """A connection to the Unix socket beside the TCP port of a daemon of this user, which gives all rights; None without one."""
+    connection = socket.socket(socket.AF_UNIX)
+    try:
+        connection.connect(f"\0hermes:{host}:{port}")
+    except OSError:
+        connection.close()
+        return None
+    credentials = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, struct.calcsize("3i"))
+    if struct.unpack("3i", credentials)[1] in (0, os.getuid()):
+        return connection
+    connection.close()  # anyone may take the name while no daemon runs
+    return None
+
+
 class Daemon:
     """A connection to one daemon. Not for use from several threads at once."""
 
     def __init__(self, host="127.0.0.1", port=7400, timeout=5.0):
-        self.socket = socket.create_connection((host, port), timeout)
+        self.socket = own_socket(host, port) or socket.create_connection((host, port), timeout)
+        self.socket.settimeout(timeout)
         self.lines = self.socket.makefile("r", encoding="utf-8")
         self.ids = itertools.count(1)
         self.topics = collections.defaultdict(collections.deque)  # messages not yet asked for, by subscription
@@ -62,7 +80,7 @@ class Daemon:
 
     def _receive(self):
         line = self.lines.readline()
-        if not line:
+        if not line.endswith("\n"):  # nothing, or a message that was on its way
             raise ConnectionError("the daemon closed the connection")
         message = json.loads(line)
         if message.get("method") == "topic":

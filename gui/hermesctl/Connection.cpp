@@ -1,5 +1,7 @@
 #include "gui/hermesctl/Connection.h"
 
+#include "common/client/DaemonAddress.h"
+
 #include <QTimer>
 
 namespace hermes::ctl {
@@ -10,7 +12,7 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
     QObject::connect(&client, &Client::connected, &loop, &QEventLoop::quit);
     QObject::connect(&client, &Client::disconnected, &loop, &QEventLoop::quit);
     QObject::connect(&limit, &QTimer::timeout, &loop, &QEventLoop::quit);
-    const auto begun = client.connectTo(address);
+    const auto begun = client.connectTo(asOwner(address));
     if (!begun)
         return begun;
     limit.start(timeout);
@@ -38,7 +40,7 @@ std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,
         };
         QObject::connect(client, &Client::connected, &loop, done);
         QObject::connect(client, &Client::disconnected, &loop, done);
-        if (!client->connectTo(address))
+        if (!client->connectTo(asOwner(address)))
             done();
     }
     if (open > 0)

@@ -26,6 +26,8 @@ const Fields<DaemonInfo> &fieldsOf(Of<DaemonInfo>) {
             .add("started", &I::started, "Since the Unix epoch", "s")
             .mayBeMissing()
             .add("uptime_s", &I::uptime_s, "Since it started", "s")
+            .mayBeMissing()
+            .add("role", &I::role, "Of who asks: what it may do")
             .mayBeMissing();
     return fields;
 }

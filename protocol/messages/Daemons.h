@@ -16,6 +16,7 @@ struct DaemonInfo {
     qint64 pid = 0;
     QStringList listen;
     double started = 0, uptime_s = 0;
+    QString role; ///< of who asks
 };
 
 /// One thing of a daemon that is well or not.

@@ -6,12 +6,16 @@ namespace hermes {
 
 const Fields<LeaseState> &fieldsOf(Of<LeaseState>) {
     using L = LeaseState;
-    static const auto fields = Fields<L>()
-                                   .add("held", &L::held, "A client holds the control")
-                                   .add("holder", &L::holder, "Its name")
-                                   .orNull()
-                                   .add("remaining_s", &L::remaining_s, "Without a further command", "s")
-                                   .mayBeMissing();
+    static const auto fields =
+        Fields<L>()
+            .add("held", &L::held, "A client holds the control")
+            .add("holder", &L::holder, "Its name")
+            .orNull()
+            .add("remaining_s", &L::remaining_s, "Without a further command", "s")
+            .mayBeMissing()
+            .add("wanted", &L::wanted, "Name of the client that asked the holder for it last")
+            .orNull()
+            .mayBeMissing();
     return fields;
 }
 

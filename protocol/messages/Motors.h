@@ -15,6 +15,7 @@ struct LeaseState {
     bool held = false;
     std::optional<QString> holder;
     double remaining_s = 0;
+    std::optional<QString> wanted; ///< who asked the holder for it last
 };
 
 /// What keeps the robot from following a client's commands: a part of motor.state.

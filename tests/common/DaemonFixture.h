@@ -103,7 +103,7 @@ protected:
 inline void DaemonFixture::start(const QStringList &more) {
     daemon.reset();
     daemon = std::make_unique<TestedDaemon>();
-    QStringList arguments{"tested", "--listen", "tcp://127.0.0.1:0"};
+    QStringList arguments{"tested", "--listen", "tcp://127.0.0.1:0", "--set", "access.plain=engineer"};
     for (const QString &assignment : more)
         arguments << "--set" << assignment;
     QVERIFY(!daemon->prepare(arguments));

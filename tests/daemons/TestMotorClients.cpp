@@ -85,8 +85,16 @@ void TestMotorClients::takingOverStopsTheRobot() {
     QVERIFY(other.callAndWait("control.acquire", ask).error().is(ErrorCode::ControlHeld));
     QJsonObject takeOver = ask;
     takeOver["take_over"] = true;
+    // An operator may ask for it, not take it.
+    QVERIFY(other.callAndWait("control.acquire", takeOver).error().is(ErrorCode::NotAuthorised));
+    QVERIFY(other.callAndWait("control.ask", QJsonObject{{"client", "bert"}}).ok());
+    QCOMPARE(call("control.state")["wanted"].toString(), QString("bert"));
+    QCOMPARE(call("control.state")["holder"].toString(), QString("anna"));
+    QVERIFY(other.connectTo(asOwner(address())).ok());
+    QVERIFY(other.waitConnected().ok());
     const auto taken = other.callAndWait("control.acquire", takeOver);
     QVERIFY(taken.ok());
+    QVERIFY(call("control.state")["wanted"].isNull());
     QCOMPARE(taken->toObject()["holder"].toString(), QString("bert"));
     const Error told = failure("motor.drive", {{"vx", 0.5}});
     QCOMPARE(told.code, int(ErrorCode::ControlHeld));

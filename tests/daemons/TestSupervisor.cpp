@@ -1,4 +1,5 @@
 #include "common/client/Client.h"
+#include "common/client/DaemonAddress.h"
 #include "daemons/supervisor/Supervisor.h"
 #include "tests/support/Patience.h"
 
@@ -77,7 +78,7 @@ void TestSupervisor::launch(const QJsonArray &processes) {
     const auto launched = supervisor_->launch();
     QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
     client_ = std::make_unique<Client>();
-    client_->connectTo(supervisor_->info().listen.front());
+    client_->connectTo(asOwner(supervisor_->info().listen.front()));
     QVERIFY(client_->waitConnected().ok());
 }
 

@@ -4,6 +4,7 @@
 #include "MachineStalls.h"
 #include "common/Realtime.h"
 #include "common/client/Client.h"
+#include "common/client/DaemonAddress.h"
 #include "tests/support/ChildProcess.h"
 
 #include <QRegularExpression>
@@ -82,7 +83,7 @@ void TestTriggerTiming::init() {
     QTRY_VERIFY((log += daemon_->readAll()).contains(QRegularExpression("127.0.0.1:\\d+,")));
     client_ = std::make_unique<Client>();
     const QString port = QRegularExpression("127.0.0.1:(\\d+),").match(log).captured(1);
-    QVERIFY(client_->connectTo("127.0.0.1:" + port).ok());
+    QVERIFY(client_->connectTo(asOwner("127.0.0.1:" + port)).ok());
     QVERIFY(client_->waitConnected().ok());
     fired_.clear();
     client_->subscribe("fired", {{"queue", 10000}},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/client/Client.h"
+#include "common/client/DaemonAddress.h"
 #include "common/daemon/Daemon.h"
 #include "tests/support/Patience.h"
 
@@ -9,7 +10,7 @@ class DaemonClient {
 protected:
     void connectTo(hermes::Daemon &daemon) {
         client_ = std::make_unique<hermes::Client>();
-        QVERIFY(client_->connectTo(daemon.server().addresses().value(0)).ok());
+        QVERIFY(client_->connectTo(hermes::asOwner(daemon.server().addresses().value(0))).ok());
         QVERIFY(client_->waitConnected().ok());
     }
     /// The result; an error is printed, and is {failed: message}.

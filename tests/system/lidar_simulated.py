@@ -143,7 +143,7 @@ def drive(folder):
         check_state(lidar, logger)
         check_refusals(folder, lidar_port)
         check_faults(simulator, logger)
-        check_replay(logger, recorded)
+        check_replay(logger, processes[0].port, recorded)
         check_end(processes)
         return scans.messages, truth.messages
     finally:
@@ -180,9 +180,9 @@ def check_faults(simulator, logger):
     simulator.call("sim.fault", device="lidar", kind="none")
 
 
-def check_replay(logger, recorded):
+def check_replay(logger, port, recorded):
     expected = reference.turns(recorded)
-    stream = Daemon(port=logger.socket.getpeername()[1], timeout=30).subscribe("scan2d", queue=1000)
+    stream = Daemon(port=port, timeout=30).subscribe("scan2d", queue=1000)
     logger.call("source.open", pcap=recorded, speed=0)
     scans = (message["data"] for message in stream)
     scan = next(scan for scan in scans if scan["turn"] == 0)  # behind the last turns of the live source

@@ -137,7 +137,7 @@ def script(ports):
     for name in ("velodynelogger", "seriallogger"):
         yield from each(name, ("record.start", {"name": "drive", "session": "one"}), ("record.status", {}))
     yield from each("seriallogger", ("ports.list", {}), ("mark", {"text": "here"}), ("send", {"port": "gps", "text": "x"}))
-    yield from each("motorcontrol", ("control.acquire", {"timeout_s": 10}), ("control.state", {}), ("motor.state", {}),
+    yield from each("motorcontrol", ("control.acquire", {"timeout_s": 10}), ("control.ask", {}), ("control.state", {}), ("motor.state", {}),
                     ("motor.drive", {"vx": 0.2}), ("motor.wheels", {"front_left": 0.1}), ("motor.stop", {"wait_s": 1}))
     yield "velodynelogger", "capture.turn", {"name": "turn"}
     yield from each("simulator", ("sim.drive", {"restart": True}), ("sim.state", {}), ("sim.noise", {"sigma_m": 0.01}))

@@ -1,6 +1,7 @@
 #include "gui/desktop/drive/DriveControl.h"
 
 #include "common/Time.h"
+#include "common/client/DaemonAddress.h"
 #include "protocol/wire/Fields.h"
 
 #include <QHostInfo>
@@ -60,7 +61,7 @@ void DriveControl::follow() {
     if (!found)
         return tell(tr("No robot that can drive is connected."));
     tell({});
-    stopLine_.connectTo(found->address());
+    stopLine_.connectTo(asOwner(found->address()));
     found->call("settings.get", {{"path", "motion"}}, this, [this](const Result<QJsonValue> &motion) {
         const auto most = [&](const char *name, double usual) { // m/s or rad/s
             return qBound(0.0, motion ? (*motion)[QLatin1String(name)].toDouble(usual) : usual, 100.0);
@@ -121,13 +122,23 @@ void DriveControl::acquire(bool takeOver) {
     QJsonObject params{{"client", clientName()}, {"timeout_s", lease_s}};
     if (takeOver)
         params["take_over"] = true;
-    motors_->call("control.acquire", params, this, [this](const Result<QJsonValue> &result) {
+    motors_->call("control.acquire", params, this, [this, takeOver](const Result<QJsonValue> &result) {
         isAsking_ = false;
         isHolding_ = result.ok();
         tell(result ? QString() : result.error().message);
         if (!result)
             mustCentre_ = isAnyHeld();
+        if (!result && takeOver && result.error().is(ErrorCode::NotAuthorised))
+            ask();
         poll();
+    });
+}
+
+// Who may not take the control can still say that they would like it.
+void DriveControl::ask() {
+    motors_->call("control.ask", {{"client", clientName()}}, this, [this](const Result<QJsonValue> &result) {
+        tell(result ? tr("You may not take the control over; %1 has been asked for it.").arg(holder())
+                    : result.error().message);
     });
 }
 
@@ -254,6 +265,10 @@ QString DriveControl::holder() const {
         return {};
     const QString name = hold_.control.holder.value_or(QString());
     return isHolding_ && name == clientName() ? tr("you") : name;
+}
+
+QString DriveControl::wanted() const {
+    return isHolding_ ? hold_.control.wanted.value_or(QString()) : QString();
 }
 
 void DriveControl::tell(const QString &problem) {

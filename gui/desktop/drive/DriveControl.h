@@ -46,6 +46,8 @@ public:
     const QMap<QString, QString> &latched() const { return hold_.latched; }
     /// Who holds the control: "" nobody, "you", or the name of another client.
     QString holder() const;
+    /// Who asks for the control that this program has; empty: nobody.
+    QString wanted() const;
     /// The velocity that is commanded, and the one that odometry measures.
     const Twist2D &commanded() const { return commanded_; }
     const Twist2D &measured() const { return measured_; }
@@ -65,6 +67,7 @@ private:
     void follow();
     void tick();
     void acquire(bool takeOver);
+    void ask();
     void repeatStop();
     void send();
     void poll();

@@ -1,6 +1,8 @@
 #include "gui/desktop/model/DaemonLink.h"
 
 #include "common/Project.h"
+#include "common/client/DaemonAddress.h"
+#include "common/daemon/Role.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
@@ -39,7 +41,7 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
     });
     connect(&timer_, &QTimer::timeout, this, &DaemonLink::poll);
     timer_.start(pollPeriod);
-    client_.connectTo(address);
+    client_.connectTo(asOwner(address));
     subscribe("status", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) { onStatus(update.data); });
 }
 
@@ -52,6 +54,13 @@ QString DaemonLink::name() const {
         if (defaultPort(known) == port)
             return known;
     return address_;
+}
+
+QString DaemonLink::refusal(const QString &name) const {
+    const auto needed = roleFrom(method(name)["x-role"].toString()), has = roleFrom(info_.role);
+    if (!needed || !has || *has >= *needed)
+        return {};
+    return tr("This is for the role %1, you have %2").arg(toString(*needed), info_.role);
 }
 
 QString DaemonLink::title() const {

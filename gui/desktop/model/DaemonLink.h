@@ -57,6 +57,9 @@ public:
     const QStringList &topics() const { return topicNames_; }
 
     Client &client() { return client_; }
+    /// Why this program may not call a method that the daemon has; empty: it may.
+    QString refusal(const QString &method) const;
+    bool may(const QString &name) const { return hasMethod(name) && refusal(name).isEmpty(); }
     /// Calls a method; the callback is dropped with the context.
     void call(const QString &method, const QJsonObject &params, QObject *context,
               const Client::Callback &done);

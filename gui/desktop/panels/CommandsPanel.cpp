@@ -206,7 +206,10 @@ void CommandsPanel::call() {
 void CommandsPanel::update() {
     title_->setBold(daemon_);
     title_->setText(daemon_ ? daemon_->name() : tr("Choose a daemon to see its commands."));
-    call_->setEnabled(daemon_ && daemon_->isConnected() && !method_.isEmpty() && form_->isValid());
+    const QString why = daemon_ ? daemon_->refusal(method_) : QString();
+    call_->setToolTip(why);
+    call_->setEnabled(daemon_ && daemon_->isConnected() && why.isEmpty() && !method_.isEmpty() &&
+                      form_->isValid());
 }
 
 } // namespace hermes::desktop

@@ -190,10 +190,11 @@ void DaemonsPanel::updateButtons() {
     const ProcessStatus *const process = daemon && robot ? robot->process(*daemon) : nullptr;
     const bool isRunning = process && process->pid > 0;
     const bool isManaged = process && robot->supervisor();
-    start_->setEnabled(isManaged && !isRunning);
-    stop_->setEnabled(isManaged && isRunning);
-    restart_->setEnabled(isManaged && isRunning);
-    const QString why = isManaged ? QString() : tr("Only for daemons that the robot's supervisor runs");
+    const QString why = isManaged ? robot->supervisor()->refusal("process.start")
+                                  : tr("Only for daemons that the robot's supervisor runs");
+    start_->setEnabled(why.isEmpty() && !isRunning);
+    stop_->setEnabled(why.isEmpty() && isRunning);
+    restart_->setEnabled(why.isEmpty() && isRunning);
     for (QPushButton *button : {start_, stop_, restart_})
         button->setToolTip(why);
 }

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/DrivePanel.h"
 
 #include "gui/desktop/drive/Stick.h"
+#include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QGridLayout>
@@ -89,7 +90,9 @@ void DrivePanel::update() {
     const QString holder = drive_.holder();
     control_->setText(!drive_.isPossible() ? QString()
                       : holder.isEmpty()   ? tr("The control is free: move the stick to take it.")
-                                           : tr("Control: %1").arg(holder));
+                      : drive_.wanted().isEmpty()
+                          ? tr("Control: %1").arg(holder)
+                          : tr("Control: %1; %2 asks for it").arg(holder, shortLine(drive_.wanted(), 40)));
     takeOver_->setVisible(!holder.isEmpty() && holder != tr("you"));
     QString problem = drive_.problem();
     if (drive_.isStopped()) {

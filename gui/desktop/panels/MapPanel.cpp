@@ -155,8 +155,8 @@ void MapPanel::updateTools() {
     const bool isThere = matcher && matcher->isConnected();
     measure_->setChecked(view_->tool() == MapView::Tool::Measure);
     place_->setChecked(view_->tool() == MapView::Tool::Place);
-    place_->setEnabled(isThere && matcher->hasMethod("pose.set"));
-    relocalize_->setEnabled(isThere && matcher->hasMethod("pose.relocalize"));
+    place_->setEnabled(isThere && matcher->may("pose.set"));
+    relocalize_->setEnabled(isThere && matcher->may("pose.relocalize"));
 }
 
 } // namespace hermes::desktop

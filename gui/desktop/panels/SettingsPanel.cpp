@@ -152,11 +152,16 @@ void SettingsPanel::update() {
     title_->setText(daemon_ ? daemon_->name() : tr("Choose a daemon to see its settings."));
     const int changed = leafPaths(form_->changes()).size();
     apply_->setText(changed == 0 ? tr("A&pply") : tr("A&pply %n change(s)", nullptr, changed));
-    apply_->setEnabled(isThere && changed > 0 && form_->isValid());
+    const QString why = isThere ? daemon_->refusal("settings.set") : QString();
+    const bool isEditable = isThere && why.isEmpty();
+    for (QPushButton *button : {apply_, defaults_, save_})
+        button->setToolTip(why);
+    apply_->setEnabled(isEditable && changed > 0 && form_->isValid());
     revert_->setEnabled(changed > 0 || !form_->isValid());
-    defaults_->setEnabled(isThere);
-    save_->setEnabled(isThere);
-    form_->setEnabled(isThere);
+    defaults_->setEnabled(isEditable);
+    save_->setEnabled(isEditable);
+    form_->setEnabled(isEditable);
+    form_->setToolTip(why);
 }
 
 } // namespace hermes::desktop

@@ -1,3 +1,4 @@
+#include "common/client/DaemonAddress.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
@@ -57,7 +58,7 @@ void TestSettingsPanel::init() {
     QVERIFY(window_->choose(window_->fleet.robot()->withName("motorcontrol")));
     QTRY_VERIFY(panel_->findChild<QWidget *>("motion.vx"));
     client_ = std::make_unique<Client>();
-    client_->connectTo(QString("127.0.0.1:%1").arg(port));
+    client_->connectTo(asOwner(QString("127.0.0.1:%1").arg(port)));
     QVERIFY(client_->waitConnected().ok());
 }
 

@@ -1,0 +1,28 @@
+#include "common/daemon/Role.h"
+
+#include <unistd.h>
+
+namespace hermes {
+
+QString toString(Role role) {
+    return roleNames().at(int(role));
+}
+
+QStringList roleNames() {
+    return {QStringLiteral("observer"), QStringLiteral("operator"), QStringLiteral("engineer")};
+}
+
+std::optional<Role> roleFrom(const QString &name) {
+    const int index = roleNames().indexOf(name);
+    return index < 0 ? std::nullopt : std::optional(Role(index));
+}
+
+Role roleOf(const Peer &peer, const Access &access) {
+    if (peer.place == Peer::Place::Elsewhere)
+        return access.plain;
+    if (!peer.user || (*peer.user != 0 && *peer.user != ::geteuid()))
+        return access.others;
+    return peer.place == Peer::Place::UnixSocket ? Role::Engineer : access.plain;
+}
+
+} // namespace hermes

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "common/interface/Peer.h"
+
+#include <QString>
+#include <QStringList>
+#include <optional>
+
+namespace hermes {
+
+/// What a client may do; each role may do what those before it may.
+enum class Role {
+    Observer, ///< read, subscribe, and stop
+    Operator, ///< drive, record, match
+    Engineer  ///< change settings and files, run programs, end the daemon
+};
+
+QString toString(Role role);
+std::optional<Role> roleFrom(const QString &name);
+QStringList roleNames();
+
+/// Who gets which role without a certificate.
+struct Access {
+    Role plain = Role::Operator;  ///< same user of this computer, over TCP; lines; the network where insecure
+    Role others = Role::Observer; ///< other users of this computer
+};
+
+/// Of who is at the other end: of the daemon's own user and of root, over a Unix socket, Engineer.
+Role roleOf(const Peer &peer, const Access &access);
+
+} // namespace hermes

@@ -1,0 +1,46 @@
+#include "common/interface/OwnSocket.h"
+
+#include "common/interface/LocalAddress.h"
+
+#include <QHostAddress>
+
+namespace hermes {
+namespace {
+
+/// Anyone may take the name while no daemon runs.
+bool isOwn(int descriptor) {
+    ucred listener{};
+    socklen_t size = sizeof listener;
+    return ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &listener, &size) == 0 &&
+           (listener.uid == 0 || listener.uid == ::geteuid());
+}
+
+} // namespace
+
+std::optional<InterfaceUrl> ownSocketOf(const InterfaceUrl &tcp) {
+    const QHostAddress host(tcp.host == QStringLiteral("localhost") ? QStringLiteral("127.0.0.1") : tcp.host);
+    if (tcp.scheme != QStringLiteral("tcp") || !host.isLoopback() || tcp.port == 0)
+        return std::nullopt;
+    InterfaceUrl own = tcp; // with its options
+    own.scheme = QStringLiteral("local");
+    own.host.clear();
+    own.port = 0;
+    own.path = QStringLiteral("@hermes:%1:%2").arg(host.toString()).arg(tcp.port);
+    return own;
+}
+
+int connectToOwnSocket(const InterfaceUrl &tcp) {
+    const auto own = ownSocketOf(tcp);
+    const auto address = own ? LocalAddress::of(own->path) : Error(ErrorCode::InvalidParams, QString());
+    if (!address)
+        return -1;
+    const int descriptor = LocalAddress::makeSocket();
+    if (descriptor < 0)
+        return -1;
+    if (::connect(descriptor, address->get(), address->size()) == 0 && isOwn(descriptor))
+        return descriptor;
+    LocalAddress::closeSocket(descriptor);
+    return -1;
+}
+
+} // namespace hermes
