@@ -1,5 +1,6 @@
 #include "common/interface/Farewell.h"
 
+#include <array>
 #include <chrono>
 #include <fcntl.h>
 #include <sys/socket.h>
@@ -9,7 +10,7 @@ namespace hermes {
 namespace {
 
 constexpr std::chrono::seconds longest{1};
-constexpr std::size_t drainAtOnceBytes = 1 << 20;
+constexpr std::size_t drainAtOnceBytes = 64 << 10;
 constexpr int most = 32; // at the same time
 
 int number = 0; // now; all are in the main thread
@@ -44,8 +45,8 @@ Farewell::~Farewell() {
 }
 
 void Farewell::drain() {
-    // TCP drops what MSG_TRUNC receives.
-    if (::recv(descriptor_, nullptr, drainAtOnceBytes, MSG_TRUNC | MSG_DONTWAIT) > 0)
+    static std::array<char, drainAtOnceBytes> nowhere;
+    if (::recv(descriptor_, nowhere.data(), nowhere.size(), MSG_DONTWAIT) > 0)
         return;
     notifier_.setEnabled(false);
     deleteLater();

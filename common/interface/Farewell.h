@@ -6,7 +6,7 @@
 
 namespace hermes {
 
-/// The orderly end of a TCP connection: says that nothing more will come, and takes what the peer still sends
+/// The orderly end of a connection: says that nothing more will come, and takes what the peer still sends
 /// for a second at most. A socket that is closed with bytes unread resets the connection instead, and the
 /// peer loses what it was told last.
 class Farewell : public QObject {

@@ -20,11 +20,8 @@ TcpInterface::TcpInterface(const InterfaceUrl &address, QObject *parent)
     , url_(address)
     , socket_(new QTcpSocket(this)) {
     prepare();
-    connect(socket_, &QTcpSocket::connected, this, [this] {
-        socket_->setSocketOption(QAbstractSocket::LowDelayOption, 1);
-        socket_->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
-        nowOpen();
-    });
+    // Queued: it may change its socket for another one.
+    connect(socket_, &QTcpSocket::connected, this, &TcpInterface::begin, Qt::QueuedConnection);
 }
 
 TcpInterface::TcpInterface(QTcpSocket *connected, QObject *theHost)
@@ -38,6 +35,24 @@ TcpInterface::TcpInterface(QTcpSocket *connected, QObject *theHost)
     socket_->setSocketOption(QAbstractSocket::LowDelayOption, 1);
     socket_->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
     prepare();
+}
+
+void TcpInterface::begin() {
+    if (state() != State::Opening || !isConnected())
+        return;
+    // A daemon that has begun to listen since the first try.
+    if (const int own = connectToOwn(); own >= 0) {
+        socket_->abort();
+        return takeConnected(own);
+    }
+    socket_->setSocketOption(QAbstractSocket::LowDelayOption, 1);
+    socket_->setSocketOption(QAbstractSocket::KeepAliveOption, 1);
+    readLater(); // what has come already
+    nowOpen();
+}
+
+int TcpInterface::connectToOwn() const {
+    return url_.option(QStringLiteral("own")).isEmpty() ? -1 : connectToOwnSocket(url_);
 }
 
 void TcpInterface::prepare() {
@@ -102,8 +117,7 @@ void TcpInterface::doOpen() {
     receiving_ = true;
     if (isConnected())
         return nowOpen(); // a peer of a server
-    const int own = url_.option(QStringLiteral("own")).isEmpty() ? -1 : connectToOwnSocket(url_);
-    if (own >= 0)
+    if (const int own = connectToOwn(); own >= 0)
         takeConnected(own);
     else
         socket_->connectToHost(url_.host, url_.port);

@@ -36,6 +36,8 @@ protected:
 
 private:
     void prepare();
+    void begin();
+    int connectToOwn() const;
     void readSome();
     void readLater();
 

@@ -221,7 +221,8 @@ def main():
             for name, daemon in daemons.items():
                 wanted |= declare_all(judge, name, daemon)
                 names = {topic["name"] for topic in daemon.call("topics.list")}
-                for some in filter(None, (names & {"cloud"}, names - {"cloud"})):  # clouds leave no room for others
+                # Clouds leave no room for others; the last words are of the log.
+                for some in filter(None, (names & {"cloud"}, names & {"log"}, names - {"cloud", "log"})):
                     watchers.append(Watcher(judge, name, ports[name], some))
                     watchers[-1].start()
             wait_for("the controllers", lambda: daemons["motorcontrol"].call("motor.state")["ready"])
