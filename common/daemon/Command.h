@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/Result.h"
+#include "common/Role.h"
 #include "common/daemon/Reply.h"
-#include "common/daemon/Role.h"
 #include "common/schema/Field.h"
 #include "common/schema/SchemaValidator.h"
 #include "protocol/wire/FieldsOf.h"

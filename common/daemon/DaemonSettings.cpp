@@ -18,7 +18,7 @@ QString wrongListen(const QString &text, bool fromNetwork) {
         return QStringLiteral("one of the schemes ") + interfaceSchemes().join(QStringLiteral(", "));
     if (!codecNames().contains(url->protocol()))
         return QStringLiteral("one of the protocols ") + codecNames().join(QStringLiteral(", "));
-    if (!isLocalOnly(*url) && !fromNetwork)
+    if (isOpenToNetwork(*url) && !fromNetwork)
         return QStringLiteral(
             "an address that only this computer reaches, as 127.0.0.1: in plain text others on "
             "the network could command this daemon; \"insecure\": true accepts that "

@@ -71,13 +71,14 @@ Result<void> Server::listen(const QString &text, bool insecure) {
                      QStringLiteral("cannot listen on %1: unknown protocol \"%2\", known are: %3")
                          .arg(text, url->protocol(), codecNames().join(QStringLiteral(", "))));
     }
-    if (!isLocalOnly(*url) && !insecure) {
-        return Error(ErrorCode::NotAuthorised,
-                     QStringLiteral(
-                         "will not listen on %1: others on the network could command this daemon in plain "
-                         "text. Listen on 127.0.0.1, or accept that with \"insecure\": true in the settings "
-                         "(--set insecure=true)")
-                         .arg(text));
+    if (isOpenToNetwork(*url) && !insecure) {
+        return Error(
+            ErrorCode::NotAuthorised,
+            QStringLiteral("will not listen on %1: others on the network could command this daemon in plain "
+                           "text. Listen on 127.0.0.1, or with certificates (tls://HOST:PORT, hermesctl "
+                           "keys), or accept that with \"insecure\": true in the settings "
+                           "(--set insecure=true)")
+                .arg(text));
     }
     // The one beside it first: who comes as soon as this one listens finds it.
     auto own = listenForOwn(*url);

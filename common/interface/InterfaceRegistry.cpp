@@ -6,6 +6,8 @@
 #include "common/interface/SerialInterface.h"
 #include "common/interface/TcpInterface.h"
 #include "common/interface/TcpServerInterface.h"
+#include "common/interface/TlsInterface.h"
+#include "common/interface/TlsServerInterface.h"
 #include "common/interface/UdpInterface.h"
 
 #include <QHostAddress>
@@ -13,7 +15,7 @@
 namespace hermes {
 namespace {
 
-enum class Reach { Network, Computer };
+enum class Reach { Network, Certified, Computer };
 
 struct Kind {
     const char *scheme;
@@ -40,6 +42,7 @@ Listener *makeSinglePeer(const InterfaceUrl &url, QObject *parent) {
 // A new kind of carrier is one line here.
 const Kind kinds[] = {
     {"tcp", Reach::Network, make<TcpInterface>, makeServer<TcpServerInterface>},
+    {"tls", Reach::Certified, make<TlsInterface>, makeServer<TlsServerInterface>},
     {"local", Reach::Computer, make<LocalInterface>, makeServer<LocalServerInterface>},
     {"udp", Reach::Network, make<UdpInterface>, makeSinglePeer<UdpInterface>},
     {"serial", Reach::Computer, make<SerialInterface>, makeSinglePeer<SerialInterface>},
@@ -76,10 +79,10 @@ Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent) {
     return kind->listen(url, parent);
 }
 
-bool isLocalOnly(const InterfaceUrl &url) {
+bool isOpenToNetwork(const InterfaceUrl &url) {
     const Kind *kind = findKind(url.scheme);
-    return (kind && kind->reach == Reach::Computer) || url.host == QStringLiteral("localhost") ||
-           QHostAddress(url.host).isLoopback();
+    return !(kind && kind->reach != Reach::Network) && url.host != QStringLiteral("localhost") &&
+           !QHostAddress(url.host).isLoopback();
 }
 
 QStringList interfaceSchemes() {

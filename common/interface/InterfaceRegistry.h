@@ -14,8 +14,8 @@ Result<Interface *> makeInterface(const InterfaceUrl &url, QObject *parent);
 /// The listener for a URL, not yet listening.
 Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent);
 
-/// Whether only programs of this computer can reach what listens there.
-bool isLocalOnly(const InterfaceUrl &url);
+/// Whether strangers on the network can command what listens there: they reach it, and need no certificate.
+bool isOpenToNetwork(const InterfaceUrl &url);
 
 QStringList interfaceSchemes();
 

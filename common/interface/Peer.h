@@ -1,10 +1,18 @@
 #pragma once
 
+#include <QString>
 #include <optional>
 
 namespace hermes {
 
-/// Who is at the other end of an interface, as far as the system tells.
+/// What the certificate of a client or daemon says, which an authority has signed.
+struct PeerCertificate {
+    QString name;
+    QString role;
+    QString serial; ///< hexadecimal digits
+};
+
+/// Who is at the other end of an interface, as far as the system or a certificate tells.
 struct Peer {
     enum class Place {
         Elsewhere, ///< of a network or a line
@@ -12,7 +20,8 @@ struct Peer {
         UnixSocket ///< the same, over a socket that web pages cannot reach
     };
     Place place = Place::Elsewhere;
-    std::optional<unsigned> user; ///< of that program, where the system knows
+    std::optional<unsigned> user = {}; ///< of that program, where the system knows
+    std::optional<PeerCertificate> certificate = {};
 };
 
 } // namespace hermes

@@ -16,12 +16,17 @@ constexpr int readAtOnceBytes = 4 << 10;     // some dozens of requests; then ot
 } // namespace
 
 TcpInterface::TcpInterface(const InterfaceUrl &address, QObject *parent)
-    : Interface(parent)
-    , url_(address)
-    , socket_(new QTcpSocket(this)) {
-    prepare();
+    : TcpInterface(address, new QTcpSocket, parent) {
     // Queued: it may change its socket for another one.
     connect(socket_, &QTcpSocket::connected, this, &TcpInterface::begin, Qt::QueuedConnection);
+}
+
+TcpInterface::TcpInterface(const InterfaceUrl &address, QTcpSocket *socket, QObject *parent)
+    : Interface(parent)
+    , url_(address)
+    , socket_(socket) {
+    socket_->setParent(this);
+    prepare();
 }
 
 TcpInterface::TcpInterface(QTcpSocket *connected, QObject *theHost)

@@ -27,6 +27,8 @@ public:
     bool hasUnread() const override;
 
 protected:
+    /// A client over a socket of another kind, which begins when that says so.
+    TcpInterface(const InterfaceUrl &address, QTcpSocket *socket, QObject *parent);
     void doOpen() override;
     void doClose() override;
     bool doWrite(const QByteArray &bytes) override;
@@ -34,15 +36,17 @@ protected:
     /// Goes on with a socket that somebody else has connected.
     void takeConnected(qintptr descriptor);
 
+    /// The socket is connected, and may carry messages.
+    void begin();
+
 private:
     void prepare();
-    void begin();
     int connectToOwn() const;
     void readSome();
     void readLater();
 
     InterfaceUrl url_;
-    QTcpSocket *socket_;
+    QTcpSocket *const socket_;
     QPointer<QObject> host_; // of a peer of a server
     bool readsOn_ = false;   // the rest is read when others have had their turn
     bool receiving_ = true;

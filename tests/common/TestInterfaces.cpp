@@ -87,7 +87,7 @@ void TestInterfaces::knowsWhatIsLocal_data() {
 
 void TestInterfaces::knowsWhatIsLocal() {
     QFETCH(QString, text);
-    QTEST(isLocalOnly(*InterfaceUrl::parse(text)), "local");
+    QTEST(!isOpenToNetwork(*InterfaceUrl::parse(text)), "local");
 }
 
 void TestInterfaces::tcpCarriesBothWays() {

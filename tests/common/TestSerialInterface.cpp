@@ -259,7 +259,7 @@ void TestSerialInterface::registryKnowsBoth() {
     const auto serial = makeInterface(urlOf("serial:///dev/ttyS99"), this);
     QVERIFY(serial);
     QVERIFY(qobject_cast<SerialInterface *>(*serial));
-    QVERIFY(isLocalOnly(urlOf("serial:///dev/ttyS99")));
+    QVERIFY(!isOpenToNetwork(urlOf("serial:///dev/ttyS99")));
     QVERIFY(interfaceSchemes().contains("serial") && interfaceSchemes().contains("pty"));
 }
 

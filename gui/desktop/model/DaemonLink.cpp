@@ -1,8 +1,8 @@
 #include "gui/desktop/model/DaemonLink.h"
 
 #include "common/Project.h"
+#include "common/Role.h"
 #include "common/client/DaemonAddress.h"
-#include "common/daemon/Role.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 

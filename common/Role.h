@@ -25,7 +25,8 @@ struct Access {
     Role others = Role::Observer; ///< other users of this computer
 };
 
-/// Of who is at the other end: of the daemon's own user and of root, over a Unix socket, Engineer.
+/// Of who is at the other end. The role that a certificate says; a daemon's: Observer. Without one: of the
+/// daemon's own user and of root, over a Unix socket, Engineer.
 Role roleOf(const Peer &peer, const Access &access);
 
 } // namespace hermes

@@ -1,4 +1,4 @@
-#include "common/daemon/Role.h"
+#include "common/Role.h"
 
 #include <unistd.h>
 
@@ -18,6 +18,8 @@ std::optional<Role> roleFrom(const QString &name) {
 }
 
 Role roleOf(const Peer &peer, const Access &access) {
+    if (peer.certificate)
+        return roleFrom(peer.certificate->role).value_or(Role::Observer);
     if (peer.place == Peer::Place::Elsewhere)
         return access.plain;
     if (!peer.user || (*peer.user != 0 && *peer.user != ::geteuid()))

@@ -1,0 +1,85 @@
+#include "common/interface/TlsInterface.h"
+
+#include "common/tls/KeyFolder.h"
+
+#include <algorithm>
+
+namespace hermes {
+namespace {
+
+const QString daemonRole = QStringLiteral("daemon");
+
+} // namespace
+
+QString textOf(const QList<QSslError> &errors) {
+    QStringList texts;
+    for (const QSslError &error : errors)
+        texts.append(error.errorString());
+    texts.removeDuplicates();
+    return texts.join(QStringLiteral("; "));
+}
+
+TlsInterface::TlsInterface(const InterfaceUrl &address, QObject *parent)
+    : TlsInterface(address, new QSslSocket, parent) {
+    connect(socket_, &QSslSocket::encrypted, this, &TlsInterface::onEncrypted, Qt::QueuedConnection);
+    connect(socket_, QOverload<const QList<QSslError> &>::of(&QSslSocket::sslErrors), this,
+            [this](const QList<QSslError> &errors) {
+                const auto isName = [](const QSslError &error) {
+                    return error.error() == QSslError::HostNameMismatch; // robots change their addresses
+                };
+                if (std::all_of(errors.begin(), errors.end(), isName))
+                    socket_->ignoreSslErrors();
+            });
+}
+
+TlsInterface::TlsInterface(const InterfaceUrl &address, QSslSocket *socket, QObject *parent)
+    : TcpInterface(address, socket, parent)
+    , url_(address)
+    , socket_(socket) {
+    connect(socket_, &QSslSocket::encryptedBytesWritten, this, &Interface::drained);
+}
+
+TlsInterface::TlsInterface(QSslSocket *encrypted, QObject *theHost)
+    : TcpInterface(encrypted, theHost)
+    , socket_(encrypted) {
+    connect(socket_, &QSslSocket::encryptedBytesWritten, this, &Interface::drained);
+}
+
+QString TlsInterface::name() const {
+    if (!url_.scheme.isEmpty())
+        return url_.toString();
+    const PeerCertificate theirs = toPeer(socket_->peerCertificate());
+    return QStringLiteral("tls://%1:%2 (%3, %4)")
+        .arg(socket_->peerAddress().toString())
+        .arg(socket_->peerPort())
+        .arg(theirs.name, theirs.role);
+}
+
+Peer TlsInterface::peer() const {
+    return {Peer::Place::Elsewhere, std::nullopt, toPeer(socket_->peerCertificate())};
+}
+
+void TlsInterface::doOpen() {
+    if (isConnected())
+        return TcpInterface::doOpen(); // a peer of a server
+    const auto keys = KeyFolder::load(url_.option(QStringLiteral("keys"), KeyFolder::usual()));
+    if (!keys)
+        return nowClosed(QStringLiteral("%1: %2").arg(name(), keys.error().message), true);
+    setReceiving(true);
+    socket_->setSslConfiguration(*keys);
+    socket_->connectToHostEncrypted(url_.host, url_.port);
+}
+
+// Any client has a certificate of the authority, too.
+void TlsInterface::onEncrypted() {
+    if (const PeerCertificate theirs = toPeer(socket_->peerCertificate()); theirs.role != daemonRole) {
+        socket_->abort();
+        return nowClosed(
+            QStringLiteral("%1: the certificate there is of \"%2\" with the role %3, not of a daemon")
+                .arg(name(), theirs.name, theirs.role),
+            true);
+    }
+    begin();
+}
+
+} // namespace hermes

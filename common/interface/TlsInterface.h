@@ -1,0 +1,39 @@
+#pragma once
+
+#include "common/interface/TcpInterface.h"
+
+#include <QSslSocket>
+
+namespace hermes {
+
+/// A byte stream over TLS with certificates on both sides: tls://robot:7411?keys=FOLDER; without keys the
+/// user's (KeyFolder). A client speaks to whoever has a daemon's certificate of its own authority.
+class TlsInterface : public TcpInterface {
+    Q_OBJECT
+public:
+    TlsInterface(const InterfaceUrl &address, QObject *parent);
+    /// Takes over the encrypted socket of a peer of a server, whose certificate is valid.
+    TlsInterface(QSslSocket *encrypted, QObject *host);
+
+    QString name() const override;
+    Peer peer() const override;
+    /// With what waits encrypted.
+    qint64 bytesToWrite() const override {
+        return socket_->bytesToWrite() + socket_->encryptedBytesToWrite();
+    }
+
+protected:
+    void doOpen() override;
+
+private:
+    TlsInterface(const InterfaceUrl &address, QSslSocket *socket, QObject *parent);
+    void onEncrypted();
+
+    const InterfaceUrl url_;
+    QSslSocket *const socket_;
+};
+
+/// What is wrong, for people.
+QString textOf(const QList<QSslError> &errors);
+
+} // namespace hermes

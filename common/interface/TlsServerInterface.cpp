@@ -1,0 +1,168 @@
+#include "common/interface/TlsServerInterface.h"
+
+#include "common/Log.h"
+#include "common/Role.h"
+#include "common/Time.h"
+#include "common/interface/TlsInterface.h"
+#include "common/tls/KeyFolder.h"
+
+#include <QDateTime>
+#include <QFileInfo>
+#include <QSslSocket>
+#include <algorithm>
+#include <functional>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace hermes {
+namespace {
+
+const QString source = QStringLiteral("server");
+constexpr std::chrono::seconds longestHandshake{5};
+constexpr std::size_t mostHandshakes = 64; // at the same time, then the oldest goes
+constexpr std::chrono::milliseconds revokedPeriod{300};
+
+} // namespace
+
+class TlsServerInterface::Server : public QTcpServer {
+public:
+    explicit Server(std::function<void(qintptr)> take)
+        : take_(std::move(take)) {}
+
+protected:
+    void incomingConnection(qintptr descriptor) override { take_(descriptor); }
+
+private:
+    const std::function<void(qintptr)> take_;
+};
+
+TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *parent)
+    : Listener(parent)
+    , url_(address)
+    , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual()))
+    , server_(std::make_unique<Server>([this](qintptr descriptor) { begin(descriptor); })) {
+    revokedTimer_.setInterval(revokedPeriod);
+    connect(&revokedTimer_, &QTimer::timeout, this, &TlsServerInterface::lookAtRevoked);
+}
+
+TlsServerInterface::~TlsServerInterface() = default;
+
+Result<void> TlsServerInterface::listen() {
+    const auto cannot = [this](const QString &why) {
+        return Error(ErrorCode::InputOutput,
+                     QStringLiteral("cannot listen on %1: %2").arg(url_.toString(), why));
+    };
+    const auto keys = KeyFolder::load(folder_);
+    if (!keys)
+        return cannot(keys.error().message);
+    keys_ = *keys;
+    lookAtRevoked();
+    if (!revokedProblem_.isEmpty())
+        return cannot(revokedProblem_);
+    const QHostAddress host(url_.host == QStringLiteral("localhost") ? QStringLiteral("127.0.0.1")
+                                                                     : url_.host);
+    if (host.isNull())
+        return cannot(QStringLiteral("\"%1\" is not an IP address").arg(url_.host));
+    if (!server_->listen(host, url_.port))
+        return cannot(server_->errorString());
+    ::listen(int(server_->socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
+    revokedTimer_.start();
+    return {};
+}
+
+void TlsServerInterface::close() {
+    server_->close();
+    revokedTimer_.stop();
+    for (QSslSocket *socket : std::exchange(handshakes_, {}))
+        socket->deleteLater();
+}
+
+QString TlsServerInterface::address() const {
+    InterfaceUrl actual = url_;
+    if (server_->isListening())
+        actual.port = server_->serverPort();
+    return actual.toString();
+}
+
+void TlsServerInterface::begin(qintptr descriptor) {
+    if (isScarce(descriptor)) {
+        ::close(int(descriptor));
+        return;
+    }
+    auto *socket = new QSslSocket(this);
+    socket->setSocketDescriptor(descriptor);
+    socket->setSslConfiguration(keys_);
+    connect(socket, &QSslSocket::encrypted, this, [this, socket] { finish(socket); });
+    connect(socket, &QAbstractSocket::errorOccurred, this,
+            [this, socket] { refuse(socket, socket->errorString()); });
+    QTimer::singleShot(longestHandshake, socket, [this, socket] {
+        if (std::find(handshakes_.begin(), handshakes_.end(), socket) != handshakes_.end())
+            refuse(socket, QStringLiteral("no handshake of TLS within %1 s").arg(longestHandshake.count()));
+    });
+    handshakes_.push_back(socket);
+    if (handshakes_.size() > mostHandshakes)
+        refuse(handshakes_.front(),
+               QStringLiteral("%1 others came during its handshake").arg(mostHandshakes));
+    socket->startServerEncryption();
+}
+
+void TlsServerInterface::finish(QSslSocket *socket) {
+    const PeerCertificate theirs = toPeer(socket->peerCertificate());
+    const auto what =
+        QStringLiteral("the certificate of \"%1\" (serial number %2) ").arg(theirs.name, theirs.serial);
+    if (!revokedProblem_.isEmpty())
+        return refuse(socket, revokedProblem_);
+    if (revoked_.contains(theirs.serial.toLatin1()))
+        return refuse(socket, what + QStringLiteral("is revoked"));
+    if (!roleFrom(theirs.role) && theirs.role != QStringLiteral("daemon"))
+        return refuse(socket, what + QStringLiteral("has the role \"%1\", expected one of %2, daemon")
+                                         .arg(theirs.role, roleNames().join(QStringLiteral(", "))));
+    handshakes_.remove(socket);
+    socket->disconnect(this);
+    auto *peer = new TlsInterface(socket, this);
+    peers_.push_back(peer);
+    connect(peer, &QObject::destroyed, this, [this, peer] { peers_.remove(peer); });
+    peer->open();
+    Q_EMIT accepted(peer);
+}
+
+void TlsServerInterface::refuse(QSslSocket *socket, const QString &why) {
+    handshakes_.remove(socket);
+    ++refused_;
+    if (const double now = monotonicNow(); now - refusedTold_ > 1) { // many may come
+        refusedTold_ = now;
+        logWarning(source, QStringLiteral("%1: a client at %2 is refused: %3; %4 in all")
+                               .arg(address(), socket->peerAddress().toString(), why)
+                               .arg(refused_));
+    }
+    socket->disconnect(this);
+    socket->abort();
+    socket->deleteLater();
+}
+
+void TlsServerInterface::lookAtRevoked() {
+    const QFileInfo file(folder_ + QLatin1Char('/') + KeyFolder::revokedFile());
+    const QString state = QStringLiteral("%1 %2 %3")
+                              .arg(file.exists())
+                              .arg(file.size())
+                              .arg(file.metadataChangeTime().toMSecsSinceEpoch());
+    if (state == revokedState_)
+        return;
+    revokedState_ = state;
+    const auto revoked = KeyFolder::revoked(folder_);
+    revokedProblem_ = revoked ? QString() : revoked.error().message;
+    if (!revoked)
+        return logError(source,
+                        QStringLiteral("%1: nobody new is let in: %2").arg(address(), revokedProblem_));
+    revoked_ = *revoked;
+    const auto all = peers_;
+    for (TlsInterface *peer : all) {
+        const auto certificate = peer->peer().certificate;
+        if (!peer->isOpen() || !certificate || !revoked_.contains(certificate->serial.toLatin1()))
+            continue;
+        logWarning(source, QStringLiteral("closing client %1: its certificate is revoked").arg(peer->name()));
+        peer->close(QStringLiteral("the certificate is revoked"));
+    }
+}
+
+} // namespace hermes

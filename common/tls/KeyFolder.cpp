@@ -1,0 +1,123 @@
+#include "common/tls/KeyFolder.h"
+
+#include "common/tls/Certificates.h"
+
+#include <QDateTime>
+#include <QDir>
+#include <QFile>
+#include <QJsonObject>
+#include <QSslCertificate>
+#include <QSslKey>
+#include <QStandardPaths>
+#include <cerrno>
+#include <sys/stat.h>
+
+namespace hermes {
+namespace {
+
+constexpr qint64 mostBytes = 1 << 20; // of a file of keys
+
+const QString remedy = QStringLiteral("hermesctl keys --help tells how to make keys");
+
+Error wrong(const QString &file, const QString &what, const QString &how = remedy) {
+    return {ErrorCode::InputOutput, QStringLiteral("%1: %2; %3").arg(file, what, how),
+            QJsonObject{{QStringLiteral("path"), file}}};
+}
+
+Result<QByteArray> read(const QString &path) {
+    QFile file(path);
+    struct stat status {};
+    if (::stat(QFile::encodeName(path).constData(), &status) != 0)
+        return wrong(path, qt_error_string(errno));
+    if (!S_ISREG(status.st_mode) || status.st_size > mostBytes)
+        return wrong(path, QStringLiteral("is no file of keys"));
+    if (!file.open(QIODevice::ReadOnly))
+        return wrong(path, file.errorString(), QStringLiteral("the daemon's user must be able to read it"));
+    return file.readAll();
+}
+
+Result<QByteArray> readSecret(const QString &path) {
+    const Result<QByteArray> content = read(path);
+    struct stat status {};
+    constexpr mode_t others = 077;
+    if (content && (::stat(QFile::encodeName(path).constData(), &status) != 0 || (status.st_mode & others)))
+        return wrong(
+            path, QStringLiteral("others than its owner may read or change it"),
+            QStringLiteral("chmod 600 \"%1\", and issue a new one if others may have read it").arg(path));
+    return content;
+}
+
+Result<QSslCertificate> certificateIn(const QByteArray &pem, const QString &path) {
+    const QSslCertificate certificate(pem);
+    if (certificate.isNull())
+        return wrong(path, QStringLiteral("is no certificate"));
+    const QDateTime now = QDateTime::currentDateTimeUtc();
+    if (certificate.expiryDate() < now || certificate.effectiveDate() > now)
+        return wrong(path,
+                     QStringLiteral("is valid from %1 to %2, the clock says %3")
+                         .arg(certificate.effectiveDate().toString(Qt::ISODate),
+                              certificate.expiryDate().toString(Qt::ISODate), now.toString(Qt::ISODate)));
+    return certificate;
+}
+
+} // namespace
+
+QString KeyFolder::usual() {
+    const QString set = qEnvironmentVariable("HERMES_KEYS");
+    return !set.isEmpty() ? set
+                          : QStandardPaths::writableLocation(QStandardPaths::GenericConfigLocation) +
+                                QStringLiteral("/hermes/keys");
+}
+
+Result<QSslConfiguration> KeyFolder::load(const QString &folder) {
+    const QDir dir(folder);
+    const QString authorityPath = dir.filePath(authorityFile()), ownPath = dir.filePath(ownFile()),
+                  keyPath = dir.filePath(keyFile());
+    const auto authorityPem = read(authorityPath), ownPem = read(ownPath), keyPem = readSecret(keyPath);
+    for (const auto *content : {&authorityPem, &ownPem, &keyPem})
+        if (!*content)
+            return content->error();
+    const auto authority = certificateIn(*authorityPem, authorityPath), own = certificateIn(*ownPem, ownPath);
+    if (!authority || !own)
+        return authority ? own.error() : authority.error();
+    if (!belongTogether({*ownPem, *keyPem}))
+        return wrong(keyPath, QStringLiteral("is not the key of ") + ownPath);
+    if (!isSignedBy(*ownPem, *authorityPem))
+        return wrong(ownPath, QStringLiteral("is not signed by the authority of ") + authorityPath);
+    QSslConfiguration made;
+    made.setCaCertificates({*authority});
+    made.setLocalCertificate(*own);
+    made.setPrivateKey(QSslKey(*keyPem, QSsl::Ec));
+    made.setProtocol(QSsl::TlsV1_2OrLater);
+    made.setPeerVerifyMode(QSslSocket::VerifyPeer);
+    return made;
+}
+
+Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
+    const QString path = QDir(folder).filePath(revokedFile());
+    if (!QFile::exists(path))
+        return QSet<QByteArray>();
+    const auto content = read(path);
+    if (!content)
+        return content.error();
+    QSet<QByteArray> serials;
+    for (const QByteArray &line : content->split('\n')) {
+        const QByteArray word = line.simplified().split(' ').value(0).toLower();
+        if (word.isEmpty() || word.startsWith('#'))
+            continue;
+        const bool isNumber = QByteArray::fromHex(word).toHex() == word;
+        if (!isNumber)
+            return wrong(path, QStringLiteral("\"%1\" is no serial number, expected hexadecimal digits")
+                                   .arg(QString::fromUtf8(word.left(40))));
+        serials.insert(word);
+    }
+    return serials;
+}
+
+PeerCertificate toPeer(const QSslCertificate &certificate) {
+    return {certificate.subjectInfo(QSslCertificate::CommonName).value(0),
+            certificate.subjectInfo(QSslCertificate::OrganizationalUnitName).value(0),
+            QString::fromLatin1(certificate.serialNumber().replace(":", "").toLower())};
+}
+
+} // namespace hermes
