@@ -16,7 +16,11 @@ struct Arguments {
     double rate_hz = 0; ///< 0: every message
     int count = 0;      ///< 0: without end
     double speed = 1;
-    QStringList daemons; ///< loggers to speak to; empty: those at their default ports
+    QStringList daemons; ///< speak to these; empty: to those at their default ports
+    QString out;         ///< file instead of stdout
+    bool force = false;  ///< overwrites it
+    bool all = false;
+    bool network = false;
     bool loop = false;
     bool csv = false;
     bool json = false;
@@ -26,6 +30,10 @@ struct Arguments {
 
     /// arguments without the program's name. Error: a sentence that names the option.
     static Result<Arguments> parse(const QStringList &arguments);
+
+    /// All options; those that take a value.
+    static QStringList flags();
+    static QStringList optionsWithValue();
 };
 
 } // namespace hermes::ctl
