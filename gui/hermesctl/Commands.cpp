@@ -85,7 +85,7 @@ Result<void> listDaemons(const Arguments &arguments) {
                                  {QStringLiteral("version"), version},
                                  {QStringLiteral("address"), address}});
     }
-    if (arguments.json)
+    if (arguments.json && !calls.empty())
         printJson(found);
     if (calls.empty())
         return Error(ErrorCode::Disconnected,

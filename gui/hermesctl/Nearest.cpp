@@ -53,7 +53,7 @@ QStringList nearest(const QString &word, const QStringList &names) {
                      [](const auto &a, const auto &b) { return a.first < b.first; });
     QStringList result;
     for (const auto &[far, name] : found) {
-        if (result.size() < most)
+        if (result.size() < most && far <= found.front().first + 1)
             result.append(name);
     }
     return result;
