@@ -5,6 +5,8 @@
 #include "common/daemon/CommandLine.h"
 #include "common/settings/DottedPath.h"
 #include "gui/hermesctl/Markdown.h"
+#include "gui/hermesctl/NetworkBrowser.h"
+#include "gui/hermesctl/Table.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
@@ -57,7 +59,46 @@ Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString
     return client.callAndWait(method, params, arguments.timeout);
 }
 
+namespace {
+
+/// Anybody on the network may announce anything: nothing that a terminal would take for more than text.
+QString printable(QString text) {
+    for (QChar &c : text)
+        if (!c.isPrint())
+            c = QLatin1Char('?');
+    return text;
+}
+
+Result<void> listNetwork(const Arguments &arguments) {
+    constexpr std::chrono::seconds howLong{2};
+    const auto found = NetworkBrowser().look(howLong);
+    if (!found)
+        return found.error();
+    if (found->isEmpty())
+        return Error(
+            ErrorCode::Disconnected,
+            QStringLiteral("no daemon has announced itself; those do that listen at an address which "
+                           "others on the network reach"));
+    QJsonArray values;
+    std::vector<QStringList> rows{{QStringLiteral("name"), QStringLiteral("host"), QStringLiteral("address"),
+                                   QStringLiteral("port"), QStringLiteral("framing")}};
+    const QStringList heading = rows.front();
+    for (const QJsonObject &daemon : *found) {
+        values.append(daemon);
+        QStringList row;
+        for (const QString &member : heading)
+            row.append(printable(daemon[member].toVariant().toString()));
+        rows.push_back(row);
+    }
+    arguments.json ? printJson(values) : printTable(rows);
+    return {};
+}
+
+} // namespace
+
 Result<void> listDaemons(const Arguments &arguments) {
+    if (arguments.network)
+        return listNetwork(arguments);
     QStringList addresses;
     for (const QString &name : daemonNames())
         addresses.append(*daemonAddress(name, arguments.host));
@@ -88,8 +129,11 @@ Result<void> listDaemons(const Arguments &arguments) {
     if (arguments.json && !calls.empty())
         printJson(found);
     if (calls.empty())
-        return Error(ErrorCode::Disconnected,
-                     QStringLiteral("no daemon answers at its default port on %1").arg(arguments.host));
+        return Error(
+            ErrorCode::Disconnected,
+            QStringLiteral("no daemon answers at its default port on %1; hermes-simulator is one to begin "
+                           "with, --host HOST asks another computer, --network all of them")
+                .arg(arguments.host));
     return {};
 }
 

@@ -7,6 +7,7 @@
 #include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/Loggers.h"
 #include "gui/hermesctl/Subcommands.h"
+#include "gui/hermesctl/TypedLine.h"
 #include "gui/session/SessionRecorder.h"
 
 #include <QJsonArray>
@@ -22,88 +23,36 @@ struct Candidate {
 };
 using Candidates = std::vector<Candidate>;
 
-/// The words as the shell takes them, the last one is that before the cursor.
-QStringList splitLine(const QString &line) {
-    QStringList words{QString()};
-    QChar quote;
-    for (int i = 0; i < line.size(); ++i) {
-        const QChar c = line[i];
-        if (!quote.isNull() && c == quote)
-            quote = QChar();
-        else if (quote.isNull() && (c == QLatin1Char('"') || c == QLatin1Char('\'')))
-            quote = c;
-        else if (c == QLatin1Char('\\') && i + 1 < line.size() && quote != QLatin1Char('\''))
-            words.last() += line[++i];
-        else if (quote.isNull() && c.isSpace())
-            words.append(QString());
-        else
-            words.last() += c;
-    }
-    const QString last = words.takeLast();
-    words.removeAll(QString());
-    return words << last;
-}
-
-/// A command line that is being typed.
+/// What may follow in a command line that is being typed.
 class Completion {
 public:
-    explicit Completion(const QString &line) {
-        QStringList words = splitLine(line).mid(1);
-        if (!words.isEmpty())
-            current_ = words.takeLast();
-        read(words);
-    }
+    explicit Completion(const QString &text)
+        : line_(TypedLine::read(text)) {}
 
     Candidates candidates() {
         Candidates found;
         for (const Candidate &candidate : all())
-            if (candidate.text.startsWith(current_) || candidate.text == QStringLiteral(":files"))
+            if (candidate.text.startsWith(line_.current) || candidate.text == QStringLiteral(":files"))
                 found.push_back(candidate);
         return found;
     }
 
 private:
-    void read(const QStringList &words) {
-        for (int i = 0; i < words.size(); ++i) {
-            const QString &word = words[i];
-            if (Arguments::optionsWithValue().contains(word)) {
-                if (i + 1 == words.size())
-                    pendingOption_ = word;
-                else
-                    take(word, words[++i]);
-            } else if (word.startsWith(QLatin1Char('-'))) {
-                take(word.section(QLatin1Char('='), 0, 0), word.section(QLatin1Char('='), 1));
-            } else if (arguments_.command.isEmpty()) {
-                arguments_.command = word;
-            } else if (arguments_.command == QStringLiteral("record")) {
-                arguments_.command += QLatin1Char(' ') + word;
-            } else {
-                arguments_.words.append(word);
-            }
-        }
-    }
-
-    void take(const QString &option, const QString &value) {
-        if (option == QStringLiteral("--host"))
-            arguments_.host = value;
-        else if (option == QStringLiteral("--daemons"))
-            arguments_.daemons = value.split(QLatin1Char(','));
-    }
-
     Candidates all() {
-        if (!pendingOption_.isEmpty())
-            return ofOption(pendingOption_, QString());
-        const int equals = current_.indexOf(QLatin1Char('='));
-        if (current_.startsWith(QLatin1Char('-')))
-            return equals > 0 ? ofOption(current_.left(equals), current_.left(equals + 1)) : options();
-        if (arguments_.command.isEmpty())
+        if (!line_.pendingOption.isEmpty())
+            return ofOption(line_.pendingOption, QString());
+        const int equals = line_.current.indexOf(QLatin1Char('='));
+        if (line_.current.startsWith(QLatin1Char('-')))
+            return equals > 0 ? ofOption(line_.current.left(equals), line_.current.left(equals + 1))
+                              : options();
+        if (line_.arguments.command.isEmpty())
             return commands(QString());
-        if (arguments_.command == QStringLiteral("record"))
+        if (line_.arguments.command == QStringLiteral("record"))
             return commands(QStringLiteral("record "));
-        const Subcommand *const command = findSubcommand(arguments_.command);
-        if (!command || arguments_.words.size() >= command->mostWords || command->words.empty())
+        const Subcommand *const command = findSubcommand(line_.arguments.command);
+        if (!command || line_.arguments.words.size() >= command->mostWords || command->words.empty())
             return {};
-        const auto place = std::min(std::size_t(arguments_.words.size()), command->words.size() - 1);
+        const auto place = std::min(std::size_t(line_.arguments.words.size()), command->words.size() - 1);
         return ofWord(command->words[place]);
     }
 
@@ -123,7 +72,7 @@ private:
     Candidates options() const {
         QStringList names{QStringLiteral("--help"), QStringLiteral("--host"), QStringLiteral("--timeout"),
                           QStringLiteral("--json"), QStringLiteral("--out"),  QStringLiteral("--force")};
-        if (const Subcommand *command = findSubcommand(arguments_.command))
+        if (const Subcommand *command = findSubcommand(line_.arguments.command))
             names += QString::fromLatin1(command->options).split(QLatin1Char(' '), Qt::SkipEmptyParts);
         else
             names.append(QStringLiteral("--version"));
@@ -135,7 +84,7 @@ private:
             return {{QStringLiteral(":files"), QString()}};
         if (option != QStringLiteral("--daemons"))
             return {};
-        const QString given = current_.mid(before.size());
+        const QString given = line_.current.mid(before.size());
         const QString listed = given.left(given.lastIndexOf(QLatin1Char(',')) + 1);
         return plain(daemonNames(), before + listed);
     }
@@ -174,9 +123,9 @@ private:
     Candidates daemons() const {
         Candidates found;
         for (const QString &name : daemonNames()) {
-            const QString address = *daemonAddress(name, arguments_.host);
+            const QString address = *daemonAddress(name, line_.arguments.host);
             found.push_back({name, address});
-            if (!current_.isEmpty()) // names first: who wants an address begins with it
+            if (!line_.current.isEmpty()) // names first: who wants an address begins with it
                 found.push_back({address, name});
         }
         return found;
@@ -186,7 +135,7 @@ private:
     QJsonValue ask(const char *method) {
         if (!client_) {
             client_ = std::make_unique<Client>();
-            const auto address = daemonAddress(arguments_.words.value(0), arguments_.host);
+            const auto address = daemonAddress(line_.arguments.words.value(0), line_.arguments.host);
             if (address)
                 (void)connectOnce(*client_, *address, patience);
         }
@@ -210,18 +159,18 @@ private:
 
     /// NAME= of those that are not given yet; after it what the schema allows, or what there is of the kind.
     Candidates parameters() {
-        const QString methodName = arguments_.words.value(1);
+        const QString methodName = line_.arguments.words.value(1);
         const QJsonObject method = named(askList("rpc.discover", "methods"), methodName);
         const QStringList names = namesOf(method[QStringLiteral("params")].toArray());
-        const QString name = current_.section(QLatin1Char('='), 0, 0);
-        if (current_.contains(QLatin1Char('='))) {
+        const QString name = line_.current.section(QLatin1Char('='), 0, 0);
+        if (line_.current.contains(QLatin1Char('='))) {
             const QStringList there = whatThereIs(methodName, name);
             return there.isEmpty() ? values(name, parameterSchema(method, name))
                                    : plain(there, name + QLatin1Char('='));
         }
         Candidates found;
         for (const QString &one : names)
-            if (!isGiven(one))
+            if (!line_.isGiven(one))
                 found.push_back({one + QLatin1Char('='), explanation(parameterSchema(method, one))});
         return found;
     }
@@ -240,19 +189,14 @@ private:
 
     Candidates settings() {
         const QJsonObject schema = ask("settings.schema").toObject();
-        const QString path = current_.section(QLatin1Char('='), 0, 0);
-        if (current_.contains(QLatin1Char('=')))
+        const QString path = line_.current.section(QLatin1Char('='), 0, 0);
+        if (line_.current.contains(QLatin1Char('=')))
             return values(path, settingSchema(schema, path));
         Candidates found;
         for (const QString &one : settingPaths(schema, false))
-            if (!isGiven(one))
+            if (!line_.isGiven(one))
                 found.push_back({one + QLatin1Char('='), explanation(settingSchema(schema, one))});
         return found;
-    }
-
-    bool isGiven(const QString &name) const {
-        return std::any_of(arguments_.words.begin(), arguments_.words.end(),
-                           [&name](const QString &word) { return word.startsWith(name + QLatin1Char('=')); });
     }
 
     static Candidates values(const QString &name, const QJsonObject &schema) {
@@ -265,8 +209,8 @@ private:
     }
 
     Candidates sessions() {
-        arguments_.timeout = patience;
-        const auto loggers = Loggers::find(arguments_);
+        line_.arguments.timeout = patience;
+        const auto loggers = Loggers::find(line_.arguments);
         if (!loggers)
             return {};
         SessionRecorder recorder(loggers->members);
@@ -277,9 +221,7 @@ private:
         return found;
     }
 
-    Arguments arguments_;
-    QString current_;
-    QString pendingOption_; ///< whose value is being typed
+    TypedLine line_;
     std::unique_ptr<Client> client_;
 };
 

@@ -20,6 +20,7 @@ Loggers are the daemons with the command record.start that answer at their defau
   --json         one JSON value, or one a line; errors too: {"code", "message", "data", "hint"}
   --out FILE     prints there instead of to stdout; FILE must not exist
   --force        --out: overwrites FILE
+  --network      list: who has announced itself on the network (needs Avahi)
   --rate HZ      watch: at most so many messages a second
   --count N      watch: end after N messages; log: the last N records (100)
   --csv          watch: CSV, a column for each value
@@ -50,7 +51,7 @@ const std::vector<Subcommand> &subcommands() {
          "list",
          "the daemons that answer at their default ports",
          {},
-         "",
+         "--network",
          nullptr,
          listDaemons},
         {"record start",
