@@ -49,7 +49,7 @@ const std::vector<Subcommand> &subcommands() {
          0,
          0,
          "list",
-         "the daemons that answer at their default ports",
+         "the daemons that answer at their default ports (--network: that announce themselves)",
          {},
          "--network",
          nullptr,
