@@ -8,8 +8,9 @@
 
 namespace hermes::ctl {
 
-/// Lets what is printed go to a file instead of stdout. Error: it cannot be made, or exists and force is off.
-Result<void> openOutput(const QString &file, bool force);
+/// Lets what is printed go to a file instead of stdout, made with the first line. Error: it exists, and force
+/// is off.
+Result<void> setOutput(const QString &file, bool force);
 
 /// Prints a line at once. Ends the program with status 1, and says why, when it cannot be written; a reader
 /// that has gone (a pipe that was closed) is no failure, see readerIsGone().

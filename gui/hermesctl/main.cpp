@@ -101,7 +101,7 @@ int run(Arguments arguments) {
         return usageError(QStringLiteral("--csv and --json exclude each other"), true);
     setJsonNotes(arguments.json);
     if (!arguments.out.isEmpty()) {
-        if (const auto opened = openOutput(arguments.out, arguments.force); !opened)
+        if (const auto opened = setOutput(arguments.out, arguments.force); !opened)
             return finish(opened, {}, arguments);
     }
     if (ofAll)

@@ -73,6 +73,12 @@ class Csv(unittest.TestCase):
             self.assertEqual(self.watch([(1, 0, 2)], {"type": "number"}, "--force", "--out", file).returncode, 0)
             with open(file, encoding="utf-8") as written:
                 self.assertEqual(rows(written.read())[1][3], "2")
+            absent = os.path.join(folder, "absent.csv")
+            self.assertEqual(ctl("watch", "127.0.0.1:1", "x", "--csv", "--out", absent).returncode, 1)
+            self.assertFalse(os.path.exists(absent))  # nothing was said
+            nowhere = self.watch([(1, 0, 1)], {"type": "number"}, "--out", os.path.join(absent, "x"))
+            self.assertEqual(nowhere.returncode, 1)
+            self.assertIn("cannot be written", nowhere.stderr)
 
 
 class Ends(unittest.TestCase):
