@@ -138,12 +138,15 @@ Result<void> Daemon::configure(const CommandLine &line) {
 
 Result<void> Daemon::launch() {
     const bool insecure = configuration_.flag(QStringLiteral("insecure"));
+    std::vector<AnnouncedPort> reachable; // by others on the network
     for (const QJsonValue &url : configuration_.value(QStringLiteral("listen")).toArray()) {
         const auto listening = channels_.listen(url.toString(), insecure);
         if (!listening) {
             channels_.close();
             return listening;
         }
+        if (const auto port = AnnouncedPort::of(self_.name, url.toString(), channels_.addresses().last()))
+            reachable.push_back(*port);
     }
     if (insecure) {
         healthItems_.set(
@@ -165,6 +168,8 @@ Result<void> Daemon::launch() {
     connect(&healthItems_, &Health::changed, this, &Daemon::publishStatus);
     connect(&statusTimer_, &QTimer::timeout, this, &Daemon::publishStatus); // an item may have become stale
     statusTimer_.start(500);
+    if (!reachable.empty())
+        announcement_ = std::make_unique<Announcement>(self_.name, reachable);
     systemd::notify("READY=1");
     const auto interval = systemd::watchdogInterval();
     if (interval.count() > 0 && !watchdogByHand_) {
@@ -181,6 +186,7 @@ void Daemon::shutDown(int status) {
     systemd::notify("STOPPING=1");
     statusTimer_.stop();
     stop();
+    announcement_.reset();
     logInfo(self_.name, QStringLiteral("stopped"));
     channels_.close();
     Q_EMIT finished(status);

@@ -8,11 +8,13 @@
 #include "common/daemon/Server.h"
 #include "common/daemon/Topic.h"
 #include "common/daemon/TopicHub.h"
+#include "common/network/Announcement.h"
 #include "common/settings/Settings.h"
 
 #include <QCoreApplication>
 #include <QObject>
 #include <QTimer>
+#include <memory>
 
 namespace hermes {
 
@@ -141,14 +143,16 @@ private:
     QTimer watchdog_;
     QString lastStatus_;
     QTimer statusTimer_;
+    std::unique_ptr<Announcement> announcement_; // while others on the network can reach it
 };
 
 /// The whole main() of a daemon.
 template <typename T>
 int runDaemon(int argc, char **argv) {
     QCoreApplication application(argc, argv);
-    T daemon;
-    return daemon.run(application.arguments());
+    const int status = T().run(application.arguments());
+    Announcement::endProgramIfHeld(status);
+    return status;
 }
 
 } // namespace hermes

@@ -15,11 +15,16 @@
 namespace hermes {
 namespace {
 
-enum class Reach { Network, Certified, Computer };
+/// Who can be at the other end.
+enum class Reach {
+    Network,
+    Certified, ///< of the network, who has a certificate
+    Computer
+};
 
 struct Kind {
     const char *scheme;
-    Reach reach; // who can be at the other end
+    Reach reach;
     Interface *(*connect)(const InterfaceUrl &, QObject *);
     Listener *(*listen)(const InterfaceUrl &, QObject *);
 };
@@ -79,10 +84,15 @@ Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent) {
     return kind->listen(url, parent);
 }
 
+bool isReachable(const InterfaceUrl &url) {
+    const Kind *kind = findKind(url.scheme);
+    return !(kind && kind->reach == Reach::Computer) && url.host != QStringLiteral("localhost") &&
+           !QHostAddress(url.host).isLoopback();
+}
+
 bool isOpenToNetwork(const InterfaceUrl &url) {
     const Kind *kind = findKind(url.scheme);
-    return !(kind && kind->reach != Reach::Network) && url.host != QStringLiteral("localhost") &&
-           !QHostAddress(url.host).isLoopback();
+    return isReachable(url) && !(kind && kind->reach == Reach::Certified);
 }
 
 QStringList interfaceSchemes() {

@@ -14,6 +14,9 @@ Result<Interface *> makeInterface(const InterfaceUrl &url, QObject *parent);
 /// The listener for a URL, not yet listening.
 Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent);
 
+/// Whether others on the network can reach what listens there.
+bool isReachable(const InterfaceUrl &url);
+
 /// Whether strangers on the network can command what listens there: they reach it, and need no certificate.
 bool isOpenToNetwork(const InterfaceUrl &url);
 

@@ -40,11 +40,14 @@ class Daemon:
     """A connection to one daemon. Not for use from several threads at once."""
 
     def __init__(self, host="127.0.0.1", port=7400, timeout=5.0):
-        self.socket = own_socket(host, port) or socket.create_connection((host, port), timeout)
+        self.socket = self.connect(host, port, timeout)
         self.socket.settimeout(timeout)
         self.lines = self.socket.makefile("r", encoding="utf-8")
         self.ids = itertools.count(1)
         self.topics = collections.defaultdict(collections.deque)  # messages not yet asked for, by subscription
+
+    def connect(self, host, port, timeout):
+        return own_socket(host, port) or socket.create_connection((host, port), timeout)
 
     def __enter__(self):
         return self

@@ -1,5 +1,7 @@
 #include "gui/hermesctl/Arguments.h"
 
+#include "gui/hermesctl/Nearest.h"
+
 #include <cmath>
 
 namespace hermes::ctl {
@@ -14,18 +16,24 @@ Result<double> positive(const QString &option, const QString &text) {
     return value;
 }
 
+struct Flag {
+    const char *name;
+    bool Arguments::*member;
+};
+
+const Flag allFlags[] = {
+    {"--csv", &Arguments::csv},         {"--json", &Arguments::json}, {"--follow", &Arguments::follow},
+    {"--loop", &Arguments::loop},       {"--all", &Arguments::all},   {"--force", &Arguments::force},
+    {"--network", &Arguments::network}, {"--help", &Arguments::help}, {"-h", &Arguments::help},
+    {"--version", &Arguments::version},
+};
+
 bool *flagOf(Arguments &arguments, const QString &option) {
-    if (option == QStringLiteral("--csv"))
-        return &arguments.csv;
-    if (option == QStringLiteral("--json"))
-        return &arguments.json;
-    if (option == QStringLiteral("--follow"))
-        return &arguments.follow;
-    if (option == QStringLiteral("--loop"))
-        return &arguments.loop;
-    if (option == QStringLiteral("--help") || option == QStringLiteral("-h"))
-        return &arguments.help;
-    return option == QStringLiteral("--version") ? &arguments.version : nullptr;
+    for (const Flag &flag : allFlags) {
+        if (option == QLatin1String(flag.name))
+            return &(arguments.*flag.member);
+    }
+    return nullptr;
 }
 
 Result<void> takeNumber(Arguments &arguments, const QString &option, const QString &text) {
@@ -40,7 +48,9 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
         arguments.timeout = std::chrono::milliseconds(int(std::min(*value, 1e6) * 1000));
     else if (*value != std::floor(*value))
         return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("option --count is %1, expected a whole number").arg(text));
+                     QStringLiteral("option %1 is %2, expected a whole number").arg(option, text));
+    else if (option == QStringLiteral("--days"))
+        arguments.days = int(std::min(*value, 36500.0));
     else
         arguments.count = int(*value);
     return {};
@@ -49,6 +59,10 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
 Result<void> takeValue(Arguments &arguments, const QString &option, const QString &text) {
     if (option == QStringLiteral("--host"))
         arguments.host = text;
+    else if (option == QStringLiteral("--out"))
+        arguments.out = text;
+    else if (option == QStringLiteral("--role"))
+        arguments.role = text;
     else if (option == QStringLiteral("--daemons"))
         arguments.daemons = text.split(QLatin1Char(','));
     else
@@ -58,10 +72,24 @@ Result<void> takeValue(Arguments &arguments, const QString &option, const QStrin
 
 } // namespace
 
+QStringList Arguments::flags() {
+    QStringList names;
+    for (const Flag &flag : allFlags)
+        names.append(QLatin1String(flag.name));
+    return names;
+}
+
+QStringList Arguments::optionsWithValue() {
+    return {QStringLiteral("--rate"),  QStringLiteral("--timeout"), QStringLiteral("--count"),
+            QStringLiteral("--speed"), QStringLiteral("--host"),    QStringLiteral("--daemons"),
+            QStringLiteral("--out"),   QStringLiteral("--role"),    QStringLiteral("--days")};
+}
+
+bool hasSecondWord(const QString &command) {
+    return command == QStringLiteral("record") || command == QStringLiteral("keys");
+}
+
 Result<Arguments> Arguments::parse(const QStringList &list) {
-    const QStringList withValue{QStringLiteral("--rate"),  QStringLiteral("--timeout"),
-                                QStringLiteral("--count"), QStringLiteral("--speed"),
-                                QStringLiteral("--host"),  QStringLiteral("--daemons")};
     Arguments result;
     for (int i = 0; i < list.size(); ++i) {
         const QString &word = list.at(i);
@@ -78,8 +106,10 @@ Result<Arguments> Arguments::parse(const QStringList &list) {
             *flag = true;
             continue;
         }
-        if (!withValue.contains(option))
-            return Error(ErrorCode::InvalidParams, QStringLiteral("unknown option %1").arg(word));
+        if (!optionsWithValue().contains(option))
+            return Error(ErrorCode::InvalidParams,
+                         QStringLiteral("unknown option %1%2")
+                             .arg(word, didYouMean(option, flags() + optionsWithValue())));
         const bool inOne = word.contains(QLatin1Char('='));
         if (!inOne && i + 1 == list.size())
             return Error(ErrorCode::InvalidParams, QStringLiteral("option %1 needs a value").arg(option));

@@ -15,8 +15,14 @@ struct Arguments {
     std::chrono::milliseconds timeout{5000};
     double rate_hz = 0; ///< 0: every message
     int count = 0;      ///< 0: without end
+    int days = 0;       ///< 0: as usual
+    QString role;
     double speed = 1;
-    QStringList daemons; ///< loggers to speak to; empty: those at their default ports
+    QStringList daemons; ///< speak to these; empty: to those at their default ports
+    QString out;         ///< file instead of stdout
+    bool force = false;  ///< overwrites it
+    bool all = false;
+    bool network = false;
     bool loop = false;
     bool csv = false;
     bool json = false;
@@ -26,6 +32,13 @@ struct Arguments {
 
     /// arguments without the program's name. Error: a sentence that names the option.
     static Result<Arguments> parse(const QStringList &arguments);
+
+    /// All options; those that take a value.
+    static QStringList flags();
+    static QStringList optionsWithValue();
 };
+
+/// Whether a second word belongs to the command: record start, keys issue.
+bool hasSecondWord(const QString &command);
 
 } // namespace hermes::ctl

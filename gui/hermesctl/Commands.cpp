@@ -5,17 +5,16 @@
 #include "common/daemon/CommandLine.h"
 #include "common/settings/DottedPath.h"
 #include "gui/hermesctl/Markdown.h"
+#include "gui/hermesctl/NetworkBrowser.h"
+#include "gui/hermesctl/Table.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QDateTime>
 #include <QEventLoop>
+#include <QJsonArray>
 #include <QJsonDocument>
-#include <cerrno>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 
 namespace hermes::ctl {
 namespace {
@@ -26,11 +25,6 @@ QString pretty(const QJsonValue &value) {
     if (value.isArray())
         return QString::fromUtf8(QJsonDocument(value.toArray()).toJson()).trimmed();
     return QString::fromUtf8(compactJson(value));
-}
-
-Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
-                       const QJsonValue &params = QJsonObject()) {
-    return client.callAndWait(method, params, arguments.timeout);
 }
 
 // "name=value" words as an object; dotted names make nested objects only where the caller wants that.
@@ -60,19 +54,51 @@ QString logLine(WireView record) {
 
 } // namespace
 
-void checkOutput() {
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
-        return;
-    std::fprintf(stderr, "hermesctl: stdout cannot be written: %s\n", std::strerror(errno));
-    std::_Exit(1);
+Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
+                       const QJsonValue &params) {
+    return client.callAndWait(method, params, arguments.timeout);
 }
 
-void printLine(const QString &text) {
-    std::fputs((text + QLatin1Char('\n')).toUtf8().constData(), stdout);
-    checkOutput();
+namespace {
+
+/// Anybody on the network may announce anything: nothing that a terminal would take for more than text.
+QString printable(QString text) {
+    for (QChar &c : text)
+        if (!c.isPrint())
+            c = QLatin1Char('?');
+    return text;
 }
+
+Result<void> listNetwork(const Arguments &arguments) {
+    constexpr std::chrono::seconds howLong{2};
+    const auto found = NetworkBrowser().look(howLong);
+    if (!found)
+        return found.error();
+    if (found->isEmpty())
+        return Error(
+            ErrorCode::Disconnected,
+            QStringLiteral("no daemon has announced itself; those do that listen at an address which "
+                           "others on the network reach"));
+    QJsonArray values;
+    std::vector<QStringList> rows{{QStringLiteral("name"), QStringLiteral("host"), QStringLiteral("address"),
+                                   QStringLiteral("port"), QStringLiteral("framing")}};
+    const QStringList heading = rows.front();
+    for (const QJsonObject &daemon : *found) {
+        values.append(daemon);
+        QStringList row;
+        for (const QString &member : heading)
+            row.append(printable(daemon[member].toVariant().toString()));
+        rows.push_back(row);
+    }
+    arguments.json ? printJson(values) : printTable(rows);
+    return {};
+}
+
+} // namespace
 
 Result<void> listDaemons(const Arguments &arguments) {
+    if (arguments.network)
+        return listNetwork(arguments);
     QStringList addresses;
     for (const QString &name : daemonNames())
         addresses.append(*daemonAddress(name, arguments.host));
@@ -88,16 +114,26 @@ Result<void> listDaemons(const Arguments &arguments) {
         return reply.result ? (*reply.result)[QLatin1String(member)].toString()
                             : QString::fromLatin1(unknown);
     };
+    QJsonArray found;
     for (std::size_t i = 0; i < calls.size(); ++i) {
-        printLine(QStringLiteral("%1 %2 %3 %4")
-                      .arg(text(infos[i], "name", "?"), -16)
-                      .arg(text(states[i], "state", "?"), -10)
-                      .arg(text(infos[i], "version", ""), -8)
-                      .arg(calls[i].member.name));
+        const QString name = text(infos[i], "name", "?"), state = text(states[i], "state", "?");
+        const QString version = text(infos[i], "version", ""), &address = calls[i].member.name;
+        if (!arguments.json)
+            printLine(
+                QStringLiteral("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
+        found.append(QJsonObject{{QStringLiteral("name"), name},
+                                 {QStringLiteral("state"), state},
+                                 {QStringLiteral("version"), version},
+                                 {QStringLiteral("address"), address}});
     }
+    if (arguments.json && !calls.empty())
+        printJson(found);
     if (calls.empty())
-        return Error(ErrorCode::Disconnected,
-                     QStringLiteral("no daemon answers at its default port on %1").arg(arguments.host));
+        return Error(
+            ErrorCode::Disconnected,
+            QStringLiteral("no daemon answers at its default port on %1; hermes-simulator is one to begin "
+                           "with, --host HOST asks another computer, --network all of them")
+                .arg(arguments.host));
     return {};
 }
 
@@ -116,7 +152,11 @@ Result<void> document(Client &client, const Arguments &arguments) {
     const auto schema = ask(client, arguments, QStringLiteral("settings.schema"));
     if (!schema)
         return schema.error();
-    printLine(descriptionAsMarkdown(description->toObject(), schema->toObject()).trimmed());
+    if (arguments.json)
+        printJson(QJsonObject{{QStringLiteral("description"), *description},
+                              {QStringLiteral("settings"), *schema}});
+    else
+        printLine(descriptionAsMarkdown(description->toObject(), schema->toObject()).trimmed());
     return {};
 }
 
@@ -148,6 +188,10 @@ Result<void> setSettings(Client &client, const Arguments &arguments) {
                             QJsonObject{{QStringLiteral("values"), *values}});
     if (!result)
         return result.error();
+    if (arguments.json) {
+        printJson(*result);
+        return {};
+    }
     const QJsonArray restart = (*result)[QStringLiteral("restart")].toArray();
     for (const QJsonValue &path : (*result)[QStringLiteral("changed")].toArray())
         printLine(path.toString() + (restart.contains(path)
@@ -162,16 +206,23 @@ Result<void> showLog(Client &client, const Arguments &arguments) {
         ask(client, arguments, QStringLiteral("log.tail"), QJsonObject{{QStringLiteral("count"), count}});
     if (!records)
         return records.error();
+    const auto print = [&arguments](const WireValue &record) {
+        arguments.json ? printJson(record.toJson()) : printLine(logLine(record));
+    };
     for (const QJsonValue &record : records->toArray())
-        printLine(logLine(WireValue(record)));
+        print(WireValue(record));
     if (!arguments.follow)
         return {};
     QEventLoop loop;
-    QObject::connect(&client, &Client::disconnected, &loop, &QEventLoop::quit);
+    Result<void> result;
+    QObject::connect(&client, &Client::disconnected, &loop, [&](const QString &reason) {
+        result = Error(ErrorCode::Disconnected, reason);
+        loop.quit();
+    });
     client.subscribe(QStringLiteral("log"), {{QStringLiteral("queue"), 1000}},
-                     [](const TopicUpdate &update) { printLine(logLine(update.data)); });
-    loop.exec();
-    return Error(ErrorCode::Disconnected, client.lastError());
+                     [&print](const TopicUpdate &update) { print(update.data); });
+    runStream(loop);
+    return result;
 }
 
 } // namespace hermes::ctl

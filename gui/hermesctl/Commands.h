@@ -2,13 +2,14 @@
 
 #include "gui/hermesctl/Arguments.h"
 #include "gui/hermesctl/Connection.h"
+#include "gui/hermesctl/Output.h"
 
 namespace hermes::ctl {
 
-/// A command of hermesctl that speaks to one daemon: prints its result to stdout.
+/// A command of hermesctl that speaks to one daemon: prints its result.
 using DaemonCommand = Result<void> (*)(Client &client, const Arguments &arguments);
 
-/// One that speaks to all of a robot.
+/// One that speaks to all of a robot, or to nobody.
 using RobotCommand = Result<void> (*)(const Arguments &arguments);
 
 /// The daemons that answer at their default ports on a host, one a line: name, state, version, address.
@@ -24,6 +25,13 @@ Result<void> recordStatus(const Arguments &arguments);
 Result<void> recordList(const Arguments &arguments);
 /// All loggers of a session replay it, until its end or SIGINT; then they are live again.
 Result<void> replay(const Arguments &arguments);
+/// Keys for TLS, in the folder of this user: docs/security.md.
+Result<void> keysInit(const Arguments &arguments);
+Result<void> keysIssue(const Arguments &arguments);
+Result<void> keysRevoke(const Arguments &arguments);
+Result<void> keysList(const Arguments &arguments);
+/// Prints the script that completes command lines in a shell.
+Result<void> completion(const Arguments &arguments);
 
 Result<void> discover(Client &client, const Arguments &arguments);
 Result<void> call(Client &client, const Arguments &arguments);
@@ -31,13 +39,13 @@ Result<void> getSettings(Client &client, const Arguments &arguments);
 Result<void> setSettings(Client &client, const Arguments &arguments);
 Result<void> showLog(Client &client, const Arguments &arguments);
 Result<void> document(Client &client, const Arguments &arguments);
+/// The reference of all daemons on one page.
+Result<void> documentAll(const Arguments &arguments);
 /// Prints a topic until the count is reached, as one JSON object a line or as CSV.
 Result<void> watch(Client &client, const Arguments &arguments);
 
-/// Ends the program with status 1, and says why, when stdout did not take what was printed.
-void checkOutput();
-
-/// Prints a line to stdout at once.
-void printLine(const QString &text);
+/// callAndWait() with the time-out of the command line.
+Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
+                       const QJsonValue &params = QJsonObject());
 
 } // namespace hermes::ctl

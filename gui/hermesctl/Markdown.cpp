@@ -30,6 +30,25 @@ QString cell(QString content) {
     return content.replace(QLatin1Char('|'), QStringLiteral("\\|"));
 }
 
+/// "`x-urgent`, `x-role`: "operator"": whatever keywords of our own there are, but for one that has a column.
+QString keywords(const QJsonObject &object) {
+    QStringList texts;
+    for (auto member = object.begin(); member != object.end(); ++member) {
+        if (!member.key().startsWith(QStringLiteral("x-")) || member.key() == QStringLiteral("x-applies"))
+            continue;
+        const QString name = QStringLiteral("`%1`").arg(member.key());
+        texts.append(member.value() == true ? name
+                                            : QStringLiteral("%1: %2").arg(name, shown(member.value())));
+    }
+    return texts.join(QStringLiteral(", "));
+}
+
+/// What is expected, and the keywords.
+QString expected(const QJsonObject &schema) {
+    const QString more = keywords(schema);
+    return expectation(schema) + (more.isEmpty() ? more : QStringLiteral("; ") + more);
+}
+
 /// A line for each field, those of inner objects by their path; nothing where the schema has none.
 QString fieldLines(const QJsonObject &schema, const QString &path) {
     if (schema.contains(QStringLiteral("items")))
@@ -44,7 +63,7 @@ QString fieldLines(const QJsonObject &schema, const QString &path) {
         const QString name = prefix + property.key();
         const bool mayBeMissing = !required.contains(property.key());
         lines += QStringLiteral("| `%1` | %2%3 | %4 |\n")
-                     .arg(name, cell(expectation(below)),
+                     .arg(name, cell(expected(below)),
                           mayBeMissing ? QStringLiteral("; may be missing") : QString(),
                           cell(text(below, "description")));
         lines += fieldLines(below, name);
@@ -67,7 +86,7 @@ QString parameterTable(const QJsonArray &params) {
                                  : param[QStringLiteral("required")].toBool() ? QStringLiteral("required")
                                                                               : QStringLiteral("optional");
         table += QStringLiteral("| `%1` | %2 | %3 | %4 |\n")
-                     .arg(text(param, "name"), cell(expectation(schema)), cell(fallback),
+                     .arg(text(param, "name"), cell(expected(schema)), cell(fallback),
                           cell(text(schema, "description")));
     }
     table += QLatin1Char('\n');
@@ -90,15 +109,6 @@ QString example(const QString &method, const QJsonObject &pairing) {
                  compactJson(pairing[QStringLiteral("result")].toObject()[QStringLiteral("value")])));
 }
 
-QString topicSection(const QJsonObject &topic) {
-    const QJsonObject schema = topic[schemaKey].toObject();
-    return QStringLiteral("### %1\n\n%2.%3\n\nData: %4.\n\n%5")
-        .arg(text(topic, "name"), text(topic, "summary"),
-             topic[QStringLiteral("snapshot")].toBool() ? QStringLiteral(" Begins with the full state.")
-                                                        : QString(),
-             expectation(schema), fieldTable(schema));
-}
-
 /// {x, y, theta}: of an object, or of the objects of a list.
 QString fieldList(const QJsonObject &schema) {
     if (schema.contains(QStringLiteral("items")))
@@ -107,49 +117,77 @@ QString fieldList(const QJsonObject &schema) {
     return names.isEmpty() ? QString() : QStringLiteral(" {%1}").arg(names.join(QStringLiteral(", ")));
 }
 
-QString methodSection(const QJsonObject &method) {
-    const QString name = text(method, "name");
-    QString section = QStringLiteral("### %1\n\n%2.\n\n").arg(name, text(method, "summary"));
+/// "-32002 another client holds the control; ..."
+QString errorList(const QJsonArray &errors) {
+    QStringList texts;
+    for (const QJsonValue &error : errors)
+        texts.append(
+            QStringLiteral("%1 %2").arg(error[QStringLiteral("code")].toInt()).arg(text(error, "message")));
+    return texts.join(QStringLiteral("; "));
+}
+
+} // namespace
+
+QString methodSection(const QString &heading, const QJsonObject &method) {
+    QString section = QStringLiteral("### %1\n\n%2.\n\n").arg(heading, text(method, "summary"));
+    if (const QString more = keywords(method); !more.isEmpty())
+        section += QStringLiteral("Keywords: %1.\n\n").arg(more);
     const QJsonArray params = method[QStringLiteral("params")].toArray();
     if (!params.isEmpty())
         section += parameterTable(params);
     const QJsonObject result = method[QStringLiteral("result")].toObject()[schemaKey].toObject();
-    section += QStringLiteral("Result: %1.\n\n").arg(expectation(result)) + fieldTable(result);
+    section += QStringLiteral("Result: %1.\n\n").arg(expected(result)) + fieldTable(result);
+    if (const QString errors = errorList(method[QStringLiteral("errors")].toArray()); !errors.isEmpty())
+        section += QStringLiteral("Errors: %1.\n\n").arg(errors);
     for (const QJsonValue &pairing : method[QStringLiteral("examples")].toArray())
-        section += example(name, pairing.toObject());
+        section += example(text(method, "name"), pairing.toObject());
     return section;
 }
 
-void addSettings(QString &table, const QJsonObject &schema, const QString &prefix) {
-    const QJsonObject properties = schema[QStringLiteral("properties")].toObject();
+QString topicSection(const QString &heading, const QJsonObject &topic) {
+    const QJsonObject schema = topic[schemaKey].toObject();
+    const QString more = keywords(topic);
+    return QStringLiteral("### %1\n\n%2.%3\n\n%4Data: %5.\n\n%6")
+        .arg(heading, text(topic, "summary"),
+             topic[QStringLiteral("snapshot")].toBool() ? QStringLiteral(" Begins with the full state.")
+                                                        : QString(),
+             more.isEmpty() ? more : QStringLiteral("Keywords: %1.\n\n").arg(more), expected(schema),
+             fieldTable(schema));
+}
+
+QString settingLines(const QJsonObject &schema, const QJsonObject &butFor, const QString &prefix) {
+    QString lines;
+    const QString propertiesKey = QStringLiteral("properties");
+    const QJsonObject properties = schema[propertiesKey].toObject();
+    const QJsonObject others = butFor[propertiesKey].toObject();
     for (auto property = properties.begin(); property != properties.end(); ++property) {
         const QJsonObject below = property.value().toObject();
         const QString path = prefix + property.key();
-        if (below.contains(QStringLiteral("properties"))) {
-            addSettings(table, below, path + QLatin1Char('.'));
-            continue;
-        }
-        table += QStringLiteral("| `%1` | %2 | %3 | %4 | %5 |\n")
-                     .arg(path, cell(expectation(below)), cell(shown(below[defaultKey])),
-                          text(below, "x-applies"), cell(text(below, "description")));
+        if (below.contains(propertiesKey))
+            lines += settingLines(below, others[property.key()].toObject(), path + QLatin1Char('.'));
+        else if (below != others[property.key()].toObject())
+            lines += QStringLiteral("| `%1` | %2 | %3 | %4 | %5 |\n")
+                         .arg(path, cell(expected(below)), cell(shown(below[defaultKey])),
+                              text(below, "x-applies"), cell(text(below, "description")));
     }
+    return lines;
 }
 
-} // namespace
+QString settingTable(const QString &lines) {
+    return QStringLiteral("| path | expected | default | applies | meaning |\n|---|---|---|---|---|\n") +
+           lines;
+}
 
 QString descriptionAsMarkdown(const QJsonObject &description, const QJsonObject &settingsSchema) {
     const QJsonObject info = description[QStringLiteral("info")].toObject();
     QString page = QStringLiteral("# %1\n\n%2. Version %3.\n\n## Commands\n\n")
                        .arg(text(info, "title"), text(info, "description"), text(info, "version"));
     for (const QJsonValue &method : description[QStringLiteral("methods")].toArray())
-        page += methodSection(method.toObject());
+        page += methodSection(text(method, "name"), method.toObject());
     page += QStringLiteral("## Topics\n\n");
     for (const QJsonValue &topic : description[QStringLiteral("x-topics")].toArray())
-        page += topicSection(topic.toObject());
-    page += QStringLiteral(
-        "## Settings\n\n| path | expected | default | applies | meaning |\n|---|---|---|---|---|\n");
-    addSettings(page, settingsSchema, QString());
-    return page;
+        page += topicSection(text(topic, "name"), topic.toObject());
+    return page + QStringLiteral("## Settings\n\n") + settingTable(settingLines(settingsSchema));
 }
 
 QString descriptionAsText(const QJsonObject &description) {

@@ -7,6 +7,7 @@
 #include "gui/session/SessionRecorder.h"
 
 #include <QDateTime>
+#include <QJsonArray>
 
 namespace hermes::ctl {
 namespace {
@@ -44,6 +45,13 @@ QStringList statusRow(const QString &logger, const QJsonValue &status) {
                << countsText(status["losses"]);
 }
 
+/// What a daemon gave, and its name.
+QJsonObject named(const QString &daemon, const QJsonObject &value) {
+    QJsonObject result = value;
+    result.insert("daemon", daemon);
+    return result;
+}
+
 /// What a recorder with all loggers gives, a Result; or why they are not found.
 template <typename T, typename Begin>
 T ask(const Arguments &arguments, const Begin &begin) {
@@ -55,15 +63,28 @@ T ask(const Arguments &arguments, const Begin &begin) {
 }
 
 /// A table of a member of each reply.
-Result<void> printReplies(const Result<SessionReplies> &replies, const QString &title,
-                          const std::function<QString(const QJsonValue &)> &text) {
+Result<void> printReplies(const Arguments &arguments, const Result<SessionReplies> &replies,
+                          const QString &title, const std::function<QString(const QJsonValue &)> &text) {
     if (!replies)
         return replies.error();
     std::vector<QStringList> rows{{"daemon", title}};
-    for (const SessionReply &reply : *replies)
+    QJsonArray values;
+    for (const SessionReply &reply : *replies) {
         rows.push_back({reply.member.name, text(*reply.result)});
-    printTable(rows);
+        values.append(named(reply.member.name, reply.result->toObject()));
+    }
+    arguments.json ? printJson(values) : printTable(rows);
     return {};
+}
+
+QJsonObject asJson(const RecordedSession &session) {
+    return {{"id", session.id},
+            {"name", session.name},
+            {"start", session.start},
+            {"end", session.end > 0 ? QJsonValue(session.end) : QJsonValue()},
+            {"bytes", session.bytes()},
+            {"loggers", QJsonArray::fromStringList(session.members())},
+            {"faults", QJsonArray::fromStringList(session.faults())}};
 }
 
 } // namespace
@@ -74,7 +95,7 @@ Result<void> recordStart(const Arguments &arguments) {
         return fine;
     const auto replies = ask<Result<SessionReplies>>(
         arguments, [&](SessionRecorder &recorder, auto done) { recorder.start(name, done); });
-    return printReplies(replies, "records to",
+    return printReplies(arguments, replies, "records to",
                         [](const QJsonValue &begun) { return begun["folder"].toString(); });
 }
 
@@ -82,7 +103,7 @@ Result<void> recordMark(const Arguments &arguments) {
     const auto replies = ask<Result<SessionReplies>>(arguments, [&](SessionRecorder &recorder, auto done) {
         recorder.mark(arguments.words.first(), done);
     });
-    return printReplies(replies, "marked at", [](const QJsonValue &mark) {
+    return printReplies(arguments, replies, "marked at", [](const QJsonValue &mark) {
         return stampText(mark["stamp"].toDouble(), Qt::ISODateWithMs);
     });
 }
@@ -93,14 +114,17 @@ Result<void> recordStop(const Arguments &arguments) {
     if (!stopped)
         return stopped.error();
     std::vector<QStringList> rows{{"daemon", "name", "seconds", "files", "bytes", "recorded", "lost"}};
+    QJsonArray values;
     for (const RecordedSession &session : stopped->sessions)
-        for (const SessionPart &part : session.parts)
+        for (const SessionPart &part : session.parts) {
+            values.append(named(part.member.name, part.entry));
             rows.push_back({part.member.name, session.name,
                             seconds(part.entry["start"].toDouble(), part.entry["end"].toDouble()),
                             QString::number(part.entry["files"].toInt()),
                             bytesText(part.entry["bytes"].toDouble()), countsText(part.entry["counts"]),
                             countsText(part.entry["losses"])});
-    printTable(rows);
+        }
+    arguments.json ? printJson(values) : printTable(rows);
     return stopped->problems.isEmpty() ? Result<void>()
                                        : sessionError("not all was recorded", stopped->problems);
 }
@@ -111,15 +135,17 @@ Result<void> recordStatus(const Arguments &arguments) {
     if (!status)
         return status.error();
     std::vector<QStringList> rows{{"daemon", "state", "name", "seconds", "bytes", "recorded", "lost"}};
+    QJsonArray values;
     QStringList problems = status->problems;
     for (const SessionReply &reply : status->replies) {
         if (!reply.result)
             continue;
         rows.push_back(statusRow(reply.member.name, *reply.result));
+        values.append(named(reply.member.name, reply.result->toObject()));
         if (const QJsonValue error = (*reply.result)["error"]; error.isObject())
             problems.append(reply.member.name + ": " + error["message"].toString());
     }
-    printTable(rows);
+    arguments.json ? printJson(values) : printTable(rows);
     return problemOf(problems);
 }
 
@@ -129,14 +155,16 @@ Result<void> recordList(const Arguments &arguments) {
     if (!list)
         return list.error();
     std::vector<QStringList> rows{{"name", "start", "seconds", "bytes", "loggers", "state"}};
+    QJsonArray values;
     for (const RecordedSession &session : list->sessions) {
         const QStringList faults = session.faults();
         rows.push_back({session.name, stampText(session.start, Qt::ISODate),
                         session.end > 0 ? seconds(session.start, session.end) : QString("-"),
                         bytesText(session.bytes()), session.members().join(','),
                         faults.isEmpty() ? "complete" : faults.join("; ")});
+        values.append(asJson(session));
     }
-    printTable(rows);
+    arguments.json ? printJson(values) : printTable(rows);
     return problemOf(list->problems);
 }
 

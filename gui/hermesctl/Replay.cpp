@@ -47,12 +47,15 @@ Result<void> replay(const Arguments &arguments) {
     if (!session)
         return session.error();
     for (const QString &line : session->absent())
-        std::fprintf(stderr, "hermesctl: %s\n", qPrintable(line));
+        note(line);
     SessionPlayer player;
     SignalWatcher signals(nullptr);
     QObject::connect(&signals, &SignalWatcher::received, &player, &SessionPlayer::end);
     bool shown = false;
     QObject::connect(&player, &SessionPlayer::progress, [&](double position_s, double duration_s) {
+        if (arguments.json)
+            return printJson(QJsonObject{
+                {"session", session->id}, {"position_s", position_s}, {"duration_s", duration_s}});
         if (::isatty(STDERR_FILENO) == 0)
             return;
         shown = true;

@@ -1,6 +1,6 @@
 #include "gui/hermesctl/Table.h"
 
-#include "gui/hermesctl/Commands.h"
+#include "gui/hermesctl/Output.h"
 
 namespace hermes::ctl {
 

@@ -1,85 +1,128 @@
-#include "common/settings/DottedPath.h"
+// hermesctl watch: the messages of a topic.
 #include "gui/hermesctl/Commands.h"
-#include "protocol/wire/JsonText.h"
+#include "gui/hermesctl/CsvTable.h"
 
 #include <QEventLoop>
-#include <cstdio>
+#include <QJsonArray>
 
 namespace hermes::ctl {
 namespace {
 
-QString csvField(const QJsonValue &value) {
-    if (value.isUndefined() || value.isNull())
-        return QString();
-    const QString text = value.isString() ? value.toString() : QString::fromUtf8(compactJson(value));
-    if (!text.contains(QLatin1Char(',')) && !text.contains(QLatin1Char('"')) &&
-        !text.contains(QLatin1Char('\n')))
-        return text;
-    return QLatin1Char('"') + QString(text).replace(QLatin1Char('"'), QStringLiteral("\"\"")) +
-           QLatin1Char('"');
-}
-
-// Lines of CSV: stamp, seq, dropped, then one column for each value of the first message.
-class CsvPrinter {
+/// Prints messages, counts what is missing between them, and tells of it at the end.
+class Watcher {
 public:
-    void print(const TopicUpdate &update) {
-        const QJsonObject row = update.json().isObject()
-                                    ? update.json().toObject()
-                                    : QJsonObject{{QStringLiteral("data"), update.json()}};
-        if (columns.isEmpty()) {
-            columns = leafPaths(row);
-            printLine(QStringLiteral("stamp,seq,dropped,") + columns.join(QLatin1Char(',')));
+    Watcher(Client &client, const Arguments &arguments)
+        : client_(client)
+        , arguments_(arguments)
+        , left_(arguments.count) {}
+
+    /// Until the count is reached, the end is asked for, or the daemon refuses.
+    Result<void> run() {
+        if (arguments_.csv) {
+            if (const auto begun = beginTable(); !begun)
+                return begun;
         }
-        QStringList fields{QString::number(update.stamp, 'f', 6), QString::number(update.seq),
-                           QString::number(update.dropped)};
-        for (const QString &column : qAsConst(columns))
-            fields.append(csvField(valueAt(row, column)));
-        printLine(fields.join(QLatin1Char(',')));
+        Result<void> result;
+        QObject::connect(&client_, &Client::subscriptionFailed, &loop_, [&](int, const RpcError &error) {
+            result = error;
+            loop_.quit();
+        });
+        QObject::connect(&client_, &Client::disconnected, &loop_,
+                         [this](const QString &reason) { onDisconnected(reason); });
+        QObject::connect(&client_, &Client::connected, &loop_, [this] { isLost_ = false; });
+        QJsonObject options{{QStringLiteral("queue"), 100}};
+        if (arguments_.rate_hz > 0)
+            options.insert(QStringLiteral("max_rate_hz"), arguments_.rate_hz);
+        client_.subscribe(arguments_.words.at(1), options,
+                          [this](const TopicUpdate &update) { onMessage(update); });
+        runStream(loop_);
+        tellWhatIsMissing();
+        return result;
     }
 
 private:
-    QStringList columns;
-};
+    Result<void> beginTable() {
+        const auto topics = ask(client_, arguments_, QStringLiteral("topics.list"));
+        if (!topics)
+            return topics.error();
+        for (const QJsonValue &topic : topics->toArray()) {
+            if (topic[QStringLiteral("name")].toString() == arguments_.words.at(1))
+                table_ = CsvTable(topic[QStringLiteral("schema")].toObject());
+        }
+        if (const auto header = table_.header())
+            printHeader(*header);
+        return {};
+    }
 
-void printJson(const TopicUpdate &update) {
-    printLine(QString::fromUtf8(compactJson(QJsonObject{{QStringLiteral("stamp"), update.stamp},
-                                                        {QStringLiteral("seq"), double(update.seq)},
-                                                        {QStringLiteral("dropped"), double(update.dropped)},
-                                                        {QStringLiteral("data"), update.json()}})));
-}
+    void printHeader(const QString &header) {
+        hasHeader_ = true;
+        printLine(header);
+    }
+
+    void onDisconnected(const QString &reason) {
+        if (std::exchange(isLost_, true))
+            return;
+        ++interruptions_;
+        droppedBefore_ += dropped_;
+        dropped_ = 0;
+        note(QStringLiteral("%1; trying again").arg(reason));
+    }
+
+    void onMessage(const TopicUpdate &update) {
+        if (arguments_.count > 0 && left_ == 0)
+            return; // more came in the same read than were asked for
+        dropped_ = update.dropped;
+        arguments_.csv ? printRow(update) : printMessage(update);
+        if (readerIsGone() || (arguments_.count > 0 && --left_ == 0))
+            loop_.quit();
+    }
+
+    void printRow(const TopicUpdate &update) {
+        const QJsonValue data = update.json();
+        table_.begin(data);
+        if (!hasHeader_)
+            printHeader(*table_.header());
+        printLine(table_.line(QString::number(update.stamp, 'f', 6), update.seq, update.dropped, data));
+    }
+
+    static void printMessage(const TopicUpdate &update) {
+        printJson(QJsonObject{{QStringLiteral("stamp"), update.stamp},
+                              {QStringLiteral("seq"), double(update.seq)},
+                              {QStringLiteral("dropped"), double(update.dropped)},
+                              {QStringLiteral("data"), update.json()}});
+    }
+
+    void tellWhatIsMissing() const {
+        if (const quint64 all = droppedBefore_ + dropped_; all > 0)
+            note(QStringLiteral("%1 messages are missing: they were dropped because they were not read in "
+                                "time (column or member dropped)")
+                     .arg(all));
+        if (interruptions_ > 0)
+            note(QStringLiteral("the connection was lost %1 times: what was published meanwhile is missing")
+                     .arg(interruptions_));
+        const auto &missing = table_.withoutColumn();
+        for (auto one = missing.begin(); one != missing.end(); ++one)
+            note(QStringLiteral("%1 came in %2 messages after the header: it has no column")
+                     .arg(one.key())
+                     .arg(one.value()));
+    }
+
+    Client &client_;
+    const Arguments &arguments_;
+    QEventLoop loop_;
+    CsvTable table_{{}};
+    int left_;
+    bool hasHeader_ = false;
+    bool isLost_ = false;
+    quint64 dropped_ = 0; ///< over this connection
+    quint64 droppedBefore_ = 0;
+    int interruptions_ = 0;
+};
 
 } // namespace
 
 Result<void> watch(Client &client, const Arguments &arguments) {
-    QEventLoop loop;
-    CsvPrinter csv;
-    int left = arguments.count;
-    Result<void> result;
-    QObject::connect(&client, &Client::subscriptionFailed, &loop, [&](int, const RpcError &error) {
-        result = error;
-        loop.quit();
-    });
-    bool lost = false;
-    QObject::connect(&client, &Client::disconnected, &loop, [&](const QString &reason) {
-        if (!std::exchange(lost, true))
-            std::fprintf(stderr, "hermesctl: %s; trying again\n", qPrintable(reason));
-    });
-    QObject::connect(&client, &Client::connected, &loop, [&lost] { lost = false; });
-    QJsonObject options{{QStringLiteral("queue"), 100}};
-    if (arguments.rate_hz > 0)
-        options.insert(QStringLiteral("max_rate_hz"), arguments.rate_hz);
-    client.subscribe(arguments.words.at(1), options, [&](const TopicUpdate &update) {
-        if (arguments.count > 0 && left == 0)
-            return; // more came in the same read than were asked for
-        if (arguments.csv)
-            csv.print(update);
-        else
-            printJson(update);
-        if (arguments.count > 0 && --left == 0)
-            loop.quit();
-    });
-    loop.exec();
-    return result;
+    return Watcher(client, arguments).run();
 }
 
 } // namespace hermes::ctl

@@ -56,7 +56,7 @@ class Hermesctl(unittest.TestCase):
         self.assertEqual(len(lines), 3)
         self.assertAlmostEqual(json.loads(lines[0])["data"], 20, delta=3)
         table = self.ok("watch", self.address, "extremes", "--csv", "--count=1").splitlines()
-        self.assertEqual(table[0], "stamp,seq,dropped,greatest,least")
+        self.assertEqual(table[0], "stamp [s],seq,dropped,greatest,least")
         self.assertTrue(table[1].endswith(",21,19"))
         shown = ctl("watch", self.address, "nothing")
         self.assertEqual(shown.returncode, 1)

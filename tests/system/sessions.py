@@ -252,6 +252,22 @@ class Sessions(unittest.TestCase):
             self.assertIn(words, told)
         self.assertNotRegex(self.ctl("record", "status"), " recording ")
 
+    def test_json_and_completion(self):
+        def told(*arguments):
+            return json.loads(self.ctl(*arguments, "--json"))
+
+        loggers = {"velodynelogger", "seriallogger"}
+        self.assertEqual({one["daemon"] for one in told("record", "start", "run1")}, loggers)
+        self.assertEqual([one["daemon"] for one in told("record", "mark", "here")], ["seriallogger"])
+        self.assertEqual({(one["daemon"], one["recording"]) for one in told("record", "status")}, {(name, True) for name in loggers})
+        self.assertEqual({(one["daemon"], one["name"]) for one in told("record", "stop")}, {(name, "run1") for name in loggers})
+        session, = told("record", "list")
+        self.assertEqual((session["name"], set(session["loggers"]), session["faults"]), ("run1", loggers, []))
+        for line in (f"replay --daemons {self.daemons} ru", f"call {self.daemons.split(',')[1]} source.open recording="):
+            self.assertIn("run1", ctl("complete", "hermesctl " + line).stdout)
+        error = json.loads(self.ctl("replay", "none", "--json", status=1))
+        self.assertIn('no session "none"', error["message"])
+
     def test_mark(self):
         self.assertIn("no logger that takes marks is recording", self.ctl("record", "mark", "too early", status=1))
         self.ctl("record", "start", "run1")

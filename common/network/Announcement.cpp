@@ -1,0 +1,57 @@
+#include "common/network/Announcement.h"
+
+#include "common/Project.h"
+#include "common/interface/InterfaceRegistry.h"
+#include "common/network/Publisher.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace hermes {
+namespace {
+
+bool isHeld = false;
+
+} // namespace
+
+std::optional<AnnouncedPort> AnnouncedPort::of(const QString &daemon, const QString &setting,
+                                               const QString &address) {
+    const auto wanted = InterfaceUrl::parse(setting), real = InterfaceUrl::parse(address);
+    if (!wanted || !real || !isReachable(*wanted) || wanted->scheme == QStringLiteral("udp"))
+        return std::nullopt;
+    const QString tls =
+        wanted->scheme == QStringLiteral("tls") ? QStringLiteral("yes") : QStringLiteral("no");
+    AnnouncedPort result;
+    result.port = real->port;
+    for (const QString &text :
+         {QStringLiteral("name=") + daemon, QStringLiteral("protocol=") + protocolVersion(),
+          QStringLiteral("framing=") + wanted->protocol(), QStringLiteral("tls=") + tls})
+        result.texts.append(text.toUtf8());
+    return result;
+}
+
+Announcement::Announcement(const QString &daemon, const std::vector<AnnouncedPort> &ports)
+    : thread_(new QThread) {
+    auto *publisher = new Publisher(daemon, ports);
+    publisher->moveToThread(thread_);
+    QObject::connect(thread_, &QThread::started, publisher, &Publisher::begin);
+    QObject::connect(thread_, &QThread::finished, publisher, &QObject::deleteLater);
+    thread_->start();
+}
+
+Announcement::~Announcement() {
+    thread_->quit();
+    if (thread_->wait(QDeadlineTimer(std::chrono::milliseconds(500))))
+        delete thread_;
+    else
+        isHeld = true;
+}
+
+void Announcement::endProgramIfHeld(int status) {
+    if (!isHeld)
+        return;
+    std::fflush(nullptr);
+    std::_Exit(status);
+}
+
+} // namespace hermes

@@ -1,0 +1,196 @@
+#include "common/tls/Authority.h"
+
+#include "common/tls/KeyFolder.h"
+#include "protocol/wire/JsonText.h"
+
+#include <QDir>
+#include <QFile>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QRegularExpression>
+#include <QSaveFile>
+#include <QSslCertificate>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace hermes {
+namespace {
+
+const QString issuedFile = QStringLiteral("issued");
+const QString giveAwayFolder = QStringLiteral("issued for");
+const QString authorityKeyFile = QStringLiteral("authority.key");
+
+Error failed(const QString &path, const QString &why) {
+    return {ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, why),
+            QJsonObject{{QStringLiteral("path"), path}}};
+}
+
+// Whole or not at all; secret: only its owner may read it, from the beginning.
+Result<void> write(const QString &path, const QByteArray &content, bool secret) {
+    const mode_t before = ::umask(secret ? 077 : 022);
+    QSaveFile file(path);
+    const bool written =
+        file.open(QIODevice::WriteOnly) && file.write(content) == content.size() && file.commit();
+    ::umask(before);
+    return written ? Result<void>() : failed(path, file.errorString());
+}
+
+Result<void> append(const QString &path, const QByteArray &line) {
+    QFile file(path);
+    const bool written = file.open(QIODevice::Append) && file.write(line + '\n') == line.size() + 1 &&
+                         file.flush() && ::fsync(file.handle()) == 0;
+    return written ? Result<void>() : failed(path, file.errorString());
+}
+
+Result<QByteArray> read(const QString &path) {
+    QFile file(path);
+    if (!file.open(QIODevice::ReadOnly))
+        return failed(path, file.errorString() + QStringLiteral("; hermesctl keys init makes an authority"));
+    return file.readAll();
+}
+
+Result<void> writeFolder(const QString &folder, const CertifiedKey &own, const QByteArray &authority) {
+    const QDir dir(folder);
+    if (!dir.mkpath(QStringLiteral(".")))
+        return failed(folder, QStringLiteral("cannot be made"));
+    if (const auto done = write(dir.filePath(KeyFolder::authorityFile()), authority, false); !done)
+        return done;
+    if (const auto done = write(dir.filePath(KeyFolder::keyFile()), own.key, true); !done)
+        return done;
+    return write(dir.filePath(KeyFolder::ownFile()), own.certificate, false);
+}
+
+Result<void> checkName(const QString &name) {
+    static const QRegularExpression plain(QStringLiteral("^[A-Za-z0-9_][A-Za-z0-9_.@-]{0,63}$"));
+    if (plain.match(name).hasMatch())
+        return {};
+    return Error(ErrorCode::InvalidParams,
+                 QStringLiteral("the name \"%1\", expected 1 to 64 letters, digits, or one of _ . @ -")
+                     .arg(name.left(80)));
+}
+
+} // namespace
+
+QString Authority::path(const QString &file) const {
+    return QDir(folder_).filePath(file);
+}
+
+Result<void> Authority::init(const QString &owner, int days) const {
+    for (const QString &file : {authorityKeyFile, KeyFolder::authorityFile(), KeyFolder::keyFile()})
+        if (QFile::exists(path(file)))
+            return failed(path(file), QStringLiteral("there are keys already; they are not replaced"));
+    if (!QDir().mkpath(folder_))
+        return failed(folder_, QStringLiteral("cannot be made"));
+    ::chmod(QFile::encodeName(folder_).constData(), 0700);
+    const auto authority = makeAuthority(QStringLiteral("Hermes authority of ") + owner, days);
+    if (!authority)
+        return authority.error();
+    const CertificateSubject subject{owner, QStringLiteral("engineer")};
+    const auto own = issueCertificate(*authority, subject, days);
+    if (!own)
+        return own.error();
+    if (const auto done = writeFolder(folder_, *own, authority->certificate); !done)
+        return done;
+    if (const auto done = note(subject, own->certificate); !done)
+        return done;
+    return write(path(authorityKeyFile), authority->key, true); // last: without it there is no authority
+}
+
+Result<CertifiedKey> Authority::load() const {
+    const auto certificate = read(path(KeyFolder::authorityFile())), key = read(path(authorityKeyFile));
+    if (!certificate || !key)
+        return certificate ? key.error() : certificate.error();
+    if (!belongTogether({*certificate, *key}))
+        return failed(path(authorityKeyFile),
+                      QStringLiteral("is not the key of ") + path(KeyFolder::authorityFile()));
+    return CertifiedKey{*certificate, *key};
+}
+
+Result<void> Authority::note(const CertificateSubject &subject, const QByteArray &certificate) const {
+    const QSslCertificate read(certificate);
+    const QJsonObject line{{QStringLiteral("name"), subject.name},
+                           {QStringLiteral("role"), subject.role},
+                           {QStringLiteral("serial"), toPeer(read).serial},
+                           {QStringLiteral("until"), read.expiryDate().toUTC().toString(Qt::ISODate)}};
+    return append(path(issuedFile), compactJson(line));
+}
+
+Result<QString> Authority::issue(const CertificateSubject &subject, int days) const {
+    if (const auto fine = checkName(subject.name); !fine)
+        return fine.error();
+    const auto authority = load();
+    if (!authority)
+        return authority.error();
+    const QString folder = path(giveAwayFolder + QLatin1Char('/') + subject.name);
+    if (QFile::exists(folder))
+        return failed(folder,
+                      QStringLiteral("exists; take it away first, and revoke its certificate if it has "
+                                     "been given to somebody"));
+    const auto made = issueCertificate(*authority, subject, days);
+    if (!made)
+        return made.error();
+    QDir().mkpath(path(giveAwayFolder));
+    ::chmod(QFile::encodeName(path(giveAwayFolder)).constData(), 0700);
+    auto done = writeFolder(folder, *made, authority->certificate);
+    if (done && QFile::exists(path(KeyFolder::revokedFile())) &&
+        !QFile::copy(path(KeyFolder::revokedFile()), QDir(folder).filePath(KeyFolder::revokedFile())))
+        done = failed(folder, QStringLiteral("the list of revoked certificates cannot be copied there"));
+    if (done)
+        done = note(subject, made->certificate); // before it is given away: else it could not be revoked
+    if (done)
+        return folder;
+    QDir(folder).removeRecursively();
+    return done.error();
+}
+
+Result<std::vector<Authority::Issued>> Authority::list() const {
+    const auto content = read(path(issuedFile));
+    if (!content)
+        return content.error();
+    const auto revoked = KeyFolder::revoked(folder_);
+    if (!revoked)
+        return revoked.error();
+    std::vector<Issued> all;
+    for (const QByteArray &line : content->split('\n')) {
+        if (line.isEmpty())
+            continue;
+        const QJsonObject entry = QJsonDocument::fromJson(line).object();
+        const auto text = [&entry](const char *name) { return entry.value(QLatin1String(name)).toString(); };
+        const QDateTime until = QDateTime::fromString(text("until"), Qt::ISODate);
+        if (text("serial").isEmpty() || !until.isValid())
+            return failed(path(issuedFile), QStringLiteral("line %1 is no certificate that was issued: %2")
+                                                .arg(all.size() + 1)
+                                                .arg(QString::fromUtf8(line.left(80))));
+        all.push_back({{text("name"), text("role")},
+                       text("serial"),
+                       until,
+                       revoked->contains(text("serial").toLatin1())});
+    }
+    return all;
+}
+
+Result<int> Authority::revoke(const QString &nameOrSerial) const {
+    const auto all = list();
+    if (!all)
+        return all.error();
+    int count = 0;
+    bool isKnown = false;
+    for (const Issued &one : *all) {
+        if (one.subject.name != nameOrSerial && one.serial != nameOrSerial.toLower())
+            continue;
+        isKnown = true;
+        if (one.isRevoked)
+            continue;
+        const QString line = QStringLiteral("%1 %2, %3").arg(one.serial, one.subject.name, one.subject.role);
+        if (const auto done = append(path(KeyFolder::revokedFile()), line.toUtf8()); !done)
+            return done.error();
+        ++count;
+    }
+    if (!isKnown)
+        return Error(
+            ErrorCode::InvalidParams,
+            QStringLiteral("no certificate of \"%1\" was issued; hermesctl keys list").arg(nameOrSerial));
+    return count;
+}
+
+} // namespace hermes

@@ -1,0 +1,257 @@
+#include "gui/hermesctl/Completion.h"
+
+#include "common/Project.h"
+#include "common/Role.h"
+#include "common/client/DaemonAddress.h"
+#include "common/schema/SchemaText.h"
+#include "gui/hermesctl/CompletionScripts.h"
+#include "gui/hermesctl/Descriptions.h"
+#include "gui/hermesctl/Loggers.h"
+#include "gui/hermesctl/Subcommands.h"
+#include "gui/hermesctl/TypedLine.h"
+#include "gui/session/SessionRecorder.h"
+
+#include <QJsonArray>
+
+namespace hermes::ctl {
+namespace {
+
+constexpr std::chrono::milliseconds patience{400}; // with a connection, and with each reply
+
+struct Candidate {
+    QString text;
+    QString meaning;
+};
+using Candidates = std::vector<Candidate>;
+
+/// What may follow in a command line that is being typed.
+class Completion {
+public:
+    explicit Completion(const QString &text)
+        : line_(TypedLine::read(text)) {}
+
+    Candidates candidates() {
+        Candidates found;
+        for (const Candidate &candidate : all())
+            if (candidate.text.startsWith(line_.current) || candidate.text == QStringLiteral(":files"))
+                found.push_back(candidate);
+        return found;
+    }
+
+private:
+    Candidates all() {
+        if (!line_.pendingOption.isEmpty())
+            return ofOption(line_.pendingOption, QString());
+        const int equals = line_.current.indexOf(QLatin1Char('='));
+        if (line_.current.startsWith(QLatin1Char('-')))
+            return equals > 0 ? ofOption(line_.current.left(equals), line_.current.left(equals + 1))
+                              : options();
+        if (line_.arguments.command.isEmpty())
+            return commands(QString());
+        if (hasSecondWord(line_.arguments.command))
+            return commands(line_.arguments.command + QLatin1Char(' '));
+        const Subcommand *const command = findSubcommand(line_.arguments.command);
+        if (!command || line_.arguments.words.size() >= command->mostWords || command->words.empty())
+            return {};
+        const auto place = std::min(std::size_t(line_.arguments.words.size()), command->words.size() - 1);
+        return ofWord(command->words[place]);
+    }
+
+    static Candidates commands(const QString &begin) {
+        Candidates found;
+        for (const Subcommand &one : subcommands()) {
+            const QString name = QLatin1String(one.name);
+            if (!begin.isEmpty() && !name.startsWith(begin))
+                continue;
+            const QString word = name.mid(begin.size()).section(QLatin1Char(' '), 0, 0);
+            if (found.empty() || found.back().text != word)
+                found.push_back({word, QLatin1String(one.summary)});
+        }
+        return found;
+    }
+
+    Candidates options() const {
+        QStringList names{QStringLiteral("--help"), QStringLiteral("--host"), QStringLiteral("--timeout"),
+                          QStringLiteral("--json"), QStringLiteral("--out"),  QStringLiteral("--force")};
+        if (const Subcommand *command = findSubcommand(line_.arguments.command))
+            names += QString::fromLatin1(command->options).split(QLatin1Char(' '), Qt::SkipEmptyParts);
+        else
+            names.append(QStringLiteral("--version"));
+        return plain(names);
+    }
+
+    Candidates ofOption(const QString &option, const QString &before) const {
+        if (option == QStringLiteral("--out"))
+            return {{QStringLiteral(":files"), QString()}};
+        if (option == QStringLiteral("--role"))
+            return plain(roleNames() + QStringList(QStringLiteral("daemon")), before);
+        if (option != QStringLiteral("--daemons"))
+            return {};
+        const QString given = line_.current.mid(before.size());
+        const QString listed = given.left(given.lastIndexOf(QLatin1Char(',')) + 1);
+        return plain(daemonNames(), before + listed);
+    }
+
+    static Candidates plain(const QStringList &texts, const QString &before = {}, const QString &after = {}) {
+        Candidates found;
+        for (const QString &text : texts)
+            found.push_back({before + text + after, QString()});
+        return found;
+    }
+
+    Candidates ofWord(Word word) {
+        switch (word) {
+        case Word::Nothing:
+            return {};
+        case Word::Daemon:
+            return daemons();
+        case Word::Method:
+            return described(askList("rpc.discover", "methods"));
+        case Word::Parameter:
+            return parameters();
+        case Word::SettingPath:
+            return plain(settingPaths(ask("settings.schema").toObject(), true));
+        case Word::SettingValue:
+            return settings();
+        case Word::Topic:
+            return described(ask("topics.list").toArray());
+        case Word::Session:
+            return sessions();
+        case Word::Shell:
+            return plain(completionShells());
+        }
+        return {};
+    }
+
+    Candidates daemons() const {
+        Candidates found;
+        for (const QString &name : daemonNames()) {
+            const QString address = *daemonAddress(name, line_.arguments.host);
+            found.push_back({name, address});
+            if (!line_.current.isEmpty()) // names first: who wants an address begins with it
+                found.push_back({address, name});
+        }
+        return found;
+    }
+
+    /// null where the daemon does not answer.
+    QJsonValue ask(const char *method) {
+        if (!client_) {
+            client_ = std::make_unique<Client>();
+            const auto address = daemonAddress(line_.arguments.words.value(0), line_.arguments.host);
+            if (address)
+                (void)connectOnce(*client_, *address, patience);
+        }
+        if (!client_->isConnected())
+            return {};
+        const auto answer = client_->callAndWait(QLatin1String(method), QJsonObject(), patience);
+        return answer ? *answer : QJsonValue();
+    }
+
+    QJsonArray askList(const char *method, const char *member) {
+        return ask(method)[QLatin1String(member)].toArray();
+    }
+
+    static Candidates described(const QJsonArray &list) {
+        Candidates found;
+        for (const QJsonValue &one : list)
+            found.push_back(
+                {one[QStringLiteral("name")].toString(), one[QStringLiteral("summary")].toString()});
+        return found;
+    }
+
+    /// NAME= of those that are not given yet; after it what the schema allows, or what there is of the kind.
+    Candidates parameters() {
+        const QString methodName = line_.arguments.words.value(1);
+        const QJsonObject method = named(askList("rpc.discover", "methods"), methodName);
+        const QStringList names = namesOf(method[QStringLiteral("params")].toArray());
+        const QString name = line_.current.section(QLatin1Char('='), 0, 0);
+        if (line_.current.contains(QLatin1Char('='))) {
+            const QStringList there = whatThereIs(methodName, name);
+            return there.isEmpty() ? values(name, parameterSchema(method, name))
+                                   : plain(there, name + QLatin1Char('='));
+        }
+        Candidates found;
+        for (const QString &one : names)
+            if (!line_.isGiven(one))
+                found.push_back({one + QLatin1Char('='), explanation(parameterSchema(method, one))});
+        return found;
+    }
+
+    QStringList whatThereIs(const QString &method, const QString &parameter) {
+        const bool isName = parameter == QStringLiteral("name");
+        if (parameter == QStringLiteral("recording") ||
+            (isName && method.startsWith(QStringLiteral("record.")) &&
+             method != QStringLiteral("record.start")))
+            return namesOf(ask("record.list").toArray());
+        if (isName && method.startsWith(QStringLiteral("process.")) &&
+            method != QStringLiteral("process.add"))
+            return namesOf(ask("process.list").toArray());
+        return parameter == QStringLiteral("topic") ? namesOf(ask("topics.list").toArray()) : QStringList();
+    }
+
+    Candidates settings() {
+        const QJsonObject schema = ask("settings.schema").toObject();
+        const QString path = line_.current.section(QLatin1Char('='), 0, 0);
+        if (line_.current.contains(QLatin1Char('=')))
+            return values(path, settingSchema(schema, path));
+        Candidates found;
+        for (const QString &one : settingPaths(schema, false))
+            if (!line_.isGiven(one))
+                found.push_back({one + QLatin1Char('='), explanation(settingSchema(schema, one))});
+        return found;
+    }
+
+    static Candidates values(const QString &name, const QJsonObject &schema) {
+        QStringList texts;
+        for (const QJsonValue &choice : schema[QStringLiteral("enum")].toArray())
+            texts.append(choice.isString() ? choice.toString() : shown(choice));
+        if (schema[QStringLiteral("type")].toString() == QStringLiteral("boolean"))
+            texts = QStringList{QStringLiteral("true"), QStringLiteral("false")};
+        return plain(texts, name + QLatin1Char('='));
+    }
+
+    Candidates sessions() {
+        line_.arguments.timeout = patience;
+        const auto loggers = Loggers::find(line_.arguments);
+        if (!loggers)
+            return {};
+        SessionRecorder recorder(loggers->members);
+        const auto list = await<SessionList>([&](auto done) { recorder.list(0, done); });
+        Candidates found;
+        for (const RecordedSession &session : list.sessions)
+            found.push_back({session.name, session.members().join(QStringLiteral(", "))});
+        return found;
+    }
+
+    TypedLine line_;
+    std::unique_ptr<Client> client_;
+};
+
+} // namespace
+
+int printCandidates(const QString &line) {
+    QStringList known;
+    for (const Candidate &candidate : Completion(line).candidates()) {
+        if (known.contains(candidate.text))
+            continue;
+        known.append(candidate.text);
+        printLine(candidate.text + QLatin1Char('\t') + candidate.meaning.simplified());
+    }
+    return 0;
+}
+
+Result<void> completion(const Arguments &arguments) {
+    const QString script = completionScript(arguments.words.first());
+    if (script.isEmpty())
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("there is no completion for \"%1\", expected one of %2")
+                         .arg(arguments.words.first(), completionShells().join(QStringLiteral(", "))));
+    if (arguments.json)
+        printJson(script);
+    else
+        printLine(script.trimmed());
+    return {};
+}
+
+} // namespace hermes::ctl

@@ -1,0 +1,66 @@
+#include "gui/hermesctl/Descriptions.h"
+
+#include "common/schema/SchemaText.h"
+
+#include <QJsonArray>
+
+namespace hermes::ctl {
+namespace {
+
+const QString propertiesKey = QStringLiteral("properties");
+
+void addPaths(QStringList &paths, const QJsonObject &schema, const QString &prefix, bool withGroups) {
+    const QJsonObject properties = schema[propertiesKey].toObject();
+    for (auto property = properties.begin(); property != properties.end(); ++property) {
+        const QJsonObject below = property.value().toObject();
+        const bool isGroup = below.contains(propertiesKey);
+        if (!isGroup || withGroups)
+            paths.append(prefix + property.key());
+        if (isGroup)
+            addPaths(paths, below, prefix + property.key() + QLatin1Char('.'), withGroups);
+    }
+}
+
+} // namespace
+
+QStringList namesOf(const QJsonArray &list) {
+    QStringList names;
+    for (const QJsonValue &one : list)
+        names.append(one[QStringLiteral("name")].toString());
+    return names;
+}
+
+QJsonObject named(const QJsonArray &list, const QString &name) {
+    for (const QJsonValue &one : list) {
+        if (one[QStringLiteral("name")].toString() == name)
+            return one.toObject();
+    }
+    return {};
+}
+
+QJsonObject parameterSchema(const QJsonObject &method, const QString &name) {
+    return named(method[QStringLiteral("params")].toArray(), name)[QStringLiteral("schema")].toObject();
+}
+
+QJsonObject settingSchema(const QJsonObject &schema, const QString &path) {
+    QJsonObject below = schema;
+    for (const QString &key : path.split(QLatin1Char('.')))
+        below = below[propertiesKey].toObject()[key].toObject();
+    return below;
+}
+
+QStringList settingPaths(const QJsonObject &schema, bool withGroups) {
+    QStringList paths;
+    addPaths(paths, schema, QString(), withGroups);
+    return paths;
+}
+
+QString explanation(const QJsonObject &schema) {
+    QString text = expectation(schema);
+    if (schema.contains(QStringLiteral("default")))
+        text += QStringLiteral("; default ") + shown(schema[QStringLiteral("default")]);
+    const QString description = schema[QStringLiteral("description")].toString();
+    return description.isEmpty() ? text : text + QStringLiteral("; ") + description;
+}
+
+} // namespace hermes::ctl

@@ -1,0 +1,102 @@
+#include "common/Role.h"
+#include "common/tls/Authority.h"
+#include "common/tls/KeyFolder.h"
+#include "gui/hermesctl/Commands.h"
+#include "gui/hermesctl/Table.h"
+
+#include <QHostInfo>
+#include <QJsonArray>
+
+namespace hermes::ctl {
+namespace {
+
+constexpr int usualDays = 2 * 365;
+constexpr int daysOfAuthority = 20 * 365;
+const QString daemonRole = QStringLiteral("daemon");
+
+QString stateOf(const Authority::Issued &one) {
+    return one.isRevoked                                 ? QStringLiteral("revoked")
+           : one.until < QDateTime::currentDateTimeUtc() ? QStringLiteral("expired")
+                                                         : QStringLiteral("valid");
+}
+
+} // namespace
+
+Result<void> keysInit(const Arguments &arguments) {
+    const QString owner = QStringLiteral("%1@%2").arg(qEnvironmentVariable("USER", QStringLiteral("user")),
+                                                      QHostInfo::localHostName());
+    const auto done = Authority(KeyFolder::usual()).init(owner, daysOfAuthority);
+    if (!done)
+        return done;
+    if (arguments.json)
+        printJson(
+            QJsonObject{{QStringLiteral("folder"), KeyFolder::usual()}, {QStringLiteral("name"), owner}});
+    else
+        printLine(QStringLiteral("%1: the authority, and the keys of %2, an engineer.\n"
+                                 "Keep authority.key secret: who has it can make keys for all robots of this "
+                                 "authority.\nNext, for a robot:  hermesctl keys issue NAME --role daemon")
+                      .arg(KeyFolder::usual(), owner));
+    return {};
+}
+
+Result<void> keysIssue(const Arguments &arguments) {
+    const QString name = arguments.words.first();
+    if (!roleFrom(arguments.role) && arguments.role != daemonRole)
+        return Error(
+            ErrorCode::InvalidParams,
+            QStringLiteral("option --role is \"%1\", expected one of %2 (for people), daemon (for robots)")
+                .arg(arguments.role, roleNames().join(QStringLiteral(", "))));
+    const auto folder = Authority(KeyFolder::usual())
+                            .issue({name, arguments.role}, arguments.days > 0 ? arguments.days : usualDays);
+    if (!folder)
+        return folder.error();
+    if (arguments.json)
+        printJson(QJsonObject{{QStringLiteral("folder"), *folder},
+                              {QStringLiteral("name"), name},
+                              {QStringLiteral("role"), arguments.role}});
+    else
+        printLine(
+            QStringLiteral("%1: the keys of %2. Copy the folder over a way that nobody else reads to where "
+                           "its programs look for keys (usually ~/.config/hermes/keys), and delete it "
+                           "here:\n  scp -rp \"%1\" %2:.config/hermes/keys")
+                .arg(*folder, name));
+    return {};
+}
+
+Result<void> keysRevoke(const Arguments &arguments) {
+    const auto count = Authority(KeyFolder::usual()).revoke(arguments.words.first());
+    if (!count)
+        return count.error();
+    const QString file = KeyFolder::usual() + QLatin1Char('/') + KeyFolder::revokedFile();
+    if (arguments.json)
+        printJson(QJsonObject{{QStringLiteral("revoked"), *count}, {QStringLiteral("file"), file}});
+    else
+        printLine(QStringLiteral("%1 revoked. Copy %2 into the folder of keys of each robot: it has effect "
+                                 "within a second, also on those who are connected.")
+                      .arg(*count)
+                      .arg(file));
+    return {};
+}
+
+Result<void> keysList(const Arguments &arguments) {
+    const auto all = Authority(KeyFolder::usual()).list();
+    if (!all)
+        return all.error();
+    QJsonArray json;
+    std::vector<QStringList> rows{{QStringLiteral("name"), QStringLiteral("role"),
+                                   QStringLiteral("serial number"), QStringLiteral("valid until"),
+                                   QStringLiteral("state")}};
+    for (const Authority::Issued &one : *all) {
+        const QString until = one.until.toString(Qt::ISODate);
+        rows.push_back({one.subject.name, one.subject.role, one.serial, until, stateOf(one)});
+        json.append(QJsonObject{{QStringLiteral("name"), one.subject.name},
+                                {QStringLiteral("role"), one.subject.role},
+                                {QStringLiteral("serial"), one.serial},
+                                {QStringLiteral("until"), until},
+                                {QStringLiteral("state"), stateOf(one)}});
+    }
+    arguments.json ? printJson(json) : printTable(rows);
+    return {};
+}
+
+} // namespace hermes::ctl

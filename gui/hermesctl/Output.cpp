@@ -1,0 +1,120 @@
+#include "gui/hermesctl/Output.h"
+
+#include "common/daemon/SignalWatcher.h"
+#include "protocol/wire/JsonText.h"
+
+#include <QFile>
+#include <QJsonObject>
+#include <QTimer>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+namespace hermes::ctl {
+namespace {
+
+struct Destination {
+    FILE *file = stdout; // nullptr: not made yet
+    QString name = QStringLiteral("stdout");
+    bool overwrites = false;
+    bool isGone = false;
+    bool jsonNotes = false;
+};
+Destination destination;
+
+[[noreturn]] void failToWrite() {
+    const QString text = QStringLiteral("%1 cannot be written: %2")
+                             .arg(destination.name, QString::fromUtf8(std::strerror(errno)));
+    if (destination.jsonNotes)
+        std::fprintf(stderr, "%s\n",
+                     compactJson(QJsonObject{{QStringLiteral("code"), int(ErrorCode::InputOutput)},
+                                             {QStringLiteral("message"), text}})
+                         .constData());
+    else
+        std::fprintf(stderr, "hermesctl: %s\n", qPrintable(text));
+    std::_Exit(1);
+}
+
+/// A file is made with the first line for it: where nothing can be said, none is left behind.
+FILE *opened() {
+    if (destination.file)
+        return destination.file;
+    const int mode = O_WRONLY | O_CREAT | O_CLOEXEC | (destination.overwrites ? O_TRUNC : O_EXCL);
+    const int descriptor = ::open(QFile::encodeName(destination.name).constData(), mode, 0666);
+    destination.file = descriptor < 0 ? nullptr : ::fdopen(descriptor, "w");
+    if (!destination.file)
+        failToWrite();
+    return destination.file;
+}
+
+} // namespace
+
+Result<void> setOutput(const QString &file, bool force) {
+    if (!force && QFile::exists(file))
+        return Error(ErrorCode::InputOutput,
+                     QStringLiteral("--out %1: the file exists; --force overwrites it, or take another name")
+                         .arg(file),
+                     QJsonObject{{QStringLiteral("path"), file}});
+    destination.file = nullptr;
+    destination.name = file;
+    destination.overwrites = force;
+    return {};
+}
+
+void checkOutput() {
+    FILE *const file = destination.file;
+    if (!file || destination.isGone || (std::fflush(file) == 0 && std::ferror(file) == 0))
+        return;
+    if (errno != EPIPE)
+        failToWrite();
+    destination.isGone = true;
+}
+
+void printLine(const QString &text) {
+    if (destination.isGone)
+        return;
+    std::fputs((text + QLatin1Char('\n')).toUtf8().constData(), opened());
+    checkOutput();
+}
+
+void printJson(const QJsonValue &value) {
+    printLine(QString::fromUtf8(compactJson(value)));
+}
+
+bool readerIsGone() {
+    if (!destination.file)
+        return false;
+    pollfd end{::fileno(destination.file), 0, 0}; // a pipe that nobody reads, also where nothing was written
+    if (::poll(&end, 1, 0) > 0 && (end.revents & POLLERR) != 0)
+        destination.isGone = true;
+    return destination.isGone;
+}
+
+void setJsonNotes(bool on) {
+    destination.jsonNotes = on;
+}
+
+void note(const QString &text) {
+    if (destination.jsonNotes)
+        std::fprintf(stderr, "%s\n", compactJson(QJsonObject{{QStringLiteral("note"), text}}).constData());
+    else
+        std::fprintf(stderr, "hermesctl: %s\n", qPrintable(text));
+}
+
+void runStream(QEventLoop &loop) {
+    SignalWatcher signals(nullptr);
+    QObject::connect(&signals, &SignalWatcher::received, &loop, &QEventLoop::quit);
+    QTimer look;
+    QObject::connect(&look, &QTimer::timeout, &loop, [&loop] {
+        if (readerIsGone())
+            loop.quit();
+    });
+    look.start(200);
+    loop.exec();
+}
+
+} // namespace hermes::ctl

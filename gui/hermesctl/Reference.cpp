@@ -1,0 +1,197 @@
+// hermesctl doc --all: what several daemons tell of themselves, on one page.
+#include "common/Project.h"
+#include "common/client/DaemonAddress.h"
+#include "gui/hermesctl/Commands.h"
+#include "gui/hermesctl/Descriptions.h"
+#include "gui/hermesctl/Markdown.h"
+
+#include <QJsonArray>
+#include <algorithm>
+
+namespace hermes::ctl {
+namespace {
+
+const QString methodsKey = QStringLiteral("methods");
+const QString topicsKey = QStringLiteral("x-topics");
+
+const char *const introduction = R"(# Protocol reference
+
+What each daemon tells of its commands, topics and settings itself (`rpc.discover`, `settings.schema`); the rules are those of
+the [protocol](protocol.md). `deploy/protocol-reference` writes this page from running daemons; what `hermesctl doc D` prints is
+the same of one.
+
+A parameter without a default is marked `required` or `optional`. A setting applies `now` or after a `restart`. Keywords:
+
+| keyword | means |
+|---|---|
+| `x-urgent` | carried out when it arrives, before all that others have asked for |
+| `x-fresh` | refused when it was received before the daemon had stood still |
+| `x-needs-lease` | refused unless this client holds the control (`control.acquire`) |
+| `x-open` | holds more than is described, or anything |
+
+)";
+
+/// As GitHub makes the anchor of a heading.
+QString anchor(const QString &heading) {
+    QString result;
+    for (const QChar c : heading.toLower()) {
+        if (c.isLetterOrNumber() || c == QLatin1Char('_') || c == QLatin1Char('-'))
+            result += c;
+        else if (c == QLatin1Char(' '))
+            result += QLatin1Char('-');
+    }
+    return result;
+}
+
+QString link(const QString &shown, const QString &heading) {
+    return QStringLiteral("[%1](#%2)").arg(shown, anchor(heading));
+}
+
+/// What is in a list of all daemons, and the same in each.
+QJsonArray commonOf(const std::vector<DaemonDescription> &daemons, const QString &key) {
+    QJsonArray common;
+    for (const QJsonValue &one : daemons.front().description[key].toArray()) {
+        if (std::all_of(daemons.begin(), daemons.end(), [&](const DaemonDescription &daemon) {
+                return daemon.description[key].toArray().contains(one);
+            }))
+            common.append(one);
+    }
+    return common;
+}
+
+QJsonArray without(const QJsonArray &list, const QJsonArray &common) {
+    QJsonArray rest;
+    for (const QJsonValue &one : list) {
+        if (!common.contains(one))
+            rest.append(one);
+    }
+    return rest;
+}
+
+/// A schema with the settings only that are alike in both.
+QJsonObject alike(const QJsonObject &a, const QJsonObject &b) {
+    const QString propertiesKey = QStringLiteral("properties");
+    const QJsonObject ofA = a[propertiesKey].toObject(), ofB = b[propertiesKey].toObject();
+    QJsonObject result;
+    for (auto one = ofA.begin(); one != ofA.end(); ++one) {
+        const QJsonObject below = one.value().toObject(), other = ofB[one.key()].toObject();
+        if (!below.contains(propertiesKey) ? below == other : other.contains(propertiesKey))
+            result.insert(one.key(), below.contains(propertiesKey) ? alike(below, other) : below);
+    }
+    return {{propertiesKey, result}};
+}
+
+/// A chapter of the page, and the lines about it in the table of contents.
+struct Chapter {
+    QString contents;
+    QString page;
+
+    void addSections(const QString &title, const QString &prefix, const QJsonArray &list,
+                     QString (*section)(const QString &, const QJsonObject &)) {
+        QStringList links;
+        for (const QJsonValue &one : list) {
+            const QString name = one[QStringLiteral("name")].toString();
+            links.append(link(name, prefix + name));
+            page += section(prefix + name, one.toObject());
+        }
+        if (!links.isEmpty())
+            contents += QStringLiteral("  * %1: %2\n").arg(title, links.join(QStringLiteral(", ")));
+    }
+};
+
+Chapter chapterOf(const QString &name, const QString &title, const QString &text, const QJsonArray &methods,
+                  const QJsonArray &topics, const QString &settings) {
+    Chapter chapter;
+    chapter.contents = QStringLiteral("* %1\n").arg(link(title, title));
+    chapter.page = QStringLiteral("## %1\n\n%2.\n\n").arg(title, text);
+    chapter.addSections(QStringLiteral("commands"), name + QLatin1Char(' '), methods, methodSection);
+    chapter.addSections(QStringLiteral("topics"), name + QStringLiteral(" topic "), topics, topicSection);
+    if (settings.isEmpty())
+        return chapter;
+    const QString heading = name + QStringLiteral(" settings");
+    chapter.contents += QStringLiteral("  * %1\n").arg(link(QStringLiteral("settings"), heading));
+    chapter.page += QStringLiteral("### %1\n\n%2\n").arg(heading, settingTable(settings));
+    return chapter;
+}
+
+Result<DaemonDescription> describe(Client &client, const Arguments &arguments) {
+    const auto info = ask(client, arguments, QStringLiteral("daemon.info"));
+    if (!info)
+        return info.error();
+    const auto description = ask(client, arguments, QStringLiteral("rpc.discover"));
+    if (!description)
+        return description.error();
+    const auto settings = ask(client, arguments, QStringLiteral("settings.schema"));
+    if (!settings)
+        return settings.error();
+    return DaemonDescription{(*info)[QStringLiteral("name")].toString(), description->toObject(),
+                             settings->toObject()};
+}
+
+QJsonObject asJson(const std::vector<DaemonDescription> &daemons) {
+    QJsonObject all;
+    for (const DaemonDescription &daemon : daemons)
+        all.insert(daemon.name, QJsonObject{{QStringLiteral("description"), daemon.description},
+                                            {QStringLiteral("settings"), daemon.settings}});
+    return all;
+}
+
+} // namespace
+
+QString referenceAsMarkdown(const std::vector<DaemonDescription> &daemons) {
+    const bool isOne = daemons.size() < 2;
+    const QJsonArray methods = isOne ? QJsonArray() : commonOf(daemons, methodsKey);
+    const QJsonArray topics = isOne ? QJsonArray() : commonOf(daemons, topicsKey);
+    QJsonObject settings = isOne ? QJsonObject() : daemons.front().settings;
+    for (const DaemonDescription &daemon : daemons)
+        settings = alike(settings, daemon.settings);
+    std::vector<Chapter> chapters;
+    if (!isOne)
+        chapters.push_back(chapterOf(QStringLiteral("all"), QStringLiteral("Every daemon"),
+                                     QStringLiteral("What all have alike"), methods, topics,
+                                     settingLines(settings)));
+    for (const DaemonDescription &daemon : daemons) {
+        const QJsonObject info = daemon.description[QStringLiteral("info")].toObject();
+        chapters.push_back(chapterOf(daemon.name, daemon.name, info[QStringLiteral("description")].toString(),
+                                     without(daemon.description[methodsKey].toArray(), methods),
+                                     without(daemon.description[topicsKey].toArray(), topics),
+                                     settingLines(daemon.settings, settings)));
+    }
+    QString page = QLatin1String(introduction), rest;
+    for (const Chapter &chapter : chapters) {
+        page += chapter.contents;
+        rest += chapter.page;
+    }
+    return page + QLatin1Char('\n') + rest;
+}
+
+Result<void> documentAll(const Arguments &arguments) {
+    const QStringList words = arguments.daemons.isEmpty() ? daemonNames() : arguments.daemons;
+    std::vector<DaemonDescription> daemons;
+    for (const QString &word : words) {
+        const auto address = daemonAddress(word, arguments.host);
+        if (!address)
+            return address.error();
+        Client client;
+        const auto connected = connectOnce(client, *address, arguments.timeout);
+        if (!connected && arguments.daemons.isEmpty())
+            continue;
+        if (!connected)
+            return connected;
+        const auto daemon = describe(client, arguments);
+        if (!daemon)
+            return Error(ErrorCode(daemon.error().code),
+                         *address + QStringLiteral(": ") + daemon.error().message);
+        daemons.push_back(*daemon);
+    }
+    if (daemons.empty())
+        return Error(ErrorCode::Disconnected,
+                     QStringLiteral("no daemon answers at its default port on %1").arg(arguments.host));
+    if (arguments.json)
+        printJson(asJson(daemons));
+    else
+        printLine(referenceAsMarkdown(daemons).trimmed());
+    return {};
+}
+
+} // namespace hermes::ctl

@@ -1,0 +1,241 @@
+#include "gui/hermesctl/Subcommands.h"
+
+namespace hermes::ctl {
+namespace {
+
+const char *const helpBegin = R"(Usage: hermesctl [OPTION]... COMMAND ...
+
+Speaks to the daemons of a robot.
+
+)";
+
+const char *const helpEnd = R"(
+D is the name of a daemon (at its default port), HOST:PORT, or a URL.
+
+Loggers are the daemons with the command record.start that answer at their default ports.
+
+  --daemons A,B  record, replay, doc --all: these daemons and no others
+  --host HOST    where daemons given by name run (127.0.0.1)
+  --timeout S    how long to wait for a connection and for a reply (5)
+  --json         one JSON value, or one a line; errors too: {"code", "message", "data", "hint"}
+  --out FILE     prints there instead of to stdout; FILE must not exist
+  --force        --out: overwrites FILE
+  --network      list: who has announced itself on the network (needs Avahi)
+  --rate HZ      watch: at most so many messages a second
+  --count N      watch: end after N messages; log: the last N records (100)
+  --csv          watch: CSV, a column for each value
+  --speed X      replay: so many times as fast (1)
+  --loop         replay: begin anew at the end
+  --role ROLE    keys issue: observer, operator, engineer, or daemon
+  --days N       keys issue: valid for so many days (730)
+  --follow       log: go on with new records
+  --all          doc: all daemons on one page
+  --help, --version
+
+Exit status: 0 success, 2 wrong usage, 1 any other failure.
+
+Examples:
+  hermesctl call scanmatcher daemon.status
+  hermesctl set velodynelogger limits.clients=20
+  hermesctl record start run1
+  hermesctl watch scanmatcher pose --rate 5 --csv --out pose.csv
+  source <(hermesctl completion bash)
+)";
+
+} // namespace
+
+const std::vector<Subcommand> &subcommands() {
+    using W = Word;
+    static const std::vector<Subcommand> all{
+        {"list",
+         0,
+         0,
+         "list",
+         "the daemons that answer at their default ports (--network: that announce themselves)",
+         {},
+         "--network",
+         nullptr,
+         listDaemons},
+        {"record start",
+         1,
+         1,
+         "record start NAME",
+         "all loggers begin to record as one session, or none does",
+         {W::Nothing},
+         "--daemons",
+         nullptr,
+         recordStart},
+        {"record stop",
+         0,
+         0,
+         "record stop",
+         "ends it and checks that nothing is missing",
+         {},
+         "--daemons",
+         nullptr,
+         recordStop},
+        {"record mark",
+         1,
+         1,
+         "record mark TEXT",
+         "puts a text with the time into what is being recorded",
+         {W::Nothing},
+         "--daemons",
+         nullptr,
+         recordMark},
+        {"record status",
+         0,
+         0,
+         "record status",
+         "what each logger records",
+         {},
+         "--daemons",
+         nullptr,
+         recordStatus},
+        {"record list",
+         0,
+         0,
+         "record list",
+         "the sessions that were recorded",
+         {},
+         "--daemons",
+         nullptr,
+         recordList},
+        {"replay",
+         1,
+         1,
+         "replay SESSION",
+         "plays a session back through the same topics, until its end or Ctrl-C",
+         {W::Session},
+         "--daemons --speed --loop",
+         nullptr,
+         replay},
+        {"keys init",
+         0,
+         0,
+         "keys init",
+         "makes an authority that signs keys for TLS, and your own keys",
+         {},
+         "",
+         nullptr,
+         keysInit},
+        {"keys issue",
+         1,
+         1,
+         "keys issue NAME --role ROLE",
+         "keys for a person (observer, operator, engineer) or a robot (daemon)",
+         {W::Nothing},
+         "--role --days",
+         nullptr,
+         keysIssue},
+        {"keys revoke",
+         1,
+         1,
+         "keys revoke NAME",
+         "takes the keys of a person or robot, or of a serial number, out of force",
+         {W::Nothing},
+         "",
+         nullptr,
+         keysRevoke},
+        {"keys list", 0, 0, "keys list", "the keys that were issued", {}, "", nullptr, keysList},
+        {"discover",
+         1,
+         1,
+         "discover D",
+         "the commands and topics of a daemon (--json: its OpenRPC document)",
+         {W::Daemon},
+         "",
+         discover,
+         nullptr},
+        {"call",
+         2,
+         anyNumber,
+         "call D METHOD [NAME=VALUE]...",
+         "calls a command and prints the result; VALUE is JSON, else a string",
+         {W::Daemon, W::Method, W::Parameter},
+         "",
+         call,
+         nullptr},
+        {"get",
+         1,
+         2,
+         "get D [PATH]",
+         "all settings, or the value at a path",
+         {W::Daemon, W::SettingPath},
+         "",
+         getSettings,
+         nullptr},
+        {"set",
+         2,
+         anyNumber,
+         "set D PATH=VALUE...",
+         "changes settings: all of them, or none when one is wrong",
+         {W::Daemon, W::SettingValue},
+         "",
+         setSettings,
+         nullptr},
+        {"watch",
+         2,
+         2,
+         "watch D TOPIC",
+         "prints the messages of a topic, one JSON object a line",
+         {W::Daemon, W::Topic},
+         "--rate --count --csv",
+         watch,
+         nullptr},
+        {"log",
+         1,
+         1,
+         "log D",
+         "the last records of the log (--count N; --follow: new ones too)",
+         {W::Daemon},
+         "--count --follow",
+         showLog,
+         nullptr},
+        {"doc",
+         1,
+         1,
+         "doc D",
+         "the reference of a daemon in Markdown (doc --all: of all daemons)",
+         {W::Daemon},
+         "--all --daemons",
+         document,
+         nullptr},
+        {"completion",
+         1,
+         1,
+         "completion bash|zsh",
+         "prints the script that completes command lines",
+         {W::Shell},
+         "",
+         nullptr,
+         completion},
+    };
+    return all;
+}
+
+QStringList subcommandNames() {
+    QStringList names;
+    for (const Subcommand &one : subcommands())
+        names.append(QString::fromLatin1(one.name).section(QLatin1Char(' '), 0, 0));
+    names.removeDuplicates();
+    return names;
+}
+
+const Subcommand *findSubcommand(const QString &name) {
+    for (const Subcommand &one : subcommands()) {
+        if (name == QLatin1String(one.name))
+            return &one;
+    }
+    return nullptr;
+}
+
+QString helpText() {
+    QString text = QLatin1String(helpBegin);
+    for (const Subcommand &one : subcommands())
+        text +=
+            QStringLiteral("  %1 %2\n").arg(QLatin1String(one.usage), -30).arg(QLatin1String(one.summary));
+    return text + QLatin1String(helpEnd);
+}
+
+} // namespace hermes::ctl

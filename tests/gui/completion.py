@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""What bash and zsh make of the scripts of `hermesctl completion`, with a daemon that runs: the keys of a person, and what stands
+in the command line then."""
+import os
+import pty
+import re
+import select
+import shutil
+import subprocess
+import tempfile
+import time
+import unittest
+
+from ctl_support import BUILD, PROGRAM, SOURCE, Thermometer, ctl
+
+BEGIN_ZSH = "autoload -U compinit; compinit -u; "
+# How each is started, and what makes it complete: the script that is printed, or the file that is installed.
+SHELLS = {"bash": (["bash", "--norc", "--noprofile", "-i"], f"source <({PROGRAM} completion bash)"),
+          "zsh": (["zsh", "-f", "-i"], f"{BEGIN_ZSH}source <({PROGRAM} completion zsh)"),
+          "zsh, installed": (["zsh", "-f", "-i"], f"fpath=({SOURCE}/deploy/completion $fpath); {BEGIN_ZSH}true")}
+
+
+def candidates(line):
+    shown = ctl("complete", "hermesctl " + line)
+    assert (shown.returncode, shown.stderr) == (0, ""), shown
+    return [one.split("\t")[0] for one in shown.stdout.splitlines()]
+
+
+class Shell:
+    """A shell at a terminal. `hermesctl` in it writes its arguments down, but for the questions of the script."""
+
+    def __init__(self, name, folder):
+        command, first = SHELLS[name]
+        self.file = os.path.join(folder, "said")
+        wrapper = os.path.join(folder, "hermesctl")
+        with open(wrapper, "w", encoding="utf-8") as script:
+            script.write(f'#!/bin/sh\n[ "$1" = complete ] && exec "{PROGRAM}" "$@"\nprintf "%s\\n" "$*" >"{self.file}.new"\n'
+                         f'mv "{self.file}.new" "{self.file}"\n')
+        os.chmod(wrapper, 0o755)
+        self.child, self.terminal = pty.fork()
+        if self.child == 0:
+            os.environ.update(PATH=f"{folder}:{BUILD}/bin:{os.environ['PATH']}", HOME=folder, TERM="dumb", PS1="$ ")
+            os.execvp(command[0], command)
+        # Only a shell that has read the script writes this down.
+        self.said(first + "; hermesctl begun")
+
+    def said(self, keys):
+        """What hermesctl was called with after these keys and Return."""
+        if os.path.exists(self.file):
+            os.remove(self.file)
+        os.write(self.terminal, keys.encode() + b"\r")
+        deadline = time.monotonic() + 30
+        shown = b""
+        while not os.path.exists(self.file):
+            assert time.monotonic() < deadline, f"{keys!r}: {shown.decode(errors='replace')}"
+            if select.select([self.terminal], [], [], 0.05)[0]:
+                shown += os.read(self.terminal, 4096)
+        with open(self.file, encoding="utf-8") as file:
+            return re.sub(" +", " ", file.read().strip())
+
+    def end(self):
+        os.close(self.terminal)
+        os.waitpid(self.child, 0)
+
+
+class Completion(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.daemon = Thermometer()
+        cls.address = cls.daemon.address
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.daemon.stop()
+
+    def test_candidates(self):
+        self.assertEqual(candidates("re"), ["record", "replay"])
+        self.assertEqual(candidates("record st"), ["start", "stop", "status"])
+        self.assertEqual(candidates("call scan"), ["scanmatcher"])
+        self.assertIn("127.0.0.1:7450", candidates("call 127"))
+        self.assertIn("10.0.0.7:7450", candidates("--host 10.0.0.7 call 10"))
+        self.assertIn("thermometer.read", candidates(f"call {self.address} "))
+        self.assertEqual(candidates(f"call {self.address} thermometer.calibrate settle_ms=1 "), ["offset_k="])
+        self.assertEqual(candidates(f"call {self.address} thermometer.read unit="), ["unit=C", "unit=K"])
+        self.assertEqual(candidates(f"call {self.address} settings.get changes="), ["changes=true", "changes=false"])
+        self.assertIn("limits.clients", candidates(f"get {self.address} lim"))
+        self.assertIn("limits.clients=", candidates(f"set {self.address} lim"))
+        self.assertEqual(candidates(f"watch --rate 5 {self.address} temp"), ["temperature"])
+        self.assertEqual(candidates(f"watch {self.address} x --c"), ["--count", "--csv"])
+        self.assertEqual(candidates("completion "), ["bash", "zsh"])
+        self.assertEqual(candidates("watch --rate "), [])
+        self.assertEqual(candidates("record list --daemons supervisor,scan"), ["supervisor,scanmatcher"])
+
+    def test_silent_without_a_daemon(self):
+        begun = time.monotonic()
+        self.assertEqual(candidates("call 127.0.0.1:1 "), [])
+        self.assertEqual(candidates("call nobody "), [])
+        self.assertLess(time.monotonic() - begun, 10)
+
+    def test_comp_words(self):
+        """As bash calls the function: words cut at "=" and ":"."""
+        line = f"hermesctl call {self.address} thermometer.read unit="
+        words = line.replace(":", " : ").replace("=", " =").split()
+        script = (f'PATH={BUILD}/bin:$PATH; source <(hermesctl completion bash); COMP_WORDS=({" ".join(words)}); '
+                  f'COMP_CWORD={len(words) - 1}; COMP_LINE="{line}"; COMP_POINT={len(line)}; '
+                  '_hermesctl hermesctl "" =; printf "%s|" "${COMPREPLY[@]}"')
+        self.assertEqual(subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=30).stdout, "C |K |")
+
+    def test_shells(self):
+        for name in SHELLS:
+            if not shutil.which(SHELLS[name][0][0]):
+                print(f"skipped: {name} is not installed")
+                continue
+            with self.subTest(name), tempfile.TemporaryDirectory() as folder:
+                shell = Shell(name, folder)
+                try:
+                    for keys, said in ((f"hermesctl cal\t{self.address} thermometer.re\tun\tK", f"call {self.address} thermometer.read unit=K"),
+                                       (f"hermesctl wat\t{self.address} tempe\t--cs\t", f"watch {self.address} temperature --csv"),
+                                       (f"hermesctl set {self.address} limits.cl\t7", f"set {self.address} limits.clients=7"),
+                                       ("hermesctl get 127.0.0.1:745\t", "get 127.0.0.1:7450")):
+                        self.assertEqual(shell.said(keys), said)
+                finally:
+                    shell.end()
+
+
+if __name__ == "__main__":
+    unittest.main()

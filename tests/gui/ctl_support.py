@@ -1,0 +1,75 @@
+"""What tests of hermesctl share: running it, a small daemon, and a made-up one that says whatever a test wants."""
+import json
+import os
+import socket
+import subprocess
+import threading
+
+BUILD = os.environ["HERMES_BUILD"]
+SOURCE = os.environ["HERMES_SOURCE"]
+PROGRAM = os.path.join(BUILD, "bin", "hermesctl")
+DAEMON = os.path.join(BUILD, "tests", "common", "hermes-thermometer")
+
+
+def ctl(*arguments):
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60)
+
+
+class Thermometer:
+    """The daemon of docs/add-a-daemon.md on a free port; with another framing too where that is named."""
+
+    def __init__(self, protocol="json"):
+        self.process = subprocess.Popen([DAEMON, "--listen", f"tcp://127.0.0.1:0?protocol={protocol}", "--set", "period_s=0.01"],
+                                        stderr=subprocess.PIPE, text=True)
+        line = self.process.stderr.readline()
+        self.address = "127.0.0.1:" + line.split("tcp://127.0.0.1:")[1].split(",")[0]
+
+    def stop(self):
+        self.process.terminate()
+        self.process.stderr.close()
+        assert self.process.wait(20) == 0
+
+
+class MadeUpDaemon:
+    """Answers each method with what replies has for it (an Error becomes one), and sends the messages of a topic, once, to the
+    first who subscribes: a list of (seq, dropped, data)."""
+
+    class Error(dict):
+        pass
+
+    def __init__(self, replies, messages=(), schema=None):
+        topics = [{"name": "made.up", "summary": "Made up", "schema": schema or {}, "snapshot": False}]
+        self.replies = {"topics.list": topics, "topics.subscribe": {"subscription": 1}, **replies}
+        self.messages = list(messages)
+        self.server = socket.create_server(("127.0.0.1", 0))
+        self.address = f"127.0.0.1:{self.server.getsockname()[1]}"
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def accept(self):
+        while True:
+            try:
+                client = self.server.accept()[0]
+            except OSError:
+                return
+            threading.Thread(target=self.serve, args=(client,), daemon=True).start()
+
+    def serve(self, client):
+        with client, client.makefile("rw", encoding="utf-8") as lines:
+            try:
+                for line in lines:
+                    self.answer(json.loads(line), lines)
+            except OSError:
+                pass
+
+    def answer(self, request, lines):
+        reply = self.replies.get(request["method"], self.Error(code=-32601, message="not found"))
+        key = "error" if isinstance(reply, self.Error) else "result"
+        lines.write(json.dumps({"jsonrpc": "2.0", "id": request["id"], key: reply}) + "\n")
+        if request["method"] == "topics.subscribe":
+            for seq, dropped, data in self.messages:
+                params = {"subscription": 1, "topic": "made.up", "seq": seq, "dropped": dropped, "stamp": 1.5, "data": data}
+                lines.write(json.dumps({"jsonrpc": "2.0", "method": "topic", "params": params}) + "\n")
+        lines.flush()
+
+    def stop(self):
+        self.server.close()
