@@ -1,0 +1,104 @@
+#include "protocol/serial/OutgoingPieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hermes {
+namespace {
+
+constexpr int reportEvery = 8;
+constexpr double firstPatience_s = 0.25, leastPatience_s = 0.03, longestPatience_s = 2;
+constexpr int frameBytes = Piece::headerBytes + pieceBytes + 7;
+
+} // namespace
+
+void LinkPace::measured(double seconds) {
+    roundTrip_s = roundTrip_s == 0 ? seconds : 0.75 * roundTrip_s + 0.25 * seconds;
+}
+
+double LinkPace::patience() const {
+    const double ofFrames = bytesPerSecond > 0 ? 4 * frameBytes / bytesPerSecond : 0;
+    return leastPatience_s + ofFrames + (roundTrip_s > 0 ? 2 * roundTrip_s : firstPatience_s);
+}
+
+int OutgoingPieces::nextIndex() const {
+    for (int i = base_; i < next_; ++i)
+        if (slot(i).lost)
+            return i;
+    const bool mayBegin = next_ < count_ && next_ < base_ + windowPieces && inFlight_ < mostInFlight;
+    return mayBegin ? next_ : -1;
+}
+
+Piece OutgoingPieces::next(double now) {
+    const int index = nextIndex();
+    if (index == next_)
+        slot(next_++) = Slot();
+    else
+        ++repeated_;
+    Slot &which = slot(index);
+    if (sent_ == 0)
+        progressAt_ = now;
+    which.lost = false;
+    which.sentAs = ++sent_;
+    which.sentAt = sentAt_ = now;
+    ++inFlight_;
+    which.toReport = sent_ % reportEvery == 0 || !hasNext();
+    return {which.toReport, number_, quint16(index), quint32(content_.size()),
+            content_.mid(index * pieceBytes, pieceBytes)};
+}
+
+void OutgoingPieces::lose(Slot &which) {
+    which.lost = true;
+    --inFlight_;
+}
+
+bool OutgoingPieces::take(const PieceReport &report, LinkPace &pace, double now) {
+    if (report.number != number_ || !isBegun())
+        return false;
+    if (report.base == PieceReport::ended) {
+        base_ = count_;
+        return true;
+    }
+    if (report.base < base_ || report.base > next_)
+        return true; // an old one, or nonsense
+    const Slot *newest = nullptr;
+    for (int i = base_; i < next_; ++i) {
+        Slot &which = slot(i);
+        const int bit = i - report.base;
+        if (which.has || (bit >= 0 && (bit >= windowPieces || !(report.later >> bit & 1))))
+            continue;
+        inFlight_ -= !which.lost;
+        which.lost = false;
+        which.has = true;
+        if (!newest || newest->sentAs < which.sentAs)
+            newest = &which;
+    }
+    if (!newest)
+        return true;
+    progressAt_ = now;
+    asked_ = 0;
+    if (newest->toReport)
+        pace.measured(now - newest->sentAt);
+    for (int i = base_; i < next_; ++i)
+        if (Slot &which = slot(i); !which.has && !which.lost && which.sentAs < newest->sentAs)
+            lose(which);
+    while (base_ < next_ && slot(base_).has)
+        ++base_;
+    return true;
+}
+
+double OutgoingPieces::dueAt(const LinkPace &pace) const {
+    if (inFlight_ == 0)
+        return std::numeric_limits<double>::infinity();
+    return sentAt_ + std::min(longestPatience_s, std::ldexp(pace.patience(), std::min(asked_, 10)));
+}
+
+void OutgoingPieces::ask() {
+    ++asked_;
+    for (int i = base_; i < next_; ++i)
+        if (Slot &which = slot(i); !which.has && !which.lost)
+            return lose(which);
+}
+
+} // namespace hermes
