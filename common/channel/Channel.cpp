@@ -161,7 +161,7 @@ void Channel::receive(const QByteArray &bytes) {
         frame.arrived = nextArrival();
         if (urgent_ && !hasJumped && !frame.error && urgent_(frame.bytes)) {
             hasJumped = true;
-            give(framing_->read(frame), frame.arrived);
+            give(framing_->read(frame), frame);
             if (!alive)
                 return;
             continue;
@@ -234,7 +234,7 @@ void Channel::deliverFront() {
     const bool isLarge = readFront_.has_value();
     CodecItem item = readFront_ ? *std::exchange(readFront_, std::nullopt) : framing_->read(frame);
     reads_ = false;
-    give(item, frame.arrived);
+    give(item, frame);
     if (isLarge)
         inBackground([large = std::move(item)] {}); // to free it takes long, too
 }
@@ -257,8 +257,9 @@ void Channel::readInBackground() {
     inBackground(readIt);
 }
 
-void Channel::give(const CodecItem &item, double arrived) {
-    arrival_ = arrived;
+void Channel::give(const CodecItem &item, const CodecFrame &frame) {
+    arrival_ = frame.arrived;
+    inPieces_ = frame.inPieces;
     framing_->count(item);
     if (item.error)
         Q_EMIT malformed(*item.error);

@@ -67,6 +67,8 @@ public:
     /// When the message that is being given came, of the clock of bootNow(). No two in a thread came at the
     /// same time: what came first has the smaller one.
     double arrived() const { return arrival_; }
+    /// Whether that came in pieces: then its sender knows that it has arrived.
+    bool arrivedInPieces() const { return inPieces_; }
     /// Nothing of a message waits here or with the system.
     bool isQuiet() const;
 
@@ -95,7 +97,7 @@ private:
     void deliverAll();
     void deliverFront();
     void readInBackground();
-    void give(const CodecItem &item, double arrived);
+    void give(const CodecItem &item, const CodecFrame &frame);
     void updateReceiving();
 
     Interface *carrier_;
@@ -105,6 +107,7 @@ private:
     std::deque<CodecFrame> waiting_;
     qint64 waitingBytes_ = 0;
     double arrival_ = 0;
+    bool inPieces_ = false;
     std::optional<CodecItem> readFront_; // what is in the first of them, when it was read in the background
     std::optional<QString> ended_;       // the carrier is closed; what was said before is still delivered
     std::function<bool(const QByteArray &)> urgent_;

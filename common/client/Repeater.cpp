@@ -10,6 +10,9 @@ namespace hermes {
 namespace {
 
 constexpr double firstPeriod_s = 0.3, leastPeriod_s = 0.02;
+// It goes in pieces, and so does its reply: both arrive.
+constexpr double longPeriod_s = SerialLink::longestStandstill_s;
+constexpr double growth = 1.5; // of the period, at each repeat
 constexpr int usualReplyBytes = 100;
 
 } // namespace
@@ -31,10 +34,12 @@ void Repeater::add(Channel &channel, qint64 id, const Sent &request) {
 
 // As RFC 6298, but for the time that the frames take on the line.
 double Repeater::period(int bytes) const {
+    if (bytes > SerialLink::largestFrame)
+        return longPeriod_s;
     const double rate = channel_->interface().bytesPerSecond();
     const double onLine_s = rate > 0 ? (bytes + usualReplyBytes) / rate : 0;
     const double measured_s = roundTrip_s_ > 0 ? roundTrip_s_ + 4 * deviation_s_ : firstPeriod_s;
-    return std::clamp(measured_s + onLine_s, leastPeriod_s + 2 * onLine_s, longestPeriod_s + 2 * onLine_s);
+    return std::clamp(measured_s + onLine_s, leastPeriod_s + 2 * onLine_s, longestPeriod_s + 4 * onLine_s);
 }
 
 void Repeater::end(qint64 id, bool isAnswered) {
@@ -74,7 +79,7 @@ void Repeater::repeat(Request &request, double now) {
             request.isRepeated = true;
             ++repeats_;
         }
-        request.period_s = std::min(2 * request.period_s, std::max(longestPeriod_s, request.period_s));
+        request.period_s = std::min(growth * request.period_s, std::max(longestPeriod_s, request.period_s));
     }
     request.dueAt = now + request.period_s;
 }

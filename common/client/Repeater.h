@@ -9,11 +9,11 @@
 namespace hermes {
 
 /// Sends requests again, as they were, while no reply has come over a line that loses some: after a time that
-/// follows from how long replies took, then after twice that, up to longestPeriod_s.
+/// follows from how long replies took, then after half as long again each time, up to longestPeriod_s.
 class Repeater : public QObject {
     Q_OBJECT
 public:
-    static constexpr double longestPeriod_s = 2;
+    static constexpr double longestPeriod_s = 0.5; ///< and what the line takes
 
     explicit Repeater(QObject *parent);
 

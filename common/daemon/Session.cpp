@@ -142,11 +142,16 @@ void Session::receive(const QJsonValue &value) {
     if (value.isArray() && !value.toArray().isEmpty())
         return begin(value.toArray(), key);
     const RpcMessage message = readFrame(value).messages.front();
-    const auto rank = isUrgent(message) ? Channel::Rank::Urgent : Channel::Rank::Usual;
-    process(message, channel_->arrived(), [this, key, rank](const QJsonValue &reply) {
+    process(message, channel_->arrived(), [this, key, rank = rankOf(message)](const QJsonValue &reply) {
         if (!reply.isUndefined())
             send(reply, key, rank);
     });
+}
+
+// What came in pieces is not soon sent again; so its reply must arrive.
+Channel::Rank Session::rankOf(const RpcMessage &message) const {
+    using Rank = Channel::Rank;
+    return isUrgent(message) ? Rank::Urgent : channel_->arrivedInPieces() ? Rank::Assured : Rank::Usual;
 }
 
 bool Session::isRepeat(const QByteArray &key, const QJsonValue &value) {
@@ -227,8 +232,9 @@ void Session::finish(const std::shared_ptr<Batch> &done) {
     Sent reply;
     for (const QByteArray &piece : pieces)
         reply.frame += piece;
-    reply.ticket = reply.frame.isEmpty() ? 0 : channel_->write(reply.frame).value_or(0);
-    replies_.answer(done->key, reply, Channel::Rank::Usual, monotonicNow());
+    reply.ticket =
+        reply.frame.isEmpty() ? 0 : channel_->write(reply.frame, Channel::Rank::Assured).value_or(0);
+    replies_.answer(done->key, reply, Channel::Rank::Assured, monotonicNow());
 }
 
 void Session::process(const RpcMessage &message, double arrived, const Answer &answer) {

@@ -76,6 +76,7 @@ private:
     void receive(const QJsonValue &frame);
     bool isRepeat(const QByteArray &key, const QJsonValue &frame);
     void begin(const QJsonArray &messages, const QByteArray &key);
+    Channel::Rank rankOf(const RpcMessage &message) const;
     bool runNextOfBatch();
     void finish(const std::shared_ptr<Batch> &done);
     void end(const QString &reason);

@@ -29,7 +29,8 @@ struct CodecItem {
 struct CodecFrame {
     QByteArray bytes;
     std::optional<RpcError> error;
-    double arrived = 0; ///< for who reads it later; of a clock of the reader's
+    double arrived = 0;    ///< for who reads it later; of a clock of the reader's
+    bool inPieces = false; ///< its sender knows that it has arrived
 };
 
 /// What encode() gave: the frame, or why the message cannot be sent (then bytes is empty).

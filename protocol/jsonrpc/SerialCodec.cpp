@@ -19,7 +19,7 @@ std::vector<CodecFrame> SerialCodec::splitFrames(const QByteArray &bytes) {
                  RpcError(ErrorCode::OverLimit,
                           QStringLiteral("message larger than %1 bytes, skipped").arg(frameLimit()))});
         else
-            frames.push_back({std::move(arrival.message), std::nullopt});
+            frames.push_back({std::move(arrival.message), std::nullopt, 0, arrival.inPieces});
     }
     return frames;
 }

@@ -35,6 +35,8 @@ public:
     int size() const { return content_.size(); }
     bool isBegun() const { return sent_ > 0; }
     bool isDone() const { return base_ == count_; }
+    /// The receiver wanted no more of it before it had all.
+    bool isRefused() const { return isDone() && next_ < count_; }
     /// Whether a piece may go now.
     bool hasNext() const { return nextIndex() >= 0; }
     Piece next(double now);

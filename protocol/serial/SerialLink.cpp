@@ -54,11 +54,13 @@ quint64 SerialLink::send(const QByteArray &message, Rank rank) {
     if (size + crcBytes > qint64(mostPieces) * pieceBytes || waiting_ + size > mostWaiting)
         return 0;
     const quint64 ticket = ++lastTicket_;
-    if (size <= largestFrame)
-        lane(rank).small.push_back({ticket, message});
+    const bool isWhole = size <= largestFrame && rank <= Rank::Usual;
+    Lane &way = lane(rank == Rank::Assured ? Rank::Usual : rank);
+    if (isWhole)
+        way.small.push_back({ticket, message});
     else
-        lane(rank).large.emplace_back(sealed(message), nextNumber_++, ticket);
-    waiting_ += size <= largestFrame ? size : size + crcBytes;
+        way.large.emplace_back(sealed(message), nextNumber_++, ticket);
+    waiting_ += isWhole ? size : size + crcBytes;
     return ticket;
 }
 
@@ -97,7 +99,7 @@ QByteArray SerialLink::next() {
         return takeSmall(usual);
     topicsTurn_ = hasSome(topic) && (!topicsTurn_ || !nextOf(usual));
     if (topicsTurn_)
-        return topic.small.empty() ? takePiece(topic) : takeSmall(topic);
+        return takePiece(topic);
     return nextOf(usual) ? takePiece(usual) : QByteArray();
 }
 
@@ -143,7 +145,7 @@ std::vector<SerialLink::Arrival> SerialLink::receive(const QByteArray &bytes) {
             skipping_ = true;
             begun_ = QByteArray();
             ++counts_.oversized;
-            arrivals.push_back({{}, true});
+            arrivals.push_back({{}, false, true});
         }
         if (!skipping_)
             begun_.append(at, int(stop - at));
@@ -170,7 +172,7 @@ void SerialLink::finishFrame(std::vector<Arrival> &arrivals) {
     ++counts_.framesIn;
     const auto kind = FrameKind(quint8((*content)[0]));
     if (isMessage(*content))
-        arrivals.push_back({*content, false});
+        arrivals.push_back({*content, false, false});
     else if (kind == FrameKind::Piece || kind == FrameKind::PieceToReport)
         takePiece(*content, arrivals);
     else if (kind == FrameKind::Report)
@@ -189,13 +191,13 @@ void SerialLink::takePiece(const QByteArray &frame, std::vector<Arrival> &arriva
     const auto outcome = incoming_.take(*piece, limit_ + crcBytes, now_, whole);
     if (outcome == IncomingPieces::Outcome::TooLarge) {
         ++counts_.oversized;
-        arrivals.push_back({{}, true});
+        arrivals.push_back({{}, true, true});
     }
     if (outcome != IncomingPieces::Outcome::Complete)
         return;
     const auto content = unsealed(std::move(whole)); // pieces of two senders may have the same number
     if (content && isMessage(*content))
-        arrivals.push_back({*content, false});
+        arrivals.push_back({*content, true, false});
     else
         ++counts_.damaged;
 }
@@ -218,7 +220,7 @@ void SerialLink::retire(Lane &lane) {
         const bool isDead = message.isBegun() && now_ - message.lastProgress() > longestStandstill_s;
         if (!message.isDone() && !isDead)
             return false;
-        counts_.abandoned += !message.isDone();
+        counts_.abandoned += !message.isDone() || message.isRefused();
         waiting_ -= message.size();
         return true;
     };

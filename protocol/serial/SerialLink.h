@@ -29,10 +29,12 @@ public:
     enum class Rank {
         Urgent, ///< before all others
         Usual,  ///< before pieces of others, where it is small
-        Topic   ///< in turns with large ones
+        Topic,  ///< in turns with large ones; always in pieces
+        Assured ///< as usual, but always in pieces: it arrives, or the line is dead
     };
     struct Arrival {
         QByteArray message;
+        bool inPieces = false;
         bool tooLarge = false; ///< then message is empty
     };
     /// Of the content of a frame without its CRC: what is larger goes in pieces.
