@@ -7,8 +7,9 @@
 namespace hermes {
 namespace {
 
-constexpr int reportEvery = 8;
-constexpr double firstPatience_s = 0.25, leastPatience_s = 0.03, longestPatience_s = 2;
+constexpr int reportEvery = 4, askFor = 4;
+constexpr double firstPatience_s = 0.25, leastPatience_s = 0.03, longestPause_s = 1;
+constexpr double growth = 1.5; // of the time between two questions
 constexpr int frameBytes = Piece::headerBytes + pieceBytes + 7;
 
 } // namespace
@@ -91,14 +92,18 @@ bool OutgoingPieces::take(const PieceReport &report, LinkPace &pace, double now)
 double OutgoingPieces::dueAt(const LinkPace &pace) const {
     if (inFlight_ == 0)
         return std::numeric_limits<double>::infinity();
-    return sentAt_ + std::min(longestPatience_s, std::ldexp(pace.patience(), std::min(asked_, 10)));
+    const double patience_s = pace.patience();
+    return sentAt_ + std::min(std::max(longestPause_s, patience_s), patience_s * std::pow(growth, asked_));
 }
 
 void OutgoingPieces::ask() {
     ++asked_;
-    for (int i = base_; i < next_; ++i)
-        if (Slot &which = slot(i); !which.has && !which.lost)
-            return lose(which);
+    int left = askFor;
+    for (int i = base_; i < next_ && left > 0; ++i)
+        if (Slot &which = slot(i); !which.has && !which.lost) {
+            lose(which);
+            --left;
+        }
 }
 
 } // namespace hermes

@@ -18,7 +18,7 @@ struct LinkPace {
 
 /// A large message on its way out: which of its pieces go next, by what the receiver reports. At most
 /// mostInFlight are sent and not reported. What was sent before something that has arrived, and has not, is
-/// lost and sent again; when no report comes, the first that is missing is.
+/// lost and sent again; when no report comes, the first that are missing are.
 class OutgoingPieces {
 public:
     static constexpr int mostInFlight = 24; // so that a pseudo-terminal holds them

@@ -216,8 +216,9 @@ void SerialLink::takeReport(const QByteArray &frame) {
 }
 
 void SerialLink::retire(Lane &lane) {
-    const auto isOver = [this](const OutgoingPieces &message) {
-        const bool isDead = message.isBegun() && now_ - message.lastProgress() > longestStandstill_s;
+    const double most_s = std::max(longestStandstill_s, mostPatience * pace_.patience());
+    const auto isOver = [this, most_s](const OutgoingPieces &message) {
+        const bool isDead = message.isBegun() && now_ - message.lastProgress() > most_s;
         if (!message.isDone() && !isDead)
             return false;
         counts_.abandoned += !message.isDone() || message.isRefused();

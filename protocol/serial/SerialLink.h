@@ -40,7 +40,9 @@ public:
     /// Of the content of a frame without its CRC: what is larger goes in pieces.
     static constexpr int largestFrame = 160;
     static constexpr int mostWaiting = 16 << 20;
-    static constexpr double longestStandstill_s = 20; ///< no report: a message in pieces is abandoned
+    /// No report: a message in pieces is abandoned. On a slow line, after so many times what a report takes.
+    static constexpr double longestStandstill_s = 20;
+    static constexpr int mostPatience = 20;
 
     /// firstNumber: of messages in pieces; any, but another one after each start.
     explicit SerialLink(quint16 firstNumber)
