@@ -11,7 +11,7 @@ namespace {
 
 constexpr double firstPeriod_s = 0.3, leastPeriod_s = 0.02;
 // It goes in pieces, and so does its reply: both arrive.
-constexpr double longPeriod_s = SerialLink::longestStandstill_s;
+constexpr double longPeriod_s = SerialLink::shortestStandstill_s;
 constexpr double growth = 1.5; // of the period, at each repeat
 constexpr int usualReplyBytes = 100;
 

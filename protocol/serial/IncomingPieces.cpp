@@ -7,7 +7,7 @@ namespace hermes {
 namespace {
 
 constexpr std::size_t mostEnded = 32, mostDue = 32;
-constexpr double rememberEnded_s = 60;
+constexpr double rememberEnded_s = 120; // longer than anybody repeats pieces
 constexpr int limits = 3; // of one message: an urgent one, a usual one, and one of a topic at a time
 
 } // namespace
@@ -18,7 +18,7 @@ IncomingPieces::Outcome IncomingPieces::take(const Piece &piece, int limit, doub
         owe(piece.number);
     const Place place = find(piece);
     const bool isNew = place == messages_.end();
-    if (isNew && hasEnded(piece))
+    if (isNew && hasEnded(piece, now))
         return Outcome::Duplicate;
     if (piece.index >= (isNew ? 0 : place->base) + windowPieces) {
         owe(piece.number);
@@ -93,10 +93,15 @@ IncomingPieces::Place IncomingPieces::find(const Piece &piece) {
     return messages_.end();
 }
 
-bool IncomingPieces::hasEnded(const Piece &piece) const {
-    return std::any_of(ended_.begin(), ended_.end(), [&piece](const Ended &one) {
+bool IncomingPieces::hasEnded(const Piece &piece, double now) {
+    const auto found = std::find_if(ended_.begin(), ended_.end(), [&piece](const Ended &one) {
         return one.number == piece.number && one.total == piece.total;
     });
+    if (found == ended_.end())
+        return false;
+    ended_.erase(found); // its sender does not know as yet
+    ended_.push_back({piece.number, piece.total, now});
+    return true;
 }
 
 void IncomingPieces::end(const Piece &piece, double now) {

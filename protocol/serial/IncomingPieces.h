@@ -55,7 +55,7 @@ private:
     Place find(const Piece &piece);
     Place begin(const Piece &piece);
     Outcome keep(Place place, const Piece &piece, double now);
-    bool hasEnded(const Piece &piece) const;
+    bool hasEnded(const Piece &piece, double now);
     void end(const Piece &piece, double now);
     void owe(quint16 number);
     void drop(Place place);

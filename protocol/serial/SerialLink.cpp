@@ -13,6 +13,7 @@ namespace {
 
 constexpr int crcBytes = 4;
 constexpr char endOfFrame = '\0';
+constexpr int mostQuestions = 20;
 constexpr std::size_t mostAtOnce = 2; // large ones of a rank: one waits for its last report
 
 QByteArray sealed(QByteArray content) {
@@ -216,7 +217,8 @@ void SerialLink::takeReport(const QByteArray &frame) {
 }
 
 void SerialLink::retire(Lane &lane) {
-    const double most_s = std::max(longestStandstill_s, mostPatience * pace_.patience());
+    const double most_s =
+        std::clamp(mostQuestions * pace_.patience(), shortestStandstill_s, longestStandstill_s);
     const auto isOver = [this, most_s](const OutgoingPieces &message) {
         const bool isDead = message.isBegun() && now_ - message.lastProgress() > most_s;
         if (!message.isDone() && !isDead)

@@ -40,9 +40,9 @@ public:
     /// Of the content of a frame without its CRC: what is larger goes in pieces.
     static constexpr int largestFrame = 160;
     static constexpr int mostWaiting = 16 << 20;
-    /// No report: a message in pieces is abandoned. On a slow line, after so many times what a report takes.
-    static constexpr double longestStandstill_s = 20;
-    static constexpr int mostPatience = 20;
+    /// Without a report a message in pieces is abandoned after these, the later one where a report takes
+    /// long.
+    static constexpr double shortestStandstill_s = 20, longestStandstill_s = 60;
 
     /// firstNumber: of messages in pieces; any, but another one after each start.
     explicit SerialLink(quint16 firstNumber)
