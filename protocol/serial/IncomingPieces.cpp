@@ -6,7 +6,7 @@
 namespace hermes {
 namespace {
 
-constexpr std::size_t mostEnded = 32, mostDue = 32;
+constexpr std::size_t mostEnded = 64, mostDue = 32;
 constexpr double rememberEnded_s = 120; // longer than anybody repeats pieces
 constexpr int limits = 3; // of one message: an urgent one, a usual one, and one of a topic at a time
 

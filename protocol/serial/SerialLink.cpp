@@ -13,6 +13,7 @@ namespace {
 
 constexpr int crcBytes = 4;
 constexpr char endOfFrame = '\0';
+constexpr int mostAhead = 32; // of the number of a message, while one waits for its last report
 constexpr int mostQuestions = 20;
 constexpr std::size_t mostAtOnce = 2; // large ones of a rank: one waits for its last report
 
@@ -43,7 +44,7 @@ void SerialLink::setTime(double now) {
     now_ = now;
     incoming_.forgetOld(now);
     for (Lane &lane : lanes_) {
-        for (OutgoingPieces &message : lane.large)
+        for (OutgoingPieces &message : lane.begun)
             if (now >= message.dueAt(pace_))
                 message.ask();
         retire(lane);
@@ -60,7 +61,7 @@ quint64 SerialLink::send(const QByteArray &message, Rank rank) {
     if (isWhole)
         way.small.push_back({ticket, message});
     else
-        way.large.emplace_back(sealed(message), nextNumber_++, ticket);
+        way.large.push_back({ticket, sealed(message)});
     waiting_ += isWhole ? size : size + crcBytes;
     return ticket;
 }
@@ -69,23 +70,35 @@ bool SerialLink::isUnderWay(quint64 ticket) const {
     const auto isIt = [ticket](const auto &one) { return one.ticket == ticket; };
     return std::any_of(lanes_.begin(), lanes_.end(), [&isIt](const Lane &lane) {
         return std::any_of(lane.small.begin(), lane.small.end(), isIt) ||
-               std::any_of(lane.large.begin(), lane.large.end(), isIt);
+               std::any_of(lane.large.begin(), lane.large.end(), isIt) ||
+               std::any_of(lane.begun.begin(), lane.begun.end(), isIt);
     });
 }
 
 OutgoingPieces *SerialLink::nextOf(Lane &lane) {
-    std::size_t left = mostAtOnce;
-    for (OutgoingPieces &message : lane.large) {
-        if (left-- == 0)
-            break;
+    for (OutgoingPieces &message : lane.begun)
         if (message.hasNext())
             return &message;
-    }
-    return nullptr;
+    if (lane.large.empty() || lane.begun.size() == mostAtOnce || !mayBegin())
+        return nullptr;
+    const Waiting next = std::move(lane.large.front());
+    lane.large.pop_front();
+    return &lane.begun.emplace_back(next.content, nextNumber_++, next.ticket);
+}
+
+// The receiver remembers so many that it has had.
+bool SerialLink::mayBegin() const {
+    return std::all_of(lanes_.begin(), lanes_.end(), [this](const Lane &lane) {
+        return std::all_of(lane.begun.begin(), lane.begun.end(), [this](const OutgoingPieces &message) {
+            return quint16(nextNumber_ - message.number()) < mostAhead;
+        });
+    });
 }
 
 bool SerialLink::hasNext() {
-    return incoming_.isReportDue() || std::any_of(lanes_.begin(), lanes_.end(), hasSome);
+    return incoming_.isReportDue() || std::any_of(lanes_.begin(), lanes_.end(), [this](Lane &lane) {
+               return !lane.small.empty() || nextOf(lane);
+           });
 }
 
 QByteArray SerialLink::next() {
@@ -98,7 +111,7 @@ QByteArray SerialLink::next() {
         return takePiece(urgent);
     if (!usual.small.empty())
         return takeSmall(usual);
-    topicsTurn_ = hasSome(topic) && (!topicsTurn_ || !nextOf(usual));
+    topicsTurn_ = nextOf(topic) && (!topicsTurn_ || !nextOf(usual));
     if (topicsTurn_)
         return takePiece(topic);
     return nextOf(usual) ? takePiece(usual) : QByteArray();
@@ -129,7 +142,7 @@ QByteArray SerialLink::framed(QByteArray content, bool startsAnew) {
 double SerialLink::wakeAt() const {
     double at = std::numeric_limits<double>::infinity();
     for (const Lane &lane : lanes_)
-        for (const OutgoingPieces &message : lane.large)
+        for (const OutgoingPieces &message : lane.begun)
             at = std::min(at, message.dueAt(pace_));
     return at;
 }
@@ -210,7 +223,7 @@ void SerialLink::takeReport(const QByteArray &frame) {
         return;
     }
     for (Lane &lane : lanes_) {
-        for (OutgoingPieces &message : lane.large)
+        for (OutgoingPieces &message : lane.begun)
             message.take(*report, pace_, now_);
         retire(lane);
     }
@@ -227,13 +240,14 @@ void SerialLink::retire(Lane &lane) {
         waiting_ -= message.size();
         return true;
     };
-    lane.large.remove_if(isOver);
+    lane.begun.remove_if(isOver);
 }
 
 void SerialLink::reset() {
     for (Lane &lane : lanes_) {
         lane.small.clear();
         lane.large.clear();
+        lane.begun.clear();
     }
     incoming_.clear();
     begun_ = QByteArray();

@@ -76,14 +76,14 @@ public:
     qint64 bytesHeld() const { return begun_.size() + incoming_.bytes(); } ///< of what is on its way in
 
 private:
-    struct Small {
+    struct Waiting {
         quint64 ticket;
         QByteArray content;
     };
     struct Lane {
-        std::deque<Small> small;
-        std::list<OutgoingPieces> large;
-        bool isEmpty() const { return small.empty() && large.empty(); }
+        std::deque<Waiting> small, large;
+        std::list<OutgoingPieces> begun;
+        bool isEmpty() const { return small.empty() && large.empty() && begun.empty(); }
     };
     Lane &lane(Rank rank) { return lanes_[std::size_t(rank)]; }
     const Lane &lane(Rank rank) const { return lanes_[std::size_t(rank)]; }
@@ -91,8 +91,8 @@ private:
     QByteArray framed(QByteArray content, bool startsAnew);
     QByteArray takeSmall(Lane &from);
     QByteArray takePiece(Lane &from);
-    static OutgoingPieces *nextOf(Lane &lane);
-    static bool hasSome(Lane &lane) { return !lane.small.empty() || nextOf(lane); }
+    OutgoingPieces *nextOf(Lane &lane);
+    bool mayBegin() const;
     void finishFrame(std::vector<Arrival> &arrivals);
     void takePiece(const QByteArray &frame, std::vector<Arrival> &arrivals);
     void takeReport(const QByteArray &frame);
