@@ -88,6 +88,11 @@ void TestSerialLink::aSmallMessageIsOneFrame() {
     QCOMPARE(messagesOf(got), std::vector<QByteArray>{message(1, 40)});
     QVERIFY(!peer.isMidFrame());
     QVERIFY(!peer.hasNext()); // nothing is to be said
+    // As docs/protocol.md shows it.
+    const QByteArray item =
+        QByteArray::fromHex("a3676a736f6e72706363322e3062696401666d6574686f646b6461656d6f6e2e696e666f");
+    link.send(item, Rank::Usual);
+    QCOMPARE(link.next().toHex(), "0029" + item.toHex() + "4c5bf6ef00");
 }
 
 void TestSerialLink::garbageBetweenTwoFrames() {
