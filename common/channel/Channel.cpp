@@ -27,6 +27,7 @@ qint64 costOf(const CodecFrame &frame) {
 constexpr qint64 handOverBytes = 32 << 10;
 
 constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their sender does
+constexpr qint64 mostOfALine = 2 << 20;     // the same, and one more; then they are lost
 
 } // namespace
 
@@ -121,7 +122,9 @@ bool Channel::hasSpaceForTopics() const {
 }
 
 LinkCounters Channel::linkCounters() const {
-    return writer_ ? writer_->link().counters() : LinkCounters();
+    LinkCounters all = writer_ ? writer_->link().counters() : LinkCounters();
+    all.damaged += overruns_;
+    return all;
 }
 
 void Channel::close(const QString &reason) {
@@ -166,6 +169,11 @@ void Channel::receive(const QByteArray &bytes) {
                 return;
             continue;
         }
+        if (isLine() &&
+            waitingBytes_ > mostOfALine) { // it cannot be told to wait; who wants an answer repeats
+            ++overruns_;
+            continue;
+        }
         waitingBytes_ += costOf(frame);
         waiting_.push_back(std::move(frame));
     }
@@ -174,7 +182,7 @@ void Channel::receive(const QByteArray &bytes) {
             Q_EMIT foreign(RpcError(ErrorCode::InvalidRequest, framing_->greeting().reason()));
         return;
     }
-    canWait_ ? schedule() : deliverAll();
+    canWait_ || isLine() ? schedule() : deliverAll();
 }
 
 void Channel::end(const QString &reason) {

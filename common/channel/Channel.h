@@ -45,7 +45,7 @@ public:
     std::optional<quint64> write(const QByteArray &frame, Rank rank = Rank::Usual);
     /// Whether frames may be lost, and who asks repeats it.
     bool isLossy() const { return writer_ != nullptr; }
-    /// Whether it never ends: whoever speaks next may be somebody else.
+    /// Whether it is lossy and never ends: whoever speaks next may be somebody else.
     bool isLine() const { return isLossy() && !canWait_; }
     /// Whether some of it waits here, or is repeated until it has arrived: of lossy channels.
     bool isUnderWay(quint64 ticket) const;
@@ -106,6 +106,7 @@ private:
     std::unique_ptr<PacedWriter> writer_; // where the framing has a link
     std::deque<CodecFrame> waiting_;
     qint64 waitingBytes_ = 0;
+    quint64 overruns_ = 0; // frames of a line that had no place
     double arrival_ = 0;
     bool inPieces_ = false;
     std::optional<CodecItem> readFront_; // what is in the first of them, when it was read in the background

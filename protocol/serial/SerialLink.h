@@ -14,7 +14,7 @@ namespace hermes {
 struct LinkCounters {
     quint64 framesIn = 0; ///< undamaged
     quint64 framesOut = 0;
-    quint64 damaged = 0;   ///< frames dropped: not COBS, wrong CRC, or of no known kind
+    quint64 damaged = 0;   ///< frames dropped: not COBS, wrong CRC, of no known kind, or too many
     quint64 oversized = 0; ///< messages over the limit
     quint64 repeatedPieces = 0;
     quint64 abandoned = 0; ///< messages in pieces given up, on the way in or out

@@ -63,6 +63,7 @@ private Q_SLOTS:
     void topicsAndAMapShareTheLine();
     void clientBeginsAnewInTheMiddle();
     void subscriptionsHoldOnADamagedLine();
+    void batchesWaitForEachOther();
 
 private:
     std::unique_ptr<Client> newClient() {
@@ -273,6 +274,27 @@ void TestSerialLine::subscriptionsHoldOnADamagedLine() {
         client->unsubscribe(handle);
         QTRY_VERIFY(!daemon->hasSubscribers("state"));
     }
+}
+
+void TestSerialLine::batchesWaitForEachOther() {
+    client.reset();
+    const auto channel = Channel::make("serial://" + line->device(1) + "?baud=115200&protocol=serial", this);
+    QVERIFY(channel);
+    int replies = 0;
+    connect(*channel, &Channel::message, this, [&replies](const QJsonValue &message) {
+        for (const QJsonValue &reply : message.toArray())
+            replies += reply["result"].isDouble();
+    });
+    (*channel)->open();
+    for (int batch = 0; batch < 3; ++batch) {
+        QJsonArray requests;
+        for (int i = 0; i < 40; ++i)
+            requests.append(makeRequest(batch * 100 + i, "count", QJsonArray{batch * 100 + i}));
+        QVERIFY((*channel)->send(requests, Channel::Rank::Topic));
+    }
+    QTRY_COMPARE_WITH_TIMEOUT(replies, 120, 10000 * slowness);
+    QCOMPARE(daemon->times.size(), size_t(120));
+    delete *channel;
 }
 
 QTEST_GUILESS_MAIN(TestSerialLine)
