@@ -131,7 +131,8 @@ void TestReplyCache::withoutIdNothingIsKept() {
 }
 
 void TestReplyCache::batchesAreRepeatedToo() {
-    const QJsonArray batch{makeRequest(1, "subtract", QJsonArray{5, 3}), makeNotification("subtract", QJsonArray{1, 1}),
+    const QJsonArray batch{makeRequest(1, "subtract", QJsonArray{5, 3}),
+                           makeNotification("subtract", QJsonArray{1, 1}),
                            makeRequest(2, "subtract", QJsonArray{5, 4})};
     const QJsonValue first = client->ask(batch);
     QCOMPARE(first.toArray().size(), 2);
@@ -167,7 +168,7 @@ void TestReplyCache::aLargeReplyIsNotSentTwiceAtOnce() {
     client->send(makeRequest(2, "subtract", QJsonArray{5, 3}));
     const auto next = client->replies(1);
     QCOMPARE(next.size(), size_t(1));
-    QCOMPARE(next[0]["id"].toInt(), 2); // no second one came before
+    QCOMPARE(next[0]["id"].toInt(), 2);                                // no second one came before
     QCOMPARE(client->ask(request)["result"].toString().size(), 20000); // whoever asks again gets it again
     QCOMPARE(requests(), 2);
 }
@@ -209,7 +210,8 @@ void TestReplyCache::boundsOfTheCache() {
     QCOMPARE(large.begin(key(29), channel, 1), Known::Repeat);
     const qint64 before = large.bytes();
     large.begin(key(30), channel, 1);
-    large.answer(key(30), {QByteArray(2 << 20, 'x'), 0}, Channel::Rank::Usual, 1); // takes no other one's place
+    large.answer(key(30), {QByteArray(2 << 20, 'x'), 0}, Channel::Rank::Usual,
+                 1); // takes no other one's place
     QCOMPARE(large.bytes(), before);
     QCOMPARE(large.begin(key(30), channel, 1), Known::Lost);
     large.forget(key(30));

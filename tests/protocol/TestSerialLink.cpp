@@ -69,6 +69,7 @@ private Q_SLOTS:
     void aDeadLineEndsAMessage();
     void whoBeginsAnewIsTold();
     void equalNumbersOfTwoSendersDoNotMix();
+    void lostReportsBringNothingTwice();
     void damagedLineIsUsedWell();
     void largeMessageTakesNoTime();
 };
@@ -325,6 +326,33 @@ void TestSerialLink::equalNumbersOfTwoSendersDoNotMix() {
         for (const auto &one : link.receive(piece(6, i, c)))
             got.push_back(one);
     QCOMPARE(messagesOf(got), std::vector<QByteArray>{message(3, 700)});
+}
+
+// The receiver remembers only so many that it has had.
+void TestSerialLink::lostReportsBringNothingTwice() {
+    LinkPair pair(11520);
+    bool isLost = true;
+    pair.damage = [&isLost](QByteArray &frame) {
+        const auto content = cobsDecoded(frame.constData(), frame.size() - 1);
+        const auto report = content && content->startsWith('\x12')
+                                ? PieceReport::fromFrame(content->chopped(4))
+                                : std::nullopt;
+        if (isLost && report && report->number == 1000) // of the first message
+            frame.clear();
+    };
+    for (int i = 0; i < 200; ++i)
+        pair.ends[0].send(message(i, 100), Rank::Assured);
+    pair.run([] { return false; }, 15);
+    const std::size_t before = pair.arrived[1].size();
+    QVERIFY2(before > 25 && before < 40,
+             qPrintable(QString::number(before))); // the others wait for the first
+    isLost = false;
+    QVERIFY(pair.run([&] { return pair.arrived[1].size() == 200; }, 30));
+    pair.run([] { return false; }, 5);
+    const auto got = messagesOf(pair.arrived[1]);
+    QCOMPARE(got.size(), size_t(200));
+    QCOMPARE(std::set<QByteArray>(got.begin(), got.end()).size(), size_t(200));
+    QCOMPARE(pair.ends[0].counters().abandoned, 0u);
 }
 
 void TestSerialLink::damagedLineIsUsedWell() {
