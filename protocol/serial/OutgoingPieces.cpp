@@ -15,7 +15,10 @@ constexpr int frameBytes = Piece::headerBytes + pieceBytes + 7;
 } // namespace
 
 void LinkPace::measured(double seconds) {
-    roundTrip_s = roundTrip_s == 0 ? seconds : 0.75 * roundTrip_s + 0.25 * seconds;
+    const double weight = roundTrip_s == 0        ? 1
+                          : seconds < roundTrip_s ? 0.5
+                                                  : 0.125; // a late one was lost before
+    roundTrip_s += weight * (seconds - roundTrip_s);
 }
 
 double LinkPace::patience() const {

@@ -14,7 +14,7 @@ namespace {
 constexpr int crcBytes = 4;
 constexpr char endOfFrame = '\0';
 constexpr int mostAhead = 32; // of the number of a message, while one waits for its last report
-constexpr int mostQuestions = 20;
+constexpr int mostQuestions = 50;
 constexpr std::size_t mostAtOnce = 2; // large ones of a rank: one waits for its last report
 
 QByteArray sealed(QByteArray content) {
