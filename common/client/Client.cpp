@@ -282,12 +282,19 @@ void Client::onNotification(const RpcRequest &notification, const WireValue &dat
     const bool isTopic = notification.method == QStringLiteral("topic") && id > 0; // 0: not subscribed as yet
     if (const auto handle = isTopic ? handleOf(id) : std::nullopt)
         return deliver(*handle, params, data);
-    const bool waits = std::any_of(subscriptions_.begin(), subscriptions_.end(),
-                                   [](const auto &one) { return one.second.id == 0; });
-    if (isTopic && waits && channel_->isLossy() && early_.size() < mostEarly)
+    if (isTopic && channel_->isLossy() && subscribes() && early_.size() < mostEarly) {
         early_.push_back({id, params, data});
-    else
-        ++refused_.unasked;
+        return;
+    }
+    ++refused_.unasked;
+    // A line has no end: what an earlier program subscribed to goes on until somebody says no.
+    if (isTopic && channel_->isLossy())
+        notify(QStringLiteral("topics.unsubscribe"), QJsonObject{{QStringLiteral("subscription"), id}});
+}
+
+bool Client::subscribes() const {
+    return std::any_of(subscriptions_.begin(), subscriptions_.end(),
+                       [](const auto &one) { return one.second.id == 0; });
 }
 
 std::optional<int> Client::handleOf(qint64 id) const {
@@ -299,9 +306,9 @@ std::optional<int> Client::handleOf(qint64 id) const {
 
 void Client::deliverEarly(qint64 id) {
     for (const Early &one : std::exchange(early_, {})) {
-        if (one.id != id)
+        if (one.id != id && subscribes())
             early_.push_back(one);
-        else if (const auto handle = handleOf(id))
+        else if (const auto handle = handleOf(one.id))
             deliver(*handle, one.params, one.data);
     }
 }

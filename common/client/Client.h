@@ -113,6 +113,7 @@ private:
     void onResponse(const RpcResponse &response);
     void onNotification(const RpcRequest &notification, const WireValue &data);
     std::optional<int> handleOf(qint64 id) const;
+    bool subscribes() const;
     void deliverEarly(qint64 id);
     void deliver(int handle, const QJsonObject &params, const WireValue &data);
     void sendSubscription(int handle);

@@ -191,7 +191,7 @@ class SerialDaemon:
         self.id = random.randrange(1 << 31)
         self.buffer = b""
         self.pieces = Pieces()
-        self.topics = collections.defaultdict(collections.deque)  # messages not yet asked for, by subscription
+        self.topics = collections.defaultdict(lambda: collections.deque(maxlen=100))  # not yet asked for, by subscription
         self.round_trip = 0.05
         self.damaged = self.repeated = 0
 

@@ -253,6 +253,8 @@ void TestSerialLine::topicsAndAMapShareTheLine() {
 void TestSerialLine::clientBeginsAnewInTheMiddle() {
     client->call(
         "large", QJsonArray{300000}, [](const Result<QJsonValue> &) {}, std::chrono::minutes(5));
+    client->subscribe("numbers", {}, nullptr);
+    QTRY_VERIFY(daemon->hasSubscribers("numbers"));
     QTest::qWait(1500); // beyond the window: the new one cannot have the beginning
     client.reset();
     client = newClient();
@@ -261,6 +263,8 @@ void TestSerialLine::clientBeginsAnewInTheMiddle() {
     QCOMPARE(client->callAndWait("large", QJsonArray{3000}, std::chrono::seconds(20))->toString(),
              QString(3000, 'x'));
     QTRY_COMPARE(daemon->server().counters()["line_abandoned_messages"].toInt(), 1);
+    daemon->publish("numbers", 1); // what the first one subscribed to ends
+    QTRY_VERIFY(!daemon->hasSubscribers("numbers"));
 }
 
 void TestSerialLine::subscriptionsHoldOnADamagedLine() {
