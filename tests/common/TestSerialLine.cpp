@@ -64,6 +64,7 @@ private Q_SLOTS:
     void clientBeginsAnewInTheMiddle();
     void subscriptionsHoldOnADamagedLine();
     void batchesWaitForEachOther();
+    void aSlowCommandIsRepeatedSeldom();
 
 private:
     std::unique_ptr<Client> newClient() {
@@ -299,6 +300,30 @@ void TestSerialLine::batchesWaitForEachOther() {
     QTRY_COMPARE_WITH_TIMEOUT(replies, 120, 10000 * slowness);
     QCOMPARE(daemon->times.size(), size_t(120));
     delete *channel;
+}
+
+void TestSerialLine::aSlowCommandIsRepeatedSeldom() {
+    for (int i = 0; i < 10; ++i) // what is usual is known then
+        QVERIFY(client->callAndWait("count", QJsonArray{i}));
+    const quint64 before = client->repeats();
+    std::vector<QString> results;
+    const auto keep = [&results](const Result<QJsonValue> &result) {
+        results.push_back(result ? result->toString() : result.error().message);
+    };
+    client->call("later", QJsonObject(), keep);
+    QTest::qWait(3000);
+    QCOMPARE(daemon->replies.size(), size_t(1));
+    const quint64 repeats = client->repeats() - before;
+    qInfo("repeated %llu times in 3 s", repeats);
+    QVERIFY(repeats >= 2 && repeats <= 12);
+    daemon->replies[0].result("done");
+    QTRY_COMPARE(results, std::vector<QString>{"done"});
+    client->call("later", QJsonObject(), keep, std::chrono::milliseconds(500));
+    QTRY_COMPARE(results.size(), size_t(2));
+    const quint64 then = client->repeats(); // nobody waits any more
+    QTest::qWait(1500);
+    QCOMPARE(client->repeats(), then);
+    QCOMPARE(daemon->replies.size(), size_t(2));
 }
 
 QTEST_GUILESS_MAIN(TestSerialLine)
