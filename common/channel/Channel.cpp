@@ -2,10 +2,12 @@
 
 #include "common/Time.h"
 #include "common/Turns.h"
+#include "common/channel/PacedWriter.h"
 #include "common/interface/InterfaceRegistry.h"
 
 #include <QCoreApplication>
 #include <QPointer>
+#include <QScopeGuard>
 
 namespace hermes {
 namespace {
@@ -21,7 +23,11 @@ qint64 costOf(const CodecFrame &frame) {
     return frame.bytes.size() + qint64(sizeof(CodecFrame));
 }
 
+// So much may lie with the system before messages of topics wait where newer ones can replace them.
+constexpr qint64 handOverBytes = 32 << 10;
+
 constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their sender does
+constexpr qint64 mostOfALine = 2 << 20;     // the same, and one more; then they are lost
 
 } // namespace
 
@@ -29,15 +35,17 @@ Channel::Channel(Interface *interface, std::unique_ptr<Codec> codec, QObject *pa
     : QObject(parent)
     , carrier_(interface)
     , firstFraming_(std::move(codec))
-    , framing_(firstFraming_)
     , canWait_(interface->setReceiving(true)) {
     carrier_->setParent(this);
+    setFraming(firstFraming_);
     connect(carrier_, &Interface::opened, this, [this] {
         if (ended_)
             deliverAll();
         ++opening_;
-        if (framing_ != firstFraming_)
-            firstFraming_->succeed(*std::exchange(framing_, firstFraming_));
+        if (framing_ != firstFraming_) {
+            firstFraming_->succeed(*framing_);
+            setFraming(firstFraming_);
+        }
         framing_->reset();
         waiting_.clear();
         waitingBytes_ = 0;
@@ -47,6 +55,18 @@ Channel::Channel(Interface *interface, std::unique_ptr<Codec> codec, QObject *pa
     });
     connect(carrier_, &Interface::closed, this, &Channel::end);
     connect(carrier_, &Interface::received, this, &Channel::receive);
+    connect(carrier_, &Interface::drained, this, &Channel::drained);
+}
+
+Channel::~Channel() = default;
+
+void Channel::setFraming(const std::shared_ptr<Codec> &codec) {
+    writer_.reset();
+    framing_ = codec;
+    if (!framing_->link())
+        return;
+    writer_ = std::make_unique<PacedWriter>(*carrier_, framing_, nullptr);
+    connect(writer_.get(), &PacedWriter::resumed, this, &Channel::drained);
 }
 
 Result<Channel *> Channel::make(const QString &text, QObject *parent) {
@@ -65,17 +85,46 @@ Result<Channel *> Channel::make(const QString &text, QObject *parent) {
     return new Channel(*interface, std::move(codec), parent);
 }
 
-Result<void> Channel::send(const Outgoing &message) {
+Result<Sent> Channel::send(const Outgoing &message, Rank rank) {
     const EncodedFrame frame = framing_->encode(message);
     if (frame.error)
         return *frame.error;
-    if (!carrier_->write(frame.bytes)) {
-        return Error(isOpen() ? ErrorCode::OverLimit : ErrorCode::Disconnected,
-                     QStringLiteral("%1: %2").arg(carrier_->name(),
-                                                  isOpen() ? QStringLiteral("too much waits to be sent")
-                                                           : QStringLiteral("not connected")));
-    }
-    return {};
+    if (const auto ticket = write(frame.bytes, rank))
+        return Sent{frame.bytes, *ticket};
+    return Error(
+        isOpen() ? ErrorCode::OverLimit : ErrorCode::Disconnected,
+        QStringLiteral("%1: %2").arg(carrier_->name(), isOpen() ? QStringLiteral("too much waits to be sent")
+                                                                : QStringLiteral("not connected")));
+}
+
+std::optional<quint64> Channel::write(const QByteArray &frame, Rank rank) {
+    if (!writer_)
+        return carrier_->write(frame) ? std::make_optional<quint64>(0) : std::nullopt;
+    const quint64 ticket = isOpen() ? writer_->link().send(frame, rank) : 0;
+    if (ticket == 0)
+        return std::nullopt;
+    writer_->pump();
+    return ticket;
+}
+
+bool Channel::isUnderWay(quint64 ticket) const {
+    return writer_ && writer_->link().isUnderWay(ticket);
+}
+
+qint64 Channel::bytesToWrite() const {
+    return carrier_->bytesToWrite() + (writer_ ? writer_->link().bytesWaiting() : 0);
+}
+
+bool Channel::hasSpaceForTopics() const {
+    if (!isOpen())
+        return false;
+    return writer_ ? !writer_->link().hasTopicUnderWay() : carrier_->bytesToWrite() < handOverBytes;
+}
+
+LinkCounters Channel::linkCounters() const {
+    LinkCounters all = writer_ ? writer_->link().counters() : LinkCounters();
+    all.damaged += overruns_;
+    return all;
 }
 
 void Channel::close(const QString &reason) {
@@ -89,7 +138,7 @@ void Channel::close(const QString &reason) {
 
 void Channel::setCodec(std::unique_ptr<Codec> codec) {
     codec->succeed(*framing_);
-    framing_ = std::move(codec);
+    setFraming(std::move(codec));
 }
 
 void Channel::setReceiving(bool on) {
@@ -104,14 +153,25 @@ bool Channel::isQuiet() const {
 void Channel::receive(const QByteArray &bytes) {
     const QPointer<Channel> alive(this);
     const bool wasForeign = framing_->greeting().isForeign();
+    if (writer_)
+        writer_->link().setTime(monotonicNow());
+    const auto answerLink = qScopeGuard([this, alive] {
+        if (alive && writer_)
+            writer_->resume();
+    });
     bool hasJumped = false; // a flood of urgent ones is as ordinary as any
     for (CodecFrame &frame : framing_->split(bytes)) {
         frame.arrived = nextArrival();
         if (urgent_ && !hasJumped && !frame.error && urgent_(frame.bytes)) {
             hasJumped = true;
-            give(framing_->read(frame), frame.arrived);
+            give(framing_->read(frame), frame);
             if (!alive)
                 return;
+            continue;
+        }
+        if (isLine() &&
+            waitingBytes_ > mostOfALine) { // it cannot be told to wait; who wants an answer repeats
+            ++overruns_;
             continue;
         }
         waitingBytes_ += costOf(frame);
@@ -122,7 +182,7 @@ void Channel::receive(const QByteArray &bytes) {
             Q_EMIT foreign(RpcError(ErrorCode::InvalidRequest, framing_->greeting().reason()));
         return;
     }
-    canWait_ ? schedule() : deliverAll();
+    canWait_ || isLine() ? schedule() : deliverAll();
 }
 
 void Channel::end(const QString &reason) {
@@ -182,7 +242,7 @@ void Channel::deliverFront() {
     const bool isLarge = readFront_.has_value();
     CodecItem item = readFront_ ? *std::exchange(readFront_, std::nullopt) : framing_->read(frame);
     reads_ = false;
-    give(item, frame.arrived);
+    give(item, frame);
     if (isLarge)
         inBackground([large = std::move(item)] {}); // to free it takes long, too
 }
@@ -205,8 +265,9 @@ void Channel::readInBackground() {
     inBackground(readIt);
 }
 
-void Channel::give(const CodecItem &item, double arrived) {
-    arrival_ = arrived;
+void Channel::give(const CodecItem &item, const CodecFrame &frame) {
+    arrival_ = frame.arrived;
+    inPieces_ = frame.inPieces;
     framing_->count(item);
     if (item.error)
         Q_EMIT malformed(*item.error);

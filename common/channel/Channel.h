@@ -3,6 +3,7 @@
 #include "common/Result.h"
 #include "common/interface/Interface.h"
 #include "protocol/jsonrpc/Codec.h"
+#include "protocol/serial/SerialLink.h"
 
 #include <QObject>
 #include <deque>
@@ -13,12 +14,21 @@
 
 namespace hermes {
 
+class PacedWriter;
+
+/// What was sent, for who may have to repeat it or asks where it is.
+struct Sent {
+    QByteArray frame;
+    quint64 ticket = 0;
+};
+
 /// An interface and a codec joined: messages in and out.
 class Channel : public QObject {
     Q_OBJECT
 public:
     /// Takes over both.
     Channel(Interface *interface, std::unique_ptr<Codec> codec, QObject *parent);
+    ~Channel() override;
 
     /// The channel for a URL such as `tcp://127.0.0.1:7410?protocol=json`, not yet open.
     static Result<Channel *> make(const QString &url, QObject *parent);
@@ -27,9 +37,23 @@ public:
     void close(const QString &reason);
     bool isOpen() const { return carrier_->isOpen(); }
 
+    using Rank = SerialLink::Rank;
     /// Encodes and writes. Error when the message cannot be encoded, the channel is not open, or too much
-    /// waits to be sent.
-    Result<void> send(const Outgoing &message);
+    /// waits to be sent. Ranks matter where frames take turns, see SerialLink.
+    Result<Sent> send(const Outgoing &message, Rank rank = Rank::Usual);
+    /// Writes what the codec made. Gives a ticket for isUnderWay(); nothing when it was not taken.
+    std::optional<quint64> write(const QByteArray &frame, Rank rank = Rank::Usual);
+    /// Whether frames may be lost, and who asks repeats it.
+    bool isLossy() const { return writer_ != nullptr; }
+    /// Whether it is lossy and never ends: whoever speaks next may be somebody else.
+    bool isLine() const { return isLossy() && !canWait_; }
+    /// Whether some of it waits here, or is repeated until it has arrived: of lossy channels.
+    bool isUnderWay(quint64 ticket) const;
+    /// Taken and not yet given to the system.
+    qint64 bytesToWrite() const;
+    /// Whether a message of a topic would go out soon: until then it waits where a newer one can replace it.
+    bool hasSpaceForTopics() const;
+    void flush() { carrier_->flush(); }
 
     /// Lets messages wait, and their sender, where the interface can; others come at once all the same.
     void setReceiving(bool on);
@@ -43,13 +67,19 @@ public:
     /// When the message that is being given came, of the clock of bootNow(). No two in a thread came at the
     /// same time: what came first has the smaller one.
     double arrived() const { return arrival_; }
+    /// Whether that came in pieces: then its sender knows that it has arrived.
+    bool arrivedInPieces() const { return inPieces_; }
     /// Nothing of a message waits here or with the system.
     bool isQuiet() const;
 
     Interface &interface() { return *carrier_; }
+    const Interface &interface() const { return *carrier_; }
     Codec &codec() { return *framing_; }
+    LinkCounters linkCounters() const;
 
 Q_SIGNALS:
+    /// Some waiting bytes went out, or there is room again.
+    void drained();
     void opened();
     void closed(const QString &reason);
     void message(const QJsonValue &message, const hermes::WireValue &topicData);
@@ -59,6 +89,7 @@ Q_SIGNALS:
     void foreign(const hermes::RpcError &error);
 
 private:
+    void setFraming(const std::shared_ptr<Codec> &codec);
     void receive(const QByteArray &bytes);
     void end(const QString &reason);
     void schedule();
@@ -66,15 +97,18 @@ private:
     void deliverAll();
     void deliverFront();
     void readInBackground();
-    void give(const CodecItem &item, double arrived);
+    void give(const CodecItem &item, const CodecFrame &frame);
     void updateReceiving();
 
     Interface *carrier_;
     const std::shared_ptr<Codec> firstFraming_;
-    std::shared_ptr<Codec> framing_; // also of who reads in the background
+    std::shared_ptr<Codec> framing_;      // also of who reads in the background
+    std::unique_ptr<PacedWriter> writer_; // where the framing has a link
     std::deque<CodecFrame> waiting_;
     qint64 waitingBytes_ = 0;
+    quint64 overruns_ = 0; // frames of a line that had no place
     double arrival_ = 0;
+    bool inPieces_ = false;
     std::optional<CodecItem> readFront_; // what is in the first of them, when it was read in the background
     std::optional<QString> ended_;       // the carrier is closed; what was said before is still delivered
     std::function<bool(const QByteArray &)> urgent_;

@@ -3,7 +3,9 @@
 #include "protocol/wire/JsonText.h"
 
 #include <QEventLoop>
+#include <QRandomGenerator>
 #include <QTimer>
+#include <algorithm>
 #include <cmath>
 
 namespace hermes {
@@ -11,6 +13,8 @@ namespace {
 
 // A daemon that is slow to agree changes its framing nevertheless: there is no going on without its answer.
 constexpr std::chrono::hours longestAgreement{24};
+
+constexpr std::size_t mostEarly = 16; // messages that wait for the reply to their subscription
 
 constexpr double latestStamp = 1e10; // seconds: beyond it stamps lose their digits
 
@@ -87,13 +91,15 @@ void Client::send(const QString &method, const QJsonValue &params, const Callbac
     waiting_.insert(id, callback);
     const auto sent =
         mayBeSent ? channel_->send(makeRequest(id, method, params))
-                  : Result<void>(Error(ErrorCode::Disconnected,
+                  : Result<Sent>(Error(ErrorCode::Disconnected,
                                        QStringLiteral("%1: not connected: %2").arg(method, failure_)));
     if (!sent) {
         QMetaObject::invokeMethod(
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
         return;
     }
+    if (channel_->isLossy())
+        repeater_.add(*channel_, id, *sent);
     QTimer::singleShot(timeout, this, [this, id, method, timeout] {
         finish(
             id,
@@ -194,13 +200,14 @@ void Client::sendSubscription(int handle) {
                                             QStringLiteral("the reply to topics.subscribe: found no number "
                                                            "as subscription, expected one from 1")));
         found->second.id = qMax<qint64>(0, id);
+        deliverEarly(found->second.id);
     });
 }
 
 void Client::onOpened() {
     failure_.clear();
     refused_ = {};
-    preferred_.isEmpty() ? begin() : agree();
+    preferred_.isEmpty() || channel_->isLossy() ? begin() : agree();
 }
 
 void Client::agree() {
@@ -218,6 +225,9 @@ void Client::agree() {
 }
 
 void Client::begin() {
+    if (channel_
+            ->isLossy()) // whoever spoke here before may have had the first ids, and their replies are kept
+        lastId_ = qint64(QRandomGenerator::system()->generate());
     for (const auto &subscription : subscriptions_)
         sendSubscription(subscription.first);
     Q_EMIT connected();
@@ -227,6 +237,8 @@ void Client::onClosed(const QString &reason) {
     failure_ = reason;
     for (auto &subscription : subscriptions_)
         subscription.second.id = 0;
+    repeater_.clear();
+    early_.clear();
     const auto calls = std::exchange(waiting_, {});
     for (const Callback &callback : calls)
         callback(Error(ErrorCode::Disconnected, reason));
@@ -253,13 +265,13 @@ void Client::onResponse(const RpcResponse &response) {
     const qint64 id = toCount(response.id);
     if (!waiting_.contains(id))
         ++refused_.unasked;
-    else if (response.failed)
-        finish(id, response.error);
-    else
-        finish(id, response.result);
+    repeater_.end(id, true);
+    if (waiting_.contains(id))
+        finish(id, response.failed ? Result<QJsonValue>(response.error) : response.result);
 }
 
 void Client::finish(qint64 id, const Result<QJsonValue> &result) {
+    repeater_.end(id, false);
     if (const Callback callback = waiting_.take(id))
         callback(result);
 }
@@ -267,11 +279,38 @@ void Client::finish(qint64 id, const Result<QJsonValue> &result) {
 void Client::onNotification(const RpcRequest &notification, const WireValue &data) {
     const QJsonObject params = notification.params.toObject();
     const qint64 id = toCount(params.value(QStringLiteral("subscription")));
-    if (notification.method == QStringLiteral("topic") && id > 0) // 0: not subscribed as yet
-        for (const auto &subscription : subscriptions_)
-            if (subscription.second.id == id)
-                return deliver(subscription.first, params, data);
+    const bool isTopic = notification.method == QStringLiteral("topic") && id > 0; // 0: not subscribed as yet
+    if (const auto handle = isTopic ? handleOf(id) : std::nullopt)
+        return deliver(*handle, params, data);
+    if (isTopic && channel_->isLossy() && subscribes() && early_.size() < mostEarly) {
+        early_.push_back({id, params, data});
+        return;
+    }
     ++refused_.unasked;
+    // A line has no end: what an earlier program subscribed to goes on until somebody says no.
+    if (isTopic && channel_->isLossy())
+        notify(QStringLiteral("topics.unsubscribe"), QJsonObject{{QStringLiteral("subscription"), id}});
+}
+
+bool Client::subscribes() const {
+    return std::any_of(subscriptions_.begin(), subscriptions_.end(),
+                       [](const auto &one) { return one.second.id == 0; });
+}
+
+std::optional<int> Client::handleOf(qint64 id) const {
+    for (const auto &subscription : subscriptions_)
+        if (subscription.second.id == id)
+            return subscription.first;
+    return std::nullopt;
+}
+
+void Client::deliverEarly(qint64 id) {
+    for (const Early &one : std::exchange(early_, {})) {
+        if (one.id != id && subscribes())
+            early_.push_back(one);
+        else if (const auto handle = handleOf(one.id))
+            deliver(*handle, one.params, one.data);
+    }
 }
 
 void Client::deliver(int handle, const QJsonObject &params, const WireValue &data) {

@@ -2,6 +2,7 @@
 
 #include "common/Result.h"
 #include "common/channel/Channel.h"
+#include "common/client/Repeater.h"
 #include "protocol/jsonrpc/JsonRpc.h"
 
 #include <QHash>
@@ -25,7 +26,8 @@ struct TopicUpdate {
 };
 
 /// A connection to a daemon: calls, subscriptions, and a new connection when the old one ends. Subscriptions
-/// are made again after each reconnect; calls that wait when the connection ends fail with Disconnected.
+/// are made again after each reconnect; calls that wait when the connection ends fail with Disconnected. Over
+/// a channel that loses messages a call is repeated while it waits; the daemon carries it out once.
 class Client : public QObject {
     Q_OBJECT
 public:
@@ -57,6 +59,8 @@ public:
         QString last;        ///< what was wrong with the last unreadable one
     };
     const Rejected &rejected() const { return refused_; }
+    /// Calls that were sent again.
+    quint64 repeats() const { return repeater_.repeats(); }
     /// Of messages from now on, in bytes.
     void setFrameLimit(int bytes);
     /// Why the last attempt or connection ended.
@@ -108,6 +112,9 @@ private:
     void refuse(const RpcError &error);
     void onResponse(const RpcResponse &response);
     void onNotification(const RpcRequest &notification, const WireValue &data);
+    std::optional<int> handleOf(qint64 id) const;
+    bool subscribes() const;
+    void deliverEarly(qint64 id);
     void deliver(int handle, const QJsonObject &params, const WireValue &data);
     void sendSubscription(int handle);
     void finish(qint64 id, const Result<QJsonValue> &result);
@@ -121,6 +128,14 @@ private:
     int largeCalls_ = 0; ///< that wait
     qint64 lastId_ = 0;
     QHash<qint64, Callback> waiting_;
+    Repeater repeater_{nullptr};
+    /// Of a topic, that came before the reply to its subscription, which was lost.
+    struct Early {
+        qint64 id;
+        QJsonObject params;
+        WireValue data;
+    };
+    std::vector<Early> early_;
     int lastHandle_ = 0;
     std::map<int, Subscription> subscriptions_;
 };

@@ -13,14 +13,16 @@ public:
     /// More bytes of replies are too much for one frame.
     static constexpr qint64 mostBytes = 8 << 20;
 
-    Batch(const QJsonArray &requests, double when)
+    Batch(const QJsonArray &requests, double when, const QByteArray &knownBy)
         : arrived(when)
+        , key(knownBy)
         , messages_(requests)
         , frames_(size_t(requests.size()))
         , missing_(requests.size()) {}
     ~Batch();
 
     const double arrived; ///< Channel::arrived()
+    const QByteArray key; ///< of the ReplyCache
 
     bool isBegun() const { return next_ == messages_.size(); } ///< all of it
     bool isDone() const { return missing_ == 0; }

@@ -25,6 +25,13 @@ void addSession(QJsonObject &sums, Session &session) {
     addTo(sums, QStringLiteral("malformed_frames"), codec.malformed);
     addTo(sums, QStringLiteral("oversized_frames"), codec.oversized);
     addTo(sums, QStringLiteral("dropped_topic_messages"), session.topics().dropped());
+    const LinkCounters link = session.linkCounters();
+    addTo(sums, QStringLiteral("line_frames_in"), link.framesIn);
+    addTo(sums, QStringLiteral("line_frames_out"), link.framesOut);
+    addTo(sums, QStringLiteral("line_damaged_frames"), link.damaged);
+    addTo(sums, QStringLiteral("line_repeated_requests"), session.repeatedRequests());
+    addTo(sums, QStringLiteral("line_repeated_pieces"), link.repeatedPieces);
+    addTo(sums, QStringLiteral("line_abandoned_messages"), link.abandoned);
 }
 
 QString howToGetMore(const Peer &peer) {

@@ -36,7 +36,7 @@ public:
     Session *session(quint64 id) const { return sessions_.value(id); }
     GapWatch &gaps() { return gapWatch_; }
     /// Clients now and in all, requests, errors, damaged and oversized frames, dropped topic messages,
-    /// clients closed at a limit or turned away.
+    /// clients closed at a limit or turned away, and how good lines are that have the framing `serial`.
     QJsonObject counters() const;
 
 Q_SIGNALS:

@@ -61,8 +61,10 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
 }
 
 void Session::checkIdle() {
-    const bool waitsForTopics = !queue_.isEmpty() && channel_->interface().bytesToWrite() == 0;
-    if (limits_.idle_s > 0 && !waitsForTopics && monotonicNow() - lastSign_ > limits_.idle_s)
+    const bool waitsForTopics = !queue_.isEmpty() && channel_->bytesToWrite() == 0;
+    // A line has nobody else to make place for; closed it would be deaf to a stop.
+    if (limits_.idle_s > 0 && !waitsForTopics && !channel_->isLine() &&
+        monotonicNow() - lastSign_ > limits_.idle_s)
         expel(QStringLiteral("no sign of life for %1 s").arg(limits_.idle_s));
 }
 
@@ -76,7 +78,7 @@ void Session::close(const QString &reason) {
 
 void Session::expel(const QString &reason) {
     logWarning(QStringLiteral("server"), QStringLiteral("closing client %1: %2").arg(name(), reason));
-    if (channel_->interface().bytesToWrite() <= limits_.replyBytes)
+    if (channel_->bytesToWrite() <= limits_.replyBytes)
         channel_->send(makeError(QJsonValue(), RpcError(ErrorCode::OverLimit, reason)));
     close(reason);
 }
@@ -97,6 +99,8 @@ Result<void> Session::useProtocol(const QString &name) {
     if (!makeCodec(name))
         return invalidParams({{QStringLiteral("name"), name,
                                QStringLiteral("one of ") + codecNames().join(QStringLiteral(", "))}});
+    if (channel_->isLossy()) // the reply would be in the one framing or the other
+        return Error(ErrorCode::NotReady, QStringLiteral("the framing of a line cannot be changed"));
     if (batch_ || pending_ + pendingStops_ > 1 || !queue_.isEmpty())
         return Error(
             ErrorCode::NotReady,
@@ -132,22 +136,44 @@ bool Session::isUrgent(const QByteArray &frame) const {
 }
 
 void Session::receive(const QJsonValue &value) {
+    const QByteArray key = channel_->isLossy() ? ReplyCache::keyOf(value) : QByteArray();
+    if (!key.isEmpty() && isRepeat(key, value))
+        return;
     if (value.isArray() && !value.toArray().isEmpty())
-        return begin(value.toArray());
-    process(readFrame(value).messages.front(), channel_->arrived(), [this](const QJsonValue &reply) {
+        return begin(value.toArray(), key);
+    const RpcMessage message = readFrame(value).messages.front();
+    process(message, channel_->arrived(), [this, key, rank = rankOf(message)](const QJsonValue &reply) {
         if (!reply.isUndefined())
-            send(reply);
+            send(reply, key, rank);
     });
 }
 
-void Session::begin(const QJsonArray &messages) {
+// What came in pieces is not soon sent again; so its reply must arrive.
+Channel::Rank Session::rankOf(const RpcMessage &message) const {
+    using Rank = Channel::Rank;
+    return isUrgent(message) ? Rank::Urgent : channel_->arrivedInPieces() ? Rank::Assured : Rank::Usual;
+}
+
+bool Session::isRepeat(const QByteArray &key, const QJsonValue &value) {
+    const ReplyCache::Known known = replies_.begin(key, *channel_, monotonicNow());
+    if (known == ReplyCache::Known::Lost) {
+        channel_->send(
+            makeError(value.toObject().value(QStringLiteral("id")),
+                      RpcError(ErrorCode::OverLimit,
+                               QStringLiteral("this was carried out; the reply is not kept any more"))));
+    }
+    return known != ReplyCache::Known::New;
+}
+
+void Session::begin(const QJsonArray &messages, const QByteArray &key) {
     if (messages.size() > limits_.batch) {
+        replies_.forget(key);
         return refuse(
             RpcError(ErrorCode::OverLimit, QStringLiteral("a batch of %1 messages; at most %2 are allowed")
                                                .arg(messages.size())
                                                .arg(limits_.batch)));
     }
-    batch_ = std::make_shared<Batch>(messages, channel_->arrived());
+    batch_ = std::make_shared<Batch>(messages, channel_->arrived(), key);
     updateReceiving();
 }
 
@@ -189,14 +215,26 @@ bool Session::runNextOfBatch() {
 
 void Session::finish(const std::shared_ptr<Batch> &done) {
     if (done->isTooLarge()) {
-        return refuse(RpcError(ErrorCode::OverLimit,
-                               QStringLiteral("the replies to the batch are larger than %1 bytes together")
-                                   .arg(Batch::mostBytes)));
+        ++counts_.errors;
+        const RpcError error(ErrorCode::OverLimit,
+                             QStringLiteral("the replies to the batch are larger than %1 bytes together")
+                                 .arg(Batch::mostBytes));
+        return send(makeError(QJsonValue(), error), done->key);
     }
     if (!makeRoom())
         return;
-    for (const QByteArray &piece : done->take(channel_->codec()))
-        channel_->interface().write(piece);
+    const std::vector<QByteArray> pieces = done->take(channel_->codec());
+    if (!channel_->isLossy()) {
+        for (const QByteArray &piece : pieces)
+            channel_->write(piece);
+        return;
+    }
+    Sent reply;
+    for (const QByteArray &piece : pieces)
+        reply.frame += piece;
+    reply.ticket =
+        reply.frame.isEmpty() ? 0 : channel_->write(reply.frame, Channel::Rank::Assured).value_or(0);
+    replies_.answer(done->key, reply, Channel::Rank::Assured, monotonicNow());
 }
 
 void Session::process(const RpcMessage &message, double arrived, const Answer &answer) {
@@ -255,7 +293,7 @@ void Session::run(const RpcRequest &request, double arrived, const Answer &answe
                 else
                     answer(result ? makeResult(id, *result) : makeError(id, result.error()));
                 if (alive && isStop)
-                    channel_->interface().flush();
+                    channel_->flush();
                 if (alive)
                     updateReceiving();
                 return false;
@@ -290,25 +328,36 @@ void Session::updateReceiving() {
 bool Session::makeRoom() {
     if (!channel_->isOpen())
         return false;
-    Interface &carrier = channel_->interface();
-    if (carrier.bytesToWrite() > limits_.replyBytes)
-        carrier.flush();
-    if (carrier.bytesToWrite() <= limits_.replyBytes)
+    if (channel_->bytesToWrite() > limits_.replyBytes)
+        channel_->flush();
+    if (channel_->bytesToWrite() <= limits_.replyBytes || channel_->isLine())
         return true;
     expel(QStringLiteral("does not read its replies: %1 bytes are unsent (limits.reply_bytes)")
-              .arg(carrier.bytesToWrite()));
+              .arg(channel_->bytesToWrite()));
     return false;
 }
 
-void Session::send(const QJsonValue &reply) {
+// Closed it would be deaf.
+std::optional<Error> Session::overfull() const {
+    if (!channel_->isLine() || channel_->bytesToWrite() <= limits_.replyBytes)
+        return std::nullopt;
+    return Error(ErrorCode::OverLimit,
+                 QStringLiteral("%1 bytes of replies wait to be sent (limits.reply_bytes)")
+                     .arg(channel_->bytesToWrite()));
+}
+
+void Session::send(const QJsonValue &reply, const QByteArray &key, Channel::Rank rank) {
     if (!makeRoom())
         return;
-    const auto sent = channel_->send(reply);
-    if (sent)
-        return;
-    logError(name(), QStringLiteral("reply not sent: ") + sent.error().message);
-    ++counts_.errors;
-    channel_->send(makeError(reply.toObject().value(QStringLiteral("id")), sent.error()));
+    const auto full = overfull();
+    auto sent = full ? Result<Sent>(*full) : channel_->send(reply, rank);
+    if (!sent) {
+        logError(name(), QStringLiteral("reply not sent: ") + sent.error().message);
+        ++counts_.errors;
+        sent = channel_->send(makeError(reply.toObject().value(QStringLiteral("id")), sent.error()), rank);
+    }
+    if (!key.isEmpty() && sent)
+        replies_.answer(key, *sent, rank, monotonicNow());
 }
 
 } // namespace hermes

@@ -4,6 +4,7 @@
 #include "common/daemon/Batch.h"
 #include "common/daemon/CommandRegistry.h"
 #include "common/daemon/GapWatch.h"
+#include "common/daemon/ReplyCache.h"
 #include "common/daemon/TopicQueue.h"
 
 #include <QObject>
@@ -41,6 +42,8 @@ public:
     TopicQueue &topics() { return queue_; }
     const SessionCounters &counters() const { return counts_; }
     const CodecCounters &codecCounters() const { return channel_->codec().counters(); }
+    LinkCounters linkCounters() const { return channel_->linkCounters(); }
+    quint64 repeatedRequests() const { return replies_.repeats(); }
     /// Closes it when it has been silent for too long.
     void checkIdle();
     /// When bytes came or went last; monotonic.
@@ -77,7 +80,9 @@ private:
     bool isUrgent(const QByteArray &frame) const;
     bool isUrgent(const RpcMessage &message) const;
     void receive(const QJsonValue &frame);
-    void begin(const QJsonArray &messages);
+    bool isRepeat(const QByteArray &key, const QJsonValue &frame);
+    void begin(const QJsonArray &messages, const QByteArray &key);
+    Channel::Rank rankOf(const RpcMessage &message) const;
     bool runNextOfBatch();
     void finish(const std::shared_ptr<Batch> &done);
     void end(const QString &reason);
@@ -87,7 +92,8 @@ private:
     void updateReceiving();
     bool isOverPending() const;
     bool makeRoom();
-    void send(const QJsonValue &reply);
+    void send(const QJsonValue &reply, const QByteArray &key = {}, Channel::Rank rank = Channel::Rank::Usual);
+    std::optional<Error> overfull() const;
 
     const quint64 number_;
     Channel *channel_;
@@ -95,6 +101,7 @@ private:
     const SessionLimits limits_;
     GapWatch &gaps_;
     TopicQueue queue_;
+    ReplyCache replies_; // where requests may be repeated
     SessionCounters counts_;
     double lastSign_ = 0;          // monotonic: bytes came or went
     int pending_ = 0;              // requests not yet answered

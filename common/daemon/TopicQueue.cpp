@@ -8,13 +8,6 @@
 #include <cmath>
 
 namespace hermes {
-namespace {
-
-// So much may lie with the system before messages wait here, where newer ones can replace them.
-constexpr qint64 handOverBytes = 32 << 10;
-
-} // namespace
-
 const EncodedFrame &TopicMessage::frame(Codec &codec) const {
     EncodedFrame &made = (*frames)[typeid(codec)];
     if (made.bytes.isEmpty() && !made.error)
@@ -29,7 +22,7 @@ TopicQueue::TopicQueue(Channel &target, qint64 limit, QObject *parent)
     rateTimer_.setSingleShot(true);
     rateTimer_.setTimerType(Qt::PreciseTimer);
     connect(&rateTimer_, &QTimer::timeout, this, &TopicQueue::releaseHeld);
-    connect(&channel_.interface(), &Interface::drained, this, &TopicQueue::flush);
+    connect(&channel_, &Channel::drained, this, &TopicQueue::flush);
 }
 
 void TopicQueue::add(quint64 id, const QString &topic, const SubscribeOptions &options) {
@@ -154,11 +147,7 @@ void TopicQueue::stream(const QString &topic, quint64 onlyTo, const Parts &parts
 void TopicQueue::flush() {
     do
         writeFrames();
-    while (frames_.empty() && hasSpace() && enqueueNextPart());
-}
-
-bool TopicQueue::hasSpace() const {
-    return channel_.isOpen() && channel_.interface().bytesToWrite() < handOverBytes;
+    while (frames_.empty() && channel_.hasSpaceForTopics() && enqueueNextPart());
 }
 
 bool TopicQueue::enqueueNextPart() {
@@ -175,14 +164,14 @@ bool TopicQueue::enqueueNextPart() {
 }
 
 void TopicQueue::writeFrames() {
-    while (!frames_.empty() && hasSpace()) {
+    while (!frames_.empty() && channel_.hasSpaceForTopics()) {
         const Frame frame = std::move(frames_.front());
         frames_.pop_front();
         frameBytes_ -= frame.bytes.size();
         Subscription *owner = find(frame.subscription);
         if (owner)
             --owner->waiting;
-        if (!channel_.interface().write(frame.bytes)) {
+        if (!channel_.write(frame.bytes, Channel::Rank::Topic)) {
             ++droppedInAll_;
             if (owner)
                 ++owner->dropped;

@@ -81,7 +81,6 @@ private:
     void releaseHeld();
     void flush();
     void writeFrames();
-    bool hasSpace() const;
     bool enqueueNextPart();
     Subscription *find(quint64 id);
 

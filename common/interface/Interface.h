@@ -50,6 +50,10 @@ public:
     virtual void flush() {}
     /// Bytes taken by write() and not yet given to the system.
     virtual qint64 bytesToWrite() const = 0;
+    /// Bytes given to the system and not yet gone out, where that can be known.
+    virtual qint64 bytesInSystem() const { return 0; }
+    /// How fast bytes go out; 0: not known.
+    virtual double bytesPerSecond() const { return 0; }
     const InterfaceCounters &counters() const { return counts_; }
     /// Stops receiving, and goes on: meanwhile the sender waits. False: this carrier cannot.
     virtual bool setReceiving(bool on) {

@@ -23,6 +23,7 @@ public:
     /// The near end, e.g. "/dev/pts/3", while open.
     QString device() const { return nearEnd_; }
     qint64 bytesToWrite() const override { return 0; }
+    qint64 bytesInSystem() const override { return unread(); }
     /// Bytes that were written and that no program has read yet; 0 while closed.
     qint64 unread() const;
     /// Loses them; gives their number.

@@ -10,6 +10,8 @@
 namespace hermes {
 namespace {
 
+constexpr int usualBaud = 115200;
+
 template <typename T>
 struct Choice {
     const char *text;
@@ -56,10 +58,13 @@ SerialInterface::SerialInterface(const InterfaceUrl &address, QObject *parent)
 }
 
 QString SerialInterface::configure() {
-    const QString baudText = url_.option(QStringLiteral("baud"), QStringLiteral("115200"));
+    const QString baudText = url_.option(QStringLiteral("baud"), QString::number(usualBaud));
     const int baud = baudText.toInt();
     if (baud <= 0)
         return QStringLiteral("baud \"%1\" is not a number above 0").arg(baudText);
+    const QString pace = url_.option(QStringLiteral("pace"), baudText);
+    if (pace.toInt() <= 0)
+        return QStringLiteral("pace \"%1\" is not a number above 0").arg(pace);
     QSerialPort::DataBits data = QSerialPort::Data8;
     QSerialPort::Parity parity = QSerialPort::NoParity;
     QSerialPort::StopBits stop = QSerialPort::OneStop;
@@ -118,6 +123,22 @@ QMap<QString, quint64> SerialInterface::systemErrors() const {
     for (auto error = errors.begin(); error != errors.end(); ++error)
         *error -= std::min(*error, errorsAtOpening_.value(error.key()));
     return errors;
+}
+
+qint64 SerialInterface::bytesInSystem() const {
+    int bytes = 0;
+    return port_.isOpen() && ::ioctl(port_.handle(), TIOCOUTQ, &bytes) == 0 ? bytes : 0;
+}
+
+double SerialInterface::bytesPerSecond() const {
+    const auto bits = [this](const char *option, int usual) {
+        return url_.option(QLatin1String(option), QString::number(usual)).toInt();
+    };
+    const int parity =
+        url_.option(QStringLiteral("parity"), QStringLiteral("none")) != QStringLiteral("none");
+    const int baud = bits("baud", usualBaud),
+              frame = 1 + bits("data_bits", 8) + parity + bits("stop_bits", 1);
+    return double(std::min(baud, bits("pace", baud))) / std::max(frame, 1);
 }
 
 void SerialInterface::doClose() {

@@ -10,6 +10,7 @@ namespace hermes {
 
 /// A serial line. The URL names the device and its settings: `serial:///dev/ttyS1?baud=115200` with
 /// `data_bits=8` (5 to 8), `parity=none` (even, odd), `stop_bits=1` (or 2), `flow=none` (hardware, software).
+/// A radio that sends more slowly than its line says so: `pace=19200`, in bits a second.
 /// A link such as those in /dev/serial/by-path is followed at each opening, so that with reconnecting on a
 /// device that was pulled is found again under its new name. What came before the opening is dropped.
 class SerialInterface : public Interface {
@@ -20,6 +21,8 @@ public:
     QString name() const override { return url_.toString(); }
     void flush() override { port_.flush(); }
     qint64 bytesToWrite() const override { return port_.bytesToWrite(); }
+    qint64 bytesInSystem() const override;
+    double bytesPerSecond() const override;
     /// Of the driver: "overrun" (bytes that came too fast), "buffer_overrun", "framing", "parity", "break".
     QMap<QString, quint64> systemErrors() const override;
 

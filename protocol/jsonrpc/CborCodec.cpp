@@ -1,7 +1,5 @@
 #include "protocol/jsonrpc/CborCodec.h"
 
-#include "protocol/wire/CborWriter.h"
-
 #include <QtEndian>
 #include <algorithm>
 
@@ -9,8 +7,6 @@ namespace hermes {
 namespace {
 
 constexpr int prefixBytes = 4;
-constexpr char endOfContainer = '\xff';
-constexpr char beginOfArray = '\x9f'; // both of those without a length
 
 QByteArray prefix(qsizetype size) {
     QByteArray bytes(prefixBytes, Qt::Uninitialized);
@@ -57,41 +53,25 @@ void CborCodec::forgetFrame() {
     toSkip_ = 0;
 }
 
-std::optional<WireValue> CborCodec::parse(const QByteArray &bytes, WireError *error) const {
-    return WireValue::parseCbor(bytes, error);
-}
-
 QByteArray CborCodec::frame(const Outgoing &message, std::optional<QString> &path) {
-    CborWriter writer;
-    message.write(writer);
-    if (writer.hasRefused())
-        path = writer.refused();
-    const QByteArray item = writer.take();
+    const QByteArray item = written(message, path);
     return prefix(item.size()) + item;
 }
 
 void CborCodec::joinBatch(std::vector<QByteArray> &frames) const {
-    qsizetype size = 2;
-    for (QByteArray &frame : frames) {
+    for (QByteArray &frame : frames)
         frame.remove(0, prefixBytes);
-        size += frame.size();
-    }
-    frames.front().prepend(beginOfArray).prepend(prefix(size));
-    frames.back().append(endOfContainer);
+    joinItems(frames);
+    qsizetype size = 0;
+    for (const QByteArray &item : frames)
+        size += item.size();
+    frames.front().prepend(prefix(size));
 }
 
-// The params come last, and have an end, as has the whole: the other two go before these ends.
 QByteArray CborCodec::forSubscription(const QByteArray &notification, quint64 subscription,
                                       quint64 dropped) const {
-    QByteArray more;
-    QCborStreamWriter writer(&more);
-    writer.append(QLatin1String("subscription"));
-    writer.append(subscription);
-    writer.append(QLatin1String("dropped"));
-    writer.append(dropped);
-    more.append(endOfContainer).append(endOfContainer);
-    const int rest = notification.size() - prefixBytes - 2;
-    return prefix(rest + more.size()).append(notification.constData() + prefixBytes, rest).append(more);
+    const QByteArray item = withSubscription(notification.mid(prefixBytes), subscription, dropped);
+    return prefix(item.size()) + item;
 }
 
 } // namespace hermes

@@ -1,18 +1,18 @@
 #pragma once
 
-#include "protocol/jsonrpc/Codec.h"
+#include "protocol/jsonrpc/CborContent.h"
 
 namespace hermes {
 
 /// The framing `cbor`: the length of the frame as 4 bytes, the highest first, then one item of CBOR; arrays
 /// of numbers as typed arrays. A frame over the limit gives one error at once and is skipped without being
 /// buffered.
-class CborCodec : public Codec {
+class CborCodec : public CborContent {
 public:
     static constexpr int defaultFrameLimit = 16 << 20;
 
     CborCodec()
-        : Codec(defaultFrameLimit) {}
+        : CborContent(defaultFrameLimit) {}
 
     bool isMidFrame() const override { return toSkip_ > 0 || !frame_.isEmpty(); }
     void joinBatch(std::vector<QByteArray> &frames) const override;
@@ -21,7 +21,6 @@ public:
 
 protected:
     std::vector<CodecFrame> splitFrames(const QByteArray &bytes) override;
-    std::optional<WireValue> parse(const QByteArray &frame, WireError *error) const override;
     void forgetFrame() override;
     QByteArray frame(const Outgoing &message, std::optional<QString> &path) override;
 

@@ -2,6 +2,7 @@
 
 #include "protocol/jsonrpc/CborCodec.h"
 #include "protocol/jsonrpc/JsonCodec.h"
+#include "protocol/jsonrpc/SerialCodec.h"
 
 #include <stdexcept>
 
@@ -18,6 +19,7 @@ std::vector<Kind> &kinds() {
     static std::vector<Kind> all = {
         {QStringLiteral("json"), makeCodecOf<JsonCodec>},
         {QStringLiteral("cbor"), makeCodecOf<CborCodec>},
+        {QStringLiteral("serial"), makeCodecOf<SerialCodec>},
     };
     return all;
 }

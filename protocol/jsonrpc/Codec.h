@@ -14,6 +14,8 @@
 
 namespace hermes {
 
+class SerialLink;
+
 /// What a codec found in the bytes: a message, or the error that stands in place of a damaged one.
 struct CodecItem {
     QJsonValue message{QJsonValue::Undefined};
@@ -27,7 +29,8 @@ struct CodecItem {
 struct CodecFrame {
     QByteArray bytes;
     std::optional<RpcError> error;
-    double arrived = 0; ///< for who reads it later; of a clock of the reader's
+    double arrived = 0;    ///< for who reads it later; of a clock of the reader's
+    bool inPieces = false; ///< its sender knows that it has arrived
 };
 
 /// What encode() gave: the frame, or why the message cannot be sent (then bytes is empty).
@@ -64,6 +67,9 @@ public:
     std::vector<CodecItem> feed(const QByteArray &bytes);
     /// Counts an item that read() gave.
     void count(const CodecItem &item);
+    /// Where frames are repeated and take turns: encode() gives messages for it, and only what it gives is
+    /// written. Else null.
+    virtual SerialLink *link() { return nullptr; }
     /// Whether a frame has begun and not ended.
     virtual bool isMidFrame() const = 0;
 

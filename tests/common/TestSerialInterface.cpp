@@ -31,6 +31,8 @@ private Q_SLOTS:
     void carriesEveryByteInOrder();
     void takesItsSettings_data();
     void takesItsSettings();
+    void knowsHowFastItIs_data();
+    void knowsHowFastItIs();
     void wrongSettingsAreNamed_data();
     void wrongSettingsAreNamed();
     void missingDeviceIsNamed();
@@ -125,6 +127,23 @@ void TestSerialInterface::takesItsSettings() {
     }
 }
 
+void TestSerialInterface::knowsHowFastItIs_data() {
+    QTest::addColumn<QString>("options");
+    QTest::addColumn<double>("bytesPerSecond");
+    QTest::newRow("usual") << "" << 11520.0;
+    QTest::newRow("baud") << "?baud=9600" << 960.0;
+    QTest::newRow("longer frames") << "?baud=57600&parity=even&stop_bits=2" << 4800.0;
+    QTest::newRow("shorter frames") << "?baud=9600&data_bits=6" << 1200.0;
+    QTest::newRow("slow radio") << "?baud=57600&pace=19200" << 1920.0;
+    QTest::newRow("fast radio") << "?baud=9600&pace=19200" << 960.0;
+}
+
+void TestSerialInterface::knowsHowFastItIs() {
+    QFETCH(QString, options);
+    QFETCH(double, bytesPerSecond);
+    QCOMPARE(SerialInterface(urlOf("serial://" + link + options), nullptr).bytesPerSecond(), bytesPerSecond);
+}
+
 void TestSerialInterface::wrongSettingsAreNamed_data() {
     QTest::addColumn<QString>("options");
     QTest::addColumn<QString>("message");
@@ -134,6 +153,8 @@ void TestSerialInterface::wrongSettingsAreNamed_data() {
                                    << "baud \"-1\"";
     QTest::newRow("baud zero") << "?baud=0"
                                << "baud \"0\"";
+    QTest::newRow("pace") << "?pace=0"
+                          << "pace \"0\" is not a number above 0";
     QTest::newRow("data bits") << "?data_bits=9"
                                << "data_bits \"9\" is none of: 5, 6, 7, 8";
     QTest::newRow("parity") << "?parity=maybe"

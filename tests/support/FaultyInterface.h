@@ -28,6 +28,8 @@ public:
     QString name() const override { return QStringLiteral("faulty ") + inner_->name(); }
     bool isDatagram() const override { return inner_->isDatagram(); }
     qint64 bytesToWrite() const override { return inner_->bytesToWrite(); }
+    qint64 bytesInSystem() const override { return inner_->bytesInSystem(); }
+    double bytesPerSecond() const override { return inner_->bytesPerSecond(); }
     quint64 faultCount() const { return faultsMade_; } ///< drops and flips so far
 
 protected:
