@@ -70,6 +70,10 @@ public:
     Role role() const { return role_; }
     bool isUrgent() const { return extra_.contains(urgentKey()); }
     bool needsFresh() const { return extra_.contains(freshKey()); }
+    /// It changes something, or stops: who calls it is written down.
+    bool isAudited() const { return role_ > Role::Observer || isUrgent(); }
+    /// Sent again and again, the last one counts: who drives.
+    bool isSetPoint() const { return extra_.contains(QStringLiteral("x-needs-lease")); }
     bool isListed() const { return isListed_; }
 
     /// The method object of an OpenRPC document.

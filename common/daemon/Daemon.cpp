@@ -138,6 +138,7 @@ Result<void> Daemon::configure(const CommandLine &line) {
 
 Result<void> Daemon::launch() {
     const bool insecure = configuration_.flag(QStringLiteral("insecure"));
+    openAudit();
     std::vector<AnnouncedPort> reachable; // by others on the network
     for (const QJsonValue &url : configuration_.value(QStringLiteral("listen")).toArray()) {
         const auto listening = channels_.listen(url.toString(), insecure);

@@ -121,6 +121,7 @@ protected:
 private:
     void declareCommonSettings();
     void applyCommonSettings();
+    void openAudit();
     void updateChannelHealth();
     void publishStatus();
     Result<void> configure(const CommandLine &line);

@@ -74,6 +74,30 @@ void Daemon::declareCommonSettings() {
                    .choices(roleNames())
                    .group(channelGroup)
                    .byDefault(toString(Role::Observer)));
+    addSetting(
+        Field::boolean(QStringLiteral("audit.on"),
+                       QStringLiteral("Write down who commands what: a line of JSON for each command that "
+                                      "changes something"))
+            .group(logGroup)
+            .byDefault(true)
+            .appliesOnRestart());
+    addSetting(Field::text(QStringLiteral("audit.folder"),
+                           QStringLiteral(
+                               "Where; empty: audit in the folder of state, of the service or of the user"))
+                   .group(logGroup)
+                   .byDefault(QString())
+                   .appliesOnRestart());
+    addSetting(Field::integer(QStringLiteral("audit.file_bytes"), QStringLiteral("Then a new file is begun"))
+                   .unit(QStringLiteral("B"))
+                   .range(4096, 1 << 30)
+                   .group(logGroup)
+                   .byDefault(1 << 20)
+                   .appliesOnRestart());
+    addSetting(Field::integer(QStringLiteral("audit.files"), QStringLiteral("Files that are kept"))
+                   .range(1, 1000)
+                   .group(logGroup)
+                   .byDefault(5)
+                   .appliesOnRestart());
     addSetting(Field::integer(QStringLiteral("limits.frame_bytes"),
                               QStringLiteral("Largest request of a new client"))
                    .unit(QStringLiteral("B"))
@@ -139,6 +163,27 @@ void Daemon::applyCommonSettings() {
     Log::instance().setMinimumLevel(
         LogLevel(levels.indexOf(configuration_.text(QStringLiteral("log.level")))));
     Log::instance().setCapacity(configuration_.integer(QStringLiteral("log.records")));
+}
+
+void Daemon::openAudit() {
+    const QString folder = configuration_.text(QStringLiteral("audit.folder"));
+    channels_.audit().open(!configuration_.flag(QStringLiteral("audit.on")) ? QString()
+                           : folder.isEmpty()                               ? Audit::usualFolder()
+                                                                            : folder,
+                           self_.name, configuration_.integer(QStringLiteral("audit.file_bytes")),
+                           configuration_.integer(QStringLiteral("audit.files")));
+    healthItems_.provide(QStringLiteral("audit"), [this] {
+        const auto state = channels_.audit().state();
+        if (!state)
+            return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, QStringLiteral("off"));
+        const QJsonObject values{{QStringLiteral("written"), double(state->written)},
+                                 {QStringLiteral("lost"), double(state->lost)}};
+        if (state->problem.isEmpty())
+            return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, channels_.audit().path(),
+                                    values);
+        healthItems_.set(QStringLiteral("audit"), HealthLevel::Warn,
+                         QStringLiteral("not written down who commands: ") + state->problem, values);
+    });
 }
 
 } // namespace hermes

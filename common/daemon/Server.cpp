@@ -49,7 +49,8 @@ Server::Server(const CommandRegistry &registry, TopicHub &hub, QObject *parent)
     : QObject(parent)
     , commands_(registry)
     , topics_(hub)
-    , gapWatch_(this) {
+    , gapWatch_(this)
+    , audit_(this) {
     connect(&gapWatch_, &GapWatch::looked, this, [this] {
         for (Session *session : qAsConst(sessions_))
             session->becomeFresh();
@@ -166,7 +167,7 @@ void Server::accept(Interface *peer, const QString &protocol) {
     auto *channel = new Channel(peer, makeCodec(protocol), this);
     if (peer->isConnection()) // else what one stranger says would end it for all
         channel->codec().watchForStrangers();
-    auto *session = new Session(++lastId_, channel, commands_, limits_, gapWatch_, this);
+    auto *session = new Session(++lastId_, channel, commands_, limits_, gapWatch_, audit_, this);
     giveRole(session);
     if (!mayStay(session)) {
         turnAway(session, {ErrorCode::OverLimit, session->restriction()});

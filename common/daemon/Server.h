@@ -35,6 +35,7 @@ public:
     QStringList addresses() const;
     Session *session(quint64 id) const { return sessions_.value(id); }
     GapWatch &gaps() { return gapWatch_; }
+    Audit &audit() { return audit_; }
     /// Clients now and in all, requests, errors, damaged and oversized frames, dropped topic messages,
     /// clients closed at a limit or turned away, and how good lines are that have the framing `serial`.
     QJsonObject counters() const;
@@ -59,6 +60,7 @@ private:
     const CommandRegistry &commands_;
     TopicHub &topics_;
     GapWatch gapWatch_;
+    Audit audit_;
     SessionLimits limits_;
     int clientLimit_ = 16;
     Access access_;

@@ -34,13 +34,14 @@ void countValues(const QJsonValue &value, int &left) {
 } // namespace
 
 Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registry,
-                 const SessionLimits &theLimits, GapWatch &watch, QObject *parent)
+                 const SessionLimits &theLimits, GapWatch &watch, Audit &audit, QObject *parent)
     : QObject(parent)
     , number_(id)
     , channel_(theChannel)
     , commands_(registry)
     , limits_(theLimits)
     , gaps_(watch)
+    , audit_(audit)
     , queue_(*channel_, limits_.topicBytes, this)
     , lastSign_(monotonicNow()) {
     channel_->setParent(this);
@@ -279,10 +280,16 @@ void Session::run(const RpcRequest &request, double arrived, const Answer &answe
     call.time = arrived;
     const bool isStop = isUrgent(RpcMessage(request));
     const QPointer<Session> alive(this);
+    const auto note = [audit = QPointer<Audit>(&audit_), call, command = commands_.find(request.method),
+                       params = request.params](const Result<QJsonValue> &result) {
+        if (audit && command && command->isAudited())
+            audit->note(call, *command, params, result);
+    };
     // Many answers that come later come at once: each in its turn, but for those to stops.
     const auto atOnce = std::make_shared<bool>(true);
     const Reply reply(
-        [this, alive, atOnce, isStop, id = request.id, answer](const Result<QJsonValue> &result) {
+        [this, alive, atOnce, isStop, id = request.id, answer, note](const Result<QJsonValue> &result) {
+            note(result);
             if (!alive)
                 return;
             const auto give = [this, alive, isStop, id, answer, result] {

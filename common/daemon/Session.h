@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/channel/Channel.h"
+#include "common/daemon/Audit.h"
 #include "common/daemon/Batch.h"
 #include "common/daemon/CommandRegistry.h"
 #include "common/daemon/GapWatch.h"
@@ -35,7 +36,7 @@ class Session : public QObject {
     Q_OBJECT
 public:
     Session(quint64 id, Channel *channel, const CommandRegistry &commands, const SessionLimits &limits,
-            GapWatch &gaps, QObject *parent);
+            GapWatch &gaps, Audit &audit, QObject *parent);
 
     quint64 id() const { return number_; }
     QString name() const { return channel_->interface().name(); }
@@ -100,6 +101,7 @@ private:
     const CommandRegistry &commands_;
     const SessionLimits limits_;
     GapWatch &gaps_;
+    Audit &audit_;
     TopicQueue queue_;
     ReplyCache replies_; // where requests may be repeated
     SessionCounters counts_;

@@ -37,9 +37,10 @@ class CheapDaemon : public Daemon {
 public:
     CheapDaemon()
         : Daemon({"bench", "Bench", "Answers", 1}) {
-        addCommand(Command("nothing", "Does nothing").returnsNull().handler([](const Call &) {
-            return QJsonValue();
-        }));
+        addCommand(
+            Command("nothing", "Does nothing").needs(Role::Observer).returnsNull().handler([](const Call &) {
+                return QJsonValue();
+            }));
     }
 };
 

@@ -1,0 +1,100 @@
+#include "common/daemon/Audit.h"
+
+#include "common/Time.h"
+#include "protocol/wire/JsonText.h"
+
+#include <QDir>
+#include <chrono>
+
+namespace hermes {
+namespace {
+
+constexpr int longestParams = 2048; // of bytes in a line; maps and scans are in files
+constexpr int mostRepeated = 100;   // clients and methods
+constexpr std::chrono::seconds period{1};
+
+QJsonObject entryOf(const Call &call, const Command &command, const QJsonValue &params,
+                    const Result<QJsonValue> &result) {
+    QJsonObject entry{{QStringLiteral("stamp"), stampNow()},
+                      {QStringLiteral("client"), call.clientName},
+                      {QStringLiteral("role"), toString(call.role)},
+                      {QStringLiteral("method"), command.name()}};
+    const QByteArray written = params.isUndefined() ? QByteArray() : compactJson(params);
+    if (written.size() > longestParams)
+        entry.insert(QStringLiteral("params_bytes"), written.size());
+    else if (!written.isEmpty())
+        entry.insert(QStringLiteral("params"), params);
+    if (!result) {
+        entry.insert(QStringLiteral("error"), result.error().code);
+        entry.insert(QStringLiteral("message"), result.error().message.left(longestParams));
+    }
+    return entry;
+}
+
+} // namespace
+
+Audit::Audit(QObject *parent)
+    : QObject(parent) {
+    connect(&timer_, &QTimer::timeout, this, &Audit::writeRepeated);
+}
+
+QString Audit::usualFolder() {
+    const QString service = qEnvironmentVariable("STATE_DIRECTORY").section(QLatin1Char(':'), 0, 0);
+    if (!service.isEmpty())
+        return service + QStringLiteral("/audit");
+    const QString state = qEnvironmentVariable("XDG_STATE_HOME");
+    return (state.isEmpty() ? QDir::homePath() + QStringLiteral("/.local/state") : state) +
+           QStringLiteral("/hermes/audit");
+}
+
+void Audit::open(const QString &folder, const QString &name, qint64 bytes, int files) {
+    writeRepeated();
+    file_ = folder.isEmpty() ? nullptr : std::make_unique<AuditFile>(folder, name, bytes, files);
+}
+
+std::optional<AuditFile::State> Audit::state() const {
+    return file_ ? std::optional(file_->state()) : std::nullopt;
+}
+
+void Audit::note(const Call &call, const Command &command, const QJsonValue &params,
+                 const Result<QJsonValue> &result) {
+    if (!file_ || !command.isAudited())
+        return;
+    const QJsonObject entry = entryOf(call, command, params, result);
+    const bool isForRole = !result && result.error().is(ErrorCode::NotAuthorised);
+    if (!isForRole && !command.isSetPoint())
+        return file_->append(compactJson(entry));
+    // Of those who are refused anybody can come again under another name.
+    const QString key = (isForRole ? QString() : call.clientName) + QLatin1Char('\n') + command.name();
+    if (repeated_.size() >= mostRepeated && !repeated_.contains(key))
+        writeRepeated();
+    const bool isFirst = !repeated_.contains(key);
+    Repeated &known = repeated_[key];
+    if (isFirst) {
+        file_->append(compactJson(entry));
+        if (!timer_.isActive())
+            timer_.start(period);
+        return;
+    }
+    known.last = entry;
+    ++known.calls;
+}
+
+// Those that were silent for a period begin anew.
+void Audit::writeRepeated() {
+    for (auto known = repeated_.begin(); known != repeated_.end();) {
+        if (known->calls == 0) {
+            known = repeated_.erase(known);
+            continue;
+        }
+        known->last.insert(QStringLiteral("calls"), known->calls);
+        if (file_)
+            file_->append(compactJson(known->last));
+        known->calls = 0;
+        ++known;
+    }
+    if (repeated_.isEmpty())
+        timer_.stop();
+}
+
+} // namespace hermes

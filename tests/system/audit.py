@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Who commanded what is written down: one line for each command that changes something or stops, with the refused ones; set-points
+are counted; files rotate, also under two daemons at once; a disk that does not take it is told."""
+import json
+import os
+import sys
+import tempfile
+import time
+
+from support import BINARIES, Daemon, DaemonError, Process, free_port, wait_for
+
+
+def lines_of(folder, name):
+    """All that is kept, the oldest first."""
+    found = []
+    for number in reversed(range(20)):
+        path = os.path.join(folder, f"{name}.{number}.jsonl" if number else f"{name}.jsonl")
+        if os.path.exists(path):
+            assert os.stat(path).st_mode & 0o077 == 0, path
+            with open(path, encoding="utf-8") as file:
+                found += [json.loads(line) for line in file]
+    return found
+
+
+def refusal(daemon, method, **params):
+    try:
+        daemon.call(method, **params)
+    except DaemonError as error:
+        return error.code
+    raise AssertionError(f"{method} was not refused")
+
+
+def check_lines(folder, log_folder):
+    process = Process(BINARIES, "softwaretrigger", free_port(0), log_folder, {"audit.folder": folder})
+    try:
+        with process.connect() as daemon:
+            begun = time.time()
+            daemon.call("settings.set", values={"limits": {"clients": 20}})
+            daemon.call("settings.get")  # changes nothing
+            assert refusal(daemon, "trigger.fire", id="none") != 0
+            daemon.call("settings.reset", paths=["limits.clients"])
+            health = {item["name"]: item for item in daemon.call("daemon.status")["health"]}
+            daemon.call("daemon.shutdown")
+        process.process.wait(10)
+    finally:
+        process.stop()
+    lines = lines_of(folder, "softwaretrigger")
+    assert [line["method"] for line in lines] == ["settings.set", "trigger.fire", "settings.reset", "daemon.shutdown"], lines
+    assert lines[0]["params"] == {"values": {"limits": {"clients": 20}}} and lines[0]["role"] == "engineer", lines[0]
+    assert "error" in lines[1] and "error" not in lines[0], lines
+    assert all(begun - 1 < line["stamp"] < time.time() + 1 and "process" in line["client"] for line in lines), lines
+    assert health["audit"]["level"] == "ok", health["audit"]
+
+
+def check_repeated(folder, log_folder):
+    """Set-points and refusals for the role: a line a second, and none is missing in the count."""
+    line = f"serial://{folder}/none"
+    process = Process(BINARIES, "motorcontrol", free_port(0), log_folder,
+                      {"audit.folder": folder, "controllers.1.url": line, "controllers.2.url": line, "access.plain": "observer"})
+    try:
+        with process.connect() as daemon:
+            for _ in range(50):
+                assert refusal(daemon, "motor.drive", vx=0.1) != 0
+            for _ in range(3):
+                daemon.call("motor.estop")
+        import hermes
+        hermes.own_socket, own = lambda host, port: None, hermes.own_socket
+        for _ in range(200):
+            with Daemon(port=process.port) as stranger:
+                assert refusal(stranger, "settings.reset", paths=[]) == -32001
+        hermes.own_socket = own
+        wait_for("the counts", lambda: sum(line.get("calls", 1) for line in lines_of(folder, "motorcontrol")) >= 253, 10)
+    finally:
+        process.stop()
+    lines = lines_of(folder, "motorcontrol")
+    counts = {method: sum(line.get("calls", 1) for line in lines if line["method"] == method)
+              for method in ("motor.drive", "motor.estop", "settings.reset")}
+    assert counts == {"motor.drive": 50, "motor.estop": 3, "settings.reset": 200}, counts
+    assert len(lines) < 60, len(lines)
+
+
+def check_rotation(folder, log_folder):
+    """Two of one name write to the same files."""
+    settings = {"audit.folder": folder, "audit.file_bytes": 4096, "audit.files": 4}
+    processes = [Process(BINARIES, "softwaretrigger", free_port(0), log_folder, settings) for _ in range(2)]
+    try:
+        daemons = [process.connect() for process in processes]
+        for number in range(100):
+            for daemon in daemons:
+                daemon.call("settings.set", values={"limits": {"clients": 17 + number}})
+        for daemon in daemons:
+            wait_for("all lines", lambda d=daemon: audit_of(d)["values"]["written"] == 100, 10)
+            assert audit_of(daemon)["values"]["lost"] == 0
+    finally:
+        for process in processes:
+            process.stop()
+    names = sorted(name for name in os.listdir(folder) if name.startswith("softwaretrigger"))
+    assert names == ["softwaretrigger.1.jsonl", "softwaretrigger.2.jsonl", "softwaretrigger.3.jsonl", "softwaretrigger.jsonl"] or \
+        len(names) == 3, names  # the newest may just have been moved
+    assert all(os.path.getsize(os.path.join(folder, name)) < 4096 + 600 for name in names), names
+    clients = [line["params"]["values"]["limits"]["clients"] for line in lines_of(folder, "softwaretrigger")]
+    assert clients[-2:] == [116, 116] or 116 in clients[-4:], clients[-8:]
+
+
+def audit_of(daemon):
+    return {item["name"]: item for item in daemon.call("daemon.status")["health"]}["audit"]
+
+
+def check_trouble(folder, log_folder):
+    """A file in the place of the folder, a pipe in that of the file: told, counted, and nobody is held up."""
+    os.mkfifo(os.path.join(folder, "softwaretrigger.jsonl"))
+    with open(os.path.join(folder, "file"), "wb"):
+        pass
+    for place, what in ((folder, "softwaretrigger.jsonl"), (os.path.join(folder, "file"), "cannot be made")):
+        process = Process(BINARIES, "softwaretrigger", free_port(0), log_folder, {"audit.folder": place})
+        try:
+            with process.connect() as daemon:
+                daemon.call("settings.reset", paths=[])
+                wait_for("a warning", lambda d=daemon: audit_of(d)["level"] == "warn", 10)
+                assert what in audit_of(daemon)["message"] and audit_of(daemon)["values"]["lost"] == 1, audit_of(daemon)
+        finally:
+            assert process.stop() == 0
+
+
+def main():
+    for check in (check_lines, check_repeated, check_rotation, check_trouble):
+        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as log_folder:
+            check(folder, log_folder)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
