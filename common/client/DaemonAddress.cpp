@@ -36,7 +36,7 @@ Result<void> checkAddress(const QString &address) {
     if (!interfaceSchemes().contains(url->scheme))
         return Error(ErrorCode::InvalidParams, QStringLiteral("an address with one of ") +
                                                    interfaceSchemes().join(QStringLiteral(", ")));
-    if (url->scheme == QStringLiteral("tcp") && url->port == 0)
+    if ((url->scheme == QStringLiteral("tcp") || url->scheme == QStringLiteral("tls")) && url->port == 0)
         return Error(ErrorCode::InvalidParams, QStringLiteral("an address with a port"));
     return {};
 }

@@ -4,14 +4,34 @@
 #include "protocol/wire/JsonText.h"
 
 #include <QDir>
+#include <QJsonArray>
 #include <chrono>
 
 namespace hermes {
 namespace {
 
-constexpr int longestParams = 2048; // of bytes in a line; maps and scans are in files
+constexpr int longestParams = 2048; // bytes in a line; to write more takes long, too
 constexpr int mostRepeated = 100;   // clients and methods
 constexpr std::chrono::seconds period{1};
+
+// Takes from left about as many bytes as the value has when it is written; stops when nothing is left.
+void takeFrom(int &left, const QJsonValue &value) {
+    constexpr int ofNumber = 4;
+    left -= ofNumber;
+    if (value.isString()) {
+        left -= value.toString().size();
+    } else if (value.isArray()) {
+        const QJsonArray array = value.toArray();
+        for (int i = 0; i < array.size() && left >= 0; ++i)
+            takeFrom(left, array.at(i));
+    } else if (value.isObject()) {
+        const QJsonObject object = value.toObject();
+        for (auto member = object.begin(); member != object.end() && left >= 0; ++member) {
+            left -= member.key().size();
+            takeFrom(left, member.value());
+        }
+    }
+}
 
 QJsonObject entryOf(const Call &call, const Command &command, const QJsonValue &params,
                     const Result<QJsonValue> &result) {
@@ -19,10 +39,11 @@ QJsonObject entryOf(const Call &call, const Command &command, const QJsonValue &
                       {QStringLiteral("client"), call.clientName},
                       {QStringLiteral("role"), toString(call.role)},
                       {QStringLiteral("method"), command.name()}};
-    const QByteArray written = params.isUndefined() ? QByteArray() : compactJson(params);
-    if (written.size() > longestParams)
-        entry.insert(QStringLiteral("params_bytes"), written.size());
-    else if (!written.isEmpty())
+    int left = longestParams;
+    takeFrom(left, params);
+    if (left < 0)
+        entry.insert(QStringLiteral("params"), QStringLiteral("too long to be written down"));
+    else if (!params.isUndefined())
         entry.insert(QStringLiteral("params"), params);
     if (!result) {
         entry.insert(QStringLiteral("error"), result.error().code);

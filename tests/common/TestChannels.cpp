@@ -3,6 +3,7 @@
 #include "DaemonFixture.h"
 #include "common/client/Client.h"
 #include "common/interface/InterfaceRegistry.h"
+#include "common/tls/Authority.h"
 #include "tests/support/FaultyInterface.h"
 
 #include <QNetworkDatagram>
@@ -16,7 +17,7 @@ using namespace hermes;
 
 namespace {
 
-/// With FOLDER and PORT.
+/// With FOLDER, KEYS and PORT.
 struct Carrier {
     const char *name;
     const char *listen;
@@ -26,6 +27,7 @@ struct Carrier {
 
 const Carrier carriers[] = {
     {"tcp", "tcp://127.0.0.1:0", "tcp://127.0.0.1:PORT", 500000},
+    {"tls", "tls://127.0.0.1:0?keys=KEYS/issued%20for/robot", "tls://127.0.0.1:PORT?keys=KEYS", 500000},
     {"local", "local://FOLDER/socket", "local://FOLDER/socket", 500000},
     {"udp", "udp://127.0.0.1:0", "udp://127.0.0.1:0?peer=127.0.0.1:PORT", 20000},
     {"serial line", "pty://FOLDER/line", "serial://FOLDER/line?baud=115200", 3000},
@@ -36,7 +38,11 @@ const Carrier carriers[] = {
 class TestChannels : public QObject, DaemonFixture {
     Q_OBJECT
 private Q_SLOTS:
-    void initTestCase() { Log::instance().setStderr(false); }
+    void initTestCase() {
+        Log::instance().setStderr(false);
+        const Authority authority(keys_.path());
+        QVERIFY(authority.init("tester", 1) && authority.issue({"robot", "daemon"}, 1));
+    }
     void cleanup() { tearDown(); }
     void sayTheSame_data();
     void sayTheSame();
@@ -45,6 +51,9 @@ private Q_SLOTS:
     void doNotChangeMidway();
     void aStrangerEndsNoSharedCarrier();
     void emptyFramesTakeNoMemory();
+
+private:
+    QTemporaryDir keys_;
 };
 
 void TestChannels::sayTheSame_data() {
@@ -72,10 +81,12 @@ void TestChannels::sayTheSame() {
     };
     daemon = std::make_unique<TestedDaemon>();
     QVERIFY(!daemon->prepare(
-        {"tested", "--listen", with(QString(kind.listen).replace("FOLDER", folder.path()))}));
+        {"tested", "--listen",
+         with(QString(kind.listen).replace("FOLDER", folder.path()).replace("KEYS", keys_.path()))}));
     QVERIFY(daemon->launch());
     const QString url = with(QString(kind.connect)
                                  .replace("FOLDER", folder.path())
+                                 .replace("KEYS", keys_.path())
                                  .replace("PORT", QString::number(QUrl(address()).port())));
     const auto inner = makeInterface(*InterfaceUrl::parse(url), nullptr);
     QVERIFY(inner);

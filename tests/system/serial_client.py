@@ -29,7 +29,7 @@ class SerialClientTest(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.link = os.path.join(self.folder.name, "line")
-        self.daemon = subprocess.Popen([os.path.join(BINARIES, "hermes-softwaretrigger"), "--listen", f"pty://{self.link}?protocol=serial"],
+        self.daemon = subprocess.Popen([os.path.join(BINARIES, "hermes-softwaretrigger"), "--set", "access.plain=engineer", "--listen", f"pty://{self.link}?protocol=serial"],
                                        stderr=subprocess.DEVNULL)
         wait_for("the line", lambda: os.path.exists(self.link))
 

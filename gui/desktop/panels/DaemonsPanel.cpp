@@ -49,6 +49,8 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
     , address_(new QLineEdit)
+    , find_(new QPushButton(tr("&Find")))
+    , search_(this)
     , tree_(new QTreeWidget)
     , hint_(new PlainLabel(tr("No daemon found yet. Add one by its address, for example 192.168.1.20 or "
                               "127.0.0.1:7450, or start the simulator with ./demo.")))
@@ -69,6 +71,10 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     auto *const adding = new QHBoxLayout;
     adding->addWidget(address_);
     adding->addWidget(add);
+    adding->addWidget(find_);
+
+    find_->setObjectName("find");
+    find_->setToolTip(tr("Looks for daemons that announce themselves on the network (Avahi)"));
 
     auto *const layout = new QVBoxLayout(this);
     layout->addLayout(adding);
@@ -78,6 +84,16 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     layout->addWidget(makeButtons());
 
     connect(add, &QPushButton::clicked, this, &DaemonsPanel::addAddress);
+    connect(find_, &QPushButton::clicked, this, [this] {
+        find_->setEnabled(false);
+        message_->tell(tr("Looking for daemons on the network..."), false);
+        search_.start();
+    });
+    connect(&search_, &NetworkSearch::found, this, &DaemonsPanel::addFound);
+    connect(&search_, &NetworkSearch::failed, this, [this](const QString &why) {
+        find_->setEnabled(true);
+        message_->tell(why, true);
+    });
     connect(address_, &QLineEdit::returnPressed, this, &DaemonsPanel::addAddress);
     connect(tree_, &QTreeWidget::currentItemChanged, this, &DaemonsPanel::showChosen);
     connect(&fleet, &Fleet::changed, this, &DaemonsPanel::updateTree);
@@ -205,6 +221,16 @@ void DaemonsPanel::addAddress() {
         return message_->tell(added.error().message, true);
     address_->clear();
     message_->hide();
+}
+
+void DaemonsPanel::addFound(const QStringList &urls) {
+    find_->setEnabled(true);
+    int added = 0;
+    for (const QString &url : urls)
+        added += fleet_.add(url).ok();
+    message_->tell(
+        tr("%1 daemons announce themselves on the network, %2 were added").arg(urls.size()).arg(added),
+        false);
 }
 
 void DaemonsPanel::ask(const QString &method) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/model/Fleet.h"
+#include "gui/desktop/model/NetworkSearch.h"
 
 #include <QHash>
 #include <QWidget>
@@ -15,8 +16,8 @@ namespace hermes::desktop {
 class MessageLabel;
 class PlainLabel;
 
-/// The tree of robots, their daemons and what these say of their health. Adds daemons by address; starts,
-/// stops and restarts those that a supervisor runs.
+/// The tree of robots, their daemons and what these say of their health. Adds daemons by address, or those
+/// that announce themselves on the network; starts, stops and restarts those that a supervisor runs.
 class DaemonsPanel : public QWidget {
     Q_OBJECT
 public:
@@ -28,12 +29,15 @@ private:
     void showChosen();
     void updateButtons();
     void addAddress();
+    void addFound(const QStringList &urls);
     /// process.start, process.stop or process.restart of the chosen daemon.
     void ask(const QString &method);
     QWidget *makeButtons();
 
     Fleet &fleet_;
     QLineEdit *address_;
+    QPushButton *find_;
+    NetworkSearch search_;
     QTreeWidget *tree_;
     PlainLabel *hint_;
     MessageLabel *message_;

@@ -25,6 +25,7 @@ private Q_SLOTS:
     void whatNobodyManagesHasNoButtons();
     void addedByAddress();
     void badAddressIsToldBesideIt();
+    void foundOnTheNetwork();
 
 private:
     /// By its port: others may run daemons of these names on this machine.
@@ -176,6 +177,27 @@ void TestDaemonsPanel::badAddressIsToldBesideIt() {
         QCOMPARE(field->text(), QString(address)); // to be mended
         QCOMPARE(window_->fleet.robots().size(), size_t(1));
     }
+}
+
+// A program of that name which tells of one daemon, then fails.
+void TestDaemonsPanel::foundOnTheNetwork() {
+    const QString tool = robot_->path("hermesctl");
+    const auto write = [&tool](const QByteArray &script) {
+        QFile file(tool);
+        return file.open(QIODevice::WriteOnly) && file.write("#!/bin/sh\n" + script) > 0 &&
+               file.setPermissions(QFile::ReadOwner | QFile::WriteOwner | QFile::ExeOwner);
+    };
+    const QByteArray before = qgetenv("PATH");
+    qputenv("PATH", QFileInfo(tool).path().toUtf8() + ':' + before);
+    QVERIFY(write(R"(echo '[{"name":"x","address":"127.0.0.9","port":7499,"framing":"json","tls":"no"}]')"));
+    const auto robots = window_->fleet.robots().size();
+    OpenWindow::click(panel(), "find");
+    QTRY_VERIFY(message()->text().startsWith("1 daemons announce"));
+    QCOMPARE(window_->fleet.robots().size(), robots + 1);
+    QVERIFY(write("echo '{\"message\":\"no bus\"}' >&2; exit 1"));
+    OpenWindow::click(panel(), "find");
+    QTRY_COMPARE(message()->text(), QString("no bus"));
+    qputenv("PATH", before);
 }
 
 QTEST_MAIN(TestDaemonsPanel)

@@ -1,0 +1,73 @@
+#include "gui/desktop/model/NetworkSearch.h"
+
+#include "gui/desktop/widgets/ForeignText.h"
+
+#include <QCoreApplication>
+#include <QFile>
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <chrono>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr std::chrono::seconds longest{10};
+constexpr int mostDaemons = 50;
+
+QString program() {
+    const QString beside = QCoreApplication::applicationDirPath() + "/hermesctl";
+    return QFile::exists(beside) ? beside : QString("hermesctl");
+}
+
+QString addressOf(const QJsonObject &daemon) {
+    const QString host = daemon["address"].toString(), framing = daemon["framing"].toString("json");
+    return QString("%1://%2:%3?protocol=%4")
+        .arg(daemon["tls"].toString() == "yes" ? "tls" : "tcp", host.contains(':') ? '[' + host + ']' : host)
+        .arg(daemon["port"].toInt())
+        .arg(framing);
+}
+
+} // namespace
+
+NetworkSearch::NetworkSearch(QObject *parent)
+    : QObject(parent) {
+    limit_.setSingleShot(true);
+    connect(&limit_, &QTimer::timeout, &process_, &QProcess::kill);
+    connect(&process_, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {
+        if (error == QProcess::FailedToStart)
+            Q_EMIT failed(
+                tr("hermesctl, which looks for robots, cannot be started: %1").arg(process_.errorString()));
+    });
+    connect(
+        &process_, QOverload<int, QProcess::ExitStatus>::of(&QProcess::finished), this,
+        [this](int status, QProcess::ExitStatus how) { finish(how == QProcess::NormalExit ? status : 1); });
+}
+
+NetworkSearch::~NetworkSearch() {
+    process_.disconnect(this);
+    process_.kill();
+    process_.waitForFinished(1000);
+}
+
+void NetworkSearch::start() {
+    if (isRunning())
+        return;
+    process_.start(program(), {"list", "--network", "--json"});
+    limit_.start(longest);
+}
+
+void NetworkSearch::finish(int status) {
+    limit_.stop();
+    if (status != 0) {
+        const QJsonObject told = QJsonDocument::fromJson(process_.readAllStandardError()).object();
+        return Q_EMIT failed(shortLine(told["message"].toString(tr("the search did not end"))));
+    }
+    QStringList urls;
+    for (const QJsonValue &daemon : QJsonDocument::fromJson(process_.readAllStandardOutput()).array())
+        if (urls.size() < mostDaemons)
+            urls.append(addressOf(daemon.toObject()));
+    Q_EMIT found(urls);
+}
+
+} // namespace hermes::desktop
