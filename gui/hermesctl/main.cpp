@@ -84,14 +84,26 @@ int runRobotCommand(const Subcommand &command, const Arguments &arguments) {
                : finish(result, {}, arguments);
 }
 
+QString unknownCommand(const QString &command) {
+    const QString first = command.section(QLatin1Char(' '), 0, 0);
+    if (!hasSecondWord(first))
+        return QStringLiteral("unknown command \"%1\"%2")
+            .arg(command, didYouMean(command, subcommandNames()));
+    QStringList seconds;
+    for (const Subcommand &one : subcommands())
+        if (QString::fromLatin1(one.name).startsWith(first + QLatin1Char(' ')))
+            seconds.append(QString::fromLatin1(one.name).section(QLatin1Char(' '), 1));
+    const QString list = seconds.join(QStringLiteral(", "));
+    return command == first ? QStringLiteral("after \"%1\" one of these is expected: %2").arg(first, list)
+                            : QStringLiteral("unknown command \"%1\", there is %2").arg(command, list);
+}
+
 int run(Arguments arguments) {
     if (hasSecondWord(arguments.command) && !arguments.words.isEmpty())
         arguments.command += QLatin1Char(' ') + arguments.words.takeFirst();
     const Subcommand *const command = findSubcommand(arguments.command);
     if (!command)
-        return usageError(QStringLiteral("unknown command \"%1\"%2")
-                              .arg(arguments.command, didYouMean(arguments.command, subcommandNames())),
-                          arguments.json);
+        return usageError(unknownCommand(arguments.command), arguments.json);
     const bool ofAll = arguments.all && command->ofDaemon == document;
     const int least = ofAll ? 0 : command->leastWords, most = ofAll ? 0 : command->mostWords;
     if (arguments.words.size() < least || arguments.words.size() > most)
