@@ -1,3 +1,5 @@
+#include "gui/hermesctl/Keys.h"
+
 #include "common/Role.h"
 #include "common/tls/Authority.h"
 #include "common/tls/KeyFolder.h"
@@ -22,6 +24,19 @@ QString stateOf(const Authority::Issued &one) {
 
 } // namespace
 
+Result<void> checkKeyRole(const Arguments &arguments) {
+    if (roleFrom(arguments.role) || arguments.role == daemonRole)
+        return {};
+    return Error(
+        ErrorCode::InvalidParams,
+        QStringLiteral("option --role is \"%1\", expected one of %2 (for people), daemon (for robots)")
+            .arg(arguments.role, roleNames().join(QStringLiteral(", "))));
+}
+
+int daysOfKeys(const Arguments &arguments) {
+    return arguments.days > 0 ? arguments.days : usualDays;
+}
+
 Result<void> keysInit(const Arguments &arguments) {
     const QString owner = QStringLiteral("%1@%2").arg(qEnvironmentVariable("USER", QStringLiteral("user")),
                                                       QHostInfo::localHostName());
@@ -41,13 +56,9 @@ Result<void> keysInit(const Arguments &arguments) {
 
 Result<void> keysIssue(const Arguments &arguments) {
     const QString name = arguments.words.first();
-    if (!roleFrom(arguments.role) && arguments.role != daemonRole)
-        return Error(
-            ErrorCode::InvalidParams,
-            QStringLiteral("option --role is \"%1\", expected one of %2 (for people), daemon (for robots)")
-                .arg(arguments.role, roleNames().join(QStringLiteral(", "))));
-    const auto folder = Authority(KeyFolder::usual())
-                            .issue({name, arguments.role}, arguments.days > 0 ? arguments.days : usualDays);
+    if (const auto fine = checkKeyRole(arguments); !fine)
+        return fine;
+    const auto folder = Authority(KeyFolder::usual()).issue({name, arguments.role}, daysOfKeys(arguments));
     if (!folder)
         return folder.error();
     if (arguments.json)
