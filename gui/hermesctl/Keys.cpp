@@ -47,9 +47,10 @@ Result<void> keysInit(const Arguments &arguments) {
         printJson(
             QJsonObject{{QStringLiteral("folder"), KeyFolder::usual()}, {QStringLiteral("name"), owner}});
     else
-        printLine(QStringLiteral("%1: the authority, and the keys of %2, an engineer.\n"
-                                 "Keep authority.key secret: who has it can make keys for all robots of this "
-                                 "authority.\nNext, for a robot:  hermesctl keys issue NAME --role daemon")
+        printLine(QStringLiteral(
+                      "%1: the authority, and the keys of %2, an engineer.\n"
+                      "Keep authority.key secret: who has it can make keys for all robots of this "
+                      "authority.\nNext, for a robot:  hermesctl keys pair NAME --role daemon, or keys issue")
                       .arg(KeyFolder::usual(), owner));
     return {};
 }
