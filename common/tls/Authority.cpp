@@ -1,5 +1,6 @@
 #include "common/tls/Authority.h"
 
+#include "common/tls/KeyBundle.h"
 #include "common/tls/KeyFolder.h"
 #include "protocol/wire/JsonText.h"
 
@@ -7,8 +8,6 @@
 #include <QFile>
 #include <QJsonDocument>
 #include <QJsonObject>
-#include <QRegularExpression>
-#include <QSaveFile>
 #include <QSslCertificate>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -23,16 +22,6 @@ const QString authorityKeyFile = QStringLiteral("authority.key");
 Error failed(const QString &path, const QString &why) {
     return {ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, why),
             QJsonObject{{QStringLiteral("path"), path}}};
-}
-
-// Whole or not at all; secret: only its owner may read it, from the beginning.
-Result<void> write(const QString &path, const QByteArray &content, bool secret) {
-    const mode_t before = ::umask(secret ? 077 : 022);
-    QSaveFile file(path);
-    const bool written =
-        file.open(QIODevice::WriteOnly) && file.write(content) == content.size() && file.commit();
-    ::umask(before);
-    return written ? Result<void>() : failed(path, file.errorString());
 }
 
 Result<void> append(const QString &path, const QByteArray &line) {
@@ -50,23 +39,9 @@ Result<QByteArray> read(const QString &path) {
 }
 
 Result<void> writeFolder(const QString &folder, const CertifiedKey &own, const QByteArray &authority) {
-    const QDir dir(folder);
-    if (!dir.mkpath(QStringLiteral(".")))
+    if (!QDir().mkpath(folder))
         return failed(folder, QStringLiteral("cannot be made"));
-    if (const auto done = write(dir.filePath(KeyFolder::authorityFile()), authority, false); !done)
-        return done;
-    if (const auto done = write(dir.filePath(KeyFolder::keyFile()), own.key, true); !done)
-        return done;
-    return write(dir.filePath(KeyFolder::ownFile()), own.certificate, false);
-}
-
-Result<void> checkName(const QString &name) {
-    static const QRegularExpression plain(QStringLiteral("^[A-Za-z0-9_][A-Za-z0-9_.@-]{0,63}$"));
-    if (plain.match(name).hasMatch())
-        return {};
-    return Error(ErrorCode::InvalidParams,
-                 QStringLiteral("the name \"%1\", expected 1 to 64 letters, digits, or one of _ . @ -")
-                     .arg(name.left(80)));
+    return KeyBundle{authority, own.certificate, own.key, {}}.write(folder);
 }
 
 } // namespace
@@ -93,7 +68,8 @@ Result<void> Authority::init(const QString &owner, int days) const {
         return done;
     if (const auto done = note(subject, own->certificate); !done)
         return done;
-    return write(path(authorityKeyFile), authority->key, true); // last: without it there is no authority
+    return writeKeyFile(path(authorityKeyFile), authority->key,
+                        true); // last: without it there is no authority
 }
 
 Result<CertifiedKey> Authority::load() const {
@@ -115,17 +91,29 @@ Result<void> Authority::note(const CertificateSubject &subject, const QByteArray
     return append(path(issuedFile), compactJson(line));
 }
 
-Result<QString> Authority::issue(const CertificateSubject &subject, int days) const {
-    if (const auto fine = checkName(subject.name); !fine)
+QString Authority::folderFor(const QString &name) const {
+    return path(giveAwayFolder + QLatin1Char('/') + name);
+}
+
+Result<void> Authority::canIssue(const QString &name) const {
+    if (const auto fine = checkCertificateName(name); !fine)
         return fine.error();
+    if (const auto authority = load(); !authority)
+        return authority.error();
+    if (QFile::exists(folderFor(name)))
+        return failed(folderFor(name),
+                      QStringLiteral("exists; take it away first, and revoke its certificate if it has "
+                                     "been given to somebody"));
+    return {};
+}
+
+Result<QString> Authority::issue(const CertificateSubject &subject, int days) const {
+    if (const auto can = canIssue(subject.name); !can)
+        return can.error();
     const auto authority = load();
     if (!authority)
         return authority.error();
-    const QString folder = path(giveAwayFolder + QLatin1Char('/') + subject.name);
-    if (QFile::exists(folder))
-        return failed(folder,
-                      QStringLiteral("exists; take it away first, and revoke its certificate if it has "
-                                     "been given to somebody"));
+    const QString folder = folderFor(subject.name);
     const auto made = issueCertificate(*authority, subject, days);
     if (!made)
         return made.error();
@@ -191,6 +179,18 @@ Result<int> Authority::revoke(const QString &nameOrSerial) const {
             ErrorCode::InvalidParams,
             QStringLiteral("no certificate of \"%1\" was issued; hermesctl keys list").arg(nameOrSerial));
     return count;
+}
+
+Result<void> Authority::takeBack(const QString &folder) const {
+    const auto certificate = read(QDir(folder).filePath(KeyFolder::ownFile()));
+    if (!certificate)
+        return certificate.error();
+    const auto revoked = revoke(toPeer(QSslCertificate(*certificate)).serial);
+    if (!revoked)
+        return revoked.error();
+    if (!QDir(folder).removeRecursively())
+        return failed(folder, QStringLiteral("cannot be removed"));
+    return {};
 }
 
 } // namespace hermes

@@ -1,5 +1,6 @@
 #include "common/tls/Certificates.h"
 
+#include <QRegularExpression>
 #include <memory>
 #include <openssl/bio.h>
 #include <openssl/err.h>
@@ -111,6 +112,15 @@ Result<CertifiedKey> make(const CertificateSubject &subject, int days, X509 *iss
 }
 
 } // namespace
+
+Result<void> checkCertificateName(const QString &name) {
+    static const QRegularExpression plain(QStringLiteral("\\A[A-Za-z0-9_][A-Za-z0-9_.@-]{0,63}\\z"));
+    if (plain.match(name).hasMatch())
+        return {};
+    return Error(ErrorCode::InvalidParams,
+                 QStringLiteral("the name \"%1\", expected 1 to 64 letters, digits, or one of _ . @ -")
+                     .arg(name.left(80)));
+}
 
 Result<CertifiedKey> makeAuthority(const QString &name, int days) {
     return make({name, QStringLiteral("authority")}, days, nullptr, nullptr);

@@ -18,6 +18,8 @@ struct CertificateSubject {
     QString role; ///< of a client, as in Role.h; "daemon", or "authority"
 };
 
+/// Error: it is not made of 1 to 64 letters, digits, or _ . @ -
+Result<void> checkCertificateName(const QString &name);
 /// A new authority: an ECDSA key (P-256) and a certificate that it has signed itself.
 Result<CertifiedKey> makeAuthority(const QString &name, int days);
 /// A new key, and a certificate that the authority has signed.

@@ -6,6 +6,7 @@
 #include <QDir>
 #include <QFile>
 #include <QJsonObject>
+#include <QSaveFile>
 #include <QSslCertificate>
 #include <QSslKey>
 #include <QStandardPaths>
@@ -112,6 +113,17 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
         serials.insert(word);
     }
     return serials;
+}
+
+Result<void> writeKeyFile(const QString &path, const QByteArray &content, bool secret) {
+    const mode_t before = ::umask(secret ? 077 : 022);
+    QSaveFile file(path);
+    const bool written =
+        file.open(QIODevice::WriteOnly) && file.write(content) == content.size() && file.commit();
+    ::umask(before);
+    return written ? Result<void>()
+                   : Error(ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, file.errorString()),
+                           QJsonObject{{QStringLiteral("path"), path}});
 }
 
 PeerCertificate toPeer(const QSslCertificate &certificate) {

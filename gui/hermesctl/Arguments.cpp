@@ -36,6 +36,27 @@ bool *flagOf(Arguments &arguments, const QString &option) {
     return nullptr;
 }
 
+void takeTimeout(Arguments &arguments, double value) {
+    arguments.timeout = std::chrono::milliseconds(int(std::min(value, 1e6) * 1000));
+    arguments.timeoutIsGiven = true;
+}
+
+Result<void> takeWhole(Arguments &arguments, const QString &option, const QString &text, double value) {
+    if (value != std::floor(value))
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("option %1 is %2, expected a whole number").arg(option, text));
+    if (option == QStringLiteral("--port") && value > 65535)
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("option --port is %1, expected at most 65535").arg(text));
+    if (option == QStringLiteral("--port"))
+        arguments.port = int(value);
+    else if (option == QStringLiteral("--days"))
+        arguments.days = int(std::min(value, 36500.0));
+    else
+        arguments.count = int(value);
+    return {};
+}
+
 Result<void> takeNumber(Arguments &arguments, const QString &option, const QString &text) {
     const auto value = positive(option, text);
     if (!value)
@@ -45,14 +66,9 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
     else if (option == QStringLiteral("--speed"))
         arguments.speed = *value;
     else if (option == QStringLiteral("--timeout"))
-        arguments.timeout = std::chrono::milliseconds(int(std::min(*value, 1e6) * 1000));
-    else if (*value != std::floor(*value))
-        return Error(ErrorCode::InvalidParams,
-                     QStringLiteral("option %1 is %2, expected a whole number").arg(option, text));
-    else if (option == QStringLiteral("--days"))
-        arguments.days = int(std::min(*value, 36500.0));
+        takeTimeout(arguments, *value);
     else
-        arguments.count = int(*value);
+        return takeWhole(arguments, option, text, *value);
     return {};
 }
 
@@ -82,7 +98,8 @@ QStringList Arguments::flags() {
 QStringList Arguments::optionsWithValue() {
     return {QStringLiteral("--rate"),  QStringLiteral("--timeout"), QStringLiteral("--count"),
             QStringLiteral("--speed"), QStringLiteral("--host"),    QStringLiteral("--daemons"),
-            QStringLiteral("--out"),   QStringLiteral("--role"),    QStringLiteral("--days")};
+            QStringLiteral("--out"),   QStringLiteral("--role"),    QStringLiteral("--days"),
+            QStringLiteral("--port")};
 }
 
 bool hasSecondWord(const QString &command) {

@@ -13,9 +13,11 @@ struct Arguments {
     QStringList words; ///< what follows the command, options taken out
     QString host = QStringLiteral("127.0.0.1");
     std::chrono::milliseconds timeout{5000};
+    bool timeoutIsGiven = false;
     double rate_hz = 0; ///< 0: every message
     int count = 0;      ///< 0: without end
     int days = 0;       ///< 0: as usual
+    int port = 0;       ///< 0: the usual one
     QString role;
     double speed = 1;
     QStringList daemons; ///< speak to these; empty: to those at their default ports

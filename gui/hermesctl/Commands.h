@@ -30,6 +30,10 @@ Result<void> keysInit(const Arguments &arguments);
 Result<void> keysIssue(const Arguments &arguments);
 Result<void> keysRevoke(const Arguments &arguments);
 Result<void> keysList(const Arguments &arguments);
+/// Shows a code, and gives new keys to the one computer that proves it.
+Result<void> keysPair(const Arguments &arguments);
+/// Gets the keys of this user from a computer that waits for the code.
+Result<void> keysJoin(const Arguments &arguments);
 /// Prints the script that completes command lines in a shell.
 Result<void> completion(const Arguments &arguments);
 

@@ -1,3 +1,5 @@
+#include "gui/hermesctl/Keys.h"
+
 #include "common/Role.h"
 #include "common/tls/Authority.h"
 #include "common/tls/KeyFolder.h"
@@ -22,6 +24,19 @@ QString stateOf(const Authority::Issued &one) {
 
 } // namespace
 
+Result<void> checkKeyRole(const Arguments &arguments) {
+    if (roleFrom(arguments.role) || arguments.role == daemonRole)
+        return {};
+    return Error(
+        ErrorCode::InvalidParams,
+        QStringLiteral("option --role is \"%1\", expected one of %2 (for people), daemon (for robots)")
+            .arg(arguments.role, roleNames().join(QStringLiteral(", "))));
+}
+
+int daysOfKeys(const Arguments &arguments) {
+    return arguments.days > 0 ? arguments.days : usualDays;
+}
+
 Result<void> keysInit(const Arguments &arguments) {
     const QString owner = QStringLiteral("%1@%2").arg(qEnvironmentVariable("USER", QStringLiteral("user")),
                                                       QHostInfo::localHostName());
@@ -32,22 +47,19 @@ Result<void> keysInit(const Arguments &arguments) {
         printJson(
             QJsonObject{{QStringLiteral("folder"), KeyFolder::usual()}, {QStringLiteral("name"), owner}});
     else
-        printLine(QStringLiteral("%1: the authority, and the keys of %2, an engineer.\n"
-                                 "Keep authority.key secret: who has it can make keys for all robots of this "
-                                 "authority.\nNext, for a robot:  hermesctl keys issue NAME --role daemon")
+        printLine(QStringLiteral(
+                      "%1: the authority, and the keys of %2, an engineer.\n"
+                      "Keep authority.key secret: who has it can make keys for all robots of this "
+                      "authority.\nNext, for a robot:  hermesctl keys pair NAME --role daemon, or keys issue")
                       .arg(KeyFolder::usual(), owner));
     return {};
 }
 
 Result<void> keysIssue(const Arguments &arguments) {
     const QString name = arguments.words.first();
-    if (!roleFrom(arguments.role) && arguments.role != daemonRole)
-        return Error(
-            ErrorCode::InvalidParams,
-            QStringLiteral("option --role is \"%1\", expected one of %2 (for people), daemon (for robots)")
-                .arg(arguments.role, roleNames().join(QStringLiteral(", "))));
-    const auto folder = Authority(KeyFolder::usual())
-                            .issue({name, arguments.role}, arguments.days > 0 ? arguments.days : usualDays);
+    if (const auto fine = checkKeyRole(arguments); !fine)
+        return fine;
+    const auto folder = Authority(KeyFolder::usual()).issue({name, arguments.role}, daysOfKeys(arguments));
     if (!folder)
         return folder.error();
     if (arguments.json)

@@ -16,7 +16,7 @@ Loggers are the daemons with the command record.start that answer at their defau
 
   --daemons A,B  record, replay, doc --all: these daemons and no others
   --host HOST    where daemons given by name run (127.0.0.1)
-  --timeout S    how long to wait for a connection and for a reply (5)
+  --timeout S    how long to wait for a connection and for a reply (5); keys pair: for the other (120)
   --json         one JSON value, or one a line; errors too: {"code", "message", "data", "hint"}
   --out FILE     prints there instead of to stdout; FILE must not exist
   --force        --out: overwrites FILE
@@ -26,8 +26,9 @@ Loggers are the daemons with the command record.start that answer at their defau
   --csv          watch: CSV, a column for each value
   --speed X      replay: so many times as fast (1)
   --loop         replay: begin anew at the end
-  --role ROLE    keys issue: observer, operator, engineer, or daemon
-  --days N       keys issue: valid for so many days (730)
+  --role ROLE    keys issue, pair: observer, operator, engineer, or daemon
+  --days N       keys issue, pair: valid for so many days (730)
+  --port P       keys pair: waits on this port (7499)
   --follow       log: go on with new records
   --all          doc: all daemons on one page
   --help, --version
@@ -128,6 +129,24 @@ const std::vector<Subcommand> &subcommands() {
          "--role --days",
          nullptr,
          keysIssue},
+        {"keys pair",
+         1,
+         1,
+         "keys pair NAME --role ROLE",
+         "shows a code, and gives keys to the one computer that joins with it",
+         {W::Nothing},
+         "--role --days --port",
+         nullptr,
+         keysPair},
+        {"keys join",
+         2,
+         anyNumber,
+         "keys join HOST[:PORT] CODE",
+         "gets the keys of this computer where keys pair shows the code",
+         {W::Nothing},
+         "",
+         nullptr,
+         keysJoin},
         {"keys revoke",
          1,
          1,

@@ -1,0 +1,116 @@
+#include "common/tls/KeyBundle.h"
+#include "common/tls/KeyFolder.h"
+#include "gui/hermesctl/Commands.h"
+#include "gui/hermesctl/NewKeyFolder.h"
+#include "gui/hermesctl/Pairing.h"
+#include "gui/hermesctl/PairingCode.h"
+
+#include <QSslCertificate>
+#include <QTcpSocket>
+#include <fcntl.h>
+
+namespace hermes::ctl {
+namespace {
+
+using Stream = std::unique_ptr<PairingStream>;
+
+Result<int> connectTo(const PairingAddress &address, std::chrono::milliseconds timeout) {
+    QTcpSocket socket;
+    socket.connectToHost(address.host, address.port);
+    const int descriptor = socket.waitForConnected(int(timeout.count()))
+                               ? ::fcntl(int(socket.socketDescriptor()), F_DUPFD_CLOEXEC, 0)
+                               : -1;
+    if (descriptor >= 0)
+        return descriptor;
+    return Error(ErrorCode::Disconnected,
+                 QStringLiteral("cannot connect to port %1 of %2: %3; is hermesctl keys pair waiting there?")
+                     .arg(address.port)
+                     .arg(address.host, socket.errorString()));
+}
+
+Result<Stream> secureStreamTo(const PairingAddress &address, const PairingCode &code,
+                              std::chrono::milliseconds timeout) {
+    const auto secret = code.secret();
+    if (!secret)
+        return secret.error();
+    const auto descriptor = connectTo(address, timeout);
+    if (!descriptor)
+        return descriptor.error();
+    auto stream = std::make_unique<PairingStream>(PairingStream::Side::Client, *descriptor, *secret);
+    const auto done = stream->handshakeUntil(QDeadlineTimer(timeout));
+    if (done)
+        return stream;
+    if (stream->isWrongSecret())
+        return Error(
+            ErrorCode::NotAuthorised,
+            QStringLiteral("the code is wrong: it must be the one that %1 shows now").arg(address.host));
+    return Error(done.error().is(ErrorCode::TimedOut) ? ErrorCode::TimedOut : ErrorCode::Disconnected,
+                 QStringLiteral("no agreement with port %1 of %2: %3; is hermesctl keys pair waiting there?")
+                     .arg(address.port)
+                     .arg(address.host, done.error().message));
+}
+
+/// The other side counts the keys as taken over once it has sent that it knows of them.
+Result<void> agree(PairingStream &stream, const QDeadlineTimer &deadline) {
+    if (const auto sent = stream.send(pairingStored, deadline); !sent)
+        return sent;
+    const auto answer = stream.receive(pairingAccepted.size(), deadline);
+    if (!answer)
+        return answer.error();
+    return *answer == pairingAccepted
+               ? Result<void>()
+               : Error(ErrorCode::InvalidRequest, QStringLiteral("the other side does not accept"));
+}
+
+Result<KeyBundle> take(PairingStream &stream, NewKeyFolder &folder) {
+    const QDeadlineTimer deadline(longestTransfer);
+    const auto json = stream.receive(KeyBundle::mostJsonBytes, deadline);
+    if (!json)
+        return json.error();
+    const auto keys = KeyBundle::fromJson(*json);
+    if (!keys)
+        return keys.error();
+    const SignalsHeld held;
+    if (const auto staged = folder.stage(*keys); !staged)
+        return staged.error();
+    if (const auto agreed = agree(stream, deadline); !agreed)
+        return Error(ErrorCode(agreed.error().code),
+                     QStringLiteral("%1; nothing was kept here: see with hermesctl keys list there whether "
+                                    "the certificate is revoked")
+                         .arg(agreed.error().message));
+    if (const auto kept = folder.keep(); !kept)
+        return kept.error();
+    return keys;
+}
+
+} // namespace
+
+Result<void> keysJoin(const Arguments &arguments) {
+    const auto address = PairingAddress::parse(arguments.words.first());
+    if (!address)
+        return address.error();
+    const auto code = PairingCode::read(arguments.words.mid(1).join(QString()));
+    if (!code)
+        return code.error();
+    NewKeyFolder folder(KeyFolder::usual());
+    if (const auto free = folder.check(); !free)
+        return free;
+    const auto stream = secureStreamTo(*address, *code, arguments.timeout);
+    if (!stream)
+        return stream.error();
+    const auto keys = take(**stream, folder);
+    if (!keys)
+        return keys.error();
+    const PeerCertificate own = toPeer(QSslCertificate(keys->certificate));
+    if (arguments.json)
+        printJson(QJsonObject{{QStringLiteral("folder"), KeyFolder::usual()},
+                              {QStringLiteral("name"), own.name},
+                              {QStringLiteral("role"), own.role},
+                              {QStringLiteral("serial"), own.serial}});
+    else
+        printLine(QStringLiteral("%1: the keys of %2 (%3); serial number %4.")
+                      .arg(KeyFolder::usual(), own.name, own.role, own.serial));
+    return {};
+}
+
+} // namespace hermes::ctl
