@@ -6,6 +6,7 @@
 #include "common/interface/InterfaceRegistry.h"
 
 #include <QCoreApplication>
+#include <QCryptographicHash>
 #include <QPointer>
 #include <QScopeGuard>
 
@@ -25,6 +26,13 @@ qint64 costOf(const CodecFrame &frame) {
 
 // So much may lie with the system before messages of topics wait where newer ones can replace them.
 constexpr qint64 handOverBytes = 32 << 10;
+
+CodecItem readAll(const Codec &codec, const CodecFrame &frame, bool withDigest) {
+    CodecItem item = codec.read(frame);
+    if (withDigest)
+        item.digest = QCryptographicHash::hash(frame.bytes, QCryptographicHash::Sha1);
+    return item;
+}
 
 constexpr qint64 readAheadBytes = 64 << 10; // of frames that wait; then their sender does
 constexpr qint64 mostOfALine = 2 << 20;     // the same, and one more; then they are lost
@@ -164,7 +172,7 @@ void Channel::receive(const QByteArray &bytes) {
         frame.arrived = nextArrival();
         if (urgent_ && !hasJumped && !frame.error && urgent_(frame.bytes)) {
             hasJumped = true;
-            give(framing_->read(frame), frame);
+            give(readAll(*framing_, frame, isLossy()), frame);
             if (!alive)
                 return;
             continue;
@@ -240,7 +248,8 @@ void Channel::deliverFront() {
     waiting_.pop_front();
     waitingBytes_ -= costOf(frame);
     const bool isLarge = readFront_.has_value();
-    CodecItem item = readFront_ ? *std::exchange(readFront_, std::nullopt) : framing_->read(frame);
+    CodecItem item =
+        readFront_ ? *std::exchange(readFront_, std::nullopt) : readAll(*framing_, frame, isLossy());
     reads_ = false;
     give(item, frame);
     if (isLarge)
@@ -250,8 +259,8 @@ void Channel::deliverFront() {
 void Channel::readInBackground() {
     reads_ = true;
     const auto readIt = [codec = framing_, frame = waiting_.front(), number = opening_,
-                         self = QPointer<Channel>(this)] {
-        const CodecItem item = codec->read(frame);
+                         withDigest = isLossy(), self = QPointer<Channel>(this)] {
+        const CodecItem item = readAll(*codec, frame, withDigest);
         const auto deliver = [self, item, number] {
             if (!self || !self->reads_ || self->opening_ != number)
                 return;
@@ -268,6 +277,7 @@ void Channel::readInBackground() {
 void Channel::give(const CodecItem &item, const CodecFrame &frame) {
     arrival_ = frame.arrived;
     inPieces_ = frame.inPieces;
+    digest_ = item.digest;
     framing_->count(item);
     if (item.error)
         Q_EMIT malformed(*item.error);

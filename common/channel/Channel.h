@@ -69,6 +69,8 @@ public:
     double arrived() const { return arrival_; }
     /// Whether that came in pieces: then its sender knows that it has arrived.
     bool arrivedInPieces() const { return inPieces_; }
+    /// Of its frame, where it may be a repeat.
+    const QByteArray &digest() const { return digest_; }
     /// Nothing of a message waits here or with the system.
     bool isQuiet() const;
 
@@ -109,6 +111,7 @@ private:
     quint64 overruns_ = 0; // frames of a line that had no place
     double arrival_ = 0;
     bool inPieces_ = false;
+    QByteArray digest_;
     std::optional<CodecItem> readFront_; // what is in the first of them, when it was read in the background
     std::optional<QString> ended_;       // the carrier is closed; what was said before is still delivered
     std::function<bool(const QByteArray &)> urgent_;

@@ -85,8 +85,13 @@ void Client::call(const QString &method, const QJsonValue &params, const Callbac
     send(method, params, callback, timeout, isConnected());
 }
 
+void Client::callOnce(const QString &method, const QJsonValue &params, const Callback &callback,
+                      std::chrono::milliseconds timeout) {
+    send(method, params, callback, timeout, isConnected(), false);
+}
+
 void Client::send(const QString &method, const QJsonValue &params, const Callback &callback,
-                  std::chrono::milliseconds timeout, bool mayBeSent) {
+                  std::chrono::milliseconds timeout, bool mayBeSent, bool mayBeRepeated) {
     const qint64 id = ++lastId_;
     waiting_.insert(id, callback);
     const auto sent =
@@ -98,7 +103,7 @@ void Client::send(const QString &method, const QJsonValue &params, const Callbac
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
         return;
     }
-    if (channel_->isLossy())
+    if (channel_->isLossy() && mayBeRepeated)
         repeater_.add(*channel_, id, *sent);
     QTimer::singleShot(timeout, this, [this, id, method, timeout] {
         finish(

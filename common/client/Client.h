@@ -70,6 +70,9 @@ public:
     /// Not connected: fails at once (from the event loop).
     void call(const QString &method, const QJsonValue &params, const Callback &callback,
               std::chrono::milliseconds timeout = defaultTimeout);
+    /// The same, sent once where frames may be lost: for what is void when it comes late.
+    void callOnce(const QString &method, const QJsonValue &params, const Callback &callback,
+                  std::chrono::milliseconds timeout = defaultTimeout);
     /// The same for an answer of up to largeFrame.
     void callForMuch(const QString &method, const QJsonValue &params, const Callback &callback,
                      std::chrono::milliseconds timeout = defaultTimeout);
@@ -106,7 +109,7 @@ private:
     void agree();
     void begin();
     void send(const QString &method, const QJsonValue &params, const Callback &callback,
-              std::chrono::milliseconds timeout, bool mayBeSent);
+              std::chrono::milliseconds timeout, bool mayBeSent, bool mayBeRepeated = true);
     void onClosed(const QString &reason);
     void onMessage(const QJsonValue &message, const WireValue &topicData);
     void refuse(const RpcError &error);

@@ -83,10 +83,11 @@ void Audit::note(const Call &call, const Command &command, const QJsonValue &par
         return;
     const QJsonObject entry = entryOf(call, command, params, result);
     const bool isForRole = !result && result.error().is(ErrorCode::NotAuthorised);
-    if (!isForRole && !command.isSetPoint())
+    // Anybody can come again under another name, and would bury what others did.
+    const bool isAnybody = isForRole || call.role == Role::Observer;
+    if (!isAnybody && !command.isSetPoint() && !command.isUrgent())
         return file_->append(compactJson(entry));
-    // Of those who are refused anybody can come again under another name.
-    const QString key = (isForRole ? QString() : call.clientName) + QLatin1Char('\n') + command.name();
+    const QString key = (isAnybody ? QString() : call.clientName) + QLatin1Char('\n') + command.name();
     if (repeated_.size() >= mostRepeated && !repeated_.contains(key))
         writeRepeated();
     const bool isFirst = !repeated_.contains(key);

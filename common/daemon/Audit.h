@@ -11,12 +11,13 @@
 namespace hermes {
 
 /// Who commanded what, and when: a line of JSON for each command that changes something or stops, also where
-/// it is refused. Of set-points that a client sends again and again, and of what is refused for its role, one
-/// line a second, which says how many they were.
+/// it is refused. Of set-points and stops that a client sends again and again, and of what observers send
+/// and what is refused for the role, one line a second, which says how many they were.
 class Audit : public QObject {
     Q_OBJECT
 public:
     explicit Audit(QObject *parent);
+    ~Audit() override { writeRepeated(); }
 
     /// Where to write, AuditFile; an empty folder: nowhere.
     void open(const QString &folder, const QString &name, qint64 bytes, int files);

@@ -1,6 +1,7 @@
 #include "common/daemon/AuditFile.h"
 
 #include "common/Result.h"
+#include "common/Time.h"
 
 #include <QDir>
 #include <QFile>
@@ -40,6 +41,12 @@ struct AuditFile::Shared {
         return QFile::encodeName(QDir(folder).filePath(file + QStringLiteral(".jsonl")));
     }
 
+    void lose(const QString &why) {
+        ++state.lost;
+        state.problem = why;
+        state.lostAt = monotonicNow();
+    }
+
     void work() {
         std::unique_lock<std::mutex> lock(mutex);
         while (true) {
@@ -53,8 +60,10 @@ struct AuditFile::Shared {
             const QString problem = write(line);
             lock.lock();
             isBusy = false;
-            state.problem = problem;
-            ++(problem.isEmpty() ? state.written : state.lost);
+            if (problem.isEmpty())
+                ++state.written;
+            else
+                lose(problem);
             changed.notify_all();
         }
     }
@@ -116,8 +125,7 @@ AuditFile::~AuditFile() {
 void AuditFile::append(const QByteArray &line) {
     const std::lock_guard<std::mutex> lock(shared_->mutex);
     if (shared_->waiting.size() >= mostWaiting) {
-        ++shared_->state.lost;
-        shared_->state.problem = QStringLiteral("the disk is too slow");
+        shared_->lose(QStringLiteral("the disk is too slow"));
         return;
     }
     shared_->waiting.push_back(line);

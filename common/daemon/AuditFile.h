@@ -12,8 +12,9 @@ class AuditFile {
 public:
     struct State {
         quint64 written = 0;
-        quint64 lost = 0; ///< no room in the queue, or not written
-        QString problem;  ///< why the last line was not; empty: it was
+        quint64 lost = 0;     ///< no room in the queue, or not written
+        QString problem;      ///< why the last one was lost
+        double lostAt = -1e9; ///< when; of monotonicNow()
     };
     static constexpr std::size_t mostWaiting = 1000;
 

@@ -178,7 +178,8 @@ void Daemon::openAudit() {
             return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, QStringLiteral("off"));
         const QJsonObject values{{QStringLiteral("written"), double(state->written)},
                                  {QStringLiteral("lost"), double(state->lost)}};
-        if (state->problem.isEmpty())
+        constexpr double told_s = 60;
+        if (monotonicNow() - state->lostAt > told_s)
             return healthItems_.set(QStringLiteral("audit"), HealthLevel::Ok, channels_.audit().path(),
                                     values);
         healthItems_.set(QStringLiteral("audit"), HealthLevel::Warn,

@@ -9,7 +9,7 @@
 namespace hermes {
 
 /// The replies to a client that repeats its requests, since a line may lose them and their replies: a
-/// repeated one is not carried out again. A repeat is the same message, id and parameters. Bounded in count,
+/// repeated one is not carried out again. A repeat is the same frame, byte for byte. Bounded in count,
 /// age, and bytes of replies; what is being carried out is always known.
 class ReplyCache {
 public:
@@ -26,8 +26,9 @@ public:
         Lost    ///< was carried out, but the reply is gone
     };
 
-    /// What a repeat is known by; empty: nothing in the message has an id to answer to.
-    static QByteArray keyOf(const QJsonValue &message);
+    /// What a repeat is known by: its frame, whose digest this is. Empty: nothing in the message has an id to
+    /// answer to.
+    static QByteArray keyOf(const QJsonValue &message, const QByteArray &digest);
 
     /// Begins a request; the reply to a repeat is written again, if there is one and it is not on its way.
     Known begin(const QByteArray &key, Channel &channel, double now);

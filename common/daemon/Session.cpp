@@ -43,7 +43,8 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     , gaps_(watch)
     , audit_(audit)
     , queue_(*channel_, limits_.topicBytes, this)
-    , lastSign_(monotonicNow()) {
+    , lastSign_(monotonicNow())
+    , who_(channel_->interface().peer()) {
     channel_->setParent(this);
     channel_->codec().setFrameLimit(limits_.frameBytes);
     channel_->setLargeFrame(largeFrameBytes);
@@ -59,6 +60,14 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     connect(&channel_->interface(), &Interface::closed, this, &Session::updateReceiving);
     connect(&channel_->interface(), &Interface::received, this, [this] { lastSign_ = monotonicNow(); });
     connect(&channel_->interface(), &Interface::drained, this, [this] { lastSign_ = monotonicNow(); });
+}
+
+QString Session::name() const {
+    const QString name = channel_->interface().name();
+    if (who_.place != Peer::Place::Computer)
+        return name;
+    return name +
+           (who_.user ? QStringLiteral(" (user %1)").arg(*who_.user) : QStringLiteral(" (user unknown)"));
 }
 
 void Session::checkIdle() {
@@ -137,12 +146,15 @@ bool Session::isUrgent(const QByteArray &frame) const {
 }
 
 void Session::receive(const QJsonValue &value) {
-    const QByteArray key = channel_->isLossy() ? ReplyCache::keyOf(value) : QByteArray();
+    const bool isBatch = value.isArray() && !value.toArray().isEmpty();
+    const RpcMessage message = isBatch ? RpcMessage() : readFrame(value).messages.front();
+    // A stop stops each time that it comes, whatever has been since.
+    const bool mayBeRepeat = channel_->isLossy() && !isUrgent(message);
+    const QByteArray key = mayBeRepeat ? ReplyCache::keyOf(value, channel_->digest()) : QByteArray();
     if (!key.isEmpty() && isRepeat(key, value))
         return;
-    if (value.isArray() && !value.toArray().isEmpty())
+    if (isBatch)
         return begin(value.toArray(), key);
-    const RpcMessage message = readFrame(value).messages.front();
     process(message, channel_->arrived(), [this, key, rank = rankOf(message)](const QJsonValue &reply) {
         if (!reply.isUndefined())
             send(reply, key, rank);

@@ -39,7 +39,7 @@ public:
             GapWatch &gaps, Audit &audit, QObject *parent);
 
     quint64 id() const { return number_; }
-    QString name() const { return channel_->interface().name(); }
+    QString name() const;
     TopicQueue &topics() { return queue_; }
     const SessionCounters &counters() const { return counts_; }
     const CodecCounters &codecCounters() const { return channel_->codec().counters(); }
@@ -63,7 +63,8 @@ public:
         role_ = role;
         more_ = more;
     }
-    Peer peer() const { return channel_->interface().peer(); }
+    /// As the system told when it came.
+    const Peer &peer() const { return who_; }
     /// Goes on in this framing after the reply to the request that is being carried out: the only one that is
     /// under way, and before the first subscription.
     Result<void> useProtocol(const QString &name);
@@ -112,6 +113,7 @@ private:
     bool batchInTurns_ = false;    // it gets its turns
     std::optional<QString> ended_; // closed, with a batch that is still to be run
     QString restrictedFor_;
+    const Peer who_;
     Role role_ = Role::Observer;
     QString more_;
     quint64 freshFor_; // the count of gaps up to which it is

@@ -8,8 +8,12 @@ namespace hermes {
 /// What the certificate of a client or daemon says, which an authority has signed.
 struct PeerCertificate {
     QString name;
-    QString role;
-    QString serial; ///< hexadecimal digits
+    QString role;     ///< as in Role.h, or daemonRole()
+    QString serial;   ///< hexadecimal digits
+    double until = 0; ///< valid up to then, seconds since the epoch
+
+    /// Of a robot: without it no client speaks to a daemon.
+    static QString daemonRole() { return QStringLiteral("daemon"); }
 };
 
 /// Who is at the other end of an interface, as far as the system or a certificate tells.

@@ -69,7 +69,9 @@ std::optional<unsigned> ownerOfSocket(const SocketEnd &from, const SocketEnd &to
     std::memcpy(&found, answer.data() + NLMSG_HDRLEN, sizeof found);
     const bool isIt = found.id.idiag_sport == question.request.id.idiag_sport &&
                       found.id.idiag_dport == question.request.id.idiag_dport;
-    return isIt ? std::optional<unsigned>(found.idiag_uid) : std::nullopt;
+    // A socket that its program has closed is of nobody, which reads as root.
+    const bool isHeld = found.idiag_inode != 0;
+    return isIt && isHeld ? std::optional<unsigned>(found.idiag_uid) : std::nullopt;
 }
 
 } // namespace hermes

@@ -12,7 +12,7 @@ struct SocketEnd {
 };
 
 /// The user whose program of this computer has the connection from one end to the other: Linux, sock_diag(7).
-/// Nothing: no such socket here, or the system does not tell.
+/// Nothing: no such socket here, its program has closed it, or the system does not tell.
 std::optional<unsigned> ownerOfSocket(const SocketEnd &from, const SocketEnd &to);
 
 } // namespace hermes

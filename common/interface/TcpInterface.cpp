@@ -57,7 +57,7 @@ void TcpInterface::begin() {
 }
 
 int TcpInterface::connectToOwn() const {
-    return url_.option(QStringLiteral("own")).isEmpty() ? -1 : connectToOwnSocket(url_);
+    return url_.option(QStringLiteral("own")) == QStringLiteral("1") ? connectToOwnSocket(url_) : -1;
 }
 
 void TcpInterface::prepare() {
@@ -130,10 +130,11 @@ void TcpInterface::doOpen() {
 
 Peer TcpInterface::peer() const {
     const QHostAddress theirs = socket_->peerAddress(), ours = socket_->localAddress();
-    if (!theirs.isLoopback() && theirs != ours)
-        return {};
-    return {Peer::Place::Computer,
-            ownerOfSocket({theirs, socket_->peerPort()}, {ours, socket_->localPort()})};
+    const auto user = ownerOfSocket({theirs, socket_->peerPort()}, {ours, socket_->localPort()});
+    // A program of this computer may come from any address of it.
+    if (user || theirs.isLoopback() || ours.isLoopback() || theirs == ours)
+        return {Peer::Place::Computer, user};
+    return {};
 }
 
 void TcpInterface::takeConnected(qintptr descriptor) {

@@ -5,11 +5,6 @@
 #include <algorithm>
 
 namespace hermes {
-namespace {
-
-const QString daemonRole = QStringLiteral("daemon");
-
-} // namespace
 
 QString textOf(const QList<QSslError> &errors) {
     QStringList texts;
@@ -45,6 +40,10 @@ TlsInterface::TlsInterface(QSslSocket *encrypted, QObject *theHost)
     connect(socket_, &QSslSocket::encryptedBytesWritten, this, &Interface::drained);
 }
 
+QString TlsInterface::folder() const {
+    return url_.option(QStringLiteral("keys"), KeyFolder::usual());
+}
+
 QString TlsInterface::name() const {
     if (!url_.scheme.isEmpty())
         return url_.toString();
@@ -62,7 +61,7 @@ Peer TlsInterface::peer() const {
 void TlsInterface::doOpen() {
     if (isConnected())
         return TcpInterface::doOpen(); // a peer of a server
-    const auto keys = KeyFolder::load(url_.option(QStringLiteral("keys"), KeyFolder::usual()));
+    const auto keys = KeyFolder::load(folder());
     if (!keys)
         return nowClosed(QStringLiteral("%1: %2").arg(name(), keys.error().message), true);
     setReceiving(true);
@@ -72,14 +71,20 @@ void TlsInterface::doOpen() {
 
 // Any client has a certificate of the authority, too.
 void TlsInterface::onEncrypted() {
-    if (const PeerCertificate theirs = toPeer(socket_->peerCertificate()); theirs.role != daemonRole) {
-        socket_->abort();
-        return nowClosed(
-            QStringLiteral("%1: the certificate there is of \"%2\" with the role %3, not of a daemon")
-                .arg(name(), theirs.name, theirs.role),
-            true);
-    }
-    begin();
+    const PeerCertificate theirs = toPeer(socket_->peerCertificate());
+    const auto revoked = KeyFolder::revoked(folder());
+    QString wrong;
+    if (theirs.role != PeerCertificate::daemonRole())
+        wrong =
+            QStringLiteral("is of \"%1\" with the role %2, not of a daemon").arg(theirs.name, theirs.role);
+    else if (!revoked)
+        wrong = QStringLiteral("may be revoked: ") + revoked.error().message;
+    else if (revoked->contains(theirs.serial.toLatin1()))
+        wrong = QStringLiteral("of \"%1\" is revoked").arg(theirs.name);
+    if (wrong.isEmpty())
+        return begin();
+    socket_->abort();
+    nowClosed(QStringLiteral("%1: the certificate there %2").arg(name(), wrong), true);
 }
 
 } // namespace hermes

@@ -22,12 +22,18 @@ public:
         return socket_->bytesToWrite() + socket_->encryptedBytesToWrite();
     }
 
+    /// Also when it is not decrypted as yet.
+    bool hasUnread() const override {
+        return TcpInterface::hasUnread() || socket_->encryptedBytesAvailable() > 0;
+    }
+
 protected:
     void doOpen() override;
 
 private:
     TlsInterface(const InterfaceUrl &address, QSslSocket *socket, QObject *parent);
     void onEncrypted();
+    QString folder() const;
 
     const InterfaceUrl url_;
     QSslSocket *const socket_;

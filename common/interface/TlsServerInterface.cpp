@@ -10,39 +10,43 @@
 #include <QFileInfo>
 #include <QSslSocket>
 #include <algorithm>
-#include <functional>
 #include <sys/socket.h>
-#include <unistd.h>
 
 namespace hermes {
 namespace {
 
 const QString source = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
-constexpr std::size_t mostHandshakes = 64; // at the same time, then the oldest goes
+constexpr int acceptedAtOnce = 4;
+constexpr std::size_t mostHandshakes = 16; // at the same time, then the oldest goes
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
 } // namespace
 
+/// Yields sockets that are not encrypted as yet.
 class TlsServerInterface::Server : public QTcpServer {
-public:
-    explicit Server(std::function<void(qintptr)> take)
-        : take_(std::move(take)) {}
-
 protected:
-    void incomingConnection(qintptr descriptor) override { take_(descriptor); }
-
-private:
-    const std::function<void(qintptr)> take_;
+    void incomingConnection(qintptr descriptor) override {
+        auto *socket = new QSslSocket(this);
+        socket->setSocketDescriptor(descriptor);
+        addPendingConnection(socket);
+    }
 };
 
 TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *parent)
     : Listener(parent)
     , url_(address)
     , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual()))
-    , server_(std::make_unique<Server>([this](qintptr descriptor) { begin(descriptor); })) {
+    , server_(std::make_unique<Server>()) {
+    // As TcpServerInterface: peers who come faster than they are taken must not keep the event loop here.
+    server_->setMaxPendingConnections(acceptedAtOnce);
+    connect(server_.get(), &QTcpServer::newConnection, this, &TlsServerInterface::takePeers,
+            Qt::QueuedConnection);
     revokedTimer_.setInterval(revokedPeriod);
-    connect(&revokedTimer_, &QTimer::timeout, this, &TlsServerInterface::lookAtRevoked);
+    connect(&revokedTimer_, &QTimer::timeout, this, [this] {
+        lookAtRevoked();
+        closeBad();
+    });
 }
 
 TlsServerInterface::~TlsServerInterface() = default;
@@ -67,6 +71,13 @@ Result<void> TlsServerInterface::listen() {
         return cannot(server_->errorString());
     ::listen(int(server_->socketDescriptor()), SOMAXCONN); // Qt lets only 50 wait
     revokedTimer_.start();
+    constexpr double soon_s = 30.0 * 24 * 3600;
+    if (const double left_s = toPeer(keys_.localCertificate()).until - stampNow(); left_s < soon_s)
+        logWarning(source,
+                   QStringLiteral("%1: its certificate expires in %2 days; hermesctl keys issue makes a "
+                                  "new one")
+                       .arg(address())
+                       .arg(int(left_s / 24 / 3600)));
     return {};
 }
 
@@ -84,13 +95,15 @@ QString TlsServerInterface::address() const {
     return actual.toString();
 }
 
-void TlsServerInterface::begin(qintptr descriptor) {
-    if (isScarce(descriptor)) {
-        ::close(int(descriptor));
-        return;
-    }
-    auto *socket = new QSslSocket(this);
-    socket->setSocketDescriptor(descriptor);
+void TlsServerInterface::takePeers() {
+    while (auto *socket = qobject_cast<QSslSocket *>(server_->nextPendingConnection()))
+        begin(socket);
+}
+
+void TlsServerInterface::begin(QSslSocket *socket) {
+    if (isScarce(socket->socketDescriptor()))
+        return delete socket;
+    socket->setParent(this);
     socket->setSslConfiguration(keys_);
     connect(socket, &QSslSocket::encrypted, this, [this, socket] { finish(socket); });
     connect(socket, &QAbstractSocket::errorOccurred, this,
@@ -114,7 +127,7 @@ void TlsServerInterface::finish(QSslSocket *socket) {
         return refuse(socket, revokedProblem_);
     if (revoked_.contains(theirs.serial.toLatin1()))
         return refuse(socket, what + QStringLiteral("is revoked"));
-    if (!roleFrom(theirs.role) && theirs.role != QStringLiteral("daemon"))
+    if (!roleFrom(theirs.role) && theirs.role != PeerCertificate::daemonRole())
         return refuse(socket, what + QStringLiteral("has the role \"%1\", expected one of %2, daemon")
                                          .arg(theirs.role, roleNames().join(QStringLiteral(", "))));
     handshakes_.remove(socket);
@@ -155,13 +168,21 @@ void TlsServerInterface::lookAtRevoked() {
         return logError(source,
                         QStringLiteral("%1: nobody new is let in: %2").arg(address(), revokedProblem_));
     revoked_ = *revoked;
+}
+
+void TlsServerInterface::closeBad() {
     const auto all = peers_;
     for (TlsInterface *peer : all) {
-        const auto certificate = peer->peer().certificate;
-        if (!peer->isOpen() || !certificate || !revoked_.contains(certificate->serial.toLatin1()))
+        const auto theirs = peer->peer().certificate;
+        if (!peer->isOpen() || !theirs)
             continue;
-        logWarning(source, QStringLiteral("closing client %1: its certificate is revoked").arg(peer->name()));
-        peer->close(QStringLiteral("the certificate is revoked"));
+        const bool isRevoked = revoked_.contains(theirs->serial.toLatin1());
+        if (!isRevoked && stampNow() < theirs->until)
+            continue;
+        const QString why = isRevoked ? QStringLiteral("its certificate is revoked")
+                                      : QStringLiteral("its certificate has expired");
+        logWarning(source, QStringLiteral("closing client %1: %2").arg(peer->name(), why));
+        peer->close(why);
     }
 }
 

@@ -32,10 +32,12 @@ public:
 private:
     class Server;
 
-    void begin(qintptr descriptor);
+    void takePeers();
+    void begin(QSslSocket *socket);
     void finish(QSslSocket *socket);
     void refuse(QSslSocket *socket, const QString &why);
     void lookAtRevoked();
+    void closeBad();
 
     const InterfaceUrl url_;
     const QString folder_;

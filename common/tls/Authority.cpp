@@ -16,7 +16,7 @@ namespace hermes {
 namespace {
 
 const QString issuedFile = QStringLiteral("issued");
-const QString giveAwayFolder = QStringLiteral("issued for");
+const QString giveAwayFolder = QStringLiteral("issued-for");
 const QString authorityKeyFile = QStringLiteral("authority.key");
 
 Error failed(const QString &path, const QString &why) {
@@ -24,10 +24,14 @@ Error failed(const QString &path, const QString &why) {
             QJsonObject{{QStringLiteral("path"), path}}};
 }
 
+// On a line of its own, also where somebody has edited the file and left the last one open.
 Result<void> append(const QString &path, const QByteArray &line) {
     QFile file(path);
-    const bool written = file.open(QIODevice::Append) && file.write(line + '\n') == line.size() + 1 &&
-                         file.flush() && ::fsync(file.handle()) == 0;
+    if (!file.open(QIODevice::ReadWrite | QIODevice::Append))
+        return failed(path, file.errorString());
+    const bool isOpen = file.size() > 0 && file.seek(file.size() - 1) && file.read(1) != "\n";
+    const QByteArray text = (isOpen ? QByteArray("\n") : QByteArray()) + line + '\n';
+    const bool written = file.write(text) == text.size() && file.flush() && ::fsync(file.handle()) == 0;
     return written ? Result<void>() : failed(path, file.errorString());
 }
 
@@ -50,7 +54,7 @@ QString Authority::path(const QString &file) const {
     return QDir(folder_).filePath(file);
 }
 
-Result<void> Authority::init(const QString &owner, int days) const {
+Result<void> Authority::init(const QString &owner, int days, int daysOfOwner) const {
     for (const QString &file : {authorityKeyFile, KeyFolder::authorityFile(), KeyFolder::keyFile()})
         if (QFile::exists(path(file)))
             return failed(path(file), QStringLiteral("there are keys already; they are not replaced"));
@@ -61,7 +65,7 @@ Result<void> Authority::init(const QString &owner, int days) const {
     if (!authority)
         return authority.error();
     const CertificateSubject subject{owner, QStringLiteral("engineer")};
-    const auto own = issueCertificate(*authority, subject, days);
+    const auto own = issueCertificate(*authority, subject, daysOfOwner);
     if (!own)
         return own.error();
     if (const auto done = writeFolder(folder_, *own, authority->certificate); !done)

@@ -23,10 +23,10 @@ public:
         : folder_(std::move(folder)) {}
 
     /// Makes the authority, and a certificate for who makes it: an engineer. Error: there is one already.
-    Result<void> init(const QString &owner, int days) const;
+    Result<void> init(const QString &owner, int days, int daysOfOwner) const;
     /// Error: why issue() would fail for that name.
     Result<void> canIssue(const QString &name) const;
-    /// A new key with a certificate; gives the folder of keys that its owner needs, below `issued for`.
+    /// A new key with a certificate; gives the folder of keys that its owner needs, below `issued-for`.
     /// Nothing is left of it when it fails.
     Result<QString> issue(const CertificateSubject &subject, int days) const;
     /// Revokes the certificate in a folder that issue() gave, and removes the folder.

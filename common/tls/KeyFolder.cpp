@@ -129,7 +129,8 @@ Result<void> writeKeyFile(const QString &path, const QByteArray &content, bool s
 PeerCertificate toPeer(const QSslCertificate &certificate) {
     return {certificate.subjectInfo(QSslCertificate::CommonName).value(0),
             certificate.subjectInfo(QSslCertificate::OrganizationalUnitName).value(0),
-            QString::fromLatin1(certificate.serialNumber().replace(":", "").toLower())};
+            QString::fromLatin1(certificate.serialNumber().replace(":", "").toLower()),
+            double(certificate.expiryDate().toSecsSinceEpoch())};
 }
 
 } // namespace hermes

@@ -24,6 +24,8 @@ class DaemonError(Exception):
 def own_socket(host, port):
     """A connection to the Unix socket beside the TCP port of a daemon of this user, which gives all rights; None without one."""
     connection = socket.socket(socket.AF_UNIX)
+    connection.settimeout(1)  # somebody else may have taken the name
+    host = "127.0.0.1" if host == "localhost" else host
     try:
         connection.connect(f"\0hermes:{host}:{port}")
     except OSError:

@@ -84,7 +84,7 @@ private:
         if (option == QStringLiteral("--out"))
             return {{QStringLiteral(":files"), QString()}};
         if (option == QStringLiteral("--role"))
-            return plain(roleNames() + QStringList(QStringLiteral("daemon")), before);
+            return plain(roleNames() + QStringList(PeerCertificate::daemonRole()), before);
         if (option != QStringLiteral("--daemons"))
             return {};
         const QString given = line_.current.mid(before.size());

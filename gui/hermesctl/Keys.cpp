@@ -14,7 +14,6 @@ namespace {
 
 constexpr int usualDays = 2 * 365;
 constexpr int daysOfAuthority = 20 * 365;
-const QString daemonRole = QStringLiteral("daemon");
 
 QString stateOf(const Authority::Issued &one) {
     return one.isRevoked                                 ? QStringLiteral("revoked")
@@ -25,7 +24,7 @@ QString stateOf(const Authority::Issued &one) {
 } // namespace
 
 Result<void> checkKeyRole(const Arguments &arguments) {
-    if (roleFrom(arguments.role) || arguments.role == daemonRole)
+    if (roleFrom(arguments.role) || arguments.role == PeerCertificate::daemonRole())
         return {};
     return Error(
         ErrorCode::InvalidParams,
@@ -40,7 +39,7 @@ int daysOfKeys(const Arguments &arguments) {
 Result<void> keysInit(const Arguments &arguments) {
     const QString owner = QStringLiteral("%1@%2").arg(qEnvironmentVariable("USER", QStringLiteral("user")),
                                                       QHostInfo::localHostName());
-    const auto done = Authority(KeyFolder::usual()).init(owner, daysOfAuthority);
+    const auto done = Authority(KeyFolder::usual()).init(owner, daysOfAuthority, usualDays);
     if (!done)
         return done;
     if (arguments.json)

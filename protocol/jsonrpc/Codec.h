@@ -23,6 +23,7 @@ struct CodecItem {
     /// Of a topic's notification params.data, which is left out of message: it may be large, and its reader
     /// knows what to make of it.
     WireValue data;
+    QByteArray digest = {}; ///< of the frame, where its reader wants one
 };
 
 /// One frame as it came, not yet read; or the error that stands in place of one that was not kept.

@@ -103,9 +103,9 @@ class Keys {
 public:
     Keys() {
         const Authority authority(folder_.filePath("keys"));
-        if (!authority.init("bench", 1) || !authority.issue({"robot", "daemon"}, 1))
+        if (!authority.init("bench", 1, 1) || !authority.issue({"robot", "daemon"}, 1))
             return;
-        ::rename(qPrintable(folder_.filePath("keys/issued for/robot")), qPrintable(robot()));
+        ::rename(qPrintable(folder_.filePath("keys/issued-for/robot")), qPrintable(robot()));
         const QByteArray own = folder_.filePath("keys/own").toUtf8();
         context_.reset(SSL_CTX_new(TLS_client_method()));
         isFine_ = SSL_CTX_use_certificate_file(context_.get(), own + ".crt", SSL_FILETYPE_PEM) == 1 &&

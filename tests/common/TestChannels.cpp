@@ -27,7 +27,7 @@ struct Carrier {
 
 const Carrier carriers[] = {
     {"tcp", "tcp://127.0.0.1:0", "tcp://127.0.0.1:PORT", 500000},
-    {"tls", "tls://127.0.0.1:0?keys=KEYS/issued%20for/robot", "tls://127.0.0.1:PORT?keys=KEYS", 500000},
+    {"tls", "tls://127.0.0.1:0?keys=KEYS/issued-for/robot", "tls://127.0.0.1:PORT?keys=KEYS", 500000},
     {"local", "local://FOLDER/socket", "local://FOLDER/socket", 500000},
     {"udp", "udp://127.0.0.1:0", "udp://127.0.0.1:0?peer=127.0.0.1:PORT", 20000},
     {"serial line", "pty://FOLDER/line", "serial://FOLDER/line?baud=115200", 3000},
@@ -41,7 +41,7 @@ private Q_SLOTS:
     void initTestCase() {
         Log::instance().setStderr(false);
         const Authority authority(keys_.path());
-        QVERIFY(authority.init("tester", 1) && authority.issue({"robot", "daemon"}, 1));
+        QVERIFY(authority.init("tester", 1, 1) && authority.issue({"robot", "daemon"}, 1));
     }
     void cleanup() { tearDown(); }
     void sayTheSame_data();

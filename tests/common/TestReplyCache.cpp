@@ -46,6 +46,16 @@ public:
     std::vector<QJsonValue> got;
 };
 
+class HaltingDaemon : public TestedDaemon {
+public:
+    HaltingDaemon() {
+        addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return ++halts_; }));
+    }
+
+private:
+    int halts_ = 0;
+};
+
 } // namespace
 
 class TestReplyCache : public QObject {
@@ -59,6 +69,7 @@ private Q_SLOTS:
     void withoutIdNothingIsKept();
     void batchesAreRepeatedToo();
     void errorsAreKept();
+    void aStopStopsEachTime();
     void otherFramingsKeepNothing();
     void aLargeReplyIsNotSentTwiceAtOnce();
     void boundsOfTheCache();
@@ -73,7 +84,7 @@ private:
 
 void TestReplyCache::init() {
     Log::instance().setStderr(false);
-    daemon = std::make_unique<TestedDaemon>();
+    daemon = std::make_unique<HaltingDaemon>();
     QVERIFY(!daemon->prepare({"tested", "--listen", "tcp://127.0.0.1:0?protocol=serial"}));
     QVERIFY(daemon->launch());
     client = std::make_unique<FrameClient>(daemon->server().addresses().value(0));
@@ -149,6 +160,14 @@ void TestReplyCache::errorsAreKept() {
     QCOMPARE(requests(), 1);
 }
 
+// Also with an id that a stop has had before it was released.
+void TestReplyCache::aStopStopsEachTime() {
+    const QJsonObject request = makeRequest(1, "halt", QJsonObject());
+    for (int i = 1; i <= 3; ++i)
+        QCOMPARE(client->ask(request)["result"].toInt(), i);
+    QCOMPARE(repeats(), 0);
+}
+
 void TestReplyCache::otherFramingsKeepNothing() {
     TestedDaemon plain;
     QVERIFY(!plain.prepare({"tested", "--listen", "tcp://127.0.0.1:0"}));
@@ -178,7 +197,7 @@ void TestReplyCache::boundsOfTheCache() {
     Channel channel(LoopbackInterface::pair(this).first, makeCodec("serial"), nullptr);
     channel.open();
     ReplyCache cache;
-    const auto key = [](int number) { return ReplyCache::keyOf(makeRequest(number, "x", QJsonObject())); };
+    const auto key = [](int number) { return QByteArray::number(number); };
     const auto begin = [&](int number, double now) { return cache.begin(key(number), channel, now); };
     const auto answer = [&](int number, int bytes, double now) {
         cache.answer(key(number), {QByteArray(bytes, 'x'), 0}, Channel::Rank::Usual, now);

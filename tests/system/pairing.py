@@ -72,7 +72,7 @@ def state_of(folder, name):
 def check_revoked(pair, error):
     assert "revoked" in error["message"] and "removed" in error["message"], error
     assert state_of(pair.folder, pair.name) == ["revoked"]
-    assert not os.path.exists(os.path.join(pair.folder, "issued for", pair.name))
+    assert not os.path.exists(os.path.join(pair.folder, "issued-for", pair.name))
 
 
 def check_nothing_in(folder):
@@ -103,7 +103,7 @@ def check_success(authority, scratch):
     for name, folder in (("robot", robot), ("eva", eva)):
         check_modes(folder)
         assert state_of(authority, name) == ["valid"]
-        assert not os.path.exists(os.path.join(authority, "issued for", name)), "a second copy of the key"
+        assert not os.path.exists(os.path.join(authority, "issued-for", name)), "a second copy of the key"
     port = free_port(0)
     process = Process(BINARIES, "softwaretrigger", free_port(0), scratch, {}, ["--listen", f"tls://127.0.0.1:{port}?keys={robot}"])
     try:
@@ -247,7 +247,7 @@ def check_killed(authority, scratch):
             if stops:
                 pair.process.communicate(timeout=20)
                 assert state_of(authority, name) == ["revoked"]
-                assert not os.path.exists(os.path.join(authority, "issued for", name))
+                assert not os.path.exists(os.path.join(authority, "issued-for", name))
             else:
                 check_revoked(pair, pair.end(1))
         check_nothing_in(folder)

@@ -26,13 +26,15 @@ ENDS = {"daemon.shutdown", "process.stop", "process.restart"}
 class Raw:
     """A client that sees the lines; user: whose it is."""
 
-    def __init__(self, port, own=False, user=None):
+    def __init__(self, port, own=False, user=None, source=None):
         before = os.geteuid()
         if user is not None:
             os.seteuid(user)  # a socket is of who makes it
         try:
             self.socket = socket.socket(socket.AF_UNIX if own else socket.AF_INET)
             self.socket.settimeout(30)
+            if source:
+                self.socket.bind((source, 0))
             self.socket.connect(f"\0hermes:127.0.0.1:{port}" if own else ("127.0.0.1", port))
         finally:
             os.seteuid(before)
@@ -84,6 +86,41 @@ def clients_of(port):
     if os.geteuid() == 0:
         clients += [("observer", Raw(port, user=OTHER_USER)), ("observer", Raw(port, own=True, user=OTHER_USER))]
     return clients
+
+
+def own_address():
+    """Of this computer, not on loopback; nothing: it has none."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))
+            return probe.getsockname()[0]
+        except OSError:
+            return None
+
+
+def check_disguises(process, folder):
+    """Another user from another address of this computer; one who has gone when the daemon looks."""
+    address = own_address()
+    if address:
+        assert Raw(process.port, user=OTHER_USER, source=address).ask("daemon.info")["result"]["role"] == "observer"
+    os.seteuid(OTHER_USER)
+    try:
+        for _ in range(300):
+            with socket.create_connection(("127.0.0.1", process.port)) as gone:
+                gone.sendall(b'{"jsonrpc":"2.0","id":1,"method":"trigger.fire","params":{"id":"gone"}}\n')
+    finally:
+        os.seteuid(0)
+    process.connect().call("daemon.status")
+
+    def fired():
+        lines = []
+        for name in os.listdir(folder):
+            if name.startswith("softwaretrigger") and name.endswith(".jsonl"):
+                with open(os.path.join(folder, name), encoding="utf-8") as file:
+                    lines += [json.loads(line) for line in file]
+        return [line for line in lines if "gone" in str(line.get("params"))]
+    wait_for("lines of those who have gone", fired, 10)
+    assert all(line["role"] == "observer" for line in fired()), fired()[:3]
 
 
 def check_settings(process):
@@ -162,12 +199,14 @@ def main():
         for name in ("motorcontrol", "velodynelogger", "seriallogger", "softwaretrigger", "scanmatcher", "supervisor", "simulator"):
             settings = {"velodynelogger": {"source.port": free_port(0, socket.SOCK_DGRAM), "source.position_port": 0},
                         "motorcontrol": {"controllers": json.dumps({n: {"url": "serial://" + os.path.join(folder, "line")} for n in ("1", "2")})}}.get(name, {})
-            process = Process(BINARIES, name, free_port(0), folder, settings)
+            process = Process(BINARIES, name, free_port(0), folder, {"audit.folder": folder, **settings})
             try:
                 process.connect().close()
                 check_every_method(name, process, clients_of(process.port))
                 if name == "softwaretrigger":
                     check_settings(process)
+                    if os.geteuid() == 0:
+                        check_disguises(process, folder)
             finally:
                 process.stop()
         check_killed(folder)

@@ -26,7 +26,7 @@ def keys(folder, *words, status=0):
 
 
 def issued(folder, name):
-    return os.path.join(folder, "issued for", name)
+    return os.path.join(folder, "issued-for", name)
 
 
 def context_of(keys_folder=None, authority=None):
@@ -127,6 +127,32 @@ def check_half_handshakes(process, port, folder):
     return took
 
 
+STORM = """import socket, sys, time
+end = time.monotonic() + 3
+while time.monotonic() < end:
+    connections = []
+    for _ in range(50):
+        connections.append(socket.create_connection(("127.0.0.1", int(sys.argv[1]))))
+        connections[-1].sendall(bytes([0x16, 3, 1, 2, 0, 1, 0, 1, 0xfc]))
+    for connection in connections:
+        connection.close()
+"""
+
+
+def check_storm(process, port):
+    """Strangers who connect as fast as they can hold nobody up."""
+    storm = [subprocess.Popen([sys.executable, "-c", STORM, str(port)], stderr=subprocess.DEVNULL) for _ in range(2)]
+    worst = 0
+    with Daemon(port=process.port) as friend:
+        while any(one.poll() is None for one in storm):
+            begun = time.monotonic()
+            friend.call("daemon.info")
+            worst = max(worst, time.monotonic() - begun)
+            time.sleep(0.005)
+    assert worst < 0.5, f"a call took {worst:.2f} s beside a storm of connections"
+    return worst
+
+
 def check_roles(port, folder):
     for name, method, may in (("otto", "topics.list", True), ("otto", "trigger.fire", False), ("anna", "trigger.fire", True),
                               ("anna", "settings.reset", False), ("eva", "settings.reset", True), ("robot", "trigger.fire", False)):
@@ -170,7 +196,13 @@ def check_hermesctl(port, folder):
                               capture_output=True, text=True, check=False)
         assert done.returncode == status, done
         return done.stdout + done.stderr
-    assert json.loads(ctl(issued(folder, "eva"), port, 0))["role"] == "engineer"
+    eva = issued(folder, "eva")
+    assert json.loads(ctl(eva, port, 0))["role"] == "engineer"
+    serials = {entry["name"]: entry["serial"] for entry in json.loads(keys(folder, "list", "--json"))}
+    with open(os.path.join(eva, "revoked"), "w", encoding="utf-8") as file:
+        file.write(serials["robot"] + " stolen")  # and no line feed
+    assert "is revoked" in ctl(eva, port, 1)
+    os.remove(os.path.join(eva, "revoked"))
     server = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     server.load_cert_chain(os.path.join(issued(folder, "eva"), "own.crt"), os.path.join(issued(folder, "eva"), "own.key"))
     with socket.create_server(("127.0.0.1", 0)) as listener:
@@ -278,13 +310,14 @@ def main():
                 check_strangers(process, port, folder, foreign, expired)
                 check_roles(port, folder)
                 beside = check_half_handshakes(process, port, folder)
+                worst = check_storm(process, port)
                 check_hermesctl(port, folder)
                 took = check_revocation(process, port, folder)
                 steady.call("daemon.info")  # not affected by anything
                 assert steady.call("daemon.status")["health"], "no health"
         finally:
             process.stop()
-    print(f"a handshake beside 100 silent ones {beside:.2f} s; revoked clients were gone after {took:.2f} s")
+    print(f"beside a storm of connections a call took {worst * 1000:.0f} ms at most; a handshake beside 100 silent ones {beside:.2f} s; revoked clients were gone after {took:.2f} s")
     return 0
 
 

@@ -5,6 +5,7 @@
 #include "protocol/wire/Fields.h"
 
 #include <QHostInfo>
+#include <QPointer>
 
 namespace hermes::desktop {
 namespace {
@@ -148,7 +149,9 @@ void DriveControl::send() {
                               {"vy", commanded_.vy},
                               {"omega", commanded_.omega},
                               {"stamp", stampNow() + clock_.seconds()}};
-    motors_->call("motor.drive", command, this, [this](const Result<QJsonValue> &result) {
+    const auto done = [this, guard = QPointer<DriveControl>(this)](const Result<QJsonValue> &result) {
+        if (!guard)
+            return;
         if (result)
             return tell({});
         if (!isDriving_)
@@ -156,15 +159,17 @@ void DriveControl::send() {
         if (result.error().is(ErrorCode::ControlHeld))
             isHolding_ = false; // ran out, or taken over: ask again, or hear who has it
         tell(result.error().message);
-    });
+    };
+    motors_->client().callOnce("motor.drive", command, done); // a late one would move the robot
     Q_EMIT changed();
 }
 
 void DriveControl::halt() {
     commanded_ = {};
     if (isDriving_ && motors_) {
-        motors_->client().notify("motor.stop", QJsonObject());
-        motors_->client().notify("control.release", QJsonObject());
+        // Calls, which are repeated where frames are lost.
+        motors_->client().call("motor.stop", QJsonObject(), [](const auto &) {});
+        motors_->client().call("control.release", QJsonObject(), [](const auto &) {});
     }
     isDriving_ = isHolding_ = false;
     mustCentre_ = isAnyHeld();
