@@ -10,9 +10,7 @@
 #include <QFileInfo>
 #include <QSslSocket>
 #include <algorithm>
-#include <functional>
 #include <sys/socket.h>
-#include <unistd.h>
 
 namespace hermes {
 namespace {
@@ -20,27 +18,30 @@ namespace {
 const QString source = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
 constexpr std::size_t mostHandshakes = 64; // at the same time, then the oldest goes
+constexpr int acceptedAtOnce = 1;          // to begin a handshake takes a millisecond
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
 } // namespace
 
+// Yields sockets that have not begun to speak.
 class TlsServerInterface::Server : public QTcpServer {
-public:
-    explicit Server(std::function<void(qintptr)> take)
-        : take_(std::move(take)) {}
-
 protected:
-    void incomingConnection(qintptr descriptor) override { take_(descriptor); }
-
-private:
-    const std::function<void(qintptr)> take_;
+    void incomingConnection(qintptr descriptor) override {
+        auto *socket = new QSslSocket(this);
+        socket->setSocketDescriptor(descriptor);
+        addPendingConnection(socket);
+    }
 };
 
 TlsServerInterface::TlsServerInterface(const InterfaceUrl &address, QObject *parent)
     : Listener(parent)
     , url_(address)
     , folder_(address.option(QStringLiteral("keys"), KeyFolder::usual()))
-    , server_(std::make_unique<Server>([this](qintptr descriptor) { begin(descriptor); })) {
+    , server_(std::make_unique<Server>()) {
+    // Queued, and no more are accepted meanwhile: else a crowd would keep the event loop here.
+    server_->setMaxPendingConnections(acceptedAtOnce);
+    connect(server_.get(), &QTcpServer::newConnection, this, &TlsServerInterface::takePeers,
+            Qt::QueuedConnection);
     revokedTimer_.setInterval(revokedPeriod);
     connect(&revokedTimer_, &QTimer::timeout, this, &TlsServerInterface::lookAtRevoked);
 }
@@ -84,13 +85,15 @@ QString TlsServerInterface::address() const {
     return actual.toString();
 }
 
-void TlsServerInterface::begin(qintptr descriptor) {
-    if (isScarce(descriptor)) {
-        ::close(int(descriptor));
-        return;
-    }
-    auto *socket = new QSslSocket(this);
-    socket->setSocketDescriptor(descriptor);
+void TlsServerInterface::takePeers() {
+    while (QTcpSocket *socket = server_->nextPendingConnection())
+        begin(static_cast<QSslSocket *>(socket));
+}
+
+void TlsServerInterface::begin(QSslSocket *socket) {
+    if (socket->state() != QAbstractSocket::ConnectedState || isScarce(socket->socketDescriptor()))
+        return delete socket;
+    socket->setParent(this);
     socket->setSslConfiguration(keys_);
     connect(socket, &QSslSocket::encrypted, this, [this, socket] { finish(socket); });
     connect(socket, &QAbstractSocket::errorOccurred, this,

@@ -32,7 +32,8 @@ public:
 private:
     class Server;
 
-    void begin(qintptr descriptor);
+    void takePeers();
+    void begin(QSslSocket *socket);
     void finish(QSslSocket *socket);
     void refuse(QSslSocket *socket, const QString &why);
     void lookAtRevoked();
