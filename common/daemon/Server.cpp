@@ -7,11 +7,13 @@
 
 #include <QStringList>
 #include <algorithm>
+#include <malloc.h>
 
 namespace hermes {
 namespace {
 
 const QString source = QStringLiteral("server");
+constexpr double quiet_s = 1; // after the last client has gone, before memory is given back
 
 void addTo(QJsonObject &sums, const QString &key, quint64 count) {
     sums.insert(key, sums.value(key).toDouble() + double(count));
@@ -60,6 +62,7 @@ Server::Server(const CommandRegistry &registry, TopicHub &hub, QObject *parent)
         const auto all = sessions_.values();
         for (Session *session : all)
             session->checkIdle();
+        giveMemoryBack();
     });
     idleTimer_.start();
 }
@@ -231,6 +234,15 @@ void Server::givePlaces() {
             session->restrictTo(QString());
 }
 
+// What a crowd of clients needed lies free between what is in use, and stays with the process else. This
+// takes about 0.1 ms for a megabyte.
+void Server::giveMemoryBack() {
+    if (giveBackFrom_ == 0 || monotonicNow() < giveBackFrom_)
+        return;
+    giveBackFrom_ = 0;
+    ::malloc_trim(0);
+}
+
 void Server::remove(Session *session, const QString &reason) {
     if (sessions_.remove(session->id()) == 0)
         return;
@@ -238,6 +250,7 @@ void Server::remove(Session *session, const QString &reason) {
     addSession(past_, *session);
     topics_.forget(&session->topics());
     session->deleteLater();
+    giveBackFrom_ = monotonicNow() + quiet_s;
     givePlaces();
     Q_EMIT clientGone(session->id());
 }

@@ -56,6 +56,7 @@ private:
     int places() const { return sessions_.size() - restricted().size(); }
     void givePlaces();
     void remove(Session *session, const QString &reason);
+    void giveMemoryBack();
 
     const CommandRegistry &commands_;
     TopicHub &topics_;
@@ -71,6 +72,7 @@ private:
     quint64 turnedAway_ = 0;
     double turnAwayTold_ = 0; // monotonic
     QJsonObject past_;        // the sums of clients that have gone
+    double giveBackFrom_ = 0; // monotonic: when memory is given back; 0: when another client has gone
     QTimer idleTimer_;
 };
 

@@ -17,8 +17,8 @@ namespace {
 
 const QString source = QStringLiteral("server");
 constexpr std::chrono::seconds longestHandshake{5};
-constexpr int acceptedAtOnce = 4;
 constexpr std::size_t mostHandshakes = 16; // at the same time, then the oldest goes
+constexpr int acceptedAtOnce = 1;          // to begin a handshake takes a millisecond
 constexpr std::chrono::milliseconds revokedPeriod{300};
 
 } // namespace
@@ -101,7 +101,7 @@ void TlsServerInterface::takePeers() {
 }
 
 void TlsServerInterface::begin(QSslSocket *socket) {
-    if (isScarce(socket->socketDescriptor()))
+    if (socket->state() != QAbstractSocket::ConnectedState || isScarce(socket->socketDescriptor()))
         return delete socket;
     socket->setParent(this);
     socket->setSslConfiguration(keys_);
