@@ -37,12 +37,17 @@ void addSession(QJsonObject &sums, Session &session) {
 }
 
 QString howToGetMore(const Peer &peer) {
+    if (peer.certificate)
+        return QStringLiteral("the certificate of \"%1\" says so, hermesctl keys issue makes another one")
+            .arg(peer.certificate->name);
     if (peer.place == Peer::Place::Elsewhere)
-        return QStringLiteral("access.plain sets what clients without a certificate may do");
+        return QStringLiteral("the setting access.plain says what clients without a certificate may do");
     if (roleOf(peer, {Role::Observer, Role::Engineer}) == Role::Engineer)
-        return QStringLiteral("access.others sets what other users of this computer may do");
-    return QStringLiteral("the daemon's own user has all rights over its Unix socket, which hermesctl, the "
-                          "window and docs/examples/hermes.py use; access.plain sets what others may do");
+        return QStringLiteral("the setting access.others, which the daemon's own user may change, says what "
+                              "other users of this computer may do");
+    return QStringLiteral(
+        "over its Unix socket, which hermesctl, the window and docs/examples/hermes.py use, "
+        "the daemon's own user may do all; the setting access.plain says what he may over TCP");
 }
 
 } // namespace

@@ -59,6 +59,12 @@ Result<void> TlsServerInterface::listen() {
     const auto keys = KeyFolder::load(folder_);
     if (!keys)
         return cannot(keys.error().message);
+    if (const PeerCertificate own = toPeer(keys->localCertificate());
+        own.role != PeerCertificate::daemonRole())
+        return cannot(
+            QStringLiteral("%1/%2: is of \"%3\" with the role %4, and no client speaks to it; hermesctl keys "
+                           "issue NAME --role daemon makes keys for a robot")
+                .arg(folder_, KeyFolder::ownFile(), own.name, own.role));
     keys_ = *keys;
     lookAtRevoked();
     if (!revokedProblem_.isEmpty())
@@ -155,14 +161,18 @@ void TlsServerInterface::refuse(QSslSocket *socket, const QString &why) {
 
 void TlsServerInterface::lookAtRevoked() {
     const QFileInfo file(folder_ + QLatin1Char('/') + KeyFolder::revokedFile());
-    const QString state = QStringLiteral("%1 %2 %3")
-                              .arg(file.exists())
+    const QString state = QStringLiteral("%1 %2 %3 %4")
+                              .arg(file.exists() || file.isSymLink())
                               .arg(file.size())
-                              .arg(file.metadataChangeTime().toMSecsSinceEpoch());
+                              .arg(file.metadataChangeTime().toMSecsSinceEpoch())
+                              .arg(QFileInfo(folder_).isReadable());
     if (state == revokedState_)
         return;
     revokedState_ = state;
-    const auto revoked = KeyFolder::revoked(folder_);
+    auto revoked = KeyFolder::revoked(folder_);
+    if (revoked && revoked->isEmpty() && !revoked_.isEmpty())
+        revoked = Error(ErrorCode::InputOutput,
+                        file.filePath() + QStringLiteral(": is empty or gone, and was not"));
     revokedProblem_ = revoked ? QString() : revoked.error().message;
     if (!revoked)
         return logError(source,

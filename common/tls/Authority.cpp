@@ -6,9 +6,11 @@
 
 #include <QDir>
 #include <QFile>
+#include <QFileInfo>
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QSslCertificate>
+#include <QTemporaryDir>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,10 +31,15 @@ Result<void> append(const QString &path, const QByteArray &line) {
     QFile file(path);
     if (!file.open(QIODevice::ReadWrite | QIODevice::Append))
         return failed(path, file.errorString());
-    const bool isOpen = file.size() > 0 && file.seek(file.size() - 1) && file.read(1) != "\n";
+    const qint64 before = file.size();
+    const bool isOpen = before > 0 && file.seek(before - 1) && file.read(1) != "\n";
     const QByteArray text = (isOpen ? QByteArray("\n") : QByteArray()) + line + '\n';
-    const bool written = file.write(text) == text.size() && file.flush() && ::fsync(file.handle()) == 0;
-    return written ? Result<void>() : failed(path, file.errorString());
+    if (file.write(text) == text.size() && file.flush() && ::fsync(file.handle()) == 0)
+        return {};
+    const QString why = qt_error_string();
+    if (::ftruncate(file.handle(), before) != 0)
+        return failed(path, why + QStringLiteral("; half a line may stand at its end"));
+    return failed(path, why);
 }
 
 Result<QByteArray> read(const QString &path) {
@@ -55,12 +62,25 @@ QString Authority::path(const QString &file) const {
 }
 
 Result<void> Authority::init(const QString &owner, int days, int daysOfOwner) const {
-    for (const QString &file : {authorityKeyFile, KeyFolder::authorityFile(), KeyFolder::keyFile()})
-        if (QFile::exists(path(file)))
-            return failed(path(file), QStringLiteral("there are keys already; they are not replaced"));
-    if (!QDir().mkpath(folder_))
-        return failed(folder_, QStringLiteral("cannot be made"));
-    ::chmod(QFile::encodeName(folder_).constData(), 0700);
+    const QFileInfo place(folder_);
+    const auto all = QDir::AllEntries | QDir::Hidden | QDir::System | QDir::NoDotAndDotDot;
+    if (place.isSymLink() || (place.exists() && (!place.isDir() || !QDir(folder_).isEmpty(all))))
+        return failed(folder_,
+                      QStringLiteral("there are keys already, or something else; it is not replaced"));
+    if (!QDir().mkpath(place.absolutePath()))
+        return failed(place.absolutePath(), QStringLiteral("cannot be made"));
+    QTemporaryDir beside(folder_ + QStringLiteral("-XXXXXX")); // only its owner may enter; removed on failure
+    if (!beside.isValid())
+        return failed(folder_, beside.errorString());
+    if (const auto made = Authority(beside.path()).fill(owner, days, daysOfOwner); !made)
+        return made;
+    if (::rename(QFile::encodeName(beside.path()).constData(), QFile::encodeName(folder_).constData()) != 0)
+        return failed(folder_, qt_error_string());
+    beside.setAutoRemove(false);
+    return {};
+}
+
+Result<void> Authority::fill(const QString &owner, int days, int daysOfOwner) const {
     const auto authority = makeAuthority(QStringLiteral("Hermes authority of ") + owner, days);
     if (!authority)
         return authority.error();
@@ -72,8 +92,7 @@ Result<void> Authority::init(const QString &owner, int days, int daysOfOwner) co
         return done;
     if (const auto done = note(subject, own->certificate); !done)
         return done;
-    return writeKeyFile(path(authorityKeyFile), authority->key,
-                        true); // last: without it there is no authority
+    return writeKeyFile(path(authorityKeyFile), authority->key, true);
 }
 
 Result<CertifiedKey> Authority::load() const {

@@ -36,6 +36,7 @@ public:
     Result<std::vector<Issued>> list() const;
 
 private:
+    Result<void> fill(const QString &owner, int days, int daysOfOwner) const;
     Result<CertifiedKey> load() const;
     Result<void> note(const CertificateSubject &subject, const QByteArray &certificate) const;
     QString path(const QString &file) const;

@@ -12,10 +12,12 @@
 #include <QStandardPaths>
 #include <cerrno>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace hermes {
 namespace {
 
+constexpr int shortestSerial = 16;    // digits, as issueCertificate() makes them
 constexpr qint64 mostBytes = 1 << 20; // of a file of keys
 
 const QString remedy = QStringLiteral("hermesctl keys --help tells how to make keys");
@@ -96,7 +98,10 @@ Result<QSslConfiguration> KeyFolder::load(const QString &folder) {
 
 Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
     const QString path = QDir(folder).filePath(revokedFile());
-    if (!QFile::exists(path))
+    struct stat status {};
+    const bool isNone = ::lstat(QFile::encodeName(path).constData(), &status) != 0 && errno == ENOENT &&
+                        ::access(QFile::encodeName(folder).constData(), R_OK | X_OK) == 0;
+    if (isNone)
         return QSet<QByteArray>();
     const auto content = read(path);
     if (!content)
@@ -106,10 +111,12 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
         const QByteArray word = line.simplified().split(' ').value(0).toLower();
         if (word.isEmpty() || word.startsWith('#'))
             continue;
-        const bool isNumber = QByteArray::fromHex(word).toHex() == word;
+        // One that was cut off must not be taken for another.
+        const bool isNumber = word.size() >= shortestSerial && QByteArray::fromHex(word).toHex() == word;
         if (!isNumber)
-            return wrong(path, QStringLiteral("\"%1\" is no serial number, expected hexadecimal digits")
-                                   .arg(QString::fromUtf8(word.left(40))));
+            return wrong(path,
+                         QStringLiteral("\"%1\" is no serial number, expected 16 hexadecimal digits or more")
+                             .arg(QString::fromUtf8(word.left(40))));
         serials.insert(word);
     }
     return serials;

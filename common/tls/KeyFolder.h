@@ -23,7 +23,8 @@ public:
     /// Certificates of both sides, TLS 1.2 at least. Error: which file is missing, may be read by others,
     /// cannot be read, does not belong to the others or has expired, and the remedy.
     static Result<QSslConfiguration> load(const QString &folder);
-    /// Serial numbers. None when there is no such file; error: it cannot be read, or a line is no number.
+    /// Serial numbers. None when there is no such file in the folder; error: it or the folder cannot be
+    /// read, or a line is no number.
     static Result<QSet<QByteArray>> revoked(const QString &folder);
 };
 

@@ -43,6 +43,7 @@ class Daemon:
 
     def __init__(self, host="127.0.0.1", port=7400, timeout=5.0):
         self.socket = self.connect(host, port, timeout)
+        self.timeout = timeout
         self.socket.settimeout(timeout)
         self.lines = self.socket.makefile("r", encoding="utf-8")
         self.ids = itertools.count(1)
@@ -79,8 +80,12 @@ class Daemon:
 
     def _messages(self, queue):
         while True:
-            while not queue:
-                self._receive()
+            self.socket.settimeout(None)  # a topic may be silent for long
+            try:
+                while not queue:
+                    self._receive()
+            finally:
+                self.socket.settimeout(self.timeout)
             yield queue.popleft()
 
     def _receive(self):

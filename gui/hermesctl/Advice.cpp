@@ -4,6 +4,7 @@
 #include "common/channel/Channel.h"
 #include "common/client/DaemonAddress.h"
 #include "common/interface/InterfaceUrl.h"
+#include "common/tls/KeyFolder.h"
 #include "gui/hermesctl/Descriptions.h"
 #include "gui/hermesctl/Nearest.h"
 #include "protocol/jsonrpc/Codec.h"
@@ -37,6 +38,11 @@ QStringList nobodyThere(const Arguments &arguments) {
     const auto url = address ? InterfaceUrl::parse(*address) : address.error();
     if (!url)
         return {};
+    if (url->scheme == QStringLiteral("tls")) // there may be one that does not let this client in
+        return {QStringLiteral(
+                    "the reason is in the log of the daemon; your keys are in %1 ($HERMES_KEYS); hermesctl "
+                    "keys list, where they were made, tells which are good")
+                    .arg(KeyFolder::usual())};
     const QString program = programAt(*url);
     if (program.isEmpty())
         return {

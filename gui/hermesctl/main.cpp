@@ -9,6 +9,7 @@
 #include <QCoreApplication>
 #include <csignal>
 #include <cstdio>
+#include <sys/stat.h>
 
 using namespace hermes;
 using namespace hermes::ctl;
@@ -101,6 +102,8 @@ QString unknownCommand(const QString &command) {
 int run(Arguments arguments) {
     if (hasSecondWord(arguments.command) && !arguments.words.isEmpty())
         arguments.command += QLatin1Char(' ') + arguments.words.takeFirst();
+    if (arguments.command.startsWith(QStringLiteral("keys ")))
+        ::umask(077);
     const Subcommand *const command = findSubcommand(arguments.command);
     if (!command)
         return usageError(unknownCommand(arguments.command), arguments.json);

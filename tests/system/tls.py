@@ -232,6 +232,7 @@ def check_bad_keys(folder, scratch):
                               capture_output=True, text=True, check=False, timeout=20)
         shutil.rmtree(bad)
         assert done.returncode == 1 and all(text in done.stderr for text in expected), (done, expected)
+    start(lambda bad: [shutil.copy(os.path.join(issued(folder, "eva"), name), bad) for name in ("own.crt", "own.key")], "of \"eva\"", "--role daemon")
     start(lambda bad: os.remove(os.path.join(bad, "own.key")), "own.key", "No such file", "hermesctl keys")
     start(lambda bad: os.remove(os.path.join(bad, "authority.crt")), "authority.crt", "No such file", "hermesctl keys")
     start(lambda bad: os.chmod(os.path.join(bad, "own.key"), 0o644), "own.key", "chmod 600")
@@ -244,8 +245,41 @@ def check_bad_keys(folder, scratch):
     start(lambda bad: open(os.path.join(bad, "revoked"), "w", encoding="utf-8").write("zz\n") and None, "revoked", "no serial number")
 
 
+def check_unreachable_list(folder, scratch):
+    """Where the list cannot be reached, nobody is let in; a full disk leaves no half line behind."""
+    own = os.path.join(scratch, "of another daemon")
+    shutil.copytree(issued(folder, "robot"), own)
+    listed = os.path.join(own, "revoked")
+    serial = {entry["name"]: entry["serial"] for entry in json.loads(keys(folder, "list", "--json"))}["anna"]
+    with open(listed, "w", encoding="utf-8") as file:
+        file.write(serial + " anna\n")
+    port = free_port(0)
+    process = Process(BINARIES, "softwaretrigger", free_port(0), scratch, {}, ["--listen", f"tls://127.0.0.1:{port}?keys={own.replace(' ', '%20')}"])
+    eva, anna = context_of(issued(folder, "eva")), context_of(issued(folder, "anna"))
+
+    def dangling():
+        os.remove(listed)
+        os.symlink("nowhere", listed)
+
+    def cut():
+        os.remove(listed)
+        with open(listed, "w", encoding="utf-8") as file:
+            file.write(serial[:8])
+    try:
+        process.connect().close()
+        assert is_refused(port, anna) and not is_refused(port, eva)
+        for change in (lambda: os.truncate(listed, 0), dangling, cut, lambda: os.rename(own, own + " away")):
+            change()
+            wait_for("refusal of everybody", lambda: is_refused(port, eva), 5)
+            assert is_refused(port, anna)
+    finally:
+        process.stop()
+    shutil.rmtree(own + " away")
+
+
 def check_keys_commands(folder):
     assert "already" in keys(folder, "init", status=1)
+    assert "expected" in keys(folder, "issue", "bob\n", "--role", "observer", status=2)
     assert "--role" in keys(folder, "issue", "x", "--role", "king", status=2)
     assert "expected" in keys(folder, "issue", "../x", "--role", "operator", status=2)
     assert "exists" in keys(folder, "issue", "eva", "--role", "operator", status=1)
@@ -301,7 +335,8 @@ def main():
         check_bad_keys(folder, scratch)
         port, own = free_port(0), os.path.join(scratch, "of the daemon")
         shutil.copytree(issued(folder, "robot"), own)
-        os.symlink(os.path.join(folder, "revoked"), os.path.join(own, "revoked"))
+        with open(os.path.join(folder, "revoked"), "w", encoding="utf-8"):
+            os.symlink(os.path.join(folder, "revoked"), os.path.join(own, "revoked"))
         process = Process(BINARIES, "softwaretrigger", free_port(0), scratch, {},
                           ["--listen", f"tls://0.0.0.0:{port}?keys={own.replace(' ', '%20')}"])
         try:
@@ -312,6 +347,7 @@ def main():
                 beside = check_half_handshakes(process, port, folder)
                 worst = check_storm(process, port)
                 check_hermesctl(port, folder)
+                check_unreachable_list(folder, scratch)
                 took = check_revocation(process, port, folder)
                 steady.call("daemon.info")  # not affected by anything
                 assert steady.call("daemon.status")["health"], "no health"
