@@ -13,6 +13,8 @@ namespace hermes {
 namespace {
 
 constexpr double longest_s = 0.001;
+constexpr double rest_s = 0.005;
+constexpr int mostKnown = 10000;
 constexpr int backgroundNiceness = 5;
 
 } // namespace
@@ -25,8 +27,19 @@ Turns &Turns::ofThread() {
 }
 
 void Turns::add(QObject *owner, const std::function<bool()> &step) {
-    works_.push_back({owner, step});
+    (hasRested(owner) ? rested_ : busy_).push_back({owner, step});
     post();
+}
+
+bool Turns::hasRested(QObject *owner) {
+    const auto last = lastSteps_.constFind(owner);
+    return last == lastSteps_.constEnd() || monotonicNow() - *last > rest_s;
+}
+
+// In turn, so that a crowd of those who have rested does not keep the others waiting for good.
+Turns::Works &Turns::next() {
+    wasRested_ = !rested_.empty() && (busy_.empty() || !wasRested_);
+    return wasRested_ ? rested_ : busy_;
 }
 
 void Turns::post() {
@@ -38,15 +51,22 @@ void Turns::post() {
 void Turns::run() {
     posted_ = false;
     const double end = monotonicNow() + longest_s;
-    while (!works_.empty() && monotonicNow() < end) {
-        const Work work = std::move(works_.front());
-        works_.pop_front();
-        if (!works_.empty())
+    for (double now = monotonicNow(); now < end && !(rested_.empty() && busy_.empty());
+         now = monotonicNow()) {
+        Works &works = next();
+        const Work work = std::move(works.front());
+        works.pop_front();
+        if (!(rested_.empty() && busy_.empty()))
             post(); // a step may run an event loop of its own, which waits for the others
-        if (work.owner && work.step() && work.owner)
-            works_.push_back(work);
+        if (!work.owner)
+            continue;
+        if (lastSteps_.size() > mostKnown)
+            lastSteps_.clear();
+        lastSteps_.insert(work.owner, now);
+        if (work.step() && work.owner)
+            busy_.push_back(work);
     }
-    if (!works_.empty())
+    if (!(rested_.empty() && busy_.empty()))
         post();
 }
 

@@ -199,9 +199,11 @@ void TestSerialLine::stopDoesNotWaitBehindAMap() {
     qInfo(
         "%d stops: %.1f ms (median), %.1f ms (99 %%), %.1f ms at most; the line was used by %.0f %% of a way",
         stops, figures.median * 1e3, figures.p99 * 1e3, figures.worst * 1e3, used * 100);
-    QCOMPARE(daemon->halts, stops);
-    if (isDamaged) // a stop is lost as often as others, and repeated
+    if (isDamaged) { // a stop is lost as often as others, and repeated; it stops each time that it comes
+        QVERIFY(daemon->halts >= stops);
         return;
+    }
+    QCOMPARE(daemon->halts, stops);
     QVERIFY(figures.median < 0.05 * slowness);
     QVERIFY(figures.p99 < 0.05 * slowness);
     QVERIFY(used > 0.5);

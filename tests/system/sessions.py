@@ -308,7 +308,7 @@ class Sessions(unittest.TestCase):
         for arguments, words, status in ((("--daemons", nobody, "record", "start", "x"), "refused", 1),
                                          (("--host", "127.0.0.79", "record", "start", "x"), "no logger answers", 1),
                                          (("--daemons", "nobody", "record", "stop"), "unknown daemon", 2),
-                                         (("record", "start", "a/b"), "NAME", 2), (("record",), "unknown command", 2),
+                                         (("record", "start", "a/b"), "NAME", 2), (("record",), "one of these is expected", 2),
                                          (("record", "start"), "usage", 2), (("record", "stop", "x"), "usage", 2)):
             shown = ctl(*arguments)
             self.assertEqual(shown.returncode, status, shown)
