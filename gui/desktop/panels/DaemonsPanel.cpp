@@ -49,7 +49,7 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , fleet_(fleet)
     , address_(new QLineEdit)
-    , find_(new QPushButton(tr("Fi&nd")))
+    , find_(new QPushButton(tr("F&ind")))
     , search_(this)
     , tree_(new QTreeWidget)
     , hint_(new PlainLabel(tr("No daemon found yet. Add one by its address, for example 192.168.1.20 or "
