@@ -12,6 +12,7 @@ namespace {
 
 constexpr int acceptedAtOnce = 4; // then others have their turn
 constexpr uint ownerOnly = 0600;
+constexpr int sendBufferBytes = 1 << 20;
 
 struct stat statusOf(const char *path) {
     struct stat status {};
@@ -104,6 +105,10 @@ void LocalServerInterface::take(int descriptor) {
     socklen_t size = sizeof peer;
     if (isScarce(descriptor) || ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0)
         return LocalAddress::closeSocket(descriptor);
+    // As far as the system allows: what does not fit waits for a round of the event loop, as a stop's reply
+    // does.
+    const int much = sendBufferBytes;
+    ::setsockopt(descriptor, SOL_SOCKET, SO_SNDBUF, &much, sizeof much);
     auto *socket = new QTcpSocket;
     socket->setSocketDescriptor(descriptor);
     auto *carrier = new LocalInterface(
