@@ -182,7 +182,8 @@ void TestSerialLine::stopDoesNotWaitBehindAMap() {
         ++under;
         client->call("store", QJsonObject{{"what", QString(bytes, 'y')}}, done, std::chrono::minutes(10));
     }
-    QTest::qWait(300); // the line is full by now
+    const quint64 idle = line->passed();
+    QTRY_VERIFY(line->passed() > idle + 3000); // the line is full
     const quint64 before = line->passed();
     const double start = monotonicNow();
     std::vector<double> took_s;
@@ -258,7 +259,8 @@ void TestSerialLine::clientBeginsAnewInTheMiddle() {
         "large", QJsonArray{300000}, [](const Result<QJsonValue> &) {}, std::chrono::minutes(5));
     client->subscribe("numbers", {}, nullptr);
     QTRY_VERIFY(daemon->hasSubscribers("numbers"));
-    QTest::qWait(1500); // beyond the window: the new one cannot have the beginning
+    const quint64 begun = line->passed();
+    QTRY_VERIFY(line->passed() > begun + 15000); // beyond the window: the new one cannot have the beginning
     client.reset();
     client = newClient();
     QVERIFY(client->waitConnected());
