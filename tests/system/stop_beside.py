@@ -20,7 +20,7 @@ import time
 
 from lateness import Lateness
 from stop_traffic import LIMIT_S, batch, hold, line, pump, request, set_niceness
-from support import BINARIES, BUILD, Daemon, DaemonError, Process, SerialPort, free_port, wait_for
+from support import BINARIES, BUILD, Daemon, DaemonError, Process, SerialPort, free_port, simulated_hall, wait_for
 from tls import context_of, issued, keys
 
 TRIALS = int(os.environ.get("HERMES_TRIALS", "8"))
@@ -134,12 +134,7 @@ class Stand:
         keys(self.keys, "init")
         for name, role in (("robot", "daemon"), ("eva", "engineer")):
             keys(self.keys, "issue", name, "--role", role)
-        link, world = os.path.join(folder, "motors"), os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                       "poses": [[0, 0, 0]]}, file)
-        simulated = Process(BINARIES, "simulator", free_port(0), folder,
-                            {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)})
+        simulated, link = simulated_hall(folder)
         stack.callback(simulated.stop)
         simulated.connect().close()
         self.tap = Tap(link)

@@ -14,7 +14,7 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for
 
 TRIALS = int(os.environ.get("HERMES_TRIALS", "20"))
 LIMIT_S, SHARE = 0.020, 0.99 if TRIALS >= 100 else 0.8  # a few trials say little about the last percent
@@ -211,12 +211,7 @@ def main():
             print("here", flush=True)
         return TRAFFIC[sys.argv[1]][1](int(sys.argv[2]))
     with tempfile.TemporaryDirectory() as folder:
-        link, world = os.path.join(folder, "motors"), os.path.join(folder, "hall.json")
-        with open(world, "w", encoding="utf-8") as file:
-            json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
-                       "poses": [[0, 0, 0]]}, file)
-        simulated = Process(BINARIES, "simulator", free_port(0), folder,
-                            {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)})
+        simulated, link = simulated_hall(folder)
         driven = None
         try:
             simulated.connect().close()

@@ -1,5 +1,7 @@
 """What tests of whole systems share: where the programs are, the modules that start and ask them, waiting, a serial port."""
+import json
 import os
+import socket
 import sys
 import time
 import tty
@@ -22,6 +24,16 @@ def wait_for(what, condition, limit_s=60):
             return value
         assert time.monotonic() < deadline, f"{what} did not happen within {limit_s} s"
         time.sleep(0.01)
+
+
+def simulated_hall(folder):
+    """A simulator with a robot in an empty hall, and the serial line of its motors."""
+    link, world = os.path.join(folder, "motors"), os.path.join(folder, "hall.json")
+    with open(world, "w", encoding="utf-8") as file:
+        json.dump({"name": "hall", "edges": [[-9, -9, 9, -9], [9, -9, 9, 9], [9, 9, -9, 9], [-9, 9, -9, -9]],
+                   "poses": [[0, 0, 0]]}, file)
+    return Process(BINARIES, "simulator", free_port(0), folder,
+                   {"motors.link": link, "world": world, "lidar.port": free_port(0, socket.SOCK_DGRAM)}), link
 
 
 class SerialPort:
