@@ -81,21 +81,17 @@ QString Client::address() const {
 }
 
 void Client::call(const QString &method, const QJsonValue &params, const Callback &callback,
-                  std::chrono::milliseconds timeout) {
-    send(method, params, callback, timeout, isConnected());
-}
-
-void Client::callOnce(const QString &method, const QJsonValue &params, const Callback &callback,
-                      std::chrono::milliseconds timeout) {
-    send(method, params, callback, timeout, isConnected(), false);
+                  std::chrono::milliseconds timeout, Repeats repeats) {
+    send(method, params, callback, timeout, isConnected(), repeats);
 }
 
 void Client::send(const QString &method, const QJsonValue &params, const Callback &callback,
-                  std::chrono::milliseconds timeout, bool mayBeSent, bool mayBeRepeated) {
+                  std::chrono::milliseconds timeout, bool mayBeSent, Repeats repeats) {
+    const Channel::Rank rank = repeats == Repeats::AtOnce ? Channel::Rank::Urgent : Channel::Rank::Usual;
     const qint64 id = ++lastId_;
     waiting_.insert(id, callback);
     const auto sent =
-        mayBeSent ? channel_->send(makeRequest(id, method, params))
+        mayBeSent ? channel_->send(makeRequest(id, method, params), rank)
                   : Result<Sent>(Error(ErrorCode::Disconnected,
                                        QStringLiteral("%1: not connected: %2").arg(method, failure_)));
     if (!sent) {
@@ -103,8 +99,8 @@ void Client::send(const QString &method, const QJsonValue &params, const Callbac
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
         return;
     }
-    if (channel_->isLossy() && mayBeRepeated)
-        repeater_.add(*channel_, id, *sent);
+    if (channel_->isLossy() && repeats != Repeats::None)
+        repeater_.add(*channel_, id, *sent, rank);
     QTimer::singleShot(timeout, this, [this, id, method, timeout] {
         finish(
             id,
@@ -132,7 +128,7 @@ bool Client::notify(const QString &method, const QJsonValue &params) {
 }
 
 Result<QJsonValue> Client::callAndWait(const QString &method, const QJsonValue &params,
-                                       std::chrono::milliseconds timeout) {
+                                       std::chrono::milliseconds timeout, Repeats repeats) {
     QEventLoop loop;
     Result<QJsonValue> answer{QJsonValue()};
     call(
@@ -141,7 +137,7 @@ Result<QJsonValue> Client::callAndWait(const QString &method, const QJsonValue &
             answer = result;
             loop.quit();
         },
-        timeout);
+        timeout, repeats);
     loop.exec();
     return answer;
 }

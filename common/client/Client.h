@@ -34,6 +34,12 @@ public:
     using Callback = std::function<void(const Result<QJsonValue> &)>;
     using TopicCallback = std::function<void(const TopicUpdate &)>;
     static constexpr std::chrono::milliseconds defaultTimeout{5000};
+    /// Of a call, over a channel that loses messages.
+    enum class Repeats {
+        Usual,
+        None,  ///< for what is void when it comes late
+        AtOnce ///< for stops: at first without waiting for a reply, and before all else that waits here
+    };
     /// Of a message from the daemon, e.g. the reply that holds a map of 100,000 edges.
     static constexpr int frameLimit = 16 << 20;
     /// Of an answer that is asked for as a large one, whatever limit others have.
@@ -69,10 +75,7 @@ public:
     /// Calls a method; the callback gets the result or an error, once, and at the latest after the timeout.
     /// Not connected: fails at once (from the event loop).
     void call(const QString &method, const QJsonValue &params, const Callback &callback,
-              std::chrono::milliseconds timeout = defaultTimeout);
-    /// The same, sent once where frames may be lost: for what is void when it comes late.
-    void callOnce(const QString &method, const QJsonValue &params, const Callback &callback,
-                  std::chrono::milliseconds timeout = defaultTimeout);
+              std::chrono::milliseconds timeout = defaultTimeout, Repeats repeats = Repeats::Usual);
     /// The same for an answer of up to largeFrame.
     void callForMuch(const QString &method, const QJsonValue &params, const Callback &callback,
                      std::chrono::milliseconds timeout = defaultTimeout);
@@ -81,7 +84,8 @@ public:
 
     /// Waits in a nested event loop: for command line programs and tests, not for daemons.
     Result<QJsonValue> callAndWait(const QString &method, const QJsonValue &params = QJsonObject(),
-                                   std::chrono::milliseconds timeout = defaultTimeout);
+                                   std::chrono::milliseconds timeout = defaultTimeout,
+                                   Repeats repeats = Repeats::Usual);
     Result<void> waitConnected(std::chrono::milliseconds timeout = defaultTimeout);
 
     /// Subscribes now, or as soon as connected, and again after each reconnect. Options are those of
@@ -109,7 +113,7 @@ private:
     void agree();
     void begin();
     void send(const QString &method, const QJsonValue &params, const Callback &callback,
-              std::chrono::milliseconds timeout, bool mayBeSent, bool mayBeRepeated = true);
+              std::chrono::milliseconds timeout, bool mayBeSent, Repeats repeats = Repeats::Usual);
     void onClosed(const QString &reason);
     void onMessage(const QJsonValue &message, const WireValue &topicData);
     void refuse(const RpcError &error);

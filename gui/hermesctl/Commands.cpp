@@ -164,7 +164,9 @@ Result<void> call(Client &client, const Arguments &arguments) {
     const auto params = assignments(arguments.words.mid(2), false);
     if (!params)
         return params.error();
-    const auto result = ask(client, arguments, arguments.words.at(1), *params);
+    // Nothing else goes over the line: where it damages much, a stop is not to wait for a repeat.
+    const auto result =
+        client.callAndWait(arguments.words.at(1), *params, arguments.timeout, Client::Repeats::AtOnce);
     if (!result)
         return result.error();
     printLine(pretty(*result));

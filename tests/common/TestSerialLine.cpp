@@ -24,7 +24,13 @@ public:
                            ++times[call.integer("number")];
                            return call.integer("number") * 2;
                        }));
-        addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return ++halts; }));
+        addCommand(Command("halt", "Stops")
+                       .urgent()
+                       .param(Field::integer("number", "Which"))
+                       .handler([this](const Call &call) {
+                           haltedAt.emplace(call.integer("number"), monotonicNow());
+                           return ++halts;
+                       }));
         addCommand(
             Command("store", "Takes much").param(Field::text("what", "Much")).handler([](const Call &call) {
                 return call.text("what").size();
@@ -32,6 +38,7 @@ public:
     }
     std::map<qint64, int> times;
     int halts = 0;
+    std::map<qint64, double> haltedAt; // the first time each
 };
 
 struct Figures {
@@ -186,27 +193,28 @@ void TestSerialLine::stopDoesNotWaitBehindAMap() {
     QTRY_VERIFY(line->passed() > idle + 3000); // the line is full
     const quint64 before = line->passed();
     const double start = monotonicNow();
-    std::vector<double> took_s;
+    std::vector<double> stopped_s, answered_s;
     for (int i = 0; i < stops; ++i) {
         const double at = monotonicNow();
-        const auto result = client->callAndWait("halt", QJsonObject(), std::chrono::seconds(30));
+        const auto result = client->callAndWait("halt", QJsonObject{{"number", i}}, std::chrono::seconds(30),
+                                                Client::Repeats::AtOnce);
         QVERIFY(result);
-        took_s.push_back(monotonicNow() - at);
+        answered_s.push_back(monotonicNow() - at);
+        stopped_s.push_back(daemon->haltedAt.at(i) - at);
         QTest::qWait(37 + i % 13);
     }
     QCOMPARE(under, int(ofDaemon) + int(ofClient)); // it was on its way all the time
     const double used = double(line->passed() - before) / (monotonicNow() - start) / bytesPerSecond;
-    const Figures figures = figuresOf(took_s);
-    qInfo(
-        "%d stops: %.1f ms (median), %.1f ms (99 %%), %.1f ms at most; the line was used by %.0f %% of a way",
-        stops, figures.median * 1e3, figures.p99 * 1e3, figures.worst * 1e3, used * 100);
-    if (isDamaged) { // a stop is lost as often as others, and repeated; it stops each time that it comes
-        QVERIFY(daemon->halts >= stops);
-        return;
-    }
-    QCOMPARE(daemon->halts, stops);
-    QVERIFY(figures.median < 0.05 * slowness);
-    QVERIFY(figures.p99 < 0.05 * slowness);
+    const Figures stopped = figuresOf(stopped_s), answered = figuresOf(answered_s);
+    for (const auto &[what, figures] : {std::pair("stopped", stopped), std::pair("answered", answered)})
+        qInfo("%d stops, %s after %.1f ms (median), %.1f ms (99 %%), %.1f ms at most", stops, what,
+              figures.median * 1e3, figures.p99 * 1e3, figures.worst * 1e3);
+    qInfo("%d frames came; the line was used by %.0f %% of a way", daemon->halts, used * 100);
+    QVERIFY(daemon->halts >= stops); // a stop stops each time that it comes
+    QVERIFY(stopped.median < 0.05 * slowness);
+    QVERIFY(stopped.p99 <
+            (isDamaged ? 0.2 : 0.05) * slowness); // chance: all of the first repeats may be lost
+    QVERIFY(isDamaged || answered.p99 < 0.05 * slowness);
     QVERIFY(used > 0.5);
 }
 

@@ -160,7 +160,8 @@ void DriveControl::send() {
             isHolding_ = false; // ran out, or taken over: ask again, or hear who has it
         tell(result.error().message);
     };
-    motors_->client().callOnce("motor.drive", command, done); // a late one would move the robot
+    motors_->client().call("motor.drive", command, done, Client::defaultTimeout,
+                           Client::Repeats::None); // a late one would move the robot
     Q_EMIT changed();
 }
 
@@ -168,7 +169,9 @@ void DriveControl::halt() {
     commanded_ = {};
     if (isDriving_ && motors_) {
         // Calls, which are repeated where frames are lost.
-        motors_->client().call("motor.stop", QJsonObject(), [](const auto &) {});
+        motors_->client().call(
+            "motor.stop", QJsonObject(), [](const auto &) {}, Client::defaultTimeout,
+            Client::Repeats::AtOnce);
         motors_->client().call("control.release", QJsonObject(), [](const auto &) {});
     }
     isDriving_ = isHolding_ = false;
@@ -212,9 +215,10 @@ void DriveControl::repeatStop() {
                 stopTimer_.stop();
             poll();
         };
-        daemon->call("motor.estop", {}, this, answered);
+        daemon->call("motor.estop", {}, this, answered, Client::Repeats::AtOnce);
         if (daemon == motors_ && stopLine_.isConnected())
-            stopLine_.call("motor.estop", QJsonObject(), answered);
+            stopLine_.call("motor.estop", QJsonObject(), answered, Client::defaultTimeout,
+                           Client::Repeats::AtOnce);
     }
 }
 

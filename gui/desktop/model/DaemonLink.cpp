@@ -114,11 +114,12 @@ bool DaemonLink::isUnderstood() const {
 }
 
 void DaemonLink::call(const QString &method, const QJsonObject &params, QObject *context,
-                      const Client::Callback &done) {
-    client_.call(method, params, [done, guard = QPointer<QObject>(context)](const auto &result) {
+                      const Client::Callback &done, Client::Repeats repeats) {
+    const auto guarded = [done, guard = QPointer<QObject>(context)](const auto &result) {
         if (guard)
             done(result);
-    });
+    };
+    client_.call(method, params, guarded, Client::defaultTimeout, repeats);
 }
 
 void DaemonLink::callForMuch(const QString &method, const QJsonObject &params, QObject *context,

@@ -62,7 +62,7 @@ public:
     bool may(const QString &name) const { return hasMethod(name) && refusal(name).isEmpty(); }
     /// Calls a method; the callback is dropped with the context.
     void call(const QString &method, const QJsonObject &params, QObject *context,
-              const Client::Callback &done);
+              const Client::Callback &done, Client::Repeats repeats = Client::Repeats::Usual);
     /// The same for an answer of up to Client::largeFrame.
     void callForMuch(const QString &method, const QJsonObject &params, QObject *context,
                      const Client::Callback &done);
