@@ -37,10 +37,11 @@ void SoftwareTrigger::declareSettings() {
 
 Result<void> SoftwareTrigger::start() {
     engine_ = new TriggerEngine(settings().text("firings.folder"), settings().number("firings.file_bytes"));
-    connect(
-        engine_, &TriggerEngine::fired, this,
-        [this](const FiringMessage &firing) { publish("fired", firing, firing.stamp); },
-        Qt::QueuedConnection); // said, so that Qt knows how to carry the message
+    const auto publishIt = [this](const FiringMessage &firing) {
+        const auto inMainThread = [this, firing] { publish("fired", firing, firing.stamp); };
+        QMetaObject::invokeMethod(this, inMainThread, Qt::QueuedConnection);
+    };
+    connect(engine_, &TriggerEngine::fired, engine_, publishIt);
     engine_->moveToThread(&thread_);
     connect(&thread_, &QThread::finished, engine_, &QObject::deleteLater);
     thread_.setObjectName("triggers");

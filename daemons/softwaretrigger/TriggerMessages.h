@@ -69,5 +69,3 @@ const Fields<FiringMessage> &fieldsOf(Of<FiringMessage>);
 const Fields<TriggerState> &fieldsOf(Of<TriggerState>);
 
 } // namespace hermes::softwaretrigger
-
-Q_DECLARE_METATYPE(hermes::softwaretrigger::FiringMessage)

@@ -14,10 +14,10 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for
+from support import BINARIES, SLOWNESS, Daemon, DaemonError, Process, free_port, simulated_hall, wait_for
 
 TRIALS = int(os.environ.get("HERMES_TRIALS", "20"))
-LIMIT_S, SHARE = 0.020, 0.99 if TRIALS >= 100 else 0.8  # a few trials say little about the last percent
+LIMIT_S, SHARE = 0.020 * SLOWNESS, 0.99 if TRIALS >= 100 else 0.8  # a few trials say little about the last percent
 TOPICS = ("odometry", "wheels", "power", "log", "status", "settings")
 
 

@@ -11,13 +11,15 @@ SOURCE = os.environ.get("HERMES_SOURCE", os.path.abspath(os.path.join(os.path.di
 BUILD = os.environ.get("HERMES_BUILD", os.path.join(SOURCE, "build", "release"))
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(BUILD, "bin"))
 DATA = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
+# How many times slower and larger this build is than those for which limits are written: as tests/support/Patience.h.
+SLOWNESS = 5 if {"TSAN_OPTIONS", "LSAN_OPTIONS"} & os.environ.keys() else 1
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
 from processes import Daemon, DaemonError, Process, free_port  # noqa: E402, F401
 
 
 def wait_for(what, condition, limit_s=60):
     """The first value of condition() that counts as true."""
-    deadline = time.monotonic() + limit_s
+    deadline = time.monotonic() + limit_s * SLOWNESS
     while True:
         value = condition()
         if value:

@@ -20,7 +20,7 @@ import time
 
 from lateness import Lateness
 from stop_traffic import batch, has_room, line, request, set_niceness
-from support import BINARIES, Process, free_port, wait_for
+from support import BINARIES, SLOWNESS, Process, free_port, wait_for
 from tls import context_of, issued, keys
 
 SECONDS = float(os.environ.get("HERMES_SECONDS", "3"))
@@ -28,7 +28,7 @@ SEED = int(os.environ.get("HERMES_SEED", random.randrange(1 << 30)))
 CROWD, PROCESSES = 1000, 2
 DESCRIPTORS = 8192
 RATE_HZ, LONGEST_ARRIVAL_S = 50, 5
-LIMIT_S = 0.010  # with the usual number of places; turns are shared by all who have one, so that 1,000 make each other wait
+LIMIT_S = 0.010 * SLOWNESS  # with the usual number of places; turns are shared by all who have one, so that 1,000 make each other wait
 LIMIT_OF_MANY_S = 2
 SHARE = 0.99 if SECONDS >= 30 else 0.95  # a few calls say little about the last percent
 CARRIERS = ("TCP", "Unix socket", "TLS port", "TLS with a certificate")
@@ -36,8 +36,8 @@ TOPICS = ("log", "status", "settings", "odometry", "wheels", "power", "pose", "m
 USUAL_PLACES, KEPT_PLACES = 16, 16
 MB = 1 << 20
 # What one client may hold at the limits: a request that grows, one that is read, replies, topics, and the replies to two batches.
-PLACE_BYTES = (1 + 1 + 2 + 0.25 + 2 * 8) * MB
-GIVEN_BACK_BYTES = 24 * MB  # above this it would have grown for good
+PLACE_BYTES = (1 + 1 + 2 + 0.25 + 2 * 8) * MB * SLOWNESS
+GIVEN_BACK_BYTES = 24 * MB * SLOWNESS  # above this it would have grown for good
 
 
 def deep(dice):
