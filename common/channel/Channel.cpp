@@ -119,6 +119,15 @@ bool Channel::isUnderWay(quint64 ticket) const {
     return writer_ && writer_->link().isUnderWay(ticket);
 }
 
+bool Channel::hasShortWaiting() const {
+    return writer_ && writer_->link().hasSmallWaiting();
+}
+
+void Channel::dropShortWaiting() {
+    if (writer_)
+        writer_->link().dropSmall();
+}
+
 qint64 Channel::bytesToWrite() const {
     return carrier_->bytesToWrite() + (writer_ ? writer_->link().bytesWaiting() : 0);
 }
@@ -167,11 +176,12 @@ void Channel::receive(const QByteArray &bytes) {
         if (alive && writer_)
             writer_->resume();
     });
-    bool hasJumped = false; // a flood of urgent ones is as ordinary as any
+    QStringList jumped; // a flood of urgent ones is as ordinary as any
     for (CodecFrame &frame : framing_->split(bytes)) {
         frame.arrived = nextArrival();
-        if (urgent_ && !hasJumped && !frame.error && urgent_(frame.bytes)) {
-            hasJumped = true;
+        const QString urgent = urgent_ && !frame.error ? urgent_(frame.bytes, jumped) : QString();
+        if (!urgent.isEmpty()) {
+            jumped.append(urgent);
             give(readAll(*framing_, frame, isLossy()), frame);
             if (!alive)
                 return;

@@ -6,6 +6,7 @@
 #include "protocol/serial/SerialLink.h"
 
 #include <QObject>
+#include <QStringList>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -49,6 +50,10 @@ public:
     bool isLine() const { return isLossy() && !canWait_; }
     /// Whether some of it waits here, or is repeated until it has arrived: of lossy channels.
     bool isUnderWay(quint64 ticket) const;
+    /// Whether something short waits here for its turn: what is sent now comes later. Of lossy channels.
+    bool hasShortWaiting() const;
+    /// Drops what is short and waits here, as if the line had lost it.
+    void dropShortWaiting();
     /// Taken and not yet given to the system.
     qint64 bytesToWrite() const;
     /// Whether a message of a topic would go out soon: until then it waits where a newer one can replace it.
@@ -57,9 +62,11 @@ public:
 
     /// Lets messages wait, and their sender, where the interface can; others come at once all the same.
     void setReceiving(bool on);
-    /// A frame for which it gives true is delivered when it arrives, before all that wait: one of those that
+    /// Gives what is urgent about a frame, unless it is among `had`; empty: nothing.
+    using UrgentName = std::function<QString(const QByteArray &frame, const QStringList &had)>;
+    /// Urgent frames are delivered when they arrive, before all that wait: one of each name of those that
     /// come together.
-    void setUrgent(std::function<bool(const QByteArray &frame)> isUrgent) { urgent_ = std::move(isUrgent); }
+    void setUrgent(UrgentName nameOf) { urgent_ = std::move(nameOf); }
     /// Reads frames larger than this in the background. For channels of the main thread.
     void setLargeFrame(int bytes) { largeFrame_ = bytes; }
     /// Goes on in another framing until the carrier is opened anew.
@@ -114,7 +121,7 @@ private:
     QByteArray digest_;
     std::optional<CodecItem> readFront_; // what is in the first of them, when it was read in the background
     std::optional<QString> ended_;       // the carrier is closed; what was said before is still delivered
-    std::function<bool(const QByteArray &)> urgent_;
+    UrgentName urgent_;
     int largeFrame_ = std::numeric_limits<int>::max();
     const bool canWait_;
     bool receiving_ = true;

@@ -90,10 +90,16 @@ void Client::send(const QString &method, const QJsonValue &params, const Callbac
     const Channel::Rank rank = repeats == Repeats::AtOnce ? Channel::Rank::Urgent : Channel::Rank::Usual;
     const qint64 id = ++lastId_;
     waiting_.insert(id, callback);
+    if (mayBeSent && repeats == Repeats::AtOnce)
+        channel_->dropShortWaiting(); // a stop overtakes it, and a set-point must not come after its stop
+    const bool wouldBeLate = mayBeSent && repeats == Repeats::None && channel_->hasShortWaiting();
     const auto sent =
-        mayBeSent ? channel_->send(makeRequest(id, method, params), rank)
-                  : Result<Sent>(Error(ErrorCode::Disconnected,
-                                       QStringLiteral("%1: not connected: %2").arg(method, failure_)));
+        wouldBeLate ? Result<Sent>(
+                          Error(ErrorCode::OverLimit,
+                                QStringLiteral("%1: not sent, the line is too slow for so many").arg(method)))
+        : mayBeSent ? channel_->send(makeRequest(id, method, params), rank)
+                    : Result<Sent>(Error(ErrorCode::Disconnected,
+                                         QStringLiteral("%1: not connected: %2").arg(method, failure_)));
     if (!sent) {
         QMetaObject::invokeMethod(
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
@@ -281,7 +287,8 @@ void Client::onNotification(const RpcRequest &notification, const WireValue &dat
     const QJsonObject params = notification.params.toObject();
     const qint64 id = toCount(params.value(QStringLiteral("subscription")));
     const bool isTopic = notification.method == QStringLiteral("topic") && id > 0; // 0: not subscribed as yet
-    if (const auto handle = isTopic ? handleOf(id) : std::nullopt)
+    const QString topicName = params.value(QStringLiteral("topic")).toString();
+    if (const auto handle = isTopic ? handleOf(id, topicName) : std::nullopt)
         return deliver(*handle, params, data);
     if (isTopic && channel_->isLossy() && subscribes() && early_.size() < mostEarly) {
         early_.push_back({id, params, data});
@@ -298,9 +305,10 @@ bool Client::subscribes() const {
                        [](const auto &one) { return one.second.id == 0; });
 }
 
-std::optional<int> Client::handleOf(qint64 id) const {
+// A daemon that was started anew behind a line gives the numbers of earlier subscriptions to others.
+std::optional<int> Client::handleOf(qint64 id, const QString &topicName) const {
     for (const auto &subscription : subscriptions_)
-        if (subscription.second.id == id)
+        if (subscription.second.id == id && subscription.second.topic == topicName)
             return subscription.first;
     return std::nullopt;
 }
@@ -309,7 +317,7 @@ void Client::deliverEarly(qint64 id) {
     for (const Early &one : std::exchange(early_, {})) {
         if (one.id != id && subscribes())
             early_.push_back(one);
-        else if (const auto handle = handleOf(one.id))
+        else if (const auto handle = handleOf(one.id, one.params.value(QStringLiteral("topic")).toString()))
             deliver(*handle, one.params, one.data);
     }
 }

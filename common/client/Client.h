@@ -37,8 +37,9 @@ public:
     /// Of a call, over a channel that loses messages.
     enum class Repeats {
         Usual,
-        None,  ///< for what is void when it comes late
-        AtOnce ///< for stops: at first without waiting for a reply, and before all else that waits here
+        None,  ///< for what is void when it comes late: fails at once where others wait for the line
+        AtOnce ///< for stops: at first without waiting for a reply; short calls that wait here are dropped,
+               ///< and repeated after it
     };
     /// Of a message from the daemon, e.g. the reply that holds a map of 100,000 edges.
     static constexpr int frameLimit = 16 << 20;
@@ -119,7 +120,7 @@ private:
     void refuse(const RpcError &error);
     void onResponse(const RpcResponse &response);
     void onNotification(const RpcRequest &notification, const WireValue &data);
-    std::optional<int> handleOf(qint64 id) const;
+    std::optional<int> handleOf(qint64 id, const QString &topicName) const;
     bool subscribes() const;
     void deliverEarly(qint64 id);
     void deliver(int handle, const QJsonObject &params, const WireValue &data);

@@ -91,10 +91,11 @@ void Repeater::repeat(Request &request, double now) {
             request.sent.ticket = *ticket;
             request.isRepeated = true;
             ++repeats_;
+            --request.hurried;
         }
-        if (request.hurried > 0 && --request.hurried == 0)
+        if (request.hurried == 0)
             request.period_s = period(request.sent.frame.size());
-        else if (request.hurried == 0)
+        else if (request.hurried < 0)
             request.period_s =
                 std::min(growth * request.period_s, std::max(longestPeriod_s, request.period_s));
     }

@@ -29,7 +29,7 @@ private:
         Sent sent;
         Channel::Rank rank = Channel::Rank::Usual;
         double sentAt = 0, dueAt = 0, period_s = 0;
-        int hurried = 0; // repeats to come that wait for no reply
+        int hurried = 0; // repeats to come that wait for no reply; not above 0: none
         bool isRepeated = false;
     };
 

@@ -269,10 +269,14 @@ void Daemon::publishStatus() {
 void Daemon::updateChannelHealth() {
     const QJsonObject counters = channels_.counters();
     const double dropped = counters.value(QStringLiteral("dropped_topic_messages")).toDouble();
-    const QString message = QStringLiteral("%1 clients, %2 topic messages dropped for slow readers")
-                                .arg(counters.value(QStringLiteral("clients")).toInt())
-                                .arg(dropped);
-    healthItems_.set(QStringLiteral("channel"), HealthLevel::Ok, message, counters);
+    QString message = QStringLiteral("%1 clients, %2 topic messages dropped for slow readers")
+                          .arg(counters.value(QStringLiteral("clients")).toInt())
+                          .arg(dropped);
+    const QStringList failures = channels_.failures();
+    if (!failures.isEmpty())
+        message = QStringLiteral("nobody is heard on: ") + failures.join(QStringLiteral("; "));
+    healthItems_.set(QStringLiteral("channel"), failures.isEmpty() ? HealthLevel::Ok : HealthLevel::Failed,
+                     message, counters);
 }
 
 QString Daemon::helpText() const {

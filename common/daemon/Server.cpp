@@ -160,6 +160,14 @@ QStringList Server::addresses() const {
     return result;
 }
 
+QStringList Server::failures() const {
+    QStringList result;
+    for (const Listener *listener : listeners_)
+        if (!listener->failure().isEmpty())
+            result.append(listener->failure());
+    return result;
+}
+
 QJsonObject Server::counters() const {
     QJsonObject sums = past_;
     for (Session *session : sessions_)

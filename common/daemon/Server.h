@@ -33,6 +33,8 @@ public:
 
     /// Where it listens, with actual ports.
     QStringList addresses() const;
+    /// What is wrong with listeners: a device that is gone.
+    QStringList failures() const;
     Session *session(quint64 id) const { return sessions_.value(id); }
     GapWatch &gaps() { return gapWatch_; }
     Audit &audit() { return audit_; }

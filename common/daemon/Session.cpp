@@ -16,6 +16,8 @@ constexpr int mostValues = 1000;
 constexpr int largeFrameBytes = 16 << 10; // takes half a millisecond to read
 // What a client has sent before a gap may lie on its side, or in a tunnel, and come afterwards.
 constexpr double settling_s = 0.25;
+constexpr double mostUnderWay =
+    4096; // requests of a client over a line; an id farther off is another client's
 
 // Takes one from left for each value.
 void countValues(const QJsonValue &value, int &left) {
@@ -49,7 +51,8 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     channel_->codec().setFrameLimit(limits_.frameBytes);
     channel_->setLargeFrame(largeFrameBytes);
     if (!commands_.urgent().isEmpty())
-        channel_->setUrgent([this](const QByteArray &frame) { return isUrgent(frame); });
+        channel_->setUrgent(
+            [this](const QByteArray &frame, const QStringList &had) { return urgentName(frame, had); });
     // It may have come, and spoken, while the program stood still.
     gaps_.look();
     freshFor_ = gaps_.sinceLast() < settling_s ? 0 : gaps_.count();
@@ -132,17 +135,22 @@ bool Session::isUrgent(const RpcMessage &message) const {
     return command && command->isUrgent();
 }
 
-bool Session::isUrgent(const QByteArray &frame) const {
+QString Session::urgentName(const QByteArray &frame, const QStringList &had) const {
     if (frame.size() > largestUrgentBytes || pendingStops_ >= limits_.pending)
-        return false;
-    const auto isNamed = [&frame](const QString &name) { return frame.contains(name.toUtf8()); };
+        return {};
+    const auto isNamed = [&](const QString &name) {
+        return !had.contains(name) && frame.contains(name.toUtf8());
+    };
     // A name may be written with escapes, too, in CBOR in pieces.
     constexpr char textInPieces = 0x7f;
     if (!frame.contains('\\') && !frame.contains(textInPieces) &&
         std::none_of(commands_.urgent().begin(), commands_.urgent().end(), isNamed))
-        return false;
+        return {};
     const CodecItem item = channel_->codec().read({frame, std::nullopt});
-    return item.message.isObject() && isUrgent(readFrame(item.message).messages.front());
+    const RpcMessage message =
+        item.message.isObject() ? readFrame(item.message).messages.front() : RpcMessage();
+    const auto *request = std::get_if<RpcRequest>(&message);
+    return isUrgent(message) && !had.contains(request->method) ? request->method : QString();
 }
 
 void Session::receive(const QJsonValue &value) {
@@ -152,7 +160,7 @@ void Session::receive(const QJsonValue &value) {
     const bool mayBeRepeat = channel_->isLossy() && !isUrgent(message);
     const QByteArray key = mayBeRepeat ? ReplyCache::keyOf(value, channel_->digest()) : QByteArray();
     if (!key.isEmpty() && isRepeat(key, value))
-        return;
+        return stopAgain(value.toArray());
     if (isBatch)
         return begin(value.toArray(), key);
     process(message, channel_->arrived(), [this, key, rank = rankOf(message)](const QJsonValue &reply) {
@@ -171,11 +179,33 @@ bool Session::isRepeat(const QByteArray &key, const QJsonValue &value) {
     const ReplyCache::Known known = replies_.begin(key, *channel_, monotonicNow());
     if (known == ReplyCache::Known::Lost) {
         channel_->send(
-            makeError(value.toObject().value(QStringLiteral("id")),
+            makeError(value.isObject() ? value.toObject().value(QStringLiteral("id")) : QJsonValue(),
                       RpcError(ErrorCode::OverLimit,
                                QStringLiteral("this was carried out; the reply is not kept any more"))));
     }
     return known != ReplyCache::Known::New;
+}
+
+void Session::stopAgain(const QJsonArray &batch) {
+    if (commands_.urgent().isEmpty())
+        return;
+    for (const QJsonValue &one : batch) {
+        const RpcMessage message = readFrame(QJsonArray{one}).messages.front();
+        if (isUrgent(message))
+            process(message, channel_->arrived(), [](const QJsonValue &) {});
+    }
+}
+
+void Session::noteStop(const QJsonValue &id) {
+    if (id.isDouble() && !isBeforeStop(id))
+        lastStop_ = id.toDouble();
+}
+
+// Over a line the first copy of a request may be lost, and a repeat come after the stop that its client sent
+// later. Clients count their ids up, from a random number on.
+bool Session::isBeforeStop(const QJsonValue &id) const {
+    const double before = lastStop_ && id.isDouble() ? *lastStop_ - id.toDouble() : 0;
+    return before > 0 && before < mostUnderWay;
 }
 
 void Session::begin(const QJsonArray &messages, const QByteArray &key) {
@@ -272,6 +302,10 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
         return Error(ErrorCode::NotReady,
                      gaps_.text() + QStringLiteral("; what was received in that time is void"));
     }
+    if (command && command->needsFresh() && isBeforeStop(request.id))
+        return Error(
+            ErrorCode::NotReady,
+            QStringLiteral("its id says that this was asked before a stop that has come: it is void"));
     int left = mostValues;
     countValues(request.params, left);
     if (left < 0 && !commands_.urgent().isEmpty()) {
@@ -291,6 +325,8 @@ void Session::run(const RpcRequest &request, double arrived, const Answer &answe
     call.moreRights = more_;
     call.time = arrived;
     const bool isStop = isUrgent(RpcMessage(request));
+    if (isStop && channel_->isLossy())
+        noteStop(request.id);
     const QPointer<Session> alive(this);
     const auto note = [audit = QPointer<Audit>(&audit_), call, command = commands_.find(request.method),
                        params = request.params](const Result<QJsonValue> &result) {

@@ -79,10 +79,13 @@ Q_SIGNALS:
 private:
     using Answer = std::function<void(const QJsonValue &)>; // takes undefined for "no reply"
 
-    bool isUrgent(const QByteArray &frame) const;
+    QString urgentName(const QByteArray &frame, const QStringList &had) const;
     bool isUrgent(const RpcMessage &message) const;
     void receive(const QJsonValue &frame);
     bool isRepeat(const QByteArray &key, const QJsonValue &frame);
+    void stopAgain(const QJsonArray &batch);
+    void noteStop(const QJsonValue &id);
+    bool isBeforeStop(const QJsonValue &id) const;
     void begin(const QJsonArray &messages, const QByteArray &key);
     Channel::Rank rankOf(const RpcMessage &message) const;
     bool runNextOfBatch();
@@ -106,12 +109,13 @@ private:
     TopicQueue queue_;
     ReplyCache replies_; // where requests may be repeated
     SessionCounters counts_;
-    double lastSign_ = 0;          // monotonic: bytes came or went
-    int pending_ = 0;              // requests not yet answered
-    int pendingStops_ = 0;         // the same, of urgent commands
-    std::shared_ptr<Batch> batch_; // not all of it has been begun
-    bool batchInTurns_ = false;    // it gets its turns
-    std::optional<QString> ended_; // closed, with a batch that is still to be run
+    double lastSign_ = 0;            // monotonic: bytes came or went
+    int pending_ = 0;                // requests not yet answered
+    int pendingStops_ = 0;           // the same, of urgent commands
+    std::optional<double> lastStop_; // the id of one that came over a line, the largest of late
+    std::shared_ptr<Batch> batch_;   // not all of it has been begun
+    bool batchInTurns_ = false;      // it gets its turns
+    std::optional<QString> ended_;   // closed, with a batch that is still to be run
     QString restrictedFor_;
     const Peer who_;
     Role role_ = Role::Observer;

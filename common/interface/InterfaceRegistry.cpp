@@ -41,7 +41,7 @@ Listener *makeServer(const InterfaceUrl &url, QObject *parent) {
 
 template <typename T>
 Listener *makeSinglePeer(const InterfaceUrl &url, QObject *parent) {
-    return new SinglePeerListener(new T(url, nullptr), parent);
+    return new SinglePeerListener([url] { return new T(url, nullptr); }, parent);
 }
 
 // A new kind of carrier is one line here.

@@ -1,10 +1,18 @@
 #include "common/interface/Listener.h"
 
 #include "common/Log.h"
+#include "common/Time.h"
 
+#include <chrono>
 #include <sys/resource.h>
 
 namespace hermes {
+namespace {
+
+constexpr std::chrono::milliseconds retryPause{500};
+constexpr double toldAgain_s = 60;
+
+} // namespace
 
 bool Listener::isScarce(qintptr descriptor) {
     constexpr rlim_t spareDescriptors = 8;
@@ -16,32 +24,60 @@ bool Listener::isScarce(qintptr descriptor) {
     return true;
 }
 
-SinglePeerListener::SinglePeerListener(Interface *onlyCarrier, QObject *parent)
+SinglePeerListener::SinglePeerListener(Make make, QObject *parent)
     : Listener(parent)
-    , carrier_(onlyCarrier) {
-    carrier_->setParent(this);
+    , make_(std::move(make)) {
+    retry_.setInterval(retryPause);
+    connect(&retry_, &QTimer::timeout, this, [this] {
+        if (!open())
+            return;
+        retry_.stop();
+        logInfo(QStringLiteral("server"), QStringLiteral("listening on %1 again").arg(address_));
+    });
 }
 
 Result<void> SinglePeerListener::listen() {
-    QString failure;
-    const auto connection =
-        connect(carrier_, &Interface::closed, this, [&failure](const QString &reason) { failure = reason; });
-    carrier_->open();
-    disconnect(connection);
-    if (!failure.isEmpty())
-        return Error(ErrorCode::InputOutput, failure);
-    lastAddress_ = carrier_->name();
-    Q_EMIT accepted(carrier_);
+    if (!open())
+        return Error(ErrorCode::InputOutput, failure_);
     return {};
 }
 
-void SinglePeerListener::close() {
-    if (carrier_)
-        carrier_->close();
+bool SinglePeerListener::open() {
+    auto *const carrier = make_();
+    carrier->setParent(this); // until somebody takes it
+    carrier_ = carrier;
+    const auto failing =
+        connect(carrier, &Interface::closed, this, [this](const QString &reason) { failure_ = reason; });
+    carrier->open();
+    disconnect(failing);
+    if (carrier->state() == Interface::State::Closed) {
+        carrier->deleteLater();
+        return false;
+    }
+    failure_.clear();
+    address_ = carrier->name();
+    connect(carrier, &Interface::closed, this, &SinglePeerListener::lose);
+    Q_EMIT accepted(carrier);
+    return true;
 }
 
-QString SinglePeerListener::address() const {
-    return lastAddress_;
+void SinglePeerListener::lose(const QString &reason) {
+    failure_ = reason;
+    if (const double now = monotonicNow(); told_ != reason || now - toldAt_ > toldAgain_s) {
+        told_ = reason;
+        toldAt_ = now;
+        logWarning(QStringLiteral("server"),
+                   QStringLiteral("%1; nobody is heard there until it can be opened again").arg(reason));
+    }
+    retry_.start();
+}
+
+void SinglePeerListener::close() {
+    retry_.stop();
+    if (!carrier_)
+        return;
+    disconnect(carrier_, &Interface::closed, this, nullptr);
+    carrier_->close();
 }
 
 } // namespace hermes

@@ -75,6 +75,12 @@ bool SerialLink::isUnderWay(quint64 ticket) const {
     });
 }
 
+void SerialLink::dropSmall() {
+    for (const Waiting &one : lane(Rank::Usual).small)
+        waiting_ -= one.content.size();
+    lane(Rank::Usual).small.clear();
+}
+
 OutgoingPieces *SerialLink::nextOf(Lane &lane) {
     for (OutgoingPieces &message : lane.begun)
         if (message.hasNext())

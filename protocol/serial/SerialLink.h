@@ -61,6 +61,10 @@ public:
     bool isUnderWay(quint64 ticket) const;
     bool hasTopicUnderWay() const { return !lane(Rank::Topic).isEmpty(); }
     qint64 bytesWaiting() const { return waiting_; }
+    /// Of the usual rank, in frames of their own.
+    bool hasSmallWaiting() const { return !lane(Rank::Usual).small.empty(); }
+    /// Forgets those, as if the line had lost them.
+    void dropSmall();
 
     /// The frame to be written now, with its end; empty: none.
     QByteArray next();

@@ -49,11 +49,10 @@ public:
 class HaltingDaemon : public TestedDaemon {
 public:
     HaltingDaemon() {
-        addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return ++halts_; }));
+        addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return ++halts; }));
+        addCommand(Command("go", "Moves").fresh().handler([](const Call &) { return true; }));
     }
-
-private:
-    int halts_ = 0;
+    int halts = 0;
 };
 
 } // namespace
@@ -70,6 +69,9 @@ private Q_SLOTS:
     void batchesAreRepeatedToo();
     void errorsAreKept();
     void aStopStopsEachTime();
+    void aStopInABatchStopsEachTime();
+    void whatWasAskedBeforeAStopIsVoid_data();
+    void whatWasAskedBeforeAStopIsVoid();
     void otherFramingsKeepNothing();
     void aLargeReplyIsNotSentTwiceAtOnce();
     void boundsOfTheCache();
@@ -78,7 +80,7 @@ private:
     int requests() const { return daemon->server().counters()["requests"].toInt(); }
     int repeats() const { return daemon->server().counters()["line_repeated_requests"].toInt(); }
 
-    std::unique_ptr<TestedDaemon> daemon;
+    std::unique_ptr<HaltingDaemon> daemon;
     std::unique_ptr<FrameClient> client;
 };
 
@@ -166,6 +168,47 @@ void TestReplyCache::aStopStopsEachTime() {
     for (int i = 1; i <= 3; ++i)
         QCOMPARE(client->ask(request)["result"].toInt(), i);
     QCOMPARE(repeats(), 0);
+}
+
+void TestReplyCache::aStopInABatchStopsEachTime() {
+    const QJsonArray batch{makeRequest(7, "halt", QJsonObject()),
+                           makeRequest(8, "subtract", QJsonArray{5, 3})};
+    const QJsonValue first = client->ask(batch);
+    QCOMPARE(first.toArray().size(), 2);
+    QCOMPARE(client->ask(batch), first);
+    QCOMPARE(daemon->halts, 2);
+}
+
+void TestReplyCache::whatWasAskedBeforeAStopIsVoid_data() {
+    QTest::addColumn<QJsonValue>("stop");
+    QTest::addColumn<QJsonValue>("id");
+    QTest::addColumn<bool>("isVoid");
+    QTest::newRow("before") << QJsonValue(100) << QJsonValue(99) << true;
+    QTest::newRow("long before") << QJsonValue(10000) << QJsonValue(6000) << true;
+    QTest::newRow("after") << QJsonValue(100) << QJsonValue(101) << false;
+    QTest::newRow("of another program") << QJsonValue(4000000000.0) << QJsonValue(7) << false;
+    QTest::newRow("a text") << QJsonValue(100) << QJsonValue("99") << false;
+    QTest::newRow("the stop has a text") << QJsonValue("100") << QJsonValue(99) << false;
+}
+
+// Its first copy was lost, and the stop has overtaken the repeat.
+void TestReplyCache::whatWasAskedBeforeAStopIsVoid() {
+    QFETCH(QJsonValue, stop);
+    QFETCH(QJsonValue, id);
+    QFETCH(bool, isVoid);
+    QJsonObject go = makeRequest(0, "go", QJsonObject());
+    go["id"] = id;
+    QJsonObject halt = makeRequest(0, "halt", QJsonObject());
+    halt["id"] = stop;
+    QVERIFY(client->ask(halt)["result"].isDouble());
+    if (stop.isDouble()) { // an older stop that comes again changes nothing
+        halt["id"] = stop.toDouble() - 50;
+        QVERIFY(client->ask(halt)["result"].isDouble());
+    }
+    QCOMPARE(client->ask(go)["error"]["code"].toInt(), isVoid ? int(ErrorCode::NotReady) : 0);
+    go["params"] = QJsonArray(); // else it would be a repeat
+    QCOMPARE(client->ask(QJsonArray{go}).toArray().at(0)["error"]["code"].toInt(),
+             isVoid ? int(ErrorCode::NotReady) : 0);
 }
 
 void TestReplyCache::otherFramingsKeepNothing() {

@@ -72,6 +72,9 @@ private Q_SLOTS:
     void subscriptionsHoldOnADamagedLine();
     void batchesWaitForEachOther();
     void aSlowCommandIsRepeatedSeldom();
+    void aStopOvertakesWhatItsClientAskedBefore();
+    void whatWouldBeLateIsNotSent();
+    void aPortThatComesBackIsHeardAgain();
 
 private:
     std::unique_ptr<Client> newClient() {
@@ -336,6 +339,70 @@ void TestSerialLine::aSlowCommandIsRepeatedSeldom() {
     QTest::qWait(1500);
     QCOMPARE(client->repeats(), then);
     QCOMPARE(daemon->replies.size(), size_t(2));
+}
+
+void TestSerialLine::aStopOvertakesWhatItsClientAskedBefore() {
+    int answered = 0, countedAtHalt = -1;
+    for (int i = 0; i < 50; ++i)
+        client->call(
+            "count", QJsonObject{{"number", i}},
+            [&answered](const Result<QJsonValue> &result) { answered += result.ok(); },
+            std::chrono::seconds(20));
+    const auto halted = [&](const Result<QJsonValue> &) { countedAtHalt = int(daemon->times.size()); };
+    client->call("halt", QJsonObject{{"number", 1}}, halted, std::chrono::seconds(5),
+                 Client::Repeats::AtOnce);
+    QTRY_VERIFY(countedAtHalt >= 0);
+    QVERIFY2(countedAtHalt < 10, qPrintable(QString::number(countedAtHalt)));
+    QTRY_COMPARE_WITH_TIMEOUT(answered, 50, 15000); // repeated
+    for (const auto &[number, times] : daemon->times)
+        QCOMPARE(times, 1);
+}
+
+void TestSerialLine::whatWouldBeLateIsNotSent() {
+    int failed = 0;
+    for (int i = 0; i < 50; ++i)
+        client->call(
+            "count", QJsonObject{{"number", i}},
+            [&failed](const Result<QJsonValue> &result) {
+                failed += !result && result.error().is(ErrorCode::OverLimit);
+            },
+            std::chrono::seconds(5), Client::Repeats::None);
+    QTRY_VERIFY(failed >= 40);
+    QTRY_COMPARE(int(daemon->times.size()), 50 - failed);
+}
+
+void TestSerialLine::aPortThatComesBackIsHeardAgain() {
+    QTemporaryDir folder;
+    const QString port = folder.filePath("port");
+    const auto plugIn = [&port] {
+        auto made = std::make_unique<NoisyLine>(bytesPerSecond);
+        QFile::remove(port);
+        QFile::link(made->device(0), port);
+        return made;
+    };
+    auto adapter = plugIn();
+    CountingDaemon other;
+    QVERIFY(!other.prepare({"tested", "--listen", "serial://" + port + "?baud=115200&protocol=serial",
+                            "--listen", "tcp://127.0.0.1:0"}));
+    QVERIFY(other.launch());
+    RawClient beside(other.server().addresses().value(1));
+    const auto health = [&beside] {
+        const QJsonArray items = beside.ask("daemon.status")["result"].toObject()["health"].toArray();
+        for (const QJsonValue &item : items)
+            if (item["name"] == "channel")
+                return item.toObject();
+        return QJsonObject();
+    };
+    QCOMPARE(health()["level"].toString(), QString("ok"));
+    adapter.reset(); // unplugged
+    QTRY_COMPARE(health()["level"].toString(), QString("error"));
+    QVERIFY(health()["message"].toString().contains("the device is gone"));
+    adapter = plugIn();
+    Client hopeful;
+    hopeful.connectTo("serial://" + adapter->device(1) + "?baud=115200&protocol=serial");
+    QVERIFY(hopeful.waitConnected());
+    QVERIFY(hopeful.callAndWait("count", QJsonArray{1}));
+    QCOMPARE(health()["level"].toString(), QString("ok"));
 }
 
 QTEST_GUILESS_MAIN(TestSerialLine)

@@ -17,6 +17,7 @@ public:
             return QJsonValue();
         }));
         addCommand(Command("halt", "Stops").urgent().handler([this](const Call &) { return worked; }));
+        addCommand(Command("freeze", "Stops, too").urgent().handler([this](const Call &) { return worked; }));
         addCommand(Command("go", "Moves").fresh().handler([](const Call &) { return true; }));
     }
     int worked = 0;
@@ -42,6 +43,7 @@ private Q_SLOTS:
     void cleanup() { daemon.reset(); }
     void goesBeforeABatchOfAnother();
     void goesBeforeWhatItsClientAskedBefore();
+    void oneOfEachKindGoesBefore();
     void nameMayBeWrittenWithEscapes();
     void hasAPlaceWhenAllAreTaken();
     void silentClientsGiveWay();
@@ -89,6 +91,20 @@ void TestUrgent::goesBeforeWhatItsClientAskedBefore() {
     QTRY_COMPARE(daemon->worked, 500);
 }
 
+void TestUrgent::oneOfEachKindGoesBefore() {
+    RawClient client(address());
+    QByteArray together;
+    for (int i = 0; i < 500; ++i)
+        together += compactJson(makeNotification("work", QJsonObject())) + '\n';
+    for (int i = 0; i < 3; ++i)
+        for (const char *method : {"halt", "freeze"})
+            together += compactJson(makeRequest(i, method, QJsonObject())) + '\n';
+    client.send(together.chopped(1));
+    QVERIFY(client.message()["result"].toInt() < 100);
+    QVERIFY(client.message()["result"].toInt() < 100);
+    QCOMPARE(client.message()["result"].toInt(), 500); // those after the first have no haste
+}
+
 void TestUrgent::nameMayBeWrittenWithEscapes() {
     RawClient busy(address()), other(address());
     busy.send(batchOf(1000, "work", true));
@@ -107,8 +123,9 @@ void TestUrgent::hasAPlaceWhenAllAreTaken() {
     QVERIFY(third.ask("halt").contains("result"));
     const QJsonObject refused = errorOf(third.ask("go"));
     QCOMPARE(refused["code"].toInt(), -32007);
-    QCOMPARE(refused["message"].toString(),
-             QString("2 clients are connected already (limits.clients); this place is kept for halt"));
+    QCOMPARE(
+        refused["message"].toString(),
+        QString("2 clients are connected already (limits.clients); this place is kept for halt and freeze"));
     QCOMPARE(count("clients_in_kept_places"), 1);
     first.reset();
     QTRY_COMPARE(count("clients_in_kept_places"), 0);
