@@ -8,7 +8,8 @@
 
 The daemon listens with --listen 'serial:///dev/ttyS1?baud=115200&protocol=serial'. Frames that are damaged on their way are
 dropped here and there; a call is repeated until its reply comes, and the daemon carries it out once. Large replies and topics
-come in pieces, which are put together here; requests go in one frame each, so they should be short.
+come in pieces, which are put together here; requests go in one frame each, so they should be short. A frame that is whole but
+nonsense counts as damaged, too. When the device goes (an adapter is pulled out), ConnectionError says which.
 """
 import array
 import collections
@@ -22,7 +23,9 @@ import time
 import tty
 
 PIECE, PIECE_TO_REPORT, REPORT = 0x10, 0x11, 0x12
-PIECE_BYTES, ENDED = 96, 0xFFFF
+PIECE_BYTES, WINDOW, MOST_PIECES, ENDED = 96, 64, 0xFFFF, 0xFFFF
+MOST_BEGUN, MOST_BYTES = 8, 2 << 20  # messages in pieces, and of one: no reply is larger (limits.reply_bytes)
+MOST_FRAME_BYTES = 1 << 20
 
 
 class DaemonError(Exception):
@@ -57,8 +60,10 @@ def seal(content):
 
 
 def unseal(content):
-    """Without its CRC; None when it is damaged."""
-    return content[:-4] if len(content) > 4 and seal(content[:-4]) == content else None
+    """Without its CRC; ValueError when it is damaged."""
+    if len(content) <= 4 or seal(content[:-4]) != content:
+        raise ValueError("damaged")
+    return content[:-4]
 
 
 def stuff(data):
@@ -73,12 +78,12 @@ def stuff(data):
 
 
 def unstuff(data):
-    """None when it is no COBS."""
+    """ValueError when it is no COBS."""
     out, at = bytearray(), 0
     while at < len(data):
         code = data[at]
         if at + code > len(data):
-            return None
+            raise ValueError("no COBS")
         out += data[at + 1:at + code]
         at += code
         if code < 0xFF and at < len(data):
@@ -147,41 +152,68 @@ def from_cbor(data, at=0):
     return (dict(zip(items[::2], items[1::2])) if kind == 5 else items), at
 
 
+def message_in(content):
+    """A message of a topic, or a reply to one request; ValueError when it is neither."""
+    try:
+        message, end = from_cbor(content)
+    except (LookupError, OverflowError, RecursionError, TypeError, struct.error) as error:
+        raise ValueError("no CBOR") from error
+    if end != len(content) or not isinstance(message, dict):
+        raise ValueError("no message")
+    params, error = message.get("params"), message.get("error")
+    is_topic = message.get("method") == "topic" and isinstance(params, dict) and isinstance(params.get("subscription"), int)
+    is_error = isinstance(error, dict) and {"code", "message"} <= error.keys()
+    if not is_topic and not ("id" in message and ("result" in message or is_error)):
+        raise ValueError("no message of a daemon")
+    return message
+
+
 class Pieces:
-    """Large messages on their way in."""
+    """Large messages on their way in. Beyond MOST_BEGUN the one that got no piece for the longest time is forgotten."""
 
     def __init__(self):
-        self.begun = {}  # (number, total): {index: bytes}
+        self.begun = {}  # (number, total): (bytes, index of the first piece that is missing, bits of those from that one on)
         self.ended = collections.deque(maxlen=32)
 
     def take(self, frame):
-        """(the message when it is whole, the report that is due), or None for either."""
+        """(the message with its CRC when it is whole, the report that is due), or None for either. ValueError: no such piece."""
+        if len(frame) <= 8:
+            raise ValueError("no piece")
         kind, number, index = struct.unpack_from("<BHH", frame)
-        key = number, int.from_bytes(frame[5:8], "little")
-        count = -(-key[1] // PIECE_BYTES)
-        if key not in self.ended:
-            pieces = self.begun.setdefault(key, {})
-            pieces[index] = frame[8:]
-            if len(self.begun) > 8:
-                del self.begun[next(iter(self.begun))]
-            if len(pieces) == count:
-                del self.begun[key]
-                self.ended.append(key)
-                return unseal(b"".join(pieces[i] for i in range(count))), struct.pack("<BHH", REPORT, number, ENDED)
-        if kind != PIECE_TO_REPORT:
-            return None, None
-        pieces = self.begun.get(key)
-        base = next(i for i in range(count + 1) if i not in pieces) if pieces else ENDED
-        later = sum(1 << i - base for i in pieces or () if i > base)
+        total, at, piece = int.from_bytes(frame[5:8], "little"), index * PIECE_BYTES, frame[8:]
+        count = -(-total // PIECE_BYTES)
+        if count > MOST_PIECES or len(piece) != min(PIECE_BYTES, total - at):
+            raise ValueError("no such piece")
+        key, ended = (number, total), struct.pack("<BHH", REPORT, number, ENDED)
+        if key in self.ended:
+            return None, ended if kind == PIECE_TO_REPORT else None
+        content, base, later = self.begun.pop(key, (bytearray(), 0, 0))
+        if index >= base + WINDOW:  # the beginning went to somebody else
+            return None, ended
+        if total > MOST_BYTES:
+            self.ended.append(key)
+            return None, ended
+        if index >= base:
+            content.extend(bytes(max(0, at + len(piece) - len(content))))
+            content[at:at + len(piece)] = piece
+            later |= 1 << index - base
+        while later & 1:
+            base, later = base + 1, later >> 1
+        if base == count:
+            self.ended.append(key)
+            return bytes(content), ended
+        self.begun[key] = content, base, later  # as the newest
+        if len(self.begun) > MOST_BEGUN:
+            del self.begun[next(iter(self.begun))]
         bits = later.to_bytes(8, "little").rstrip(b"\0")
-        return None, struct.pack("<BHH", REPORT, number, base) + bits
+        return None, struct.pack("<BHH", REPORT, number, base) + bits if kind == PIECE_TO_REPORT else None
 
 
 class SerialDaemon:
     """One daemon at the other end of a line. Not for use from several threads at once."""
 
     def __init__(self, device, baud=115200, timeout=5.0):
-        self.timeout, self.baud = timeout, baud
+        self.device, self.timeout, self.baud = device, timeout, baud
         self.port = os.open(device, os.O_RDWR | os.O_NOCTTY)
         tty.setraw(self.port)
         attributes = termios.tcgetattr(self.port)
@@ -191,7 +223,8 @@ class SerialDaemon:
         self.id = random.randrange(1 << 31)
         self.buffer = b""
         self.pieces = Pieces()
-        self.topics = collections.defaultdict(lambda: collections.deque(maxlen=100))  # not yet asked for, by subscription
+        self.topics = {}  # messages that were not asked for as yet, by subscription of ours
+        self.early = None  # while one is made: those of others, one of which it may be
         self.round_trip = 0.05
         self.damaged = self.repeated = 0
 
@@ -202,7 +235,15 @@ class SerialDaemon:
         self.close()
 
     def close(self):
-        os.close(self.port)
+        """Ends the subscriptions, too: a line has no end that the daemon could see."""
+        self.timeout = min(self.timeout, 2)
+        try:
+            for subscription in self.topics:
+                self.call("topics.unsubscribe", subscription=subscription)
+        except (OSError, DaemonError):
+            pass  # the daemon has gone, or begun anew; who comes next on this line unsubscribes what is left
+        finally:
+            os.close(self.port)
 
     def call(self, method, **params):
         """The result of a command; raises DaemonError when the daemon refuses it."""
@@ -210,6 +251,8 @@ class SerialDaemon:
 
     def estop(self):
         """Stops the robot. At first it is sent again without waiting for a reply: some of many get through."""
+        # Not behind what waits in the kernel. A frame that is cut by this spoils nothing: each begins with a zero, which ends it.
+        self._do(termios.tcflush, termios.TCOFLUSH)
         return self._ask("motor.estop", {}, 9)
 
     def _ask(self, method, params, hurried):
@@ -228,9 +271,9 @@ class SerialDaemon:
             for message in self._receive(due):
                 if message.get("id") == self.id:
                     self.round_trip += 0.2 * (min(time.monotonic() - begun, 1) - self.round_trip)
-                    if "error" in message:
-                        raise DaemonError(message["error"])
-                    return message["result"]
+                    if "result" in message:
+                        return message["result"]
+                    raise DaemonError(message["error"])
         raise TimeoutError(f"{method}: no reply within {self.timeout} s")
 
     def notify(self, method, **params):
@@ -239,38 +282,72 @@ class SerialDaemon:
 
     def subscribe(self, topic, **options):
         """Yields the topic's messages {seq, stamp, dropped, data, ...} as they come, without end."""
-        queue = self.topics[self.call("topics.subscribe", topic=topic, **options)["subscription"]]
+        self.early = collections.deque(maxlen=100)
+        try:
+            own = self.call("topics.subscribe", topic=topic, **options)["subscription"]
+            queue = self.topics[own] = collections.deque((one for one in self.early if one["subscription"] == own), maxlen=100)
+        finally:
+            self.early = None
         while True:
             while not queue:
                 self._receive(time.monotonic() + 1)
             yield queue.popleft()
 
+    def _do(self, action, *arguments):
+        try:
+            return action(self.port, *arguments)
+        except (OSError, termios.error) as error:
+            raise ConnectionError(f"{self.device}: {error.args[-1]}") from error
+
     def _send(self, content):
         frame = b"\0" + stuff(seal(content)) + b"\0"
         while frame:
-            frame = frame[os.write(self.port, frame):]
+            frame = frame[self._do(os.write, frame):]
 
     def _receive(self, until):
         """The replies that come until then, at least those of one reading."""
         wait = max(0.0, until - time.monotonic())
         if not select.select([self.port], [], [], wait)[0]:
             return []
-        *frames, self.buffer = (self.buffer + os.read(self.port, 4096)).split(b"\0")
+        data = self._do(os.read, 4096)
+        if not data:
+            raise ConnectionError(f"{self.device}: the line has gone")
+        *frames, self.buffer = (self.buffer + data).split(b"\0")
+        if len(self.buffer) > MOST_FRAME_BYTES:
+            self.buffer = b""
+            self.damaged += 1
         messages = []
         for frame in filter(None, frames):
-            content = unstuff(frame)
-            content = unseal(content) if content else None
-            report = None
-            if content and content[0] in (PIECE, PIECE_TO_REPORT):
-                content, report = self.pieces.take(content)
-            elif not content:
+            try:
+                message = self._message_of(frame)
+            except ValueError:
                 self.damaged += 1
+                continue
+            if message and message.get("method") == "topic":
+                self._keep(message["params"])
+            elif message:
+                messages.append(message)
+        return messages
+
+    def _message_of(self, frame):
+        """What the frame holds or makes whole, if anything; ValueError when it is damaged, or nonsense."""
+        content = unseal(unstuff(frame))
+        if content[0] == REPORT:
+            return None  # nothing is sent in pieces here
+        if content[0] in (PIECE, PIECE_TO_REPORT):
+            whole, report = self.pieces.take(content)
             if report:
                 self._send(report)
-            if content and 0x80 <= content[0] <= 0xBF:
-                message = from_cbor(content)[0]
-                if message.get("method") == "topic":
-                    self.topics[message["params"]["subscription"]].append(message["params"])
-                else:
-                    messages.append(message)
-        return messages
+            if not whole:
+                return None
+            content = unseal(whole)
+        return message_in(content)
+
+    def _keep(self, message):
+        subscription = message["subscription"]
+        if subscription in self.topics:
+            self.topics[subscription].append(message)
+        elif self.early is not None:
+            self.early.append(message)
+        else:  # made by an earlier program
+            self.notify("topics.unsubscribe", subscription=subscription)
