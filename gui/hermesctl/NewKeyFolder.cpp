@@ -6,9 +6,7 @@
 #include <QFile>
 #include <QFileInfo>
 #include <QJsonObject>
-#include <cerrno>
 #include <cstdio>
-#include <sys/stat.h>
 
 namespace hermes::ctl {
 namespace {
@@ -26,13 +24,7 @@ Error failed(const QString &path, const QString &why) {
 } // namespace
 
 NewKeyFolder::NewKeyFolder(const QString &place)
-    : place_(placeOf(place))
-    , staged_(place_ + QStringLiteral(".joining")) {}
-
-NewKeyFolder::~NewKeyFolder() {
-    if (isStaged_)
-        QDir(staged_).removeRecursively();
-}
+    : place_(placeOf(place)) {}
 
 Result<void> NewKeyFolder::check() const {
     const QFileInfo info(place_);
@@ -48,29 +40,27 @@ Result<void> NewKeyFolder::check() const {
 }
 
 Result<void> NewKeyFolder::stage(const KeyBundle &keys) {
-    const QByteArray path = QFile::encodeName(staged_);
     QDir().mkpath(QFileInfo(place_).path());
-    if (QFileInfo::exists(staged_)) // somebody was cut off
-        QDir(staged_).removeRecursively();
-    if (::mkdir(path.constData(), 0700) != 0)
-        return failed(staged_, qt_error_string(errno));
-    isStaged_ = true;
-    ::chmod(path.constData(), 0700);
-    if (const auto written = keys.write(staged_); !written)
+    // Only its owner may enter. Nobody knows its name before: there is no other one, nor a link, in its
+    // place.
+    staged_ = std::make_unique<QTemporaryDir>(place_ + QStringLiteral("-XXXXXX"));
+    if (!staged_->isValid())
+        return failed(place_, staged_->errorString());
+    if (const auto written = keys.write(staged_->path()); !written)
         return written;
-    if (const auto usable = KeyFolder::load(staged_); !usable)
+    if (const auto usable = KeyFolder::load(staged_->path()); !usable)
         return usable.error();
-    const auto revoked = KeyFolder::revoked(staged_);
+    const auto revoked = KeyFolder::revoked(staged_->path());
     return revoked ? Result<void>() : revoked.error();
 }
 
 Result<void> NewKeyFolder::keep() {
     // Takes the place of an empty folder, too, but of nothing else.
-    if (::rename(QFile::encodeName(staged_).constData(), QFile::encodeName(place_).constData()) != 0)
+    if (::rename(QFile::encodeName(staged_->path()).constData(), QFile::encodeName(place_).constData()) != 0)
         return failed(place_,
-                      qt_error_string(errno) +
+                      qt_error_string() +
                           QStringLiteral("; nothing was kept here: revoke the keys where they were made"));
-    isStaged_ = false;
+    staged_->setAutoRemove(false);
     return {};
 }
 

@@ -2,16 +2,16 @@
 
 #include "common/tls/KeyBundle.h"
 
+#include <QTemporaryDir>
+#include <memory>
+
 namespace hermes::ctl {
 
 /// A folder of keys that comes into being whole, or not at all: it is written beside its place, and put there
-/// in the end. What was not kept is removed.
+/// in the end. What was not kept is removed; what this one has not made is left alone.
 class NewKeyFolder {
 public:
     explicit NewKeyFolder(const QString &place);
-    ~NewKeyFolder();
-    NewKeyFolder(const NewKeyFolder &) = delete;
-    NewKeyFolder &operator=(const NewKeyFolder &) = delete;
 
     /// Error: there are keys already, or something else.
     Result<void> check() const;
@@ -21,8 +21,7 @@ public:
 
 private:
     const QString place_;
-    const QString staged_;
-    bool isStaged_ = false;
+    std::unique_ptr<QTemporaryDir> staged_;
 };
 
 } // namespace hermes::ctl
