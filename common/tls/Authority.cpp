@@ -92,7 +92,7 @@ Result<void> Authority::fill(const QString &owner, int days, int daysOfOwner) co
         return done;
     if (const auto done = note(subject, own->certificate); !done)
         return done;
-    return writeKeyFile(path(authorityKeyFile), authority->key, true);
+    return writeKeyFile(path(authorityKeyFile), authority->key);
 }
 
 Result<CertifiedKey> Authority::load() const {

@@ -21,14 +21,13 @@ struct Member {
     const char *name;
     QByteArray KeyBundle::*content;
     QString file;
-    bool isSecret;
 };
 
 const Member members[] = {
-    {"authority", &KeyBundle::authority, KeyFolder::authorityFile(), false},
-    {"key", &KeyBundle::key, KeyFolder::keyFile(), true},
-    {"certificate", &KeyBundle::certificate, KeyFolder::ownFile(), false},
-    {"revoked", &KeyBundle::revoked, KeyFolder::revokedFile(), false},
+    {"authority", &KeyBundle::authority, KeyFolder::authorityFile()},
+    {"key", &KeyBundle::key, KeyFolder::keyFile()},
+    {"certificate", &KeyBundle::certificate, KeyFolder::ownFile()},
+    {"revoked", &KeyBundle::revoked, KeyFolder::revokedFile()},
 };
 
 Error bad(const QString &what) {
@@ -115,9 +114,7 @@ Result<void> KeyBundle::write(const QString &folder) const {
     for (const Member &member : members) {
         if (member.content == &KeyBundle::revoked && revoked.isEmpty())
             continue;
-        const auto done =
-            writeKeyFile(QDir(folder).filePath(member.file), this->*member.content, member.isSecret);
-        if (!done)
+        if (const auto done = writeKeyFile(QDir(folder).filePath(member.file), this->*member.content); !done)
             return done;
     }
     return {};

@@ -122,8 +122,8 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
     return serials;
 }
 
-Result<void> writeKeyFile(const QString &path, const QByteArray &content, bool secret) {
-    const mode_t before = ::umask(secret ? 077 : 022);
+Result<void> writeKeyFile(const QString &path, const QByteArray &content) {
+    const mode_t before = ::umask(077);
     QSaveFile file(path);
     const bool written =
         file.open(QIODevice::WriteOnly) && file.write(content) == content.size() && file.commit();

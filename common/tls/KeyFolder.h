@@ -28,8 +28,8 @@ public:
     static Result<QSet<QByteArray>> revoked(const QString &folder);
 };
 
-/// Whole or not at all; secret: only its owner may read it, from the beginning.
-Result<void> writeKeyFile(const QString &path, const QByteArray &content, bool secret);
+/// Whole or not at all; only its owner may read it, from the beginning.
+Result<void> writeKeyFile(const QString &path, const QByteArray &content);
 
 /// What a certificate says.
 PeerCertificate toPeer(const QSslCertificate &certificate);

@@ -88,7 +88,8 @@ def check_nothing_in(folder):
 def check_modes(folder):
     def mode(*name):
         return stat.S_IMODE(os.stat(os.path.join(folder, *name)).st_mode)
-    assert mode() == 0o700 and mode("own.key") == 0o600, (oct(mode()), oct(mode("own.key")))
+    modes = {name: oct(mode(name)) for name in os.listdir(folder)}
+    assert mode() == 0o700 and set(modes.values()) == {oct(0o600)}, (oct(mode()), modes)
     assert {"authority.crt", "own.crt", "own.key"} <= set(os.listdir(folder)) <= {"authority.crt", "own.crt", "own.key", "revoked"}
 
 
