@@ -123,6 +123,8 @@ Result<void> Authority::canIssue(const QString &name) const {
         return fine.error();
     if (const auto authority = load(); !authority)
         return authority.error();
+    if (const auto listed = KeyFolder::revoked(folder_); !listed)
+        return listed.error();
     if (QFile::exists(folderFor(name)))
         return failed(folderFor(name),
                       QStringLiteral("exists; take it away first, and revoke its certificate if it has "

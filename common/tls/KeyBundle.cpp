@@ -74,14 +74,21 @@ Result<void> check(const KeyBundle &keys) {
 Result<KeyBundle> KeyBundle::read(const QString &folder) {
     KeyBundle keys;
     for (const Member &member : members) {
-        QFile file(QDir(folder).filePath(member.file));
-        if (member.content == &KeyBundle::revoked && !file.exists())
+        if (member.content == &KeyBundle::revoked)
             continue;
+        QFile file(QDir(folder).filePath(member.file));
         if (!file.open(QIODevice::ReadOnly))
             return Error(ErrorCode::InputOutput,
                          QStringLiteral("%1: %2").arg(file.fileName(), file.errorString()));
         keys.*member.content = file.read(mostJsonBytes);
     }
+    const auto revoked = KeyFolder::revoked(folder);
+    if (!revoked)
+        return revoked.error();
+    QList<QByteArray> serials = revoked->values();
+    std::sort(serials.begin(), serials.end());
+    for (const QByteArray &serial : serials)
+        keys.revoked += serial + '\n';
     return keys;
 }
 

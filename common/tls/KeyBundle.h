@@ -10,10 +10,11 @@ namespace hermes {
 /// What a folder of keys holds (KeyFolder), as it travels to whom it was issued for.
 struct KeyBundle {
     QByteArray authority, certificate, key; ///< PEM
-    QByteArray revoked;                     ///< the list; empty: there is none
+    QByteArray revoked;                     ///< serial numbers, one a line; empty: there are none
 
     static constexpr int mostJsonBytes = 2 << 20;
 
+    /// Of what people have written beside the serial numbers, nothing.
     static Result<KeyBundle> read(const QString &folder);
     /// Checks all that came from elsewhere: one PEM each and nothing beside it, the key belongs to the
     /// certificate, the authority has signed it, and it names somebody with a role.

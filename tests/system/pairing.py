@@ -277,6 +277,26 @@ def serials_in(folder):
         return sorted(line.split()[0].lower() for line in file if line.strip() and not line.startswith("#"))
 
 
+def check_edited_list(authority, scratch):
+    """What people have written beside the serial numbers stays where it is; a list that is none is noticed before keys are made."""
+    folder, revoked = os.path.join(scratch, "edited"), os.path.join(authority, "revoked")
+    with open(revoked, "a", encoding="utf-8") as file:
+        file.write("# J\u00fcrgen's\r\n0123456789ABCDEF\tJ\u00fcrgen, left in May\r\n\n")
+    with Pair(authority, "edited", "operator") as pair:
+        pair.join(folder)
+        pair.end(0)
+    assert serials_in(folder) == serials_in(authority) and "0123456789abcdef" in serials_in(folder)
+    with open(os.path.join(folder, "revoked"), encoding="utf-8") as file:
+        assert set(file.read()) <= set("0123456789abcdef\n")
+    shutil.copy(revoked, revoked + ".right")
+    with open(revoked, "a", encoding="utf-8") as file:
+        file.write("J\u00fcrgen\n")
+    for words in (("pair", "late"), ("issue", "late")):
+        assert "no serial number" in ctl(authority, "keys", *words, "--role", "operator", "--timeout", "1", status=1), words
+    os.replace(revoked + ".right", revoked)
+    assert state_of(authority, "late") == []
+
+
 def check_others_folders(authority, eva, scratch):
     """What stands beside the place is not touched, whoever made it; who joins at the same time is not disturbed."""
     folder, precious = os.path.join(scratch, "twice"), os.path.join(scratch, "precious")
@@ -385,6 +405,7 @@ def main():
         check_refusals(authority, eva, scratch)
         check_others_folders(authority, eva, scratch)
         check_killed(authority, scratch)
+        check_edited_list(authority, scratch)
         check_pretended(eva, scratch)
     print(f"joined beside 50 silent ones within {took:.2f} s")
     return 0
