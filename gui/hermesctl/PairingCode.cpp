@@ -8,7 +8,6 @@ namespace {
 
 const QByteArray alphabet = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"; // 5 bits each; no 0, O, 1, I
 constexpr int length = 10;
-constexpr int secretBytes = 32;
 
 const QByteArray salt = "hermes pairing 1";
 constexpr uint64_t scryptN = 1 << 15, scryptR = 8, scryptP = 1; // 32 MB; RFC 7914
@@ -51,13 +50,12 @@ QString PairingCode::text() const {
     return all.left(length / 2) + QLatin1Char('-') + all.mid(length / 2);
 }
 
-Result<QByteArray> PairingCode::secret() const {
-    QByteArray made(secretBytes, '\0');
+Result<PairingSecret> PairingCode::secret() const {
+    PairingSecret made;
     const bool done =
         EVP_PBE_scrypt(characters_.constData(), std::size_t(characters_.size()),
                        reinterpret_cast<const unsigned char *>(salt.constData()), std::size_t(salt.size()),
-                       scryptN, scryptR, scryptP, scryptMemory,
-                       reinterpret_cast<unsigned char *>(made.data()), std::size_t(made.size())) == 1;
+                       scryptN, scryptR, scryptP, scryptMemory, made.bytes.data(), made.bytes.size()) == 1;
     if (!done)
         return Error(ErrorCode::InternalError,
                      QStringLiteral("no key can be made of the code: are 32 MB of memory free?"));

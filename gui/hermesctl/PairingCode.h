@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "gui/hermesctl/PairingSecret.h"
 
 #include <QByteArray>
 #include <QString>
@@ -17,9 +18,9 @@ public:
 
     /// Two groups of five, with a hyphen between.
     QString text() const;
-    /// The key of 32 bytes that both sides make of it; slowly, so that who has pretended to be the other
+    /// The key that both sides make of it; slowly, so that who has pretended to be the other
     /// side cannot try all codes while one is good.
-    Result<QByteArray> secret() const;
+    Result<PairingSecret> secret() const;
 
 private:
     explicit PairingCode(QByteArray characters)

@@ -24,8 +24,8 @@ public:
         std::function<void(const QString &address, int attemptsLeft)> wrong;
     };
 
-    explicit PairingServer(QByteArray secret)
-        : secret_(std::move(secret)) {}
+    explicit PairingServer(const PairingSecret &secret)
+        : secret_(secret) {}
     ~PairingServer();
     PairingServer(const PairingServer &) = delete;
     PairingServer &operator=(const PairingServer &) = delete;
@@ -47,7 +47,7 @@ private:
     void accept();
     Result<void> advance(const Listener &listener);
 
-    const QByteArray secret_;
+    const PairingSecret secret_;
     int listening_ = -1;
     int wrong_ = 0;
     std::list<Guest> guests_;   // in their handshakes, the oldest first

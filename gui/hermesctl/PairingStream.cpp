@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 #include <fcntl.h>
-#include <openssl/crypto.h>
 #include <openssl/err.h>
 #include <openssl/sslerr.h>
 #include <poll.h>
@@ -25,11 +24,11 @@ QString reasonOf(unsigned long error) {
     return text ? QString::fromLatin1(text) : QStringLiteral("the connection was closed");
 }
 
-unsigned copySecret(const QByteArray &secret, unsigned char *to, unsigned most) {
-    if (unsigned(secret.size()) > most)
+unsigned copySecret(const PairingSecret &secret, unsigned char *to, unsigned most) {
+    if (secret.bytes.size() > most)
         return 0;
-    std::memcpy(to, secret.constData(), std::size_t(secret.size()));
-    return unsigned(secret.size());
+    std::memcpy(to, secret.bytes.data(), secret.bytes.size());
+    return unsigned(secret.bytes.size());
 }
 
 } // namespace
@@ -73,9 +72,9 @@ unsigned PairingStream::clientSecret(SSL *ssl, const char *, char *identity, uns
     return copySecret(self->secret_, secret, most);
 }
 
-PairingStream::PairingStream(Side side, int descriptor, QByteArray secret)
+PairingStream::PairingStream(Side side, int descriptor, const PairingSecret &secret)
     : descriptor_(descriptor)
-    , secret_(std::move(secret))
+    , secret_(secret)
     , ssl_(SSL_new(context(side)), &SSL_free) {
     ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
     if (!ssl_)
@@ -91,7 +90,6 @@ PairingStream::~PairingStream() {
     ERR_clear_error();
     ::shutdown(descriptor_, SHUT_WR); // the last words, an alert perhaps, arrive
     ::close(descriptor_);
-    OPENSSL_cleanse(secret_.data(), std::size_t(secret_.size()));
 }
 
 PairingStream::Handshake PairingStream::handshake() {

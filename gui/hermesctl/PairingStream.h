@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "gui/hermesctl/PairingSecret.h"
 
 #include <QByteArray>
 #include <QDeadlineTimer>
@@ -18,7 +19,7 @@ public:
     enum class Handshake { UnderWay, Done, Failed };
 
     /// Takes over the connected socket.
-    PairingStream(Side side, int descriptor, QByteArray secret);
+    PairingStream(Side side, int descriptor, const PairingSecret &secret);
     ~PairingStream();
     PairingStream(const PairingStream &) = delete;
     PairingStream &operator=(const PairingStream &) = delete;
@@ -46,7 +47,7 @@ private:
     Result<QByteArray> receiveBytes(int count, const QDeadlineTimer &deadline);
 
     const int descriptor_;
-    QByteArray secret_;
+    const PairingSecret secret_;
     std::unique_ptr<SSL, decltype(&SSL_free)> ssl_;
     bool secretIsUsed_ = false;
     bool isWrongSecret_ = false;
