@@ -16,6 +16,8 @@ constexpr std::chrono::hours longestAgreement{24};
 
 constexpr std::size_t mostEarly = 16; // messages that wait for the reply to their subscription
 
+constexpr std::chrono::seconds lookPeriod{5};
+
 constexpr double latestStamp = 1e10; // seconds: beyond it stamps lose their digits
 
 /// A whole number from 0 to 2^53; negative: it is none.
@@ -27,7 +29,10 @@ qint64 toCount(const QJsonValue &value) {
 } // namespace
 
 Client::Client(QObject *parent)
-    : QObject(parent) {}
+    : QObject(parent) {
+    lookTimer_.setInterval(lookPeriod);
+    connect(&lookTimer_, &QTimer::timeout, this, &Client::lookWhoIsThere);
+}
 
 Client::~Client() {
     if (channel_)
@@ -185,6 +190,8 @@ void Client::unsubscribe(int handle) {
 
 void Client::sendSubscription(int handle) {
     const Subscription &subscription = subscriptions_.at(handle);
+    if (channel_->isLossy() && !lookTimer_.isActive())
+        lookWhoIsThere();
     QJsonObject params = subscription.options;
     params.insert(QStringLiteral("topic"), subscription.topic);
     call(QStringLiteral("topics.subscribe"), params, [this, handle](const Result<QJsonValue> &result) {
@@ -235,9 +242,29 @@ void Client::begin() {
     if (channel_
             ->isLossy()) // whoever spoke here before may have had the first ids, and their replies are kept
         lastId_ = qint64(QRandomGenerator::system()->generate());
+    daemonStarted_ = 0;
     for (const auto &subscription : subscriptions_)
         sendSubscription(subscription.first);
     Q_EMIT connected();
+}
+
+void Client::lookWhoIsThere() {
+    if (subscriptions_.empty())
+        return lookTimer_.stop();
+    lookTimer_.start();
+    const auto look = [this](const Result<QJsonValue> &info) {
+        const double started = info ? (*info)[QStringLiteral("started")].toDouble() : 0;
+        if (started == 0)
+            return;
+        const double before = std::exchange(daemonStarted_, started);
+        if (before == 0 || before == started)
+            return;
+        for (auto &subscription : subscriptions_) {
+            subscription.second.id = 0;
+            sendSubscription(subscription.first);
+        }
+    };
+    call(QStringLiteral("daemon.info"), QJsonObject(), look);
 }
 
 void Client::onClosed(const QString &reason) {
@@ -245,6 +272,7 @@ void Client::onClosed(const QString &reason) {
     for (auto &subscription : subscriptions_)
         subscription.second.id = 0;
     repeater_.clear();
+    lookTimer_.stop();
     early_.clear();
     const auto calls = std::exchange(waiting_, {});
     for (const Callback &callback : calls)

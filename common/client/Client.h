@@ -7,6 +7,7 @@
 
 #include <QHash>
 #include <QObject>
+#include <QTimer>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -27,7 +28,8 @@ struct TopicUpdate {
 
 /// A connection to a daemon: calls, subscriptions, and a new connection when the old one ends. Subscriptions
 /// are made again after each reconnect; calls that wait when the connection ends fail with Disconnected. Over
-/// a channel that loses messages a call is repeated while it waits; the daemon carries it out once.
+/// a channel that loses messages a call is repeated while it waits; the daemon carries it out once. A line
+/// has no end that would tell of a daemon's restart: who subscribes over one asks now and then who is there.
 class Client : public QObject {
     Q_OBJECT
 public:
@@ -125,6 +127,7 @@ private:
     void deliverEarly(qint64 id);
     void deliver(int handle, const QJsonObject &params, const WireValue &data);
     void sendSubscription(int handle);
+    void lookWhoIsThere();
     void finish(qint64 id, const Result<QJsonValue> &result);
 
     Channel *channel_ = nullptr;
@@ -144,6 +147,8 @@ private:
         WireValue data;
     };
     std::vector<Early> early_;
+    QTimer lookTimer_;                    // over a line
+    double daemonStarted_ = 0; // as it said; 0: not yet
     int lastHandle_ = 0;
     std::map<int, Subscription> subscriptions_;
 };

@@ -75,8 +75,15 @@ private Q_SLOTS:
     void aStopOvertakesWhatItsClientAskedBefore();
     void whatWouldBeLateIsNotSent();
     void aPortThatComesBackIsHeardAgain();
+    void aDaemonThatStartsAnewIsSubscribedAgain();
 
 private:
+    void startDaemon() {
+        daemon = std::make_unique<CountingDaemon>();
+        QVERIFY(!daemon->prepare(
+            {"tested", "--listen", "serial://" + line->device(0) + "?baud=115200&protocol=serial"}));
+        QVERIFY(daemon->launch());
+    }
     std::unique_ptr<Client> newClient() {
         auto made = std::make_unique<Client>();
         made->connectTo("serial://" + line->device(1) + "?baud=115200&protocol=serial");
@@ -100,10 +107,7 @@ private:
 void TestSerialLine::init() {
     Log::instance().setStderr(false);
     line = std::make_unique<NoisyLine>(bytesPerSecond);
-    daemon = std::make_unique<CountingDaemon>();
-    QVERIFY(!daemon->prepare(
-        {"tested", "--listen", "serial://" + line->device(0) + "?baud=115200&protocol=serial"}));
-    QVERIFY(daemon->launch());
+    startDaemon();
     client = newClient();
     QVERIFY(client->waitConnected());
 }
@@ -403,6 +407,17 @@ void TestSerialLine::aPortThatComesBackIsHeardAgain() {
     QVERIFY(hopeful.waitConnected());
     QVERIFY(hopeful.callAndWait("count", QJsonArray{1}));
     QCOMPARE(health()["level"].toString(), QString("ok"));
+}
+
+void TestSerialLine::aDaemonThatStartsAnewIsSubscribedAgain() {
+    client->subscribe("numbers", {}, nullptr);
+    client->subscribe("state", {}, nullptr);
+    QTRY_VERIFY(daemon->hasSubscribers("numbers"));
+    QTest::qWait(500); // it has heard who is there
+    daemon.reset();
+    startDaemon();
+    QVERIFY(!daemon->hasSubscribers("numbers"));
+    QTRY_VERIFY_WITH_TIMEOUT(daemon->hasSubscribers("numbers") && daemon->hasSubscribers("state"), 15000);
 }
 
 QTEST_GUILESS_MAIN(TestSerialLine)
