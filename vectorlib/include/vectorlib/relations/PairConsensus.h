@@ -1,0 +1,171 @@
+#pragma once
+
+#include "vectorlib/registration/LineSegmentRegistration.h"
+#include "vectorlib/registration/PointToLineRefinement.h"
+#include "vectorlib/relations/PoseDifference.h"
+
+namespace vectorlib {
+
+/// The pairs that agree on one place, and the pose that fits them best. Algorithm 5 asks of its pairs only that
+/// they agree on the rotation; a wall taken for a parallel one does that too. Every two pairs that are not
+/// parallel tell a pose; the one that brings most length together wins, and LineSegmentRegistration makes the
+/// pose of its pairs. Then all segments that lie on each other at that pose are pairs, whatever their scores,
+/// and the points of the shorter segment of each are brought onto the line of the longer. Cubic in the pairs;
+/// keeps its buffers.
+class PairConsensus {
+public:
+    using Segments = std::vector<TypedSegment>;
+
+    double distance = 0.10;          ///< of the middle of a segment from the line of its partner; metres
+    double angle = 5 * pi / 180;     ///< between the segments of a pair; radians
+    double leastAngle = 20 * pi / 180; ///< between the lines that tell a pose; radians
+    double overlap = 0.3;              ///< least share of the shorter segment beside its partner
+    int rounds = 3;                    ///< of registration and choice of pairs
+
+    /// False when no two pairs agree on a place.
+    bool operator()(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
+                    const Segments &current, Transformation2D &pose) {
+        if (!bestOf(pairs, reference, current, pose))
+            return false;
+        choose(pairs, reference, current, pose);
+        if (!registerChosen(reference, current, pose))
+            return false;
+        for (int i = 0; i < rounds; ++i) {
+            chooseAll(reference, current, pose);
+            pose = refinement(reference, current, pose) * pose;
+        }
+        chooseAll(reference, current, pose);
+        Transformation2D ignored = pose;
+        return registerChosen(reference, current, ignored);
+    }
+    const std::vector<CorrespondencePair> &pairs() const { return chosen_; }
+    const LineSegmentRegistration &registration() const { return registration_; }
+    double length() const { return length_; } ///< of the shorter segments of the pairs; metres
+
+private:
+    static const TypedSegment &at(const Segments &set, int i) { return set[static_cast<std::size_t>(i)]; }
+
+    // How far apart two segments lie: at the middle of the shorter, whose line may be unsure elsewhere. Metres;
+    // more than the limit where they are turned too much.
+    double apart(const LineSegment2D<double> &r, const LineSegment2D<double> &c) const {
+        if (!(r.direction().dot(c.direction()) >= std::cos(angle)))
+            return 2 * distance;
+        return std::abs(c.length() < r.length() ? r.across(c.middle()) : c.across(r.middle()));
+    }
+    void choose(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
+                const Segments &current, const Transformation2D &pose) {
+        chosen_.clear();
+        length_ = 0;
+        for (const CorrespondencePair &p : pairs)
+            if (apart(at(reference, p.fixed).segment, pose * at(current, p.moving).segment) <= distance) {
+                chosen_.push_back(p);
+                length_ += std::min(at(reference, p.fixed).segment.length(),
+                                    at(current, p.moving).segment.length());
+            }
+    }
+    // Of all segments, those that lie on each other: each current one with the nearest reference.
+    void chooseAll(const Segments &reference, const Segments &current, const Transformation2D &pose) {
+        chosen_.clear();
+        length_ = 0;
+        for (std::size_t j = 0; j < current.size(); ++j) {
+            const LineSegment2D<double> c = pose * current[j].segment;
+            double least = distance, length = 0;
+            int nearest = -1;
+            for (std::size_t i = 0; i < reference.size(); ++i) {
+                const LineSegment2D<double> &r = reference[i].segment;
+                const double d = apart(r, c), shorter = std::min(r.length(), c.length());
+                if (d <= least && r.overlap(c) >= overlap * shorter) {
+                    least = d;
+                    nearest = static_cast<int>(i);
+                    length = shorter;
+                }
+            }
+            if (nearest >= 0) {
+                chosen_.push_back({nearest, static_cast<int>(j)});
+                length_ += length;
+            }
+        }
+    }
+    // Points of the shorter segment onto the line of the longer.
+    Transformation2D refinement(const Segments &reference, const Segments &current,
+                                const Transformation2D &pose) {
+        refine_.start(1e-6, 1e-6);
+        for (const CorrespondencePair &p : chosen_) {
+            const TypedSegment &r = at(reference, p.fixed), &c = at(current, p.moving);
+            const LineSegment2D<double> moved = pose * c.segment;
+            if (moved.length() < r.segment.length())
+                refine_.add(r.segment, pose * sumsOf(c), 1);
+            else
+                refine_.addStatic(moved, sumsOf(r), 1);
+        }
+        return refine_.step();
+    }
+    // Without points, as of 20 spread evenly over each metre.
+    static TlsSums sumsOf(const TypedSegment &s) {
+        if (s.sums.n > 0)
+            return s.sums;
+        const double length = s.segment.length(), n = 20 * length, moment = n * length * length / 12;
+        const Vector2D<double> v = s.segment.direction();
+        TlsSums sums;
+        sums.n = n;
+        sums.mean = s.segment.middle();
+        sums.xx = moment * v.x * v.x;
+        sums.xy = moment * v.x * v.y;
+        sums.yy = moment * v.y * v.y;
+        return sums;
+    }
+    bool bestOf(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
+                const Segments &current, Transformation2D &pose) {
+        double most = 0;
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            for (std::size_t j = i + 1; j < pairs.size(); ++j) {
+                Transformation2D guess;
+                if (!poseOf(pairs[i], pairs[j], reference, current, guess))
+                    continue;
+                choose(pairs, reference, current, guess);
+                if (length_ > most) {
+                    most = length_;
+                    pose = guess;
+                }
+            }
+        return most > 0;
+    }
+    // The pose of two pairs: the middle of each current segment comes onto the line of its partner.
+    bool poseOf(const CorrespondencePair &p, const CorrespondencePair &q, const Segments &reference,
+                const Segments &current, Transformation2D &pose) const {
+        const LineSegment2D<double> &a = at(reference, p.fixed).segment, &b = at(reference, q.fixed).segment;
+        const LineSegment2D<double> &c = at(current, p.moving).segment, &d = at(current, q.moving).segment;
+        const double det = a.direction().cross(b.direction());
+        if (std::abs(det) < std::sin(leastAngle))
+            return false;
+        const double wp = precisionValue(a, c), wq = precisionValue(b, d);
+        const Vector2D<double> u = a.direction(), v = b.direction(), s = c.direction(), t = d.direction();
+        const double alpha =
+            std::atan2(wp * s.cross(u) + wq * t.cross(v), wp * s.dot(u) + wq * t.dot(v));
+        const Transformation2D turn(0, 0, alpha);
+        const double first = -a.across(turn * c.middle()), second = -b.across(turn * d.middle());
+        // n_a . x = first, n_b . x = second
+        const Vector2D<double> x = (v * first - u * second) / det;
+        pose = Transformation2D(x.x, x.y, alpha);
+        return true;
+    }
+    bool registerChosen(const Segments &reference, const Segments &current, Transformation2D &pose) {
+        registration_.clear();
+        for (const CorrespondencePair &p : chosen_) {
+            const LineSegment2D<double> &r = at(reference, p.fixed).segment,
+                                        &c = at(current, p.moving).segment;
+            registration_.add(r, pose * c, std::min(r.length(), c.length()));
+        }
+        if (!registration_.isSolvable())
+            return false;
+        pose = registration_.transformation() * pose;
+        return true;
+    }
+
+    std::vector<CorrespondencePair> chosen_;
+    double length_ = 0;
+    LineSegmentRegistration registration_;
+    PointToLineRefinement refine_;
+};
+
+} // namespace vectorlib

@@ -1,0 +1,165 @@
+#pragma once
+
+#include "vectorlib/relations/PairConsensus.h"
+#include "vectorlib/relations/PairSearch.h"
+#include "vectorlib/relations/RelationMatch.h"
+#include "vectorlib/relations/RelationScan.h"
+#include "vectorlib/relations/RelationScores.h"
+
+namespace vectorlib {
+
+/// Matches two sets of line segments without any estimate of the pose, by what does not depend on it: lengths,
+/// angles between segments, distances of parallel ones, distances of edges. Pose-free thesis, chapters 3 to 5.
+/// Relations that are rare tell most.
+///
+/// The search of Algorithm 5 is repeated without the pairs that it found, and the place that brings most length
+/// together is the match. Where another place does nearly as well the match is ambiguous.
+///
+/// Never more than settings.maxSegments segments and maxVirtualEdges virtual edges of a scan take part, so that
+/// time and memory are bounded. Keeps its buffers: no allocation once they have grown.
+class RelationMatcher {
+public:
+    using Segments = std::vector<TypedSegment>;
+
+    RelationSettings settings;
+
+    /// Segments of both scans in the order of the scan, each in its sensor's frame. The result is valid until
+    /// the next call.
+    const RelationMatch &operator()(const Segments &reference, const Segments &current) {
+        clear();
+        if (!settings.isValid())
+            return end(RelationOutcome::BadSettings);
+        reference_.build(reference, settings);
+        current_.build(current, settings);
+        return match();
+    }
+    /// Matches with what was the current scan of the call before: its relations are known already.
+    const RelationMatch &next(const Segments &current) {
+        clear();
+        if (!settings.isValid())
+            return end(RelationOutcome::BadSettings);
+        std::swap(reference_, current_);
+        current_.build(current, settings);
+        return match();
+    }
+    /// The tables of consistency of the last call.
+    const RelationScores &scores() const { return score_; }
+    /// What Algorithm 5 left of the merged scores at the first search of the last call (table 5.2).
+    const MatchingTable &table() const { return first_; }
+
+private:
+    using Pairs = std::vector<CorrespondencePair>;
+
+    void clear() {
+        result_.pose = result_.byEdges = Transformation2D();
+        result_.byScores.clear();
+        result_.pairs.clear();
+        result_.score = result_.reliability = result_.ambiguity = 0;
+        result_.matchedLength = result_.rivalLength = 0;
+        result_.leftOut = result_.virtualLeftOut = result_.scores = 0;
+    }
+    const RelationMatch &end(RelationOutcome outcome) {
+        result_.outcome = outcome;
+        return result_;
+    }
+    const RelationMatch &match() {
+        const Segments &reference = reference_.segments(), &current = current_.segments();
+        result_.leftOut = reference_.leftOut() + current_.leftOut();
+        result_.virtualLeftOut =
+            reference_.relations().virtualEdgesLeftOut + current_.relations().virtualEdgesLeftOut;
+        if (reference.size() < 2)
+            return end(RelationOutcome::TooFewReference);
+        if (current.size() < 2)
+            return end(RelationOutcome::TooFewCurrent);
+        score_(reference, reference_.relations(), current, current_.relations(), settings, table_);
+        result_.scores = table_.scores();
+        result_.score = table_.maximum().score;
+        if (result_.score == 0)
+            return end(RelationOutcome::NoCommonRelation);
+        consensus_.distance = settings.distanceWindow;
+        consensus_.angle = settings.angleWindow;
+        const RelationOutcome first = searchFirst();
+        for (int i = 1; i < settings.searches; ++i)
+            if (!searchAgain())
+                break;
+        if (result_.matchedLength == 0)
+            return end(first);
+        return end(result_.rivalLength >= settings.rivalShare * result_.matchedLength
+                       ? RelationOutcome::Ambiguous
+                       : RelationOutcome::Matched);
+    }
+    // As published; also what is wrong where it leads nowhere.
+    RelationOutcome searchFirst() {
+        first_ = table_;
+        const Pairs &found = search(first_);
+        for (const CorrespondencePair &p : found)
+            result_.byScores.push_back({reference_.given(p.fixed), current_.given(p.moving)});
+        for (const CorrespondencePair &p : found)
+            table_.invalidate(p.fixed, p.moving);
+        if (found.size() < 2)
+            return RelationOutcome::OnePair;
+        if (!poseDifference(found, reference_.segments(), current_.segments(), consensus_.leastAngle,
+                            result_.byEdges))
+            return RelationOutcome::OneDirection;
+        return place(found) ? RelationOutcome::Matched : RelationOutcome::Contradiction;
+    }
+    // Without the pairs that were found before; false when nothing is left.
+    bool searchAgain() {
+        again_ = table_;
+        const Pairs &found = search(again_);
+        for (const CorrespondencePair &p : found)
+            table_.invalidate(p.fixed, p.moving);
+        if (found.size() >= 2)
+            place(found);
+        return !found.empty();
+    }
+    const Pairs &search(MatchingTable &table) {
+        search_.threshold = settings.threshold * result_.score;
+        search_.window = settings.angleWindow;
+        search_.sameOrder = settings.sameOrder;
+        const Segments &reference = reference_.segments(), &current = current_.segments();
+        return search_(table, [&](int row, int column) {
+            return relativeAngle(current[static_cast<std::size_t>(column)].segment,
+                                 reference[static_cast<std::size_t>(row)].segment);
+        });
+    }
+    // The place of these pairs; the result if it brings more together than those before, else perhaps a rival.
+    bool place(const Pairs &found) {
+        Transformation2D pose;
+        if (!consensus_(found, reference_.segments(), current_.segments(), pose))
+            return false;
+        const LineSegmentRegistration &registration = consensus_.registration();
+        if (!pose.isFinite() || registration.reliability() < settings.reliability)
+            return false;
+        const bool isBest = consensus_.length() > result_.matchedLength;
+        if (!isSamePlace(pose))
+            result_.rivalLength = std::max(result_.rivalLength,
+                                           isBest ? result_.matchedLength : consensus_.length());
+        if (!isBest)
+            return true;
+        result_.pose = pose;
+        result_.matchedLength = consensus_.length();
+        result_.reliability = registration.reliability();
+        result_.ambiguity = registration.ambiguity().total() / registration.weight();
+        result_.pairs.clear();
+        for (const CorrespondencePair &p : consensus_.pairs())
+            result_.pairs.push_back({reference_.given(p.fixed), current_.given(p.moving)});
+        return true;
+    }
+    bool isSamePlace(const Transformation2D &pose) const {
+        if (result_.matchedLength == 0)
+            return true;
+        const Transformation2D apart = result_.pose.inverse() * pose;
+        return apart.translation().norm() <= 2 * settings.distanceWindow &&
+               std::abs(apart.alpha()) <= 2 * settings.angleWindow;
+    }
+
+    RelationScan reference_, current_;
+    RelationScores score_;
+    MatchingTable table_, first_, again_;
+    PairSearch search_;
+    PairConsensus consensus_;
+    RelationMatch result_;
+};
+
+} // namespace vectorlib

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "vectorlib/geometry/Angle.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace vectorlib {
+
+/// Settings of RelationMatcher. The windows are those published (pose-free thesis 6.3.1).
+struct RelationSettings {
+    double angleWindow = 5 * pi / 180; ///< angles no farther apart are equal; radians
+    double distanceWindow = 0.10;      ///< lengths and distances no farther apart are equal; metres
+    /// Least merged score of a pair, as a share of the largest one. The published value is not known.
+    double threshold = 0.10;
+    /// Matching segments come in one order in both scans (5.7, Algorithm 10): for small motions.
+    bool sameOrder = false;
+    /// A virtual edge lies no farther from either of its segments than this many of its lengths.
+    double virtualReach = 1.0;
+    double virtualAngle = 25 * pi / 180; ///< least angle between the lines of a virtual edge; radians
+    double leastEdgeDistance = 0.25;     ///< nearer edges have no direction worth comparing; metres
+    /// A rival whose pairs are of as much length as this share of the found ones makes the match ambiguous.
+    double rivalShare = 0.8;
+    int searches = 6; ///< of Algorithm 5, each without the pairs of those before; 1: as published
+    double reliability = 0.10;       ///< least of the directions of the pairs
+    std::size_t maxSegments = 64;    ///< of a scan: the longest; more are left out
+    std::size_t maxVirtualEdges = 24; ///< of a scan: those known best
+
+    bool isValid() const {
+        return angleWindow > 0 && angleWindow < pi / 4 && distanceWindow > 0 && std::isfinite(distanceWindow) &&
+               threshold >= 0 && threshold <= 1 && virtualReach >= 0 && leastEdgeDistance >= 0 &&
+               rivalShare > 0 && searches >= 1 && searches <= 100 && reliability >= 0 && maxSegments <= 255 && maxVirtualEdges <= 4096;
+    }
+};
+
+} // namespace vectorlib
