@@ -2,16 +2,17 @@
 
 #include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/registration/PointToLineRefinement.h"
+#include "vectorlib/observation/Ray.h"
 #include "vectorlib/relations/PoseDifference.h"
 
 namespace vectorlib {
 
 /// The pairs that agree on one place, and the pose that fits them best. Algorithm 5 asks of its pairs only that
 /// they agree on the rotation; a wall taken for a parallel one does that too. Every two pairs that are not
-/// parallel tell a pose; the one that brings most length together wins, and LineSegmentRegistration makes the
-/// pose of its pairs. Then all segments that lie on each other at that pose are pairs, whatever their scores,
-/// and the points of the shorter segment of each are brought onto the line of the longer. Cubic in the pairs;
-/// keeps its buffers.
+/// parallel tell a pose, and so does every pair with an end that is an edge in both scans; the pose that brings
+/// most length together wins. Then all segments that lie on each other at that pose are pairs, whatever their
+/// scores: the points of the shorter segment of each come onto the line of the longer, and common ends onto
+/// each other. Cubic in the pairs; keeps its buffers.
 class PairConsensus {
 public:
     using Segments = std::vector<TypedSegment>;
@@ -20,26 +21,27 @@ public:
     double angle = 5 * pi / 180;     ///< between the segments of a pair; radians
     double leastAngle = 20 * pi / 180; ///< between the lines that tell a pose; radians
     double overlap = 0.3;              ///< least share of the shorter segment beside its partner
-    int rounds = 3;                    ///< of registration and choice of pairs
+    double noise = 0.015;              ///< standard deviation of a point; metres
+    int rounds = 3;                    ///< of refinement and choice of pairs
 
     /// False when no two pairs agree on a place.
     bool operator()(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
                     const Segments &current, Transformation2D &pose) {
         if (!bestOf(pairs, reference, current, pose))
             return false;
-        choose(pairs, reference, current, pose);
-        if (!registerChosen(reference, current, pose))
-            return false;
         for (int i = 0; i < rounds; ++i) {
             chooseAll(reference, current, pose);
             pose = refinement(reference, current, pose) * pose;
         }
         chooseAll(reference, current, pose);
-        Transformation2D ignored = pose;
-        return registerChosen(reference, current, ignored);
+        enterPairs(reference, current, pose);
+        deviation_ = deviationOf(pose);
+        return !chosen_.empty();
     }
     const std::vector<CorrespondencePair> &pairs() const { return chosen_; }
     const LineSegmentRegistration &registration() const { return registration_; }
+    /// Standard deviation of the position of the current sensor; metres.
+    double deviation() const { return deviation_; }
     double length() const { return length_; } ///< of the shorter segments of the pairs; metres
 
 private:
@@ -97,8 +99,36 @@ private:
                 refine_.add(r.segment, pose * sumsOf(c), 1);
             else
                 refine_.addStatic(moved, sumsOf(r), 1);
+            for (const bool atEnd : {false, true})
+                addCommonEnd(r, c, atEnd, pose);
         }
         return refine_.step();
+    }
+    // A common end holds along the line, as well as both are known.
+    void addCommonEnd(const TypedSegment &r, const TypedSegment &c, bool atEnd,
+                      const Transformation2D &pose) {
+        Vector2D<double> there, here;
+        if (!commonEnd(r, c, atEnd, there, here))
+            return;
+        const Vector2D<double> v = r.segment.direction(), across(v.y, -v.x), moved = pose * here;
+        const double a = (atEnd ? r.end : r.begin).slack, b = (atEnd ? c.end : c.begin).slack;
+        if (std::abs(v.dot(moved - there)) > distance + a + b)
+            return;
+        TlsSums point;
+        point.n = 1;
+        point.mean = moved;
+        // Ends are spread evenly over their slack; a corner of lines is about as sure as a few points.
+        const double variance = 2 * noise * noise + (a * a + b * b) / 3;
+        refine_.add(LineSegment2D<double>(there, there + across, across), point, noise * noise / variance);
+    }
+    // Of the current sensor, which is at the translation of the pose. The line of the other scan is as unsure
+    // as the points.
+    double deviationOf(const Transformation2D &pose) const {
+        Eigen::Matrix<double, 2, 3> j;
+        j << 1, 0, -pose.y(), 0, 1, pose.x();
+        const Eigen::Matrix3d covariance = refine_.information().inverse();
+        const double variance = 2 * noise * noise * (j * covariance * j.transpose()).trace();
+        return variance > 0 ? std::sqrt(variance) : noHit;
     }
     // Without points, as of 20 spread evenly over each metre.
     static TlsSums sumsOf(const TypedSegment &s) {
@@ -117,18 +147,44 @@ private:
     bool bestOf(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
                 const Segments &current, Transformation2D &pose) {
         double most = 0;
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            for (std::size_t j = i + 1; j < pairs.size(); ++j) {
-                Transformation2D guess;
-                if (!poseOf(pairs[i], pairs[j], reference, current, guess))
-                    continue;
-                choose(pairs, reference, current, guess);
-                if (length_ > most) {
-                    most = length_;
-                    pose = guess;
-                }
+        const auto consider = [&](const Transformation2D &guess) {
+            choose(pairs, reference, current, guess);
+            if (length_ > most) {
+                most = length_;
+                pose = guess;
             }
+        };
+        Transformation2D guess;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            for (std::size_t j = i + 1; j < pairs.size(); ++j)
+                if (poseOf(pairs[i], pairs[j], reference, current, guess))
+                    consider(guess);
+            for (const bool atEnd : {false, true})
+                if (poseByEnd(at(reference, pairs[i].fixed), at(current, pairs[i].moving), atEnd, guess))
+                    consider(guess);
+        }
         return most > 0;
+    }
+    // Whether an end of both is an edge that is known well enough, and where it is.
+    bool commonEnd(const TypedSegment &r, const TypedSegment &c, bool atEnd, Vector2D<double> &there,
+                   Vector2D<double> &here) const {
+        const SegmentEnd &a = atEnd ? r.end : r.begin, &b = atEnd ? c.end : c.begin;
+        there = atEnd ? r.segment.end() : r.segment.begin();
+        here = atEnd ? c.segment.end() : c.segment.begin();
+        return a.isEdge() && b.isEdge() && a.slack <= distance && b.slack <= distance;
+    }
+    // The pose of one pair with a common end: onto the line across, onto the end along it.
+    bool poseByEnd(const TypedSegment &r, const TypedSegment &c, bool atEnd, Transformation2D &pose) const {
+        Vector2D<double> there, here;
+        if (!commonEnd(r, c, atEnd, there, here))
+            return false;
+        const Vector2D<double> v = r.segment.direction(), d = c.segment.direction();
+        const double alpha = std::atan2(d.cross(v), d.dot(v));
+        const Transformation2D turn(0, 0, alpha);
+        const Vector2D<double> t = v * v.dot(there - turn * here) -
+                                   v.left() * r.segment.across(turn * c.segment.middle());
+        pose = Transformation2D(t.x, t.y, alpha);
+        return true;
     }
     // The pose of two pairs: the middle of each current segment comes onto the line of its partner.
     bool poseOf(const CorrespondencePair &p, const CorrespondencePair &q, const Segments &reference,
@@ -149,21 +205,17 @@ private:
         pose = Transformation2D(x.x, x.y, alpha);
         return true;
     }
-    bool registerChosen(const Segments &reference, const Segments &current, Transformation2D &pose) {
+    void enterPairs(const Segments &reference, const Segments &current, const Transformation2D &pose) {
         registration_.clear();
         for (const CorrespondencePair &p : chosen_) {
             const LineSegment2D<double> &r = at(reference, p.fixed).segment,
                                         &c = at(current, p.moving).segment;
             registration_.add(r, pose * c, std::min(r.length(), c.length()));
         }
-        if (!registration_.isSolvable())
-            return false;
-        pose = registration_.transformation() * pose;
-        return true;
     }
 
     std::vector<CorrespondencePair> chosen_;
-    double length_ = 0;
+    double length_ = 0, deviation_ = 0;
     LineSegmentRegistration registration_;
     PointToLineRefinement refine_;
 };

@@ -55,8 +55,10 @@ struct RelationMatch {
     double score = 0;                         ///< largest merged score
     double reliability = 0;                   ///< in [0, 1], of the pairs' directions
     double ambiguity = 0;                     ///< mean of a pair, weighted by length; m^2
+    double deviation = 0;                     ///< standard deviation of the position; metres
     double matchedLength = 0;                 ///< of the shorter segments of the pairs; metres
-    double rivalLength = 0;                   ///< the same of the best place elsewhere; metres
+    double evidence = 0;      ///< matched length less what stands where the other scan looked through; metres
+    double rivalEvidence = 0; ///< the same of the best place elsewhere; metres
     std::size_t leftOut = 0;        ///< segments that are not finite, have no length, or are beyond the bound
     std::size_t virtualLeftOut = 0; ///< virtual edges beyond the bound
     std::size_t scores = 0;         ///< entries of the matching table: the work done

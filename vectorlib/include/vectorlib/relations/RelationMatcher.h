@@ -5,6 +5,7 @@
 #include "vectorlib/relations/RelationMatch.h"
 #include "vectorlib/relations/RelationScan.h"
 #include "vectorlib/relations/RelationScores.h"
+#include "vectorlib/relations/SeenThrough.h"
 
 namespace vectorlib {
 
@@ -54,8 +55,8 @@ private:
         result_.pose = result_.byEdges = Transformation2D();
         result_.byScores.clear();
         result_.pairs.clear();
-        result_.score = result_.reliability = result_.ambiguity = 0;
-        result_.matchedLength = result_.rivalLength = 0;
+        result_.score = result_.reliability = result_.ambiguity = result_.deviation = 0;
+        result_.matchedLength = result_.evidence = result_.rivalEvidence = 0;
         result_.leftOut = result_.virtualLeftOut = result_.scores = 0;
     }
     const RelationMatch &end(RelationOutcome outcome) {
@@ -84,7 +85,7 @@ private:
                 break;
         if (result_.matchedLength == 0)
             return end(first);
-        return end(result_.rivalLength >= settings.rivalShare * result_.matchedLength
+        return end(result_.rivalEvidence >= settings.rivalShare * result_.evidence
                        ? RelationOutcome::Ambiguous
                        : RelationOutcome::Matched);
     }
@@ -98,10 +99,11 @@ private:
             table_.invalidate(p.fixed, p.moving);
         if (found.size() < 2)
             return RelationOutcome::OnePair;
-        if (!poseDifference(found, reference_.segments(), current_.segments(), consensus_.leastAngle,
-                            result_.byEdges))
-            return RelationOutcome::OneDirection;
-        return place(found) ? RelationOutcome::Matched : RelationOutcome::Contradiction;
+        const bool haveEdge = poseDifference(found, reference_.segments(), current_.segments(),
+                                             consensus_.leastAngle, result_.byEdges);
+        if (place(found))
+            return RelationOutcome::Matched;
+        return haveEdge ? RelationOutcome::Contradiction : RelationOutcome::OneDirection;
     }
     // Without the pairs that were found before; false when nothing is left.
     bool searchAgain() {
@@ -129,17 +131,23 @@ private:
         if (!consensus_(found, reference_.segments(), current_.segments(), pose))
             return false;
         const LineSegmentRegistration &registration = consensus_.registration();
-        if (!pose.isFinite() || registration.reliability() < settings.reliability)
+        if (!pose.isFinite() || !(consensus_.deviation() <= settings.deviation))
             return false;
-        const bool isBest = consensus_.length() > result_.matchedLength;
+        const double against = seenThrough_(reference_.segments(), current_.segments(), pose);
+        const double evidence = consensus_.length() - against;
+        if (against > settings.seenThroughShare * consensus_.length())
+            return false;
+        const bool isBest = evidence > result_.evidence;
         if (!isSamePlace(pose))
-            result_.rivalLength = std::max(result_.rivalLength,
-                                           isBest ? result_.matchedLength : consensus_.length());
+            result_.rivalEvidence =
+                std::max(result_.rivalEvidence, isBest ? result_.evidence : evidence);
         if (!isBest)
             return true;
+        result_.evidence = evidence;
         result_.pose = pose;
         result_.matchedLength = consensus_.length();
         result_.reliability = registration.reliability();
+        result_.deviation = consensus_.deviation();
         result_.ambiguity = registration.ambiguity().total() / registration.weight();
         result_.pairs.clear();
         for (const CorrespondencePair &p : consensus_.pairs())
@@ -159,6 +167,7 @@ private:
     MatchingTable table_, first_, again_;
     PairSearch search_;
     PairConsensus consensus_;
+    SeenThrough seenThrough_;
     RelationMatch result_;
 };
 

@@ -14,9 +14,9 @@ class TypedSegmentExtractor {
 public:
     EarSegmenter<float> segment;
     AftlsVectorizer<float> vectorize;
-    std::size_t minPoints = 5;           ///< lines through fewer points are left out
-    double minLength = 0.20;             ///< shorter ones too; metres
-    double maxAngleError = 2 * pi / 180; ///< and those whose standard deviation is larger; radians
+    std::size_t minPoints = 4;           ///< lines through fewer points are left out
+    double minLength = 0.12;             ///< shorter ones too; metres
+    double maxAngleError = 4 * pi / 180; ///< and those whose standard deviation is larger; radians
     double noise = 0.015;                ///< standard deviation of a range; metres
     double jump = 0.12;                  ///< a neighbour this far beyond the line makes a jump edge; metres
     double beamSlack = 1.0; ///< an angle edge may lie this many rays outside the two beams beside it
