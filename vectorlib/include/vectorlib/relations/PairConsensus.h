@@ -5,6 +5,8 @@
 #include "vectorlib/observation/Ray.h"
 #include "vectorlib/relations/PoseDifference.h"
 
+#include <array>
+
 namespace vectorlib {
 
 /// The pairs that agree on one place, and the pose that fits them best. Algorithm 5 asks of its pairs only that
@@ -24,19 +26,37 @@ public:
     double noise = 0.015;              ///< standard deviation of a point; metres
     int rounds = 3;                    ///< of refinement and choice of pairs
 
-    /// False when no two pairs agree on a place.
-    bool operator()(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
-                    const Segments &current, Transformation2D &pose) {
-        if (!bestOf(pairs, reference, current, pose))
-            return false;
+    /// Finds the places of these pairs; returns how many there are, at most `most` (no more than 8), best first.
+    int propose(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
+                const Segments &current, int most) {
+        count_ = 0;
+        most_ = std::min(most, static_cast<int>(proposals_.size()));
+        const auto consider = [&](const Transformation2D &guess) {
+            choose(pairs, reference, current, guess);
+            enter({guess, length_});
+        };
+        Transformation2D guess;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            for (std::size_t j = i + 1; j < pairs.size(); ++j)
+                if (poseOf(pairs[i], pairs[j], reference, current, guess))
+                    consider(guess);
+            for (const bool atEnd : {false, true})
+                if (poseByEnd(at(reference, pairs[i].fixed), at(current, pairs[i].moving), atEnd, guess))
+                    consider(guess);
+        }
+        return count_;
+    }
+    /// The pose of a proposal that fits its pairs best; pairs() and the rest are its own then.
+    Transformation2D settle(int proposal, const Segments &reference, const Segments &current) {
+        Transformation2D pose = proposals_[static_cast<std::size_t>(proposal)].pose;
         for (int i = 0; i < rounds; ++i) {
             chooseAll(reference, current, pose);
             pose = refinement(reference, current, pose) * pose;
         }
         chooseAll(reference, current, pose);
         enterPairs(reference, current, pose);
-        deviation_ = deviationOf(pose);
-        return !chosen_.empty();
+        deviation_ = chosen_.empty() ? noHit : deviationOf(pose);
+        return pose;
     }
     const std::vector<CorrespondencePair> &pairs() const { return chosen_; }
     const LineSegmentRegistration &registration() const { return registration_; }
@@ -45,6 +65,10 @@ public:
     double length() const { return length_; } ///< of the shorter segments of the pairs; metres
 
 private:
+    struct Proposal {
+        Transformation2D pose;
+        double length = 0;
+    };
     static const TypedSegment &at(const Segments &set, int i) { return set[static_cast<std::size_t>(i)]; }
 
     // How far apart two segments lie: at the middle of the shorter, whose line may be unsure elsewhere. Metres;
@@ -144,26 +168,36 @@ private:
         sums.yy = moment * v.y * v.y;
         return sums;
     }
-    bool bestOf(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
-                const Segments &current, Transformation2D &pose) {
-        double most = 0;
-        const auto consider = [&](const Transformation2D &guess) {
-            choose(pairs, reference, current, guess);
-            if (length_ > most) {
-                most = length_;
-                pose = guess;
-            }
-        };
-        Transformation2D guess;
-        for (std::size_t i = 0; i < pairs.size(); ++i) {
-            for (std::size_t j = i + 1; j < pairs.size(); ++j)
-                if (poseOf(pairs[i], pairs[j], reference, current, guess))
-                    consider(guess);
-            for (const bool atEnd : {false, true})
-                if (poseByEnd(at(reference, pairs[i].fixed), at(current, pairs[i].moving), atEnd, guess))
-                    consider(guess);
+    // Keeps the proposals of the most length, one of each place.
+    void enter(const Proposal &p) {
+        if (!(p.length > 0) || most_ == 0)
+            return;
+        int place = -1;
+        for (int i = 0; i < count_ && place < 0; ++i)
+            if (isNear(proposals_[static_cast<std::size_t>(i)].pose, p.pose))
+                place = i;
+        if (place < 0)
+            place = count_ < most_ ? addEmpty() : most_ - 1;
+        else if (proposals_[static_cast<std::size_t>(place)].length >= p.length)
+            return;
+        Proposal &kept = proposals_[static_cast<std::size_t>(place)];
+        if (kept.length >= p.length)
+            return;
+        kept = p;
+        for (; place > 0; --place) {
+            Proposal &better = proposals_[static_cast<std::size_t>(place - 1)];
+            if (better.length >= proposals_[static_cast<std::size_t>(place)].length)
+                break;
+            std::swap(better, proposals_[static_cast<std::size_t>(place)]);
         }
-        return most > 0;
+    }
+    int addEmpty() {
+        proposals_[static_cast<std::size_t>(count_)].length = 0;
+        return count_++;
+    }
+    bool isNear(const Transformation2D &a, const Transformation2D &b) const {
+        return (a.translation() - b.translation()).squaredNorm() <= 4 * distance * distance &&
+               a.cos() * b.cos() + a.sin() * b.sin() >= std::cos(2 * angle);
     }
     // Whether an end of both is an edge that is known well enough, and where it is.
     bool commonEnd(const TypedSegment &r, const TypedSegment &c, bool atEnd, Vector2D<double> &there,
@@ -214,6 +248,8 @@ private:
         }
     }
 
+    std::array<Proposal, 8> proposals_;
+    int count_ = 0, most_ = 0;
     std::vector<CorrespondencePair> chosen_;
     double length_ = 0, deviation_ = 0;
     LineSegmentRegistration registration_;

@@ -50,6 +50,7 @@ public:
 
 private:
     using Pairs = std::vector<CorrespondencePair>;
+    static constexpr int mostPairs = 48; ///< of the last search
 
     void clear() {
         result_.pose = result_.byEdges = Transformation2D();
@@ -83,7 +84,9 @@ private:
         for (int i = 1; i < settings.searches; ++i)
             if (!searchAgain())
                 break;
-        if (result_.matchedLength == 0)
+        if (result_.evidence == 0 && settings.searches > 1)
+            searchAll();
+        if (result_.evidence == 0)
             return end(first);
         return end(result_.rivalEvidence >= settings.rivalShare * result_.evidence
                        ? RelationOutcome::Ambiguous
@@ -101,7 +104,7 @@ private:
             return RelationOutcome::OnePair;
         const bool haveEdge = poseDifference(found, reference_.segments(), current_.segments(),
                                              consensus_.leastAngle, result_.byEdges);
-        if (place(found))
+        if (place(found, settings.places))
             return RelationOutcome::Matched;
         return haveEdge ? RelationOutcome::Contradiction : RelationOutcome::OneDirection;
     }
@@ -112,7 +115,7 @@ private:
         for (const CorrespondencePair &p : found)
             table_.invalidate(p.fixed, p.moving);
         if (found.size() >= 2)
-            place(found);
+            place(found, settings.places);
         return !found.empty();
     }
     const Pairs &search(MatchingTable &table) {
@@ -125,11 +128,36 @@ private:
                                  reference[static_cast<std::size_t>(row)].segment);
         });
     }
-    // The place of these pairs; the result if it brings more together than those before, else perhaps a rival.
-    bool place(const Pairs &found) {
-        Transformation2D pose;
-        if (!consensus_(found, reference_.segments(), current_.segments(), pose))
-            return false;
+    // Where all that failed: any two pairs that the table has a score for, the highest first.
+    void searchAll() {
+        all_.clear();
+        for (int i = 0; i < first_.rows(); ++i)
+            for (int j = 0; j < first_.columns(); ++j)
+                if (score_.referenceTable()(i, j))
+                    all_.push_back({i, j});
+        if (all_.size() > mostPairs) {
+            const auto shorter = [&](const CorrespondencePair &p) {
+                return std::min(reference_.segments()[static_cast<std::size_t>(p.fixed)].segment.length(),
+                                current_.segments()[static_cast<std::size_t>(p.moving)].segment.length());
+            };
+            std::nth_element(all_.begin(), all_.begin() + mostPairs, all_.end(),
+                             [&](const CorrespondencePair &a, const CorrespondencePair &b) {
+                                 return shorter(a) > shorter(b);
+                             });
+            all_.resize(mostPairs);
+        }
+        place(all_, 8);
+    }
+    // The places of these pairs; false when there is none.
+    bool place(const Pairs &found, int most) {
+        const int count = consensus_.propose(found, reference_.segments(), current_.segments(), most);
+        bool isAny = false;
+        for (int i = 0; i < count; ++i)
+            isAny = judge(consensus_.settle(i, reference_.segments(), current_.segments())) || isAny;
+        return isAny;
+    }
+    // Takes a place for the result if more speaks for it than for those before, else perhaps for a rival.
+    bool judge(const Transformation2D &pose) {
         const LineSegmentRegistration &registration = consensus_.registration();
         if (!pose.isFinite() || !(consensus_.deviation() <= settings.deviation))
             return false;
@@ -165,6 +193,7 @@ private:
     RelationScan reference_, current_;
     RelationScores score_;
     MatchingTable table_, first_, again_;
+    Pairs all_;
     PairSearch search_;
     PairConsensus consensus_;
     SeenThrough seenThrough_;

@@ -19,6 +19,7 @@ struct RelationSettings {
     double virtualReach = 1.0;
     double virtualAngle = 25 * pi / 180; ///< least angle between the lines of a virtual edge; radians
     double leastEdgeDistance = 0.25;     ///< nearer edges have no direction worth comparing; metres
+    int places = 3; ///< of the pairs of a search that are looked at
     /// Most length that stands where the other scan looked through, as a share of the matched length.
     double seenThroughShare = 0.25;
     /// A rival whose pairs are of as much length as this share of the found ones makes the match ambiguous.
@@ -31,7 +32,7 @@ struct RelationSettings {
     bool isValid() const {
         return angleWindow > 0 && angleWindow < pi / 4 && distanceWindow > 0 && std::isfinite(distanceWindow) &&
                threshold >= 0 && threshold <= 1 && virtualReach >= 0 && leastEdgeDistance >= 0 &&
-               rivalShare > 0 && seenThroughShare >= 0 && searches >= 1 && searches <= 100 && deviation > 0 && maxSegments <= 255 && maxVirtualEdges <= 4096;
+               rivalShare > 0 && seenThroughShare >= 0 && searches >= 1 && searches <= 100 && places >= 1 && places <= 8 && deviation > 0 && maxSegments <= 255 && maxVirtualEdges <= 4096;
     }
 };
 
