@@ -347,7 +347,8 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->log, "CARMEN log for log, pairs, free-log, empty-room, corridor and laboratory")
+    sub->add_option("--log", command->log,
+                    "CARMEN log for log, pairs, free-log, empty-room, corridor and laboratory")
         ->type_name("FILE");
     sub->add_option("--every", command->pairOptions.every,
                     "pairs, free-log, free-approach: only every N-th scan")
@@ -362,9 +363,10 @@ void addExperimentCommand(CLI::App &app) {
         ->check(between(0, 10000))
         ->type_name("N")
         ->capture_default_str();
-    sub->add_option("--worlds", command->worlds,
-                    "Folder of cutsquare.json, oblique.json, pillars.json, home.json and corner.json instead of "
-                    "those installed with the program")
+    sub->add_option(
+           "--worlds", command->worlds,
+           "Folder of cutsquare.json, oblique.json, pillars.json, home.json and corner.json instead of "
+           "those installed with the program")
         ->type_name("FOLDER");
     sub->add_option("--runs", command->options.runs, "Scans for each number of points (and each pose)")
         ->check(between(1, 10000))

@@ -34,13 +34,26 @@ public:
             expected_.assign(1, {r, 0});
             observed_.assign(1, {c, 0});
             const vectorlib::ViewComparison both = compare_(expected_, observed_);
-            area.error += both.discrepancy;
+            area.error += between(r, c);
             area.common += both.common;
         }
         return area;
     }
 
 private:
+    using Segment = vectorlib::LineSegment2D<double>;
+    using Point = vectorlib::Vector2D<double>;
+
+    static double triangle(Point a, Point b, Point c) { return std::abs((b - a).cross(c - a)) / 2; }
+    // Of the quadrangle between two segments of one direction; of both triangles where they cross.
+    static double between(const Segment &a, const Segment &b) {
+        const double begin = a.across(b.begin()), end = a.across(b.end());
+        if ((begin > 0) == (end > 0))
+            return std::abs((b.end() - a.begin()).cross(b.begin() - a.end())) / 2;
+        const Point cross = b.begin() + (b.end() - b.begin()) * (begin / (begin - end));
+        return triangle(a.begin(), b.begin(), cross) + triangle(a.end(), b.end(), cross);
+    }
+
     vectorlib::Discrepancy compare_;
     std::vector<vectorlib::VisiblePart<double>> expected_, observed_;
 };

@@ -60,7 +60,8 @@ std::vector<InjectedError> injectedErrors(const World &world, std::uint64_t seed
     std::vector<InjectedError> rows;
     for (int i = 0; i <= 60; ++i) {
         const double turn = 0.5 * i;
-        rows.push_back({true, turn, areas(pairs, scan, scan, Transformation2D(0, 0, turn * vectorlib::pi / 180)).error});
+        rows.push_back(
+            {true, turn, areas(pairs, scan, scan, Transformation2D(0, 0, turn * vectorlib::pi / 180)).error});
     }
     for (int i = 0; i <= 100; ++i)
         rows.push_back({false, 0.01 * i, areas(pairs, scan, scan, Transformation2D(0.01 * i, 0, 0)).error});
@@ -78,8 +79,20 @@ std::vector<Plot> plotsOf(const std::vector<InjectedError> &rows) {
     Curve rotation{"", "#0072b2", {}}, translation{"", "#0072b2", {}};
     for (const InjectedError &r : rows)
         (r.isRotation ? rotation : translation).points.emplace_back(r.amount, r.area);
-    return {{"rotation", "a scan on its copy, turned", "rotation [deg]", "error area [m^2]", false, false, {rotation}},
-            {"translation", "a scan on its copy, moved", "translation [m]", "error area [m^2]", false, false, {translation}}};
+    return {{"rotation",
+             "a scan on its copy, turned",
+             "rotation [deg]",
+             "error area [m^2]",
+             false,
+             false,
+             {rotation}},
+            {"translation",
+             "a scan on its copy, moved",
+             "translation [m]",
+             "error area [m^2]",
+             false,
+             false,
+             {translation}}};
 }
 
 ApproachResult approach(const World &world, std::uint64_t seed, std::size_t every,
@@ -98,7 +111,8 @@ ApproachResult approach(const World &world, std::uint64_t seed, std::size_t ever
                 continue;
             ++result.matched;
             const double area = areas(found.pairs, segments[i], segments[j], found.pose).error;
-            const double distance = std::hypot(scans[j].pose.x - scans[i].pose.x, scans[j].pose.y - scans[i].pose.y);
+            const double distance =
+                std::hypot(scans[j].pose.x - scans[i].pose.x, scans[j].pose.y - scans[i].pose.y);
             if (i == 0)
                 result.rows.push_back({false, distance, area, 1});
             auto &bin = bins[int(distance * 100)];
@@ -128,7 +142,13 @@ std::vector<Plot> plotsOf(const ApproachResult &result) {
     Curve first{"", "#0072b2", {}}, all{"", "#0072b2", {}};
     for (const DistanceArea &r : result.rows)
         (r.isAll ? all : first).points.emplace_back(r.distance, r.area);
-    return {{"first", "the first scan with all others", "distance [m]", "error area [m^2]", false, false, {first}},
+    return {{"first",
+             "the first scan with all others",
+             "distance [m]",
+             "error area [m^2]",
+             false,
+             false,
+             {first}},
             {"all", "all pairs, means of 1 cm", "distance [m]", "error area [m^2]", false, false, {all}}};
 }
 

@@ -27,8 +27,8 @@ struct DistanceArea {
 struct ApproachResult {
     std::vector<DistanceArea> rows;
     std::size_t pairs = 0, matched = 0;
-    double meanFirst = 0, meanAll = 0;     ///< error area; m^2
-    double slopeFirst = 0, slopeAll = 0;   ///< of the area by the distance, least squares; m^2 a metre
+    double meanFirst = 0, meanAll = 0;   ///< error area; m^2
+    double slopeFirst = 0, slopeAll = 0; ///< of the area by the distance, least squares; m^2 a metre
 };
 
 /// 1,480 scans on the way of a world; of all pairs only those of every N-th scan.

@@ -112,7 +112,8 @@ Plot errorPlot(const RelationRun &run, const std::string &name, const std::strin
 
 Plot waysPlot(const RelationRun &run) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    Curve map{"map", "#0072b2", {}}, truth{"true way", "#009e73", {}}, estimate{"estimated way", "#d55e00", {}};
+    Curve map{"map", "#0072b2", {}}, truth{"true way", "#009e73", {}},
+        estimate{"estimated way", "#d55e00", {}};
     for (const auto &s : run.map) {
         map.points.emplace_back(s.begin().x, s.begin().y);
         map.points.emplace_back(s.end().x, s.end().y);
@@ -135,6 +136,12 @@ std::size_t RelationRun::lost() const {
     }));
 }
 
+std::size_t RelationRun::wrong() const {
+    return std::size_t(std::count_if(steps.begin(), steps.end(), [](const RelationStep &s) {
+        return s.errorMetres > 0.5 || s.errorDegrees > 10;
+    }));
+}
+
 RelationRun relationRun(const std::vector<PosedScan> &scans, const RelationRunOptions &options) {
     RelationRun run;
     Runner runner;
@@ -145,7 +152,8 @@ RelationRun relationRun(const std::vector<PosedScan> &scans, const RelationRunOp
         step.globalErrorMetres = metresApart(estimate, truth);
         step.globalErrorDegrees = degreesApart(estimate, truth);
         if (i > 0)
-            run.length += std::hypot(scans[i].pose.x - scans[i - 1].pose.x, scans[i].pose.y - scans[i - 1].pose.y);
+            run.length +=
+                std::hypot(scans[i].pose.x - scans[i - 1].pose.x, scans[i].pose.y - scans[i - 1].pose.y);
         run.steps.push_back(step);
         if (options.progress)
             options.progress(i + 1, scans.size());
@@ -166,9 +174,12 @@ nlohmann::ordered_json summaryOf(const RelationRun &run, const nlohmann::ordered
                                      {"length_m", run.length},
                                      {"matched", times.size()},
                                      {"lost", run.lost()},
+                                     {"wrong", run.wrong()},
                                      {"mean_error_m", mean(metres)},
+                                     {"median_error_m", median(metres)},
                                      {"largest_error_m", most(metres)},
                                      {"mean_error_deg", mean(turns)},
+                                     {"median_error_deg", median(turns)},
                                      {"largest_error_deg", most(turns)},
                                      {"mean_error_area_percent", mean(percents)},
                                      {"median_us", median(times)},

@@ -16,7 +16,7 @@ namespace hermes::vector {
 struct RelationStep {
     vectorlib::RelationOutcome outcome = vectorlib::RelationOutcome::Matched;
     vectorlib::Pose2D estimate, truth;
-    double errorMetres = 0, errorDegrees = 0;             ///< of the motion since the scan it was matched with
+    double errorMetres = 0, errorDegrees = 0; ///< of the motion since the scan it was matched with
     double globalErrorMetres = 0, globalErrorDegrees = 0; ///< of the pose
     MatchedArea area;
     std::size_t segments = 0, pairs = 0;
@@ -29,7 +29,8 @@ struct RelationRun {
     std::vector<vectorlib::LineSegment2D<double>> map;
     double length = 0; ///< of the true way; metres
 
-    std::size_t lost() const; ///< scans that were not matched
+    std::size_t lost() const;  ///< scans that were not matched
+    std::size_t wrong() const; ///< matched ones whose motion is wrong by more than 0.5 m or 10 degrees
 };
 
 struct RelationRunOptions {

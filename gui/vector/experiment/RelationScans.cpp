@@ -86,7 +86,8 @@ std::vector<PosedScan> scansAt(const World &world, const std::vector<Pose2D> &po
             const double real = nominal + scanner.directionNoise * degree * even(random);
             double range = vectorlib::noHit;
             for (const Segment &e : edges)
-                range = std::min(range, vectorlib::rayDistance({std::cos(real), std::sin(real)}, e.begin(), e.end()));
+                range = std::min(
+                    range, vectorlib::rayDistance({std::cos(real), std::sin(real)}, e.begin(), e.end()));
             range += scanner.rangeNoise * even(random);
             if (range > 0 && range < HalfTurnScanner::maxRange)
                 scans.back().points.emplace_back(

@@ -19,13 +19,13 @@ struct PosedScan {
 /// directions by up to 0.1 degree, both spread evenly. Rays without a wall within 30 m have no return.
 struct HalfTurnScanner {
     static constexpr int rays = 181;
-    double rangeNoise = 0.025;     ///< metres
-    double directionNoise = 0.1;   ///< degrees
+    double rangeNoise = 0.025;             ///< metres
+    double directionNoise = 0.1;           ///< degrees
     static constexpr double maxRange = 30; ///< metres
 };
 
-/// So many poses at even steps along a smooth way through all poses of a world, headed as it goes. Each part is
-/// a cubic curve that is nearly an arc.
+/// So many poses at even steps along a smooth way through all poses of a world, headed as it goes. Each part
+/// is a cubic curve that is nearly an arc.
 std::vector<vectorlib::Pose2D> posesAlong(const World &world, std::size_t count);
 /// How far it is along the poses; metres.
 double lengthOf(const std::vector<vectorlib::Pose2D> &poses);

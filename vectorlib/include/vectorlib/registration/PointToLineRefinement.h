@@ -28,8 +28,8 @@ public:
     void add(const LineSegment2D<double> &fixed, const TlsSums &sums, double weight) {
         accumulate(fixed, sums, weight, 1);
     }
-    /// Static points with `sums` belong onto `moving`, which the step moves: to first order they move the other
-    /// way.
+    /// Static points with `sums` belong onto `moving`, which the step moves: to first order they move the
+    /// other way.
     void addStatic(const LineSegment2D<double> &moving, const TlsSums &sums, double weight) {
         accumulate(moving, sums, weight, -1);
     }

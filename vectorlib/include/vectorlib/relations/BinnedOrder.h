@@ -6,8 +6,8 @@
 
 namespace vectorlib {
 
-/// Things ordered by a parameter in bins as wide as a window: all that lie within the window of a value are in
-/// one range of the bins around it. Built in linear time; keeps its buffers.
+/// Things ordered by a parameter in bins as wide as a window: all that lie within the window of a value are
+/// in one range of the bins around it. Built in linear time; keeps its buffers.
 template <typename Thing>
 class BinnedOrder {
 public:

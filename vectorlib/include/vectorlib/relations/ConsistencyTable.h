@@ -9,9 +9,9 @@
 namespace vectorlib {
 
 /// Algorithm 2 with an erratum: whether two lengths with their types of ends may be of one structure. As
-/// printed only equal lengths of complete segments pass, which measured lengths never are, and 4.1.1 asks that
-/// they be sufficiently close. Lengths that differ by no more than the window and the slack of the ends that
-/// are edges count as equal.
+/// printed only equal lengths of complete segments pass, which measured lengths never are, and 4.1.1 asks
+/// that they be sufficiently close. Lengths that differ by no more than the window and the slack of the ends
+/// that are edges count as equal.
 inline bool lengthsMayMatch(const TypedSegment &a, const TypedSegment &b, double window) {
     const double la = a.segment.length(), lb = b.segment.length();
     const auto slack = [](const TypedSegment &s) {
@@ -28,9 +28,9 @@ inline bool anglesMatch(double a, double b, double window) {
 }
 
 /// Which segments of one set may match which of another: 1 or 0 by row and column. Pose-free thesis 4.1.3:
-/// lengths and types of ends (4.1.1), and the edges at their ends (4.1.2): where both have an edge at the same
-/// end the angles must be equal, or keep the bound of a jump, and the segments beyond must have lengths that
-/// may match. Keeps its buffer.
+/// lengths and types of ends (4.1.1), and the edges at their ends (4.1.2): where both have an edge at the
+/// same end the angles must be equal, or keep the bound of a jump, and the segments beyond must have lengths
+/// that may match. Keeps its buffer.
 class ConsistencyTable {
 public:
     using Segments = std::vector<TypedSegment>;
@@ -44,7 +44,9 @@ public:
                                            endsMayMatch(rows, i, columns, j, settings) &&
                                            beginsMayMatch(rows, i, columns, j, settings);
     }
-    bool operator()(std::size_t row, std::size_t column) const { return cells_[row * columns_ + column] != 0; }
+    bool operator()(std::size_t row, std::size_t column) const {
+        return cells_[row * columns_ + column] != 0;
+    }
     bool operator()(int row, int column) const {
         return (*this)(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
     }

@@ -21,7 +21,8 @@ struct Corner {
     double angle = 0;
 };
 
-/// Where the lines of two segments cross; metres. False when they are nearer to parallel than the least angle.
+/// Where the lines of two segments cross; metres. False when they are nearer to parallel than the least
+/// angle.
 inline bool crossing(const LineSegment2D<double> &a, const LineSegment2D<double> &b, double leastSine,
                      Vector2D<double> &point) {
     const double sine = a.direction().cross(b.direction());
@@ -31,9 +32,9 @@ inline bool crossing(const LineSegment2D<double> &a, const LineSegment2D<double>
     return true;
 }
 
-/// Finds the corners of a set of segments: angle and jump edges in the order of the scan, then virtual ones by
-/// their segments. Of virtual ones the lines must cross near enough to both segments to be known, and only so
-/// many are kept, those that lie nearest in lengths of their segments. Keeps its buffers.
+/// Finds the corners of a set of segments: angle and jump edges in the order of the scan, then virtual ones
+/// by their segments. Of virtual ones the lines must cross near enough to both segments to be known, and only
+/// so many are kept, those that lie nearest in lengths of their segments. Keeps its buffers.
 class CornerFinder {
 public:
     /// Returns how many virtual edges were left out for the bound.
@@ -90,9 +91,8 @@ private:
                                  return a.far != b.far ? a.far < b.far : order(a.corner) < order(b.corner);
                              });
         candidates_.resize(kept);
-        std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate &a, const Candidate &b) {
-            return order(a.corner) < order(b.corner);
-        });
+        std::sort(candidates_.begin(), candidates_.end(),
+                  [&](const Candidate &a, const Candidate &b) { return order(a.corner) < order(b.corner); });
         for (const Candidate &c : candidates_)
             corners.push_back(c.corner);
         return found - kept;

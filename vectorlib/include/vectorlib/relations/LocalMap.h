@@ -6,21 +6,21 @@
 
 namespace vectorlib {
 
-/// A local map that grows scan by scan. Pose-free thesis 5.8, Algorithm 11. Map frame: that of the first scan.
-/// A segment that matches one of the scan before is merged into the map's segment of that one; another that
-/// overlaps parallel map segments on its line is merged with all of them; the rest is new.
+/// A local map that grows scan by scan. Pose-free thesis 5.8, Algorithm 11. Map frame: that of the first
+/// scan. A segment that matches one of the scan before is merged into the map's segment of that one; another
+/// that overlaps parallel map segments on its line is merged with all of them; the rest is new.
 class LocalMap {
 public:
-    double angle = 5 * pi / 180;  ///< of what counts as parallel; radians
-    double distance = 0.10;       ///< and as on one line; metres
+    double angle = 5 * pi / 180; ///< of what counts as parallel; radians
+    double distance = 0.10;      ///< and as on one line; metres
 
     const VectorMap &map() const { return map_; }
     void clear() {
         map_.clear();
         last_.clear();
     }
-    /// Adds a scan. Pairs hold numbers of segments of the scan before (fixed) and of this one (moving); pose is
-    /// that of the sensor in the map.
+    /// Adds a scan. Pairs hold numbers of segments of the scan before (fixed) and of this one (moving); pose
+    /// is that of the sensor in the map.
     void update(const std::vector<CorrespondencePair> &pairs, const std::vector<TypedSegment> &scan,
                 const Transformation2D &pose) {
         ids_.assign(scan.size(), -1);
@@ -36,7 +36,9 @@ public:
     }
 
 private:
-    bool isAlive(int id) const { return id >= 0 && map_.slots()[static_cast<std::size_t>(id)].observations > 0; }
+    bool isAlive(int id) const {
+        return id >= 0 && map_.slots()[static_cast<std::size_t>(id)].observations > 0;
+    }
     static EdgeRaw2D edgeOf(const TypedSegment &s, const Transformation2D &pose) {
         EdgeRaw2D edge(s.sums, s.segment, 0);
         if (s.sums.n == 0) { // as of its two ends

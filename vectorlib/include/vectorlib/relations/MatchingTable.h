@@ -34,8 +34,8 @@ public:
     double merged(int row, int column) const { return double(merged_[cell(row, column)]) / unit; }
     std::size_t scores() const { return scores_.size(); }
 
-    /// Adds one score to the lists of up to four cells; the same cell twice counts once. Algorithm 4, lines 14
-    /// to 19.
+    /// Adds one score to the lists of up to four cells; the same cell twice counts once. Algorithm 4, lines
+    /// 14 to 19.
     void add(double score, const std::size_t *cells, int count) {
         Score s;
         s.value = static_cast<std::int64_t>(score * unit + 0.5);
@@ -89,8 +89,8 @@ public:
             if (j != column)
                 invalidate(row, j);
     }
-    /// Makes all other pairs invalid that do not come in the order of this one: rows up to it with columns from
-    /// it on, and rows from it on with columns up to it. Both calls of Algorithm 10.
+    /// Makes all other pairs invalid that do not come in the order of this one: rows up to it with columns
+    /// from it on, and rows from it on with columns up to it. Both calls of Algorithm 10.
     void keepInOrder(int row, int column) {
         for (int i = 0; i < rows_; ++i)
             for (int j = 0; j < columns_; ++j)

@@ -1,32 +1,33 @@
 #pragma once
 
+#include "vectorlib/observation/Ray.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/registration/PointToLineRefinement.h"
-#include "vectorlib/observation/Ray.h"
 #include "vectorlib/relations/PoseDifference.h"
 
 #include <array>
 
 namespace vectorlib {
 
-/// The pairs that agree on one place, and the pose that fits them best. Algorithm 5 asks of its pairs only that
-/// they agree on the rotation; a wall taken for a parallel one does that too. Every two pairs that are not
-/// parallel tell a pose, and so does every pair with an end that is an edge in both scans; the pose that brings
-/// most length together wins. Then all segments that lie on each other at that pose are pairs, whatever their
-/// scores: the points of the shorter segment of each come onto the line of the longer, and common ends onto
-/// each other. Cubic in the pairs; keeps its buffers.
+/// The pairs that agree on one place, and the pose that fits them best. Algorithm 5 asks of its pairs only
+/// that they agree on the rotation; a wall taken for a parallel one does that too. Every two pairs that are
+/// not parallel tell a pose, and so does every pair with an end that is an edge in both scans; the pose that
+/// brings most length together wins. Then all segments that lie on each other at that pose are pairs,
+/// whatever their scores: the points of the shorter segment of each come onto the line of the longer, and
+/// common ends onto each other. Cubic in the pairs; keeps its buffers.
 class PairConsensus {
 public:
     using Segments = std::vector<TypedSegment>;
 
-    double distance = 0.10;          ///< of the middle of a segment from the line of its partner; metres
-    double angle = 5 * pi / 180;     ///< between the segments of a pair; radians
+    double distance = 0.10;            ///< of the middle of a segment from the line of its partner; metres
+    double angle = 5 * pi / 180;       ///< between the segments of a pair; radians
     double leastAngle = 20 * pi / 180; ///< between the lines that tell a pose; radians
     double overlap = 0.3;              ///< least share of the shorter segment beside its partner
     double noise = 0.015;              ///< standard deviation of a point; metres
     int rounds = 3;                    ///< of refinement and choice of pairs
 
-    /// Finds the places of these pairs; returns how many there are, at most `most` (no more than 8), best first.
+    /// Finds the places of these pairs; returns how many there are, at most `most` (no more than 8), best
+    /// first.
     int propose(const std::vector<CorrespondencePair> &pairs, const Segments &reference,
                 const Segments &current, int most) {
         count_ = 0;
@@ -71,8 +72,8 @@ private:
     };
     static const TypedSegment &at(const Segments &set, int i) { return set[static_cast<std::size_t>(i)]; }
 
-    // How far apart two segments lie: at the middle of the shorter, whose line may be unsure elsewhere. Metres;
-    // more than the limit where they are turned too much.
+    // How far apart two segments lie: at the middle of the shorter, whose line may be unsure elsewhere.
+    // Metres; more than the limit where they are turned too much.
     double apart(const LineSegment2D<double> &r, const LineSegment2D<double> &c) const {
         if (!(r.direction().dot(c.direction()) >= std::cos(angle)))
             return 2 * distance;
@@ -85,8 +86,8 @@ private:
         for (const CorrespondencePair &p : pairs)
             if (apart(at(reference, p.fixed).segment, pose * at(current, p.moving).segment) <= distance) {
                 chosen_.push_back(p);
-                length_ += std::min(at(reference, p.fixed).segment.length(),
-                                    at(current, p.moving).segment.length());
+                length_ +=
+                    std::min(at(reference, p.fixed).segment.length(), at(current, p.moving).segment.length());
             }
     }
     // Of all segments, those that lie on each other: each current one with the nearest reference.
@@ -215,8 +216,8 @@ private:
         const Vector2D<double> v = r.segment.direction(), d = c.segment.direction();
         const double alpha = std::atan2(d.cross(v), d.dot(v));
         const Transformation2D turn(0, 0, alpha);
-        const Vector2D<double> t = v * v.dot(there - turn * here) -
-                                   v.left() * r.segment.across(turn * c.segment.middle());
+        const Vector2D<double> t =
+            v * v.dot(there - turn * here) - v.left() * r.segment.across(turn * c.segment.middle());
         pose = Transformation2D(t.x, t.y, alpha);
         return true;
     }
@@ -230,8 +231,7 @@ private:
             return false;
         const double wp = precisionValue(a, c), wq = precisionValue(b, d);
         const Vector2D<double> u = a.direction(), v = b.direction(), s = c.direction(), t = d.direction();
-        const double alpha =
-            std::atan2(wp * s.cross(u) + wq * t.cross(v), wp * s.dot(u) + wq * t.dot(v));
+        const double alpha = std::atan2(wp * s.cross(u) + wq * t.cross(v), wp * s.dot(u) + wq * t.dot(v));
         const Transformation2D turn(0, 0, alpha);
         const double first = -a.across(turn * c.middle()), second = -b.across(turn * d.middle());
         // n_a . x = first, n_b . x = second

@@ -13,9 +13,9 @@ namespace vectorlib {
 /// column invalid (Algorithm 7), or all that is not in its order (Algorithm 10). Keeps its buffers.
 class PairSearch {
 public:
-    double threshold = 0;              ///< merged scores must be above it
-    double window = 5 * pi / 180;      ///< of rotations; radians
-    bool sameOrder = false;            ///< Algorithm 10 instead of 7
+    double threshold = 0;                     ///< merged scores must be above it
+    double window = 5 * pi / 180;             ///< of rotations; radians
+    bool sameOrder = false;                   ///< Algorithm 10 instead of 7
     static constexpr int mostSteps = 1 << 14; ///< pairs looked at, matched or not
 
     /// rotation(row, column) is the angle that turns the current segment onto the reference one. What was

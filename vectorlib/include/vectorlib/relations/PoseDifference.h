@@ -46,7 +46,8 @@ inline bool poseDifference(const std::vector<CorrespondencePair> &pairs,
             const auto at = [](const std::vector<TypedSegment> &set, int k) -> const LineSegment2D<double> & {
                 return set[static_cast<std::size_t>(k)].segment;
             };
-            const LineSegment2D<double> &k = at(reference, pairs[i].fixed), &u = at(reference, pairs[j].fixed);
+            const LineSegment2D<double> &k = at(reference, pairs[i].fixed),
+                                        &u = at(reference, pairs[j].fixed);
             const LineSegment2D<double> &m = at(current, pairs[i].moving), &v = at(current, pairs[j].moving);
             Vector2D<double> there, here;
             if (!crossing(k, u, sine, there) || !crossing(m, v, sine, here))

@@ -59,8 +59,9 @@ struct RelationMatch {
     double matchedLength = 0;                 ///< of the shorter segments of the pairs; metres
     double evidence = 0;      ///< matched length less what stands where the other scan looked through; metres
     double rivalEvidence = 0; ///< the same of the best place elsewhere; metres
-    std::size_t leftOut = 0;        ///< segments that are not finite, have no length, or are beyond the bound
+    std::size_t leftOut = 0;  ///< segments that are not finite, have no length, or are beyond the bound
     std::size_t virtualLeftOut = 0; ///< virtual edges beyond the bound
+    bool isCut = false;             ///< the bound on scores left out relations
     std::size_t scores = 0;         ///< entries of the matching table: the work done
 
     bool isMatched() const { return outcome == RelationOutcome::Matched; }

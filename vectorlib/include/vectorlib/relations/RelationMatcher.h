@@ -9,15 +9,16 @@
 
 namespace vectorlib {
 
-/// Matches two sets of line segments without any estimate of the pose, by what does not depend on it: lengths,
-/// angles between segments, distances of parallel ones, distances of edges. Pose-free thesis, chapters 3 to 5.
-/// Relations that are rare tell most.
+/// Matches two sets of line segments without any estimate of the pose, by what does not depend on it:
+/// lengths, angles between segments, distances of parallel ones, distances of edges. Pose-free thesis,
+/// chapters 3 to 5. Relations that are rare tell most.
 ///
-/// The search of Algorithm 5 is repeated without the pairs that it found, and the place that brings most length
-/// together is the match. Where another place does nearly as well the match is ambiguous.
+/// The search of Algorithm 5 is repeated without the pairs that it found, and the place that brings most
+/// length together is the match. Where another place does nearly as well the match is ambiguous.
 ///
-/// Never more than settings.maxSegments segments and maxVirtualEdges virtual edges of a scan take part, so that
-/// time and memory are bounded. Keeps its buffers: no allocation once they have grown.
+/// Never more than settings.maxSegments segments, maxVirtualEdges virtual edges of a scan and maxScores
+/// scores take part, so that time and memory are bounded; the result says what was left out. Keeps its
+/// buffers: no allocation once they have grown.
 class RelationMatcher {
 public:
     using Segments = std::vector<TypedSegment>;
@@ -59,6 +60,7 @@ private:
         result_.score = result_.reliability = result_.ambiguity = result_.deviation = 0;
         result_.matchedLength = result_.evidence = result_.rivalEvidence = 0;
         result_.leftOut = result_.virtualLeftOut = result_.scores = 0;
+        result_.isCut = false;
     }
     const RelationMatch &end(RelationOutcome outcome) {
         result_.outcome = outcome;
@@ -75,9 +77,11 @@ private:
             return end(RelationOutcome::TooFewCurrent);
         score_(reference, reference_.relations(), current, current_.relations(), settings, table_);
         result_.scores = table_.scores();
+        result_.isCut = score_.isCut();
         result_.score = table_.maximum().score;
         if (result_.score == 0)
             return end(RelationOutcome::NoCommonRelation);
+        leastSeen_ = std::min(lengthOf(reference), lengthOf(current));
         consensus_.distance = settings.distanceWindow;
         consensus_.angle = settings.angleWindow;
         const RelationOutcome first = searchFirst();
@@ -91,6 +95,12 @@ private:
         return end(result_.rivalEvidence >= settings.rivalShare * result_.evidence
                        ? RelationOutcome::Ambiguous
                        : RelationOutcome::Matched);
+    }
+    static double lengthOf(const Segments &segments) {
+        double length = 0;
+        for (const TypedSegment &s : segments)
+            length += s.segment.length();
+        return length;
     }
     // As published; also what is wrong where it leads nowhere.
     RelationOutcome searchFirst() {
@@ -159,16 +169,17 @@ private:
     // Takes a place for the result if more speaks for it than for those before, else perhaps for a rival.
     bool judge(const Transformation2D &pose) {
         const LineSegmentRegistration &registration = consensus_.registration();
-        if (!pose.isFinite() || !(consensus_.deviation() <= settings.deviation))
+        if (!pose.isFinite() || consensus_.pairs().size() < 2 ||
+            !(consensus_.deviation() <= settings.deviation))
             return false;
         const double against = seenThrough_(reference_.segments(), current_.segments(), pose);
         const double evidence = consensus_.length() - against;
-        if (against > settings.seenThroughShare * consensus_.length())
+        if (against > settings.seenThroughShare * consensus_.length() ||
+            consensus_.length() < settings.matchedShare * leastSeen_)
             return false;
         const bool isBest = evidence > result_.evidence;
         if (!isSamePlace(pose))
-            result_.rivalEvidence =
-                std::max(result_.rivalEvidence, isBest ? result_.evidence : evidence);
+            result_.rivalEvidence = std::max(result_.rivalEvidence, isBest ? result_.evidence : evidence);
         if (!isBest)
             return true;
         result_.evidence = evidence;
@@ -197,6 +208,7 @@ private:
     PairSearch search_;
     PairConsensus consensus_;
     SeenThrough seenThrough_;
+    double leastSeen_ = 0; // length of all segments of the scan that has less; metres
     RelationMatch result_;
 };
 

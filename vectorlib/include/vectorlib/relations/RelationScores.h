@@ -5,8 +5,8 @@
 
 namespace vectorlib {
 
-/// Fills a matching table from the relations of two scans. Pose-free thesis 5.1, 5.2, Algorithms 3 and 4: every
-/// relation of the current scan has the score 1 / (Count_c Count_r), by how many of its own and of the
+/// Fills a matching table from the relations of two scans. Pose-free thesis 5.1, 5.2, Algorithms 3 and 4:
+/// every relation of the current scan has the score 1 / (Count_c Count_r), by how many of its own and of the
 /// reference scan match it (erratum 12), and it goes to all pairs of segments of every relation that matches.
 /// Keeps its buffers.
 class RelationScores {
@@ -17,6 +17,9 @@ public:
     const ConsistencyTable &referenceTable() const { return toReference_; }
     const ConsistencyTable &currentTable() const { return toCurrent_; }
 
+    /// Whether the bound on scores left out relations: kinds that are many times in both scans.
+    bool isCut() const { return isCut_; }
+
     void operator()(const Segments &reference, const RelationSet &ofReference, const Segments &current,
                     const RelationSet &ofCurrent, const RelationSettings &settings, MatchingTable &table) {
         toReference_.fill(reference, current, settings);
@@ -25,10 +28,12 @@ public:
                                  settings.angleWindow);
         cornersToCurrent_.fill(ofCurrent.corners(), ofCurrent.corners(), toCurrent_, settings.angleWindow);
         table.reset(reference.size(), current.size());
+        isCut_ = false;
+        most_ = settings.maxScores;
         scoreLengths(ofReference, current, ofCurrent, table);
-        scorePairs(ofCurrent.angles(), ofReference, ofCurrent, table);
-        scorePairs(ofCurrent.parallels(), ofReference, ofCurrent, table);
         scoreCorners(ofReference, ofCurrent, table);
+        scorePairs(ofCurrent.parallels(), ofReference, ofCurrent, table);
+        scorePairs(ofCurrent.angles(), ofReference, ofCurrent, table);
     }
 
 private:
@@ -63,6 +68,8 @@ private:
             });
             if (cells_.empty())
                 continue;
+            if (!hasRoom(table))
+                return;
             int count = 0;
             ofCurrent.like(c, [&](const Relation &other) {
                 count += toCurrent_(other.first, c.first) && toCurrent_(other.second, c.second);
@@ -80,6 +87,8 @@ private:
             });
             if (cells_.empty())
                 continue;
+            if (!hasRoom(table))
+                return;
             int count = 0;
             ofCurrent.like(c, [&](const CornerRelation &other) {
                 count += cornersToCurrent_(other.first, c.first) && cornersToCurrent_(other.second, c.second);
@@ -110,6 +119,10 @@ private:
         add(b.second, q.second);
         return result;
     }
+    bool hasRoom(const MatchingTable &table) {
+        isCut_ = isCut_ || table.scores() + cells_.size() > most_;
+        return !isCut_;
+    }
     static double scoreOf(int count, std::size_t matches) {
         return 1 / (double(std::max(1, count)) * double(matches));
     }
@@ -123,6 +136,8 @@ private:
     CornerTable cornersToReference_, cornersToCurrent_;
     std::vector<int> numbers_;
     std::vector<Cells> cells_;
+    std::size_t most_ = 0;
+    bool isCut_ = false;
 };
 
 } // namespace vectorlib

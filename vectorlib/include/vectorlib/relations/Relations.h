@@ -37,9 +37,9 @@ struct ParallelRelation {
 /// line from the first corner to the second. A jump has one segment, and one angle is missing.
 struct CornerRelation {
     std::int16_t first = 0, second = 0;
-    float distance = 0;                  ///< metres
-    TurnPart angles[4] = {0, 0, 0, 0};   ///< of the first corner's segments, then the second's
-    std::uint8_t present = 0;            ///< bit i: angles[i] is there
+    float distance = 0;                ///< metres
+    TurnPart angles[4] = {0, 0, 0, 0}; ///< of the first corner's segments, then the second's
+    std::uint8_t present = 0;          ///< bit i: angles[i] is there
 };
 
 /// How two segments of one scan lie beside each other, when they are parallel within the window; false when
@@ -50,9 +50,9 @@ inline bool parallelRelation(const TypedSegment &a, const TypedSegment &b, doubl
     if (!anglesMatch(angle, 0, window) && !anglesMatch(angle, pi, window))
         return false;
     relation.angle = turnPart(angle);
-    relation.across = static_cast<float>((std::abs(a.segment.across(b.segment.middle())) +
-                                          std::abs(b.segment.across(a.segment.middle()))) /
-                                         2);
+    relation.across = static_cast<float>(
+        (std::abs(a.segment.across(b.segment.middle())) + std::abs(b.segment.across(a.segment.middle()))) /
+        2);
     // Both as intervals along the first; the ends of the second in the order along it.
     const bool isSame = anglesMatch(angle, 0, pi / 2);
     const double begin = a.segment.along(isSame ? b.segment.begin() : b.segment.end());

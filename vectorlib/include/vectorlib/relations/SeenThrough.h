@@ -7,15 +7,15 @@
 
 namespace vectorlib {
 
-/// How much of one scan stands where the other has looked through: what is between a sensor and a segment that it
-/// sees is free. Two rooms that are alike but not the same contradict each other so.
+/// How much of one scan stands where the other has looked through: what is between a sensor and a segment
+/// that it sees is free. Two rooms that are alike but not the same contradict each other so.
 class SeenThrough {
 public:
     double margin = 0.25; ///< how far in front of the other's segment counts; metres
     int samples = 4;      ///< along each segment
 
-    /// Length of the segments of either scan that stand in the free space of the other when the pose brings the
-    /// current scan onto the reference; metres.
+    /// Length of the segments of either scan that stand in the free space of the other when the pose brings
+    /// the current scan onto the reference; metres.
     double operator()(const std::vector<TypedSegment> &reference, const std::vector<TypedSegment> &current,
                       const Transformation2D &pose) const {
         return standingIn(reference, current, pose) + standingIn(current, reference, pose.inverse());

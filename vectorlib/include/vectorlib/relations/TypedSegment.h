@@ -6,8 +6,8 @@
 
 namespace vectorlib {
 
-/// What the end of a segment is. Pose-free thesis 3.2, 3.3. Angle and Jump are edge points: the structure ends
-/// there. At an Interior end it may go on unseen.
+/// What the end of a segment is. Pose-free thesis 3.2, 3.3. Angle and Jump are edge points: the structure
+/// ends there. At an Interior end it may go on unseen.
 enum class EndType { Interior, Jump, Angle };
 
 /// One end of a segment.

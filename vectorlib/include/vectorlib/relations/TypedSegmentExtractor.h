@@ -98,8 +98,8 @@ private:
             return false;
         const double slack = std::sin(beamSlack * step_) * at.norm();
         const double near = 2 * ((p - q).norm() + step_ * at.norm());
-        return p.normalized().cross(at) >= -slack && at.cross(q.normalized()) >= -slack &&
-               at.dot(p) > 0 && (at - p).norm() <= near && (at - q).norm() <= near;
+        return p.normalized().cross(at) >= -slack && at.cross(q.normalized()) >= -slack && at.dot(p) > 0 &&
+               (at - p).norm() <= near && (at - q).norm() <= near;
     }
     static SegmentEnd corner(const ScanLine &a, const ScanLine &b, Point &at) {
         crossing(a.line.segment, b.line.segment, 0, at);
