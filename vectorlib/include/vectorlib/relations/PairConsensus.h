@@ -5,6 +5,7 @@
 #include "vectorlib/registration/PointToLineRefinement.h"
 #include "vectorlib/relations/PoseDifference.h"
 
+#include <Eigen/LU>
 #include <array>
 
 namespace vectorlib {

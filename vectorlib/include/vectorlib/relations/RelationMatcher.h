@@ -105,7 +105,7 @@ private:
     // As published; also what is wrong where it leads nowhere.
     RelationOutcome searchFirst() {
         first_ = table_;
-        const Pairs &found = search(first_);
+        const Pairs &found = search(first_, settings.threshold);
         for (const CorrespondencePair &p : found)
             result_.byScores.push_back({reference_.given(p.fixed), current_.given(p.moving)});
         for (const CorrespondencePair &p : found)
@@ -121,15 +121,15 @@ private:
     // Without the pairs that were found before; false when nothing is left.
     bool searchAgain() {
         again_ = table_;
-        const Pairs &found = search(again_);
+        const Pairs &found = search(again_, settings.laterThreshold);
         for (const CorrespondencePair &p : found)
             table_.invalidate(p.fixed, p.moving);
         if (found.size() >= 2)
             place(found, settings.places);
         return !found.empty();
     }
-    const Pairs &search(MatchingTable &table) {
-        search_.threshold = settings.threshold * result_.score;
+    const Pairs &search(MatchingTable &table, double threshold) {
+        search_.threshold = threshold * result_.score;
         search_.window = settings.angleWindow;
         search_.sameOrder = settings.sameOrder;
         const Segments &reference = reference_.segments(), &current = current_.segments();

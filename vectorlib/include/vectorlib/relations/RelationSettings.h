@@ -13,6 +13,8 @@ struct RelationSettings {
     double distanceWindow = 0.10;      ///< lengths and distances no farther apart are equal; metres
     /// Least merged score of a pair, as a share of the largest one. The published value is not known.
     double threshold = 0.10;
+    /// The same of the searches after the first, which look for places that fewer relations tell.
+    double laterThreshold = 0.02;
     /// Matching segments come in one order in both scans (5.7, Algorithm 10): for small motions.
     bool sameOrder = false;
     /// A virtual edge lies no farther from either of its segments than this many of its lengths.
@@ -34,10 +36,10 @@ struct RelationSettings {
 
     bool isValid() const {
         return angleWindow > 0 && angleWindow < pi / 4 && distanceWindow > 0 &&
-               std::isfinite(distanceWindow) && threshold >= 0 && threshold <= 1 && virtualReach >= 0 &&
-               leastEdgeDistance >= 0 && rivalShare > 0 && seenThroughShare >= 0 && matchedShare >= 0 &&
-               searches >= 1 && searches <= 100 && places >= 1 && places <= 8 && deviation > 0 &&
-               maxSegments <= 255 && maxVirtualEdges <= 256 && maxScores <= 10000000;
+               std::isfinite(distanceWindow) && threshold >= 0 && threshold <= 1 && laterThreshold >= 0 &&
+               virtualReach >= 0 && leastEdgeDistance >= 0 && rivalShare > 0 && seenThroughShare >= 0 &&
+               matchedShare >= 0 && searches >= 1 && searches <= 100 && places >= 1 && places <= 8 &&
+               deviation > 0 && maxSegments <= 255 && maxVirtualEdges <= 256 && maxScores <= 10000000;
     }
 };
 
