@@ -138,7 +138,7 @@ private:
                                  reference[static_cast<std::size_t>(row)].segment);
         });
     }
-    // Where all that failed: any two pairs that the table has a score for, the highest first.
+    // Where all that failed: any pairs that are consistent, the longest first.
     void searchAll() {
         all_.clear();
         for (int i = 0; i < first_.rows(); ++i)
@@ -152,7 +152,10 @@ private:
             };
             std::nth_element(all_.begin(), all_.begin() + mostPairs, all_.end(),
                              [&](const CorrespondencePair &a, const CorrespondencePair &b) {
-                                 return shorter(a) > shorter(b);
+                                 const double la = shorter(a), lb = shorter(b);
+                                 return la != lb
+                                            ? la > lb
+                                            : std::pair(a.fixed, a.moving) < std::pair(b.fixed, b.moving);
                              });
             all_.resize(mostPairs);
         }

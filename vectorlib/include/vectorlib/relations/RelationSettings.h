@@ -37,9 +37,10 @@ struct RelationSettings {
     bool isValid() const {
         return angleWindow > 0 && angleWindow < pi / 4 && distanceWindow > 0 &&
                std::isfinite(distanceWindow) && threshold >= 0 && threshold <= 1 && laterThreshold >= 0 &&
-               virtualReach >= 0 && leastEdgeDistance >= 0 && rivalShare > 0 && seenThroughShare >= 0 &&
-               matchedShare >= 0 && searches >= 1 && searches <= 100 && places >= 1 && places <= 8 &&
-               deviation > 0 && maxSegments <= 255 && maxVirtualEdges <= 256 && maxScores <= 10000000;
+               virtualReach >= 0 && virtualAngle > 0 && virtualAngle < pi / 2 && leastEdgeDistance >= 0 &&
+               rivalShare > 0 && seenThroughShare >= 0 && matchedShare >= 0 && searches >= 1 &&
+               searches <= 100 && places >= 1 && places <= 8 && deviation > 0 && maxSegments <= 255 &&
+               maxVirtualEdges <= 256 && maxScores <= 10000000;
     }
 };
 
