@@ -33,6 +33,8 @@ private Q_SLOTS:
     void scoresAreThoseOfTheDefinition();
     void publishedMatchingTable_data();
     void publishedMatchingTable();
+    void aMatchMakesOthersInvalid_data();
+    void aMatchMakesOthersInvalid();
     void rotationIsACircularMean();
     void translationIsDividedByItsWeights();
 
@@ -395,6 +397,30 @@ void TestRelations::publishedMatchingTable() {
                 QVERIFY(std::abs(table.merged(i, j) - table52[i]) < 1e-9);
             else if (threshold == 0)
                 QCOMPARE(table.merged(i, j), 0.0); // exactly
+}
+
+void TestRelations::aMatchMakesOthersInvalid_data() {
+    QTest::addColumn<bool>("sameOrder");
+    QTest::newRow("row and column") << false; // Algorithm 7
+    QTest::newRow("order") << true;           // both calls of Algorithm 10
+}
+
+void TestRelations::aMatchMakesOthersInvalid() {
+    QFETCH(bool, sameOrder);
+    MatchingTable table;
+    table.reset(5, 4);
+    for (std::size_t cell = 0; cell < 20; ++cell)
+        table.add(1, &cell, 1);
+    if (sameOrder)
+        table.keepInOrder(2, 1);
+    else
+        table.keepOnly(2, 1);
+    for (int i = 0; i < 5; ++i)
+        for (int j = 0; j < 4; ++j) {
+            const bool isItself = i == 2 && j == 1;
+            const bool isRival = sameOrder ? (i <= 2 && j >= 1) || (i >= 2 && j <= 1) : i == 2 || j == 1;
+            QCOMPARE(table.merged(i, j), isItself || !isRival ? 1.0 : 0.0);
+        }
 }
 
 void TestRelations::rotationIsACircularMean() {
