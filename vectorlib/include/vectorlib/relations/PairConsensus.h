@@ -4,6 +4,7 @@
 #include "vectorlib/registration/LineSegmentRegistration.h"
 #include "vectorlib/registration/PointToLineRefinement.h"
 #include "vectorlib/relations/PoseDifference.h"
+#include "vectorlib/tls/TlsFit.h"
 
 #include <Eigen/LU>
 #include <array>
@@ -25,7 +26,10 @@ public:
     double leastAngle = 20 * pi / 180; ///< between the lines that tell a pose; radians
     double overlap = 0.3;              ///< least share of the shorter segment beside its partner
     double noise = 0.015;              ///< standard deviation of a point; metres
-    int rounds = 3;                    ///< of refinement and choice of pairs
+    /// Where the lines alone tell the position so well, ends take no part: a jump lies between two beams,
+    /// which move with the sensor, so that a small motion would come out too small. Metres.
+    double linesSuffice = 0.02;
+    int rounds = 3; ///< of refinement and choice of pairs
 
     /// Finds the places of these pairs; returns how many there are, at most `most` (no more than 8), best
     /// first.
@@ -120,14 +124,15 @@ private:
         refine_.start(1e-6, 1e-6);
         for (const CorrespondencePair &p : chosen_) {
             const TypedSegment &r = at(reference, p.fixed), &c = at(current, p.moving);
-            const LineSegment2D<double> moved = pose * c.segment;
-            if (moved.length() < r.segment.length())
-                refine_.add(r.segment, pose * sumsOf(c), 1);
+            if (c.segment.length() < r.segment.length())
+                refine_.add(lineOf(r), pose * sumsOf(c), 1);
             else
-                refine_.addStatic(moved, sumsOf(r), 1);
-            for (const bool atEnd : {false, true})
-                addCommonEnd(r, c, atEnd, pose);
+                refine_.addStatic(pose * lineOf(c), sumsOf(r), 1);
         }
+        if (!(deviationOf(pose) <= linesSuffice))
+            for (const CorrespondencePair &p : chosen_)
+                for (const bool atEnd : {false, true})
+                    addCommonEnd(at(reference, p.fixed), at(current, p.moving), atEnd, pose);
         return refine_.step();
     }
     // A common end holds along the line, as well as both are known.
@@ -155,6 +160,14 @@ private:
         const Eigen::Matrix3d covariance = refine_.information().inverse();
         const double variance = 2 * noise * noise * (j * covariance * j.transpose()).trace();
         return variance > 0 ? std::sqrt(variance) : noHit;
+    }
+    // The line of the points, which may be fewer than those of the segment; the segment where there are none.
+    static LineSegment2D<double> lineOf(const TypedSegment &s) {
+        const Line2D line = s.sums.n > 2 ? fitLine(s.sums).line : Line2D();
+        if (!line.isValid())
+            return s.segment;
+        const Vector2D<double> v = line.direction(), mean = s.sums.mean;
+        return {mean, mean + v, v};
     }
     // Without points, as of 20 spread evenly over each metre.
     static TlsSums sumsOf(const TypedSegment &s) {

@@ -26,7 +26,7 @@ struct TypedSegment {
     LineSegment2D<double> segment;
     SegmentEnd begin, end;
     bool joined = false; ///< its end and the begin of the next segment of the scan are one angle edge
-    TlsSums sums;        ///< of its points, sensor frame; n = 0 where there are none
+    TlsSums sums;        ///< of points that are surely its own, sensor frame; n = 0 where there are none
 
     /// Both ends are edge points: its length is that of the structure.
     bool isComplete() const { return begin.isEdge() && end.isEdge(); }

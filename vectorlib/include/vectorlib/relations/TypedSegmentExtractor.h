@@ -43,6 +43,7 @@ private:
     struct ScanLine {
         std::size_t first = 0, last = 0; // points of the scan
         VectorizedLine line;
+        TlsSums inner; // of its points without the outermost
         bool isKept = false;
     };
 
@@ -57,10 +58,19 @@ private:
             for (const VectorizedLine &line : vectorize(cluster_))
                 lines_.push_back({static_cast<std::size_t>(clusters.order[start + line.first]),
                                   static_cast<std::size_t>(clusters.order[start + line.last]), line,
-                                  isKnown(line)});
+                                  innerSums(line), isKnown(line)});
         }
         std::sort(lines_.begin(), lines_.end(),
                   [](const ScanLine &a, const ScanLine &b) { return a.first < b.first; });
+    }
+    // Of all its points but the outermost, which may belong to the neighbour: a point beyond a corner keeps
+    // its beam when the sensor turns and would hold the motion back.
+    TlsSums innerSums(const VectorizedLine &line) const {
+        if (line.last < line.first + leastTrimmed - 1)
+            return line.sums;
+        const auto first = cluster_.begin() + static_cast<std::ptrdiff_t>(line.first) + 1;
+        const auto last = cluster_.begin() + static_cast<std::ptrdiff_t>(line.last);
+        return TlsSums::of(first, last);
     }
     bool isKnown(const VectorizedLine &line) const {
         if (!line.line.isValid() || line.sums.n < double(minPoints) || !(line.segment.length() >= minLength))
@@ -72,7 +82,7 @@ private:
     TypedSegment typed(PointSpan<float> scan, std::size_t i) const {
         const ScanLine &l = lines_[i];
         TypedSegment s;
-        s.sums = l.line.sums;
+        s.sums = l.inner;
         Point begin = l.line.segment.begin(), end = l.line.segment.end();
         const bool isAfter = i > 0 && isCorner(scan, lines_[i - 1], l);
         const bool isBefore = i + 1 < lines_.size() && isCorner(scan, l, lines_[i + 1]);
@@ -132,6 +142,8 @@ private:
         result.bound = 2 * pi - std::acos(std::clamp(along.dot(p.normalized()), -1.0, 1.0));
         return result;
     }
+
+    static constexpr std::size_t leastTrimmed = 7; // points of a line whose outermost are left out
 
     double step_ = pi / 180;
     std::vector<Vector2D<float>> cluster_;
