@@ -10,6 +10,8 @@
 #include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/RealScanExperiment.h"
 #include "gui/vector/experiment/RegistrationExperiment.h"
+#include "gui/vector/experiment/RelationAreas.h"
+#include "gui/vector/experiment/RelationRun.h"
 #include "gui/vector/experiment/RotationExperiment.h"
 #include "gui/vector/experiment/SegmentationExperiment.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
@@ -143,7 +145,58 @@ struct ExperimentCommand {
         draw(files, {{plotOf(rows)}, {}, {}});
     }
 
+    void freeHome(OutputSet &files, std::ostream &csv) const {
+        relation(files, csv, homeScans(3069), HalfTurnScanner::rays, vectorlib::pi,
+                 {{"scans", 3069}, {"length_m", 43.19}, {"mean_us", 3480}});
+    }
+    void freeLeaps(OutputSet &files, std::ostream &csv) const {
+        relation(files, csv, homeScans(23), HalfTurnScanner::rays, vectorlib::pi,
+                 {{"scans", 23}, {"length_m", 43.19}});
+    }
+    void freeLog(OutputSet &files, std::ostream &csv) const {
+        const vectorlib::CarmenLog read = readLog();
+        std::vector<PosedScan> scans;
+        for (std::size_t i = 0; i < read.scans.size(); i += pairOptions.every) {
+            scans.push_back({{}, read.scans[i].laserPose});
+            read.scans[i].appendPoints(scans.back().points);
+        }
+        if (scans.empty())
+            throw Failure(log + ": found no scan");
+        const vectorlib::CarmenScan &scan = read.scans.front();
+        relation(files, csv, scans, scan.ranges.size(), scan.angleStep * double(scan.ranges.size()),
+                 {{"last_error_x_m", 0.0784}, {"last_error_y_m", -0.0066}, {"last_error_deg", 2.12}});
+    }
+    void freeCopy(OutputSet &files, std::ostream &csv) const {
+        const std::vector<InjectedError> rows = injectedErrors(world("home"), options.seed);
+        writeCsv(csv, rows);
+        draw(files, {plotsOf(rows), {}, {}});
+    }
+    void freeApproach(OutputSet &files, std::ostream &csv) const {
+        const ApproachResult result =
+            approach(world("corner"), options.seed, pairOptions.every, options.progress);
+        writeCsv(csv, result);
+        tell(files, summaryOf(result));
+        draw(files, {plotsOf(result), {}, {}});
+    }
+
 private:
+    std::vector<PosedScan> homeScans(std::size_t count) const {
+        const World home = world("home");
+        return scansAt(home, posesAlong(home, count), options.seed);
+    }
+    void relation(OutputSet &files, std::ostream &csv, const std::vector<PosedScan> &scans, std::size_t rays,
+                  double fieldOfView, const nlohmann::ordered_json &published) const {
+        const RelationRun run = relationRun(scans, {fieldOfView, rays, options.progress});
+        writeCsv(csv, run);
+        tell(files, summaryOf(run, published));
+        draw(files, {plotsOf(run), {}, {}});
+    }
+    // Figures for people: on standard output and beside the table.
+    void tell(OutputSet &files, const nlohmann::ordered_json &summary) const {
+        const std::string text = summary.dump(2) + '\n';
+        open(files, ".json") << text;
+        std::cout << text;
+    }
     // Paper 4: 100 ... 3000 points, noise of 1, 3 and 10 cm.
     const std::vector<int> manyPoints{100, 200, 300, 500, 1000, 2000, 3000};
     const std::vector<double> sigmas{0.01, 0.03, 0.1};
@@ -252,7 +305,14 @@ constexpr Experiment experiments[] = {
     {"weighting", "paper tables 1 and 2: what weights gain, what ambiguity tells",
      &ExperimentCommand::weighting},
     {"reliability", "paper figure 9: reliability at every pose", &ExperimentCommand::reliability},
-    {"rotation", "paper figure 10: Mitsuta's and Wahba's mean rotation", &ExperimentCommand::rotation}};
+    {"rotation", "paper figure 10: Mitsuta's and Wahba's mean rotation", &ExperimentCommand::rotation},
+    {"free-home", "pose-free thesis 6.2, 6.3, 6.11: 3,069 scans of a home", &ExperimentCommand::freeHome},
+    {"free-leaps", "pose-free thesis 6.4, 6.5, 6.11: 23 scans of the same way",
+     &ExperimentCommand::freeLeaps},
+    {"free-copy", "pose-free thesis 6.7, 6.8: a scan on its copy", &ExperimentCommand::freeCopy},
+    {"free-approach", "pose-free thesis 6.9, 6.10: straight to where walls meet",
+     &ExperimentCommand::freeApproach},
+    {"free-log", "pose-free thesis 6.12, 6.13: the scans of --log", &ExperimentCommand::freeLog}};
 
 void ExperimentCommand::run() {
     std::error_code error;
@@ -287,10 +347,11 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->log, "CARMEN log for log, pairs, empty-room, corridor and laboratory")
+    sub->add_option("--log", command->log,
+                    "CARMEN log for log, pairs, free-log, empty-room, corridor and laboratory")
         ->type_name("FILE");
     sub->add_option("--every", command->pairOptions.every,
-                    "pairs: match every N-th scan with the next N-th one")
+                    "pairs, free-log, free-approach: only every N-th scan")
         ->check(between(1, 1e9))
         ->type_name("N")
         ->capture_default_str();
@@ -302,9 +363,10 @@ void addExperimentCommand(CLI::App &app) {
         ->check(between(0, 10000))
         ->type_name("N")
         ->capture_default_str();
-    sub->add_option("--worlds", command->worlds,
-                    "Folder of cutsquare.json, oblique.json and pillars.json instead of those installed with "
-                    "the program")
+    sub->add_option(
+           "--worlds", command->worlds,
+           "Folder of cutsquare.json, oblique.json, pillars.json, home.json and corner.json instead of "
+           "those installed with the program")
         ->type_name("FOLDER");
     sub->add_option("--runs", command->options.runs, "Scans for each number of points (and each pose)")
         ->check(between(1, 10000))

@@ -25,6 +25,9 @@ private Q_SLOTS:
     void weightsNarrowTheScatter();
     void reliabilityFallsWhereWallsAreHidden();
     void wahbaIsMildWithLargeErrors();
+    void leapsThroughAHomeAreMatched();
+    void errorAreaGrowsWithTheError();
+    void errorAreaDoesNotGrowWithTheWay();
     void missingWorldIsNamed();
     void realScansAreShown();
     void latexCompiles();
@@ -239,6 +242,52 @@ void TestExperiments::wahbaIsMildWithLargeErrors() { // paper figure 10
         if (noise > 2.5)
             QVERIFY(wahba < 0.95 * mitsuta);
     }
+}
+
+void TestExperiments::leapsThroughAHomeAreMatched() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"free-leaps", "--out", folder.path()}), 0);
+    const auto rows = table(folder.filePath("free-leaps.csv"));
+    QCOMPARE(rows.size(), 23);
+    double metres = 0, degrees = 0;
+    for (const auto &row : rows.mid(1)) {
+        QVERIFY2(row["matched"] == "1", row["scan"].constData());
+        metres += row["error_m"].toDouble() / 22;
+        degrees += row["error_deg"].toDouble() / 22;
+    }
+    QVERIFY(metres < 0.02 && degrees < 0.5);
+    QVERIFY(lines(folder.filePath("free-leaps.tex")).last() == "\\end{document}");
+    QVERIFY(lines(folder.filePath("free-leaps.json")).join().contains("\"lost\": 0"));
+}
+
+void TestExperiments::errorAreaGrowsWithTheError() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"free-copy", "--out", folder.path()}), 0);
+    QMap<QByteArray, double> last;
+    for (const auto &row : table(folder.filePath("free-copy.csv"))) {
+        const double area = row["error_area_m2"].toDouble();
+        if (row["amount"].toDouble() == 0)
+            QVERIFY(area < 1e-9);
+        else
+            QVERIFY2(area > last[row["kind"]], row["amount"].constData());
+        last[row["kind"]] = area;
+    }
+    QCOMPARE(last.size(), 2);
+}
+
+void TestExperiments::errorAreaDoesNotGrowWithTheWay() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"free-approach", "--every", "40", "--out", folder.path()}), 0);
+    double area[2] = {0, 0}, pairs[2] = {0, 0}; // up to 5 m and beyond 10 m
+    for (const auto &row : table(folder.filePath("free-approach.csv"))) {
+        const double distance = row["distance_m"].toDouble(), count = row["pairs"].toDouble();
+        if (row["pairs_of"] != "first" || (distance > 5 && distance < 10))
+            continue;
+        area[distance > 5] += count * row["error_area_m2"].toDouble();
+        pairs[distance > 5] += count;
+    }
+    QVERIFY(pairs[0] > 300 && pairs[1] > 500);
+    QVERIFY(area[1] / pairs[1] < 1.5 * area[0] / pairs[0]);
 }
 
 void TestExperiments::missingWorldIsNamed() {

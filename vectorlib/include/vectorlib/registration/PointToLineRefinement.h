@@ -26,15 +26,12 @@ public:
     }
     /// Points with `sums` belong onto `fixed`. Working frame: near the sensor.
     void add(const LineSegment2D<double> &fixed, const TlsSums &sums, double weight) {
-        const Vector2D<double> n = fixed.normal(), w(n.y, -n.x); // n . x' = w . x
-        const double u = w.dot(sums.mean), r = n.dot(sums.mean - fixed.begin());
-        const double uu = w.x * w.x * sums.xx + 2 * w.x * w.y * sums.xy + w.y * w.y * sums.yy;
-        const double ur = w.x * n.x * sums.xx + (w.x * n.y + w.y * n.x) * sums.xy + w.y * n.y * sums.yy;
-        const Eigen::Vector3d j(n.x, n.y, u);
-        h_ += square(weight * sums.n, j);
-        h_(2, 2) += weight * uu;
-        g_ += (weight * sums.n * r) * j;
-        g_(2) += weight * ur;
+        accumulate(fixed, sums, weight, 1);
+    }
+    /// Static points with `sums` belong onto `moving`, which the step moves: to first order they move the
+    /// other way.
+    void addStatic(const LineSegment2D<double> &moving, const TlsSums &sums, double weight) {
+        accumulate(moving, sums, weight, -1);
     }
     /// The step (to be multiplied from the left); identity when the equations are singular.
     Transformation2D step() const {
@@ -44,6 +41,18 @@ public:
     const Eigen::Matrix3d &information() const { return h_; }
 
 private:
+    void accumulate(const LineSegment2D<double> &line, const TlsSums &sums, double weight, double sign) {
+        const Vector2D<double> n = line.normal(), w(n.y, -n.x); // n . x' = w . x
+        const double u = w.dot(sums.mean), r = n.dot(sums.mean - line.begin());
+        const double uu = w.x * w.x * sums.xx + 2 * w.x * w.y * sums.xy + w.y * w.y * sums.yy;
+        const double ur = w.x * n.x * sums.xx + (w.x * n.y + w.y * n.x) * sums.xy + w.y * n.y * sums.yy;
+        const Eigen::Vector3d j(n.x, n.y, u);
+        h_ += square(weight * sums.n, j);
+        h_(2, 2) += weight * uu;
+        g_ += (sign * weight * sums.n * r) * j;
+        g_(2) += sign * weight * ur;
+    }
+
     Eigen::Matrix3d h_ = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g_ = Eigen::Vector3d::Zero();
 };

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "vectorlib/correspondence/Match.h"
+
+#include <cstddef>
+
+namespace vectorlib {
+
+/// How a match by relations ended.
+enum class RelationOutcome {
+    Matched,
+    BadSettings,
+    TooFewReference,
+    TooFewCurrent,
+    NoCommonRelation,
+    OnePair,
+    OneDirection,
+    Contradiction,
+    Ambiguous
+};
+
+inline const char *describe(RelationOutcome outcome) {
+    switch (outcome) {
+    case RelationOutcome::Matched:
+        return "matched";
+    case RelationOutcome::BadSettings:
+        return "a setting is negative, zero where it must not be, too large or not a number";
+    case RelationOutcome::TooFewReference:
+        return "fewer than two usable segments in the reference scan";
+    case RelationOutcome::TooFewCurrent:
+        return "fewer than two usable segments in the current scan";
+    case RelationOutcome::NoCommonRelation:
+        return "no relation of the current scan is found in the reference scan";
+    case RelationOutcome::OnePair:
+        return "only one pair of segments matches";
+    case RelationOutcome::OneDirection:
+        return "the directions of the matching segments are too much alike to fix the place";
+    case RelationOutcome::Contradiction:
+        return "the matching segments agree on a rotation, but on no place";
+    case RelationOutcome::Ambiguous:
+        return "another place fits nearly as well";
+    }
+    return "";
+}
+
+/// The match of a current scan with a reference scan. Numbers in pairs are those of the segments as given.
+struct RelationMatch {
+    RelationOutcome outcome = RelationOutcome::NoCommonRelation;
+    /// Moves the current scan onto the reference. Identity unless Matched or Ambiguous.
+    Transformation2D pose;
+    /// The same by common edges alone, as published (Algorithms 8 and 9), from all pairs of the table.
+    Transformation2D byEdges;
+    std::vector<CorrespondencePair> byScores; ///< all pairs that Algorithm 5 found, best first
+    std::vector<CorrespondencePair> pairs;    ///< those of them that agree with the pose
+    double score = 0;                         ///< largest merged score
+    double reliability = 0;                   ///< in [0, 1], of the pairs' directions
+    double ambiguity = 0;                     ///< mean of a pair, weighted by length; m^2
+    double deviation = 0;                     ///< standard deviation of the position; metres
+    double matchedLength = 0;                 ///< of the shorter segments of the pairs; metres
+    double evidence = 0;      ///< matched length less what stands where the other scan looked through; metres
+    double rivalEvidence = 0; ///< the same of the best place elsewhere; metres
+    std::size_t leftOut = 0;  ///< segments that are not finite, have no length, or are beyond the bound
+    std::size_t virtualLeftOut = 0; ///< virtual edges beyond the bound
+    bool isCut = false;             ///< the bound on scores left out relations
+    std::size_t scores = 0;         ///< entries of the matching table: the work done
+
+    bool isMatched() const { return outcome == RelationOutcome::Matched; }
+};
+
+} // namespace vectorlib

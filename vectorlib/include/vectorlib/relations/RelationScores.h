@@ -1,0 +1,143 @@
+#pragma once
+
+#include "vectorlib/relations/MatchingTable.h"
+#include "vectorlib/relations/RelationSet.h"
+
+namespace vectorlib {
+
+/// Fills a matching table from the relations of two scans. Pose-free thesis 5.1, 5.2, Algorithms 3 and 4:
+/// every relation of the current scan has the score 1 / (Count_c Count_r), by how many of its own and of the
+/// reference scan match it (erratum 12), and it goes to all pairs of segments of every relation that matches.
+/// Keeps its buffers.
+class RelationScores {
+public:
+    using Segments = std::vector<TypedSegment>;
+
+    /// The tables of consistency; valid until the next call.
+    const ConsistencyTable &referenceTable() const { return toReference_; }
+    const ConsistencyTable &currentTable() const { return toCurrent_; }
+
+    /// Whether the bound on scores left out relations: kinds that are many times in both scans.
+    bool isCut() const { return isCut_; }
+
+    void operator()(const Segments &reference, const RelationSet &ofReference, const Segments &current,
+                    const RelationSet &ofCurrent, const RelationSettings &settings, MatchingTable &table) {
+        toReference_.fill(reference, current, settings);
+        toCurrent_.fill(current, current, settings);
+        cornersToReference_.fill(ofReference.corners(), ofCurrent.corners(), toReference_,
+                                 settings.angleWindow);
+        cornersToCurrent_.fill(ofCurrent.corners(), ofCurrent.corners(), toCurrent_, settings.angleWindow);
+        table.reset(reference.size(), current.size());
+        isCut_ = false;
+        most_ = settings.maxScores;
+        scoreLengths(ofReference, current, ofCurrent, table);
+        scoreCorners(ofReference, ofCurrent, table);
+        scorePairs(ofCurrent.parallels(), ofReference, ofCurrent, table);
+        scorePairs(ofCurrent.angles(), ofReference, ofCurrent, table);
+    }
+
+private:
+    void scoreLengths(const RelationSet &ofReference, const Segments &current, const RelationSet &ofCurrent,
+                      MatchingTable &table) {
+        for (std::size_t j = 0; j < current.size(); ++j) {
+            numbers_.clear();
+            ofReference.lengthsLike(current[j], [&](int i) {
+                if (toReference_(i, static_cast<int>(j)))
+                    numbers_.push_back(i);
+            });
+            if (numbers_.empty())
+                continue;
+            int count = 0;
+            ofCurrent.lengthsLike(current[j], [&](int i) { count += toCurrent_(i, static_cast<int>(j)); });
+            const double score = scoreOf(count, numbers_.size());
+            for (int i : numbers_) {
+                const std::size_t cell = table.cell(i, static_cast<int>(j));
+                table.add(score, &cell, 1);
+            }
+        }
+    }
+    /// Relations of two segments.
+    template <typename Relation>
+    void scorePairs(const std::vector<Relation> &relations, const RelationSet &ofReference,
+                    const RelationSet &ofCurrent, MatchingTable &table) {
+        for (const Relation &c : relations) {
+            cells_.clear();
+            ofReference.like(c, [&](const Relation &r) {
+                if (toReference_(r.first, c.first) && toReference_(r.second, c.second))
+                    cells_.push_back({{table.cell(r.first, c.first), table.cell(r.second, c.second)}, 2});
+            });
+            if (cells_.empty())
+                continue;
+            if (!hasRoom(table))
+                return;
+            int count = 0;
+            ofCurrent.like(c, [&](const Relation &other) {
+                count += toCurrent_(other.first, c.first) && toCurrent_(other.second, c.second);
+            });
+            addAll(count, table);
+        }
+    }
+    /// Relations of two corners, of up to four segments.
+    void scoreCorners(const RelationSet &ofReference, const RelationSet &ofCurrent, MatchingTable &table) {
+        for (const CornerRelation &c : ofCurrent.cornerRelations()) {
+            cells_.clear();
+            ofReference.like(c, [&](const CornerRelation &r) {
+                if (cornersToReference_(r.first, c.first) && cornersToReference_(r.second, c.second))
+                    cells_.push_back(cellsOf(r, ofReference.corners(), c, ofCurrent.corners(), table));
+            });
+            if (cells_.empty())
+                continue;
+            if (!hasRoom(table))
+                return;
+            int count = 0;
+            ofCurrent.like(c, [&](const CornerRelation &other) {
+                count += cornersToCurrent_(other.first, c.first) && cornersToCurrent_(other.second, c.second);
+            });
+            addAll(count, table);
+        }
+    }
+
+    struct Cells {
+        std::size_t cells[4];
+        int count;
+    };
+    static Cells cellsOf(const CornerRelation &r, const std::vector<Corner> &reference,
+                         const CornerRelation &c, const std::vector<Corner> &current,
+                         const MatchingTable &table) {
+        Cells result{{0, 0, 0, 0}, 0};
+        const auto add = [&](int i, int j) {
+            if (i >= 0 && j >= 0)
+                result.cells[result.count++] = table.cell(i, j);
+        };
+        const Corner &a = reference[static_cast<std::size_t>(r.first)],
+                     &b = reference[static_cast<std::size_t>(r.second)];
+        const Corner &p = current[static_cast<std::size_t>(c.first)],
+                     &q = current[static_cast<std::size_t>(c.second)];
+        add(a.first, p.first);
+        add(a.second, p.second);
+        add(b.first, q.first);
+        add(b.second, q.second);
+        return result;
+    }
+    bool hasRoom(const MatchingTable &table) {
+        isCut_ = isCut_ || table.scores() + cells_.size() > most_;
+        return !isCut_;
+    }
+    static double scoreOf(int count, std::size_t matches) {
+        return 1 / (double(std::max(1, count)) * double(matches));
+    }
+    void addAll(int count, MatchingTable &table) {
+        const double score = scoreOf(count, cells_.size());
+        for (const Cells &c : cells_)
+            table.add(score, c.cells, c.count);
+    }
+
+    ConsistencyTable toReference_, toCurrent_;
+    CornerTable cornersToReference_, cornersToCurrent_;
+    std::vector<int> numbers_;
+    std::vector<Cells> cells_;
+    std::size_t most_ = 0;
+    bool isCut_ = false;
+};
+
+} // namespace vectorlib

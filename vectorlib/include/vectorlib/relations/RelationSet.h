@@ -1,0 +1,141 @@
+#pragma once
+
+#include "vectorlib/relations/BinnedOrder.h"
+#include "vectorlib/relations/Relations.h"
+
+namespace vectorlib {
+
+/// All geometric relations of a scan's segments, each kind in the order of its first parameter, so that those
+/// that match a given one are found by a range query. Pose-free thesis chapter 4. Keeps its buffers.
+class RelationSet {
+public:
+    std::size_t virtualEdgesLeftOut = 0;
+
+    /// Copies what it needs of the settings' windows; the segments stay with the caller.
+    void build(const std::vector<TypedSegment> &segments, const RelationSettings &settings) {
+        window_ = settings.distanceWindow;
+        turn_ = turnPart(settings.angleWindow);
+        virtualEdgesLeftOut = findCorners_(segments, settings, corners_);
+        buildLengths(segments);
+        buildPairs(segments, settings.angleWindow);
+        buildCorners(segments, settings.leastEdgeDistance);
+    }
+    const std::vector<Corner> &corners() const { return corners_; }
+    const std::vector<AngleRelation> &angles() const { return angles_; }
+    const std::vector<ParallelRelation> &parallels() const { return parallels_; }
+    const std::vector<CornerRelation> &cornerRelations() const { return cornerRelations_; }
+
+    /// Calls take(number) for every segment whose length may be that of the given one: complete ones by a
+    /// range of lengths, others as Algorithm 2 says. Slack of ends is left to the consistency table.
+    template <typename Take>
+    void lengthsLike(const TypedSegment &s, Take take) const {
+        const double length = s.segment.length();
+        const double wide = window_ + widestSlack_ + s.begin.slack + s.end.slack;
+        // Shorter complete ones are out, and where this one is complete, so are longer ones but for those
+        // that are complete themselves and no longer than the window, and incomplete longer ones.
+        const auto from = std::lower_bound(complete_.begin(), complete_.end(), length - wide, lessThan);
+        for (auto i = from; i != complete_.end() && (!s.isComplete() || i->length <= length + wide); ++i)
+            take(i->number);
+        for (auto i = incomplete_.begin();
+             i != incomplete_.end() && (!s.isComplete() || i->length <= length + wide); ++i)
+            take(i->number);
+    }
+    /// Calls take(relation) for those whose parameters match.
+    template <typename Take>
+    void like(const AngleRelation &r, Take take) const {
+        angleOrder_.nearAround(angleKey(r), [&](const AngleRelation &other) {
+            if (isWithin(r.angle, other.angle, turn_))
+                take(other);
+        });
+    }
+    template <typename Take>
+    void like(const ParallelRelation &r, Take take) const {
+        parallelOrder_.near(distanceKey(r.across), [&](const ParallelRelation &other) {
+            if (parametersMatch(r, other, static_cast<float>(window_), turn_))
+                take(other);
+        });
+    }
+    template <typename Take>
+    void like(const CornerRelation &r, Take take) const {
+        cornerOrder_.near(distanceKey(r.distance), [&](const CornerRelation &other) {
+            if (parametersMatch(r, other, static_cast<float>(window_), turn_))
+                take(other);
+        });
+    }
+
+private:
+    static constexpr int distanceBins = 256;
+    struct Length {
+        double length = 0;
+        int number = 0;
+    };
+    static bool lessThan(const Length &a, double length) { return a.length < length; }
+
+    double distanceKey(float distance) const { return distance / window_; }
+    // As many whole bins as a turn has windows: each at least as wide as one.
+    int angleBins() const { return std::max(3, 65536 / std::max(1, static_cast<int>(turn_) + 1)); }
+    double angleKey(const AngleRelation &r) const { return double(r.angle) * angleBins() / 65536; }
+
+    void buildLengths(const std::vector<TypedSegment> &segments) {
+        complete_.clear();
+        incomplete_.clear();
+        widestSlack_ = 0;
+        for (std::size_t i = 0; i < segments.size(); ++i) {
+            const TypedSegment &s = segments[i];
+            (s.isComplete() ? complete_ : incomplete_).push_back({s.segment.length(), static_cast<int>(i)});
+            for (const SegmentEnd *end : {&s.begin, &s.end})
+                if (end->isEdge())
+                    widestSlack_ = std::max(widestSlack_, 2 * end->slack);
+        }
+        for (std::vector<Length> *lengths : {&complete_, &incomplete_})
+            std::sort(lengths->begin(), lengths->end(), [](const Length &a, const Length &b) {
+                return a.length != b.length ? a.length < b.length : a.number < b.number;
+            });
+    }
+    void buildPairs(const std::vector<TypedSegment> &segments, double angleWindow) {
+        angles_.clear();
+        parallels_.clear();
+        for (std::size_t i = 0; i < segments.size(); ++i)
+            for (std::size_t j = i + 1; j < segments.size(); ++j) {
+                AngleRelation a;
+                ParallelRelation p;
+                a.first = p.first = static_cast<std::int16_t>(i);
+                a.second = p.second = static_cast<std::int16_t>(j);
+                a.angle = turnPart(relativeAngle(segments[i].segment, segments[j].segment));
+                angles_.push_back(a);
+                if (parallelRelation(segments[i], segments[j], angleWindow, p))
+                    parallels_.push_back(p);
+            }
+        angleOrder_.build(angles_, angleBins(), [this](const AngleRelation &r) { return angleKey(r); });
+        parallelOrder_.build(parallels_, distanceBins,
+                             [this](const ParallelRelation &r) { return distanceKey(r.across); });
+    }
+    void buildCorners(const std::vector<TypedSegment> &segments, double least) {
+        cornerRelations_.clear();
+        for (std::size_t i = 0; i < corners_.size(); ++i)
+            for (std::size_t j = i + 1; j < corners_.size(); ++j) {
+                CornerRelation r;
+                r.first = static_cast<std::int16_t>(i);
+                r.second = static_cast<std::int16_t>(j);
+                if (cornerRelation(segments, corners_[i], corners_[j], least, r))
+                    cornerRelations_.push_back(r);
+            }
+        cornerOrder_.build(cornerRelations_, distanceBins,
+                           [this](const CornerRelation &r) { return distanceKey(r.distance); });
+    }
+
+    double window_ = 0;
+    int turn_ = 0;
+    double widestSlack_ = 0;
+    CornerFinder findCorners_;
+    std::vector<Corner> corners_;
+    std::vector<Length> complete_, incomplete_;
+    std::vector<AngleRelation> angles_;
+    std::vector<ParallelRelation> parallels_;
+    std::vector<CornerRelation> cornerRelations_;
+    BinnedOrder<AngleRelation> angleOrder_;
+    BinnedOrder<ParallelRelation> parallelOrder_;
+    BinnedOrder<CornerRelation> cornerOrder_;
+};
+
+} // namespace vectorlib
