@@ -5,8 +5,8 @@
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
 #include "gui/vector/experiment/CriterionExperiment.h"
+#include "gui/vector/experiment/GlobalPairsExperiment.h"
 #include "gui/vector/experiment/Gnuplot.h"
-#include "gui/vector/experiment/PairsExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/RealScanExperiment.h"
 #include "gui/vector/experiment/RegistrationExperiment.h"
@@ -32,6 +32,7 @@ struct ExperimentCommand {
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
+    bool noGuess = false;
     std::size_t pictures = 0;
     bool force = false;
 
@@ -73,16 +74,25 @@ struct ExperimentCommand {
     // The shares go to standard output, too; pictures are of pairs that are not near the reference.
     void pairs(OutputSet &files, std::ostream &csv) const {
         const vectorlib::CarmenLog read = readLog();
+        if (noGuess)
+            pairs(files, csv, read, globalPairsExperiment(read, pairOptions),
+                  [](const GlobalPairResult &pair) { return pair.best(); });
+        else
+            pairs(files, csv, read, pairsExperiment(read, pairOptions),
+                  [](const PairResult &pair) { return pair.match.pose; });
+    }
+    template <typename Result, typename Pose>
+    void pairs(OutputSet &files, std::ostream &csv, const vectorlib::CarmenLog &read,
+               const std::vector<Result> &results, Pose found) const {
         std::ostream &json = open(files, ".json");
-        const std::vector<PairResult> results = pairsExperiment(read, pairOptions);
         writeCsv(csv, results);
         const std::string summary = summaryOf(results).dump(2) + '\n';
         json << summary;
         std::cout << summary;
         std::size_t drawn = 0;
-        for (const PairResult &pair : results)
-            if (!pair.isWithin(pair.match.pose, 0.10) && drawn++ < pictures)
-                vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair);
+        for (const Result &pair : results)
+            if (!pair.isWithin(found(pair), 0.10) && drawn++ < pictures)
+                vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair, found(pair));
     }
     void criterion(OutputSet &files, std::ostream &csv) const {
         const std::vector<Surface> surfaces = criterionSurfaces();
@@ -297,6 +307,14 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--first", command->pairOptions.first, "pairs: only the first N pairs")
         ->check(between(1, 1e9))
         ->type_name("N");
+    sub->add_flag("--no-guess", command->noGuess,
+                  "pairs: match by the two scans alone, without odometry or any other estimate");
+    sub->add_option("--half", command->pairOptions.half,
+                    "pairs: only the first or the second half, blocks of 50 pairs in turn: to choose "
+                    "parameters on one and judge them on the other")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, PairHalf>{{"1", PairHalf::First}, {"2", PairHalf::Second}}))
+        ->type_name("1|2");
     sub->add_option("--draw", command->pictures,
                     "pairs: draw the first N pairs that are not within 10 cm and 2 degrees")
         ->check(between(0, 10000))
