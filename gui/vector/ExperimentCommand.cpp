@@ -4,6 +4,7 @@
 #include "gui/vector/InstalledWorlds.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
+#include "gui/vector/experiment/Calibration.h"
 #include "gui/vector/experiment/CriterionExperiment.h"
 #include "gui/vector/experiment/GlobalPairsExperiment.h"
 #include "gui/vector/experiment/Gnuplot.h"
@@ -28,7 +29,8 @@ namespace {
 struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
-    std::string log;
+    std::vector<std::string> logs;
+    std::vector<std::size_t> every{1};
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
@@ -93,6 +95,21 @@ struct ExperimentCommand {
         for (const Result &pair : results)
             if (!pair.isWithin(found(pair), 0.10) && drawn++ < pictures)
                 vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair, found(pair));
+    }
+    void calibration(OutputSet &files, std::ostream &csv) const {
+        if (logs.empty())
+            readLog(); // tells what is missing
+        std::vector<GlobalPairResult> results;
+        for (std::size_t i = 0; i < logs.size(); ++i) {
+            PairsOptions of = pairOptions;
+            of.every = every[std::min(i, every.size() - 1)];
+            for (GlobalPairResult &pair : globalPairsExperiment(readLog(logs[i]), of))
+                results.push_back(std::move(pair));
+        }
+        const Calibration found = calibrationOf(results);
+        writeCsv(csv, found);
+        std::cout << summaryOf(found).dump(2) << '\n';
+        draw(files, {{plotOf(found)}, {}, {}});
     }
     void criterion(OutputSet &files, std::ostream &csv) const {
         const std::vector<Surface> surfaces = criterionSurfaces();
@@ -193,15 +210,18 @@ private:
     void realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const {
         const RealScanResult result = realScanExperiment(readLog().scans, kind);
         if (result.points == 0)
-            throw Failure(log + ": no scan has returns on half of its rays");
+            throw Failure(logs[0] + ": no scan has returns on half of its rays");
         writeCsv(csv, result);
         writeLatex(open(files, ".tex"), name, result);
         vector::draw(open(files, ".svg"), name, result);
     }
     vectorlib::CarmenLog readLog() const {
-        if (log.empty())
+        if (logs.size() != 1)
             throw CLI::ValidationError("--log", "the experiment " + name + " needs the name of a CARMEN log");
-        Input input(log);
+        return readLog(logs[0]);
+    }
+    static vectorlib::CarmenLog readLog(const std::string &file) {
+        Input input(file);
         return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
     }
     void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
@@ -254,6 +274,8 @@ constexpr Experiment experiments[] = {
     {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog},
     {"pairs", "the motions between scans of --log: error against its corrected poses",
      &ExperimentCommand::pairs},
+    {"calibration", "matches without estimate in all pairs of --log ...: probability told, and share right",
+     &ExperimentCommand::calibration},
     {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
      &ExperimentCommand::criterionTime},
@@ -272,6 +294,7 @@ void ExperimentCommand::run() {
     Progress progress("run");
     options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
     pairOptions.progress = options.progress;
+    pairOptions.every = every[0];
     OutputSet files(force);
     std::ostream &csv = open(files, ".csv"); // first: that it exists is told before the work is done
     for (const Experiment &experiment : experiments)
@@ -297,10 +320,14 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->log, "CARMEN log for log, pairs, empty-room, corridor and laboratory")
+    sub->add_option("--log", command->logs,
+                    "CARMEN log for log, pairs, empty-room, corridor and laboratory; several for calibration")
+        ->allow_extra_args(false)
         ->type_name("FILE");
-    sub->add_option("--every", command->pairOptions.every,
-                    "pairs: match every N-th scan with the next N-th one")
+    sub->add_option("--every", command->every,
+                    "pairs, calibration: match every N-th scan with the next N-th one; of several logs the "
+                    "first N for the first, the last for all that follow")
+        ->allow_extra_args(false)
         ->check(between(1, 1e9))
         ->type_name("N")
         ->capture_default_str();

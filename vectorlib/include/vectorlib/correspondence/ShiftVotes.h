@@ -45,7 +45,7 @@ public:
     }
 
 private:
-    static constexpr int cells = 128, block = 16,
+    static constexpr int cells = 96, block = 16,
                          blocks = cells * cells / block; // to a side; numbers of cells
     using Counts = std::vector<std::int16_t>;
 

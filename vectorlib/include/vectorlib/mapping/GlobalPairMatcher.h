@@ -6,6 +6,8 @@
 #include "vectorlib/registration/PointRefinement.h"
 #include "vectorlib/registration/SurfaceRefinement.h"
 
+#include <array>
+
 namespace vectorlib {
 
 /// How thoroughly motions are searched.
@@ -23,14 +25,17 @@ struct GlobalPairSettings {
     double hopeless = 0.25;             ///< what scores less than the best by so much is not refined further
     double sameXY = 0.10;               ///< solutions nearer to each other are one; metres
     double sameAlpha = 0.035;           ///< the same; radians
+    double farXY = 0.5;                 ///< rivals are solutions farther away; metres
+    double farAlpha = 0.17;             ///< the same; radians
     float reach = 10;                   ///< longest motion looked for in small places; metres
     float reachByRange = 2;             ///< and in larger ones, in median ranges of the scans
     double slideStep = 0.25;            ///< of trials along the direction that is held least; metres
-    double slideMargin = 0.1;           ///< loss of score with which a trial is looked at more closely
+    double slideMargin = 0.1;           ///< loss of score with which a trial is still a solution
     double openMargin = 0.05;           ///< loss with which half a metre farther is as good a place
     double rivalMargin = 0.05;          ///< by which the best must lead over motions that differ much
     double enough = 0.85;               ///< probability of a solution to be trusted
     double minScore = 0.25;             ///< the same, its score
+    double maxContradicted = 0.2;       ///< the same, the part contradicted of all that is judged
     std::size_t minPieces = 8;          ///< a scan with fewer pieces of surface shows too little
     double roughDeviation = 0.10, deviation = 0.05; ///< see SurfaceAgreement; metres
     int roughPoints = 60, slidePoints = 180;        ///< how many of a scan judge rough motions, and slides
@@ -84,10 +89,11 @@ private:
         if (match_.solutions.empty())
             return;
         slide();
-        followOpenDirection();
+        if (match_.slideLoss < settings.openMargin)
+            followOpenDirection();
         tellProbability(match_);
         for (GlobalPairSolution &s : match_.solutions)
-            s.covariance = covarianceAt(s.pose);
+            s.covariance = covarianceOf(s);
         match_.verdict = verdict();
     }
     void search(const GlobalSearchEffort &effort) {
@@ -105,12 +111,15 @@ private:
         keepDistinct(candidates_);
         if (candidates_.size() > effort.refined)
             candidates_.resize(effort.refined);
-        const double least = candidates_.empty() ? 0 : candidates_[0].score - settings.hopeless;
-        for (GlobalPairSolution &c : candidates_)
-            if (c.score >= least)
-                c = refined(c.pose);
-        keepDistinct(candidates_);
-        match_.solutions = candidates_;
+        match_.solutions.clear();
+        for (const GlobalPairSolution &c : candidates_)
+            if (c.score >= candidates_[0].score - settings.hopeless)
+                match_.solutions.push_back(refined(c.pose));
+            else if (std::none_of(match_.solutions.begin(), match_.solutions.end(), [&](const auto &s) {
+                         return isNear(s.pose, c.pose, settings.farXY, settings.farAlpha);
+                     }))
+                match_.solutions.push_back(c);
+        keepDistinct(match_.solutions);
     }
     bool convinces() const {
         const Solutions &s = match_.solutions;
@@ -157,60 +166,79 @@ private:
         const Vector2D<double> t = from.pose.translation() + from.agreement.openDirection() * metres;
         return judged({t.x, t.y, from.pose.alpha()}, settings.deviation, settings.slidePoints);
     }
-    // Where the best solution is held least, other places may be better, and how much worse they are tells
-    // how firmly it is held at all.
+    // Where the best solution is held least, places beside it may be better, and how much worse they are
+    // tells how firmly it is held at all.
     void slide() {
-        const GlobalPairSolution best = match_.solutions[0];
-        const double least =
-            judged(best.pose, settings.deviation, settings.slidePoints).score - settings.slideMargin;
-        const std::size_t before = match_.solutions.size();
-        for (double metres :
-             {-2 * settings.slideStep, -settings.slideStep, settings.slideStep, 2 * settings.slideStep})
-            if (const GlobalPairSolution other = slid(best, metres); other.score > least)
-                match_.solutions.push_back(refined(other.pose));
-        if (match_.solutions.size() > before)
-            keepDistinct(match_.solutions);
-    }
-    // Along a corridor all places are solutions, as far as the scans go on fitting.
-    void followOpenDirection() {
-        constexpr double far = 0.5; // metres
-        const GlobalPairSolution best = match_.solutions[0];
-        const double own = judged(best.pose, settings.deviation, settings.slidePoints).score;
-        match_.slideLoss = 1;
-        bool added = false;
-        for (double side : {-far, far})
-            for (int i = 1; i * far <= reach_; ++i) {
-                const GlobalPairSolution other = slid(best, i * side);
-                if (i == 1)
-                    match_.slideLoss = std::min(match_.slideLoss, own - other.score);
-                if (other.score < own - settings.openMargin)
-                    break;
-                match_.solutions.push_back(other);
-                added = true;
+        const std::array<double, 4> ways{-2, -1, 1, 2}; // in steps
+        for (int round = 0; round < 2; ++round) {
+            const GlobalPairSolution best = match_.solutions[0];
+            const double own = judged(best.pose, settings.deviation, settings.slidePoints).score;
+            double farther = -1;
+            for (double way : ways) {
+                const GlobalPairSolution other = slid(best, way * settings.slideStep);
+                if (way * way > 1)
+                    farther = std::max(farther, other.score);
+                if (round == 0 && other.score > own - settings.slideMargin)
+                    match_.solutions.push_back(refined(other.pose));
             }
-        if (added)
+            match_.slideLoss = own - farther;
             keepDistinct(match_.solutions);
+            if (isSame(match_.solutions[0].pose, best.pose))
+                break;
+        }
     }
-    Eigen::Matrix3d covarianceAt(const Transformation2D &pose) {
+    // Along a corridor all places are solutions, as far as the scans go on fitting; and, turned round,
+    // others.
+    void followOpenDirection() {
+        constexpr int most = 40; // to each side
+        const double least = match_.solutions[0].score - settings.slideMargin, step = 2 * settings.slideStep;
+        candidates_.clear();
+        for (const GlobalPairSolution &start : match_.solutions) {
+            const bool followed = std::any_of(candidates_.begin(), candidates_.end(), [&](const auto &s) {
+                return isNear({0, 0, s.pose.alpha()}, {0, 0, start.pose.alpha()}, 1, settings.farAlpha);
+            });
+            if (start.score < least || followed)
+                continue;
+            candidates_.push_back(start);
+            for (double side : {-step, step})
+                for (int i = 1; i <= most; ++i) {
+                    const GlobalPairSolution other = slid(start, i * side);
+                    if (other.score < least)
+                        break;
+                    candidates_.push_back(other);
+                }
+        }
+        match_.solutions.insert(match_.solutions.end(), candidates_.begin(), candidates_.end());
+        keepDistinct(match_.solutions);
+    }
+    // Where the scans slide on each other, what seems to hold them is noise.
+    Eigen::Matrix3d covarianceOf(const GlobalPairSolution &s) {
         constexpr double unknown = 1e-4; // what is not held at all is unknown within 100 m, or radians
-        Eigen::Matrix3d h = refine.information(pose) / (settings.noise * settings.noise);
+        Eigen::Matrix3d h = refine.information(s.pose) / (settings.noise * settings.noise);
         h.diagonal().array() += unknown;
         Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
         for (int i = 0; i < 3; ++i)
             if (const auto column = solveSymmetric(h, Eigen::Vector3d::Unit(i)))
                 covariance.col(i) = *column;
+        if (match_.slideLoss < settings.openMargin) {
+            const Vector2D<double> way = s.agreement.openDirection();
+            const double half = 2 * settings.slideStep;
+            covariance += square(half * half, Eigen::Vector3d(way.x, way.y, 0));
+        }
         return covariance;
     }
     GlobalPairVerdict verdict() const {
-        constexpr double far = 0.5, turned = 10 * pi / 180;
         const GlobalPairSolution &best = match_.solutions[0];
-        if (best.score < settings.minScore)
+        const double explained = best.agreement.explained(), contradicted = best.agreement.contradicted();
+        if (best.score < settings.minScore ||
+            contradicted > settings.maxContradicted * (explained + contradicted))
             return GlobalPairVerdict::TooUnlike;
         if (match_.slideLoss < settings.openMargin)
             return GlobalPairVerdict::OpenDirection;
         const bool hasRival =
             std::any_of(match_.solutions.begin() + 1, match_.solutions.end(), [&](const auto &s) {
-                return s.score > best.score - settings.rivalMargin && !isNear(s.pose, best.pose, far, turned);
+                return s.score > best.score - settings.rivalMargin &&
+                       !isNear(s.pose, best.pose, settings.farXY, settings.farAlpha);
             });
         if (hasRival)
             return GlobalPairVerdict::Ambiguous;

@@ -50,22 +50,25 @@ public:
     float medianRange() const { return medianRange_; }
 
 private:
+    // A point stands for half of the way to each of its neighbours.
     void measureLengths(const ScanIndex &scan) {
-        lengths_.assign(static_cast<std::size_t>(scan.size()), 0.0f);
-        ranges_.clear();
-        total_ = 0;
+        const std::size_t size = static_cast<std::size_t>(scan.size());
+        lengths_.assign(size, 0.0f);
+        squares_.resize(size);
         for (int i = 0; i < scan.size(); ++i) {
-            float twice = 0;
-            for (int k : {i - 1, i + 1})
-                if (k >= 0 && k < scan.size())
-                    twice += std::min(2 * longest, (scan.point(k) - scan.point(i)).norm());
-            const float length = std::min(longest, twice / 2);
-            total_ += lengths_[static_cast<std::size_t>(i)] = length;
-            ranges_.push_back(scan.point(i).norm());
+            squares_[static_cast<std::size_t>(i)] = scan.point(i).squaredNorm();
+            if (i == 0)
+                continue;
+            const float half = std::min(longest, (scan.point(i) - scan.point(i - 1)).norm() / 2);
+            lengths_[static_cast<std::size_t>(i - 1)] += half;
+            lengths_[static_cast<std::size_t>(i)] += half;
         }
-        const auto middle = ranges_.begin() + static_cast<std::ptrdiff_t>(ranges_.size() / 2);
-        std::nth_element(ranges_.begin(), middle, ranges_.end());
-        medianRange_ = ranges_.empty() ? 0 : *middle;
+        total_ = 0;
+        for (float &length : lengths_)
+            total_ += length = std::min(length, longest);
+        const auto middle = squares_.begin() + static_cast<std::ptrdiff_t>(size / 2);
+        std::nth_element(squares_.begin(), middle, squares_.end());
+        medianRange_ = size > 0 ? std::sqrt(*middle) : 0;
     }
     void cut(const ScanIndex &scan, float least) {
         pieces_.clear();
@@ -83,7 +86,8 @@ private:
     }
 
     std::vector<SurfacePiece> pieces_;
-    std::vector<float> lengths_, ranges_;
+    std::vector<float> lengths_; // by point
+    std::vector<float> squares_; // of the ranges
     float total_ = 0, medianRange_ = 0;
 };
 

@@ -16,7 +16,7 @@ public:
         layOver(pieces, reach);
         nearest_.assign(cells * cells, -1);
         squares_.assign(cells * cells, reach * reach);
-        const int around = static_cast<int>(reach * inverse_) + 1;
+        const int around = static_cast<int>(std::ceil(reach * inverse_));
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             const Vector2D<float> p = (pieces[i].place - corner_) * inverse_; // in cells
             const int cx = static_cast<int>(p.x), cy = static_cast<int>(p.y);

@@ -14,7 +14,7 @@ public:
     double gate = 0.6;       ///< the first; pieces farther apart along the normal hardly count; metres
     double lastGate = 0.15;  ///< metres
     double gateFactor = 0.6; ///< from step to step
-    int steps = 5;
+    int steps = 4;
     double sameWay = 0.7; ///< cosine of the most between two normals
 
     void start(const ScanSurface &fixed, const ScanSurface &moving) {
