@@ -6,8 +6,6 @@
 #include "vectorlib/registration/PointRefinement.h"
 #include "vectorlib/registration/SurfaceRefinement.h"
 
-#include <array>
-
 namespace vectorlib {
 
 /// How thoroughly motions are searched.
@@ -57,9 +55,32 @@ public:
 
     /// Both scans in their sensor's frame, counter-clockwise; metres. Valid until the next call.
     const GlobalPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving) {
+        if (take(fixed, moving)) {
+            find();
+            conclude();
+        }
+        return match_;
+    }
+    /// What speaks for a motion that is known from elsewhere: it is the only solution, as it is. No other
+    /// motions are looked for.
+    const GlobalPairMatch &judge(PointSpan<float> fixed, PointSpan<float> moving,
+                                 const Transformation2D &pose) {
+        if (take(fixed, moving) && pose.isFinite()) {
+            match_.solutions.push_back(judged(pose, settings.deviation, allPoints));
+            match_.slideLoss = slideLossOf(match_.solutions[0]);
+            conclude();
+        }
+        return match_;
+    }
+
+private:
+    using Solutions = std::vector<GlobalPairSolution>;
+
+    bool take(PointSpan<float> fixed, PointSpan<float> moving) {
         match_.solutions.clear();
         match_.searchedWidely = false;
         match_.slideLoss = 0;
+        match_.verdict = GlobalPairVerdict::TooUnlike;
         refine.start(fixed, moving);
         fixed_.build(refine.fixed());
         moving_.build(refine.moving());
@@ -67,14 +88,8 @@ public:
             match_.verdict = GlobalPairVerdict::NothingFixed;
         else if (moving_.pieces().size() < settings.minPieces)
             match_.verdict = GlobalPairVerdict::NothingMoving;
-        else
-            find();
-        return match_;
+        return match_.verdict == GlobalPairVerdict::TooUnlike;
     }
-
-private:
-    using Solutions = std::vector<GlobalPairSolution>;
-
     void find() {
         reach_ = std::max(settings.reach,
                           settings.reachByRange * std::max(fixed_.medianRange(), moving_.medianRange()));
@@ -85,12 +100,15 @@ private:
             match_.searchedWidely = true;
             search(settings.wide);
         }
-        match_.verdict = GlobalPairVerdict::TooUnlike;
         if (match_.solutions.empty())
             return;
         slide();
         if (match_.slideLoss < settings.openMargin)
             followOpenDirection();
+    }
+    void conclude() {
+        if (match_.solutions.empty())
+            return;
         tellProbability(match_);
         for (GlobalPairSolution &s : match_.solutions)
             s.covariance = covarianceOf(s);
@@ -166,26 +184,27 @@ private:
         const Vector2D<double> t = from.pose.translation() + from.agreement.openDirection() * metres;
         return judged({t.x, t.y, from.pose.alpha()}, settings.deviation, settings.slidePoints);
     }
+    double slideLossOf(const GlobalPairSolution &s) const {
+        const double way = 2 * settings.slideStep;
+        return judged(s.pose, settings.deviation, settings.slidePoints).score -
+               std::max(slid(s, way).score, slid(s, -way).score);
+    }
     // Where the best solution is held least, places beside it may be better, and how much worse they are
     // tells how firmly it is held at all.
     void slide() {
-        const std::array<double, 4> ways{-2, -1, 1, 2}; // in steps
-        for (int round = 0; round < 2; ++round) {
-            const GlobalPairSolution best = match_.solutions[0];
-            const double own = judged(best.pose, settings.deviation, settings.slidePoints).score;
-            double farther = -1;
-            for (double way : ways) {
-                const GlobalPairSolution other = slid(best, way * settings.slideStep);
-                if (way * way > 1)
-                    farther = std::max(farther, other.score);
-                if (round == 0 && other.score > own - settings.slideMargin)
-                    match_.solutions.push_back(refined(other.pose));
-            }
-            match_.slideLoss = own - farther;
-            keepDistinct(match_.solutions);
-            if (isSame(match_.solutions[0].pose, best.pose))
-                break;
+        const GlobalPairSolution best = match_.solutions[0];
+        const double own = judged(best.pose, settings.deviation, settings.slidePoints).score;
+        double farther = -1;
+        for (int way : {-2, -1, 1, 2}) {
+            const GlobalPairSolution other = slid(best, way * settings.slideStep);
+            if (way == -2 || way == 2)
+                farther = std::max(farther, other.score);
+            if (other.score > own - settings.slideMargin)
+                match_.solutions.push_back(refined(other.pose));
         }
+        keepDistinct(match_.solutions);
+        match_.slideLoss =
+            isSame(match_.solutions[0].pose, best.pose) ? own - farther : slideLossOf(match_.solutions[0]);
     }
     // Along a corridor all places are solutions, as far as the scans go on fitting; and, turned round,
     // others.
