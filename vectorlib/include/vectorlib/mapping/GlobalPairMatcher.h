@@ -216,7 +216,7 @@ private:
             const bool followed = std::any_of(candidates_.begin(), candidates_.end(), [&](const auto &s) {
                 return isNear({0, 0, s.pose.alpha()}, {0, 0, start.pose.alpha()}, 1, settings.farAlpha);
             });
-            if (start.score < least || followed)
+            if (start.score < least || followed || candidates_.size() > mostFollowed)
                 continue;
             candidates_.push_back(start);
             for (double side : {-step, step})
@@ -265,6 +265,7 @@ private:
     }
 
     static constexpr int allPoints = 1 << 20;
+    static constexpr std::size_t mostFollowed = 100; // solutions; then no further heading
 
     ScanSurface fixed_, moving_;
     TurnVotes turns_;
