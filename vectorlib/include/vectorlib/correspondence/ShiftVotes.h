@@ -45,8 +45,8 @@ public:
     }
 
 private:
-    static constexpr int cells = 96, block = 16,
-                         blocks = cells * cells / block; // to a side; numbers of cells
+    static constexpr int cells = 96; // to a side
+    static constexpr int block = 16, blocks = cells * cells / block;
     using Counts = std::vector<std::int16_t>;
 
     void count(int degrees) {
@@ -69,7 +69,7 @@ private:
                 vote(0, to - 360);
         }
     }
-    // In decimetres: the weight of a pair is the area of wall by wall, so that sparse and dense points count
+    // In decimetres. A pair counts by the product of its lengths, so that sparse and dense points count
     // alike.
     static int weight(const SurfacePiece &piece) { return static_cast<int>(piece.length * 10 + 0.5f); }
     void add(Vector2D<float> at, int votes) {

@@ -145,7 +145,7 @@ private:
                (s.size() < 2 || s[0].score - s[1].score >= settings.lead);
     }
 
-    // By about so many points of each scan.
+    // By about so many points of each scan; a first look needs few of them.
     GlobalPairSolution judged(const Transformation2D &pose, double deviation, int points) const {
         const int most = std::max(refine.fixed().size(), refine.moving().size());
         GlobalPairSolution s;
@@ -254,14 +254,17 @@ private:
             return GlobalPairVerdict::TooUnlike;
         if (match_.slideLoss < settings.openMargin)
             return GlobalPairVerdict::OpenDirection;
-        const bool hasRival =
-            std::any_of(match_.solutions.begin() + 1, match_.solutions.end(), [&](const auto &s) {
-                return s.score > best.score - settings.rivalMargin &&
-                       !isNear(s.pose, best.pose, settings.farXY, settings.farAlpha);
-            });
-        if (hasRival)
+        double any = 0;
+        bool hasRival = false;
+        for (const GlobalPairSolution &s : match_.solutions) {
+            any += s.probability;
+            hasRival = hasRival || (s.score > best.score - settings.rivalMargin &&
+                                    !isNear(s.pose, best.pose, settings.farXY, settings.farAlpha));
+        }
+        const bool isSure = best.probability >= settings.enough;
+        if (hasRival || (!isSure && any >= settings.enough))
             return GlobalPairVerdict::Ambiguous;
-        return best.probability >= settings.enough ? GlobalPairVerdict::Found : GlobalPairVerdict::TooUnlike;
+        return isSure ? GlobalPairVerdict::Found : GlobalPairVerdict::TooUnlike;
     }
 
     static constexpr int allPoints = 1 << 20;

@@ -8,7 +8,7 @@ namespace vectorlib::simd {
 
 /// The largest of sixteen numbers.
 inline std::int16_t largestOfSixteen(const std::int16_t *numbers) {
-#if defined(__GNUC__)
+#if defined(__clang__) || __GNUC__ >= 12
     typedef std::int16_t Shorts __attribute__((vector_size(16)));
     Shorts a, b;
     std::memcpy(&a, numbers, sizeof a);
