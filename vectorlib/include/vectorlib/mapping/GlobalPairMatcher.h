@@ -30,7 +30,7 @@ struct GlobalPairSettings {
     double slideStep = 0.25;            ///< of trials along the direction that is held least; metres
     double slideMargin = 0.1;           ///< loss of score with which a trial is still a solution
     double openMargin = 0.05;           ///< loss with which half a metre farther is as good a place
-    double rivalMargin = 0.05;          ///< by which the best must lead over motions that differ much
+    double rivalMargin = 0.08;          ///< by which the best must lead over motions that differ much
     double enough = 0.85;               ///< probability of a solution to be trusted
     double minScore = 0.25;             ///< the same, its score
     double maxContradicted = 0.2;       ///< the same, the part contradicted of all that is judged

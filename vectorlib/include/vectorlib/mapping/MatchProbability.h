@@ -18,8 +18,8 @@ struct MatchProbability {
     /// Of the features, and how much a difference of score tells. Fitted to the first half of the pairs of
     /// five logs, neighbouring scans and every second one, by
     /// hermes-vector experiment calibration --half 1 --log intel... (docs/algorithms.md has all of it).
-    Features weights{-2.28, -9.64, 4.73, 1.31};
-    double sharpness = 64;
+    Features weights{-2.20, -9.58, 4.06, 1.37};
+    double sharpness = 55;
 
     /// What tells whether the right solution is among those of a match that has some: a constant 1, the share
     /// of surfaces that the best contradicts, what it loses by sliding, and the logarithm of how many metres
