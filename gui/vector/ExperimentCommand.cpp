@@ -4,9 +4,10 @@
 #include "gui/vector/InstalledWorlds.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
+#include "gui/vector/experiment/Calibration.h"
 #include "gui/vector/experiment/CriterionExperiment.h"
+#include "gui/vector/experiment/GlobalPairsExperiment.h"
 #include "gui/vector/experiment/Gnuplot.h"
-#include "gui/vector/experiment/PairsExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/RealScanExperiment.h"
 #include "gui/vector/experiment/RegistrationExperiment.h"
@@ -30,10 +31,12 @@ namespace {
 struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
-    std::string log;
+    std::vector<std::string> logs;
+    std::vector<std::size_t> every{1};
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
+    bool noGuess = false;
     std::size_t pictures = 0;
     bool force = false;
 
@@ -75,16 +78,40 @@ struct ExperimentCommand {
     // The shares go to standard output, too; pictures are of pairs that are not near the reference.
     void pairs(OutputSet &files, std::ostream &csv) const {
         const vectorlib::CarmenLog read = readLog();
+        if (noGuess)
+            pairs(files, csv, read, globalPairsExperiment(read, pairOptions),
+                  [](const GlobalPairResult &pair) { return pair.best(); });
+        else
+            pairs(files, csv, read, pairsExperiment(read, pairOptions),
+                  [](const PairResult &pair) { return pair.match.pose; });
+    }
+    template <typename Result, typename Pose>
+    void pairs(OutputSet &files, std::ostream &csv, const vectorlib::CarmenLog &read,
+               const std::vector<Result> &results, Pose found) const {
         std::ostream &json = open(files, ".json");
-        const std::vector<PairResult> results = pairsExperiment(read, pairOptions);
         writeCsv(csv, results);
         const std::string summary = summaryOf(results).dump(2) + '\n';
         json << summary;
         std::cout << summary;
         std::size_t drawn = 0;
-        for (const PairResult &pair : results)
-            if (!pair.isWithin(pair.match.pose, 0.10) && drawn++ < pictures)
-                vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair);
+        for (const Result &pair : results)
+            if (!pair.isWithin(found(pair), 0.10) && drawn++ < pictures)
+                vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair, found(pair));
+    }
+    void calibration(OutputSet &files, std::ostream &csv) const {
+        if (logs.empty())
+            readLog(); // tells what is missing
+        std::vector<GlobalPairResult> results;
+        for (std::size_t i = 0; i < logs.size(); ++i) {
+            PairsOptions of = pairOptions;
+            of.every = every[std::min(i, every.size() - 1)];
+            for (GlobalPairResult &pair : globalPairsExperiment(readLog(logs[i]), of))
+                results.push_back(std::move(pair));
+        }
+        const Calibration found = calibrationOf(results);
+        writeCsv(csv, found);
+        std::cout << summaryOf(found).dump(2) << '\n';
+        draw(files, {{plotOf(found)}, {}, {}});
     }
     void criterion(OutputSet &files, std::ostream &csv) const {
         const std::vector<Surface> surfaces = criterionSurfaces();
@@ -161,7 +188,7 @@ struct ExperimentCommand {
             read.scans[i].appendPoints(scans.back().points);
         }
         if (scans.empty())
-            throw Failure(log + ": found no scan");
+            throw Failure(logs[0] + ": found no scan");
         const vectorlib::CarmenScan &scan = read.scans.front();
         relation(files, csv, scans, scan.ranges.size(), scan.angleStep * double(scan.ranges.size()),
                  {{"last_error_x_m", 0.0784}, {"last_error_y_m", -0.0066}, {"last_error_deg", 2.12}});
@@ -236,15 +263,18 @@ private:
     void realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const {
         const RealScanResult result = realScanExperiment(readLog().scans, kind);
         if (result.points == 0)
-            throw Failure(log + ": no scan has returns on half of its rays");
+            throw Failure(logs[0] + ": no scan has returns on half of its rays");
         writeCsv(csv, result);
         writeLatex(open(files, ".tex"), name, result);
         vector::draw(open(files, ".svg"), name, result);
     }
     vectorlib::CarmenLog readLog() const {
-        if (log.empty())
+        if (logs.size() != 1)
             throw CLI::ValidationError("--log", "the experiment " + name + " needs the name of a CARMEN log");
-        Input input(log);
+        return readLog(logs[0]);
+    }
+    static vectorlib::CarmenLog readLog(const std::string &file) {
+        Input input(file);
         return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
     }
     void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
@@ -297,6 +327,8 @@ constexpr Experiment experiments[] = {
     {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog},
     {"pairs", "the motions between scans of --log: error against its corrected poses",
      &ExperimentCommand::pairs},
+    {"calibration", "matches without estimate in all pairs of --log ...: probability told, and share right",
+     &ExperimentCommand::calibration},
     {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
      &ExperimentCommand::criterionTime},
@@ -322,6 +354,7 @@ void ExperimentCommand::run() {
     Progress progress("run");
     options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
     pairOptions.progress = options.progress;
+    pairOptions.every = every[0];
     OutputSet files(force);
     std::ostream &csv = open(files, ".csv"); // first: that it exists is told before the work is done
     for (const Experiment &experiment : experiments)
@@ -347,17 +380,30 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->log,
-                    "CARMEN log for log, pairs, free-log, empty-room, corridor and laboratory")
+    sub->add_option("--log", command->logs,
+                    "CARMEN log for log, pairs, free-log, empty-room, corridor and laboratory; several for "
+                    "calibration")
+        ->allow_extra_args(false)
         ->type_name("FILE");
-    sub->add_option("--every", command->pairOptions.every,
-                    "pairs, free-log, free-approach: only every N-th scan")
+    sub->add_option(
+           "--every", command->every,
+           "pairs, calibration, free-log, free-approach: only every N-th scan, and its next N-th one; of "
+           "several logs the first N for the first, the last for all that follow")
+        ->allow_extra_args(false)
         ->check(between(1, 1e9))
         ->type_name("N")
         ->capture_default_str();
     sub->add_option("--first", command->pairOptions.first, "pairs: only the first N pairs")
         ->check(between(1, 1e9))
         ->type_name("N");
+    sub->add_flag("--no-guess", command->noGuess,
+                  "pairs: match by the two scans alone, without odometry or any other estimate");
+    sub->add_option("--half", command->pairOptions.half,
+                    "pairs: only the first or the second half, blocks of 50 pairs in turn: to choose "
+                    "parameters on one and judge them on the other")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, PairHalf>{{"1", PairHalf::First}, {"2", PairHalf::Second}}))
+        ->type_name("1|2");
     sub->add_option("--draw", command->pictures,
                     "pairs: draw the first N pairs that are not within 10 cm and 2 degrees")
         ->check(between(0, 10000))

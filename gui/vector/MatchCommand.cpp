@@ -1,3 +1,4 @@
+#include "gui/vector/MatchMethods.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/SearchOptions.h"
 #include "gui/vector/SegmentSet.h"
@@ -13,7 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Segments = std::vector<vectorlib::LineSegment2D<double>>;
-using vectorlib::SearchResult;
 using vectorlib::Solution;
 using vectorlib::Transformation2D;
 
@@ -34,7 +34,8 @@ Json jsonOf(const std::optional<Eigen::Matrix3d> &matrix) {
 }
 
 struct MatchCommand {
-    std::string fixedPath, movingPath, expected;
+    std::string fixedPath, movingPath, expected, method;
+    std::optional<double> deviationXY, deviationAlpha;
     bool isMap = false;
     double noise = 0, sigma = 0.03;
     SegmentOptions segment;
@@ -58,37 +59,61 @@ struct MatchCommand {
 
         const Transformation2D around =
             expected.empty() ? Transformation2D() : Transformation2D(parsePose(expected));
-        vectorlib::CorrespondenceFinder find;
-        find.settings = search.over({});
-        vectorlib::SegmentMap map;
-        const bool inMap = isMap || fixed.kind == SegmentSet::Kind::Map;
-        for (std::size_t i = 0; inMap && i < fixed.segments().size(); ++i)
-            map.add(fixed.segments()[i]);
-        const SearchResult &result =
-            inMap ? find(map, moving.segments(), around) : find(fixed.segments(), moving.segments(), around);
+        const Matched result = match(fixed, moving, around);
         write(out, result, fixed, moving);
         if (result.solutions.empty())
-            std::cerr << "hermes-vector: no solution: " << describe(result.outcome) << '\n';
+            std::cerr << "hermes-vector: no solution: " << result.outcome << '\n';
         if (svg)
             draw(*svg, result, fixed, moving, around);
         files.commit();
     }
 
-    static void write(std::ostream &out, const SearchResult &result, const SegmentSet &fixed,
+    Matched match(const SegmentSet &fixed, const SegmentSet &moving, const Transformation2D &around) const {
+        const bool inMap = isMap || fixed.kind == SegmentSet::Kind::Map;
+        const bool areScans =
+            fixed.kind == SegmentSet::Kind::Points && moving.kind == SegmentSet::Kind::Points;
+        if (method == "global" && (inMap || !expected.empty()))
+            throw CLI::ValidationError("--method", inMap ? "global finds no place in a map: take finder"
+                                                         : "global takes no --expected motion");
+        const bool wantsFinder = method == "finder" || (method.empty() && (inMap || search.isGiven()));
+        if (wantsFinder || (!expected.empty() && !areScans))
+            return matchByFinder(fixed, moving, searchSettings(), around, inMap);
+        if (!expected.empty())
+            return matchTracking(
+                fixed, moving, {around, deviationXY.value_or(0.15), deviationAlpha.value_or(0.10)},
+                segment.over(vectorlib::EarSettings::forScanner(2 * vectorlib::pi, fixed.points.size())));
+        const Matched anywhere = matchGlobally(fixed, moving);
+        const bool mayTryLines = method.empty() && !areScans && anywhere.solutions.empty();
+        return mayTryLines ? matchByFinder(fixed, moving, searchSettings(), around, false) : anywhere;
+    }
+    // Three standard deviations of the expected motion are permitted, where they are told.
+    vectorlib::SearchSettings searchSettings() const {
+        vectorlib::SearchSettings settings;
+        if (deviationXY)
+            settings.permitted.dx = settings.permitted.dy = 3 * *deviationXY;
+        if (deviationAlpha)
+            settings.permitted.dalpha = std::min(vectorlib::pi, 3 * *deviationAlpha);
+        return search.over(settings);
+    }
+
+    static void write(std::ostream &out, const Matched &result, const SegmentSet &fixed,
                       const SegmentSet &moving) {
-        Json json = {{"outcome", describe(result.outcome)},
+        Json json = {{"method", result.method},
+                     {"outcome", result.outcome},
                      {"potential_pairs", result.potentialPairs},
                      {"combinations", result.combinations},
                      {"solutions", Json::array()}};
-        for (const Solution &s : result.solutions) {
+        for (const MatchedSolution &m : result.solutions) {
+            const Solution &s = m.solution;
             Json pairs = Json::array();
             for (const vectorlib::CorrespondencePair &p : s.pairs)
                 pairs.push_back({p.fixed, p.moving});
             json["solutions"].push_back(
                 {{"pose", {{"x", s.pose.x()}, {"y", s.pose.y()}, {"alpha", s.pose.alpha()}}},
-                 {"covariance", jsonOf(vectorlib::SolutionCovariance()(s, fixed.measured, moving.measured))},
+                 {"covariance", jsonOf(m.covariance)},
                  {"accepted", s.accepted},
-                 {"verdict", describe(s.fault)},
+                 {"verdict", m.verdict},
+                 {"probability", m.probability ? Json(*m.probability) : Json(nullptr)},
                  {"reliability", s.reliability},
                  {"ambiguity", s.ambiguity},
                  {"discrepancy", s.view.discrepancy},
@@ -105,9 +130,9 @@ struct MatchCommand {
         out << json.dump(2) << '\n';
     }
 
-    static void draw(std::ostream &svg, const SearchResult &result, const SegmentSet &fixed,
+    static void draw(std::ostream &svg, const Matched &result, const SegmentSet &fixed,
                      const SegmentSet &moving, const Transformation2D &around) {
-        const Solution *best = result.solutions.empty() ? nullptr : &result.solutions[0];
+        const Solution *best = result.solutions.empty() ? nullptr : &result.solutions[0].solution;
         const Transformation2D pose = best ? best->pose : around;
         std::vector<vectorlib::Vector2D<double>> points;
         for (const vectorlib::Vector2D<float> &p : moving.points)
@@ -117,8 +142,8 @@ struct MatchCommand {
             before.push_back(around * s);
             after.push_back(pose * s);
         }
-        vectorlib::SvgPicture picture(best ? std::string("Match: ") + describe(best->fault)
-                                           : std::string("No match: ") + describe(result.outcome));
+        vectorlib::SvgPicture picture(best ? "Match: " + result.solutions[0].verdict
+                                           : "No match: " + result.outcome);
         picture.segments({vectorlib::colour::map, 4, "static set"}, near(fixed.segments(), moving, pose));
         picture.segments({vectorlib::colour::before, 1.5, "dynamic set where expected", true}, before);
         if (best) {
@@ -159,10 +184,25 @@ void addMatchCommand(CLI::App &app) {
     sub->add_option("STATIC", command->fixedPath, "A scan: " + kinds + "; or a map by hermes-vector map")
         ->required();
     sub->add_option("DYNAMIC", command->movingPath, "A scan: " + kinds)->required();
-    sub->add_option("--expected", command->expected,
-                    "Where the dynamic scan is expected in the static one's frame; metres, radians (0,0,0)")
-        ->check(poseText())
-        ->type_name("X,Y,ALPHA");
+    CLI::Option *expected = sub->add_option(
+        "--expected", command->expected,
+        "Where the dynamic scan is expected in the static one's frame; metres, radians. Without it "
+        "nothing is known of the motion; the finder then looks about 0,0,0");
+    expected->check(poseText())->type_name("X,Y,ALPHA");
+    sub->add_option("--deviation-xy", command->deviationXY,
+                    "How wrong that may be: standard deviation, metres (0.15)")
+        ->check(aboveZero())
+        ->needs(expected)
+        ->type_name("M");
+    sub->add_option("--deviation-alpha", command->deviationAlpha, "The same, radians (0.1)")
+        ->check(aboveZero())
+        ->needs(expected)
+        ->type_name("RAD");
+    sub->add_option("--method", command->method,
+                    "global: any motion, by points or by what a scanner would see of segments; finder: every "
+                    "combination of segments over a permitted set of motions (finder in a map and with "
+                    "options of the search, else global)")
+        ->check(CLI::IsMember({"global", "finder"}));
     sub->add_flag("--map", command->isMap,
                   "The static segments were seen from many places: what they do not show hides nothing");
     sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")
@@ -177,7 +217,7 @@ void addMatchCommand(CLI::App &app) {
     command->search.addTo(*sub, "0.2");
     command->segment.addTo(*sub, "defaults by the number of points");
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector match first.csv second.csv --expected 0.5,0,0.1 --svg match.svg"));
+    sub->footer(example("hermes-vector match first.csv second.csv --svg match.svg"));
     sub->callback([command] { command->run(); });
 }
 

@@ -19,6 +19,10 @@ void SearchOptions::addTo(CLI::App &command, const std::string &discrepancy) {
     number("--discrepancy", discrepancy_, "Most discrepancy, m^2 (" + discrepancy + ")", "A", 0, 1e12);
 }
 
+bool SearchOptions::isGiven() const {
+    return maxDx_ || maxDy_ || maxDalpha_ || reliability_ || ambiguity_ || kAlpha_ || kXy_ || discrepancy_;
+}
+
 vectorlib::SearchSettings SearchOptions::over(vectorlib::SearchSettings s) const {
     s.permitted.dx = maxDx_.value_or(s.permitted.dx);
     s.permitted.dy = maxDy_.value_or(s.permitted.dy);

@@ -14,6 +14,8 @@ namespace hermes::vector {
 struct SearchOptions {
     /// discrepancy tells people what holds where that option is not given.
     void addTo(CLI::App &command, const std::string &discrepancy);
+    /// Whether any of the options was given.
+    bool isGiven() const;
     /// The settings with what was given on top.
     vectorlib::SearchSettings over(vectorlib::SearchSettings settings) const;
 

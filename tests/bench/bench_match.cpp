@@ -2,6 +2,7 @@
 #include "gui/vector/Input.h"
 
 #include <vectorlib/io/CarmenLog.h>
+#include <vectorlib/mapping/GlobalPairMatcher.h>
 #include <vectorlib/mapping/ScanPairMatcher.h>
 
 #include <benchmark/benchmark.h>
@@ -58,8 +59,19 @@ struct Ours {
     }
 };
 
+/// From the points alone.
+struct OursWithoutGuess {
+    GlobalPairMatcher match;
+
+    Transformation2D operator()(const Pair &pair) {
+        const GlobalPairMatch &found = match(pair.fixed, pair.moving);
+        return found.solutions.empty() ? Transformation2D() : found.solutions[0].pose;
+    }
+};
+
 #ifdef BENCH_MRPT
 /// With its default settings; its maps of points are made within the time measured.
+template <bool knowsOdometry>
 struct Mrpt {
     mrpt::slam::CICP icp;
     mrpt::maps::CSimplePointsMap fixed, moving;
@@ -67,7 +79,8 @@ struct Mrpt {
     Transformation2D operator()(const Pair &pair) {
         fill(fixed, pair.fixed);
         fill(moving, pair.moving);
-        const mrpt::poses::CPose2D start(pair.expected.x(), pair.expected.y(), pair.expected.alpha());
+        const Transformation2D &guess = knowsOdometry ? pair.expected : Transformation2D();
+        const mrpt::poses::CPose2D start(guess.x(), guess.y(), guess.alpha());
         mrpt::poses::CPose2D found;
         icp.Align(&fixed, &moving, start)->getMean(found);
         return {found.x(), found.y(), found.phi()};
@@ -110,21 +123,33 @@ void matchAll(benchmark::State &state, const std::vector<Pair> &pairs) {
     std::nth_element(times.begin(), times.begin() + std::ptrdiff_t(times.size() / 2), times.end());
     state.counters["pairs"] = double(pairs.size());
     state.counters["median_us"] = times[times.size() / 2];
+    std::sort(times.begin(), times.end());
+    state.counters["p99_us"] = times[times.size() * 99 / 100];
     state.counters["within_10cm_2deg"] = near / double(pairs.size());
     state.counters["within_5cm_2deg"] = nearer / double(pairs.size());
 }
 
-void add(const std::string &what, std::vector<Pair> pairs) {
-    const auto shared = std::make_shared<std::vector<Pair>>(std::move(pairs));
-    const auto row = [&](const std::string &method,
-                         void (*match)(benchmark::State &, const std::vector<Pair> &)) {
-        benchmark::RegisterBenchmark((method + "/" + what).c_str(), [=](benchmark::State &state) {
-            match(state, *shared);
-        })->Iterations(1);
-    };
-    row("vectorlib", matchAll<Ours>);
+using SharedPairs = std::shared_ptr<const std::vector<Pair>>;
+
+SharedPairs shared(std::vector<Pair> pairs) {
+    return std::make_shared<const std::vector<Pair>>(std::move(pairs));
+}
+template <typename Method>
+void row(const std::string &method, const std::string &what, const SharedPairs &pairs) {
+    benchmark::RegisterBenchmark((method + "/" + what).c_str(), [=](benchmark::State &state) {
+        matchAll<Method>(state, *pairs);
+    })->Iterations(1);
+}
+void add(const std::string &what, const SharedPairs &pairs) {
+    row<Ours>("vectorlib", what, pairs);
 #ifdef BENCH_MRPT
-    row("MRPT CICP", matchAll<Mrpt>);
+    row<Mrpt<true>>("MRPT CICP", what, pairs);
+#endif
+}
+void addWithoutGuess(const std::string &what, const SharedPairs &pairs) {
+    row<OursWithoutGuess>("vectorlib, no guess", what, pairs);
+#ifdef BENCH_MRPT
+    row<Mrpt<false>>("MRPT CICP, no guess", what, pairs);
 #endif
 }
 
@@ -147,10 +172,16 @@ int main(int argc, char **argv) {
         return hermes::vector::valueOrFail(readCarmenLog(input.stream(), input.name()));
     };
     try {
-        add("intel, consecutive", pairsOf(log("intel"), 1, 1000));
+        const SharedPairs intel = shared(pairsOf(log("intel"), 1, 1000));
         const CarmenLog freiburg = log("freiburg-079");
-        add("freiburg-079, first 1000", pairsOf(freiburg, 1, 1000));
-        add("freiburg-079, every 5th", pairsOf(freiburg, 5, 1000));
+        const SharedPairs fifth = shared(pairsOf(freiburg, 5, 1000));
+        add("intel, consecutive", intel);
+        add("freiburg-079, first 1000", shared(pairsOf(freiburg, 1, 1000)));
+        add("freiburg-079, every 5th", fifth);
+        addWithoutGuess("intel, consecutive", intel);
+        addWithoutGuess("freiburg-079, every 5th", fifth);
+        for (const char *name : {"fhw", "belgioioso", "orebro"})
+            addWithoutGuess(std::string(name) + ", consecutive", shared(pairsOf(log(name), 1, 1000)));
     } catch (const hermes::vector::Failure &failure) {
         std::cerr << failure.what() << '\n';
         return 1;

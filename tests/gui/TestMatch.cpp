@@ -32,6 +32,9 @@ private Q_SLOTS:
     void mapFileIsAMap();
     void expectedPoseMovesTheSearch();
     void tellsWhyNothingIsAccepted();
+    void anyMotionNeedsNoEstimate();
+    void estimateTracks();
+    void ambiguityIsTold();
     void covarianceFollowsTheNoise();
     void pictureIsWellFormed();
     void wrongUse_data();
@@ -41,25 +44,43 @@ private Q_SLOTS:
 };
 
 void TestMatch::findsTheMotion_data() {
+    QTest::addColumn<QStringList>("options");
     QTest::addColumn<bool>("staticPoints");
     QTest::addColumn<bool>("dynamicPoints");
     QTest::addColumn<double>("most");
-    QTest::newRow("points") << true << true << 0.02;
-    QTest::newRow("segments") << false << false << 1e-9;
-    QTest::newRow("points on segments") << false << true << 0.02;
-    QTest::newRow("segments on points") << true << false << 0.02;
+    QTest::addColumn<QString>("method");
+    const QString global = "global", finder = "finder", tracking = "tracking";
+    const QStringList byFinder{"--method", "finder"}, expected{"--expected", "0.6,-0.2,0.45"};
+    QTest::newRow("points") << QStringList() << true << true << 0.02 << global;
+    QTest::newRow("segments") << QStringList() << false << false << 1e-9 << global;
+    QTest::newRow("points on segments") << QStringList() << false << true << 0.02 << global;
+    QTest::newRow("segments on points") << QStringList() << true << false << 0.02 << global;
+    QTest::newRow("points, finder") << byFinder << true << true << 0.02 << finder;
+    QTest::newRow("segments, finder") << byFinder << false << false << 1e-9 << finder;
+    QTest::newRow("points on segments, finder") << byFinder << false << true << 0.02 << finder;
+    QTest::newRow("segments on points, finder") << byFinder << true << false << 0.02 << finder;
+    QTest::newRow("options of the search") << QStringList{"--max-dx", "1"} << true << true << 0.02 << finder;
+    QTest::newRow("points, expected") << expected << true << true << 0.02 << tracking;
+    QTest::newRow("segments, expected") << expected << false << false << 1e-9 << finder;
 }
 
 void TestMatch::findsTheMotion() {
+    QFETCH(QStringList, options);
     QFETCH(bool, staticPoints);
     QFETCH(bool, dynamicPoints);
     QFETCH(double, most);
-    const Result r =
-        run({"match", seen("a.csv", "0,0,0", staticPoints), seen("b.csv", "0.7,-0.3,0.5", dynamicPoints)});
+    QFETCH(QString, method);
+    const Result r = run(QStringList{"match", seen("a.csv", "0,0,0", staticPoints),
+                                     seen("b.csv", "0.7,-0.3,0.5", dynamicPoints)} +
+                         options);
     QCOMPARE(r.status, 0);
     QCOMPARE(r.err, QByteArray());
     const QJsonObject result = json(r.out), best = result["solutions"].toArray()[0].toObject();
-    QCOMPARE(result["outcome"].toString(), QString("every combination was considered"));
+    QCOMPARE(result["method"].toString(), method);
+    QCOMPARE(result["outcome"].toString(),
+             method == "finder" ? QString("every combination was considered") : QString("found"));
+    if (method != "finder")
+        QVERIFY(best["probability"].toDouble() > 0.85 && best["probability"].toDouble() <= 1);
     QVERIFY(best["accepted"].toBool());
     QCOMPARE(best["verdict"].toString(), QString("accepted"));
     const QJsonObject pose = best["pose"].toObject();
@@ -98,7 +119,8 @@ void TestMatch::mapHidesNothing() {
     write(path("part.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n4,-1.5,4,1\n");
     seen("b.csv", "0.3,0.2,0.1", false);
     const auto best = [&](const QStringList &more) {
-        const Result r = run(QStringList{"match", path("part.csv"), path("b.csv")} + more);
+        const Result r =
+            run(QStringList{"match", path("part.csv"), path("b.csv"), "--method", "finder"} + more);
         return json(r.out)["solutions"].toArray()[0].toObject();
     };
     QCOMPARE(best({})["accepted"].toBool(), false);
@@ -120,7 +142,8 @@ void TestMatch::mapFileIsAMap() {
 void TestMatch::expectedPoseMovesTheSearch() {
     const QString a = seen("a.csv", "-1,0,0", false), b = seen("b.csv", "1.5,0.3,1.5", false);
     const auto accepted = [&](const QStringList &more) {
-        const QJsonArray solutions = json(run(QStringList{"match", a, b} + more).out)["solutions"].toArray();
+        const QJsonArray solutions =
+            json(run(QStringList{"match", a, b, "--method", "finder"} + more).out)["solutions"].toArray();
         return !solutions.isEmpty() && solutions[0].toObject()["accepted"].toBool();
     };
     QVERIFY(!accepted({}));
@@ -137,13 +160,51 @@ void TestMatch::tellsWhyNothingIsAccepted() {
         QVERIFY(s.toObject()["verdict"].toString() != QLatin1String("accepted"));
     }
     write(path("wall.csv"), "1,-2,1,2\n");
-    const Result corridor = run({"match", path("wall.csv"), path("wall.csv")});
+    const Result corridor = run({"match", path("wall.csv"), path("wall.csv"), "--method", "finder"});
     QCOMPARE(corridor.status, 0);
     QVERIFY(json(corridor.out)["solutions"].toArray().isEmpty());
     QVERIFY(json(corridor.out)["outcome"].toString().contains("parallel"));
     QVERIFY2(corridor.err.contains("parallel"), corridor.err.constData());
     write(path("dots.csv"), "1,1,1,1\n2,2,2,2\n"); // segments of no length
     QVERIFY(json(run({"match", path("dots.csv"), b}).out)["outcome"].toString().contains("static set"));
+}
+
+void TestMatch::anyMotionNeedsNoEstimate() {
+    for (const bool points : {true, false}) {
+        folder_.empty();
+        const QString a = seen("a.csv", "-1,0,0", points), b = seen("b.csv", "1.5,0.3,2.9", points);
+        const QJsonObject best = json(run({"match", a, b}).out)["solutions"].toArray()[0].toObject();
+        QVERIFY(best["accepted"].toBool());
+        QVERIFY(std::abs(best["pose"].toObject()["x"].toDouble() - 2.5) < 0.02);
+        QVERIFY(std::abs(best["pose"].toObject()["alpha"].toDouble() - 2.9) < 0.01);
+    }
+}
+
+void TestMatch::estimateTracks() {
+    const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.7,-0.3,0.5", true);
+    const auto accepted = [&](const QStringList &more) {
+        const QJsonArray solutions = json(run(QStringList{"match", a, b} + more).out)["solutions"].toArray();
+        return solutions.size() == 1 && solutions[0].toObject()["accepted"].toBool();
+    };
+    QVERIFY(accepted({"--expected", "0.6,-0.2,0.4"}));
+    QVERIFY(accepted({"--expected", "0.4,0,0.2", "--deviation-xy", "0.5", "--deviation-alpha", "0.3"}));
+    QVERIFY(!accepted({"--expected", "0.7,-0.3,2.5", "--deviation-alpha", "0.01"}));
+}
+
+// A rectangle looks the same from two places; a single wall slides along itself.
+void TestMatch::ambiguityIsTold() {
+    write(path("rectangle.csv"), "-3,-2,3,-2\n3,-2,3,2\n3,2,-3,2\n-3,2,-3,-2\n");
+    const QJsonObject two = json(run({"match", path("rectangle.csv"), path("rectangle.csv")}).out);
+    QVERIFY(two["outcome"].toString().startsWith("ambiguous"));
+    const QJsonArray solutions = two["solutions"].toArray();
+    QVERIFY(solutions.size() >= 2);
+    for (int i = 0; i < 2; ++i) {
+        QVERIFY(!solutions[i].toObject()["accepted"].toBool());
+        QVERIFY(solutions[i].toObject()["probability"].toDouble() > 0.2);
+    }
+    write(path("wall.csv"), "1,-2,1,2\n");
+    const QJsonObject wall = json(run({"match", path("wall.csv"), path("wall.csv")}).out);
+    QVERIFY(!wall["solutions"].toArray()[0].toObject()["accepted"].toBool());
 }
 
 void TestMatch::covarianceFollowsTheNoise() {
@@ -180,6 +241,11 @@ void TestMatch::wrongUse_data() {
     QTest::newRow("half a pose") << QStringList{room, room, "--expected", "1,2"} << QByteArray("--expected");
     QTest::newRow("NaN") << QStringList{room, room, "--max-dx", "nan"} << QByteArray("--max-dx");
     QTest::newRow("no noise") << QStringList{room, room, "--noise", "0"} << QByteArray("--noise");
+    QTest::newRow("deviation of nothing")
+        << QStringList{room, room, "--deviation-xy", "1"} << QByteArray("--expected");
+    QTest::newRow("no such method") << QStringList{room, room, "--method", "best"} << QByteArray("--method");
+    QTest::newRow("global with an estimate")
+        << QStringList{room, room, "--method", "global", "--expected", "0,0,0"} << QByteArray("--method");
     QTest::newRow("points are no map") << QStringList{room, room, "--map"} << QByteArray("--map");
 }
 

@@ -1,76 +1,16 @@
 #include <vectorlib/mapping/ScanPairMatcher.h>
 
 #include "tests/support/AllocationCounter.h"
+#include "tests/vectorlib/ScanWorld.h"
 
 #include <QtTest>
 
-#include <random>
-
 using namespace vectorlib;
-using Points = std::vector<Vector2D<float>>;
+using Points = ScanWorld::Points;
 
 namespace {
 
-struct Circle {
-    Vector2D<double> centre;
-    double radius = 0;
-};
-
-/// Walls and round things that a scanner of half a degree and half a turn sees.
-struct World {
-    std::vector<LineSegment2D<double>> walls;
-    std::vector<Circle> pillars;
-
-    Points scan(const Transformation2D &pose, std::mt19937 &random, double sigma = 0.01) const {
-        std::normal_distribution<double> noise;
-        Points points;
-        for (int i = 0; i <= 360; ++i) {
-            const double angle = -pi / 2 + i * pi / 360;
-            const Vector2D<double> ray(std::cos(angle), std::sin(angle));
-            const double r = range(pose.translation(), pose.rotate(ray));
-            if (r < 80)
-                points.emplace_back(ray * (r + sigma * noise(random)));
-        }
-        return points;
-    }
-
-private:
-    double range(Vector2D<double> from, Vector2D<double> ray) const {
-        double nearest = 1e9;
-        for (const auto &wall : walls) {
-            const double across = ray.cross(wall.direction());
-            const double r = (wall.begin() - from).cross(wall.direction()) / across;
-            const double t = wall.along(from + ray * r);
-            if (r > 0 && t >= 0 && t <= wall.length())
-                nearest = std::min(nearest, r);
-        }
-        for (const Circle &c : pillars) {
-            const double along = (c.centre - from).dot(ray), across = (c.centre - from).cross(ray);
-            const double depth = c.radius * c.radius - across * across;
-            if (depth > 0 && along - std::sqrt(depth) > 0)
-                nearest = std::min(nearest, along - std::sqrt(depth));
-        }
-        return nearest;
-    }
-};
-
-World room() {
-    return {
-        {{{-4, -3}, {4, -3}}, {{4, -3}, {4, 3}}, {{4, 3}, {-1, 3}}, {{-1, 3}, {-4, 1}}, {{-4, 1}, {-4, -3}}},
-        {}};
-}
-/// Round pillars only: no line is longer than a few points.
-World grove() {
-    World w;
-    std::mt19937 random(5);
-    std::uniform_real_distribution<double> x(1, 9), y(-7, 7), radius(0.1, 0.35);
-    for (int i = 0; i < 40; ++i)
-        w.pillars.push_back({{x(random), y(random)}, radius(random)});
-    return w;
-}
-World corridor() {
-    return {{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}}, {}};
-}
+const auto room = ScanWorld::room, grove = ScanWorld::grove, corridor = ScanWorld::corridor;
 
 EarSettings scanner() {
     return EarSettings::forScanner(pi, 361);
@@ -147,7 +87,7 @@ void TestScanPairMatcher::motionIsFound_data() {
 
 void TestScanPairMatcher::motionIsFound() {
     QFETCH(bool, round);
-    const World world = round ? grove() : room();
+    const ScanWorld world = round ? grove() : room();
     std::mt19937 random(3);
     std::normal_distribution<double> wheels(0, 0.08);
     ScanPairMatcher match;

@@ -10,44 +10,57 @@ namespace hermes::vector {
 
 using vectorlib::Transformation2D;
 
-namespace {
+std::vector<std::size_t> PairsOptions::pairsOf(const vectorlib::CarmenLog &log) const {
+    const std::size_t possible = log.scans.empty() ? 0 : (log.scans.size() - 1) / every;
+    const std::size_t count = first > 0 ? std::min(first, possible) : possible;
+    std::vector<std::size_t> list;
+    for (std::size_t i = 0; i < count; ++i) {
+        const PairHalf own = i / 50 % 2 == 0 ? PairHalf::First : PairHalf::Second;
+        if (half == PairHalf::Both || half == own)
+            list.push_back(i * every);
+    }
+    return list;
+}
 
-using Points = std::vector<vectorlib::Vector2D<float>>;
+double LogPair::errorMetres(const Transformation2D &motion) const {
+    return (motion.translation() - reference.translation()).norm();
+}
 
-Points pointsOf(const vectorlib::CarmenScan &scan) {
-    Points points;
+double LogPair::errorDegrees(const Transformation2D &motion) const {
+    return std::abs((reference.inverse() * motion).alpha()) * 180 / vectorlib::pi;
+}
+
+bool LogPair::isWithin(const Transformation2D &motion, double metres) const {
+    return errorMetres(motion) <= metres && errorDegrees(motion) <= 2;
+}
+
+bool LogPair::isWrong(const Transformation2D &motion) const {
+    return errorMetres(motion) > 0.5 || errorDegrees(motion) > 10;
+}
+
+ScanPoints pointsOf(const vectorlib::CarmenScan &scan) {
+    ScanPoints points;
     scan.appendPoints(points);
     return points;
 }
 
-} // namespace
-
-double PairResult::errorMetres(const Transformation2D &motion) const {
-    return (motion.translation() - reference.translation()).norm();
-}
-
-double PairResult::errorDegrees(const Transformation2D &motion) const {
-    return std::abs((reference.inverse() * motion).alpha()) * 180 / vectorlib::pi;
-}
-
-bool PairResult::isWithin(const Transformation2D &motion, double metres) const {
-    return errorMetres(motion) <= metres && errorDegrees(motion) <= 2;
-}
-
-bool PairResult::isWrong() const {
-    return errorMetres(match.pose) > 0.5 || errorDegrees(match.pose) > 10;
+double quantile(std::vector<double> values, double share) {
+    if (values.empty())
+        return 0;
+    const auto at = values.begin() + std::ptrdiff_t(double(values.size()) * share);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
 }
 
 std::vector<PairResult> pairsExperiment(const vectorlib::CarmenLog &log, const PairsOptions &options) {
     using Clock = std::chrono::steady_clock;
-    const std::size_t possible = log.scans.empty() ? 0 : (log.scans.size() - 1) / options.every;
-    const std::size_t count = options.first > 0 ? std::min(options.first, possible) : possible;
+    const std::vector<std::size_t> pairs = options.pairsOf(log);
     vectorlib::ScanPairMatcher match;
     std::vector<PairResult> results;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (const std::size_t from : pairs) {
         PairResult r;
-        r.from = i * options.every;
-        r.to = r.from + options.every;
+        r.from = from;
+        r.to = from + options.every;
         const vectorlib::CarmenScan &first = log.scans[r.from], &second = log.scans[r.to];
         const auto odometry = log.odometryMotion(r.from, r.to, vectorlib::CarmenOdometryKind::Corrected);
         r.expected = odometry.value_or(Transformation2D());
@@ -56,14 +69,14 @@ std::vector<PairResult> pairsExperiment(const vectorlib::CarmenLog &log, const P
             odometry ? vectorlib::ScanPairSettings() : vectorlib::ScanPairSettings::forPoorExpectation();
         match.extract.segment.settings = vectorlib::EarSettings::forScanner(
             first.angleStep * double(first.ranges.size()), first.ranges.size());
-        const Points fixed = pointsOf(first), moving = pointsOf(second);
+        const ScanPoints fixed = pointsOf(first), moving = pointsOf(second);
         const auto begin = Clock::now();
         const vectorlib::ScanPairMatch &found = match(fixed, moving, r.expected);
         r.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
         r.match = found;
         results.push_back(r);
         if (options.progress)
-            options.progress(i + 1, count);
+            options.progress(results.size(), pairs.size());
     }
     return results;
 }
@@ -77,20 +90,19 @@ nlohmann::ordered_json summaryOf(const std::vector<PairResult> &pairs) {
     std::vector<double> times;
     for (const PairResult &p : pairs)
         times.push_back(p.microseconds);
-    const auto middle = times.begin() + std::ptrdiff_t(times.size() / 2);
-    std::nth_element(times.begin(), middle, times.end());
     return {{"pairs", pairs.size()},
             {"within_10cm_2deg", share([](const PairResult &p) { return p.isWithin(p.match.pose, 0.10); })},
             {"within_5cm_2deg", share([](const PairResult &p) { return p.isWithin(p.match.pose, 0.05); })},
             {"accepted", share([](const PairResult &p) { return p.match.accepted; })},
-            {"accepted_wrong", share([](const PairResult &p) { return p.match.accepted && p.isWrong(); })},
+            {"accepted_wrong",
+             share([](const PairResult &p) { return p.match.accepted && p.isWrong(p.match.pose); })},
             {"lines_do_not_suffice", share([](const PairResult &p) { return !p.match.linesSuffice; })},
             {"lines_alone_within_10cm_2deg",
              share([](const PairResult &p) { return p.isWithin(p.match.byLines, 0.10); })},
             {"odometry_within_10cm_2deg",
              share([](const PairResult &p) { return p.isWithin(p.expected, 0.10); })},
             {"searched_again", share([](const PairResult &p) { return p.match.searchedAgain; })},
-            {"median_us", *middle}};
+            {"median_us", quantile(std::move(times), 0.5)}};
 }
 
 void writeCsv(std::ostream &out, const std::vector<PairResult> &pairs) {
@@ -108,25 +120,25 @@ void writeCsv(std::ostream &out, const std::vector<PairResult> &pairs) {
     }
 }
 
-void draw(std::ostream &svg, const vectorlib::CarmenLog &log, const PairResult &pair) {
-    const Points second = pointsOf(log.scans[pair.to]);
+void draw(std::ostream &svg, const vectorlib::CarmenLog &log, const LogPair &pair,
+          const Transformation2D &found) {
+    const ScanPoints second = pointsOf(log.scans[pair.to]);
     const auto moved = [&](const Transformation2D &motion) {
-        Points points;
+        ScanPoints points;
         for (const auto &p : second)
             points.push_back(motion * p);
         return points;
     };
     const auto hundredths = [](double v) { return std::to_string(std::lround(100 * v)); };
     vectorlib::SvgPicture picture("scans " + std::to_string(pair.from) + " and " + std::to_string(pair.to) +
-                                  ": " + hundredths(pair.errorMetres(pair.match.pose)) + " cm and " +
-                                  hundredths(pair.errorDegrees(pair.match.pose)) +
+                                  ": " + hundredths(pair.errorMetres(found)) + " cm and " +
+                                  hundredths(pair.errorDegrees(found)) +
                                   " hundredths of a degree from the reference");
     picture.points({vectorlib::colour::reference, 3, "second scan by the reference"}, moved(pair.reference));
     picture.points({vectorlib::colour::points, 3, "first scan"}, pointsOf(log.scans[pair.from]));
-    picture.points({vectorlib::colour::estimate, 3, "second scan as matched"}, moved(pair.match.pose));
+    picture.points({vectorlib::colour::estimate, 3, "second scan as matched"}, moved(found));
     picture.pose({vectorlib::colour::points, 2, ""}, {0, 0}, 0);
-    picture.pose({vectorlib::colour::estimate, 2, ""}, {pair.match.pose.x(), pair.match.pose.y()},
-                 pair.match.pose.alpha());
+    picture.pose({vectorlib::colour::estimate, 2, ""}, {found.x(), found.y()}, found.alpha());
     picture.write(svg);
 }
 

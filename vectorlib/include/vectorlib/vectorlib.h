@@ -4,6 +4,7 @@
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 #include "vectorlib/correspondence/SolutionCovariance.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/ScanTracker.h"
 #include "vectorlib/registration/RegistrationCovariance.h"
 #include "vectorlib/relations/LocalMap.h"

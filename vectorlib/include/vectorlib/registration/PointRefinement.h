@@ -42,6 +42,9 @@ public:
         fixed_.build(fixed, settings.mostPoints);
         moving_.build(moving, settings.mostPoints);
     }
+    /// The scans as they were taken.
+    const ScanIndex &fixed() const { return fixed_; }
+    const ScanIndex &moving() const { return moving_; }
     /// The transformation of the moving scan onto the fixed one, from one nearby. A first gate wider than
     /// that of the settings reaches farther, and costs more.
     Transformation2D operator()(Transformation2D pose, const Expectation &expected, double firstGate = 0) {
@@ -61,6 +64,17 @@ public:
             gate = std::max(settings.gate, gate * settings.gateFactor);
         }
         return pose;
+    }
+    /// How firmly the points hold the pose: the matrix of the normal equations in x, y (fixed frame) and the
+    /// rotation about the moving sensor, for residuals of deviation 1 metre. Judged by a sample of the
+    /// points.
+    Eigen::Matrix3d information(const Transformation2D &pose) {
+        const int sample = std::max(1, settings.sample);
+        pairUp(pose, settings.gate, sample);
+        const Sums s = sumsAt(pose, settings.gate);
+        Eigen::Matrix3d h;
+        h << s.xx, s.xy, s.xa, s.xy, s.yy, s.ya, s.xa, s.ya, s.aa;
+        return sample * h;
     }
     /// How well the scans agree when the moving one lies at the pose; by a sample of their points.
     PointAgreement agreement(const Transformation2D &pose) const {
@@ -95,33 +109,41 @@ private:
                 pairs_.push_back({moving_.point(k), normal, normal.dot(fixed_.point(i))});
             }
     }
-    // The pose after one step; the same pose when the equations are singular. The unknowns are the
-    // translation and the rotation about the moving sensor, where both are least correlated.
-    Transformation2D improved(const Transformation2D &pose, double gate, const Expectation &expected) const {
+    // Sums over the pairs of weighted products of the derivatives with each other and with the residuals. The
+    // unknowns are the translation and the rotation about the moving sensor, where both are least correlated.
+    struct Sums {
+        float xx = 0, xy = 0, xa = 0, yy = 0, ya = 0, aa = 0, x = 0, y = 0, a = 0;
+    };
+    Sums sumsAt(const Transformation2D &pose, double gate) const {
         const FloatMotion motion(pose);
         const float inverse = float(1 / (settings.scale * settings.scale * gate * gate));
-        float xx = 0, xy = 0, xa = 0, yy = 0, ya = 0, aa = 0, x = 0, y = 0, a = 0;
+        Sums s;
         for (const Pair &pair : pairs_) {
             const Vector2D<float> n = pair.normal, turned = motion.rotate(pair.moving);
             const float r = n.dot(turned + motion.translation) - pair.offset, u = turned.cross(n);
             const float q = 1 / (1 + r * r * inverse), w = q * q; // Geman and McClure
-            xx += w * n.x * n.x;
-            xy += w * n.x * n.y;
-            xa += w * n.x * u;
-            yy += w * n.y * n.y;
-            ya += w * n.y * u;
-            aa += w * u * u;
-            x += w * n.x * r;
-            y += w * n.y * r;
-            a += w * u * r;
+            s.xx += w * n.x * n.x;
+            s.xy += w * n.x * n.y;
+            s.xa += w * n.x * u;
+            s.yy += w * n.y * n.y;
+            s.ya += w * n.y * u;
+            s.aa += w * u * u;
+            s.x += w * n.x * r;
+            s.y += w * n.y * r;
+            s.a += w * u * r;
         }
+        return s;
+    }
+    // The pose after one step; the same pose when the equations are singular.
+    Transformation2D improved(const Transformation2D &pose, double gate, const Expectation &expected) const {
+        const Sums s = sumsAt(pose, gate);
         const double kXY = std::pow(settings.deviation / expected.deviationXY, 2);
         const double kAlpha = std::pow(settings.deviation / expected.deviationAlpha, 2);
         const Vector2D<double> off = pose.translation() - expected.pose.translation();
         const double turn = (expected.pose.inverse() * pose).alpha();
         Eigen::Matrix3d h;
-        h << xx + kXY, xy, xa, xy, yy + kXY, ya, xa, ya, aa + kAlpha;
-        const Eigen::Vector3d g(x + kXY * off.x, y + kXY * off.y, a + kAlpha * turn);
+        h << s.xx + kXY, s.xy, s.xa, s.xy, s.yy + kXY, s.ya, s.xa, s.ya, s.aa + kAlpha;
+        const Eigen::Vector3d g(s.x + kXY * off.x, s.y + kXY * off.y, s.a + kAlpha * turn);
         const std::optional<Eigen::Vector3d> back = solveSymmetric(h, g);
         if (!back)
             return pose;

@@ -1,0 +1,145 @@
+#include "gui/vector/MatchMethods.h"
+
+#include "vectorlib/correspondence/SolutionCovariance.h"
+#include "vectorlib/mapping/GlobalPairMatcher.h"
+#include "vectorlib/mapping/ScanPairMatcher.h"
+#include "vectorlib/observation/SimulatedScanner.h"
+
+namespace hermes::vector {
+
+using vectorlib::GlobalPairMatch;
+using vectorlib::GlobalPairVerdict;
+using vectorlib::SearchResult;
+using vectorlib::Solution;
+using vectorlib::Transformation2D;
+
+namespace {
+
+bool isScan(const SegmentSet &set) {
+    return set.kind == SegmentSet::Kind::Points;
+}
+
+/// The points of a set; of segments those that a scanner would see from where they were seen.
+std::vector<vectorlib::Vector2D<float>> pointsOf(const SegmentSet &set) {
+    if (isScan(set))
+        return set.points;
+    std::vector<vectorlib::LineSegment2D<float>> walls;
+    for (const vectorlib::LineSegment2D<double> &s : set.segments())
+        walls.emplace_back(vectorlib::Vector2D<float>(s.begin()), vectorlib::Vector2D<float>(s.end()));
+    vectorlib::SimulatedScanner<float> scan;
+    scan.sigma = 0;
+    return scan(walls, {});
+}
+
+/// Which segments lie on each other under a motion that was found without them, and what they say of it.
+class SegmentsUnderMotion {
+public:
+    SegmentsUnderMotion(const SegmentSet &fixed, const SegmentSet &moving)
+        : fixed_(fixed)
+        , moving_(moving) {
+        find_.settings.permitted = {0.1, 0.1, 0.05};
+    }
+    /// Takes what the search for segments tells, but leaves the pose and the verdict of a match of points.
+    void addTo(MatchedSolution &matched) {
+        const Transformation2D pose = matched.solution.pose;
+        const SearchResult &found = find_(fixed_.segments(), moving_.segments(), pose);
+        potentialPairs = found.potentialPairs;
+        combinations = found.combinations;
+        if (found.solutions.empty())
+            return;
+        const Solution own = matched.solution;
+        matched.solution = found.solutions[0];
+        matched.solution.accepted = own.accepted;
+        matched.solution.score = own.score;
+        if (isScan(fixed_) || isScan(moving_))
+            matched.solution.pose = own.pose;
+        else
+            matched.covariance =
+                vectorlib::SolutionCovariance()(found.solutions[0], fixed_.measured, moving_.measured);
+    }
+    std::size_t potentialPairs = 0;
+    std::uint64_t combinations = 0;
+
+private:
+    const SegmentSet &fixed_, &moving_;
+    vectorlib::CorrespondenceFinder find_;
+};
+
+MatchedSolution solutionOf(const vectorlib::GlobalPairSolution &s, bool accepted,
+                           const std::string &verdict) {
+    MatchedSolution m;
+    m.solution.pose = s.pose;
+    m.solution.score = s.score;
+    m.solution.reliability = s.agreement.reliability();
+    m.solution.accepted = accepted;
+    m.verdict = accepted ? "accepted" : verdict;
+    m.probability = s.probability;
+    m.covariance = s.covariance;
+    return m;
+}
+
+/// The solutions in the given form, with their segments.
+Matched matchedOf(const GlobalPairMatch &match, const SegmentSet &fixed, const SegmentSet &moving) {
+    Matched result;
+    result.outcome = describe(match.verdict);
+    SegmentsUnderMotion segments(fixed, moving);
+    for (const vectorlib::GlobalPairSolution &s : match.solutions) {
+        const bool best = result.solutions.empty();
+        const std::string verdict = best ? describe(match.verdict) : "another solution fits better";
+        result.solutions.push_back(solutionOf(s, best && match.isAccepted(), verdict));
+        segments.addTo(result.solutions.back());
+        if (best) {
+            result.potentialPairs = segments.potentialPairs;
+            result.combinations = segments.combinations;
+        }
+    }
+    return result;
+}
+
+} // namespace
+
+Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
+                      const vectorlib::SearchSettings &settings, const Transformation2D &around, bool inMap) {
+    vectorlib::CorrespondenceFinder find;
+    find.settings = settings;
+    vectorlib::SegmentMap map;
+    for (std::size_t i = 0; inMap && i < fixed.segments().size(); ++i)
+        map.add(fixed.segments()[i]);
+    const SearchResult &found =
+        inMap ? find(map, moving.segments(), around) : find(fixed.segments(), moving.segments(), around);
+    Matched result{"finder", describe(found.outcome), found.potentialPairs, found.combinations, {}};
+    for (const Solution &s : found.solutions)
+        result.solutions.push_back({s, describe(s.fault), std::nullopt,
+                                    vectorlib::SolutionCovariance()(s, fixed.measured, moving.measured)});
+    return result;
+}
+
+Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving) {
+    vectorlib::GlobalPairMatcher match;
+    const GlobalPairMatch &found = match(pointsOf(fixed), pointsOf(moving));
+    Matched result = matchedOf(found, fixed, moving);
+    result.method = "global";
+    return result;
+}
+
+Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const MatchExpectation &expected,
+                      const vectorlib::EarSettings &segmentation) {
+    vectorlib::ScanPairMatcher track;
+    track.settings.deviationXY = expected.deviationXY;
+    track.settings.deviationAlpha = expected.deviationAlpha;
+    if (expected.deviationXY > 0.5 || expected.deviationAlpha > 0.3) // hardly more than a guess
+        track.settings.lines = track.settings.wideLines;
+    track.extract.segment.settings = segmentation;
+    const vectorlib::ScanPairMatch &tracked = track(fixed.points, moving.points, expected.pose);
+    vectorlib::GlobalPairMatcher judge;
+    Matched result = matchedOf(judge.judge(fixed.points, moving.points, tracked.pose), fixed, moving);
+    result.method = "tracking";
+    result.outcome = tracked.accepted ? "found" : "too little agrees near the expected motion";
+    for (MatchedSolution &s : result.solutions) {
+        s.solution.accepted = tracked.accepted;
+        s.verdict = tracked.accepted ? "accepted" : result.outcome;
+    }
+    return result;
+}
+
+} // namespace hermes::vector

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "gui/vector/SegmentSet.h"
+#include "vectorlib/correspondence/CorrespondenceFinder.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hermes::vector {
+
+/// A motion that was found, and what is known of it.
+struct MatchedSolution {
+    vectorlib::Solution solution; ///< its accepted tells whether to trust it
+    std::string verdict;
+    std::optional<double> probability; ///< where the method tells one
+    std::optional<Eigen::Matrix3d> covariance;
+};
+
+/// What one of the methods makes of two sets.
+struct Matched {
+    std::string method;
+    std::string outcome; ///< how the search ended
+    std::size_t potentialPairs = 0;
+    std::uint64_t combinations = 0;
+    std::vector<MatchedSolution> solutions; ///< best first
+};
+
+/// Where the second set is expected in the frame of the first; standard deviations in metres and radians.
+struct MatchExpectation {
+    vectorlib::Transformation2D pose;
+    double deviationXY = 0.15, deviationAlpha = 0.10;
+};
+
+/// The correspondence search over a permitted set of motions.
+Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
+                      const vectorlib::SearchSettings &settings, const vectorlib::Transformation2D &around,
+                      bool inMap);
+/// From nothing but the two sets. Segments are matched as a scanner would see them, and then exactly.
+Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving);
+/// From an estimate, two sets of points.
+Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const MatchExpectation &expected,
+                      const vectorlib::EarSettings &segmentation);
+
+} // namespace hermes::vector

@@ -1,0 +1,147 @@
+#include "gui/vector/experiment/Calibration.h"
+
+#include "vectorlib/io/Number.h"
+
+#include <Eigen/Cholesky>
+
+namespace hermes::vector {
+
+using vectorlib::GlobalPairSolution;
+using vectorlib::MatchProbability;
+
+namespace {
+
+bool isRight(const GlobalPairResult &pair, const GlobalPairSolution &s) {
+    return pair.isWithin(s.pose, 0.10);
+}
+
+void add(std::array<CalibrationTenth, 10> &tenths, double probability, bool right) {
+    CalibrationTenth &t = tenths[std::size_t(std::clamp(probability * 10, 0.0, 9.0))];
+    ++t.solutions;
+    t.told += probability;
+    t.right += right;
+}
+
+void divide(std::array<CalibrationTenth, 10> &tenths) {
+    for (CalibrationTenth &t : tenths)
+        if (t.solutions > 0) {
+            t.told /= double(t.solutions);
+            t.right /= double(t.solutions);
+        }
+}
+
+/// The logistic regression on whether the right solution is among those of a pair: Newton's method, with a
+/// weak pull towards 0 that keeps it finite.
+MatchProbability::Features fittedWeights(const std::vector<GlobalPairResult> &pairs) {
+    constexpr int count = std::tuple_size<MatchProbability::Features>::value;
+    using Vector = Eigen::Matrix<double, count, 1>;
+    Vector weights = Vector::Zero();
+    for (int step = 0; step < 50; ++step) {
+        Eigen::Matrix<double, count, count> h = 1e-3 * Eigen::Matrix<double, count, count>::Identity();
+        Vector g = -1e-3 * weights;
+        for (const GlobalPairResult &pair : pairs) {
+            const auto &solutions = pair.match.solutions;
+            if (solutions.empty())
+                continue;
+            const bool right = std::any_of(solutions.begin(), solutions.end(),
+                                           [&](const auto &s) { return isRight(pair, s); });
+            const MatchProbability::Features features = MatchProbability::features(pair.match);
+            const Vector f = Eigen::Map<const Vector>(features.data());
+            const double p = 1 / (1 + std::exp(-weights.dot(f)));
+            g += (right - p) * f;
+            h += p * (1 - p) * f * f.transpose();
+        }
+        weights += h.ldlt().solve(g);
+    }
+    MatchProbability::Features result;
+    Eigen::Map<Vector>(result.data()) = weights;
+    return result;
+}
+
+/// With which the right solutions have the greatest share of the powers of all scores.
+double fittedSharpness(const std::vector<GlobalPairResult> &pairs) {
+    double best = 1, most = -1e300;
+    for (double sharpness = 4; sharpness < 400; sharpness *= 1.02) {
+        double sum = 0;
+        for (const GlobalPairResult &pair : pairs) {
+            double right = 0, all = 0;
+            for (const GlobalPairSolution &s : pair.match.solutions) {
+                const double power = std::exp(sharpness * (s.score - pair.match.solutions[0].score));
+                all += power;
+                right += isRight(pair, s) ? power : 0;
+            }
+            if (right > 0)
+                sum += std::log(right / all);
+        }
+        if (sum > most) {
+            most = sum;
+            best = sharpness;
+        }
+    }
+    return best;
+}
+
+nlohmann::ordered_json jsonOf(const std::array<CalibrationTenth, 10> &tenths) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const CalibrationTenth &t : tenths)
+        list.push_back({{"solutions", t.solutions}, {"told", t.told}, {"right", t.right}});
+    return list;
+}
+
+} // namespace
+
+Calibration calibrationOf(const std::vector<GlobalPairResult> &pairs) {
+    Calibration c;
+    for (const GlobalPairResult &pair : pairs)
+        for (const GlobalPairSolution &s : pair.match.solutions) {
+            add(c.all, s.probability, isRight(pair, s));
+            if (&s == &pair.match.solutions[0])
+                add(c.best, s.probability, isRight(pair, s));
+        }
+    divide(c.best);
+    divide(c.all);
+    c.fitted.weights = fittedWeights(pairs);
+    c.fitted.sharpness = fittedSharpness(pairs);
+    return c;
+}
+
+nlohmann::ordered_json summaryOf(const Calibration &calibration) {
+    return {{"best", jsonOf(calibration.best)},
+            {"all", jsonOf(calibration.all)},
+            {"fitted_weights", calibration.fitted.weights},
+            {"fitted_sharpness", calibration.fitted.sharpness}};
+}
+
+void writeCsv(std::ostream &out, const Calibration &calibration) {
+    using vectorlib::Number;
+    out << "of,from,solutions,told,right\n";
+    const auto write = [&out](const char *of, const std::array<CalibrationTenth, 10> &tenths) {
+        for (std::size_t i = 0; i < tenths.size(); ++i)
+            out << of << ',' << Number(double(i) / 10) << ',' << tenths[i].solutions << ','
+                << Number(tenths[i].told) << ',' << Number(tenths[i].right) << '\n';
+    };
+    write("best", calibration.best);
+    write("all", calibration.all);
+}
+
+Plot plotOf(const Calibration &calibration) {
+    const auto curve = [](const char *label, const char *colour,
+                          const std::array<CalibrationTenth, 10> &tenths) {
+        Curve c{label, colour, {}};
+        for (const CalibrationTenth &t : tenths)
+            if (t.solutions >= 20)
+                c.points.emplace_back(t.told, t.right);
+        return c;
+    };
+    return {"diagram",
+            "matches without estimate: probability told, and share that is right",
+            "probability told",
+            "share within 10 cm and 2 degrees",
+            false,
+            false,
+            {{"as it should be", "#999999", {{0, 0}, {1, 1}}},
+             curve("best solutions", "#1b2a41", calibration.best),
+             curve("all solutions", "#009e73", calibration.all)}};
+}
+
+} // namespace hermes::vector

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "gui/vector/experiment/GlobalPairsExperiment.h"
+#include "gui/vector/experiment/Plot.h"
+
+#include <array>
+
+namespace hermes::vector {
+
+/// Solutions whose probability was told to be in one tenth.
+struct CalibrationTenth {
+    std::size_t solutions = 0;
+    double told = 0;  ///< mean probability; 0 of none
+    double right = 0; ///< share within 10 cm and 2 degrees of the reference
+};
+
+/// How the probabilities that were told agree with what was right.
+struct Calibration {
+    std::array<CalibrationTenth, 10> best; ///< best solutions of pairs
+    std::array<CalibrationTenth, 10> all;  ///< all solutions, the best ones among them
+    /// What a fit to these pairs gives.
+    vectorlib::MatchProbability fitted;
+};
+
+Calibration calibrationOf(const std::vector<GlobalPairResult> &pairs);
+
+nlohmann::ordered_json summaryOf(const Calibration &calibration);
+void writeCsv(std::ostream &out, const Calibration &calibration);
+/// The reliability diagram: told probability against share right, of tenths with 20 solutions or more.
+Plot plotOf(const Calibration &calibration);
+
+} // namespace hermes::vector

@@ -1,0 +1,299 @@
+#include <vectorlib/mapping/GlobalPairMatcher.h>
+
+#include "tests/support/AllocationCounter.h"
+#include "tests/vectorlib/ScanWorld.h"
+
+#include <QtTest>
+
+using namespace vectorlib;
+using Points = ScanWorld::Points;
+using Verdict = GlobalPairVerdict;
+
+namespace {
+
+const ScanWorld::Scanner wholeTurn{720, 2 * pi, 0.01};
+
+double metres(const Transformation2D &a, const Transformation2D &b) {
+    return (a.translation() - b.translation()).norm();
+}
+double degrees(const Transformation2D &a, const Transformation2D &b) {
+    return std::abs((a.inverse() * b).alpha()) * 180 / pi;
+}
+bool isRight(const GlobalPairSolution &s, const Transformation2D &motion) {
+    return metres(s.pose, motion) < 0.03 && degrees(s.pose, motion) < 0.5;
+}
+bool holds(const GlobalPairMatch &match, const Transformation2D &motion) {
+    return std::any_of(match.solutions.begin(), match.solutions.end(),
+                       [&](const GlobalPairSolution &s) { return isRight(s, motion); });
+}
+double probabilities(const GlobalPairMatch &match) {
+    double sum = 0;
+    for (const GlobalPairSolution &s : match.solutions)
+        sum += s.probability;
+    return sum;
+}
+/// A hall with niches and pillars, of which every part looks different.
+ScanWorld hall() {
+    ScanWorld w = ScanWorld::of(
+        {{-7, -4}, {2, -4}, {2, -5}, {4, -5}, {4, -4}, {8, -4}, {8, 3}, {5, 5}, {-3, 5}, {-3, 4}, {-7, 4}});
+    w.pillars = {{{5, 0}, 0.4}, {{-4, 2}, 0.3}, {{0, 3}, 0.2}, {{-5, -2}, 0.5}};
+    return w;
+}
+
+} // namespace
+
+/// The motion between two scans from nothing but the scans.
+class TestGlobalPairMatcher : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void anyMotionIsFound_data();
+    void anyMotionIsFound();
+    void motionAndItsInverse();
+    void corridorIsOpenAlongIt();
+    void symmetricRoomIsAmbiguous_data();
+    void symmetricRoomIsAmbiguous();
+    void mirroredRoomIsNotTheSame();
+    void anotherPlaceIsRefused();
+    void covarianceTellsTheSpread();
+    void nothingIsMadeOfNothing();
+    void manyPointsTakeBoundedTime();
+    void steadyStateAllocatesNothing();
+    void largestOfSixteen();
+};
+
+void TestGlobalPairMatcher::anyMotionIsFound_data() {
+    QTest::addColumn<int>("world");
+    QTest::addColumn<int>("rays");
+    QTest::addColumn<double>("turn");
+    QTest::newRow("hall, whole turn") << 0 << 720 << 1.0;
+    QTest::newRow("hall, coarse") << 0 << 240 << 1.0;
+    QTest::newRow("hall, half a turn") << 0 << 361 << 0.5;
+    QTest::newRow("round pillars") << 1 << 720 << 1.0;
+}
+
+void TestGlobalPairMatcher::anyMotionIsFound() {
+    QFETCH(int, world);
+    QFETCH(int, rays);
+    QFETCH(double, turn);
+    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
+    qInfo("seed %u", seed);
+    std::mt19937 random(seed);
+    const ScanWorld place = world == 0 ? hall() : ScanWorld::grove();
+    const ScanWorld::Scanner scanner{rays, 2 * pi * turn, 0.01};
+    // A scanner of half a turn may look elsewhere: less of a turn is sure to overlap.
+    std::uniform_real_distribution<double> shift(-1.2, 1.2),
+        angle(-pi * (turn * 2 - 0.7), pi * (turn * 2 - 0.7));
+    std::uniform_real_distribution<double> heading(-pi, pi);
+    GlobalPairMatcher match;
+    int right = 0, wrong = 0;
+    constexpr int runs = 60;
+    for (int i = 0; i < runs; ++i) {
+        const Transformation2D from(world == 0 ? shift(random) : shift(random) - 1, shift(random) / 2,
+                                    turn == 1 ? heading(random) : heading(random) / 12);
+        const Transformation2D motion(shift(random), shift(random), angle(random));
+        const GlobalPairMatch &found =
+            match(place.scan(from, random, scanner), place.scan(from * motion, random, scanner));
+        if (!found.isAccepted())
+            continue;
+        right += isRight(found.solutions[0], motion);
+        wrong +=
+            metres(found.solutions[0].pose, motion) > 0.5 || degrees(found.solutions[0].pose, motion) > 10;
+        QVERIFY(found.solutions[0].probability >= match.settings.enough);
+        QVERIFY(probabilities(found) < 1 + 1e-9);
+    }
+    QCOMPARE(wrong, 0);
+    QVERIFY2(right >= 0.9 * runs, qPrintable(QString::number(right)));
+}
+
+void TestGlobalPairMatcher::motionAndItsInverse() {
+    const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
+    qInfo("seed %u", seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> shift(-1.5, 1.5), angle(-pi, pi);
+    GlobalPairMatcher match;
+    for (int i = 0; i < 30; ++i) {
+        const Transformation2D motion(shift(random), shift(random), angle(random));
+        const Points a = hall().scan({}, random, wholeTurn), b = hall().scan(motion, random, wholeTurn);
+        const GlobalPairSolution there = match(a, b).solutions.at(0);
+        const GlobalPairSolution back = match(b, a).solutions.at(0);
+        QVERIFY(isRight(there, motion));
+        QVERIFY(metres(there.pose * back.pose, {}) < 0.02 && degrees(there.pose * back.pose, {}) < 0.3);
+    }
+}
+
+void TestGlobalPairMatcher::corridorIsOpenAlongIt() {
+    std::mt19937 random(4);
+    const Transformation2D motion(0.3, 0.1, 0.1);
+    const ScanWorld corridor = ScanWorld::corridor();
+    GlobalPairMatcher match;
+    const GlobalPairMatch &found =
+        match(corridor.scan({}, random, wholeTurn), corridor.scan(motion, random, wholeTurn));
+    QVERIFY2(found.verdict == Verdict::OpenDirection, describe(found.verdict));
+    QVERIFY(!found.isAccepted());
+    // The solutions stand in lines along the corridor, facing either way; each knows what lies across.
+    int along = 0;
+    double least = 0, most = 0;
+    for (const GlobalPairSolution &s : found.solutions) {
+        const double side = std::cos(s.pose.alpha()) > 0 ? 1 : -1;
+        if (std::abs(s.pose.y() - side * 0.1) > 0.05 || std::abs(std::sin(s.pose.alpha() - 0.1)) > 0.02)
+            continue;
+        ++along;
+        least = std::min(least, side * s.pose.x());
+        most = std::max(most, side * s.pose.x());
+        QVERIFY(s.covariance(0, 0) > 100 * s.covariance(1, 1));
+        QVERIFY(s.covariance(1, 1) < 0.01 * 0.01 && s.covariance(2, 2) < 0.01 * 0.01);
+        QVERIFY(s.probability < 0.8);
+    }
+    QVERIFY2(along >= 8 && most - least > 2, qPrintable(QString::number(along)));
+}
+
+void TestGlobalPairMatcher::symmetricRoomIsAmbiguous_data() {
+    QTest::addColumn<double>("width");
+    QTest::addColumn<int>("ways");
+    QTest::newRow("rectangle") << 8.0 << 2;
+    QTest::newRow("square") << 6.0 << 4;
+}
+
+void TestGlobalPairMatcher::symmetricRoomIsAmbiguous() {
+    QFETCH(double, width);
+    QFETCH(int, ways);
+    std::mt19937 random(5);
+    const double x = width / 2;
+    const ScanWorld room = ScanWorld::of({{-x, -3}, {x, -3}, {x, 3}, {-x, 3}});
+    GlobalPairMatcher match;
+    const Transformation2D from(0.5, -0.7, 0.3), motion(0.6, 0.4, 0.5);
+    const GlobalPairMatch &found =
+        match(room.scan(from, random, wholeTurn), room.scan(from * motion, random, wholeTurn));
+    QVERIFY2(found.verdict == Verdict::Ambiguous, describe(found.verdict));
+    for (int way = 0; way < ways; ++way) {
+        const Transformation2D turned(0, 0, 2 * pi * way / ways);
+        QVERIFY(holds(found, from.inverse() * turned * from * motion));
+    }
+    QVERIFY(found.solutions[0].probability < 0.9);
+    QVERIFY(found.solutions[1].probability > 0.02);
+}
+
+void TestGlobalPairMatcher::mirroredRoomIsNotTheSame() {
+    std::mt19937 random(6);
+    const ScanWorld room = hall();
+    Points mirrored = room.scan({}, random, wholeTurn);
+    for (auto &p : mirrored)
+        p.y = -p.y;
+    std::reverse(mirrored.begin(), mirrored.end());
+    GlobalPairMatcher match;
+    const GlobalPairMatch &found = match(room.scan({}, random, wholeTurn), mirrored);
+    QVERIFY2(!found.isAccepted(), describe(found.verdict));
+}
+
+void TestGlobalPairMatcher::anotherPlaceIsRefused() {
+    std::mt19937 random(7);
+    GlobalPairMatcher match;
+    for (int i = 0; i < 40; ++i) {
+        const Transformation2D pose(0.05 * i - 1, 0, 0.3 * i);
+        const GlobalPairMatch &found =
+            match(hall().scan(pose, random), ScanWorld::grove().scan({-1, 0.1 * i - 2, 0}, random));
+        QVERIFY2(!found.isAccepted(), qPrintable(QString::number(i)));
+    }
+}
+
+// Of many pairs of scans with other noise each.
+void TestGlobalPairMatcher::covarianceTellsTheSpread() {
+    std::mt19937 random(8);
+    const Transformation2D motion(0.7, -0.3, 0.8);
+    GlobalPairMatcher match;
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero(), told = squares;
+    constexpr int runs = 100;
+    for (int i = 0; i < runs; ++i) {
+        const GlobalPairMatch &found =
+            match(hall().scan({}, random, wholeTurn), hall().scan(motion, random, wholeTurn));
+        const GlobalPairSolution &best = found.solutions.at(0);
+        const Transformation2D &p = best.pose;
+        const Eigen::Vector3d error(p.x() - motion.x(), p.y() - motion.y(), (motion.inverse() * p).alpha());
+        squares += error.cwiseProduct(error) / runs;
+        told += best.covariance.diagonal() / runs;
+        QVERIFY((best.covariance - best.covariance.transpose()).norm() < 1e-9);
+    }
+    // Real walls are rougher than the noise here: what is told is rather too much.
+    for (int i = 0; i < 3; ++i)
+        QVERIFY2(told(i) > squares(i) && told(i) < 100 * squares(i),
+                 qPrintable(QString("%1 %2").arg(std::sqrt(told(i))).arg(std::sqrt(squares(i)))));
+}
+
+void TestGlobalPairMatcher::nothingIsMadeOfNothing() {
+    std::mt19937 random(9);
+    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+    const Points good = hall().scan({}, random), empty, one{{1, 1}},
+                 bad{{nan, 1}, {inf, -inf}, {3e38f, -3e38f}, {0, 0}, {-0.0f, nan}},
+                 same(300, Vector2D<float>(2, 0)), origin(300, Vector2D<float>(0, 0));
+    Points wall;
+    for (int i = 0; i < 200; ++i)
+        wall.emplace_back(2.0f, 0.02f * float(i) - 2);
+    GlobalPairMatcher match;
+    for (const Points *a : {&empty, &one, &bad, &same, &origin}) {
+        QCOMPARE(match(*a, good).verdict, Verdict::NothingFixed);
+        QCOMPARE(match(good, *a).verdict, Verdict::NothingMoving);
+        QCOMPARE(match(*a, *a).verdict, Verdict::NothingFixed);
+        QVERIFY(match(good, *a).solutions.empty());
+    }
+    const GlobalPairMatch &oneWall = match(wall, wall);
+    QVERIFY2(!oneWall.isAccepted(), describe(oneWall.verdict));
+    Points holes = good;
+    for (std::size_t i = 0; i < holes.size(); i += 7)
+        holes[i].x = nan;
+    QVERIFY(match(good, good).isAccepted());
+    QVERIFY(match(good, holes).isAccepted());
+    QVERIFY(metres(match(good, holes).solutions[0].pose, {}) < 0.01);
+}
+
+void TestGlobalPairMatcher::manyPointsTakeBoundedTime() {
+    std::mt19937 random(10);
+    std::uniform_real_distribution<float> any(-50, 50), ring(-pi, pi);
+    Points noise, spiral;
+    for (int i = 0; i < 100000; ++i) {
+        noise.emplace_back(any(random), any(random));
+        const float angle = float(2 * pi * i / 100000 - pi), r = 3 + 0.5f * std::sin(40 * angle);
+        spiral.emplace_back(r * std::cos(angle), r * std::sin(angle));
+    }
+    const Points fine = hall().scan({}, random, {100000, 2 * pi, 0.01});
+    const Points other = hall().scan({0.4, 0.3, 2}, random, {100000, 2 * pi, 0.01});
+    GlobalPairMatcher match;
+    QElapsedTimer timer;
+    timer.start();
+    QVERIFY(!match(noise, noise).solutions.empty() || !match(noise, noise).isAccepted());
+    QVERIFY(!match(spiral, noise).isAccepted());
+    QVERIFY(!match(spiral, spiral).isAccepted()); // it fits every ninth of a turn
+    QVERIFY(match(fine, other).isAccepted());
+    QVERIFY(isRight(match(fine, other).solutions[0], {0.4, 0.3, 2}));
+    QVERIFY2(timer.elapsed() < 5000, qPrintable(QString::number(timer.elapsed())));
+}
+
+void TestGlobalPairMatcher::steadyStateAllocatesNothing() {
+    std::mt19937 random(11);
+    const Points first = hall().scan({}, random), second = hall().scan({0.2, 0, 0.1}, random);
+    const Points pillars = ScanWorld::grove().scan({}, random),
+                 corridor = ScanWorld::corridor().scan({}, random);
+    GlobalPairMatcher match;
+    std::size_t before = 0, after = 0;
+    for (int i = 0; i < 4; ++i) {
+        before = allocations; // buffers grow in the first rounds
+        match(first, second);
+        match(first, pillars);
+        match(corridor, corridor);
+        after = allocations;
+    }
+    QCOMPARE(after, before);
+}
+
+void TestGlobalPairMatcher::largestOfSixteen() {
+    std::mt19937 random(12);
+    std::uniform_int_distribution<int> any(-32768, 32767);
+    for (int i = 0; i < 1000; ++i) {
+        std::array<std::int16_t, 16> numbers;
+        for (std::int16_t &n : numbers)
+            n = std::int16_t(any(random));
+        QCOMPARE(simd::largestOfSixteen(numbers.data()), *std::max_element(numbers.begin(), numbers.end()));
+    }
+}
+
+QTEST_GUILESS_MAIN(TestGlobalPairMatcher)
+#include "TestGlobalPairMatcher.moc"

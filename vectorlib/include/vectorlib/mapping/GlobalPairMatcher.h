@@ -1,0 +1,282 @@
+#pragma once
+
+#include "vectorlib/correspondence/ShiftVotes.h"
+#include "vectorlib/correspondence/TurnVotes.h"
+#include "vectorlib/mapping/MatchProbability.h"
+#include "vectorlib/registration/PointRefinement.h"
+#include "vectorlib/registration/SurfaceRefinement.h"
+
+namespace vectorlib {
+
+/// How thoroughly motions are searched.
+struct GlobalSearchEffort {
+    std::size_t turns;      ///< rotations for which shifts are voted
+    std::size_t candidates; ///< motions of most votes that are refined roughly
+    std::size_t refined;    ///< the best of them, refined with all points
+};
+
+struct GlobalPairSettings {
+    GlobalSearchEffort quick{8, 12, 3};
+    GlobalSearchEffort wide{20, 64, 8}; ///< where the quick search does not convince
+    double convincing = 0.4;            ///< score of a quick search that is enough
+    double lead = 0.15;                 ///< of score over any other, which it must have, too
+    double hopeless = 0.25;             ///< what scores less than the best by so much is not refined further
+    double sameXY = 0.10;               ///< solutions nearer to each other are one; metres
+    double sameAlpha = 0.035;           ///< the same; radians
+    double farXY = 0.5;                 ///< rivals are solutions farther away; metres
+    double farAlpha = 0.17;             ///< the same; radians
+    float reach = 10;                   ///< longest motion looked for in small places; metres
+    float reachByRange = 2;             ///< and in larger ones, in median ranges of the scans
+    double slideStep = 0.25;            ///< of trials along the direction that is held least; metres
+    double slideMargin = 0.1;           ///< loss of score with which a trial is still a solution
+    double openMargin = 0.05;           ///< loss with which half a metre farther is as good a place
+    double rivalMargin = 0.08;          ///< by which the best must lead over motions that differ much
+    double enough = 0.85;               ///< probability of a solution to be trusted
+    double minScore = 0.25;             ///< the same, its score
+    double maxContradicted = 0.2;       ///< the same, the part contradicted of all that is judged
+    std::size_t minPieces = 8;          ///< a scan with fewer pieces of surface shows too little
+    double roughDeviation = 0.10, deviation = 0.05; ///< see SurfaceAgreement; metres
+    int roughPoints = 60, slidePoints = 180;        ///< how many of a scan judge rough motions, and slides
+    /// Standard deviation of a point from its wall, for the covariance; metres. With it the motions of three
+    /// scans close in a triangle as their covariances say, in most of the logs.
+    double noise = 0.03;
+};
+
+/// Finds the motion between two scans of which nothing is known but the scans. The directions of surfaces
+/// vote for rotations, pairs of pieces for the shifts after each; what gets most votes is brought together
+/// roughly by its pieces, and the best of it exactly by the points. What a motion explains of both scans,
+/// less what it contradicts, ranks them, as lengths of surface. Keeps its buffers between calls.
+class GlobalPairMatcher {
+public:
+    GlobalPairSettings settings;
+    PointRefinement refine;
+    SurfaceRefinement refineRoughly;
+    MatchProbability tellProbability;
+
+    /// Both scans in their sensor's frame, counter-clockwise; metres. Valid until the next call.
+    const GlobalPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving) {
+        if (take(fixed, moving)) {
+            find();
+            conclude();
+        }
+        return match_;
+    }
+    /// What speaks for a motion that is known from elsewhere: it is the only solution, as it is. No other
+    /// motions are looked for.
+    const GlobalPairMatch &judge(PointSpan<float> fixed, PointSpan<float> moving,
+                                 const Transformation2D &pose) {
+        if (take(fixed, moving) && pose.isFinite()) {
+            match_.solutions.push_back(judged(pose, settings.deviation, allPoints));
+            match_.slideLoss = slideLossOf(match_.solutions[0]);
+            conclude();
+        }
+        return match_;
+    }
+
+private:
+    using Solutions = std::vector<GlobalPairSolution>;
+
+    bool take(PointSpan<float> fixed, PointSpan<float> moving) {
+        match_.solutions.clear();
+        match_.searchedWidely = false;
+        match_.slideLoss = 0;
+        match_.verdict = GlobalPairVerdict::TooUnlike;
+        refine.start(fixed, moving);
+        fixed_.build(refine.fixed());
+        moving_.build(refine.moving());
+        if (fixed_.pieces().size() < settings.minPieces)
+            match_.verdict = GlobalPairVerdict::NothingFixed;
+        else if (moving_.pieces().size() < settings.minPieces)
+            match_.verdict = GlobalPairVerdict::NothingMoving;
+        return match_.verdict == GlobalPairVerdict::TooUnlike;
+    }
+    void find() {
+        reach_ = std::max(settings.reach,
+                          settings.reachByRange * std::max(fixed_.medianRange(), moving_.medianRange()));
+        refineRoughly.start(fixed_, moving_);
+        shifts_.start(fixed_, moving_, reach_);
+        search(settings.quick);
+        if (!convinces()) {
+            match_.searchedWidely = true;
+            search(settings.wide);
+        }
+        if (match_.solutions.empty())
+            return;
+        slide();
+        if (match_.slideLoss < settings.openMargin)
+            followOpenDirection();
+    }
+    void conclude() {
+        if (match_.solutions.empty())
+            return;
+        tellProbability(match_);
+        for (GlobalPairSolution &s : match_.solutions)
+            s.covariance = covarianceOf(s);
+        match_.verdict = verdict();
+    }
+    void search(const GlobalSearchEffort &effort) {
+        votes_.clear();
+        for (const TurnVote &turn : turns_(fixed_, moving_, effort.turns))
+            shifts_(turn.degrees, votes_);
+        std::sort(votes_.begin(), votes_.end(),
+                  [](const MotionVote &a, const MotionVote &b) { return a.votes > b.votes; });
+        if (votes_.size() > effort.candidates)
+            votes_.resize(effort.candidates);
+        candidates_.clear();
+        for (const MotionVote &vote : votes_)
+            candidates_.push_back(
+                judged(refineRoughly(vote.pose), settings.roughDeviation, settings.roughPoints));
+        keepDistinct(candidates_);
+        if (candidates_.size() > effort.refined)
+            candidates_.resize(effort.refined);
+        match_.solutions.clear();
+        for (const GlobalPairSolution &c : candidates_)
+            if (c.score >= candidates_[0].score - settings.hopeless)
+                match_.solutions.push_back(refined(c.pose));
+            else if (std::none_of(match_.solutions.begin(), match_.solutions.end(), [&](const auto &s) {
+                         return isNear(s.pose, c.pose, settings.farXY, settings.farAlpha);
+                     }))
+                match_.solutions.push_back(c);
+        keepDistinct(match_.solutions);
+    }
+    bool convinces() const {
+        const Solutions &s = match_.solutions;
+        return !s.empty() && s[0].score >= settings.convincing &&
+               (s.size() < 2 || s[0].score - s[1].score >= settings.lead);
+    }
+
+    // By about so many points of each scan; a first look needs few of them.
+    GlobalPairSolution judged(const Transformation2D &pose, double deviation, int points) const {
+        const int most = std::max(refine.fixed().size(), refine.moving().size());
+        GlobalPairSolution s;
+        s.pose = pose;
+        s.agreement = SurfaceAgreement({refine.fixed(), fixed_}, {refine.moving(), moving_}, pose, deviation,
+                                       1 + most / (points + 1));
+        s.score = s.agreement.score();
+        return s;
+    }
+    GlobalPairSolution refined(const Transformation2D &pose) {
+        const Expectation nothing{{}, 1e6, 1e6};
+        return judged(refine(pose, nothing), settings.deviation, allPoints);
+    }
+    bool isSame(const Transformation2D &a, const Transformation2D &b) const {
+        return isNear(a, b, settings.sameXY, settings.sameAlpha);
+    }
+    static bool isNear(const Transformation2D &a, const Transformation2D &b, double xy, double alpha) {
+        return (a.translation() - b.translation()).squaredNorm() < xy * xy &&
+               a.cos() * b.cos() + a.sin() * b.sin() > std::cos(alpha);
+    }
+    // Best first, and of those that are the same the best.
+    void keepDistinct(Solutions &list) const {
+        std::sort(list.begin(), list.end(),
+                  [](const GlobalPairSolution &a, const GlobalPairSolution &b) { return a.score > b.score; });
+        std::size_t kept = 0;
+        for (const GlobalPairSolution &s : list) {
+            const auto isKept = [&](const GlobalPairSolution &k) { return isSame(k.pose, s.pose); };
+            const auto end = list.begin() + static_cast<std::ptrdiff_t>(kept);
+            if (std::none_of(list.begin(), end, isKept))
+                list[kept++] = s;
+        }
+        list.resize(kept);
+    }
+
+    GlobalPairSolution slid(const GlobalPairSolution &from, double metres) const {
+        const Vector2D<double> t = from.pose.translation() + from.agreement.openDirection() * metres;
+        return judged({t.x, t.y, from.pose.alpha()}, settings.deviation, settings.slidePoints);
+    }
+    double slideLossOf(const GlobalPairSolution &s) const {
+        const double way = 2 * settings.slideStep;
+        return judged(s.pose, settings.deviation, settings.slidePoints).score -
+               std::max(slid(s, way).score, slid(s, -way).score);
+    }
+    // Where the best solution is held least, places beside it may be better, and how much worse they are
+    // tells how firmly it is held at all.
+    void slide() {
+        const GlobalPairSolution best = match_.solutions[0];
+        const double own = judged(best.pose, settings.deviation, settings.slidePoints).score;
+        double farther = -1;
+        for (int way : {-2, -1, 1, 2}) {
+            const GlobalPairSolution other = slid(best, way * settings.slideStep);
+            if (way == -2 || way == 2)
+                farther = std::max(farther, other.score);
+            if (other.score > own - settings.slideMargin)
+                match_.solutions.push_back(refined(other.pose));
+        }
+        keepDistinct(match_.solutions);
+        match_.slideLoss =
+            isSame(match_.solutions[0].pose, best.pose) ? own - farther : slideLossOf(match_.solutions[0]);
+    }
+    // Along a corridor all places are solutions, as far as the scans go on fitting; and, turned round,
+    // others.
+    void followOpenDirection() {
+        constexpr int most = 40; // to each side
+        const double least = match_.solutions[0].score - settings.slideMargin, step = 2 * settings.slideStep;
+        candidates_.clear();
+        for (const GlobalPairSolution &start : match_.solutions) {
+            const bool followed = std::any_of(candidates_.begin(), candidates_.end(), [&](const auto &s) {
+                return isNear({0, 0, s.pose.alpha()}, {0, 0, start.pose.alpha()}, 1, settings.farAlpha);
+            });
+            if (start.score < least || followed || candidates_.size() > mostFollowed)
+                continue;
+            candidates_.push_back(start);
+            for (double side : {-step, step})
+                for (int i = 1; i <= most; ++i) {
+                    const GlobalPairSolution other = slid(start, i * side);
+                    if (other.score < least)
+                        break;
+                    candidates_.push_back(other);
+                }
+        }
+        match_.solutions.insert(match_.solutions.end(), candidates_.begin(), candidates_.end());
+        keepDistinct(match_.solutions);
+    }
+    // Where the scans slide on each other, what seems to hold them is noise.
+    Eigen::Matrix3d covarianceOf(const GlobalPairSolution &s) {
+        constexpr double unknown = 1e-4; // what is not held at all is unknown within 100 m, or radians
+        Eigen::Matrix3d h = refine.information(s.pose) / (settings.noise * settings.noise);
+        h.diagonal().array() += unknown;
+        Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+        for (int i = 0; i < 3; ++i)
+            if (const auto column = solveSymmetric(h, Eigen::Vector3d::Unit(i)))
+                covariance.col(i) = *column;
+        if (match_.slideLoss < settings.openMargin) {
+            const Vector2D<double> way = s.agreement.openDirection();
+            const double half = 2 * settings.slideStep;
+            covariance += square(half * half, Eigen::Vector3d(way.x, way.y, 0));
+        }
+        return covariance;
+    }
+    GlobalPairVerdict verdict() const {
+        const GlobalPairSolution &best = match_.solutions[0];
+        const double explained = best.agreement.explained(), contradicted = best.agreement.contradicted();
+        if (best.score < settings.minScore ||
+            contradicted > settings.maxContradicted * (explained + contradicted))
+            return GlobalPairVerdict::TooUnlike;
+        if (match_.slideLoss < settings.openMargin)
+            return GlobalPairVerdict::OpenDirection;
+        double any = 0;
+        bool hasRival = false;
+        for (const GlobalPairSolution &s : match_.solutions) {
+            any += s.probability;
+            hasRival = hasRival || (s.score > best.score - settings.rivalMargin &&
+                                    !isNear(s.pose, best.pose, settings.farXY, settings.farAlpha));
+        }
+        const bool isSure = best.probability >= settings.enough;
+        if (hasRival || (!isSure && any >= settings.enough))
+            return GlobalPairVerdict::Ambiguous;
+        return isSure ? GlobalPairVerdict::Found : GlobalPairVerdict::TooUnlike;
+    }
+
+    static constexpr int allPoints = 1 << 20;
+    static constexpr std::size_t mostFollowed = 100; // solutions; then no further heading
+
+    ScanSurface fixed_, moving_;
+    TurnVotes turns_;
+    ShiftVotes shifts_;
+    std::vector<MotionVote> votes_;
+    Solutions candidates_;
+    float reach_ = 0;
+    GlobalPairMatch match_;
+};
+
+} // namespace vectorlib
