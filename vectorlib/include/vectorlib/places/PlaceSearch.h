@@ -1,213 +1,173 @@
 #pragma once
 
-#include "vectorlib/places/PlaceFit.h"
-#include "vectorlib/places/PlaceIndex.h"
-#include "vectorlib/places/PlaceScan.h"
+#include "vectorlib/places/PlaceFitter.h"
+#include "vectorlib/places/PlaceProposals.h"
+#include "vectorlib/places/Relocalized.h"
 
 #include <chrono>
-#include <unordered_map>
 
 namespace vectorlib {
 
-struct Proposal {
-    Transformation2D pose;
-    int hits = 0;
+/// How probable it is that a place is the right one, learned from scans of real buildings in maps of the same
+/// and of other buildings: logistic in the score, its lead over the next place, the share of points that lie
+/// nowhere, and the number of points.
+struct PlaceTrust {
+    double constant = -25.9, score = 26.4, lead = 27.4, points = 3.6, extra = 13;
+    double mostLead = 0.3; ///< a greater one says no more
+
+    double probability(const PlaceFit &fit, double lead_) const {
+        return 1 / (1 + std::exp(-evidence(fit) - lead * std::clamp(lead_, 0.0, mostLead)));
+    }
+    /// The lead that a place needs for such a probability.
+    double leadFor(const PlaceFit &fit, double probability_) const {
+        return (std::log(probability_ / (1 - probability_)) - evidence(fit)) / lead;
+    }
+
+private:
+    double evidence(const PlaceFit &fit) const {
+        const double nowhere = 1 - fit.explainedShare() - (fit.points > 0 ? fit.blocked / fit.points : 0);
+        return constant + score * fit.score() + points * std::log(std::max(1.0, fit.points) / 50) +
+               extra * nowhere;
+    }
 };
 
+/// Finds the place of a scan in a whole map without any expected pose: proposals by walls laid upon walls,
+/// refined and judged by the scan's points. A place is found when it fits well and no other fits alike. Keeps
+/// its index of the map, and its buffers, between calls.
 class PlaceSearch {
 public:
+    double maxSeconds = 3;          ///< and the time of the last steps, a few milliseconds
+    double minProbability = 0.95;   ///< of a place that is found
+    double minLead = 0.04;          ///< in score; places that are nearer to the best fit alike
+    double minReliability = 0.02;   ///< of a place that is found
+    std::size_t maxPlaces = 24;     ///< in the result
     PlaceScan scan;
+    PlaceProposals propose;
     PlaceFitter fit;
-    std::size_t cornerBudget = 0, slideBudget = 60000;
-    std::size_t keep = 48;
-    std::size_t keepFits = 16, keepFine = 6;
-    std::size_t kept = 0, tried = 0, cornersTried = 0;
-    int mostWalls = 2;
-    double slideShare = 0.6, slideOver = 0.5, slideStep = 0.25;
-    double times[4] = {};
+    PlaceTrust trust;
 
-    const std::vector<PlaceFit> &operator()(PlaceIndex &index, const std::vector<EdgeRaw2D> &edges,
-                                            PointSpan<float> points) {
-        const auto t0 = Clock::now();
+    /// `slots` are those of a VectorMap; `edges` and `points` of the scan in the sensor's frame, points
+    /// counter-clockwise. Without points the edges stand for them. Valid until the next call.
+    const Relocalized &operator()(const std::vector<MapEdge> &slots, const std::vector<EdgeRaw2D> &edges,
+                                  PointSpan<float> points) {
+        const auto begin = Clock::now();
+        const auto end = begin + std::chrono::duration_cast<Clock::duration>(
+                                     std::chrono::duration<double>(std::clamp(maxSeconds, 0.0, 1e6)));
+        const auto isLate = [end] { return Clock::now() >= end; };
+        result_.places.clear();
+        result_.alike = result_.parts = result_.searched = 0;
         scan.take(edges, points);
-        const auto t1 = Clock::now();
-        propose(index);
-        const auto t2 = Clock::now();
-        refine(index);
-        const auto t3 = Clock::now();
-        const auto ms = [](auto a, auto b) { return std::chrono::duration<double, std::milli>(b - a).count(); };
-        times[0] = ms(t0, t1);
-        times[1] = ms(t1, t2);
-        times[2] = ms(t2, t3);
-        return fits_;
+        const bool followed = index_.follow(slots, isLate);
+        if (slots.empty() || (followed && index_.size() == 0))
+            result_.outcome = Relocalized::Outcome::NoMap;
+        else if (scan.walls().size() < 2 || scan.points().empty())
+            result_.outcome = Relocalized::Outcome::TooLittle;
+        else if (!followed) {
+            result_.outcome = Relocalized::Outcome::Unfinished;
+            result_.parts = slots.size();
+        } else
+            search(isLate);
+        result_.ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+        return result_;
     }
-    const std::vector<Proposal> &proposals() const { return proposals_; }
+    PlaceIndex &index() { return index_; }
+    const std::vector<PlaceFit> &fits() const { return fits_; }
 
 private:
     using Clock = std::chrono::steady_clock;
-    using Vector = Vector2D<double>;
+    static constexpr double samePlace = 0.5, sameHeading = 0.17; // metres, radians: found from two proposals
 
-    struct Turned {
-        Vector position;
-        std::uint8_t bit;
-    };
-
-    static bool overlaps(const Corner::Side &scan, const Corner::Side &map) {
-        const double common = std::min(scan.to, map.to) - std::max(scan.from, map.from);
-        return common >= 0.3 * scan.length();
+    template <typename IsLate>
+    void search(IsLate isLate) {
+        refine(propose(index_, scan, isLate));
+        result_.parts = propose.parts() + index_.leftOut();
+        result_.searched = propose.searched();
+        result_.outcome = judge();
     }
-    void propose(PlaceIndex &index) {
-        order();
-        cells_.clear();
-        tried = kept = 0;
-        std::size_t used = 0;
-        for (const Corner &s : scan.corners()) {
-            if (tried >= cornerBudget)
-                break;
-            ++used;
-            index.forEachCorner(s.turn, 0.12, [&](const Corner &m) {
-                if (!overlaps(s.first, m.first) || !overlaps(s.second, m.second))
-                    return;
-                ++tried;
-                const Transformation2D pose = poseOf(s, m);
-                turnTo(pose.cos(), pose.sin());
-                consider(index, pose.translation());
-            });
-        }
-        cornersTried = tried;
-        int walls = 0;
-        for (const LineSegment2D<double> &w : scan.walls()) {
-            if (tried - cornersTried > slideBudget || walls++ >= mostWalls)
-                break;
-            slide(index, w);
-        }
-        proposals_.clear();
-        for (const auto &[key, p] : cells_)
-            proposals_.push_back(p);
-        const auto better = [](const Proposal &a, const Proposal &b) {
-            return a.hits != b.hits ? a.hits > b.hits : a.pose.x() < b.pose.x();
-        };
-        const std::size_t n = std::min(keep, proposals_.size());
-        std::partial_sort(proposals_.begin(), proposals_.begin() + std::ptrdiff_t(n), proposals_.end(), better);
-        proposals_.resize(n);
-    }
-    // All places of a wall of the scan on walls of the map that are not much shorter.
-    void slide(PlaceIndex &index, const LineSegment2D<double> &w) {
-        index.forEachWall(slideShare * w.length(), [&](const LineSegment2D<double> &m) {
-            const double alpha = std::atan2(w.direction().cross(m.direction()), w.direction().dot(m.direction()));
-            const Transformation2D rotation(0, 0, alpha);
-            const Vector middle = rotation.rotate(w.middle());
-            turnTo(rotation.cos(), rotation.sin());
-            // As far as most of it lies on the other.
-            const double room = std::max(0.25 * std::min(m.length(), w.length()), 0.5 * std::abs(m.length() - w.length()) + slideOver);
-            const double steps = std::ceil(2 * room / slideStep);
-            for (double k = 0; k <= steps; ++k) {
-                const Vector at = m.middle() + m.direction() * (room * (2 * k / steps - 1)) - middle;
-                ++tried;
-                consider(index, at);
-            }
-        });
-    }
-    static Transformation2D poseOf(const Corner &s, const Corner &m) {
-        const auto turn = [](const Corner::Side &a, const Corner::Side &b) {
-            return std::atan2(a.direction.cross(b.direction), a.direction.dot(b.direction));
-        };
-        const double one = turn(s.first, m.first), more = wrapAngle(turn(s.second, m.second) - one);
-        const double a = std::min(s.first.length(), m.first.length()), b = std::min(s.second.length(), m.second.length());
-        const double share = b * b / (a * a + b * b);
-        const Transformation2D rotation(0, 0, one + share * more);
-        const Vector t = m.position - rotation.rotate(s.position);
-        return {t.x, t.y, rotation.alpha()};
-    }
-    // A few points from all over the scan first.
-    void order() {
-        few_.clear();
-        const std::size_t n = scan.points().size(), count = std::min<std::size_t>(64, n);
-        if (n == 0)
-            return;
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::size_t part = (k * 27) % 64; // golden
-            if (part < count)
-                few_.push_back(scan.points()[part * n / count]);
-        }
-        if (count < 64)
-            few_ = scan.points();
-    }
-    // The few points turned so, as far as they are needed.
-    void turnTo(double cos, double sin) {
-        cos_ = cos;
-        sin_ = sin;
-        turned_.clear();
-    }
-    const Turned &turned(std::size_t i) {
-        while (turned_.size() <= i) {
-            const WallPoint &p = few_[turned_.size()];
-            const auto turn = [this](Vector2D<float> v) {
-                return Vector(cos_ * double(v.x) - sin_ * double(v.y), sin_ * double(v.x) + cos_ * double(v.y));
-            };
-            turned_.push_back({turn(p.position), facingBit(turn(p.direction))});
-        }
-        return turned_[i];
-    }
-    void consider(PlaceIndex &index, Vector at) {
-        WallTiles &tiles = index.tiles();
-        const std::size_t n = few_.size();
-        int hits = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            const Turned &p = turned(i);
-            hits += tiles.shows(at + p.position, p.bit);
-            if ((i == 7 && hits < 2) || (i == 15 && hits < 6) || (i == 31 && hits < 14))
-                return;
-        }
-        hits = hits * 64 / std::max(1, int(n));
-        ++kept;
-        const double alpha = std::atan2(sin_, cos_);
-        const auto key = std::int64_t(std::floor(at.x / 0.5)) * 1000003 + std::int64_t(std::floor(at.y / 0.5)) * 1009 +
-                         std::int64_t(std::floor((alpha + pi) / (pi / 12)));
-        Proposal &p = cells_[key];
-        if (hits > p.hits)
-            p = {Transformation2D(at.x, at.y, alpha), hits};
-    }
-    void refine(PlaceIndex &index) {
-        const WallTiles &tiles = index.tiles();
-        const std::vector<WallPoint> &points = scan.points();
-        const auto every = [&](std::size_t n) { return std::max(1, int(points.size() / n)); };
+    void refine(const std::vector<PlaceProposal> &proposals) {
         fits_.clear();
-        for (const Proposal &p : proposals_)
-            take(fit.judge(tiles, points, fit.refine(tiles, points, p.pose, every(32), 4, 0.35), every(32), false));
-        std::sort(fits_.begin(), fits_.end(), better);
-        if (fits_.size() > keepFits)
-            fits_.resize(keepFits);
+        for (const PlaceProposal &p : proposals)
+            take(p.pose, 32, 4, 0.35, false);
+        again(0.15, 16, 80, 0.25);
+        again(0.10, 6, scan.points().size(), 0.2);
+    }
+    // The best so far, more exactly: those that score nearly like the first, and some more.
+    void again(double lead, std::size_t few, std::size_t points, double gate) {
         rough_.swap(fits_);
         fits_.clear();
-        for (PlaceFit &f : rough_)
-            take(fit.judge(tiles, points, fit.refine(tiles, points, f.pose, every(80), 5, 0.25), every(80)));
-        std::sort(fits_.begin(), fits_.end(), better);
-        if (fits_.size() > keepFine)
-            fits_.resize(keepFine);
-        for (PlaceFit &f : fits_)
-            f = fit.judge(tiles, points, fit.refine(tiles, points, f.pose, 1, 5, 0.2));
-        std::sort(fits_.begin(), fits_.end(), better);
+        for (std::size_t i = 0; i < rough_.size(); ++i)
+            if (i < few || (i < maxPlaces && rough_[i].score() > rough_.front().score() - lead))
+                take(rough_[i].pose, points, 5, gate, true);
     }
-    void take(const PlaceFit &f) {
-        for (PlaceFit &other : fits_) {
-            const Transformation2D way = other.pose.inverse() * f.pose;
-            if (way.translation().norm() < 0.5 && std::abs(way.alpha()) < 0.17) {
-                if (f.score() > other.score())
-                    other = f;
+    // Refines a pose and keeps the better one of two that are the same place; best first.
+    void take(const Transformation2D &pose, std::size_t points, int iterations, double gate, bool looks) {
+        const WallTiles &tiles = index_.tiles();
+        const std::size_t sample = std::max<std::size_t>(1, scan.points().size() / std::max<std::size_t>(1, points));
+        const PlaceFit found =
+            fit.judge(tiles, scan.points(), fit.refine(tiles, scan.points(), pose, sample, iterations, gate), sample,
+                      looks, scan.wallOfPoint());
+        if (!found.pose.isFinite())
+            return;
+        const auto known = std::find_if(fits_.begin(), fits_.end(), [&](const PlaceFit &f) {
+            const Transformation2D way = f.pose.inverse() * found.pose;
+            return way.translation().norm() < samePlace && std::abs(way.alpha()) < sameHeading;
+        });
+        if (known != fits_.end()) {
+            if (!isBetter(found, *known))
                 return;
-            }
+            fits_.erase(known);
         }
-        fits_.push_back(f);
+        fits_.insert(std::upper_bound(fits_.begin(), fits_.end(), found, isBetter), found);
     }
-    static bool better(const PlaceFit &a, const PlaceFit &b) { return a.score() > b.score(); }
+    static bool isBetter(const PlaceFit &a, const PlaceFit &b) { return a.score() > b.score(); }
 
-    double cos_ = 1, sin_ = 0;
-    std::vector<Turned> turned_;
-    std::vector<WallPoint> few_;
-    std::unordered_map<std::int64_t, Proposal> cells_;
-    std::vector<Proposal> proposals_;
-    std::vector<PlaceFit> fits_, rough_;
+    Relocalized::Outcome judge() {
+        if (fits_.empty())
+            return result_.searched < result_.parts ? Relocalized::Outcome::Unfinished : Relocalized::Outcome::Nowhere;
+        const PlaceFit &best = fits_.front();
+        const double needed = std::max(minLead, trust.leadFor(best, minProbability));
+        for (std::size_t i = 0; i < fits_.size() && i < maxPlaces; ++i) {
+            const PlaceFit &f = fits_[i];
+            const double lead = i > 0 ? 0 : fits_.size() > 1 ? f.score() - fits_[1].score() : trust.mostLead;
+            result_.places.push_back(placeOf(f, lead, needed));
+            result_.alike += f.score() >= best.score() - needed;
+        }
+        const bool isGood = needed <= trust.mostLead && best.reliability() >= minReliability;
+        if (!isGood)
+            result_.alike = 1;
+        if (isGood && result_.alike > 1)
+            return Relocalized::Outcome::Ambiguous;
+        if (result_.searched < result_.parts)
+            return Relocalized::Outcome::Unfinished;
+        return isGood ? Relocalized::Outcome::Found : Relocalized::Outcome::Nowhere;
+    }
+    Place placeOf(const PlaceFit &f, double lead, double needed) const {
+        Place place;
+        place.pose = f.pose.pose();
+        place.score = f.score();
+        place.probability = trust.probability(f, lead);
+        place.reliability = f.reliability();
+        place.ambiguity = f.meanSquare();
+        place.discrepancy = f.discrepancy;
+        place.matchedShare = f.explainedShare();
+        place.covariance = f.covariance();
+        place.fault = faultOf(f, trust.leadFor(f, minProbability));
+        (void)needed;
+        return place;
+    }
+    PlaceFault faultOf(const PlaceFit &f, double needed) const {
+        if (f.reliability() < minReliability)
+            return PlaceFault::Reliability;
+        if (needed <= trust.mostLead)
+            return PlaceFault::None;
+        if (f.explainedShare() < 0.7)
+            return PlaceFault::Explained;
+        return f.hiddenShare() > 0.2 ? PlaceFault::Contradicted : PlaceFault::Doubtful;
+    }
+
+    PlaceIndex index_;
+    std::vector<PlaceFit> fits_, rough_; // best first
+    Relocalized result_;
 };
 
 } // namespace vectorlib

@@ -28,13 +28,19 @@ public:
         table_.clear();
         tiles_.clear();
         walls_.clear();
+        entries_ = 0;
         forgetRasters();
     }
     const Wall &wall(int number) const { return walls_[static_cast<std::size_t>(number)]; }
     std::size_t tiles() const { return tiles_.size(); }
 
-    /// Enters a wall; its number must be free.
-    void add(int number, const Wall &wall) {
+    /// Enters a wall; its number must be free. False, and nothing entered, when there is no room for it.
+    bool add(int number, const Wall &wall) {
+        std::size_t needed = 0;
+        forEachTile(wall, near, [&](std::int32_t, std::int32_t) { ++needed; });
+        if (entries_ + needed > mostEntries)
+            return false;
+        entries_ += needed;
         if (static_cast<std::size_t>(number) >= walls_.size())
             walls_.resize(static_cast<std::size_t>(number) + 1);
         walls_[static_cast<std::size_t>(number)] = wall;
@@ -49,13 +55,16 @@ public:
             if (t.raster >= 0)
                 draw(t, wall);
         });
+        return true;
     }
     void remove(int number) {
         forEachTile(wall(number), near, [&](std::int32_t i, std::int32_t j) {
             Tile &t = tiles_[static_cast<std::size_t>(table_.find(i, j))];
             const auto at = std::lower_bound(t.walls.begin(), t.walls.end(), number);
-            if (at != t.walls.end() && *at == number)
+            if (at != t.walls.end() && *at == number) {
                 t.walls.erase(at);
+                --entries_;
+            }
             if (t.raster >= 0)
                 redraw(t);
         });
@@ -114,6 +123,7 @@ public:
 private:
     using Raster = std::array<std::uint8_t, side * side>;
     static constexpr int unknown = -2, none = -1;
+    static constexpr std::size_t mostEntries = 20000000; // of walls in tiles
     static constexpr std::size_t mostRasters = 1u << 20; // 64 MiB
     struct Tile {
         std::int32_t i, j;
@@ -169,6 +179,7 @@ private:
     std::vector<Tile> tiles_;
     std::vector<Wall> walls_; // by number
     std::vector<Raster> rasters_;
+    std::size_t entries_ = 0;
     int last_ = unknown; // raster that was looked at
     std::int32_t lastI_ = 0, lastJ_ = 0;
 };
