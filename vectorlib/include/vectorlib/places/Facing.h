@@ -31,9 +31,9 @@ std::uint8_t facingBit(Vector2D<Scalar> direction) {
 inline std::uint8_t facingBits(Vector2D<double> direction) {
     constexpr double cosine = 0.9063, sine = 0.4226;
     const Vector2D<double> d = direction;
-    return static_cast<std::uint8_t>(facingBit(d) |
-                                     facingBit(Vector2D<double>(cosine * d.x - sine * d.y, sine * d.x + cosine * d.y)) |
-                                     facingBit(Vector2D<double>(cosine * d.x + sine * d.y, cosine * d.y - sine * d.x)));
+    return static_cast<std::uint8_t>(
+        facingBit(d) | facingBit(Vector2D<double>(cosine * d.x - sine * d.y, sine * d.x + cosine * d.y)) |
+        facingBit(Vector2D<double>(cosine * d.x + sine * d.y, cosine * d.y - sine * d.x)));
 }
 
 } // namespace vectorlib

@@ -13,15 +13,16 @@ namespace vectorlib {
 
 /// How a scan lies in a map at some pose.
 struct PlaceFit {
-    Transformation2D pose;     ///< of the sensor in the map's frame
-    double points = 0;         ///< that were compared
-    double explained = 0;      ///< of them, with a wall of the map beside them that faces alike
-    double distances = 0;      ///< sum of their squared distances from it; m^2
-    double squaredGate = 1;    ///< of the distances; m^2
-    double hidden = 0;         ///< explained points that another wall of the map hides
-    double blocked = 0;        ///< other points that a wall of the map hides
-    double discrepancy = 0;    ///< area seen behind walls of the map; m^2
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(); ///< of x, y, alpha by the explained points; 1/m^2 apart
+    Transformation2D pose;  ///< of the sensor in the map's frame
+    double points = 0;      ///< that were compared
+    double explained = 0;   ///< of them, with a wall of the map beside them that faces alike
+    double distances = 0;   ///< sum of their squared distances from it; m^2
+    double squaredGate = 1; ///< of the distances; m^2
+    double hidden = 0;      ///< explained points that another wall of the map hides
+    double blocked = 0;     ///< other points that a wall of the map hides
+    double discrepancy = 0; ///< area seen behind walls of the map; m^2
+    Eigen::Matrix3d information =
+        Eigen::Matrix3d::Zero(); ///< of x, y, alpha by the explained points; 1/m^2 apart
 
     double explainedShare() const { return points > 0 ? explained / points : 0; }
     double hiddenShare() const { return points > 0 ? (hidden + blocked) / points : 0; }

@@ -10,16 +10,17 @@ namespace vectorlib {
 /// and what they look through. The cost follows the scan and the walls beside it, not the map.
 class PlaceFitter {
 public:
-    double gate = 0.2;      ///< points farther from a wall are not explained; metres
+    double gate = 0.2;       ///< points farther from a wall are not explained; metres
     double sameFacing = 0.8; ///< least cosine between the directions of a point's wall and the map's
-    double beyondEnd = 0.1; ///< that a point may lie beyond the end of its wall; metres
-    double scale = 0.5;     ///< a residual of this share of the gate weighs a quarter
-    double clearly = 0.2;   ///< a wall hides a point when it and the sensor are farther from it; metres
+    double beyondEnd = 0.1;  ///< that a point may lie beyond the end of its wall; metres
+    double scale = 0.5;      ///< a residual of this share of the gate weighs a quarter
+    double clearly = 0.2;    ///< a wall hides a point when it and the sensor are farther from it; metres
 
     /// Gauss-Newton steps on the points' distances from their walls, while the gate narrows; every
     /// `sample`-th point takes part.
-    Transformation2D refine(const WallTiles &tiles, const std::vector<WallPoint> &points, Transformation2D pose,
-                            std::size_t sample, int iterations, double firstGate) const {
+    Transformation2D refine(const WallTiles &tiles, const std::vector<WallPoint> &points,
+                            Transformation2D pose, std::size_t sample, int iterations,
+                            double firstGate) const {
         double width = std::max(firstGate, gate);
         for (int i = 0; i < iterations; ++i) {
             const Transformation2D next = improved(tiles, points, pose, width, sample);

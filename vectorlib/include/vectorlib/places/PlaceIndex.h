@@ -83,8 +83,8 @@ private:
     };
 
     static bool isUsable(const Wall &w) {
-        const double far = std::max({std::abs(w.begin().x), std::abs(w.begin().y), std::abs(w.end().x),
-                                     std::abs(w.end().y)});
+        const double far = std::max(
+            {std::abs(w.begin().x), std::abs(w.begin().y), std::abs(w.end().x), std::abs(w.end().y)});
         return w.isFinite() && w.length() > 0 && w.length() <= longest && far < farthest;
     }
     static int lengthBinOf(double length) {

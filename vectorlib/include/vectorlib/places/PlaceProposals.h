@@ -17,15 +17,15 @@ struct PlaceProposal {
 /// found as well. Keeps its buffers.
 class PlaceProposals {
 public:
-    double lengthShare = 0.6;   ///< of the scan's wall, that a wall of the map must have
-    double overhang = 0.5;      ///< of the shorter wall beyond the longer one, at least; metres
-    double step = 0.25;         ///< along the wall; metres
-    std::size_t fewWalls = 2;   ///< of the scan that are slid in any case
-    std::size_t mostWalls = 5;  ///< that are slid while no pose is good
-    double good = 0.75;         ///< share of such a pose
-    std::size_t most = 48;      ///< proposals
-    double apart = 0.4;         ///< of proposals, unless they are turned; metres
-    double turnedApart = 0.17;  ///< radians
+    double lengthShare = 0.6;  ///< of the scan's wall, that a wall of the map must have
+    double overhang = 0.5;     ///< of the shorter wall beyond the longer one, at least; metres
+    double step = 0.25;        ///< along the wall; metres
+    std::size_t fewWalls = 2;  ///< of the scan that are slid in any case
+    std::size_t mostWalls = 5; ///< that are slid while no pose is good
+    double good = 0.75;        ///< share of such a pose
+    std::size_t most = 48;     ///< proposals
+    double apart = 0.4;        ///< of proposals, unless they are turned; metres
+    double turnedApart = 0.17; ///< radians
 
     /// Best first; valid until the next call. Ends early when isLate() says so.
     template <typename IsLate>
@@ -79,8 +79,7 @@ private:
         sin_ = wall.direction().cross(known.direction());
         turned_.clear();
         const double shorter = std::min(known.length(), wall.length());
-        const double reach =
-            std::max(shorter / 4, std::abs(known.length() - wall.length()) / 2 + overhang);
+        const double reach = std::max(shorter / 4, std::abs(known.length() - wall.length()) / 2 + overhang);
         const double steps = std::ceil(2 * reach / step);
         const Vector start = known.middle() - turn(wall.middle());
         for (double k = 0; k <= steps; ++k)
@@ -132,10 +131,11 @@ private:
         for (const PlaceProposal &p : found_) {
             if (proposals_.size() >= most)
                 break;
-            const bool isNew = std::none_of(proposals_.begin(), proposals_.end(), [&](const PlaceProposal &o) {
-                return (o.pose.translation() - p.pose.translation()).squaredNorm() < apart * apart &&
-                       o.pose.cos() * p.pose.cos() + o.pose.sin() * p.pose.sin() > cosine;
-            });
+            const bool isNew =
+                std::none_of(proposals_.begin(), proposals_.end(), [&](const PlaceProposal &o) {
+                    return (o.pose.translation() - p.pose.translation()).squaredNorm() < apart * apart &&
+                           o.pose.cos() * p.pose.cos() + o.pose.sin() * p.pose.sin() > cosine;
+                });
             if (isNew)
                 proposals_.push_back(p);
         }

@@ -36,11 +36,12 @@ private:
 /// its index of the map, and its buffers, between calls.
 class PlaceSearch {
 public:
-    double maxSeconds = 3;          ///< and the time of the last steps, a few milliseconds
-    double minProbability = 0.95;   ///< of a place that is found
-    double minLead = 0.04;          ///< in score; places that are nearer to the best fit alike
-    double minReliability = 0.02;   ///< of a place that is found
-    std::size_t maxPlaces = 24;     ///< in the result
+    double maxSeconds = 3;        ///< and the time of the last steps, a few milliseconds
+    double minProbability = 0.95; ///< of a place that is found
+    double minLead = 0.04;        ///< in score; places that are nearer to the best fit alike
+    double clearLead = 0.12;      ///< a place that needs no greater lead is good, whether or not others are
+    double minReliability = 0.02; ///< of a place that is found
+    std::size_t maxPlaces = 24;   ///< in the result
     PlaceScan scan;
     PlaceProposals propose;
     PlaceFitter fit;
@@ -102,10 +103,11 @@ private:
     // Refines a pose and keeps the better one of two that are the same place; best first.
     void take(const Transformation2D &pose, std::size_t points, int iterations, double gate, bool looks) {
         const WallTiles &tiles = index_.tiles();
-        const std::size_t sample = std::max<std::size_t>(1, scan.points().size() / std::max<std::size_t>(1, points));
+        const std::size_t sample =
+            std::max<std::size_t>(1, scan.points().size() / std::max<std::size_t>(1, points));
         const PlaceFit found =
-            fit.judge(tiles, scan.points(), fit.refine(tiles, scan.points(), pose, sample, iterations, gate), sample,
-                      looks, scan.wallOfPoint());
+            fit.judge(tiles, scan.points(), fit.refine(tiles, scan.points(), pose, sample, iterations, gate),
+                      sample, looks, scan.wallOfPoint());
         if (!found.pose.isFinite())
             return;
         const auto known = std::find_if(fits_.begin(), fits_.end(), [&](const PlaceFit &f) {
@@ -123,25 +125,35 @@ private:
 
     Relocalized::Outcome judge() {
         if (fits_.empty())
-            return result_.searched < result_.parts ? Relocalized::Outcome::Unfinished : Relocalized::Outcome::Nowhere;
+            return result_.searched < result_.parts ? Relocalized::Outcome::Unfinished
+                                                    : Relocalized::Outcome::Nowhere;
         const PlaceFit &best = fits_.front();
         const double needed = std::max(minLead, trust.leadFor(best, minProbability));
         for (std::size_t i = 0; i < fits_.size() && i < maxPlaces; ++i) {
             const PlaceFit &f = fits_[i];
             const double lead = i > 0 ? 0 : fits_.size() > 1 ? f.score() - fits_[1].score() : trust.mostLead;
-            result_.places.push_back(placeOf(f, lead, needed));
-            result_.alike += f.score() >= best.score() - needed;
+            result_.places.push_back(placeOf(f, lead));
         }
-        const bool isGood = needed <= trust.mostLead && best.reliability() >= minReliability;
-        if (!isGood)
-            result_.alike = 1;
+        result_.alike = countAlike(needed);
+        // A place that needs a great lead over the others says little by itself.
+        const bool isGood = best.reliability() >= minReliability && needed <= clearLead;
+        const bool isFound =
+            best.reliability() >= minReliability && needed <= trust.mostLead && result_.alike == 1;
         if (isGood && result_.alike > 1)
             return Relocalized::Outcome::Ambiguous;
         if (result_.searched < result_.parts)
             return Relocalized::Outcome::Unfinished;
-        return isGood ? Relocalized::Outcome::Found : Relocalized::Outcome::Nowhere;
+        if (isFound)
+            return Relocalized::Outcome::Found;
+        result_.alike = countAlike(minLead);
+        return Relocalized::Outcome::Nowhere;
     }
-    Place placeOf(const PlaceFit &f, double lead, double needed) const {
+    std::size_t countAlike(double lead) const {
+        return std::size_t(std::count_if(fits_.begin(), fits_.end(), [&](const PlaceFit &f) {
+            return f.score() > fits_.front().score() - lead;
+        }));
+    }
+    Place placeOf(const PlaceFit &f, double lead) const {
         Place place;
         place.pose = f.pose.pose();
         place.score = f.score();
@@ -151,14 +163,13 @@ private:
         place.discrepancy = f.discrepancy;
         place.matchedShare = f.explainedShare();
         place.covariance = f.covariance();
-        place.fault = faultOf(f, trust.leadFor(f, minProbability));
-        (void)needed;
+        place.fault = faultOf(f, lead, trust.leadFor(f, minProbability));
         return place;
     }
-    PlaceFault faultOf(const PlaceFit &f, double needed) const {
+    PlaceFault faultOf(const PlaceFit &f, double lead, double needed) const {
         if (f.reliability() < minReliability)
             return PlaceFault::Reliability;
-        if (needed <= trust.mostLead)
+        if (needed <= (lead > 0 ? lead : clearLead))
             return PlaceFault::None;
         if (f.explainedShare() < 0.7)
             return PlaceFault::Explained;

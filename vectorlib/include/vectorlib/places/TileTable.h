@@ -53,8 +53,8 @@ private:
         int number = -1;
     };
     static std::size_t hash(std::int32_t i, std::int32_t j) {
-        const std::uint64_t key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32 |
-                                  static_cast<std::uint32_t>(j);
+        const std::uint64_t key =
+            static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32 | static_cast<std::uint32_t>(j);
         return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 32);
     }
     void put(const Slot &slot) {

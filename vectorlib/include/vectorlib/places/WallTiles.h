@@ -10,9 +10,9 @@
 
 namespace vectorlib {
 
-/// The walls of a map by place, in square tiles: which walls lie near a point, what a ray meets, and, in cells
-/// of 10 cm, whether a wall that faces some way is beside a point. Walls come and go by number. Map frame;
-/// metres.
+/// The walls of a map by place, in square tiles: which walls lie near a point, what a ray meets, and, in
+/// cells of 10 cm, whether a wall that faces some way is beside a point. Walls come and go by number. Map
+/// frame; metres.
 class WallTiles {
 public:
     using Vector = Vector2D<double>;
@@ -22,7 +22,7 @@ public:
     static constexpr int side = 8;        ///< of a tile, in cells
     static constexpr double tile = 0.8;   ///< metres
     static constexpr double beside = 0.2; ///< a wall fills the cells whose middles are so near; metres
-    static constexpr double near = 0.35;   ///< a tile lists the walls that are so near to it; metres
+    static constexpr double near = 0.35;  ///< a tile lists the walls that are so near to it; metres
 
     void clear() {
         table_.clear();
@@ -127,7 +127,7 @@ private:
     static constexpr std::size_t mostRasters = 1u << 20; // 64 MiB
     struct Tile {
         std::int32_t i, j;
-        int raster; // -1: not drawn
+        int raster;             // -1: not drawn
         std::vector<int> walls; // sorted
     };
 
@@ -164,8 +164,10 @@ private:
         const double reach = tile * 0.7072 + beside, foot = wall.along(middle);
         if (std::abs(wall.across(middle)) > reach || foot < -reach || foot > wall.length() + reach)
             return;
-        const Vector a = wall.begin() + wall.direction() * std::clamp(foot - reach, 0.0, wall.length()) - corner;
-        const Vector b = wall.begin() + wall.direction() * std::clamp(foot + reach, 0.0, wall.length()) - corner;
+        const Vector a =
+            wall.begin() + wall.direction() * std::clamp(foot - reach, 0.0, wall.length()) - corner;
+        const Vector b =
+            wall.begin() + wall.direction() * std::clamp(foot + reach, 0.0, wall.length()) - corner;
         const int left = cellOf(std::min(a.x, b.x) - beside), right = cellOf(std::max(a.x, b.x) + beside);
         const int low = cellOf(std::min(a.y, b.y) - beside), high = cellOf(std::max(a.y, b.y) + beside);
         const Wall part(a, b, wall.direction());
