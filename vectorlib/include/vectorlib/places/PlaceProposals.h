@@ -36,6 +36,7 @@ public:
             if (number++ >= (best_ >= good ? fewWalls : mostWalls))
                 break;
             parts_ += index.size();
+            order(wall);
             std::size_t slid = 0;
             if (!index.forEachWall(lengthShare * wall.length(), [&](const LineSegment2D<double> &known) {
                     slide(index.tiles(), known, wall);
@@ -73,6 +74,13 @@ private:
             if (const std::size_t i = k * 27 % mostPoints; i < all)
                 few_.push_back(scan.points()[all > mostPoints ? i * all / mostPoints : i]);
     }
+    // Last the points on the wall that is slid: they lie well anywhere along it.
+    void order(const LineSegment2D<double> &wall) {
+        std::stable_partition(few_.begin(), few_.end(), [&wall](const WallPoint &p) {
+            return std::abs(wall.across(Vector(p.position))) > WallTiles::beside ||
+                   wall.direction().dot(Vector(p.direction)) < 0.9;
+        });
+    }
     // As far as the shorter wall lies on the longer one, but for an overhang.
     void slide(WallTiles &tiles, const LineSegment2D<double> &known, const LineSegment2D<double> &wall) {
         cos_ = wall.direction().dot(known.direction());
@@ -100,7 +108,7 @@ private:
         for (std::size_t i = 0; i < n; ++i) {
             const Turned &p = turned(i);
             hits += tiles.shows(at + p.position, p.facing);
-            if ((i == 7 && hits < 2) || (i == 15 && hits < 6) || (i == 31 && hits < 14))
+            if ((i == 3 && hits == 0) || (i == 7 && hits < 2) || (i == 15 && hits < 5) || (i == 31 && hits < 12))
                 return;
         }
         const double share = double(hits) / double(std::max<std::size_t>(1, n));
