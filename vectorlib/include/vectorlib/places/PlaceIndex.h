@@ -51,6 +51,8 @@ public:
     /// The wall of a number is now this one; none when null.
     void set(int number, const Wall *wall) {
         const auto at = static_cast<std::size_t>(number);
+        if (wall && !(wall->isFinite() && wall->length() > 0))
+            wall = nullptr; // nobody can see it
         if (at >= walls_.size() && wall)
             walls_.resize(at + 1);
         if (at >= walls_.size())
@@ -85,7 +87,7 @@ private:
     static bool isUsable(const Wall &w) {
         const double far = std::max(
             {std::abs(w.begin().x), std::abs(w.begin().y), std::abs(w.end().x), std::abs(w.end().y)});
-        return w.isFinite() && w.length() > 0 && w.length() <= longest && far < farthest;
+        return w.length() <= longest && far < farthest;
     }
     static int lengthBinOf(double length) {
         return length > 0.1 ? std::clamp(static_cast<int>(2 * std::log2(length * 10)), 0, lengthBins - 1) : 0;

@@ -35,17 +35,18 @@ public:
         for (const LineSegment2D<double> &wall : scan.walls()) {
             if (number++ >= (best_ >= good ? fewWalls : mostWalls))
                 break;
-            parts_ += index.size();
+            const std::size_t all = index.size() - index.leftOut();
+            parts_ += all;
             order(wall);
             std::size_t slid = 0;
             if (!index.forEachWall(lengthShare * wall.length(), [&](const LineSegment2D<double> &known) {
                     slide(index.tiles(), known, wall);
                     return ++slid % 16 != 0 || !isLate();
                 })) {
-                searched_ += std::min(slid, index.size() - 1);
+                searched_ += std::min(slid, all - 1);
                 break;
             }
-            searched_ += index.size();
+            searched_ += all;
         }
         spread();
         return proposals_;
@@ -108,7 +109,8 @@ private:
         for (std::size_t i = 0; i < n; ++i) {
             const Turned &p = turned(i);
             hits += tiles.shows(at + p.position, p.facing);
-            if ((i == 3 && hits == 0) || (i == 7 && hits < 2) || (i == 15 && hits < 5) || (i == 31 && hits < 12))
+            if ((i == 3 && hits == 0) || (i == 7 && hits < 2) || (i == 15 && hits < 5) ||
+                (i == 31 && hits < 12))
                 return;
         }
         const double share = double(hits) / double(std::max<std::size_t>(1, n));

@@ -8,11 +8,11 @@
 
 namespace vectorlib {
 
-/// How probable it is that a place is the right one, learned from scans of real buildings in maps of the same
-/// and of other buildings: logistic in the score, its lead over the next place, the share of points that lie
-/// nowhere, and the number of points.
+/// How probable it is that a place is the right one, learned from scans of real and made-up buildings in maps
+/// of the same and of other buildings: logistic in the score, its lead over the next place, the share of
+/// points that lie nowhere, and the number of points.
 struct PlaceTrust {
-    double constant = -25.9, score = 26.4, lead = 27.4, points = 3.6, extra = 13;
+    double constant = -26.6, score = 26.2, lead = 27.7, points = 1.8, extra = 16.3;
     double mostLead = 0.3; ///< a greater one says no more
 
     double probability(const PlaceFit &fit, double lead_) const {
@@ -37,7 +37,7 @@ private:
 class PlaceSearch {
 public:
     double maxSeconds = 3;        ///< and the time of the last steps, a few milliseconds
-    double minProbability = 0.95; ///< of a place that is found
+    double minProbability = 0.9;  ///< of a place that is found
     double minLead = 0.04;        ///< in score; places that are nearer to the best fit alike
     double clearLead = 0.12;      ///< a place that needs no greater lead is good, whether or not others are
     double minReliability = 0.02; ///< of a place that is found
@@ -135,6 +135,8 @@ private:
             result_.places.push_back(placeOf(f, lead));
         }
         result_.alike = countAlike(needed);
+        for (Place &place : result_.places) // one of those that fit alike at most
+            place.probability /= double(std::max<std::size_t>(1, countAlike(minLead)));
         // A place that needs a great lead over the others says little by itself.
         const bool isGood = best.reliability() >= minReliability && needed <= clearLead;
         const bool isFound =

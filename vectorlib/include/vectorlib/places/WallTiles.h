@@ -24,6 +24,9 @@ public:
     static constexpr double beside = 0.2; ///< a wall fills the cells whose middles are so near; metres
     static constexpr double near = 0.35;  ///< a tile lists the walls that are so near to it; metres
 
+    /// Of walls in tiles, some 100 bytes each at worst: walls beyond are refused.
+    std::size_t mostEntries = 8000000;
+
     void clear() {
         table_.clear();
         tiles_.clear();
@@ -123,7 +126,6 @@ public:
 private:
     using Raster = std::array<std::uint8_t, side * side>;
     static constexpr int unknown = -2, none = -1;
-    static constexpr std::size_t mostEntries = 20000000; // of walls in tiles
     static constexpr std::size_t mostRasters = 1u << 20; // 64 MiB
     struct Tile {
         std::int32_t i, j;
