@@ -7,6 +7,7 @@
 #include "gui/vector/experiment/CriterionExperiment.h"
 #include "gui/vector/experiment/Gnuplot.h"
 #include "gui/vector/experiment/PairsExperiment.h"
+#include "gui/vector/experiment/PlacesExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/RealScanExperiment.h"
 #include "gui/vector/experiment/RegistrationExperiment.h"
@@ -29,6 +30,7 @@ struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
     std::string log;
+    std::string other;
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
@@ -83,6 +85,18 @@ struct ExperimentCommand {
         for (const PairResult &pair : results)
             if (!pair.isWithin(pair.match.pose, 0.10) && drawn++ < pictures)
                 vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair);
+    }
+    void places(OutputSet &files, std::ostream &csv) const {
+        const vectorlib::CarmenLog read = readLog();
+        std::optional<vectorlib::CarmenLog> strange;
+        if (!other.empty())
+            strange = readLog(other);
+        std::ostream &json = open(files, ".json");
+        const PlacesReport report = placesExperiment(read, strange ? &*strange : nullptr, options.progress);
+        writeCsv(csv, report);
+        const std::string summary = summaryOf(report, !strange).dump(2) + '\n';
+        json << summary;
+        std::cout << summary;
     }
     void criterion(OutputSet &files, std::ostream &csv) const {
         const std::vector<Surface> surfaces = criterionSurfaces();
@@ -191,7 +205,10 @@ private:
     vectorlib::CarmenLog readLog() const {
         if (log.empty())
             throw CLI::ValidationError("--log", "the experiment " + name + " needs the name of a CARMEN log");
-        Input input(log);
+        return readLog(log);
+    }
+    static vectorlib::CarmenLog readLog(const std::string &path) {
+        Input input(path);
         return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
     }
     void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
@@ -244,6 +261,8 @@ constexpr Experiment experiments[] = {
     {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog},
     {"pairs", "the motions between scans of --log: error against its corrected poses",
      &ExperimentCommand::pairs},
+    {"places", "scans of --log searched in a map of every other scan: how often their place is found",
+     &ExperimentCommand::places},
     {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
      &ExperimentCommand::criterionTime},
@@ -287,7 +306,12 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->log, "CARMEN log for log, pairs, empty-room, corridor and laboratory")
+    sub->add_option("--log", command->log,
+                    "CARMEN log for log, pairs, places, empty-room, corridor and laboratory")
+        ->type_name("FILE");
+    sub->add_option(
+           "--other", command->other,
+           "places: search the scans of this CARMEN log of another building, which are to be refused")
         ->type_name("FILE");
     sub->add_option("--every", command->pairOptions.every,
                     "pairs: match every N-th scan with the next N-th one")
