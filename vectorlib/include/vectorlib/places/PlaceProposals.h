@@ -23,6 +23,7 @@ public:
     std::size_t fewWalls = 2;  ///< of the scan that are slid in any case
     std::size_t mostWalls = 5; ///< that are slid while no pose is good
     double good = 0.75;        ///< share of such a pose
+    double worse = 0.35;       ///< than the best: proposals that are left out; share
     std::size_t most = 48;     ///< proposals
     double apart = 0.4;        ///< of proposals, unless they are turned; metres
     double turnedApart = 0.17; ///< radians
@@ -139,7 +140,7 @@ private:
         proposals_.clear();
         const double cosine = std::cos(turnedApart);
         for (const PlaceProposal &p : found_) {
-            if (proposals_.size() >= most)
+            if (proposals_.size() >= most || p.share < best_ - worse)
                 break;
             const bool isNew =
                 std::none_of(proposals_.begin(), proposals_.end(), [&](const PlaceProposal &o) {
