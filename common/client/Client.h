@@ -147,7 +147,7 @@ private:
         WireValue data;
     };
     std::vector<Early> early_;
-    QTimer lookTimer_;                    // over a line
+    QTimer lookTimer_;         // over a line
     double daemonStarted_ = 0; // as it said; 0: not yet
     int lastHandle_ = 0;
     std::map<int, Subscription> subscriptions_;

@@ -30,14 +30,10 @@ QString name(Relocalized::Outcome outcome) {
 }
 
 PlaceAnswer answerOf(const Place &place) {
-    PlaceAnswer answer{place.pose,
-                       place.score,
-                       place.reliability,
-                       place.ambiguity,
-                       place.discrepancy,
-                       place.matchedShare,
-                       place.fault == vectorlib::Fault::None,
-                       std::nullopt};
+    PlaceAnswer answer{
+        place.pose,      place.score,       place.probability,  place.reliability,
+        place.ambiguity, place.discrepancy, place.matchedShare, place.fault == vectorlib::PlaceFault::None,
+        std::nullopt};
     if (!answer.accepted)
         answer.fault = QString(vectorlib::describe(place.fault));
     return answer;
@@ -117,10 +113,11 @@ const Fields<PlaceAnswer> &fieldsOf(Of<PlaceAnswer>) {
         Fields<P>()
             .add("pose", &P::pose, "Of the sensor in the map's frame")
             .add("score", &P::score, "Places are ordered by it, the best first")
-            .add("reliability", &P::reliability, "0 to 1")
-            .add("ambiguity", &P::ambiguity, "Of the position", "m^2")
-            .add("discrepancy", &P::discrepancy, "How far the scan contradicts the view expected there")
-            .add("matched_share", &P::matchedShare, "Of the length of the scan's segments")
+            .add("probability", &P::probability, "Of being right, 0 to 1")
+            .add("reliability", &P::reliability, "Of the walls' directions, 0 to 1: small along a corridor")
+            .add("ambiguity", &P::ambiguity, "Mean squared distance of the points from their walls", "m^2")
+            .add("discrepancy", &P::discrepancy, "Area that was seen behind walls of the map", "m^2")
+            .add("matched_share", &P::matchedShare, "Of the scan's points, that lie on walls of the map")
             .add("accepted", &P::accepted, "It stands all tests")
             .add("fault", &P::fault, "The test it failed")
             .orNull();
@@ -134,8 +131,8 @@ const Fields<SearchAnswer> &fieldsOf(Of<SearchAnswer>) {
             .add("outcome", &S::outcome, "Of the search")
             .choices({"found", "no_scan", "no_map", "too_little", "nowhere", "ambiguous", "unfinished"})
             .add("candidates", &S::candidates, "The best places")
-            .add("alike", &S::alike, "Places that fit as well as the best one")
-            .add("parts", &S::parts, "Of the map")
+            .add("alike", &S::alike, "Places that fit about as well as the best one")
+            .add("parts", &S::parts, "Of the search: a wall of the scan on a wall of the map")
             .add("searched", &S::searched, "Of them")
             .add("ms", &S::ms, "Time it took", "ms");
     return fields;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "protocol/messages/Motion.h"
-#include "vectorlib/mapping/Relocalization.h"
+#include "vectorlib/places/Relocalized.h"
 
 #include <QString>
 #include <optional>
@@ -39,7 +39,7 @@ struct PairMatch {
 /// A place in the map where a scan may have been taken.
 struct PlaceAnswer {
     Pose2D pose;
-    double score = 0, reliability = 0, ambiguity = 0, discrepancy = 0, matchedShare = 0;
+    double score = 0, probability = 0, reliability = 0, ambiguity = 0, discrepancy = 0, matchedShare = 0;
     bool accepted = false;
     std::optional<QString> fault;
 };

@@ -13,7 +13,7 @@ _hermes_vector() {
         esac
     done
     if [ -z "$command" ]; then
-        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity match observe map ring experiment report --help --version" -- "$word")
+        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity match relocalize observe map ring experiment report --help --version" -- "$word")
         return
     fi
     local help choices
@@ -25,7 +25,7 @@ _hermes_vector() {
     case $previous in
     --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --expected | --scan | \
         --noise | --fov | --outliers | --seed | --every | --laser | --turn | --case | --rays | --max-dx | --max-dy | \
-        --max-dalpha | --deviation-xy | --deviation-alpha | --half | --reliability | --ambiguity | --discrepancy | --runs | --max-points | --first | --draw) return ;;
+        --max-dalpha | --deviation-xy | --deviation-alpha | --half | --reliability | --ambiguity | --discrepancy | --runs | --max-points | --first | --draw | --seconds) return ;;
     esac
     if [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '--[a-z-]+' <<<"$help" | sort -u)" -- "$word")

@@ -8,6 +8,7 @@
 #include "gui/vector/experiment/CriterionExperiment.h"
 #include "gui/vector/experiment/GlobalPairsExperiment.h"
 #include "gui/vector/experiment/Gnuplot.h"
+#include "gui/vector/experiment/PlacesExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/RealScanExperiment.h"
 #include "gui/vector/experiment/RegistrationExperiment.h"
@@ -33,6 +34,7 @@ struct ExperimentCommand {
     std::string folder = ".";
     std::vector<std::string> logs;
     std::vector<std::size_t> every{1};
+    std::string other;
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
@@ -112,6 +114,18 @@ struct ExperimentCommand {
         writeCsv(csv, found);
         std::cout << summaryOf(found).dump(2) << '\n';
         draw(files, {{plotOf(found)}, {}, {}});
+    }
+    void places(OutputSet &files, std::ostream &csv) const {
+        const vectorlib::CarmenLog read = readLog();
+        std::optional<vectorlib::CarmenLog> strange;
+        if (!other.empty())
+            strange = readLog(other);
+        std::ostream &json = open(files, ".json");
+        const PlacesReport report = placesExperiment(read, strange ? &*strange : nullptr, options.progress);
+        writeCsv(csv, report);
+        const std::string summary = summaryOf(report, !strange).dump(2) + '\n';
+        json << summary;
+        std::cout << summary;
     }
     void criterion(OutputSet &files, std::ostream &csv) const {
         const std::vector<Surface> surfaces = criterionSurfaces();
@@ -329,6 +343,8 @@ constexpr Experiment experiments[] = {
      &ExperimentCommand::pairs},
     {"calibration", "matches without estimate in all pairs of --log ...: probability told, and share right",
      &ExperimentCommand::calibration},
+    {"places", "scans of --log searched in a map of every other scan: how often their place is found",
+     &ExperimentCommand::places},
     {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
      &ExperimentCommand::criterionTime},
@@ -380,10 +396,15 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--out", command->folder, "Folder for the files; made when missing")
         ->type_name("FOLDER")
         ->capture_default_str();
-    sub->add_option("--log", command->logs,
-                    "CARMEN log for log, pairs, free-log, empty-room, corridor and laboratory; several for "
-                    "calibration")
+    sub->add_option(
+           "--log", command->logs,
+           "CARMEN log for log, pairs, places, free-log, empty-room, corridor and laboratory; several for "
+           "calibration")
         ->allow_extra_args(false)
+        ->type_name("FILE");
+    sub->add_option(
+           "--other", command->other,
+           "places: search the scans of this CARMEN log of another building, which are to be refused")
         ->type_name("FILE");
     sub->add_option(
            "--every", command->every,

@@ -57,6 +57,7 @@ void addExperimentCommand(CLI::App &app);
 void addMapCommand(CLI::App &app);
 void addMatchCommand(CLI::App &app);
 void addReportCommand(CLI::App &app);
+void addRelocalizeCommand(CLI::App &app);
 void addRingCommand(CLI::App &app);
 
 } // namespace hermes::vector

@@ -24,6 +24,7 @@ int main(int argc, char **argv) {
     addRegisterCommand(app);
     addSimilarityCommand(app);
     addMatchCommand(app);
+    addRelocalizeCommand(app);
     addObserveCommand(app);
     addMapCommand(app);
     addRingCommand(app);

@@ -30,6 +30,8 @@ private Q_SLOTS:
     void scannersMayTurnEitherWay();
     void mapHidesNothing();
     void mapFileIsAMap();
+    void relocalizeNeedsNoExpectation();
+    void relocalizeSaysWhatIsWrong();
     void expectedPoseMovesTheSearch();
     void tellsWhyNothingIsAccepted();
     void anyMotionNeedsNoEstimate();
@@ -137,6 +139,34 @@ void TestMatch::mapFileIsAMap() {
     QVERIFY2(best["accepted"].toBool(), r.out.constData());
     QVERIFY(!best["covariance"].toArray().isEmpty());
     QVERIFY(!json(r.out).contains("static"));
+}
+
+void TestMatch::relocalizeNeedsNoExpectation() {
+    seen("a.csv", "0,0,0", false);
+    for (const bool points : {true, false}) {
+        const QString scan = seen(points ? "b.csv" : "c.csv", "0.4,0.1,2.5", points);
+        const Result r = run({"relocalize", path("a.csv"), scan});
+        QCOMPARE(r.status, 0);
+        const QJsonObject found = json(r.out);
+        QVERIFY2(found["outcome"].toString() == "found", r.out.constData());
+        const QJsonObject best = found["places"].toArray()[0].toObject(), pose = best["pose"].toObject();
+        QVERIFY2(best["accepted"].toBool() && best["probability"].toDouble() > 0.9, r.out.constData());
+        QVERIFY(std::hypot(pose["x"].toDouble() - 0.4, pose["y"].toDouble() - 0.1) < 0.05);
+        QVERIFY(std::abs(pose["alpha"].toDouble() - 2.5) < 0.03);
+        QCOMPARE(best["covariance"].toArray().size(), 3);
+    }
+}
+
+void TestMatch::relocalizeSaysWhatIsWrong() {
+    const QString b = seen("b.csv", "0.4,0.1,0.2", true);
+    QCOMPARE(run({"relocalize", b, b}).status, 2); // a scan is no map
+    QCOMPARE(run({"relocalize", path("none.csv"), b}).status, 1);
+    write(path("wall.csv"), "x1,y1,x2,y2\n-2,-1.5,4,-1.5\n");
+    const Result r = run({"relocalize", path("wall.csv"), path("wall.csv")});
+    QCOMPARE(r.status, 0);
+    QCOMPARE(json(r.out)["outcome"].toString(), QString("too_little"));
+    QVERIFY(json(r.out)["text"].toString().contains("fewer than two"));
+    QVERIFY(json(r.out)["places"].toArray().isEmpty());
 }
 
 void TestMatch::expectedPoseMovesTheSearch() {

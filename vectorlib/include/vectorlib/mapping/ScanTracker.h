@@ -1,12 +1,12 @@
 #pragma once
 
 #include "vectorlib/mapping/MapBuilder.h"
-#include "vectorlib/mapping/Relocalization.h"
 #include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/motion/MotionCompensation.h"
 #include "vectorlib/motion/MotionModel.h"
 #include "vectorlib/motion/OdometryModel.h"
 #include "vectorlib/motion/TwistCorrection.h"
+#include "vectorlib/places/PlaceSearch.h"
 
 #include <functional>
 
@@ -64,6 +64,7 @@ public:
         builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
         const bool sure = locate(scan, begin, end);
         const ScanReport &report = builder.conclude(scan.points, sure);
+        points_ = scan.points;
         motion_.update(report.pose, scan.stamp);
         if (scan.odometry)
             odometry_.update(report.pose, *scan.odometry, scan.stamp);
@@ -83,7 +84,7 @@ public:
     Relocalized relocalize(bool apply) {
         if (counts_.scans == 0)
             return {};
-        const Relocalized &result = search_(builder.map, builder.edges(), builder.report().pose);
+        const Relocalized &result = search_(builder.map.slots(), builder.edges(), points_);
         if (apply && result.isFound())
             place(result.places.front().pose);
         return result;
@@ -264,7 +265,8 @@ private:
     MotionModel motion_;
     OdometryModel odometry_;
     ScanTrackerCounts counts_;
-    Relocalization search_;
+    PlaceSearch search_;
+    std::vector<Vector2D<float>> points_; // of the last scan, at one moment
     TwistCorrection correct_;
     std::optional<double> lastStamp_; // of the scan before, unless the sensor was put elsewhere since
     int lostInARow_ = 0;

@@ -1,0 +1,297 @@
+// The search of a scan's place in a whole map.
+#include "FloorPlan.h"
+
+#include <vectorlib/edges/EdgeExtractor.h>
+#include <vectorlib/observation/SimulatedScanner.h>
+#include <vectorlib/places/PlaceSearch.h>
+
+#include <QElapsedTimer>
+#include <QtTest>
+
+using namespace vectorlib;
+using Walls = std::vector<LineSegment2D<double>>;
+using Points = std::vector<Vector2D<float>>;
+using Outcome = Relocalized::Outcome;
+
+namespace {
+
+std::vector<MapEdge> mapOf(const Walls &walls) {
+    std::vector<MapEdge> slots;
+    for (const auto &wall : walls)
+        slots.emplace_back(std::int64_t(slots.size()), EdgeRaw2D(TlsSums(), wall, 0.01), 1);
+    return slots;
+}
+
+// A closed room with a niche, its lower left corner at x, y.
+Walls room(double x, double y) {
+    const Vector2D<double> corners[] = {{0, 0}, {5, 0}, {5, 4}, {2, 4}, {2, 3}, {0, 3}};
+    Walls walls;
+    for (int i = 0; i < 6; ++i) // counter-clockwise: the free space is inside
+        walls.emplace_back(corners[i] + Vector2D<double>(x, y),
+                           corners[(i + 1) % 6] + Vector2D<double>(x, y));
+    return walls;
+}
+
+bool isNear(const Pose2D &a, const Pose2D &b, double metres = 0.05, double radians = 0.02) {
+    return std::hypot(a.x - b.x, a.y - b.y) < metres && std::abs(wrapAngle(a.theta - b.theta)) < radians;
+}
+
+// As long as a sanitizer or a busy machine may take.
+constexpr int muchTooLongMs = 60000;
+
+} // namespace
+
+class TestPlaceSearch : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void init();
+    void findsPlacesOfFloorPlans_data();
+    void findsPlacesOfFloorPlans();
+    void findsByEdgesAlone();
+    void findsAmongOtherThings();
+    void tellsIdenticalRooms();
+    void refusesScansOfOtherBuildings();
+    void followsAChangingMap_data();
+    void followsAChangingMap();
+    void covarianceHoldsTheError();
+    void sameSearchSameResult();
+    void saysWhatIsWrong_data();
+    void saysWhatIsWrong();
+    void endsInTime();
+    void boundsLongAndFarWalls();
+
+private:
+    const Points &see(const Walls &walls, const Pose2D &pose) {
+        world_.clear();
+        for (const auto &wall : walls)
+            world_.emplace_back(wall);
+        return scanner(world_, pose);
+    }
+    const Relocalized &find(const Walls &map, const Points &points) {
+        return search->operator()(mapOf(map), extract(points), points);
+    }
+
+    SimulatedScanner<float> scanner{3};
+    EdgeExtractor extract;
+    std::unique_ptr<PlaceSearch> search;
+    std::vector<LineSegment2D<float>> world_;
+};
+
+void TestPlaceSearch::init() {
+    search = std::make_unique<PlaceSearch>();
+    search->maxSeconds = 60; // a bound is tested where it is the matter
+    scanner = SimulatedScanner<float>(3);
+}
+
+void TestPlaceSearch::findsPlacesOfFloorPlans_data() {
+    QTest::addColumn<unsigned>("seed");
+    for (unsigned seed = 1; seed <= 5; ++seed)
+        QTest::addRow("seed %u", seed) << seed;
+}
+
+void TestPlaceSearch::findsPlacesOfFloorPlans() {
+    QFETCH(unsigned, seed);
+    FloorPlan plan(seed, 20);
+    int found = 0;
+    for (int i = 0; i < 20; ++i) {
+        const Pose2D pose = plan.place();
+        const Relocalized &result = find(plan.walls(), see(plan.walls(), pose));
+        QVERIFY(!result.isFound() || isNear(result.places.front().pose, pose));
+        found += result.isFound();
+    }
+    QVERIFY2(found >= 19, qPrintable(QString::number(found)));
+}
+
+void TestPlaceSearch::findsByEdgesAlone() {
+    FloorPlan plan(11, 20);
+    for (int i = 0; i < 10; ++i) {
+        const Pose2D pose = plan.place();
+        const Relocalized &result = (*search)(mapOf(plan.walls()), extract(see(plan.walls(), pose)), {});
+        QVERIFY2(result.isFound(), result.text().c_str());
+        QVERIFY(isNear(result.places.front().pose, pose));
+    }
+}
+
+// A tenth of the rays ends at people who are not in the map.
+void TestPlaceSearch::findsAmongOtherThings() {
+    FloorPlan plan(12, 20);
+    scanner.outliers = 0.1;
+    for (int i = 0; i < 10; ++i) {
+        const Pose2D pose = plan.place();
+        const Relocalized &result = find(plan.walls(), see(plan.walls(), pose));
+        QVERIFY2(result.isFound(), result.text().c_str());
+        QVERIFY(isNear(result.places.front().pose, pose));
+    }
+}
+
+void TestPlaceSearch::tellsIdenticalRooms() {
+    Walls map;
+    for (int i = 0; i < 5; ++i)
+        for (const auto &wall : room(7 * i, 0))
+            map.push_back(wall);
+    const Relocalized result = find(map, see(room(0, 0), {2.5, 1.5, 0.7}));
+    QCOMPARE(result.outcome, Outcome::Ambiguous);
+    QCOMPARE(result.alike, std::size_t(5));
+    QCOMPARE(result.text(), std::string("5 places in the map fit alike"));
+    for (int i = 0; i < 5; ++i)
+        QVERIFY(std::any_of(result.places.begin(), result.places.end(), [i](const Place &p) {
+            return p.fault == PlaceFault::None && isNear(p.pose, {2.5 + 7 * i, 1.5, 0.7});
+        }));
+    for (const Place &p : result.places)
+        QVERIFY(p.probability <= 0.2);
+}
+
+void TestPlaceSearch::refusesScansOfOtherBuildings() {
+    int found = 0;
+    for (unsigned seed = 20; seed < 30; ++seed) {
+        const FloorPlan map(seed, 20);
+        FloorPlan other(seed + 100, 20);
+        for (int i = 0; i < 10; ++i)
+            found += find(map.walls(), see(other.walls(), other.place())).isFound();
+    }
+    QVERIFY2(found <= 1, qPrintable(QString::number(found))); // one of them is a plain room
+}
+
+void TestPlaceSearch::followsAChangingMap_data() {
+    QTest::addColumn<unsigned>("seed");
+    for (unsigned seed = 31; seed <= 34; ++seed)
+        QTest::addRow("seed %u", seed) << seed;
+}
+
+// Walls come, change and go; the index then says the same as one made anew.
+void TestPlaceSearch::followsAChangingMap() {
+    QFETCH(unsigned, seed);
+    FloorPlan plan(seed, 8);
+    std::mt19937 random(seed);
+    std::vector<MapEdge> slots = mapOf(plan.walls());
+    for (int step = 0; step < 10; ++step) {
+        for (MapEdge &edge : slots) {
+            const auto dice = random() % 20;
+            if (dice == 0)
+                edge.observations = 1 - edge.observations;
+            else if (dice == 1) { // grows
+                const auto &s = edge.segment;
+                edge.segment = {s.begin() - s.direction() * 0.02, s.end(), s.direction()};
+            }
+        }
+        if (step == 7)
+            slots.resize(slots.size() * 2 / 3);
+        const Points points = see(plan.walls(), plan.place());
+        const Relocalized changed = (*search)(slots, extract(points), points);
+        PlaceSearch anew;
+        anew.maxSeconds = search->maxSeconds;
+        const Relocalized &made = anew(slots, extract(points), points);
+        QCOMPARE(search->index().size(), anew.index().size());
+        QCOMPARE(changed.outcome, made.outcome);
+        QCOMPARE(changed.places.size(), made.places.size());
+        for (std::size_t i = 0; i < made.places.size(); ++i) {
+            QCOMPARE(changed.places[i].score, made.places[i].score);
+            QVERIFY(isNear(changed.places[i].pose, made.places[i].pose, 1e-12, 1e-12));
+        }
+    }
+    search->index().clear();
+    QCOMPARE(search->index().size(), std::size_t(0));
+}
+
+void TestPlaceSearch::covarianceHoldsTheError() {
+    FloorPlan plan(41, 10);
+    for (int i = 0; i < 10; ++i) {
+        const Pose2D pose = plan.place();
+        const Relocalized &result = find(plan.walls(), see(plan.walls(), pose));
+        QVERIFY(result.isFound() && result.places.front().covariance);
+        const Place &place = result.places.front();
+        const Eigen::Matrix3d &c = *place.covariance;
+        const Eigen::Vector3d error(place.pose.x - pose.x, place.pose.y - pose.y,
+                                    wrapAngle(place.pose.theta - pose.theta));
+        QVERIFY(error.dot(c.inverse() * error) < 16); // four standard deviations
+        QVERIFY(std::sqrt(c(0, 0)) < 0.1 && std::sqrt(c(2, 2)) < 0.05);
+    }
+}
+
+void TestPlaceSearch::sameSearchSameResult() {
+    FloorPlan plan(51, 20);
+    const Points points = see(plan.walls(), plan.place());
+    const Pose2D first = find(plan.walls(), points).places.front().pose;
+    find(plan.walls(), see(plan.walls(), plan.place()));
+    const Pose2D again = find(plan.walls(), points).places.front().pose;
+    QVERIFY(isNear(first, again, 1e-12, 1e-12));
+}
+
+Q_DECLARE_METATYPE(Points)
+Q_DECLARE_METATYPE(Walls)
+Q_DECLARE_METATYPE(vectorlib::Relocalized::Outcome)
+
+void TestPlaceSearch::saysWhatIsWrong_data() {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    QTest::addColumn<Walls>("map");
+    QTest::addColumn<Points>("points");
+    QTest::addColumn<Outcome>("outcome");
+    const Points inRoom = see(room(0, 0), {2.5, 1.5, 0.7});
+    const Walls noPlace{{{double(nan), 0}, {1, 0}}, {{0, 0}, {9999, 0}}, {{1, 1}, {1, 1}}};
+    QTest::addRow("no map") << Walls() << inRoom << Outcome::NoMap;
+    QTest::addRow("a map of nothing usable") << noPlace << inRoom << Outcome::Unfinished;
+    QTest::addRow("one wall") << Walls{{{0, 0}, {5, 0}}} << inRoom << Outcome::Nowhere;
+    QTest::addRow("no points") << room(0, 0) << Points() << Outcome::TooLittle;
+    QTest::addRow("one point") << room(0, 0) << Points(1, {1, 1}) << Outcome::TooLittle;
+    QTest::addRow("all in one place") << room(0, 0) << Points(1000, {1, 1}) << Outcome::TooLittle;
+    QTest::addRow("no numbers") << room(0, 0) << Points(1000, {nan, nan}) << Outcome::TooLittle;
+    QTest::addRow("far away") << room(0, 0) << Points(1000, {1e30f, 1e30f}) << Outcome::TooLittle;
+    Points some = inRoom;
+    for (std::size_t i = 0; i < some.size(); i += 3)
+        some[i] = {nan, nan};
+    QTest::addRow("some are no numbers") << room(0, 0) << some << Outcome::Found;
+}
+
+void TestPlaceSearch::saysWhatIsWrong() {
+    QFETCH(Walls, map);
+    QFETCH(Points, points);
+    QFETCH(Outcome, outcome);
+    const Relocalized &result = find(map, points);
+    QVERIFY2(result.outcome == outcome, result.text().c_str());
+    QVERIFY(!result.text().empty());
+    QVERIFY(outcome != Outcome::Found || isNear(result.places.front().pose, {2.5, 1.5, 0.7}));
+}
+
+void TestPlaceSearch::endsInTime() {
+    // 100,000 points.
+    scanner.rays = 100000;
+    const Points many = see(room(0, 0), {2.5, 1.5, 0.7});
+    QElapsedTimer time;
+    time.start();
+    QVERIFY(find(room(0, 0), many).isFound());
+    QVERIFY2(time.elapsed() < muchTooLongMs, qPrintable(QString::number(time.elapsed())));
+    // 500,000 walls, of which the index is not made in the time that is given.
+    std::mt19937 random(6);
+    Walls map;
+    for (int i = 0; i < 500000; ++i) {
+        const Vector2D<double> at(double(random() % 200000) / 100, double(random() % 200000) / 100);
+        map.emplace_back(at, at + Vector2D<double>(0.5 + double(random() % 100) / 50, double(random() % 3)));
+    }
+    scanner.rays = 720;
+    const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
+    const auto slots = mapOf(map);
+    search->maxSeconds = 0.02;
+    const Relocalized &result = (*search)(slots, extract(points), points);
+    QCOMPARE(result.outcome, Outcome::Unfinished);
+    QVERIFY2(result.ms < muchTooLongMs, qPrintable(QString::number(result.ms)));
+    const std::size_t before = search->index().size();
+    QVERIFY(before > 0 && before < slots.size());
+    (*search)(slots, extract(points), points); // goes on from there
+    QVERIFY(search->index().size() > before);
+}
+
+void TestPlaceSearch::boundsLongAndFarWalls() {
+    Walls map = room(0, 0);
+    for (int i = 0; i < 100; ++i) // 150 km in all: more than there is room for
+        map.emplace_back(Vector2D<double>(10, 10 + i), Vector2D<double>(1510, 10 + i));
+    map.emplace_back(Vector2D<double>(1e9, 0), Vector2D<double>(1e9, 5));
+    search->index().tiles().mostEntries = 100000;
+    const Relocalized &result = find(map, see(room(0, 0), {2.5, 1.5, 0.7}));
+    QCOMPARE(result.outcome, Outcome::Unfinished); // as not all walls were searched
+    QVERIFY(search->index().leftOut() > 0);
+    QVERIFY(isNear(result.places.front().pose, {2.5, 1.5, 0.7}));
+}
+
+QTEST_APPLESS_MAIN(TestPlaceSearch)
+#include "TestPlaceSearch.moc"

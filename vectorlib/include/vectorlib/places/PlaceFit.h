@@ -1,0 +1,53 @@
+#pragma once
+
+#include "vectorlib/geometry/SmallMatrix.h"
+#include "vectorlib/geometry/Transformation2D.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace vectorlib {
+
+/// How a scan lies in a map at some pose.
+struct PlaceFit {
+    Transformation2D pose;  ///< of the sensor in the map's frame
+    double points = 0;      ///< that were compared
+    double explained = 0;   ///< of them, with a wall of the map beside them that faces alike
+    double distances = 0;   ///< sum of their squared distances from it; m^2
+    double squaredGate = 1; ///< of the distances; m^2
+    double hidden = 0;      ///< explained points that another wall of the map hides
+    double blocked = 0;     ///< other points that a wall of the map hides
+    double discrepancy = 0; ///< area seen behind walls of the map; m^2
+    Eigen::Matrix3d information =
+        Eigen::Matrix3d::Zero(); ///< of x, y, alpha by the explained points; 1/m^2 apart
+
+    double explainedShare() const { return points > 0 ? explained / points : 0; }
+    double hiddenShare() const { return points > 0 ? (hidden + blocked) / points : 0; }
+    /// Up to 1: the explained share, less what lies apart and what is seen through walls. A map has walls
+    /// where doors stand open now, and some that were drawn a little aside: these weigh less than points
+    /// without a wall.
+    double score() const {
+        const double loss = 0.5 * distances / squaredGate + 0.2 * hidden + 0.3 * blocked;
+        return points > 0 ? (explained - loss) / points : 0;
+    }
+    /// Mean squared distance of the explained points; m^2.
+    double meanSquare() const { return explained > 0 ? distances / explained : 0; }
+    /// In [0, 1], of the walls' directions as that of lines (paper (28)): small along a corridor.
+    double reliability() const {
+        const double xx = information(0, 0), yy = information(1, 1), xy = information(1, 0);
+        return xx + yy > 0 ? 2 * std::sqrt(std::max(0.0, xx * yy - xy * xy)) / (xx + yy) : 0;
+    }
+    /// Of x, y (metres) and alpha (radians). Points beside each other err alike, so that four count as one,
+    /// and the map's own walls are known to 2 cm at best. Nothing where the walls do not fix the pose.
+    std::optional<Eigen::Matrix3d> covariance() const {
+        if (!(reliability() > 1e-3))
+            return std::nullopt;
+        const Eigen::Matrix3d c = information.inverse() * (4 * std::max(meanSquare(), 0.02 * 0.02));
+        return c.allFinite() && c(2, 2) > 0 ? std::optional<Eigen::Matrix3d>(c) : std::nullopt;
+    }
+};
+
+} // namespace vectorlib

@@ -1,0 +1,90 @@
+#pragma once
+
+#include "vectorlib/geometry/Pose2D.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vectorlib {
+
+/// Why a place is not accepted; the first of its faults in this order.
+enum class PlaceFault { None, Reliability, Explained, Contradicted, Doubtful };
+
+inline const char *describe(PlaceFault fault) {
+    switch (fault) {
+    case PlaceFault::None:
+        return "accepted";
+    case PlaceFault::Reliability:
+        return "the directions of the walls are too much alike to fix the place";
+    case PlaceFault::Explained:
+        return "too little of the scan lies on walls of the map";
+    case PlaceFault::Contradicted:
+        return "what would be seen from there differs from what was seen";
+    case PlaceFault::Doubtful:
+        return "too little speaks for it";
+    }
+    return "";
+}
+
+/// A place in the map where a scan fits, and what speaks for it.
+struct Place {
+    Pose2D pose;             ///< of the sensor in the map's frame
+    double score = 0;        ///< up to 1; places are ranked by it
+    double probability = 0;  ///< of being right, if the world is like those it was learned from
+    double reliability = 0;  ///< in [0, 1], of the walls' directions: small along a corridor
+    double ambiguity = 0;    ///< mean squared distance of the explained points from their walls; m^2
+    double discrepancy = 0;  ///< area seen behind walls of the map; m^2
+    double matchedShare = 0; ///< of the scan's points, that lie on walls of the map
+    /// Of x, y (metres) and theta (radians); nothing where the walls do not fix the place.
+    std::optional<Eigen::Matrix3d> covariance;
+    PlaceFault fault = PlaceFault::None; ///< None when the place is accepted
+};
+
+/// How a search of the whole map ended.
+struct Relocalized {
+    enum class Outcome {
+        Found,     ///< the first place fits, and no other like it
+        NoScan,    ///< there is no scan yet
+        NoMap,     ///< the map is empty
+        TooLittle, ///< the scan has fewer than two edges
+        Nowhere,   ///< no place is accepted
+        Ambiguous, ///< several places fit alike
+        Unfinished ///< time or a bound ended the search: parts of the map were not searched
+    };
+    Outcome outcome = Outcome::NoScan;
+    std::vector<Place> places; ///< the best ones, best first
+    std::size_t alike = 0;     ///< places that score nearly like the best
+    std::size_t parts = 0;     ///< of the search: a wall of the scan on a wall of the map
+    std::size_t searched = 0;  ///< of these parts
+    double ms = 0;
+
+    bool isFound() const { return outcome == Outcome::Found; }
+    /// In words, for people.
+    std::string text() const {
+        const auto count = [](std::size_t n) { return std::to_string(n); };
+        switch (outcome) {
+        case Outcome::Found:
+            return "found";
+        case Outcome::NoScan:
+            return "no scan was taken yet";
+        case Outcome::NoMap:
+            return "the map is empty";
+        case Outcome::TooLittle:
+            return "the last scan shows fewer than two line segments";
+        case Outcome::Nowhere:
+            return places.empty() ? "the scan fits nowhere in the map"
+                                  : std::string("no place in the map is good enough; the best: ") +
+                                        describe(places.front().fault);
+        case Outcome::Ambiguous:
+            return count(alike) + " places in the map fit alike";
+        case Outcome::Unfinished:
+            return "only " + count(searched) + " of " + count(parts) + " parts of the map were searched";
+        }
+        return {};
+    }
+};
+
+} // namespace vectorlib

@@ -1,0 +1,191 @@
+#pragma once
+
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/places/Facing.h"
+#include "vectorlib/places/TileTable.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace vectorlib {
+
+/// The walls of a map by place, in square tiles: which walls lie near a point, what a ray meets, and, in
+/// cells of 10 cm, whether a wall that faces some way is beside a point. Walls come and go by number. Map
+/// frame; metres.
+class WallTiles {
+public:
+    using Vector = Vector2D<double>;
+    using Wall = LineSegment2D<double>;
+
+    static constexpr double cell = 0.1;   ///< metres
+    static constexpr int side = 8;        ///< of a tile, in cells
+    static constexpr double tile = 0.8;   ///< metres
+    static constexpr double beside = 0.2; ///< a wall fills the cells whose middles are so near; metres
+    static constexpr double near = 0.35;  ///< a tile lists the walls that are so near to it; metres
+
+    /// Of walls in tiles, some 100 bytes each at worst: walls beyond are refused.
+    std::size_t mostEntries = 8000000;
+
+    void clear() {
+        table_.clear();
+        tiles_.clear();
+        walls_.clear();
+        entries_ = 0;
+        forgetRasters();
+    }
+    const Wall &wall(int number) const { return walls_[static_cast<std::size_t>(number)]; }
+    std::size_t tiles() const { return tiles_.size(); }
+
+    /// Enters a wall; its number must be free. False, and nothing entered, when there is no room for it.
+    bool add(int number, const Wall &wall) {
+        std::size_t needed = 0;
+        forEachTile(wall, near, [&](std::int32_t, std::int32_t) { ++needed; });
+        if (entries_ + needed > mostEntries)
+            return false;
+        entries_ += needed;
+        if (static_cast<std::size_t>(number) >= walls_.size())
+            walls_.resize(static_cast<std::size_t>(number) + 1);
+        walls_[static_cast<std::size_t>(number)] = wall;
+        forEachTile(wall, near, [&](std::int32_t i, std::int32_t j) {
+            const auto at = static_cast<std::size_t>(table_.enter(i, j));
+            if (at == tiles_.size()) {
+                tiles_.push_back({i, j, -1, {}});
+                last_ = unknown;
+            }
+            Tile &t = tiles_[at];
+            t.walls.insert(std::lower_bound(t.walls.begin(), t.walls.end(), number), number);
+            if (t.raster >= 0)
+                draw(t, wall);
+        });
+        return true;
+    }
+    void remove(int number) {
+        forEachTile(wall(number), near, [&](std::int32_t i, std::int32_t j) {
+            Tile &t = tiles_[static_cast<std::size_t>(table_.find(i, j))];
+            const auto at = std::lower_bound(t.walls.begin(), t.walls.end(), number);
+            if (at != t.walls.end() && *at == number) {
+                t.walls.erase(at);
+                --entries_;
+            }
+            if (t.raster >= 0)
+                redraw(t);
+        });
+    }
+    /// Calls take(number) for the walls of the tile that holds a point: all that are within `near` of it, and
+    /// some more.
+    template <typename Take>
+    void forEachNear(Vector p, Take take) const {
+        const int at = table_.find(table_.index(p.x), table_.index(p.y));
+        if (at >= 0)
+            for (int number : tiles_[static_cast<std::size_t>(at)].walls)
+                take(number);
+    }
+    /// Whether a wall that faces in about the direction of `bit` is beside a point.
+    bool shows(Vector p, std::uint8_t bit) {
+        const std::int32_t i = table_.index(p.x), j = table_.index(p.y);
+        if (i != lastI_ || j != lastJ_ || last_ == unknown) {
+            const int at = table_.find(i, j);
+            last_ = at >= 0 ? rasterOf(tiles_[static_cast<std::size_t>(at)]) : none;
+            lastI_ = i;
+            lastJ_ = j;
+        }
+        if (last_ == none)
+            return false;
+        const int x = cellOf(p.x - i * tile), y = cellOf(p.y - j * tile);
+        return (rasters_[static_cast<std::size_t>(last_)][static_cast<std::size_t>(y * side + x)] & bit) != 0;
+    }
+    /// Draws all tiles, as far as there is room for them: looking is faster from then on.
+    void drawAll() {
+        for (Tile &t : tiles_)
+            if (rasters_.size() < mostRasters)
+                rasterOf(t);
+    }
+    /// Calls take(i, j) for the tiles within `margin` of a wall, and perhaps for some at their corners.
+    template <typename Take>
+    void forEachTile(const Wall &wall, double margin, Take take) const {
+        const Vector a = wall.begin(), b = wall.end();
+        const std::int32_t top = table_.index(std::max(a.y, b.y) + margin);
+        for (std::int32_t j = table_.index(std::min(a.y, b.y) - margin); j <= top; ++j) {
+            // The part of the wall within the row and its margin.
+            double from = std::min(a.x, b.x), to = std::max(a.x, b.x);
+            if (std::abs(b.y - a.y) > 1e-9) {
+                const auto xAt = [&](double y) {
+                    return a.x + (b.x - a.x) * std::clamp((y - a.y) / (b.y - a.y), 0.0, 1.0);
+                };
+                const double one = xAt(j * tile - margin), other = xAt((j + 1) * tile + margin);
+                from = std::min(one, other);
+                to = std::max(one, other);
+            }
+            const std::int32_t right = table_.index(to + margin);
+            for (std::int32_t i = table_.index(from - margin); i <= right; ++i)
+                take(i, j);
+        }
+    }
+
+private:
+    using Raster = std::array<std::uint8_t, side * side>;
+    static constexpr int unknown = -2, none = -1;
+    static constexpr std::size_t mostRasters = 1u << 20; // 64 MiB
+    struct Tile {
+        std::int32_t i, j;
+        int raster;             // -1: not drawn
+        std::vector<int> walls; // sorted
+    };
+
+    static int cellOf(double offset) {
+        return std::clamp(static_cast<int>(offset * (1 / cell)), 0, side - 1);
+    }
+    int rasterOf(Tile &t) {
+        if (t.raster < 0) {
+            if (rasters_.size() >= mostRasters)
+                forgetRasters();
+            t.raster = static_cast<int>(rasters_.size());
+            rasters_.emplace_back();
+            redraw(t);
+        }
+        return t.raster;
+    }
+    void forgetRasters() {
+        rasters_.clear();
+        last_ = unknown;
+        for (Tile &t : tiles_)
+            t.raster = -1;
+    }
+    void redraw(Tile &t) {
+        rasters_[static_cast<std::size_t>(t.raster)].fill(0);
+        for (int number : t.walls)
+            draw(t, wall(number));
+    }
+    void draw(Tile &t, const Wall &wall) {
+        const Vector corner(t.i * tile, t.j * tile);
+        Raster &raster = rasters_[static_cast<std::size_t>(t.raster)];
+        const std::uint8_t bits = facingBits(wall.direction());
+        // The part of the wall near the tile.
+        const Vector middle = corner + Vector(tile / 2, tile / 2);
+        const double reach = tile * 0.7072 + beside, foot = wall.along(middle);
+        if (std::abs(wall.across(middle)) > reach || foot < -reach || foot > wall.length() + reach)
+            return;
+        const Vector a =
+            wall.begin() + wall.direction() * std::clamp(foot - reach, 0.0, wall.length()) - corner;
+        const Vector b =
+            wall.begin() + wall.direction() * std::clamp(foot + reach, 0.0, wall.length()) - corner;
+        const int left = cellOf(std::min(a.x, b.x) - beside), right = cellOf(std::max(a.x, b.x) + beside);
+        const int low = cellOf(std::min(a.y, b.y) - beside), high = cellOf(std::max(a.y, b.y) + beside);
+        const Wall part(a, b, wall.direction());
+        for (int y = low; y <= high; ++y)
+            for (int x = left; x <= right; ++x)
+                if (part.distance({(x + 0.5) * cell, (y + 0.5) * cell}) <= beside)
+                    raster[static_cast<std::size_t>(y * side + x)] |= bits;
+    }
+
+    TileTable table_{tile};
+    std::vector<Tile> tiles_;
+    std::vector<Wall> walls_; // by number
+    std::vector<Raster> rasters_;
+    std::size_t entries_ = 0;
+    int last_ = unknown; // raster that was looked at
+    std::int32_t lastI_ = 0, lastJ_ = 0;
+};
+
+} // namespace vectorlib
