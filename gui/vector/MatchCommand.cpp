@@ -72,9 +72,11 @@ struct MatchCommand {
         const bool inMap = isMap || fixed.kind == SegmentSet::Kind::Map;
         const bool areScans =
             fixed.kind == SegmentSet::Kind::Points && moving.kind == SegmentSet::Kind::Points;
-        if (method == "global" && (inMap || !expected.empty()))
-            throw CLI::ValidationError("--method", inMap ? "global finds no place in a map: take finder"
-                                                         : "global takes no --expected motion");
+        if ((method == "global" || method == "relations") && (inMap || !expected.empty()))
+            throw CLI::ValidationError("--method", method + (inMap ? " finds no place in a map: take finder"
+                                                                   : " takes no --expected motion"));
+        if (method == "relations")
+            return matchByRelations(fixed, moving);
         const bool wantsFinder = method == "finder" || (method.empty() && (inMap || search.isGiven()));
         if (wantsFinder || (!expected.empty() && !areScans))
             return matchByFinder(fixed, moving, searchSettings(), around, inMap);
@@ -198,11 +200,12 @@ void addMatchCommand(CLI::App &app) {
         ->check(aboveZero())
         ->needs(expected)
         ->type_name("RAD");
-    sub->add_option("--method", command->method,
-                    "global: any motion, by points or by what a scanner would see of segments; finder: every "
-                    "combination of segments over a permitted set of motions (finder in a map and with "
-                    "options of the search, else global)")
-        ->check(CLI::IsMember({"global", "finder"}));
+    sub->add_option(
+           "--method", command->method,
+           "global: any motion, by points or by what a scanner would see of segments; finder: every "
+           "combination of segments over a permitted set of motions; relations: any motion, by relations "
+           "of segments (finder in a map and with options of the search, else global)")
+        ->check(CLI::IsMember({"global", "finder", "relations"}));
     sub->add_flag("--map", command->isMap,
                   "The static segments were seen from many places: what they do not show hides nothing");
     sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")

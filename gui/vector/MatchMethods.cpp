@@ -4,6 +4,8 @@
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 #include "vectorlib/observation/SimulatedScanner.h"
+#include "vectorlib/relations/RelationMatcher.h"
+#include "vectorlib/relations/TypedSegmentExtractor.h"
 
 namespace hermes::vector {
 
@@ -53,7 +55,7 @@ public:
         matched.solution.score = own.score;
         if (isScan(fixed_) || isScan(moving_))
             matched.solution.pose = own.pose;
-        else
+        if (!matched.covariance || !(isScan(fixed_) || isScan(moving_)))
             matched.covariance =
                 vectorlib::SolutionCovariance()(found.solutions[0], fixed_.measured, moving_.measured);
     }
@@ -96,6 +98,30 @@ Matched matchedOf(const GlobalPairMatch &match, const SegmentSet &fixed, const S
     return result;
 }
 
+/// The angle over which the points of a scan go round the sensor, counter-clockwise; radians.
+double turnOf(const std::vector<vectorlib::Vector2D<float>> &scan) {
+    double turn = 0;
+    for (std::size_t i = 1; i < scan.size(); ++i)
+        turn += std::atan2(scan[i - 1].cross(scan[i]), scan[i - 1].dot(scan[i]));
+    return turn;
+}
+
+std::vector<vectorlib::TypedSegment> typedSegmentsOf(const SegmentSet &set) {
+    if (isScan(set)) {
+        constexpr double nearlyAll = 1.9 * vectorlib::pi;
+        const double turn = turnOf(set.points);
+        vectorlib::TypedSegmentExtractor extract;
+        extract.setScanner(turn > 0 && turn < nearlyAll ? turn : 2 * vectorlib::pi, set.points.size());
+        return extract(set.points);
+    }
+    std::vector<vectorlib::TypedSegment> result;
+    for (const vectorlib::LineSegment2D<double> &s : set.segments()) {
+        result.emplace_back();
+        result.back().segment = s;
+    }
+    return result;
+}
+
 } // namespace
 
 Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
@@ -119,6 +145,27 @@ Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving) {
     const GlobalPairMatch &found = match(pointsOf(fixed), pointsOf(moving));
     Matched result = matchedOf(found, fixed, moving);
     result.method = "global";
+    return result;
+}
+
+Matched matchByRelations(const SegmentSet &fixed, const SegmentSet &moving) {
+    vectorlib::RelationMatcher match;
+    const vectorlib::RelationMatch &found = match(typedSegmentsOf(fixed), typedSegmentsOf(moving));
+    Matched result{"relations", describe(found.outcome), 0, 0, {}};
+    if (!found.isMatched() && found.outcome != vectorlib::RelationOutcome::Ambiguous)
+        return result;
+    MatchedSolution s;
+    s.solution.pose = found.pose;
+    s.solution.score = found.score;
+    s.solution.reliability = found.reliability;
+    s.solution.ambiguity = found.ambiguity;
+    s.solution.accepted = found.isMatched();
+    s.verdict = found.isMatched() ? "accepted" : result.outcome;
+    SegmentsUnderMotion segments(fixed, moving);
+    segments.addTo(s);
+    result.potentialPairs = segments.potentialPairs;
+    result.combinations = segments.combinations;
+    result.solutions.push_back(s);
     return result;
 }
 

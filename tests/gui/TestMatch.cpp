@@ -51,7 +51,8 @@ void TestMatch::findsTheMotion_data() {
     QTest::addColumn<bool>("dynamicPoints");
     QTest::addColumn<double>("most");
     QTest::addColumn<QString>("method");
-    const QString global = "global", finder = "finder", tracking = "tracking";
+    const QString global = "global", finder = "finder", tracking = "tracking", relations = "relations";
+    const QStringList byRelations{"--method", "relations"};
     const QStringList byFinder{"--method", "finder"}, expected{"--expected", "0.6,-0.2,0.45"};
     QTest::newRow("points") << QStringList() << true << true << 0.02 << global;
     QTest::newRow("segments") << QStringList() << false << false << 1e-9 << global;
@@ -61,6 +62,9 @@ void TestMatch::findsTheMotion_data() {
     QTest::newRow("segments, finder") << byFinder << false << false << 1e-9 << finder;
     QTest::newRow("points on segments, finder") << byFinder << false << true << 0.02 << finder;
     QTest::newRow("segments on points, finder") << byFinder << true << false << 0.02 << finder;
+    QTest::newRow("points, relations") << byRelations << true << true << 0.02 << relations;
+    QTest::newRow("segments, relations") << byRelations << false << false << 1e-9 << relations;
+    QTest::newRow("points on segments, relations") << byRelations << false << true << 0.02 << relations;
     QTest::newRow("options of the search") << QStringList{"--max-dx", "1"} << true << true << 0.02 << finder;
     QTest::newRow("points, expected") << expected << true << true << 0.02 << tracking;
     QTest::newRow("segments, expected") << expected << false << false << 1e-9 << finder;
@@ -79,9 +83,10 @@ void TestMatch::findsTheMotion() {
     QCOMPARE(r.err, QByteArray());
     const QJsonObject result = json(r.out), best = result["solutions"].toArray()[0].toObject();
     QCOMPARE(result["method"].toString(), method);
-    QCOMPARE(result["outcome"].toString(),
-             method == "finder" ? QString("every combination was considered") : QString("found"));
-    if (method != "finder")
+    const QMap<QString, QString> outcomes{{"finder", "every combination was considered"},
+                                          {"relations", "matched"}};
+    QCOMPARE(result["outcome"].toString(), outcomes.value(method, "found"));
+    if (method == "global" || method == "tracking")
         QVERIFY(best["probability"].toDouble() > 0.85 && best["probability"].toDouble() <= 1);
     QVERIFY(best["accepted"].toBool());
     QCOMPARE(best["verdict"].toString(), QString("accepted"));
