@@ -34,6 +34,7 @@ private Q_SLOTS:
     void motionIsFound_data();
     void motionIsFound();
     void corridorKeepsTheExpectedPlaceAlongIt();
+    void withoutOdometryAnyMotionIsFound();
     void anotherPlaceIsRefused();
     void wheelsThatSlipAreForgiven();
     void nothingIsMadeOfNothing();
@@ -124,6 +125,22 @@ void TestScanPairMatcher::corridorKeepsTheExpectedPlaceAlongIt() {
     // Where the expectation says little, nothing fixes the place along the corridor.
     match.settings = ScanPairSettings::forPoorExpectation();
     QVERIFY(!match(first, second, expected).accepted);
+}
+
+void TestScanPairMatcher::withoutOdometryAnyMotionIsFound() {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> metre(-1.5, 1.5), turn(-pi, pi);
+    const ScanWorld::Scanner all{720, 2 * pi, 0.01};
+    ScanPairMatcher match;
+    match.extract.segment.settings = EarSettings::forScanner(all.fieldOfView, 720);
+    match.settings = ScanPairSettings::forPoorExpectation();
+    for (int i = 0; i < 20; ++i) {
+        const Transformation2D motion(metre(random), metre(random), turn(random));
+        const ScanPairMatch &found =
+            match(room().scan({}, random, all), room().scan(motion, random, all), Transformation2D());
+        QVERIFY(found.accepted);
+        QVERIFY(metres(found.pose, motion) < 0.02 && degrees(found.pose, motion) < 0.3);
+    }
 }
 
 void TestScanPairMatcher::anotherPlaceIsRefused() {

@@ -2,6 +2,7 @@
 
 #include "vectorlib/correspondence/CorrespondenceTracker.h"
 #include "vectorlib/edges/EdgeExtractor.h"
+#include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/registration/PointRefinement.h"
 
 namespace vectorlib {
@@ -22,10 +23,12 @@ struct ScanPairSettings {
     double surprising = 4;
     /// Below this reliability of the paired lines the points decide alone; thesis appendices.
     double lineReliability = 0.1;
+    bool searchAnywhere = false; ///< at first, whatever is expected; see GlobalPairMatcher
 
     /// For an expected motion that is hardly more than a guess: without odometry.
     static ScanPairSettings forPoorExpectation() {
         ScanPairSettings s;
+        s.searchAnywhere = true;
         s.deviationXY = 1;
         s.deviationAlpha = 0.5;
         s.lines = s.wideLines;
@@ -70,20 +73,44 @@ public:
             fixedSegments_.push_back(edge.segment);
         expected_ = {expected, settings.deviationXY, settings.deviationAlpha};
         refine.start(fixed, moving);
+        match_ = ScanPairMatch();
+        match_.byLines = expected;
+        if (settings.searchAnywhere && isFoundAnywhere(fixed, moving))
+            return match_;
 
         track_.settings = settings.lines;
         const Match &lines = track_(fixedSegments_, movingEdges, expected);
-        match_ = ScanPairMatch();
         match_.linesSuffice = lines.accepted && lines.reliability >= settings.lineReliability;
-        match_.byLines = lines.accepted ? lines.pose : expected;
+        if (lines.accepted)
+            match_.byLines = lines.pose;
         take(refine(match_.byLines, expected_));
         if (!isGood())
             searchWidely(movingEdges, lines.pose);
-        match_.accepted = isAcceptable();
+        match_.accepted = isAcceptable() && !(settings.searchAnywhere && isOutvoted());
+        if (settings.searchAnywhere && !match_.accepted)
+            takeBestOfAnywhere();
         return match_;
     }
 
 private:
+    bool isFoundAnywhere(PointSpan<float> fixed, PointSpan<float> moving) {
+        anywhere_ = &matchAnywhere_(fixed, moving);
+        if (anywhere_->isAccepted())
+            takeBestOfAnywhere();
+        return match_.accepted = anywhere_->isAccepted();
+    }
+    // Found near a poor expectation, while more speaks for a place elsewhere.
+    bool isOutvoted() const {
+        if (anywhere_->solutions.empty())
+            return false;
+        const Transformation2D off = anywhere_->solutions.front().pose.inverse() * match_.pose;
+        return off.translation().norm() > matchAnywhere_.settings.farXY ||
+               std::abs(off.alpha()) > matchAnywhere_.settings.farAlpha;
+    }
+    void takeBestOfAnywhere() {
+        if (!anywhere_->solutions.empty())
+            take(anywhere_->solutions.front().pose);
+    }
     void searchWidely(const std::vector<EdgeRaw2D> &edges, const Transformation2D &byLines) {
         const double gate = settings.wideGate;
         match_.searchedAgain = true;
@@ -132,6 +159,8 @@ private:
     }
 
     CorrespondenceTracker track_;
+    GlobalPairMatcher matchAnywhere_;
+    const GlobalPairMatch *anywhere_ = nullptr;
     Expectation expected_;
     std::vector<EdgeRaw2D> fixedEdges_;
     std::vector<LineSegment2D<double>> fixedSegments_;
