@@ -75,6 +75,9 @@ struct MatchCommand {
         if ((method == "global" || method == "relations") && (inMap || !expected.empty()))
             throw CLI::ValidationError("--method", method + (inMap ? " finds no place in a map: take finder"
                                                                    : " takes no --expected motion"));
+        if ((method == "global" || method == "relations") && search.isGiven())
+            throw CLI::ValidationError("--method",
+                                       method + " has no use for options of the search: take finder");
         if (method == "relations")
             return matchByRelations(fixed, moving);
         const bool wantsFinder = method == "finder" || (method.empty() && (inMap || search.isGiven()));

@@ -181,6 +181,10 @@ Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const M
     vectorlib::GlobalPairMatcher judge;
     Matched result = matchedOf(judge.judge(fixed.points, moving.points, tracked.pose), fixed, moving);
     result.method = "tracking";
+    if (result.solutions.empty()) { // too little to be judged
+        result.solutions.emplace_back();
+        result.solutions[0].solution.pose = tracked.pose;
+    }
     result.outcome = tracked.accepted ? "found" : "too little agrees near the expected motion";
     for (MatchedSolution &s : result.solutions) {
         s.solution.accepted = tracked.accepted;

@@ -136,7 +136,7 @@ private:
             else if (std::none_of(match_.solutions.begin(), match_.solutions.end(), [&](const auto &s) {
                          return isNear(s.pose, c.pose, settings.farXY, settings.farAlpha);
                      }))
-                match_.solutions.push_back(c);
+                match_.solutions.push_back(judged(c.pose, settings.deviation, settings.slidePoints));
         keepDistinct(match_.solutions);
     }
     bool convinces() const {

@@ -16,7 +16,7 @@ struct MatchProbability {
     using Features = std::array<double, 4>;
 
     /// Of the features, and how much a difference of score tells. Fitted to the first half of the pairs of
-    /// five logs, neighbouring scans and every second one, by
+    /// five logs, neighbouring scans and ones farther apart, by
     /// hermes-vector experiment calibration --half 1 --log intel... (docs/algorithms.md has all of it).
     Features weights{-2.20, -9.58, 4.06, 1.37};
     double sharpness = 55;

@@ -46,7 +46,7 @@ public:
     float lengthOf(int point) const { return lengths_[static_cast<std::size_t>(point)]; }
     /// Of all points together; metres.
     float length() const { return total_; }
-    /// Half of the surfaces are nearer to the sensor; metres.
+    /// Half of the points are nearer to the sensor; metres.
     float medianRange() const { return medianRange_; }
 
 private:
