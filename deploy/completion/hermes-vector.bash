@@ -34,6 +34,11 @@ _hermes_vector() {
     compopt -o filenames 2>/dev/null
     local worlds=""
     [ "$command" = report ] && worlds="pillars quadratic cutsquare oblique"
+    if [ "$command" = experiment ]; then
+        choices=$(sed -nE "s/^ +NAME .*\{([^}]*)\}.*/\1/p" <<<"$help")
+        mapfile -t COMPREPLY < <(compgen -W "${choices//,/ }" -- "$word")
+        return
+    fi
     mapfile -t COMPREPLY < <(compgen -f -W "$worlds" -- "$word")
 }
 

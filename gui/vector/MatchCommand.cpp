@@ -64,7 +64,8 @@ struct MatchCommand {
         if (result.solutions.empty())
             std::cerr << "hermes-vector: no solution: " << result.outcome << '\n';
         if (svg)
-            draw(*svg, result, fixed, moving, around);
+            draw(*svg, result, fixed, moving,
+                 expected.empty() && result.method != "finder" ? std::nullopt : std::make_optional(around));
         files.commit();
     }
 
@@ -136,29 +137,35 @@ struct MatchCommand {
     }
 
     static void draw(std::ostream &svg, const Matched &result, const SegmentSet &fixed,
-                     const SegmentSet &moving, const Transformation2D &around) {
+                     const SegmentSet &moving, const std::optional<Transformation2D> &around) {
         const Solution *best = result.solutions.empty() ? nullptr : &result.solutions[0].solution;
-        const Transformation2D pose = best ? best->pose : around;
+        const Transformation2D pose = best ? best->pose : around.value_or(Transformation2D());
         std::vector<vectorlib::Vector2D<double>> points;
         for (const vectorlib::Vector2D<float> &p : moving.points)
             points.push_back(pose * vectorlib::Vector2D<double>(p));
         Segments before, after, links;
         for (const vectorlib::LineSegment2D<double> &s : moving.segments()) {
-            before.push_back(around * s);
+            if (around)
+                before.push_back(*around * s);
             after.push_back(pose * s);
         }
-        vectorlib::SvgPicture picture(best ? "Match: " + result.solutions[0].verdict
-                                           : "No match: " + result.outcome);
+        vectorlib::SvgPicture picture(!best            ? "No match: " + result.outcome
+                                      : best->accepted ? "Match"
+                                                       : "Not accepted: " + result.solutions[0].verdict);
         picture.segments({vectorlib::colour::map, 4, "static set"}, near(fixed.segments(), moving, pose));
-        picture.segments({vectorlib::colour::before, 1.5, "dynamic set where expected", true}, before);
+        if (around)
+            picture.segments({vectorlib::colour::before, 1.5, "dynamic set where expected", true}, before);
         if (best) {
             for (const vectorlib::CorrespondencePair &p : best->pairs)
-                links.emplace_back(fixed.segments()[std::size_t(p.fixed)].middle(),
-                                   before[std::size_t(p.moving)].middle());
-            picture.points({vectorlib::colour::points, 2, "its points"}, points);
+                if (around)
+                    links.emplace_back(fixed.segments()[std::size_t(p.fixed)].middle(),
+                                       before[std::size_t(p.moving)].middle());
+            if (!points.empty())
+                picture.points({vectorlib::colour::points, 2, "its points"}, points);
             picture.segments({vectorlib::colour::estimate, 1.5, "dynamic set moved onto the static one"},
                              after);
-            picture.segments({vectorlib::colour::reference, 1, "correspondences"}, links);
+            if (around)
+                picture.segments({vectorlib::colour::reference, 1, "correspondences"}, links);
         }
         picture.pose({vectorlib::colour::estimate, 2, "sensor"}, pose.translation(), pose.alpha());
         picture.write(svg);
