@@ -50,7 +50,13 @@ class Daemon:
         self.topics = collections.defaultdict(collections.deque)  # messages not yet asked for, by subscription
 
     def connect(self, host, port, timeout):
-        return own_socket(host, port) or socket.create_connection((host, port), timeout)
+        if own := own_socket(host, port):
+            return own
+        connection = socket.create_connection((host, port), timeout)
+        if own := own_socket(host, port):  # the daemon has begun to listen just now, there before here
+            connection.close()
+            return own
+        return connection
 
     def __enter__(self):
         return self
