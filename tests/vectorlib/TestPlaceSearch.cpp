@@ -60,6 +60,8 @@ private Q_SLOTS:
     void saysWhatIsWrong();
     void endsInTime();
     void boundsLongAndFarWalls();
+    void takesRefusedWallsWhenThereIsRoom();
+    void aSmallerMapIsAnotherMap();
 
 private:
     const Points &see(const Walls &walls, const Pose2D &pose) {
@@ -291,6 +293,37 @@ void TestPlaceSearch::boundsLongAndFarWalls() {
     QCOMPARE(result.outcome, Outcome::Unfinished); // as not all walls were searched
     QVERIFY(search->index().leftOut() > 0);
     QVERIFY(isNear(result.places.front().pose, {2.5, 1.5, 0.7}));
+}
+
+void TestPlaceSearch::takesRefusedWallsWhenThereIsRoom() {
+    PlaceIndex index;
+    index.tiles().mostEntries = 700; // one of the walls needs some 500
+    std::vector<MapEdge> slots = mapOf({{{0, 0}, {200, 0}}, {{0, 10}, {200, 10}}});
+    index.follow(slots);
+    QCOMPARE(index.leftOut(), std::size_t(1));
+    slots[0].observations = 0;
+    index.follow(slots);
+    QCOMPARE(index.size(), std::size_t(1));
+    QCOMPARE(index.leftOut(), std::size_t(0));
+}
+
+// A map that was loaded after another costs what it would alone.
+void TestPlaceSearch::aSmallerMapIsAnotherMap() {
+    Walls town;
+    for (int i = 0; i < 100; ++i)
+        for (int j = 0; j < 100; ++j)
+            for (const auto &wall : room(7 * i, 6 * j))
+                town.push_back(wall);
+    const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
+    const double first = find(town, points).ms;
+    search->maxSeconds = 1;
+    const Relocalized &result = find(room(0, 0), points);
+    QVERIFY2(result.isFound(), result.text().c_str());
+    QVERIFY2(result.ms < first, qPrintable(QString("%1 ms after %2 ms").arg(result.ms).arg(first)));
+    PlaceIndex anew;
+    anew.follow(mapOf(room(0, 0)));
+    QCOMPARE(search->index().size(), anew.size());
+    QCOMPARE(search->index().tiles().tiles(), anew.tiles().tiles());
 }
 
 QTEST_APPLESS_MAIN(TestPlaceSearch)

@@ -27,14 +27,8 @@ public:
     /// Of walls in tiles, some 100 bytes each at worst: walls beyond are refused.
     std::size_t mostEntries = 8000000;
 
-    void clear() {
-        table_.clear();
-        tiles_.clear();
-        walls_.clear();
-        entries_ = 0;
-        forgetRasters();
-    }
     const Wall &wall(int number) const { return walls_[static_cast<std::size_t>(number)]; }
+    /// Tiles that had a wall at some time: the memory follows them.
     std::size_t tiles() const { return tiles_.size(); }
 
     /// Enters a wall; its number must be free. False, and nothing entered, when there is no room for it.
