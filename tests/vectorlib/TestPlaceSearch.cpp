@@ -8,6 +8,8 @@
 #include <QElapsedTimer>
 #include <QtTest>
 
+#include <set>
+
 using namespace vectorlib;
 using Walls = std::vector<LineSegment2D<double>>;
 using Points = std::vector<Vector2D<float>>;
@@ -62,6 +64,8 @@ private Q_SLOTS:
     void boundsLongAndFarWalls();
     void takesRefusedWallsWhenThereIsRoom();
     void aSmallerMapIsAnotherMap();
+    void acceptsPlacesAsTheOutcomeSays_data();
+    void acceptsPlacesAsTheOutcomeSays();
 
 private:
     const Points &see(const Walls &walls, const Pose2D &pose) {
@@ -324,6 +328,50 @@ void TestPlaceSearch::aSmallerMapIsAnotherMap() {
     anew.follow(mapOf(room(0, 0)));
     QCOMPARE(search->index().size(), anew.size());
     QCOMPARE(search->index().tiles().tiles(), anew.tiles().tiles());
+}
+
+void TestPlaceSearch::acceptsPlacesAsTheOutcomeSays_data() {
+    QTest::addColumn<Walls>("map");
+    QTest::addColumn<bool>("differs"); // one wall of the map, from what is there
+    Walls rooms = room(0, 0);
+    for (const auto &wall : room(7, 0))
+        rooms.push_back(wall);
+    QTest::addRow("a room") << room(0, 0) << false;
+    QTest::addRow("a room that differs") << room(0, 0) << true;
+    QTest::addRow("two rooms") << rooms << false;
+    QTest::addRow("two rooms of which one differs") << rooms << true;
+}
+
+// However much evidence is asked for: from any place that fits a little to none at all.
+void TestPlaceSearch::acceptsPlacesAsTheOutcomeSays() {
+    QFETCH(Walls, map);
+    QFETCH(bool, differs);
+    if (differs)
+        map[2] = {map[2].begin(), map[2].begin() + map[2].direction() * 2.5};
+    const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
+    std::set<Outcome> outcomes;
+    for (double constant = -50; constant < 0; constant += 0.25) {
+        search->trust.constant = constant;
+        const Relocalized &result = find(map, points);
+        const auto accepted =
+            std::size_t(std::count_if(result.places.begin(), result.places.end(),
+                                      [](const Place &p) { return p.fault == PlaceFault::None; }));
+        const bool isFirst = !result.places.empty() && result.places.front().fault == PlaceFault::None;
+        QVERIFY2(isFirst == (accepted > 0), qPrintable(QString::number(constant)));
+        switch (result.outcome) {
+        case Outcome::Found:
+            QCOMPARE(accepted, std::size_t(1));
+            break;
+        case Outcome::Ambiguous:
+            QVERIFY(accepted > 0 && accepted <= result.alike);
+            break;
+        default:
+            QVERIFY2(accepted == 0, qPrintable(QString::number(constant)));
+        }
+        outcomes.insert(result.outcome);
+    }
+    QVERIFY(outcomes.count(Outcome::Nowhere));
+    QVERIFY(outcomes.size() > 1);
 }
 
 QTEST_APPLESS_MAIN(TestPlaceSearch)
