@@ -1,6 +1,8 @@
 // The search of a scan's place in a whole map.
 #include "FloorPlan.h"
 
+#include "tests/support/AllocationCounter.h"
+
 #include <vectorlib/edges/EdgeExtractor.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
@@ -66,6 +68,7 @@ private Q_SLOTS:
     void aSmallerMapIsAnotherMap();
     void acceptsPlacesAsTheOutcomeSays_data();
     void acceptsPlacesAsTheOutcomeSays();
+    void allocatesNothingInSteadyState();
 
 private:
     const Points &see(const Walls &walls, const Pose2D &pose) {
@@ -372,6 +375,21 @@ void TestPlaceSearch::acceptsPlacesAsTheOutcomeSays() {
     }
     QVERIFY(outcomes.count(Outcome::Nowhere));
     QVERIFY(outcomes.size() > 1);
+}
+
+void TestPlaceSearch::allocatesNothingInSteadyState() {
+    FloorPlan plan(61, 20);
+    const auto slots = mapOf(plan.walls());
+    const Points first = see(plan.walls(), plan.place()), second = see(plan.walls(), plan.place());
+    const std::vector<EdgeRaw2D> edges = extract(first), others = extract(second);
+    std::size_t before = 0, after = 0;
+    for (int i = 0; i < 3; ++i) {
+        before = allocations; // buffers grow in the first rounds
+        (*search)(slots, edges, first);
+        (*search)(slots, others, second);
+        after = allocations;
+    }
+    QCOMPARE(after, before);
 }
 
 QTEST_APPLESS_MAIN(TestPlaceSearch)
