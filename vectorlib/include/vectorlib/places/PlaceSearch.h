@@ -15,12 +15,13 @@ struct PlaceTrust {
     double constant = -26.6, score = 26.2, lead = 27.7, points = 1.8, extra = 16.3;
     double mostLead = 0.3; ///< a greater one says no more
 
-    double probability(const PlaceFit &fit, double lead_) const {
-        return 1 / (1 + std::exp(-evidence(fit) - lead * std::clamp(lead_, 0.0, mostLead)));
+    /// Of a place that scores so much more than the next one.
+    double probability(const PlaceFit &fit, double ahead) const {
+        return 1 / (1 + std::exp(-evidence(fit) - lead * std::clamp(ahead, 0.0, mostLead)));
     }
-    /// The lead that a place needs for such a probability.
-    double leadFor(const PlaceFit &fit, double probability_) const {
-        return (std::log(probability_ / (1 - probability_)) - evidence(fit)) / lead;
+    /// The lead that a place needs to be as probable as this.
+    double leadFor(const PlaceFit &fit, double least) const {
+        return (std::log(least / (1 - least)) - evidence(fit)) / lead;
     }
 
 private:
@@ -72,7 +73,6 @@ public:
         return result_;
     }
     PlaceIndex &index() { return index_; }
-    const std::vector<PlaceFit> &fits() const { return fits_; }
 
 private:
     using Clock = std::chrono::steady_clock;

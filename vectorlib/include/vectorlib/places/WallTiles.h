@@ -89,12 +89,6 @@ public:
         const int x = cellOf(p.x - i * tile), y = cellOf(p.y - j * tile);
         return (rasters_[static_cast<std::size_t>(last_)][static_cast<std::size_t>(y * side + x)] & bit) != 0;
     }
-    /// Draws all tiles, as far as there is room for them: looking is faster from then on.
-    void drawAll() {
-        for (Tile &t : tiles_)
-            if (rasters_.size() < mostRasters)
-                rasterOf(t);
-    }
     /// Calls take(i, j) for the tiles within `margin` of a wall, and perhaps for some at their corners.
     template <typename Take>
     void forEachTile(const Wall &wall, double margin, Take take) const {
