@@ -299,6 +299,7 @@ void TestPlaceSearch::boundsLongAndFarWalls() {
     const Relocalized &result = find(map, see(room(0, 0), {2.5, 1.5, 0.7}));
     QCOMPARE(result.outcome, Outcome::Unfinished); // as not all walls were searched
     QVERIFY(search->index().leftOut() > 0);
+    QVERIFY(QString::fromStdString(result.text()).endsWith(" parts of the search were done"));
     QVERIFY(isNear(result.places.front().pose, {2.5, 1.5, 0.7}));
 }
 
