@@ -1,12 +1,16 @@
 // The search of a scan's place in a whole map.
 #include "FloorPlan.h"
 
+#include "tests/support/AllocationCounter.h"
+
 #include <vectorlib/edges/EdgeExtractor.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 
 #include <QElapsedTimer>
 #include <QtTest>
+
+#include <set>
 
 using namespace vectorlib;
 using Walls = std::vector<LineSegment2D<double>>;
@@ -60,6 +64,11 @@ private Q_SLOTS:
     void saysWhatIsWrong();
     void endsInTime();
     void boundsLongAndFarWalls();
+    void takesRefusedWallsWhenThereIsRoom();
+    void aSmallerMapIsAnotherMap();
+    void acceptsPlacesAsTheOutcomeSays_data();
+    void acceptsPlacesAsTheOutcomeSays();
+    void allocatesNothingInSteadyState();
 
 private:
     const Points &see(const Walls &walls, const Pose2D &pose) {
@@ -290,7 +299,98 @@ void TestPlaceSearch::boundsLongAndFarWalls() {
     const Relocalized &result = find(map, see(room(0, 0), {2.5, 1.5, 0.7}));
     QCOMPARE(result.outcome, Outcome::Unfinished); // as not all walls were searched
     QVERIFY(search->index().leftOut() > 0);
+    QVERIFY(QString::fromStdString(result.text()).endsWith(" parts of the search were done"));
     QVERIFY(isNear(result.places.front().pose, {2.5, 1.5, 0.7}));
+}
+
+void TestPlaceSearch::takesRefusedWallsWhenThereIsRoom() {
+    PlaceIndex index;
+    index.tiles().mostEntries = 700; // one of the walls needs some 500
+    std::vector<MapEdge> slots = mapOf({{{0, 0}, {200, 0}}, {{0, 10}, {200, 10}}});
+    index.follow(slots);
+    QCOMPARE(index.leftOut(), std::size_t(1));
+    slots[0].observations = 0;
+    index.follow(slots);
+    QCOMPARE(index.size(), std::size_t(1));
+    QCOMPARE(index.leftOut(), std::size_t(0));
+}
+
+// A map that was loaded after another costs what it would alone.
+void TestPlaceSearch::aSmallerMapIsAnotherMap() {
+    Walls town;
+    for (int i = 0; i < 100; ++i)
+        for (int j = 0; j < 100; ++j)
+            for (const auto &wall : room(7 * i, 6 * j))
+                town.push_back(wall);
+    const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
+    const double first = find(town, points).ms;
+    search->maxSeconds = 1;
+    const Relocalized &result = find(room(0, 0), points);
+    QVERIFY2(result.isFound(), result.text().c_str());
+    QVERIFY2(result.ms < first, qPrintable(QString("%1 ms after %2 ms").arg(result.ms).arg(first)));
+    PlaceIndex anew;
+    anew.follow(mapOf(room(0, 0)));
+    QCOMPARE(search->index().size(), anew.size());
+    QCOMPARE(search->index().tiles().tiles(), anew.tiles().tiles());
+}
+
+void TestPlaceSearch::acceptsPlacesAsTheOutcomeSays_data() {
+    QTest::addColumn<Walls>("map");
+    QTest::addColumn<bool>("differs"); // one wall of the map, from what is there
+    Walls rooms = room(0, 0);
+    for (const auto &wall : room(7, 0))
+        rooms.push_back(wall);
+    QTest::addRow("a room") << room(0, 0) << false;
+    QTest::addRow("a room that differs") << room(0, 0) << true;
+    QTest::addRow("two rooms") << rooms << false;
+    QTest::addRow("two rooms of which one differs") << rooms << true;
+}
+
+// However much evidence is asked for: from any place that fits a little to none at all.
+void TestPlaceSearch::acceptsPlacesAsTheOutcomeSays() {
+    QFETCH(Walls, map);
+    QFETCH(bool, differs);
+    if (differs)
+        map[2] = {map[2].begin(), map[2].begin() + map[2].direction() * 2.5};
+    const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
+    std::set<Outcome> outcomes;
+    for (double constant = -50; constant < 0; constant += 0.25) {
+        search->trust.constant = constant;
+        const Relocalized &result = find(map, points);
+        const auto accepted =
+            std::size_t(std::count_if(result.places.begin(), result.places.end(),
+                                      [](const Place &p) { return p.fault == PlaceFault::None; }));
+        const bool isFirst = !result.places.empty() && result.places.front().fault == PlaceFault::None;
+        QVERIFY2(isFirst == (accepted > 0), qPrintable(QString::number(constant)));
+        switch (result.outcome) {
+        case Outcome::Found:
+            QCOMPARE(accepted, std::size_t(1));
+            break;
+        case Outcome::Ambiguous:
+            QVERIFY(accepted > 0 && accepted <= result.alike);
+            break;
+        default:
+            QVERIFY2(accepted == 0, qPrintable(QString::number(constant)));
+        }
+        outcomes.insert(result.outcome);
+    }
+    QVERIFY(outcomes.count(Outcome::Nowhere));
+    QVERIFY(outcomes.size() > 1);
+}
+
+void TestPlaceSearch::allocatesNothingInSteadyState() {
+    FloorPlan plan(61, 20);
+    const auto slots = mapOf(plan.walls());
+    const Points first = see(plan.walls(), plan.place()), second = see(plan.walls(), plan.place());
+    const std::vector<EdgeRaw2D> edges = extract(first), others = extract(second);
+    std::size_t before = 0, after = 0;
+    for (int i = 0; i < 3; ++i) {
+        before = allocations; // buffers grow in the first rounds
+        (*search)(slots, edges, first);
+        (*search)(slots, others, second);
+        after = allocations;
+    }
+    QCOMPARE(after, before);
 }
 
 QTEST_APPLESS_MAIN(TestPlaceSearch)

@@ -1,8 +1,7 @@
 #include "gui/vector/experiment/GlobalPairsExperiment.h"
 
+#include "gui/vector/experiment/ProcessorTime.h"
 #include "vectorlib/io/Number.h"
-
-#include <time.h>
 
 #include <algorithm>
 
@@ -10,16 +9,6 @@ namespace hermes::vector {
 
 using vectorlib::GlobalPairVerdict;
 using vectorlib::Transformation2D;
-
-namespace {
-
-double processorMicroseconds() {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return double(t.tv_sec) * 1e6 + double(t.tv_nsec) * 1e-3;
-}
-
-} // namespace
 
 Transformation2D GlobalPairResult::best() const {
     return match.solutions.empty() ? Transformation2D() : match.solutions[0].pose;

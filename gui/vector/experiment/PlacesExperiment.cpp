@@ -1,5 +1,6 @@
 #include "gui/vector/experiment/PlacesExperiment.h"
 
+#include "gui/vector/experiment/ProcessorTime.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/places/PlaceSearch.h"
@@ -29,7 +30,6 @@ PlaceResult resultOf(std::size_t number, const vectorlib::CarmenScan &scan,
     r.scan = number;
     r.outcome = found.outcome;
     r.places = found.places.size();
-    r.milliseconds = found.ms;
     if (found.places.empty())
         return r;
     const vectorlib::Place &first = found.places.front();
@@ -59,7 +59,12 @@ PlacesReport placesExperiment(const vectorlib::CarmenLog &log, const vectorlib::
     for (std::size_t i = other ? 0 : 1; i < scans.size(); i += other ? 1 : 2) {
         extract.segment.settings = scannerOf(scans[i]);
         const auto points = pointsIn(scans[i]);
-        report.results.push_back(resultOf(i, scans[i], search(build.map.slots(), extract(points), points)));
+        const std::vector<vectorlib::EdgeRaw2D> &edges = extract(points);
+        const double begin = processorMicroseconds();
+        const vectorlib::Relocalized &found = search(build.map.slots(), edges, points);
+        const double milliseconds = (processorMicroseconds() - begin) / 1000;
+        report.results.push_back(resultOf(i, scans[i], found));
+        report.results.back().milliseconds = milliseconds;
         if (progress)
             progress(i + 1, scans.size());
     }

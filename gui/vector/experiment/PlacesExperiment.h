@@ -18,7 +18,7 @@ struct PlaceResult {
     std::size_t places = 0;
     double score = 0, probability = 0; ///< of the first place
     double metres = 0, degrees = 0;    ///< of the first place from the reference
-    double milliseconds = 0;           ///< of the search
+    double milliseconds = 0;           ///< processor time of the search
 
     bool isFound() const { return outcome == vectorlib::Relocalized::Outcome::Found; }
     bool isWithin(double m, double deg) const { return places > 0 && metres <= m && degrees <= deg; }
@@ -37,7 +37,7 @@ struct PlacesReport {
 PlacesReport placesExperiment(const vectorlib::CarmenLog &log, const vectorlib::CarmenLog *other,
                               const std::function<void(std::size_t done, std::size_t all)> &progress);
 
-/// Shares of all scans, and times; `inMap` is false for scans of another building.
+/// Shares of all scans, and processor times; `inMap` is false for scans of another building.
 nlohmann::ordered_json summaryOf(const PlacesReport &report, bool inMap);
 /// A row a scan.
 void writeCsv(std::ostream &out, const PlacesReport &report);

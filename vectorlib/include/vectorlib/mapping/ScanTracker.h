@@ -102,6 +102,7 @@ public:
     /// Forgets map, pose and counts.
     void clear() {
         builder.clear();
+        search_.index().clear();
         lostInARow_ = 0;
         place({});
         counts_ = ScanTrackerCounts();

@@ -4,6 +4,7 @@
 #include "vectorlib/places/WallTiles.h"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -14,12 +15,11 @@ class PlaceIndex {
 public:
     using Wall = LineSegment2D<double>;
 
+    /// Forgets the walls and frees their memory.
     void clear() {
-        tiles_.clear();
-        walls_.clear();
-        for (auto &numbers : byLength_)
-            numbers.clear();
-        size_ = leftOut_ = followed_ = 0;
+        PlaceIndex empty;
+        empty.tiles_.mostEntries = tiles_.mostEntries;
+        *this = std::move(empty);
     }
     /// Walls of the map.
     std::size_t size() const { return size_; }
@@ -28,12 +28,12 @@ public:
     WallTiles &tiles() { return tiles_; }
 
     /// Brings the index up to a map (VectorMap::slots). A wall that did not change since the last time costs
-    /// a comparison. False when `isLate` said so before all was done; the next call goes on from there.
+    /// a comparison. A map never loses slots: one with fewer is another map, and the index is made anew.
+    /// False when `isLate` said so before all was done; the next call goes on from there.
     template <typename IsLate>
     bool follow(const std::vector<MapEdge> &slots, IsLate isLate) {
-        for (std::size_t i = slots.size(); i < walls_.size(); ++i)
-            set(static_cast<int>(i), nullptr);
-        walls_.resize(std::min(walls_.size(), slots.size()));
+        if (slots.size() < walls_.size())
+            clear();
         const std::size_t begin = followed_ < slots.size() ? followed_ : 0;
         for (std::size_t done = 0; done < slots.size(); ++done) {
             const std::size_t i = begin + done < slots.size() ? begin + done : begin + done - slots.size();
@@ -48,7 +48,7 @@ public:
     bool follow(const std::vector<MapEdge> &slots) {
         return follow(slots, [] { return false; });
     }
-    /// The wall of a number is now this one; none when null.
+    /// The wall of a number is now this one; none when null. One that was refused is tried again.
     void set(int number, const Wall *wall) {
         const auto at = static_cast<std::size_t>(number);
         if (wall && !(wall->isFinite() && wall->length() > 0))
@@ -58,7 +58,9 @@ public:
         if (at >= walls_.size())
             return;
         const Known &known = walls_[at];
-        if (known.there && wall && known.wall.begin() == wall->begin() && known.wall.end() == wall->end())
+        const bool isDone = known.isUsed || !isUsable(known.wall);
+        if (known.there && wall && isDone && known.wall.begin() == wall->begin() &&
+            known.wall.end() == wall->end())
             return;
         if (known.there)
             remove(number);

@@ -3,6 +3,8 @@
 #include "vectorlib/places/PlaceIndex.h"
 #include "vectorlib/places/PlaceScan.h"
 
+#include <iterator>
+
 namespace vectorlib {
 
 /// A pose where a scan may fit, and how many of its points would lie beside walls that face alike.
@@ -13,7 +15,7 @@ struct PlaceProposal {
 
 /// Proposes places for a scan: its longest walls are laid upon every wall of the map that is not much shorter
 /// and slid along it, and a few points of the scan are looked up in the map's cells. Most poses are given up
-/// after eight points. A wall tells the heading and the place across it, so that a scan without corners is
+/// after four points. A wall tells the heading and the place across it, so that a scan without corners is
 /// found as well. Keeps its buffers.
 class PlaceProposals {
 public:
@@ -78,10 +80,14 @@ private:
     }
     // Last the points on the wall that is slid: they lie well anywhere along it.
     void order(const LineSegment2D<double> &wall) {
-        std::stable_partition(few_.begin(), few_.end(), [&wall](const WallPoint &p) {
-            return std::abs(wall.across(Vector(p.position))) > WallTiles::beside ||
-                   wall.direction().dot(Vector(p.direction)) < 0.9;
-        });
+        onWall_.clear();
+        const auto isOnWall = [&wall](const WallPoint &p) {
+            return std::abs(wall.across(Vector(p.position))) <= WallTiles::beside &&
+                   wall.direction().dot(Vector(p.direction)) >= 0.9;
+        };
+        std::copy_if(few_.begin(), few_.end(), std::back_inserter(onWall_), isOnWall);
+        few_.erase(std::remove_if(few_.begin(), few_.end(), isOnWall), few_.end());
+        few_.insert(few_.end(), onWall_.begin(), onWall_.end());
     }
     // As far as the shorter wall lies on the longer one, but for an overhang.
     void slide(WallTiles &tiles, const LineSegment2D<double> &known, const LineSegment2D<double> &wall) {
@@ -152,7 +158,7 @@ private:
         }
     }
 
-    std::vector<WallPoint> few_;
+    std::vector<WallPoint> few_, onWall_;
     std::vector<Turned> turned_;
     double cos_ = 1, sin_ = 0;
     std::vector<PlaceProposal> found_, proposals_;

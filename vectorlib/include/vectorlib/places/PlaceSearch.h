@@ -15,12 +15,13 @@ struct PlaceTrust {
     double constant = -26.6, score = 26.2, lead = 27.7, points = 1.8, extra = 16.3;
     double mostLead = 0.3; ///< a greater one says no more
 
-    double probability(const PlaceFit &fit, double lead_) const {
-        return 1 / (1 + std::exp(-evidence(fit) - lead * std::clamp(lead_, 0.0, mostLead)));
+    /// Of a place that scores so much more than the next one.
+    double probability(const PlaceFit &fit, double ahead) const {
+        return 1 / (1 + std::exp(-evidence(fit) - lead * std::clamp(ahead, 0.0, mostLead)));
     }
-    /// The lead that a place needs for such a probability.
-    double leadFor(const PlaceFit &fit, double probability_) const {
-        return (std::log(probability_ / (1 - probability_)) - evidence(fit)) / lead;
+    /// The lead that a place needs to be as probable as this.
+    double leadFor(const PlaceFit &fit, double least) const {
+        return (std::log(least / (1 - least)) - evidence(fit)) / lead;
     }
 
 private:
@@ -72,7 +73,6 @@ public:
         return result_;
     }
     PlaceIndex &index() { return index_; }
-    const std::vector<PlaceFit> &fits() const { return fits_; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -127,52 +127,54 @@ private:
         if (fits_.empty())
             return result_.searched < result_.parts ? Relocalized::Outcome::Unfinished
                                                     : Relocalized::Outcome::Nowhere;
-        const PlaceFit &best = fits_.front();
-        const double needed = std::max(minLead, trust.leadFor(best, minProbability));
+        result_.alike = countAlike(neededLead(fits_.front()));
+        // A place that needs a great lead over the others says little by itself.
+        const double mostNeeded = result_.alike > 1 ? clearLead : trust.mostLead;
+        const bool isAccepted = isGood(fits_.front(), mostNeeded);
+        const double oneOf = double(countAlike(minLead)); // one of them at most is right
         for (std::size_t i = 0; i < fits_.size() && i < maxPlaces; ++i) {
             const PlaceFit &f = fits_[i];
             const double lead = i > 0 ? 0 : fits_.size() > 1 ? f.score() - fits_[1].score() : trust.mostLead;
-            result_.places.push_back(placeOf(f, lead));
+            const bool isToo = isAccepted && i < result_.alike && isGood(f, mostNeeded);
+            result_.places.push_back(placeOf(f, trust.probability(f, lead) / oneOf));
+            result_.places.back().fault = isToo ? PlaceFault::None : faultOf(f);
         }
-        result_.alike = countAlike(needed);
-        for (Place &place : result_.places) // one of those that fit alike at most
-            place.probability /= double(std::max<std::size_t>(1, countAlike(minLead)));
-        // A place that needs a great lead over the others says little by itself.
-        const bool isGood = best.reliability() >= minReliability && needed <= clearLead;
-        const bool isFound =
-            best.reliability() >= minReliability && needed <= trust.mostLead && result_.alike == 1;
-        if (isGood && result_.alike > 1)
+        if (isAccepted && result_.alike > 1)
             return Relocalized::Outcome::Ambiguous;
         if (result_.searched < result_.parts)
             return Relocalized::Outcome::Unfinished;
-        if (isFound)
+        if (isAccepted)
             return Relocalized::Outcome::Found;
         result_.alike = countAlike(minLead);
         return Relocalized::Outcome::Nowhere;
     }
-    std::size_t countAlike(double lead) const {
-        return std::size_t(std::count_if(fits_.begin(), fits_.end(), [&](const PlaceFit &f) {
-            return f.score() > fits_.front().score() - lead;
-        }));
+    bool isGood(const PlaceFit &f, double mostNeeded) const {
+        return f.reliability() >= minReliability && neededLead(f) <= mostNeeded;
     }
-    Place placeOf(const PlaceFit &f, double lead) const {
+    // Over the next place.
+    double neededLead(const PlaceFit &f) const { return std::max(minLead, trust.leadFor(f, minProbability)); }
+    // The first, and those that score nearly like it.
+    std::size_t countAlike(double lead) const {
+        return 1 + std::size_t(std::count_if(fits_.begin() + 1, fits_.end(), [&](const PlaceFit &f) {
+                   return f.score() > fits_.front().score() - lead;
+               }));
+    }
+    static Place placeOf(const PlaceFit &f, double probability) {
         Place place;
         place.pose = f.pose.pose();
         place.score = f.score();
-        place.probability = trust.probability(f, lead);
+        place.probability = probability;
         place.reliability = f.reliability();
         place.ambiguity = f.meanSquare();
         place.discrepancy = f.discrepancy;
         place.matchedShare = f.explainedShare();
         place.covariance = f.covariance();
-        place.fault = faultOf(f, lead, trust.leadFor(f, minProbability));
         return place;
     }
-    PlaceFault faultOf(const PlaceFit &f, double lead, double needed) const {
+    // Of a place that is not accepted.
+    PlaceFault faultOf(const PlaceFit &f) const {
         if (f.reliability() < minReliability)
             return PlaceFault::Reliability;
-        if (needed <= (lead > 0 ? lead : clearLead))
-            return PlaceFault::None;
         if (f.explainedShare() < 0.7)
             return PlaceFault::Explained;
         return f.hiddenShare() > 0.2 ? PlaceFault::Contradicted : PlaceFault::Doubtful;

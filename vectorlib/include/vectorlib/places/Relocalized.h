@@ -52,7 +52,7 @@ struct Relocalized {
         TooLittle, ///< the scan has fewer than two edges
         Nowhere,   ///< no place is accepted
         Ambiguous, ///< several places fit alike
-        Unfinished ///< time or a bound ended the search: parts of the map were not searched
+        Unfinished ///< time or a bound ended the search before all of its parts were done
     };
     Outcome outcome = Outcome::NoScan;
     std::vector<Place> places; ///< the best ones, best first
@@ -81,7 +81,7 @@ struct Relocalized {
         case Outcome::Ambiguous:
             return count(alike) + " places in the map fit alike";
         case Outcome::Unfinished:
-            return "only " + count(searched) + " of " + count(parts) + " parts of the map were searched";
+            return "only " + count(searched) + " of " + count(parts) + " parts of the search were done";
         }
         return {};
     }

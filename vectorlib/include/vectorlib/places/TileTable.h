@@ -41,11 +41,6 @@ public:
         put({i, j, static_cast<int>(count_)});
         return static_cast<int>(count_++);
     }
-    std::size_t size() const { return count_; }
-    void clear() {
-        slots_.clear();
-        count_ = 0;
-    }
 
 private:
     struct Slot {

@@ -27,14 +27,8 @@ public:
     /// Of walls in tiles, some 100 bytes each at worst: walls beyond are refused.
     std::size_t mostEntries = 8000000;
 
-    void clear() {
-        table_.clear();
-        tiles_.clear();
-        walls_.clear();
-        entries_ = 0;
-        forgetRasters();
-    }
     const Wall &wall(int number) const { return walls_[static_cast<std::size_t>(number)]; }
+    /// Tiles that had a wall at some time: the memory follows them.
     std::size_t tiles() const { return tiles_.size(); }
 
     /// Enters a wall; its number must be free. False, and nothing entered, when there is no room for it.
@@ -94,12 +88,6 @@ public:
             return false;
         const int x = cellOf(p.x - i * tile), y = cellOf(p.y - j * tile);
         return (rasters_[static_cast<std::size_t>(last_)][static_cast<std::size_t>(y * side + x)] & bit) != 0;
-    }
-    /// Draws all tiles, as far as there is room for them: looking is faster from then on.
-    void drawAll() {
-        for (Tile &t : tiles_)
-            if (rasters_.size() < mostRasters)
-                rasterOf(t);
     }
     /// Calls take(i, j) for the tiles within `margin` of a wall, and perhaps for some at their corners.
     template <typename Take>
