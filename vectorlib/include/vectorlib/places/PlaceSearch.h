@@ -137,7 +137,9 @@ private:
             const double lead = i > 0 ? 0 : fits_.size() > 1 ? f.score() - fits_[1].score() : trust.mostLead;
             const bool isToo = isAccepted && i < result_.alike && isGood(f, mostNeeded);
             result_.places.push_back(placeOf(f, trust.probability(f, lead) / oneOf));
-            result_.places.back().fault = isToo ? PlaceFault::None : faultOf(f);
+            result_.places.back().fault = !isToo              ? faultOf(f)
+                                          : result_.alike > 1 ? PlaceFault::Alike
+                                                              : PlaceFault::None;
         }
         if (isAccepted && result_.alike > 1)
             return Relocalized::Outcome::Ambiguous;

@@ -11,7 +11,7 @@
 namespace vectorlib {
 
 /// Why a place is not accepted; the first of its faults in this order.
-enum class PlaceFault { None, Reliability, Explained, Contradicted, Doubtful };
+enum class PlaceFault { None, Reliability, Explained, Contradicted, Doubtful, Alike };
 
 inline const char *describe(PlaceFault fault) {
     switch (fault) {
@@ -25,6 +25,8 @@ inline const char *describe(PlaceFault fault) {
         return "what would be seen from there differs from what was seen";
     case PlaceFault::Doubtful:
         return "too little speaks for it";
+    case PlaceFault::Alike:
+        return "another place fits alike";
     }
     return "";
 }
