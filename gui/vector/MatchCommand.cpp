@@ -87,8 +87,9 @@ struct MatchCommand {
         if (!expected.empty())
             return matchTracking(
                 fixed, moving, {around, deviationXY.value_or(0.15), deviationAlpha.value_or(0.10)},
-                segment.over(vectorlib::EarSettings::forScanner(2 * vectorlib::pi, fixed.points.size())));
-        const Matched anywhere = matchGlobally(fixed, moving);
+                segment.over(vectorlib::EarSettings::forScanner(2 * vectorlib::pi, fixed.points.size())),
+                noise);
+        const Matched anywhere = matchGlobally(fixed, moving, noise);
         const bool mayTryLines = method.empty() && !areScans && anywhere.solutions.empty();
         return mayTryLines ? matchByFinder(fixed, moving, searchSettings(), around, false) : anywhere;
     }

@@ -140,8 +140,10 @@ Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
     return result;
 }
 
-Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving) {
+Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving, double noise) {
     vectorlib::GlobalPairMatcher match;
+    if (noise > 0)
+        match.settings.noise = noise;
     const GlobalPairMatch &found = match(pointsOf(fixed), pointsOf(moving));
     Matched result = matchedOf(found, fixed, moving);
     result.method = "global";
@@ -170,7 +172,7 @@ Matched matchByRelations(const SegmentSet &fixed, const SegmentSet &moving) {
 }
 
 Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const MatchExpectation &expected,
-                      const vectorlib::EarSettings &segmentation) {
+                      const vectorlib::EarSettings &segmentation, double noise) {
     vectorlib::ScanPairMatcher track;
     track.settings.deviationXY = expected.deviationXY;
     track.settings.deviationAlpha = expected.deviationAlpha;
@@ -179,6 +181,8 @@ Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const M
     track.extract.segment.settings = segmentation;
     const vectorlib::ScanPairMatch &tracked = track(fixed.points, moving.points, expected.pose);
     vectorlib::GlobalPairMatcher judge;
+    if (noise > 0)
+        judge.settings.noise = noise;
     Matched result = matchedOf(judge.judge(fixed.points, moving.points, tracked.pose), fixed, moving);
     result.method = "tracking";
     if (result.solutions.empty()) { // too little to be judged

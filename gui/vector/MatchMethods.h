@@ -37,12 +37,13 @@ Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
                       const vectorlib::SearchSettings &settings, const vectorlib::Transformation2D &around,
                       bool inMap);
 /// From nothing but the two sets. Segments are matched as a scanner would see them, and then exactly.
-Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving);
+/// noise: standard deviation of points for the covariance, metres; 0: the usual one.
+Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving, double noise);
 /// From nothing but the two sets, by relations of their segments. Ends of segments that come without points
 /// may go on unseen.
 Matched matchByRelations(const SegmentSet &fixed, const SegmentSet &moving);
 /// From an estimate, two sets of points.
 Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const MatchExpectation &expected,
-                      const vectorlib::EarSettings &segmentation);
+                      const vectorlib::EarSettings &segmentation, double noise);
 
 } // namespace hermes::vector
