@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 namespace vectorlib {
@@ -31,8 +31,8 @@ public:
     template <typename Take>
     std::size_t near(double key, Take take) const {
         std::size_t visited = 0;
-        const std::size_t bins = starts_.size() - 1, middle = bin(key);
-        for (const std::size_t b : {(middle + bins - 1) % bins, middle, (middle + 1) % bins}) {
+        const std::size_t last = starts_.size() - 2, middle = bin(key);
+        for (const std::size_t b : {middle > 0 ? middle - 1 : last, middle, middle < last ? middle + 1 : 0}) {
             for (std::size_t i = starts_[b]; i < starts_[b + 1]; ++i)
                 take(things_[i]);
             visited += starts_[b + 1] - starts_[b];
@@ -42,8 +42,10 @@ public:
 
 private:
     std::size_t bin(double key) const {
-        constexpr double most = 1e15; // beyond it doubles are too coarse to count in ones
-        return static_cast<std::uint64_t>(std::min(key, most)) % (starts_.size() - 1);
+        constexpr double most = 1e9; // what lies beyond shares a bin
+        const std::size_t bins = starts_.size() - 1;
+        const auto number = static_cast<std::size_t>(std::min(key, most));
+        return number < bins ? number : number % bins;
     }
 
     std::vector<std::size_t> starts_, next_;
