@@ -1,3 +1,4 @@
+#include "gui/vector/experiment/RelationScans.h"
 #include "gui/vector/experiment/Scene.h"
 
 #include <QProcess>
@@ -25,6 +26,7 @@ private Q_SLOTS:
     void weightsNarrowTheScatter();
     void reliabilityFallsWhereWallsAreHidden();
     void wahbaIsMildWithLargeErrors();
+    void posesThatAreEqualAreNoWay();
     void leapsThroughAHomeAreMatched();
     void errorAreaGrowsWithTheError();
     void errorAreaDoesNotGrowWithTheWay();
@@ -242,6 +244,18 @@ void TestExperiments::wahbaIsMildWithLargeErrors() { // paper figure 10
         if (noise > 2.5)
             QVERIFY(wahba < 0.95 * mitsuta);
     }
+}
+
+void TestExperiments::posesThatAreEqualAreNoWay() {
+    World world;
+    world.poses = {{1, 2, 0.3}, {1, 2, 0.3}};
+    QCOMPARE(posesAlong(world, 4).size(), std::size_t(4));
+    for (const auto &pose : posesAlong(world, 4))
+        QVERIFY(pose.x == 1 && pose.y == 2 && std::abs(pose.theta - 0.3) < 1e-9);
+    world.poses.push_back({3, 2, 0});
+    const auto poses = posesAlong(world, 3);
+    QVERIFY(poses[0].x == 1 && poses[0].y == 2 && poses[1].x > 1.5 && poses[1].x < 2.5);
+    QVERIFY(std::abs(poses[2].x - 3) < 1e-6);
 }
 
 void TestExperiments::leapsThroughAHomeAreMatched() {

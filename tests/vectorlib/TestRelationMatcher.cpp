@@ -27,6 +27,8 @@ private Q_SLOTS:
     void symmetricRoomsAreAmbiguousOnlyWhereTheyAre();
     void hugeSetsAreLimited();
     void manyEqualSegmentsAreLimited();
+    void farCornersAreLimited();
+    void everyBoundOnScoresHolds();
     void allocatesNothingInSteadyState();
     void nextGivesTheSameAsBoth();
     void randomWorldsGiveTheTrueMotion_data();
@@ -55,6 +57,9 @@ private:
         }
         return typed;
     }
+    /// Makes the sets, or the settings, those of a row of saysWhy.
+    static void spoil(int which, TypedSegments &reference, TypedSegments &current);
+    static void spoil(int which, RelationSettings &settings);
     static TypedSegments scanned(const RandomRoom &room, const Pose2D &pose, std::uint64_t seed,
                                  double fieldOfView = 2 * pi, int rays = 720) {
         SimulatedScanner<double> scanner(seed);
@@ -113,61 +118,55 @@ void TestRelationMatcher::saysWhy_data() {
         {"no window", RelationOutcome::BadSettings},
         {"NaN threshold", RelationOutcome::BadSettings},
         {"too many wanted", RelationOutcome::BadSettings},
+        {"all may be seen through", RelationOutcome::BadSettings},
     };
     int i = 0;
     for (const auto &[name, outcome] : rows)
         QTest::newRow(name) << i++ << static_cast<int>(outcome);
 }
 
+void TestRelationMatcher::spoil(int which, TypedSegments &reference, TypedSegments &current) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const TypedSegments spoiled[] = {
+        {},
+        {},
+        {current[0]},
+        plain({Segment({nan, 0}, {1, 1}), Segment({0, 1}, {nan, nan}), Segment({0, 1}, {noHit, 1})}),
+        plain({Segment({1, 1}, {1, 1}), Segment({2, 1}, {2, 1})}),
+        plain({Segment({1e300, 1}, {1e300, 2e300}), Segment({1e9, 1}, {2e9, 1})}),
+        complete({Segment({9, -4}, {9, 4}), Segment({5, 8}, {4, 20})}),
+        plain({Segment({-3, -1}, {3, -1}), Segment({3, 1}, {-3, 1})})};
+    if (which != 0 && which < 8)
+        current = spoiled[which];
+    if (which < 2)
+        reference.clear();
+    if (which == 6)
+        reference = complete({Segment({3, -1}, {3, 1}), Segment({3, 1}, {-1, 1})});
+    if (which == 7)
+        reference = current;
+}
+
+void TestRelationMatcher::spoil(int which, RelationSettings &settings) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    if (which == 8)
+        settings.angleWindow = nan;
+    if (which == 9)
+        settings.distanceWindow = 0;
+    if (which == 10)
+        settings.threshold = nan;
+    if (which == 11)
+        settings.maxSegments = 100000;
+    if (which == 12)
+        settings.seenThroughShare = 1; // matched with nothing that speaks for it
+}
+
 void TestRelationMatcher::saysWhy() {
     QFETCH(int, which);
     QFETCH(int, outcome);
-    const double nan = std::numeric_limits<double>::quiet_NaN();
     RelationMatcher match;
     TypedSegments reference = complete(room()), current = reference;
-    switch (which) {
-    case 0:
-        reference.clear();
-        break;
-    case 1:
-        reference.clear();
-        current.clear();
-        break;
-    case 2:
-        current.resize(1);
-        break;
-    case 3:
-        current =
-            plain({Segment({nan, 0}, {1, 1}), Segment({0, 1}, {nan, nan}), Segment({0, 1}, {noHit, 1})});
-        break;
-    case 4:
-        current = plain({Segment({1, 1}, {1, 1}), Segment({2, 1}, {2, 1})});
-        break;
-    case 5:
-        current = plain({Segment({1e300, 1}, {1e300, 2e300}), Segment({1e9, 1}, {2e9, 1})});
-        break;
-    case 6: {
-        reference = complete({Segment({3, -1}, {3, 1}), Segment({3, 1}, {-1, 1})});
-        current = complete({Segment({9, -4}, {9, 4}), Segment({5, 8}, {4, 20})});
-        break;
-    }
-    case 7:
-        reference = plain({Segment({-3, -1}, {3, -1}), Segment({3, 1}, {-3, 1})});
-        current = reference;
-        break;
-    case 8:
-        match.settings.angleWindow = nan;
-        break;
-    case 9:
-        match.settings.distanceWindow = 0;
-        break;
-    case 10:
-        match.settings.threshold = nan;
-        break;
-    case 11:
-        match.settings.maxSegments = 100000;
-        break;
-    }
+    spoil(which, reference, current);
+    spoil(which, match.settings);
     const RelationMatch &found = match(reference, current);
     QCOMPARE(describe(found.outcome), describe(RelationOutcome(outcome)));
     QVERIFY(!found.isMatched() && found.pairs.empty());
@@ -229,6 +228,40 @@ void TestRelationMatcher::manyEqualSegmentsAreLimited() {
     const RelationMatch &found = match(fence, fence);
     QVERIFY(found.isCut && found.scores <= match.settings.maxScores);
     QVERIFY(!found.isMatched());
+}
+
+void TestRelationMatcher::farCornersAreLimited() {
+    // Walls around the sensor, no two corners nearer than 30 m; some 10,000 relations of corners in each
+    // scan.
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> range(800, 1600), tilt(-0.6, 0.6), length(31, 40);
+    TypedSegments far;
+    for (int i = 0; i < 64; ++i) {
+        const double angle = 2 * pi * i / 64, along = angle + pi / 2 + tilt(random);
+        const Point p = Point(std::cos(angle), std::sin(angle)) * range(random);
+        TypedSegment s{
+            Segment(p, p + Point(std::cos(along), std::sin(along)) * length(random)), {}, {}, false, {}};
+        s.begin.type = s.end.type = EndType::Jump;
+        far.push_back(s);
+    }
+    RelationMatcher match;
+    const RelationMatch &found = match(far, far);
+    QVERIFY2(found.compared < 5000000, qPrintable(QString::number(found.compared)));
+    QVERIFY2(!found.isCut && found.isMatched(), describe(found.outcome));
+    match.settings.maxCompared = 50000;
+    match(far, far);
+    // The last relation of the current scan is compared to its end.
+    QVERIFY2(found.isCut && found.compared < 50000 + 2 * 12000, qPrintable(QString::number(found.compared)));
+}
+
+void TestRelationMatcher::everyBoundOnScoresHolds() {
+    const TypedSegments segments = plain(room()); // incomplete ones: every length is like many
+    RelationMatcher match;
+    for (const std::size_t most : {0, 1, 7, 30, 100}) {
+        match.settings.maxScores = most;
+        const RelationMatch &found = match(segments, segments);
+        QVERIFY2(found.isCut && found.scores <= most, qPrintable(QString::number(found.scores)));
+    }
 }
 
 void TestRelationMatcher::allocatesNothingInSteadyState() {

@@ -64,13 +64,13 @@ struct Runner {
         const vectorlib::RelationMatch &found = match(reference, current);
         step.microseconds = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
         step.outcome = found.outcome;
-        step.estimate = (Transformation2D(referenceEstimate) * found.pose).pose();
         if (!found.isMatched()) {
             step.estimate = referenceEstimate;
             if (++lostInARow > 10)
                 keep(current, step, {});
             return step;
         }
+        step.estimate = (Transformation2D(referenceEstimate) * found.pose).pose();
         step.pairs = found.pairs.size();
         step.area = areas(found.pairs, reference, current, found.pose);
         const Transformation2D motion =

@@ -40,8 +40,8 @@ struct RelationRunOptions {
 };
 
 /// Matches each scan with the last one that was matched, and makes a local map of them (Algorithm 11). A scan
-/// that does not match is left out; after ten in a row the next one is matched with the last of these, as if
-/// the sensor had not moved.
+/// that does not match is left out; the eleventh in a row is kept as if the sensor had not moved, and the
+/// next one is matched with it.
 RelationRun relationRun(const std::vector<PosedScan> &scans, const RelationRunOptions &options);
 
 /// Shares, mean errors and times, beside what is published for this run (none: an empty object).

@@ -14,7 +14,8 @@ using Segment = vectorlib::LineSegment2D<double>;
 
 namespace {
 
-/// The pose at t, 0 to 1, between two poses: a Hermite curve whose tangents are as long as those of an arc.
+/// The pose at t, 0 to 1, between two poses: a Hermite curve whose tangents are as long as those of an arc;
+/// of poses in one place a turn.
 Pose2D between(const Pose2D &from, const Pose2D &to, double t) {
     const Point a(from.x, from.y), b(to.x, to.y);
     const double turn = vectorlib::wrapAngle(to.theta - from.theta), half = std::cos(turn / 4);
@@ -25,7 +26,7 @@ Pose2D between(const Pose2D &from, const Pose2D &to, double t) {
     const Point p = a * (2 * t3 - 3 * t2 + 1) + u * (t3 - 2 * t2 + t) + b * (3 * t2 - 2 * t3) + v * (t3 - t2);
     const Point d =
         a * (6 * t2 - 6 * t) + u * (3 * t2 - 4 * t + 1) + b * (6 * t - 6 * t2) + v * (3 * t2 - 2 * t);
-    return {p.x, p.y, std::atan2(d.y, d.x)};
+    return {p.x, p.y, reach > 0 ? std::atan2(d.y, d.x) : vectorlib::wrapAngle(from.theta + t * turn)};
 }
 
 double apart(const Pose2D &a, const Pose2D &b) {
@@ -54,7 +55,7 @@ std::vector<Pose2D> posesAlong(const World &world, std::size_t count) {
             here = apart(fine[at], fine[at + 1]);
         }
         const Pose2D &a = fine[at], &b = fine[at + 1];
-        const double f = std::clamp((step * double(i) - gone) / here, 0.0, 1.0);
+        const double f = here > 0 ? std::clamp((step * double(i) - gone) / here, 0.0, 1.0) : 0;
         poses.push_back({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y),
                          vectorlib::wrapAngle(a.theta + f * vectorlib::wrapAngle(b.theta - a.theta))});
     }

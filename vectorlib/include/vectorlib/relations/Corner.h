@@ -137,7 +137,7 @@ private:
     static bool anglesMayMatch(const Corner &a, const Corner &b, double window) {
         const bool isJumpA = a.first < 0 || a.second < 0, isJumpB = b.first < 0 || b.second < 0;
         if (isJumpA && isJumpB)
-            return true; // bounds of two hidden segments contradict each other never
+            return true; // bounds of two hidden segments never contradict each other
         if (isJumpA || isJumpB) {
             const Corner &jump = isJumpA ? a : b, &seen = isJumpA ? b : a;
             return seen.angle >= pi - window && seen.angle <= jump.angle + window;

@@ -51,18 +51,19 @@ struct RelationMatch {
     /// The same by common edges alone, as published (Algorithms 8 and 9), from all pairs of the table.
     Transformation2D byEdges;
     std::vector<CorrespondencePair> byScores; ///< all pairs that Algorithm 5 found, best first
-    std::vector<CorrespondencePair> pairs;    ///< those of them that agree with the pose
-    double score = 0;                         ///< largest merged score
-    double reliability = 0;                   ///< in [0, 1], of the pairs' directions
-    double ambiguity = 0;                     ///< mean of a pair, weighted by length; m^2
-    double deviation = 0;                     ///< standard deviation of the position; metres
-    double matchedLength = 0;                 ///< of the shorter segments of the pairs; metres
+    std::vector<CorrespondencePair> pairs; ///< all that lie on each other at the pose, whatever their scores
+    double score = 0;                      ///< largest merged score
+    double reliability = 0;                ///< in [0, 1], of the pairs' directions
+    double ambiguity = 0;                  ///< mean of a pair, weighted by length; m^2
+    double deviation = 0;                  ///< standard deviation of the position; metres
+    double matchedLength = 0;              ///< of the shorter segments of the pairs; metres
     double evidence = 0;      ///< matched length less what stands where the other scan looked through; metres
     double rivalEvidence = 0; ///< the same of the best place elsewhere; metres
     std::size_t leftOut = 0;  ///< segments that are not finite, have no length, or are beyond the bound
     std::size_t virtualLeftOut = 0; ///< virtual edges beyond the bound
-    bool isCut = false;             ///< the bound on scores left out relations
-    std::size_t scores = 0;         ///< entries of the matching table: the work done
+    bool isCut = false;             ///< a bound left out relations
+    std::size_t scores = 0;         ///< entries of the matching table
+    std::size_t compared = 0;       ///< comparisons of two relations: the work done
 
     bool isMatched() const { return outcome == RelationOutcome::Matched; }
 };

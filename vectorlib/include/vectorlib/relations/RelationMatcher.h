@@ -17,7 +17,8 @@ namespace vectorlib {
 /// length together is the match. Where another place does nearly as well the match is ambiguous.
 ///
 /// Never more than settings.maxSegments segments, maxVirtualEdges virtual edges of a scan and maxScores
-/// scores take part, so that time and memory are bounded; the result says what was left out. Keeps its
+/// scores take part, and about maxCompared comparisons are made, so that time and memory are bounded; the
+/// result says what was left out. Keeps its
 /// buffers: no allocation once they have grown.
 class RelationMatcher {
 public:
@@ -35,7 +36,8 @@ public:
         current_.build(current, settings);
         return match();
     }
-    /// Matches with what was the current scan of the call before: its relations are known already.
+    /// Matches with what was the current scan of the call before: its relations are known already,
+    /// by the settings of that call. Where the windows or bounds changed since, call with both scans instead.
     const RelationMatch &next(const Segments &current) {
         clear();
         if (!settings.isValid())
@@ -44,10 +46,6 @@ public:
         current_.build(current, settings);
         return match();
     }
-    /// The tables of consistency of the last call.
-    const RelationScores &scores() const { return score_; }
-    /// What Algorithm 5 left of the merged scores at the first search of the last call (table 5.2).
-    const MatchingTable &table() const { return first_; }
 
 private:
     using Pairs = std::vector<CorrespondencePair>;
@@ -59,7 +57,7 @@ private:
         result_.pairs.clear();
         result_.score = result_.reliability = result_.ambiguity = result_.deviation = 0;
         result_.matchedLength = result_.evidence = result_.rivalEvidence = 0;
-        result_.leftOut = result_.virtualLeftOut = result_.scores = 0;
+        result_.leftOut = result_.virtualLeftOut = result_.scores = result_.compared = 0;
         result_.isCut = false;
     }
     const RelationMatch &end(RelationOutcome outcome) {
@@ -77,6 +75,7 @@ private:
             return end(RelationOutcome::TooFewCurrent);
         score_(reference, reference_.relations(), current, current_.relations(), settings, table_);
         result_.scores = table_.scores();
+        result_.compared = score_.compared();
         result_.isCut = score_.isCut();
         result_.score = table_.maximum().score;
         if (result_.score == 0)

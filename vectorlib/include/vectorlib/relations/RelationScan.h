@@ -2,7 +2,7 @@
 
 #include "vectorlib/relations/RelationSet.h"
 
-#include <numeric>
+#include <algorithm>
 
 namespace vectorlib {
 

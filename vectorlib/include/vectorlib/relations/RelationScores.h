@@ -13,12 +13,13 @@ class RelationScores {
 public:
     using Segments = std::vector<TypedSegment>;
 
-    /// The tables of consistency; valid until the next call.
+    /// Which segments may match; valid until the next call.
     const ConsistencyTable &referenceTable() const { return toReference_; }
-    const ConsistencyTable &currentTable() const { return toCurrent_; }
 
-    /// Whether the bound on scores left out relations: kinds that are many times in both scans.
+    /// Whether a bound left out relations: kinds that are many times in both scans.
     bool isCut() const { return isCut_; }
+    /// Relations that were compared with another.
+    std::size_t compared() const { return compared_; }
 
     void operator()(const Segments &reference, const RelationSet &ofReference, const Segments &current,
                     const RelationSet &ofCurrent, const RelationSettings &settings, MatchingTable &table) {
@@ -29,7 +30,9 @@ public:
         cornersToCurrent_.fill(ofCurrent.corners(), ofCurrent.corners(), toCurrent_, settings.angleWindow);
         table.reset(reference.size(), current.size());
         isCut_ = false;
-        most_ = settings.maxScores;
+        compared_ = 0;
+        mostScores_ = settings.maxScores;
+        mostCompared_ = settings.maxCompared;
         scoreLengths(ofReference, current, ofCurrent, table);
         scoreCorners(ofReference, ofCurrent, table);
         scorePairs(ofCurrent.parallels(), ofReference, ofCurrent, table);
@@ -47,6 +50,8 @@ private:
             });
             if (numbers_.empty())
                 continue;
+            if (!hasRoom(table, numbers_.size()))
+                return;
             int count = 0;
             ofCurrent.lengthsLike(current[j], [&](int i) { count += toCurrent_(i, static_cast<int>(j)); });
             const double score = scoreOf(count, numbers_.size());
@@ -61,17 +66,19 @@ private:
     void scorePairs(const std::vector<Relation> &relations, const RelationSet &ofReference,
                     const RelationSet &ofCurrent, MatchingTable &table) {
         for (const Relation &c : relations) {
+            if (!mayCompare())
+                return;
             cells_.clear();
-            ofReference.like(c, [&](const Relation &r) {
+            compared_ += ofReference.like(c, [&](const Relation &r) {
                 if (toReference_(r.first, c.first) && toReference_(r.second, c.second))
                     cells_.push_back({{table.cell(r.first, c.first), table.cell(r.second, c.second)}, 2});
             });
             if (cells_.empty())
                 continue;
-            if (!hasRoom(table))
+            if (!hasRoom(table, cells_.size()))
                 return;
             int count = 0;
-            ofCurrent.like(c, [&](const Relation &other) {
+            compared_ += ofCurrent.like(c, [&](const Relation &other) {
                 count += toCurrent_(other.first, c.first) && toCurrent_(other.second, c.second);
             });
             addAll(count, table);
@@ -80,17 +87,19 @@ private:
     /// Relations of two corners, of up to four segments.
     void scoreCorners(const RelationSet &ofReference, const RelationSet &ofCurrent, MatchingTable &table) {
         for (const CornerRelation &c : ofCurrent.cornerRelations()) {
+            if (!mayCompare())
+                return;
             cells_.clear();
-            ofReference.like(c, [&](const CornerRelation &r) {
+            compared_ += ofReference.like(c, [&](const CornerRelation &r) {
                 if (cornersToReference_(r.first, c.first) && cornersToReference_(r.second, c.second))
                     cells_.push_back(cellsOf(r, ofReference.corners(), c, ofCurrent.corners(), table));
             });
             if (cells_.empty())
                 continue;
-            if (!hasRoom(table))
+            if (!hasRoom(table, cells_.size()))
                 return;
             int count = 0;
-            ofCurrent.like(c, [&](const CornerRelation &other) {
+            compared_ += ofCurrent.like(c, [&](const CornerRelation &other) {
                 count += cornersToCurrent_(other.first, c.first) && cornersToCurrent_(other.second, c.second);
             });
             addAll(count, table);
@@ -119,8 +128,12 @@ private:
         add(b.second, q.second);
         return result;
     }
-    bool hasRoom(const MatchingTable &table) {
-        isCut_ = isCut_ || table.scores() + cells_.size() > most_;
+    bool hasRoom(const MatchingTable &table, std::size_t more) {
+        isCut_ = isCut_ || table.scores() + more > mostScores_;
+        return !isCut_;
+    }
+    bool mayCompare() {
+        isCut_ = isCut_ || compared_ >= mostCompared_;
         return !isCut_;
     }
     static double scoreOf(int count, std::size_t matches) {
@@ -136,7 +149,7 @@ private:
     CornerTable cornersToReference_, cornersToCurrent_;
     std::vector<int> numbers_;
     std::vector<Cells> cells_;
-    std::size_t most_ = 0;
+    std::size_t compared_ = 0, mostScores_ = 0, mostCompared_ = 0;
     bool isCut_ = false;
 };
 

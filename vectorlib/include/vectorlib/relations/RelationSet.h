@@ -40,24 +40,24 @@ public:
              i != incomplete_.end() && (!s.isComplete() || i->length <= length + wide); ++i)
             take(i->number);
     }
-    /// Calls take(relation) for those whose parameters match.
+    /// Calls take(relation) for those whose parameters match; returns how many were looked at.
     template <typename Take>
-    void like(const AngleRelation &r, Take take) const {
-        angleOrder_.nearAround(angleKey(r), [&](const AngleRelation &other) {
+    std::size_t like(const AngleRelation &r, Take take) const {
+        return angleOrder_.near(angleKey(r), [&](const AngleRelation &other) {
             if (isWithin(r.angle, other.angle, turn_))
                 take(other);
         });
     }
     template <typename Take>
-    void like(const ParallelRelation &r, Take take) const {
-        parallelOrder_.near(distanceKey(r.across), [&](const ParallelRelation &other) {
+    std::size_t like(const ParallelRelation &r, Take take) const {
+        return parallelOrder_.near(distanceKey(r.across), [&](const ParallelRelation &other) {
             if (parametersMatch(r, other, static_cast<float>(window_), turn_))
                 take(other);
         });
     }
     template <typename Take>
-    void like(const CornerRelation &r, Take take) const {
-        cornerOrder_.near(distanceKey(r.distance), [&](const CornerRelation &other) {
+    std::size_t like(const CornerRelation &r, Take take) const {
+        return cornerOrder_.near(distanceKey(r.distance), [&](const CornerRelation &other) {
             if (parametersMatch(r, other, static_cast<float>(window_), turn_))
                 take(other);
         });

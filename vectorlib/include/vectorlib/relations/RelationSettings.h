@@ -24,7 +24,7 @@ struct RelationSettings {
     int places = 3;                      ///< of the pairs of a search that are looked at
     /// Least length of the pairs, as a share of what the scan that sees less sees.
     double matchedShare = 0.3;
-    /// Most length that stands where the other scan looked through, as a share of the matched length.
+    /// Most length that stands where the other scan looked through, as a share (below 1) of the matched one.
     double seenThroughShare = 0.25;
     /// A rival whose pairs are of as much length as this share of the found ones makes the match ambiguous.
     double rivalShare = 0.7;
@@ -33,14 +33,17 @@ struct RelationSettings {
     std::size_t maxSegments = 64; ///< of a scan: the longest; more are left out
     std::size_t maxVirtualEdges = 24; ///< of a scan: those known best
     std::size_t maxScores = 200000;   ///< entries of the matching table; the rest is left out
+    /// Comparisons of two relations after which no other relation of the current scan is looked at; a quarter
+    /// of a second, and more than 64 segments within 2 m need.
+    std::size_t maxCompared = 50000000;
 
     bool isValid() const {
         return angleWindow > 0 && angleWindow < pi / 4 && distanceWindow > 0 &&
                std::isfinite(distanceWindow) && threshold >= 0 && threshold <= 1 && laterThreshold >= 0 &&
                virtualReach >= 0 && virtualAngle > 0 && virtualAngle < pi / 2 && leastEdgeDistance >= 0 &&
-               rivalShare > 0 && seenThroughShare >= 0 && matchedShare >= 0 && searches >= 1 &&
-               searches <= 100 && places >= 1 && places <= 8 && deviation > 0 && maxSegments <= 255 &&
-               maxVirtualEdges <= 256 && maxScores <= 10000000;
+               rivalShare > 0 && seenThroughShare >= 0 && seenThroughShare < 1 && matchedShare >= 0 &&
+               searches >= 1 && searches <= 100 && places >= 1 && places <= 8 && deviation > 0 &&
+               maxSegments <= 255 && maxVirtualEdges <= 256 && maxScores <= 10000000;
     }
 };
 

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "gui/vector/InstalledWorlds.h"
+#include "gui/vector/Output.h"
+#include "gui/vector/experiment/PairsExperiment.h"
+#include "gui/vector/experiment/QualityExperiment.h"
+#include "gui/vector/experiment/RealScanExperiment.h"
+#include "gui/vector/experiment/RegistrationExperiment.h"
+#include "gui/vector/experiment/RelationScans.h"
+#include "gui/vector/experiment/Scene.h"
+#include "gui/vector/experiment/VectorizationExperiment.h"
+#include "vectorlib/io/CarmenLog.h"
+
+#include <nlohmann/json.hpp>
+
+namespace hermes::vector {
+
+/// hermes-vector experiment: its options, and a function for each experiment, in ExperimentScenes.cpp,
+/// ExperimentRegistration.cpp, ExperimentMatches.cpp and ExperimentRelations.cpp. Each writes its table to
+/// csv and opens what else it leaves.
+struct ExperimentCommand {
+    std::string name;
+    std::string folder = ".";
+    std::vector<std::string> logs;
+    std::vector<std::size_t> every{1};
+    std::string other;
+    std::string worlds = installedWorlds().string();
+    ExperimentOptions options;
+    PairsOptions pairOptions;
+    bool noGuess = false;
+    std::size_t pictures = 0;
+    bool force = false;
+
+    void run();
+
+    void segmentationRoom(OutputSet &files, std::ostream &csv) const;
+    void segmentationObjects(OutputSet &files, std::ostream &csv) const;
+    void semicircle(OutputSet &files, std::ostream &csv) const;
+    void edges(OutputSet &files, std::ostream &csv) const;
+    void corners(OutputSet &files, std::ostream &csv) const;
+    void room(OutputSet &files, std::ostream &csv) const;
+    void emptyRoom(OutputSet &files, std::ostream &csv) const;
+    void corridor(OutputSet &files, std::ostream &csv) const;
+    void laboratory(OutputSet &files, std::ostream &csv) const;
+    void polygons(OutputSet &files, std::ostream &csv) const;
+    void ofLog(OutputSet &files, std::ostream &csv) const;
+    void criterion(OutputSet &files, std::ostream &csv) const;
+    void criterionTime(OutputSet &files, std::ostream &csv) const;
+
+    void accuracy(OutputSet &files, std::ostream &csv) const;
+    void dispersion(OutputSet &files, std::ostream &csv) const;
+    void weighting(OutputSet &files, std::ostream &csv) const;
+    void reliability(OutputSet &files, std::ostream &csv) const;
+    void rotation(OutputSet &files, std::ostream &csv) const;
+
+    /// Pictures are of pairs that are not near the reference.
+    void pairs(OutputSet &files, std::ostream &csv) const;
+    void calibration(OutputSet &files, std::ostream &csv) const;
+    void places(OutputSet &files, std::ostream &csv) const;
+
+    void freeHome(OutputSet &files, std::ostream &csv) const;
+    void freeLeaps(OutputSet &files, std::ostream &csv) const;
+    void freeLog(OutputSet &files, std::ostream &csv) const;
+    void freeCopy(OutputSet &files, std::ostream &csv) const;
+    void freeApproach(OutputSet &files, std::ostream &csv) const;
+
+private:
+    // Paper 4: 100 ... 3000 points, noise of 1, 3 and 10 cm.
+    const std::vector<int> manyPoints{100, 200, 300, 500, 1000, 2000, 3000};
+    const std::vector<double> sigmas{0.01, 0.03, 0.1};
+
+    void segment(OutputSet &files, std::ostream &csv, const Scene &scene) const;
+    void quality(OutputSet &files, std::ostream &csv, const std::string &title,
+                 const std::vector<QualityRow> &rows) const;
+    void realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const;
+    void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const;
+    static std::vector<RegistrationRow> select(const std::vector<RegistrationRow> &rows, int points,
+                                               double sigma, bool weighted);
+    template <typename Result, typename Pose>
+    void pairs(OutputSet &files, std::ostream &csv, const vectorlib::CarmenLog &read,
+               const std::vector<Result> &results, Pose found) const;
+    std::vector<PosedScan> homeScans(std::size_t count) const;
+    void relation(OutputSet &files, std::ostream &csv, const std::vector<PosedScan> &scans, std::size_t rays,
+                  double fieldOfView, const nlohmann::ordered_json &published) const;
+
+    // In ExperimentFiles.cpp. Figures for people: on standard output and beside the table.
+    static void tell(std::ostream &json, const nlohmann::ordered_json &summary);
+    std::ostream &open(OutputSet &files, const std::string &suffix) const;
+    World world(const std::string &place) const;
+    vectorlib::CarmenLog readLog() const;
+    static vectorlib::CarmenLog readLog(const std::string &file);
+    void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "") const;
+    template <typename Figure>
+    bool draw(OutputSet &files, const std::string &suffix, const Figure &figure) const;
+};
+
+} // namespace hermes::vector

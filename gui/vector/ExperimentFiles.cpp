@@ -1,0 +1,66 @@
+#include "gui/vector/ExperimentCommand.h"
+
+#include "common/world/WorldFile.h"
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+#include "gui/vector/Options.h"
+#include "gui/vector/experiment/Gnuplot.h"
+
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <sstream>
+
+namespace hermes::vector {
+
+void ExperimentCommand::tell(std::ostream &json, const nlohmann::ordered_json &summary) {
+    const std::string text = summary.dump(2) + '\n';
+    json << text;
+    std::cout << text;
+}
+
+std::ostream &ExperimentCommand::open(OutputSet &files, const std::string &suffix) const {
+    return files.open((std::filesystem::path(folder) / (name + suffix)).string());
+}
+
+World ExperimentCommand::world(const std::string &place) const {
+    Outcome<World> found = readWorld((std::filesystem::path(worlds) / (place + ".json")).string());
+    if (!found)
+        throw Failure(found.error() + "; --worlds names the folder of the worlds");
+    found->name = place; // whatever it calls itself: the name goes into scripts and documents
+    return *found;
+}
+
+vectorlib::CarmenLog ExperimentCommand::readLog() const {
+    if (logs.size() != 1)
+        throw CLI::ValidationError("--log", "the experiment " + name + " needs the name of a CARMEN log");
+    return readLog(logs[0]);
+}
+
+vectorlib::CarmenLog ExperimentCommand::readLog(const std::string &file) {
+    Input input(file);
+    return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
+}
+
+void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std::string &suffix) const {
+    writeLatex(open(files, suffix + ".tex"), name, figures);
+    bool drawn = true;
+    for (const Plot &plot : figures.plots)
+        drawn = drawn && draw(files, suffix, plot);
+    for (const Surface &surface : figures.surfaces)
+        drawn = drawn && draw(files, suffix, surface);
+    if (!drawn)
+        std::cerr << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX files\n";
+}
+
+template <typename Figure>
+bool ExperimentCommand::draw(OutputSet &files, const std::string &suffix, const Figure &figure) const {
+    std::ostringstream script;
+    writeGnuplot(script, figure);
+    const std::optional<std::string> svg = runGnuplot(script.str());
+    if (svg)
+        open(files, suffix + "-" + figure.name + ".svg") << *svg;
+    return svg.has_value();
+}
+
+} // namespace hermes::vector

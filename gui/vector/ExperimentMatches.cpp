@@ -1,0 +1,61 @@
+#include "gui/vector/ExperimentCommand.h"
+
+#include "gui/vector/experiment/Calibration.h"
+#include "gui/vector/experiment/GlobalPairsExperiment.h"
+#include "gui/vector/experiment/PlacesExperiment.h"
+
+#include <iostream>
+#include <optional>
+
+namespace hermes::vector {
+
+void ExperimentCommand::pairs(OutputSet &files, std::ostream &csv) const {
+    const vectorlib::CarmenLog read = readLog();
+    if (noGuess)
+        pairs(files, csv, read, globalPairsExperiment(read, pairOptions),
+              [](const GlobalPairResult &pair) { return pair.best(); });
+    else
+        pairs(files, csv, read, pairsExperiment(read, pairOptions),
+              [](const PairResult &pair) { return pair.match.pose; });
+}
+
+template <typename Result, typename Pose>
+void ExperimentCommand::pairs(OutputSet &files, std::ostream &csv, const vectorlib::CarmenLog &read,
+                              const std::vector<Result> &results, Pose found) const {
+    std::ostream &json = open(files, ".json");
+    writeCsv(csv, results);
+    tell(json, summaryOf(results));
+    std::size_t drawn = 0;
+    for (const Result &pair : results)
+        if (!pair.isWithin(found(pair), 0.10) && drawn++ < pictures)
+            vector::draw(open(files, "-" + std::to_string(pair.from) + ".svg"), read, pair, found(pair));
+}
+
+void ExperimentCommand::calibration(OutputSet &files, std::ostream &csv) const {
+    if (logs.empty())
+        readLog(); // tells what is missing
+    std::vector<GlobalPairResult> results;
+    for (std::size_t i = 0; i < logs.size(); ++i) {
+        PairsOptions of = pairOptions;
+        of.every = every[std::min(i, every.size() - 1)];
+        for (GlobalPairResult &pair : globalPairsExperiment(readLog(logs[i]), of))
+            results.push_back(std::move(pair));
+    }
+    const Calibration found = calibrationOf(results);
+    writeCsv(csv, found);
+    std::cout << summaryOf(found).dump(2) << '\n';
+    draw(files, {{plotOf(found)}, {}, {}});
+}
+
+void ExperimentCommand::places(OutputSet &files, std::ostream &csv) const {
+    const vectorlib::CarmenLog read = readLog();
+    std::optional<vectorlib::CarmenLog> strange;
+    if (!other.empty())
+        strange = readLog(other);
+    std::ostream &json = open(files, ".json"); // before the work, as the table is
+    const PlacesReport report = placesExperiment(read, strange ? &*strange : nullptr, options.progress);
+    writeCsv(csv, report);
+    tell(json, summaryOf(report, !strange));
+}
+
+} // namespace hermes::vector

@@ -1,0 +1,107 @@
+#include "gui/vector/ExperimentCommand.h"
+
+#include "gui/vector/Failure.h"
+#include "gui/vector/experiment/CriterionExperiment.h"
+#include "gui/vector/experiment/SegmentationExperiment.h"
+
+#include <map>
+#include <sstream>
+
+namespace hermes::vector {
+
+void ExperimentCommand::segmentationRoom(OutputSet &files, std::ostream &csv) const {
+    segment(files, csv, furnishedRoom());
+}
+
+void ExperimentCommand::segmentationObjects(OutputSet &files, std::ostream &csv) const {
+    segment(files, csv, roomWithSmallObjects());
+}
+
+void ExperimentCommand::semicircle(OutputSet &files, std::ostream &csv) const {
+    const std::vector<ResultRow> rows = semicircleExperiment(options);
+    writeCsv(csv, rows);
+    std::map<double, std::vector<ResultRow>, std::greater<>> bySigma;
+    for (const ResultRow &row : rows)
+        bySigma[row.sigma].push_back(row);
+    for (const auto &[sigma, some] : bySigma) {
+        std::ostringstream text;
+        text << "-sigma" << sigma;
+        draw(files, {plotsOf("semicircle, sigma " + text.str().substr(6) + " m", some), {}, {}}, text.str());
+    }
+}
+
+void ExperimentCommand::edges(OutputSet &files, std::ostream &csv) const {
+    scene(files, csv, solitaryEdges());
+}
+
+void ExperimentCommand::corners(OutputSet &files, std::ostream &csv) const {
+    scene(files, csv, sharpCorners());
+}
+
+void ExperimentCommand::room(OutputSet &files, std::ostream &csv) const {
+    scene(files, csv, furnishedRoom());
+}
+
+void ExperimentCommand::emptyRoom(OutputSet &files, std::ostream &csv) const {
+    realScan(files, csv, RealScanKind::EmptyRoom);
+}
+
+void ExperimentCommand::corridor(OutputSet &files, std::ostream &csv) const {
+    realScan(files, csv, RealScanKind::Corridor);
+}
+
+void ExperimentCommand::laboratory(OutputSet &files, std::ostream &csv) const {
+    realScan(files, csv, RealScanKind::Laboratory);
+}
+
+void ExperimentCommand::polygons(OutputSet &files, std::ostream &csv) const {
+    quality(files, csv, "all polygons", polygonExperiment(options));
+}
+
+void ExperimentCommand::ofLog(OutputSet &files, std::ostream &csv) const {
+    quality(files, csv, "log", logExperiment(readLog().scans, options));
+}
+
+void ExperimentCommand::criterion(OutputSet &files, std::ostream &csv) const {
+    const std::vector<Surface> surfaces = criterionSurfaces();
+    writeCsv(csv, surfaces);
+    draw(files, {{}, surfaces, {}});
+}
+
+void ExperimentCommand::criterionTime(OutputSet &files, std::ostream &csv) const {
+    const std::vector<CriterionTime> times = criterionTimes(options);
+    writeCsv(csv, times);
+    draw(files, {plotsOf(times), {}, {}});
+}
+
+void ExperimentCommand::segment(OutputSet &files, std::ostream &csv, const Scene &scene) const {
+    const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
+    writeCsv(csv, panels);
+    for (const SegmentationPanel &panel : panels)
+        vector::draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
+                                     std::to_string(std::lround(100 * panel.outlierShare)) + "percent.svg"),
+                     scene, panel);
+}
+
+void ExperimentCommand::quality(OutputSet &files, std::ostream &csv, const std::string &title,
+                                const std::vector<QualityRow> &rows) const {
+    writeCsv(csv, rows);
+    draw(files, {plotsOf(title, rows), {}, {}});
+}
+
+void ExperimentCommand::realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const {
+    const RealScanResult result = realScanExperiment(readLog().scans, kind);
+    if (result.points == 0)
+        throw Failure(logs[0] + ": no scan has returns on half of its rays");
+    writeCsv(csv, result);
+    writeLatex(open(files, ".tex"), name, result);
+    vector::draw(open(files, ".svg"), name, result);
+}
+
+void ExperimentCommand::scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
+    const std::vector<ResultRow> rows = sceneExperiment(scene, options);
+    writeCsv(csv, rows);
+    draw(files, {plotsOf(scene.title, rows), {}, {}});
+}
+
+} // namespace hermes::vector
