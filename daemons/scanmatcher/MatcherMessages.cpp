@@ -9,26 +9,6 @@ using vectorlib::Relocalized;
 
 namespace {
 
-QString name(Relocalized::Outcome outcome) {
-    switch (outcome) {
-    case Relocalized::Outcome::Found:
-        return "found";
-    case Relocalized::Outcome::NoScan:
-        return "no_scan";
-    case Relocalized::Outcome::NoMap:
-        return "no_map";
-    case Relocalized::Outcome::TooLittle:
-        return "too_little";
-    case Relocalized::Outcome::Nowhere:
-        return "nowhere";
-    case Relocalized::Outcome::Ambiguous:
-        return "ambiguous";
-    case Relocalized::Outcome::Unfinished:
-        return "unfinished";
-    }
-    return {};
-}
-
 PlaceAnswer answerOf(const Place &place) {
     PlaceAnswer answer{
         place.pose,      place.score,       place.probability,  place.reliability,
@@ -43,7 +23,7 @@ PlaceAnswer answerOf(const Place &place) {
 
 SearchAnswer answerOf(const Relocalized &search) {
     SearchAnswer answer;
-    answer.outcome = name(search.outcome);
+    answer.outcome = QString(vectorlib::name(search.outcome));
     for (const Place &place : search.places)
         answer.candidates.push_back(answerOf(place));
     answer.alike = quint64(search.alike);

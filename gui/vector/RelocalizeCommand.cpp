@@ -13,27 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char *nameOf(vectorlib::Relocalized::Outcome outcome) {
-    using Outcome = vectorlib::Relocalized::Outcome;
-    switch (outcome) {
-    case Outcome::Found:
-        return "found";
-    case Outcome::NoScan:
-        return "no_scan";
-    case Outcome::NoMap:
-        return "no_map";
-    case Outcome::TooLittle:
-        return "too_little";
-    case Outcome::Nowhere:
-        return "nowhere";
-    case Outcome::Ambiguous:
-        return "ambiguous";
-    case Outcome::Unfinished:
-        return "unfinished";
-    }
-    return "";
-}
-
 Json placeAsJson(const vectorlib::Place &place) {
     Json covariance = nullptr;
     if (place.covariance)
@@ -78,7 +57,7 @@ struct RelocalizeCommand {
         vectorlib::PlaceSearch search;
         search.maxSeconds = seconds;
         const vectorlib::Relocalized &result = search(slots, edges, seen.points);
-        Json json = {{"outcome", nameOf(result.outcome)},
+        Json json = {{"outcome", vectorlib::name(result.outcome)},
                      {"text", result.text()},
                      {"alike", result.alike},
                      {"parts", result.parts},

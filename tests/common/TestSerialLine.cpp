@@ -413,7 +413,7 @@ void TestSerialLine::aDaemonThatStartsAnewIsSubscribedAgain() {
     client->subscribe("numbers", {}, nullptr);
     client->subscribe("state", {}, nullptr);
     QTRY_VERIFY(daemon->hasSubscribers("numbers"));
-    QTest::qWait(500); // it has heard who is there
+    QVERIFY(client->callAndWait("daemon.info")); // after it has heard who is there
     daemon.reset();
     startDaemon();
     QVERIFY(!daemon->hasSubscribers("numbers"));

@@ -89,4 +89,25 @@ struct Relocalized {
     }
 };
 
+/// For programs.
+inline const char *name(Relocalized::Outcome outcome) {
+    switch (outcome) {
+    case Relocalized::Outcome::Found:
+        return "found";
+    case Relocalized::Outcome::NoScan:
+        return "no_scan";
+    case Relocalized::Outcome::NoMap:
+        return "no_map";
+    case Relocalized::Outcome::TooLittle:
+        return "too_little";
+    case Relocalized::Outcome::Nowhere:
+        return "nowhere";
+    case Relocalized::Outcome::Ambiguous:
+        return "ambiguous";
+    case Relocalized::Outcome::Unfinished:
+        return "unfinished";
+    }
+    return "";
+}
+
 } // namespace vectorlib
