@@ -58,6 +58,11 @@ Command &Command::fresh() {
     return with(freshKey(), true);
 }
 
+Command &Command::takes(int values) {
+    mostValues_ = values;
+    return *this;
+}
+
 Command &Command::unlisted() {
     isListed_ = false;
     return *this;

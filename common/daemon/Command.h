@@ -59,6 +59,8 @@ public:
     Command &urgent();
     /// `x-fresh`: not carried out when it was received before the program had stood still.
     Command &fresh();
+    /// How many values its parameters may hold: the time to check them is the daemon's, and everybody's.
+    Command &takes(int values);
     /// Not in the description: it is of the connection, not of the daemon.
     Command &unlisted();
     /// Answers at once.
@@ -75,6 +77,7 @@ public:
     /// Sent again and again, the last one counts: who drives.
     bool isSetPoint() const { return extra_.contains(QStringLiteral("x-needs-lease")); }
     bool isListed() const { return isListed_; }
+    int mostValues() const { return mostValues_; }
 
     /// The method object of an OpenRPC document.
     QJsonObject description() const;
@@ -102,6 +105,7 @@ private:
     AsyncHandler run_;
     Role role_ = Role::Operator;
     bool isListed_ = true;
+    int mostValues_ = 10000;
     mutable std::shared_ptr<const SchemaValidator> validator_; // made at the first call
 };
 

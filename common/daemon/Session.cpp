@@ -11,9 +11,8 @@ namespace hermes {
 namespace {
 
 constexpr int largestUrgentBytes = 4 << 10;
-// In the parameters of one request, where commands are urgent: to check more takes long.
-constexpr int mostValues = 1000;
-constexpr int largeFrameBytes = 16 << 10; // takes half a millisecond to read
+constexpr int mostValuesBesideUrgent = 1000; // in the parameters of one request
+constexpr int largeFrameBytes = 16 << 10;    // takes half a millisecond to read
 // What a client has sent before a gap may lie on its side, or in a tunnel, and come afterwards.
 constexpr double settling_s = 0.25;
 constexpr double mostUnderWay =
@@ -306,12 +305,14 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
         return Error(
             ErrorCode::NotReady,
             QStringLiteral("its id says that this was asked before a stop that has come: it is void"));
-    int left = mostValues;
+    if (!command)
+        return std::nullopt;
+    const int most = commands_.urgent().isEmpty() ? command->mostValues() : mostValuesBesideUrgent;
+    int left = most;
     countValues(request.params, left);
-    if (left < 0 && !commands_.urgent().isEmpty()) {
+    if (left < 0)
         return Error(ErrorCode::OverLimit,
-                     QStringLiteral("the parameters hold more than %1 values").arg(mostValues));
-    }
+                     QStringLiteral("the parameters hold more than %1 values").arg(most));
     return std::nullopt;
 }
 

@@ -49,6 +49,10 @@ public:
         addCommand(Command("large", "Gives much")
                        .param(Field::integer("bytes", "How much").byDefault(100000))
                        .handler([](const Call &call) { return QString(call.integer("bytes"), 'x'); }));
+        addCommand(Command("many", "Counts what it is given")
+                       .param(Field::array("items", "Many", {{"type", "number"}}))
+                       .takes(20000)
+                       .handler([](const Call &call) { return call.value("items").toArray().size(); }));
         addCommand(Command("fault", "Fails").handler([](const Call &) -> Result<QJsonValue> {
             return Error(ErrorCode::DeviceFault, "unplugged", QJsonObject{{"device", "t0"}});
         }));

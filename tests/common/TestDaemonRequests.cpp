@@ -15,6 +15,8 @@ private Q_SLOTS:
     void handlerErrorsEndThatRequestOnly_data();
     void handlerErrorsEndThatRequestOnly();
     void invalidParamsNameEachOffender();
+    void valuesOfARequestAreBounded_data();
+    void valuesOfARequestAreBounded();
     void answersMayComeLaterAndFromThreads();
     void batchRepliesKeepOrder();
     void datagramsCarryRequests();
@@ -115,6 +117,30 @@ void TestDaemonRequests::invalidParamsNameEachOffender() {
     QCOMPARE(errors(QJsonArray{1, 2, 3})[0].toObject()["path"].toString(), QString("[2]"));
     QCOMPARE(errors(QJsonArray{1}).size(), 1);
     QCOMPARE(errors(QJsonValue::Undefined).size(), 2);
+}
+
+void TestDaemonRequests::valuesOfARequestAreBounded_data() {
+    QTest::addColumn<QString>("method");
+    QTest::addColumn<int>("values");
+    QTest::addColumn<int>("code"); // 0: none
+    const int overLimit = int(ErrorCode::OverLimit), invalid = int(ErrorCode::InvalidParams);
+    // The object and the list are values, too.
+    QTest::newRow("at most, of any command") << "subtract" << 9998 << invalid;
+    QTest::newRow("one more") << "subtract" << 9999 << overLimit;
+    QTest::newRow("at most, of a command that takes many") << "many" << 19998 << 0;
+    QTest::newRow("one more than many") << "many" << 19999 << overLimit;
+}
+
+void TestDaemonRequests::valuesOfARequestAreBounded() {
+    QFETCH(QString, method);
+    QFETCH(int, values);
+    QJsonArray items;
+    for (int i = 0; i < values; ++i)
+        items.append(i);
+    RawClient client(address());
+    client.request(1, method, QJsonObject{{"items", items}});
+    const QJsonObject reply = client.message();
+    QTEST(reply["error"].toObject()["code"].toInt(), "code");
 }
 
 void TestDaemonRequests::answersMayComeLaterAndFromThreads() {

@@ -68,13 +68,13 @@ def kind_of(name, dice):
                                               False, False),
         "comes and goes": lambda: (line(request("daemon.info")), False, True),
         "batches": lambda: (batch(dice.choice(("rpc.discover", "daemon.info", "settings.schema")), 1000), True, True),
-        "1 MB of parameters": lambda: (line(request("settings.set", values={f"n{i}": {} for i in range(60000)})), True, True),
+        "many parameters": lambda: (line(request("settings.set", values={f"n{i}": {} for i in range(dice.choice((998, 9998, 60000)))})), True, True),
     }[name]()
 
 
 KINDS = ("silent", "half a line", "nearly a whole frame", "line without end", "garbage", "deep JSON", "CBOR garbage", "HTTP", "TLS hello",
          "asks much, reads nothing", "large batches, reads nothing", "all topics, reads nothing", "comes and goes", "batches",
-         "1 MB of parameters")
+         "many parameters")
 
 
 class Hostile:
