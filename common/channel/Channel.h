@@ -78,6 +78,8 @@ public:
     bool arrivedInPieces() const { return inPieces_; }
     /// Of its frame, where it may be a repeat.
     const QByteArray &digest() const { return digest_; }
+    /// Whether messages wait here to be given.
+    bool hasWaiting() const { return !waiting_.empty(); }
     /// Nothing of a message waits here or with the system.
     bool isQuiet() const;
 

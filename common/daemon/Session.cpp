@@ -414,6 +414,9 @@ void Session::send(const QJsonValue &reply, const QByteArray &key, Channel::Rank
     }
     if (!key.isEmpty() && sent)
         replies_.answer(key, *sent, rank, monotonicNow());
+    // Who waits for this one has it before the others' turns; many replies go out together.
+    if (!channel_->hasWaiting() && !channel_->isLine())
+        channel_->flush();
 }
 
 } // namespace hermes
