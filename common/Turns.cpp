@@ -13,7 +13,7 @@ namespace hermes {
 namespace {
 
 constexpr double longest_s = 0.001;
-constexpr double rest_s = 0.005;
+constexpr double rest_s = 0.002;
 constexpr int mostKnown = 10000;
 constexpr int backgroundNiceness = 5;
 

@@ -405,6 +405,7 @@ std::optional<Error> Session::overfull() const {
 void Session::send(const QJsonValue &reply, const QByteArray &key, Channel::Rank rank) {
     if (!makeRoom())
         return;
+    const bool isAlone = channel_->bytesToWrite() == 0 && !channel_->hasWaiting() && !channel_->isLine();
     const auto full = overfull();
     auto sent = full ? Result<Sent>(*full) : channel_->send(reply, rank);
     if (!sent) {
@@ -415,7 +416,7 @@ void Session::send(const QJsonValue &reply, const QByteArray &key, Channel::Rank
     if (!key.isEmpty() && sent)
         replies_.answer(key, *sent, rank, monotonicNow());
     // Who waits for this one has it before the others' turns; many replies go out together.
-    if (!channel_->hasWaiting() && !channel_->isLine())
+    if (isAlone)
         channel_->flush();
 }
 

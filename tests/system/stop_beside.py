@@ -380,12 +380,13 @@ class FullDisk:
         self.ends.set()
         for thread in self.threads:
             thread.join()
+        room = os.statvfs(self.disk).f_bavail  # a logger that ends cuts off what is damaged
         self.sender.kill()
         self.sender.wait()
         self.logger.stop()
         if failed[0]:
             return
-        assert os.statvfs(self.disk).f_bavail == 0, "there is room again"
+        assert room == 0, f"{room} blocks became free"
         assert all(number > 0 for number in self.refused.values()), self.refused
         with open(self.stand.config, encoding="utf-8") as file:
             assert file.read() == self.before, "the settings file was damaged"
