@@ -1,10 +1,9 @@
 #include "gui/vector/ExperimentCommand.h"
 
-#include "gui/vector/Failure.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
 
-#include <filesystem>
+#include <algorithm>
 #include <map>
 
 namespace hermes::vector {
@@ -15,58 +14,94 @@ struct Experiment {
     const char *name;
     const char *what;
     void (ExperimentCommand::*run)(OutputSet &, std::ostream &csv) const;
+    const char *takes; ///< options, beside those that all take
 };
 
+constexpr const char *ofScenes = "--runs --max-points --seed";
+constexpr const char *ofWorlds = "--worlds --runs --max-points --seed";
+
 constexpr Experiment experiments[] = {
-    {"segmentation-room", "figure 5.6: a room, by noise and outliers", &ExperimentCommand::segmentationRoom},
+    {"segmentation-room", "figure 5.6: a room, by noise and outliers", &ExperimentCommand::segmentationRoom,
+     "--seed"},
     {"segmentation-objects", "figure 5.7: the same with small objects",
-     &ExperimentCommand::segmentationObjects},
-    {"semicircle", "figure 6.7: time by the number of lines", &ExperimentCommand::semicircle},
-    {"edges", "figure 6.8: four solitary edges", &ExperimentCommand::edges},
-    {"corners", "figure 6.9: one cluster with sharp corners", &ExperimentCommand::corners},
-    {"room", "figure 6.10: a furnished room", &ExperimentCommand::room},
-    {"empty-room", "figure 6.11: the scan of --log with long lines all around",
-     &ExperimentCommand::emptyRoom},
+     &ExperimentCommand::segmentationObjects, "--seed"},
+    {"semicircle", "figure 6.7: time by the number of lines", &ExperimentCommand::semicircle, "--max-points"},
+    {"edges", "figure 6.8: four solitary edges", &ExperimentCommand::edges, ofScenes},
+    {"corners", "figure 6.9: one cluster with sharp corners", &ExperimentCommand::corners, ofScenes},
+    {"room", "figure 6.10: a furnished room", &ExperimentCommand::room, ofScenes},
+    {"empty-room", "figure 6.11: the scan of --log with long lines all around", &ExperimentCommand::emptyRoom,
+     "--log"},
     {"corridor", "figure 6.12: the scan of --log with long lines in one direction",
-     &ExperimentCommand::corridor},
-    {"laboratory", "figure 6.13: the scan of --log with the most lines", &ExperimentCommand::laboratory},
-    {"polygons", "closed polygons: error by the number of vertices", &ExperimentCommand::polygons},
-    {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog},
+     &ExperimentCommand::corridor, "--log"},
+    {"laboratory", "figure 6.13: the scan of --log with the most lines", &ExperimentCommand::laboratory,
+     "--log"},
+    {"polygons", "closed polygons: error by the number of vertices", &ExperimentCommand::polygons,
+     "--runs --seed"},
+    {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog, "--log --runs"},
     {"pairs", "the motions between scans of --log: error against its corrected poses",
-     &ExperimentCommand::pairs},
+     &ExperimentCommand::pairs, "--log --every --first --half --no-guess --draw"},
     {"calibration", "matches without estimate in all pairs of --log ...: probability told, and share right",
-     &ExperimentCommand::calibration},
+     &ExperimentCommand::calibration, "--log --every --first --half"},
     {"places", "scans of --log searched in a map of every other scan: how often their place is found",
-     &ExperimentCommand::places},
-    {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion},
+     &ExperimentCommand::places, "--log --other"},
+    {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion, ""},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
-     &ExperimentCommand::criterionTime},
-    {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy},
-    {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion},
+     &ExperimentCommand::criterionTime, "--seed"},
+    {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy,
+     ofWorlds},
+    {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion, ofWorlds},
     {"weighting", "paper tables 1 and 2: what weights gain, what ambiguity tells",
-     &ExperimentCommand::weighting},
-    {"reliability", "paper figure 9: reliability at every pose", &ExperimentCommand::reliability},
-    {"rotation", "paper figure 10: Mitsuta's and Wahba's mean rotation", &ExperimentCommand::rotation},
-    {"free-home", "pose-free thesis 6.2, 6.3, 6.11: 3,069 scans of a home", &ExperimentCommand::freeHome},
-    {"free-leaps", "pose-free thesis 6.4, 6.5, 6.11: 23 scans of the same way",
-     &ExperimentCommand::freeLeaps},
-    {"free-copy", "pose-free thesis 6.7, 6.8: a scan on its copy", &ExperimentCommand::freeCopy},
+     &ExperimentCommand::weighting, ofWorlds},
+    {"reliability", "paper figure 9: reliability at every pose", &ExperimentCommand::reliability, ofWorlds},
+    {"rotation", "paper figure 10: Mitsuta's and Wahba's mean rotation", &ExperimentCommand::rotation,
+     "--runs --seed"},
+    {"free-home", "pose-free thesis 6.2, 6.3, 6.11: 3,069 scans of a home", &ExperimentCommand::freeHome,
+     "--worlds --seed"},
+    {"free-leaps", "pose-free thesis 6.4, 6.5, 6.11: 23 scans of the same way", &ExperimentCommand::freeLeaps,
+     "--worlds --seed"},
+    {"free-copy", "pose-free thesis 6.7, 6.8: a scan on its copy", &ExperimentCommand::freeCopy,
+     "--worlds --seed"},
     {"free-approach", "pose-free thesis 6.9, 6.10: straight to where walls meet",
-     &ExperimentCommand::freeApproach},
-    {"free-log", "pose-free thesis 6.12, 6.13: the scans of --log", &ExperimentCommand::freeLog}};
+     &ExperimentCommand::freeApproach, "--worlds --seed --every"},
+    {"free-log", "pose-free thesis 6.12, 6.13: the scans of --log", &ExperimentCommand::freeLog,
+     "--log --every"}};
+
+bool takes(const Experiment &experiment, const std::string &option) {
+    return (std::string(experiment.takes) + ' ').find(option + ' ') != std::string::npos;
+}
+
+/// The names of the experiments that take an option.
+std::string takersOf(const std::string &option) {
+    std::string names;
+    for (const Experiment &e : experiments)
+        if (takes(e, option))
+            names += (names.empty() ? "" : ", ") + std::string(e.name);
+    return names;
+}
 
 } // namespace
 
+void ExperimentCommand::refuseUnused(const CLI::App &sub) const {
+    const Experiment &own = *std::find_if(std::begin(experiments), std::end(experiments),
+                                          [this](const Experiment &e) { return name == e.name; });
+    for (const CLI::Option *option : sub.get_options()) {
+        const std::string takers = takersOf(option->get_name());
+        if (option->count() > 0 && !takers.empty() && !takes(own, option->get_name()))
+            throw CLI::ValidationError(option->get_name(), "the experiment " + name +
+                                                               " takes no such option; taken by: " + takers);
+    }
+    if (every.size() > std::max<std::size_t>(1, logs.size()))
+        throw CLI::ValidationError("--every", "found " + std::to_string(every.size()) +
+                                                  ", expected one for each --log at most");
+}
+
 void ExperimentCommand::run() {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        throw Failure(folder + ": cannot be made: " + error.message());
+    OutputSet files(force);
+    files.makeFolder(folder);
     Progress progress("run");
     options.progress = [&](std::size_t done, std::size_t all) { progress.update(done, all); };
     pairOptions.progress = options.progress;
     pairOptions.every = every[0];
-    OutputSet files(force);
     std::ostream &csv = open(files, ".csv"); // first: that it exists is told before the work is done
     for (const Experiment &experiment : experiments)
         if (name == experiment.name)
@@ -107,14 +142,15 @@ void addExperimentCommand(CLI::App &app) {
         ->check(between(1, 1e9))
         ->type_name("N")
         ->capture_default_str();
-    sub->add_option("--first", command->pairOptions.first, "pairs: only the first N pairs")
+    sub->add_option("--first", command->pairOptions.first, "pairs, calibration: only the first N pairs")
         ->check(between(1, 1e9))
         ->type_name("N");
     sub->add_flag("--no-guess", command->noGuess,
                   "pairs: match by the two scans alone, without odometry or any other estimate");
-    sub->add_option("--half", command->pairOptions.half,
-                    "pairs: only the first or the second half, blocks of 50 pairs in turn: to choose "
-                    "parameters on one and judge them on the other")
+    sub->add_option(
+           "--half", command->pairOptions.half,
+           "pairs, calibration: only the first or the second half, blocks of 50 pairs in turn: to choose "
+           "parameters on one and judge them on the other")
         ->transform(CLI::CheckedTransformer(
             std::map<std::string, PairHalf>{{"1", PairHalf::First}, {"2", PairHalf::Second}}))
         ->type_name("1|2");
@@ -141,7 +177,10 @@ void addExperimentCommand(CLI::App &app) {
         ->capture_default_str();
     sub->add_flag("--force", command->force, "Overwrite files that exist");
     sub->footer(example("hermes-vector experiment corners --out results"));
-    sub->callback([command] { command->run(); });
+    sub->callback([command, sub] {
+        command->refuseUnused(*sub);
+        command->run();
+    });
 }
 
 } // namespace hermes::vector

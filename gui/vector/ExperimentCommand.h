@@ -11,6 +11,7 @@
 #include "gui/vector/experiment/VectorizationExperiment.h"
 #include "vectorlib/io/CarmenLog.h"
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 namespace hermes::vector {
@@ -31,6 +32,8 @@ struct ExperimentCommand {
     std::size_t pictures = 0;
     bool force = false;
 
+    /// Throws CLI::ValidationError when an option was given that the experiment does not take.
+    void refuseUnused(const CLI::App &sub) const;
     void run();
 
     void segmentationRoom(OutputSet &files, std::ostream &csv) const;

@@ -55,7 +55,7 @@ void ExperimentCommand::places(OutputSet &files, std::ostream &csv) const {
     std::ostream &json = open(files, ".json"); // before the work, as the table is
     const PlacesReport report = placesExperiment(read, strange ? &*strange : nullptr, options.progress);
     writeCsv(csv, report);
-    tell(json, summaryOf(report, !strange));
+    tell(json, summaryOf(report));
 }
 
 } // namespace hermes::vector

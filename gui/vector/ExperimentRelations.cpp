@@ -26,13 +26,13 @@ void ExperimentCommand::freeLog(OutputSet &files, std::ostream &csv) const {
     if (scans.empty())
         throw Failure(logs[0] + ": found no scan");
     const vectorlib::CarmenScan &scan = read.scans.front();
-    relation(files, csv, scans, scan.ranges.size(), scan.angleStep * double(scan.ranges.size()),
-             {{"last_error_x_m", 0.0784}, {"last_error_y_m", -0.0066}, {"last_error_deg", 2.12}});
+    relation(files, csv, scans, scan.ranges.size(), scan.angleStep * double(scan.ranges.size()), {});
 }
 
 void ExperimentCommand::freeCopy(OutputSet &files, std::ostream &csv) const {
     const std::vector<InjectedError> rows = injectedErrors(world("home"), options.seed);
     writeCsv(csv, rows);
+    tell(open(files, ".json"), summaryOf(rows));
     draw(files, {plotsOf(rows), {}, {}});
 }
 

@@ -1,7 +1,9 @@
+#include "gui/vector/Failure.h"
 #include "gui/vector/MapFiles.h"
 #include "gui/vector/MapRun.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
+#include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/MapCsv.h"
 
 #include <chrono>
@@ -20,6 +22,7 @@ struct MapCommand {
     std::string outTrajectory;
     std::string summary;
     std::string svg;
+    std::optional<std::size_t> onlyScan;
     bool force = false;
     SegmentOptions segment;
     double sigma = vectorlib::VectorizerSettings().sigma;
@@ -72,6 +75,25 @@ struct MapCommand {
         files.commit();
     }
 
+    /// One scan as a file of points instead of a map.
+    void writeScan() const {
+        OutputSet files(force);
+        std::ostream &out = files.open(summary);
+        std::size_t scans = 0;
+        const MapSourceReport report =
+            readMapScans(source, [&](MapScan &scan, std::size_t number, std::size_t) {
+                scans = number + 1;
+                if (number == *onlyScan)
+                    vectorlib::writeCsvPoints(out, scan.points);
+            });
+        if (*onlyScan >= scans)
+            throw Failure(source.path + ": found " + std::to_string(scans) + " scans, expected a scan " +
+                          std::to_string(*onlyScan) + " (they count from 0)");
+        if (!report.otherSensors.empty())
+            std::cerr << "hermes-vector: " << report.otherSensors << '\n';
+        files.commit();
+    }
+
     MapSourceReport readScans(MapRun &run) const {
         Progress progress("scan");
         return readMapScans(source, [&](MapScan &scan, std::size_t number, std::size_t total) {
@@ -111,6 +133,13 @@ void addMapCommand(CLI::App &app) {
                     "CARMEN log, pcap of an " + velodyne::sensorNames() +
                         ", or a folder of points files taken in name order")
         ->required();
+    CLI::Option *scan =
+        sub->add_option(
+               "--scan", command->onlyScan,
+               "Build no map: write the points of scan N, from 0, as CSV x,y in its sensor's frame, for "
+               "the commands that take one scan")
+            ->check(between(0, 1e15))
+            ->type_name("N");
     sub->add_option("--out-map", command->outMap,
                     "The map; its kind follows from the extension: csv, svg, geojson, dxf, pgm")
         ->check(CLI::Validator(
@@ -126,7 +155,8 @@ void addMapCommand(CLI::App &app) {
                     "The sensor's poses, TUM format: stamp x y z qx qy qz qw; a stamp that is not later than "
                     "the one before is moved to a microsecond behind it")
         ->type_name("FILE");
-    sub->add_option("--summary,--out", command->summary, "The summary; standard output when not given")
+    sub->add_option("--summary,--out", command->summary,
+                    "The summary, or the points of --scan; standard output when not given")
         ->type_name("FILE");
     sub->add_option("--svg", command->svg, "Also draw a picture of map and trajectory")->type_name("FILE");
     sub->add_option("--odometry", command->odometry,
@@ -155,7 +185,10 @@ void addMapCommand(CLI::App &app) {
     sub->add_flag("--force", command->force, "Overwrite files that exist");
     sub->footer(
         example("hermes-vector map intel.log.gz --corrected --out-map intel.svg --out-trajectory intel.tum"));
-    sub->callback([command] { command->run(); });
+    for (const char *ofMap :
+         {"--out-map", "--out-trajectory", "--svg", "--odometry", "--corrected", "--every"})
+        scan->excludes(sub->get_option(ofMap));
+    sub->callback([command] { command->onlyScan ? command->writeScan() : command->run(); });
 }
 
 } // namespace hermes::vector

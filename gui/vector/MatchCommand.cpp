@@ -62,7 +62,7 @@ struct MatchCommand {
         const Matched result = match(fixed, moving, around);
         write(out, result, fixed, moving);
         if (result.solutions.empty())
-            std::cerr << "hermes-vector: no solution: " << result.outcome << '\n';
+            std::cerr << "hermes-vector: no solution: " << result.text() << '\n';
         if (svg)
             draw(*svg, result, fixed, moving,
                  expected.empty() && result.method != "finder" ? std::nullopt : std::make_optional(around));
@@ -106,7 +106,8 @@ struct MatchCommand {
     static void write(std::ostream &out, const Matched &result, const SegmentSet &fixed,
                       const SegmentSet &moving) {
         Json json = {{"method", result.method},
-                     {"outcome", result.outcome},
+                     {"outcome", name(result.outcome)},
+                     {"text", result.text()},
                      {"potential_pairs", result.potentialPairs},
                      {"combinations", result.combinations},
                      {"solutions", Json::array()}};
@@ -150,7 +151,7 @@ struct MatchCommand {
                 before.push_back(*around * s);
             after.push_back(pose * s);
         }
-        vectorlib::SvgPicture picture(!best            ? "No match: " + result.outcome
+        vectorlib::SvgPicture picture(!best            ? "No match: " + result.text()
                                       : best->accepted ? "Match"
                                                        : "Not accepted: " + result.solutions[0].verdict);
         picture.segments({vectorlib::colour::map, 4, "static set"}, near(fixed.segments(), moving, pose));
@@ -192,7 +193,8 @@ void addMatchCommand(CLI::App &app) {
     auto command = std::make_shared<MatchCommand>();
     CLI::App *sub = app.add_subcommand(
         "match", "Find the motion between two scans, or the place of a scan in a map, without known partners "
-                 "(JSON)");
+                 "(JSON). Taken for granted: both show the same place; scans of different places that look "
+                 "alike match, too");
     const std::string kinds = "points (CSV x,y or ascii PCD), segments (CSV x1,y1,x2,y2)";
     sub->add_option("STATIC", command->fixedPath, "A scan: " + kinds + "; or a map by hermes-vector map")
         ->required();

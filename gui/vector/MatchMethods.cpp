@@ -10,7 +10,6 @@
 namespace hermes::vector {
 
 using vectorlib::GlobalPairMatch;
-using vectorlib::GlobalPairVerdict;
 using vectorlib::SearchResult;
 using vectorlib::Solution;
 using vectorlib::Transformation2D;
@@ -83,11 +82,12 @@ MatchedSolution solutionOf(const vectorlib::GlobalPairSolution &s, bool accepted
 /// The solutions in the given form, with their segments.
 Matched matchedOf(const GlobalPairMatch &match, const SegmentSet &fixed, const SegmentSet &moving) {
     Matched result;
-    result.outcome = describe(match.verdict);
+    result.outcome = outcomeOf(match.verdict);
+    result.reason = reasonOf(match.verdict);
     SegmentsUnderMotion segments(fixed, moving);
     for (const vectorlib::GlobalPairSolution &s : match.solutions) {
         const bool best = result.solutions.empty();
-        const std::string verdict = best ? describe(match.verdict) : "another solution fits better";
+        const std::string verdict = best ? result.reason : "another solution fits better";
         result.solutions.push_back(solutionOf(s, best && match.isAccepted(), verdict));
         segments.addTo(result.solutions.back());
         if (best) {
@@ -106,7 +106,16 @@ double turnOf(const std::vector<vectorlib::Vector2D<float>> &scan) {
     return turn;
 }
 
-std::vector<vectorlib::TypedSegment> typedSegmentsOf(const SegmentSet &set) {
+using TypedSegments = std::vector<vectorlib::TypedSegment>;
+
+double lengthOf(const TypedSegments &segments) {
+    double length = 0;
+    for (const vectorlib::TypedSegment &s : segments)
+        length += s.segment.length();
+    return length;
+}
+
+TypedSegments typedSegmentsOf(const SegmentSet &set) {
     if (isScan(set)) {
         constexpr double nearlyAll = 1.9 * vectorlib::pi;
         const double turn = turnOf(set.points);
@@ -114,7 +123,7 @@ std::vector<vectorlib::TypedSegment> typedSegmentsOf(const SegmentSet &set) {
         extract.setScanner(turn > 0 && turn < nearlyAll ? turn : 2 * vectorlib::pi, set.points.size());
         return extract(set.points);
     }
-    std::vector<vectorlib::TypedSegment> result;
+    TypedSegments result;
     for (const vectorlib::LineSegment2D<double> &s : set.segments()) {
         result.emplace_back();
         result.back().segment = s;
@@ -133,7 +142,7 @@ Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
         map.add(fixed.segments()[i]);
     const SearchResult &found =
         inMap ? find(map, moving.segments(), around) : find(fixed.segments(), moving.segments(), around);
-    Matched result{"finder", describe(found.outcome), found.potentialPairs, found.combinations, {}};
+    Matched result{"finder", outcomeOf(found), reasonOf(found), found.potentialPairs, found.combinations, {}};
     for (const Solution &s : found.solutions)
         result.solutions.push_back({s, describe(s.fault), std::nullopt,
                                     vectorlib::SolutionCovariance()(s, fixed.measured, moving.measured)});
@@ -152,17 +161,18 @@ Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving, double 
 
 Matched matchByRelations(const SegmentSet &fixed, const SegmentSet &moving) {
     vectorlib::RelationMatcher match;
-    const vectorlib::RelationMatch &found = match(typedSegmentsOf(fixed), typedSegmentsOf(moving));
-    Matched result{"relations", describe(found.outcome), 0, 0, {}};
+    const TypedSegments reference = typedSegmentsOf(fixed), current = typedSegmentsOf(moving);
+    const vectorlib::RelationMatch &found = match(reference, current);
+    Matched result{"relations", outcomeOf(found.outcome), reasonOf(found.outcome), 0, 0, {}};
     if (!found.isMatched() && found.outcome != vectorlib::RelationOutcome::Ambiguous)
         return result;
     MatchedSolution s;
     s.solution.pose = found.pose;
-    s.solution.score = found.score;
+    s.solution.score = found.evidence / std::min(lengthOf(reference), lengthOf(current));
     s.solution.reliability = found.reliability;
     s.solution.ambiguity = found.ambiguity;
     s.solution.accepted = found.isMatched();
-    s.verdict = found.isMatched() ? "accepted" : result.outcome;
+    s.verdict = found.isMatched() ? "accepted" : result.reason;
     SegmentsUnderMotion segments(fixed, moving);
     segments.addTo(s);
     result.potentialPairs = segments.potentialPairs;
@@ -189,10 +199,15 @@ Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const M
         result.solutions.emplace_back();
         result.solutions[0].solution.pose = tracked.pose;
     }
-    result.outcome = tracked.accepted ? "found" : "too little agrees near the expected motion";
+    if (tracked.accepted)
+        result.outcome = MatchOutcome::Found;
+    else if (result.outcome != MatchOutcome::OpenDirection && result.outcome != MatchOutcome::TooLittle) {
+        result.outcome = MatchOutcome::Nowhere;
+        result.reason = "too little agrees near the expected motion";
+    }
     for (MatchedSolution &s : result.solutions) {
         s.solution.accepted = tracked.accepted;
-        s.verdict = tracked.accepted ? "accepted" : result.outcome;
+        s.verdict = tracked.accepted ? "accepted" : result.reason;
     }
     return result;
 }

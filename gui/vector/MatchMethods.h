@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/MatchOutcome.h"
 #include "gui/vector/SegmentSet.h"
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
 
@@ -11,8 +12,9 @@ namespace hermes::vector {
 
 /// A motion that was found, and what is known of it.
 struct MatchedSolution {
-    vectorlib::Solution solution; ///< its accepted tells whether to trust it
-    std::string verdict;
+    /// Its score is up to 1, whatever the method; docs/hermes-vector.md tells how each makes it.
+    vectorlib::Solution solution;
+    std::string verdict;               ///< "accepted", or why not
     std::optional<double> probability; ///< where the method tells one
     std::optional<Eigen::Matrix3d> covariance;
 };
@@ -20,10 +22,16 @@ struct MatchedSolution {
 /// What one of the methods makes of two sets.
 struct Matched {
     std::string method;
-    std::string outcome; ///< how the search ended
+    MatchOutcome outcome = MatchOutcome::Nowhere;
+    std::string reason; ///< of any outcome but Found
     std::size_t potentialPairs = 0;
     std::uint64_t combinations = 0;
     std::vector<MatchedSolution> solutions; ///< best first
+
+    /// The outcome in words, for people.
+    std::string text() const {
+        return outcome == MatchOutcome::Found ? describe(outcome) : describe(outcome) + (": " + reason);
+    }
 };
 
 /// Where the second set is expected in the frame of the first; standard deviations in metres and radians.

@@ -9,7 +9,8 @@ namespace hermes::vector {
 
 /// What a command writes. Every file is written under a temporary name beside its target and takes its place
 /// in commit(); when the command fails, is interrupted or commit() is not reached, no trace is left. `-` and
-/// the empty path are standard output, which is not held back.
+/// the empty path are standard output, which is not held back. Where its reader goes away early, the files
+/// are still put in their places.
 class OutputSet {
 public:
     explicit OutputSet(bool force);
@@ -20,16 +21,27 @@ public:
     /// A stream for the path. Throws Failure when the target exists (unless force), is a folder, is asked for
     /// twice or cannot be written.
     std::ostream &open(const std::string &path);
-    /// Puts all files in their places; throws Failure when something could not be written.
+    /// Makes a folder, and those above it, where they are missing; what was made and is empty goes again
+    /// unless commit() is reached. Throws Failure when it cannot be made.
+    void makeFolder(const std::string &path);
+    /// Puts all files in their places; throws Failure when one could not be written, and after that when
+    /// standard output could not, whoever wrote to it.
     void commit();
 
 private:
     struct File;
-    bool force_;
+    struct Folder {
+        std::string path;
+        std::size_t slot; ///< in the list of what a signal removes
+    };
+    void putInPlace(File &file) const;
+
+    bool force_, committed_ = false;
     std::vector<std::unique_ptr<File>> files_;
+    std::vector<Folder> folders_; ///< a folder before what lies in it
 };
 
-/// Makes the program remove its temporary files when a signal ends it.
-void removeTemporariesOnSignal();
+/// Makes the program remove its temporary files when a signal ends it, and outlive a closed pipe.
+void handleSignals();
 
 } // namespace hermes::vector

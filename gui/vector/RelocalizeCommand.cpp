@@ -1,5 +1,6 @@
 #include "gui/vector/Options.h"
 #include "gui/vector/Output.h"
+#include "gui/vector/RelocalizePicture.h"
 #include "gui/vector/SegmentSet.h"
 #include "vectorlib/places/PlaceSearch.h"
 
@@ -45,6 +46,7 @@ struct RelocalizeCommand {
         reading.sigma = sigma;
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
+        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
         const SegmentSet known = loadSegmentSet(map, reading), seen = loadSegmentSet(scan, reading);
         if (known.kind == SegmentSet::Kind::Points)
             throw CLI::ValidationError("MAP", "found points in " + map + ", expected a map or segments");
@@ -67,6 +69,8 @@ struct RelocalizeCommand {
         for (const vectorlib::Place &place : result.places)
             json["places"].push_back(placeAsJson(place));
         out << json.dump(2) << '\n';
+        if (svg)
+            draw(*svg, known, seen, result);
         files.commit();
     }
 };
@@ -80,7 +84,8 @@ void addRelocalizeCommand(CLI::App &app) {
     sub->add_option("MAP", command->map, "A map by hermes-vector map, or segments (CSV x1,y1,x2,y2)")
         ->required();
     sub->add_option("SCAN", command->scan,
-                    "A scan: points (CSV x,y or ascii PCD), or segments (CSV x1,y1,x2,y2)")
+                    "One scan: points (CSV x,y or ascii PCD), or segments (CSV x1,y1,x2,y2); out of a log by "
+                    "hermes-vector map LOG --scan N")
         ->required();
     sub->add_option("--sigma", command->sigma, "Largest standard deviation of points from their line, metres")
         ->check(aboveZero())
@@ -91,8 +96,8 @@ void addRelocalizeCommand(CLI::App &app) {
         ->type_name("S")
         ->capture_default_str();
     command->segment.addTo(*sub, "defaults by the number of points");
-    command->output.addTo(*sub, false);
-    sub->footer(example("hermes-vector relocalize map.csv scan.csv"));
+    command->output.addTo(*sub, true);
+    sub->footer(example("hermes-vector relocalize map.csv scan.csv --svg place.svg"));
     sub->callback([command] { command->run(); });
 }
 

@@ -46,6 +46,8 @@ struct RingCommand {
             ++turns;
             if (turn < 0 || std::uint64_t(turn) == t.number)
                 write(out, t);
+            if (!out)
+                files.commit(); // tells what is wrong; the rest of the capture need not be read
         });
         out << (all ? "turn,stamp,laser,azimuth,range,intensity,x,y,z\n"
                     : "turn,stamp,azimuth,range,intensity,x,y\n");

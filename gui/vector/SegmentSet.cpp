@@ -2,6 +2,7 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
+#include "gui/vector/Points.h"
 #include "vectorlib/edges/EdgeExtractor.h"
 #include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/CsvSegments.h"
@@ -68,7 +69,7 @@ void vectorize(SegmentSet &set, const SegmentSetSettings &settings) {
 
 SegmentSet loadSegmentSet(const std::string &path, const SegmentSetSettings &settings) {
     Input input(path);
-    const std::string text = input.readAll();
+    const std::string text = readScanText(input, path);
     std::istringstream in(text);
     SegmentSet set;
     const bool isPcd = hasExtension(path, ".pcd");

@@ -30,7 +30,7 @@ int main(int argc, char **argv) {
     addRingCommand(app);
     addExperimentCommand(app);
     addReportCommand(app);
-    removeTemporariesOnSignal();
+    handleSignals();
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty())

@@ -142,6 +142,60 @@ private Q_SLOTS:
         QCOMPARE(run({"segment", data("room.csv"), "--out", path("no/such/folder")}).status, 1);
         QCOMPARE(files(), QStringList{"out"});
     }
+
+    void closedPipe_data() {
+        QTest::addColumn<QStringList>("arguments");
+        QTest::addColumn<QStringList>("complete");
+        const QString room = data("room.csv");
+        const QStringList match{"match", room, room, "--force"};
+        QTest::newRow("table") << QStringList{"segment", room} << QStringList();
+        QTest::newRow("picture beside it")
+            << match + QStringList{"--svg", path("m.svg")} << QStringList{"m.svg"};
+        QTest::newRow("file beside the picture")
+            << match + QStringList{"--svg", "-", "--out", path("m.json")} << QStringList{"m.json"};
+        QTest::newRow("picture to another pipe")
+            << match + QStringList{"--svg", "/dev/stdout", "--out", path("m.json")} << QStringList{"m.json"};
+        QTest::newRow("map beside the summary")
+            << QStringList{"map", data("corrected.log"), "--out-map", path("m.csv"), "--svg", path("m.svg")}
+            << QStringList{"m.csv", "m.svg"};
+    }
+    /// The reader of the pipe has gone before the program starts: the files are complete, and what is missing
+    /// is told.
+    void closedPipe() {
+        QFETCH(QStringList, arguments);
+        QFETCH(QStringList, complete);
+        QProcess shell;
+        shell.start("bash", QStringList{"-c", "exec 3> >(true); wait $!; \"$@\" >&3", "bash",
+                                        qEnvironmentVariable("HERMES_BIN") + "/hermes-vector"} +
+                                arguments);
+        QVERIFY(shell.waitForFinished(60000));
+        const QByteArray said = shell.readAllStandardError();
+        QVERIFY2(shell.exitStatus() == QProcess::NormalExit && shell.exitCode() == 1, said.constData());
+        QVERIFY2(said.contains("cannot be written to its end: its reader has gone"), said.constData());
+        QCOMPARE(files(), complete);
+        for (const QString &name : complete)
+            QVERIFY(contents(folder_.path(qPrintable(name))).size() > 100);
+    }
+    void fullDevice() {
+        const Result r =
+            run({"match", data("room.csv"), data("room.csv"), "--out", "/dev/full", "--svg", path("m.svg")});
+        QCOMPARE(r.status, 1);
+        QVERIFY2(r.err.contains("/dev/full: cannot be written to its end: "), r.err.constData());
+        QVERIFY2(r.err.toLower().contains("no space left"), r.err.constData());
+        QCOMPARE(files(), QStringList{"m.svg"});
+    }
+    /// A reader that has seen enough ends the reading of a long capture.
+    void closedPipeEndsALongRing() {
+        writeCapture(path("long.pcap"), 4000);
+        QProcess shell;
+        shell.start("bash", {"-c", "\"$@\" | head -n 1", "bash",
+                             qEnvironmentVariable("HERMES_BIN") + "/hermes-vector", "ring", path("long.pcap"),
+                             "--all"});
+        QVERIFY(shell.waitForFinished(60000));
+        QVERIFY(shell.readAllStandardOutput().startsWith("turn,stamp"));
+        const QByteArray said = shell.readAllStandardError();
+        QVERIFY2(said.contains("standard output: cannot be written"), said.constData());
+    }
 };
 
 QTEST_GUILESS_MAIN(TestVectorFailures)

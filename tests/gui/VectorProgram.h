@@ -107,3 +107,16 @@ public:
 private:
     QTemporaryDir folder_;
 };
+
+/// What a sensor at the pose sees of world.json, as a file of the folder: a scan of points, or exact
+/// segments. The noise of points differs with the first letter of the name.
+inline QString seen(const TestFolder &folder, const char *name, const char *pose, bool points) {
+    QStringList arguments{"observe", data("world.json"), QStringLiteral("--pose=") + QLatin1String(pose),
+                          "--out", folder.path(name)};
+    if (points)
+        arguments += {"--scan", "1000", "--noise", "0.01", "--seed", QString::number(name[0])};
+    const Result r = run(arguments);
+    if (r.status != 0)
+        qFatal("%s", r.err.constData());
+    return folder.path(name);
+}

@@ -7,15 +7,19 @@
 #include <random>
 #include <vector>
 
-/// Floor plans at random: rooms of different widths on both sides of a corridor, each with a door and one to
-/// four pieces of furniture; metres. The same seed gives the same plan.
+/// Floor plans at random: rooms on both sides of a corridor, each with a door and one to four pieces of
+/// furniture; metres. The same seed gives the same plan.
 class FloorPlan {
 public:
     using Wall = vectorlib::LineSegment2D<double>;
     using Point = vectorlib::Vector2D<double>;
 
-    FloorPlan(unsigned seed, int rooms)
-        : random_(seed) {
+    enum class Rooms { Different, Alike };
+
+    /// Rooms of different sizes, or rooms that only their furniture tells apart.
+    FloorPlan(unsigned seed, int rooms, Rooms kind = Rooms::Different)
+        : random_(seed)
+        , kind_(kind) {
         const double corridor = between(1.6, 2.6);
         const double left = row(rooms / 2, corridor, 1), right = row(rooms / 2, 0, -1);
         const double end = std::max(left, right);
@@ -27,6 +31,25 @@ public:
             block(right, -thickness, end, 0);
     }
     const std::vector<Wall> &walls() const { return walls_; }
+    /// The same building later: so large a share of the furniture, drawn by a seed, was moved within its
+    /// room, was taken away, or has got another piece beside it.
+    FloorPlan refurnished(unsigned seed, double share) const {
+        FloorPlan later = *this;
+        later.random_.seed(seed);
+        for (std::size_t i = pieces_.size(); i-- > 0;) {
+            if (later.between(0, 1) >= share)
+                continue;
+            const double kind = later.between(0, 1);
+            if (kind < 0.75) { // moved, or taken away
+                const auto begin = later.walls_.begin() + std::ptrdiff_t(pieces_[i].firstWall);
+                later.walls_.erase(begin, begin + 4);
+            }
+            if (kind < 0.5 || kind >= 0.75)
+                later.furnish(pieces_[i].room);
+        }
+        later.pieces_.clear(); // its walls have other numbers now
+        return later;
+    }
     /// A place at random, 30 cm from every wall, from where all walls around show their free side.
     vectorlib::Pose2D place() {
         Point low(1e9, 1e9), high(-1e9, -1e9);
@@ -42,6 +65,13 @@ public:
 
 private:
     static constexpr double thickness = 0.1;
+    struct Room {
+        double x, y, side, width, depth, door, gap; ///< of the room's corner at the corridor
+    };
+    struct Piece {
+        Room room;
+        std::size_t firstWall; ///< of four
+    };
 
     double between(double a, double b) { return a + (b - a) * double(random_() % 100001) / 100000; }
     // An outline with the free space outside.
@@ -55,23 +85,35 @@ private:
     // Rooms that begin at a height y and lie above (side 1) or below it (-1); gives where the last one ends.
     double row(int rooms, double y, double side) {
         const double depth = between(3.5, 6.5);
-        double x = 0;
-        for (int room = 0; room < rooms; ++room) {
-            const double width = between(2.5, 6.5), door = between(0.3, width - 1.3), gap = between(0.8, 1.0);
-            const double own = depth - between(0, 0.8);
-            block(x, y, x + door, y + side * thickness);
-            block(x + door + gap, y, x + width, y + side * thickness);
-            block(x - thickness / 2, y + side * thickness, x + thickness / 2, y + side * depth);
-            block(x + thickness / 2, y + side * own, x + width - thickness / 2, y + side * (own + thickness));
-            for (int pieces = 1 + int(random_() % 4); pieces > 0; --pieces) {
-                const double a = between(0.3, 1.2), b = between(0.3, 0.9);
-                const double at = between(x + 0.2, x + width - a - 0.2), deep = between(0.9, own - b - 0.1);
-                block(at, y + side * deep, at + a, y + side * (deep + b));
+        Room room{0, y, side, 0, 0, 0, 0};
+        for (int number = 0; number < rooms; ++number) {
+            if (number == 0 || kind_ == Rooms::Different) {
+                room.width = between(2.5, 6.5);
+                room.door = between(0.3, room.width - 1.3);
+                room.gap = between(0.8, 1.0);
+                room.depth = depth - between(0, 0.8);
             }
-            x += width;
+            const double x = room.x, right = x + room.width;
+            block(x, y, x + room.door, y + side * thickness);
+            block(x + room.door + room.gap, y, right, y + side * thickness);
+            block(x - thickness / 2, y + side * thickness, x + thickness / 2, y + side * depth);
+            block(x + thickness / 2, y + side * room.depth, right - thickness / 2,
+                  y + side * (room.depth + thickness));
+            for (int pieces = 1 + int(random_() % 4); pieces > 0; --pieces) {
+                pieces_.push_back({room, walls_.size()});
+                furnish(room);
+            }
+            room.x = right;
         }
+        const double x = room.x;
         block(x - thickness / 2, y + side * thickness, x + thickness / 2, y + side * depth);
         return x;
+    }
+    void furnish(const Room &room) {
+        const double a = between(0.3, 1.2), b = between(0.3, 0.9);
+        const double at = between(room.x + 0.2, room.x + room.width - a - 0.2);
+        const double deep = between(0.9, room.depth - b - 0.1);
+        block(at, room.y + room.side * deep, at + a, room.y + room.side * (deep + b));
     }
     bool isFree(Point p) const {
         for (const Wall &w : walls_)
@@ -96,5 +138,7 @@ private:
     }
 
     std::mt19937 random_;
+    Rooms kind_;
     std::vector<Wall> walls_;
+    std::vector<Piece> pieces_; // of furniture
 };

@@ -1,5 +1,6 @@
 // The search of a scan's place in a whole map.
 #include "FloorPlan.h"
+#include "PlaceCase.h"
 
 #include "tests/support/AllocationCounter.h"
 
@@ -13,32 +14,9 @@
 #include <set>
 
 using namespace vectorlib;
-using Walls = std::vector<LineSegment2D<double>>;
-using Points = std::vector<Vector2D<float>>;
 using Outcome = Relocalized::Outcome;
 
 namespace {
-
-std::vector<MapEdge> mapOf(const Walls &walls) {
-    std::vector<MapEdge> slots;
-    for (const auto &wall : walls)
-        slots.emplace_back(std::int64_t(slots.size()), EdgeRaw2D(TlsSums(), wall, 0.01), 1);
-    return slots;
-}
-
-// A closed room with a niche, its lower left corner at x, y.
-Walls room(double x, double y) {
-    const Vector2D<double> corners[] = {{0, 0}, {5, 0}, {5, 4}, {2, 4}, {2, 3}, {0, 3}};
-    Walls walls;
-    for (int i = 0; i < 6; ++i) // counter-clockwise: the free space is inside
-        walls.emplace_back(corners[i] + Vector2D<double>(x, y),
-                           corners[(i + 1) % 6] + Vector2D<double>(x, y));
-    return walls;
-}
-
-bool isNear(const Pose2D &a, const Pose2D &b, double metres = 0.05, double radians = 0.02) {
-    return std::hypot(a.x - b.x, a.y - b.y) < metres && std::abs(wrapAngle(a.theta - b.theta)) < radians;
-}
 
 // As long as a sanitizer or a busy machine may take.
 constexpr int muchTooLongMs = 60000;

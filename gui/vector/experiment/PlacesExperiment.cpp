@@ -51,6 +51,7 @@ PlacesReport placesExperiment(const vectorlib::CarmenLog &log, const vectorlib::
         build.process(pointsIn(log.scans[i]), log.scans[i].laserPose);
     }
     PlacesReport report;
+    report.isSameBuilding = !other;
     report.mapSegments = build.map.size();
     vectorlib::EdgeExtractor extract;
     vectorlib::PlaceSearch search;
@@ -71,7 +72,7 @@ PlacesReport placesExperiment(const vectorlib::CarmenLog &log, const vectorlib::
     return report;
 }
 
-nlohmann::ordered_json summaryOf(const PlacesReport &report, bool inMap) {
+nlohmann::ordered_json summaryOf(const PlacesReport &report) {
     const std::vector<PlaceResult> &all = report.results;
     if (all.empty())
         return {{"map_segments", report.mapSegments}, {"scans", 0}};
@@ -86,7 +87,7 @@ nlohmann::ordered_json summaryOf(const PlacesReport &report, bool inMap) {
         return share([which](const PlaceResult &r) { return r.outcome == which; });
     };
     nlohmann::ordered_json json = {{"map_segments", report.mapSegments}, {"scans", all.size()}};
-    if (inMap) {
+    if (report.isSameBuilding) {
         json["first_right"] = share([](const PlaceResult &r) { return r.isRight(); });
         json["first_within_10cm_2deg"] = share([](const PlaceResult &r) { return r.isWithin(0.1, 2); });
         json["found_right"] = share([](const PlaceResult &r) { return r.isFound() && r.isRight(); });
@@ -94,7 +95,7 @@ nlohmann::ordered_json summaryOf(const PlacesReport &report, bool inMap) {
             share([](const PlaceResult &r) { return r.isFound() && r.isWithin(0.1, 2); });
     }
     json["found_wrong"] =
-        share([inMap](const PlaceResult &r) { return r.isFound() && !(inMap && r.isRight()); });
+        share([&](const PlaceResult &r) { return r.isFound() && !(report.isSameBuilding && r.isRight()); });
     json["ambiguous"] = outcome(Outcome::Ambiguous);
     json["nowhere"] = outcome(Outcome::Nowhere);
     json["too_little"] = outcome(Outcome::TooLittle);
@@ -107,11 +108,17 @@ nlohmann::ordered_json summaryOf(const PlacesReport &report, bool inMap) {
 
 void writeCsv(std::ostream &out, const PlacesReport &report) {
     using vectorlib::Number;
-    out << "scan,found,right,places,score,probability,error_m,error_deg,time_ms\n";
-    for (const PlaceResult &r : report.results)
-        out << r.scan << ',' << r.isFound() << ',' << r.isRight() << ',' << r.places << ',' << Number(r.score)
-            << ',' << Number(r.probability) << ',' << Number(r.metres) << ',' << Number(r.degrees) << ','
-            << Number(r.milliseconds) << '\n';
+    out << (report.isSameBuilding ? "scan,found,right,places,score,probability,error_m,error_deg,time_ms\n"
+                                  : "scan,accepted,places,score,probability,time_ms\n");
+    for (const PlaceResult &r : report.results) {
+        out << r.scan << ',' << r.isFound() << ',';
+        if (report.isSameBuilding)
+            out << r.isRight() << ',';
+        out << r.places << ',' << Number(r.score) << ',' << Number(r.probability) << ',';
+        if (report.isSameBuilding)
+            out << Number(r.metres) << ',' << Number(r.degrees) << ',';
+        out << Number(r.milliseconds) << '\n';
+    }
 }
 
 } // namespace hermes::vector

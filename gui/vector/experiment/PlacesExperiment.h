@@ -28,6 +28,7 @@ struct PlaceResult {
 /// What came of the scans of a log in a map.
 struct PlacesReport {
     std::size_t mapSegments = 0;
+    bool isSameBuilding = true; ///< else the scans have no place in the map, and no errors
     std::vector<PlaceResult> results;
 };
 
@@ -37,9 +38,10 @@ struct PlacesReport {
 PlacesReport placesExperiment(const vectorlib::CarmenLog &log, const vectorlib::CarmenLog *other,
                               const std::function<void(std::size_t done, std::size_t all)> &progress);
 
-/// Shares of all scans, and processor times; `inMap` is false for scans of another building.
-nlohmann::ordered_json summaryOf(const PlacesReport &report, bool inMap);
-/// A row a scan.
+/// Shares of all scans, and processor times.
+nlohmann::ordered_json summaryOf(const PlacesReport &report);
+/// A row a scan; of scans of another building only whether their first place was accepted, and what speaks
+/// for it.
 void writeCsv(std::ostream &out, const PlacesReport &report);
 
 } // namespace hermes::vector

@@ -3,6 +3,7 @@
 #include "vectorlib/io/Number.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"
 
+#include <algorithm>
 #include <map>
 #include <numeric>
 
@@ -66,6 +67,21 @@ std::vector<InjectedError> injectedErrors(const World &world, std::uint64_t seed
     for (int i = 0; i <= 100; ++i)
         rows.push_back({false, 0.01 * i, areas(pairs, scan, scan, Transformation2D(0.01 * i, 0, 0)).error});
     return rows;
+}
+
+nlohmann::ordered_json summaryOf(const std::vector<InjectedError> &rows) {
+    const auto areaAt = [&](bool isRotation, double amount) {
+        const auto row = std::find_if(rows.begin(), rows.end(), [&](const InjectedError &r) {
+            return r.isRotation == isRotation && std::abs(r.amount - amount) < 1e-9;
+        });
+        return row != rows.end() ? nlohmann::ordered_json(row->area) : nlohmann::ordered_json();
+    };
+    bool grows = true;
+    for (std::size_t i = 1; i < rows.size(); ++i)
+        grows = grows && (rows[i].isRotation != rows[i - 1].isRotation || rows[i].area > rows[i - 1].area);
+    return {{"area_at_10_deg_m2", areaAt(true, 10)},
+            {"area_at_50_cm_m2", areaAt(false, 0.5)},
+            {"grows_throughout", grows}};
 }
 
 void writeCsv(std::ostream &out, const std::vector<InjectedError> &rows) {

@@ -13,6 +13,8 @@ struct InjectedError {
 
 /// A scan of a world at its first pose; turned by up to 30 degrees, moved along x by up to 1 m.
 std::vector<InjectedError> injectedErrors(const World &world, std::uint64_t seed);
+/// The areas at 10 degrees and at 50 cm, and whether the area grows with every step of the error.
+nlohmann::ordered_json summaryOf(const std::vector<InjectedError> &rows);
 void writeCsv(std::ostream &out, const std::vector<InjectedError> &rows);
 std::vector<Plot> plotsOf(const std::vector<InjectedError> &rows);
 

@@ -2,11 +2,14 @@
 
 #include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/geometry/Transformation2D.h"
+#include "vectorlib/places/ScanObjects.h"
 
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace vectorlib {
@@ -17,21 +20,28 @@ struct PlaceFit {
     double points = 0;      ///< that were compared
     double explained = 0;   ///< of them, with a wall of the map beside them that faces alike
     double distances = 0;   ///< sum of their squared distances from it; m^2
-    double squaredGate = 1; ///< of the distances; m^2
     double hidden = 0;      ///< explained points that another wall of the map hides
     double blocked = 0;     ///< other points that a wall of the map hides
     double discrepancy = 0; ///< area seen behind walls of the map; m^2
+    /// What each object of the scan says for the place, and last what walls of the map hide; in points.
+    std::array<double, ScanObjects::most + 1> said{};
     Eigen::Matrix3d information =
         Eigen::Matrix3d::Zero(); ///< of x, y, alpha by the explained points; 1/m^2 apart
 
     double explainedShare() const { return points > 0 ? explained / points : 0; }
     double hiddenShare() const { return points > 0 ? (hidden + blocked) / points : 0; }
-    /// Up to 1: the explained share, less what lies apart and what is seen through walls. A map has walls
-    /// where doors stand open now, and some that were drawn a little aside: these weigh less than points
-    /// without a wall.
-    double score() const {
-        const double loss = 0.5 * distances / squaredGate + 0.2 * hidden + 0.3 * blocked;
-        return points > 0 ? (explained - loss) / points : 0;
+    /// Up to 1: the explained share, less what lies apart and what is seen through walls.
+    double score() const { return points > 0 ? std::accumulate(said.begin(), said.end(), 0.0) / points : 0; }
+    /// How much higher the score is than that of another place of the same scan, when the object that speaks
+    /// most for this one is not heard. Against a place that is not there when the other has no points.
+    double leadOver(const PlaceFit &other) const {
+        double sum = 0, strongest = 0;
+        for (std::size_t i = 0; i < said.size(); ++i) {
+            const double more = said[i] - other.said[i];
+            sum += more;
+            strongest = std::max(strongest, more);
+        }
+        return points > 0 ? (sum - strongest) / points : 0;
     }
     /// Mean squared distance of the explained points; m^2.
     double meanSquare() const { return explained > 0 ? distances / explained : 0; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vectorlib/edges/EdgeRaw2D.h"
+#include "vectorlib/places/ScanObjects.h"
 #include "vectorlib/registration/ScanIndex.h"
 
 #include <algorithm>
@@ -8,18 +9,13 @@
 
 namespace vectorlib {
 
-/// A point of a scan and the direction of the wall there, free space on its left; sensor frame.
-struct WallPoint {
-    Vector2D<float> position;
-    Vector2D<float> direction;
-};
-
 /// A scan as the search of a place needs it: its walls, the most telling first, and points that stand for
 /// about as much wall each. Keeps its buffers.
 class PlaceScan {
 public:
     std::size_t mostPoints = 160; ///< that are compared with a map
     double spacing = 0.08;        ///< between them, at least; metres
+    ScanObjects objects;
 
     /// Edges and points in the sensor's frame, metres; points counter-clockwise. Without points the edges
     /// stand for them. What is not finite is left out.
@@ -31,6 +27,7 @@ public:
         else
             takePoints(points);
         thin();
+        objects.number(walls_, points_);
     }
     const std::vector<WallPoint> &points() const { return points_; }
     /// First the longest, then the longest that crosses it, then the others by length.

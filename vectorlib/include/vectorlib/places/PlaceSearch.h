@@ -2,47 +2,24 @@
 
 #include "vectorlib/places/PlaceFitter.h"
 #include "vectorlib/places/PlaceProposals.h"
+#include "vectorlib/places/PlaceTrust.h"
 #include "vectorlib/places/Relocalized.h"
 
 #include <chrono>
+#include <numeric>
 
 namespace vectorlib {
 
-/// How probable it is that a place is the right one, learned from scans of real and made-up buildings in maps
-/// of the same and of other buildings: logistic in the score, its lead over the next place, the share of
-/// points that lie nowhere, and the number of points.
-struct PlaceTrust {
-    double constant = -26.6, score = 26.2, lead = 27.7, points = 1.8, extra = 16.3;
-    double mostLead = 0.3; ///< a greater one says no more
-
-    /// Of a place that scores so much more than the next one.
-    double probability(const PlaceFit &fit, double ahead) const {
-        return 1 / (1 + std::exp(-evidence(fit) - lead * std::clamp(ahead, 0.0, mostLead)));
-    }
-    /// The lead that a place needs to be as probable as this.
-    double leadFor(const PlaceFit &fit, double least) const {
-        return (std::log(least / (1 - least)) - evidence(fit)) / lead;
-    }
-
-private:
-    double evidence(const PlaceFit &fit) const {
-        const double nowhere = 1 - fit.explainedShare() - (fit.points > 0 ? fit.blocked / fit.points : 0);
-        return constant + score * fit.score() + points * std::log(std::max(1.0, fit.points) / 50) +
-               extra * nowhere;
-    }
-};
-
 /// Finds the place of a scan in a whole map without any expected pose: proposals by walls laid upon walls,
-/// refined and judged by the scan's points. A place is found when it fits well and no other fits alike. Keeps
-/// its index of the map, and its buffers, between calls.
+/// refined and judged by the scan's points. A place is found when several objects of the scan speak for it
+/// against none and against every other place. Keeps its index of the map, and its buffers, between calls.
 class PlaceSearch {
 public:
     double maxSeconds = 3;        ///< and the time of the last steps, a few milliseconds
     double minProbability = 0.9;  ///< of a place that is found
-    double minLead = 0.04;        ///< in score; places that are nearer to the best fit alike
-    double clearLead = 0.12;      ///< a place that needs no greater lead is good, whether or not others are
     double minReliability = 0.02; ///< of a place that is found
     std::size_t maxPlaces = 24;   ///< in the result
+    double rivalLead = 0.25;      ///< in score; places that are farther behind are no rivals
     PlaceScan scan;
     PlaceProposals propose;
     PlaceFitter fit;
@@ -89,8 +66,8 @@ private:
         fits_.clear();
         for (const PlaceProposal &p : proposals)
             take(p.pose, 32, 4, 0.35, false);
-        again(0.15, 16, 80, 0.25);
-        again(0.10, 6, scan.points().size(), 0.2);
+        again(rivalLead, 16, 80, 0.25);
+        again(rivalLead, 6, scan.points().size(), 0.2);
     }
     // The best so far, more exactly: those that score nearly like the first, and some more.
     void again(double lead, std::size_t few, std::size_t points, double gate) {
@@ -127,39 +104,36 @@ private:
         if (fits_.empty())
             return result_.searched < result_.parts ? Relocalized::Outcome::Unfinished
                                                     : Relocalized::Outcome::Nowhere;
-        result_.alike = countAlike(neededLead(fits_.front()));
-        // A place that needs a great lead over the others says little by itself.
-        const double mostNeeded = result_.alike > 1 ? clearLead : trust.mostLead;
-        const bool isAccepted = isGood(fits_.front(), mostNeeded);
-        const double oneOf = double(countAlike(minLead)); // one of them at most is right
+        const double none = weigh(), places = std::accumulate(odds_.begin(), odds_.end(), 0.0);
+        const double all = places + none;
+        const auto isAlike = [this](double odds) { return odds > 1 - minProbability; };
+        const bool isFixed = fits_.front().reliability() >= minReliability;
+        const bool isFound = isFixed && 1 >= minProbability * all;
+        result_.alike = std::size_t(std::count_if(odds_.begin(), odds_.end(), isAlike));
+        const bool isOneOf = isFixed && result_.alike > 1 && places >= minProbability * all;
         for (std::size_t i = 0; i < fits_.size() && i < maxPlaces; ++i) {
-            const PlaceFit &f = fits_[i];
-            const double lead = i > 0 ? 0 : fits_.size() > 1 ? f.score() - fits_[1].score() : trust.mostLead;
-            const bool isToo = isAccepted && i < result_.alike && isGood(f, mostNeeded);
-            result_.places.push_back(placeOf(f, trust.probability(f, lead) / oneOf));
-            result_.places.back().fault = !isToo              ? faultOf(f)
-                                          : result_.alike > 1 ? PlaceFault::Alike
-                                                              : PlaceFault::None;
+            result_.places.push_back(placeOf(fits_[i], odds_[i] / all));
+            result_.places.back().fault = isFound && i == 0              ? PlaceFault::None
+                                          : isOneOf && isAlike(odds_[i]) ? PlaceFault::Alike
+                                                                         : faultOf(fits_[i]);
         }
-        if (isAccepted && result_.alike > 1)
+        if (isOneOf)
             return Relocalized::Outcome::Ambiguous;
         if (result_.searched < result_.parts)
             return Relocalized::Outcome::Unfinished;
-        if (isAccepted)
-            return Relocalized::Outcome::Found;
-        result_.alike = countAlike(minLead);
-        return Relocalized::Outcome::Nowhere;
+        return isFound ? Relocalized::Outcome::Found : Relocalized::Outcome::Nowhere;
     }
-    bool isGood(const PlaceFit &f, double mostNeeded) const {
-        return f.reliability() >= minReliability && neededLead(f) <= mostNeeded;
-    }
-    // Over the next place.
-    double neededLead(const PlaceFit &f) const { return std::max(minLead, trust.leadFor(f, minProbability)); }
-    // The first, and those that score nearly like it.
-    std::size_t countAlike(double lead) const {
-        return 1 + std::size_t(std::count_if(fits_.begin() + 1, fits_.end(), [&](const PlaceFit &f) {
-                   return f.score() > fits_.front().score() - lead;
-               }));
+    // The odds of the places, and of none of them, to those of the first.
+    double weigh() {
+        const PlaceFit &best = fits_.front();
+        double least = best.leadOver({});
+        odds_.assign(1, 1.0);
+        for (std::size_t i = 1; i < fits_.size(); ++i) {
+            const double lead = best.leadOver(fits_[i]);
+            least = std::min(least, lead);
+            odds_.push_back(trust.oddsOfRival(lead));
+        }
+        return trust.oddsOfNone(best.score(), least);
     }
     static Place placeOf(const PlaceFit &f, double probability) {
         Place place;
@@ -184,6 +158,7 @@ private:
 
     PlaceIndex index_;
     std::vector<PlaceFit> fits_, rough_; // best first
+    std::vector<double> odds_;           // of the fits, to those of the first
     Relocalized result_;
 };
 

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "vectorlib/correspondence/SearchResult.h"
+#include "vectorlib/mapping/GlobalPairMatch.h"
+#include "vectorlib/relations/RelationMatch.h"
+
+#include <string>
+
+namespace hermes::vector {
+
+/// How a match of two sets ended: the same words whatever the method.
+enum class MatchOutcome {
+    Found,         ///< the first solution is to be trusted
+    Ambiguous,     ///< several motions fit alike
+    OpenDirection, ///< the sets slide on each other, as along a corridor
+    Nowhere,       ///< no motion is good enough
+    TooLittle,     ///< one of the sets shows too little to be matched
+    Unfinished,    ///< a bound ended the search: there may be better solutions
+    BadSettings    ///< a setting is not one that the method can work with
+};
+
+/// For programs.
+inline const char *name(MatchOutcome outcome) {
+    switch (outcome) {
+    case MatchOutcome::Found:
+        return "found";
+    case MatchOutcome::Ambiguous:
+        return "ambiguous";
+    case MatchOutcome::OpenDirection:
+        return "open_direction";
+    case MatchOutcome::Nowhere:
+        return "nowhere";
+    case MatchOutcome::TooLittle:
+        return "too_little";
+    case MatchOutcome::Unfinished:
+        return "unfinished";
+    case MatchOutcome::BadSettings:
+        return "bad_settings";
+    }
+    return "";
+}
+
+/// For people; what is known beyond it follows after a colon.
+inline const char *describe(MatchOutcome outcome) {
+    switch (outcome) {
+    case MatchOutcome::OpenDirection:
+        return "open direction";
+    case MatchOutcome::TooLittle:
+        return "too little";
+    case MatchOutcome::BadSettings:
+        return "bad settings";
+    default:
+        return name(outcome);
+    }
+}
+
+/// The outcome in these words, and for outcomes but Found the reason, for people.
+MatchOutcome outcomeOf(vectorlib::GlobalPairVerdict verdict);
+std::string reasonOf(vectorlib::GlobalPairVerdict verdict);
+MatchOutcome outcomeOf(vectorlib::RelationOutcome outcome);
+std::string reasonOf(vectorlib::RelationOutcome outcome);
+/// Accepted solutions over 0.5 m or 10 degrees from the first one make it ambiguous.
+MatchOutcome outcomeOf(const vectorlib::SearchResult &found);
+std::string reasonOf(const vectorlib::SearchResult &found);
+
+} // namespace hermes::vector
