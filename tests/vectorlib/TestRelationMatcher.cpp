@@ -88,6 +88,7 @@ void TestRelationMatcher::findsThePoseOfThePublishedExample() {
                                    Segment({2.7, -2.9}, {3.1, -2.5}), Segment({1.1, -1.0}, {1.3, -0.4}),
                                    back * common[2], back * common[3], Segment({-4.0, 1.1}, {-4.3, 0.2})});
     RelationMatcher match;
+    match.settings.seenThroughShare = 0.25; // for the made-up ones
     const RelationMatch &found = match(reference, current);
     QCOMPARE(describe(found.outcome), describe(RelationOutcome::Matched));
     std::vector<std::pair<int, int>> pairs;

@@ -116,6 +116,7 @@ ApproachResult approach(const World &world, std::uint64_t seed, std::size_t ever
     const std::vector<PosedScan> scans = scansAt(world, posesAlong(world, 1480), seed);
     const std::vector<TypedSegments> segments = segmentsOf(scans);
     vectorlib::RelationMatcher match;
+    match.settings.leastSigns = 0; // the world is one corner
     MatchedAreas areas;
     ApproachResult result;
     std::map<int, std::pair<double, std::size_t>> bins;

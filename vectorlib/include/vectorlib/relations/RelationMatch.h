@@ -16,6 +16,7 @@ enum class RelationOutcome {
     OnePair,
     OneDirection,
     Contradiction,
+    Unspecific,
     Ambiguous
 };
 
@@ -37,6 +38,8 @@ inline const char *describe(RelationOutcome outcome) {
         return "the directions of the matching segments are too much alike to fix the place";
     case RelationOutcome::Contradiction:
         return "the matching segments agree on a rotation, but on no place";
+    case RelationOutcome::Unspecific:
+        return "too little matches to tell the place from others like it: a corner alone fits any corner";
     case RelationOutcome::Ambiguous:
         return "another place fits nearly as well";
     }

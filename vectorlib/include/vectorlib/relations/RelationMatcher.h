@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vectorlib/relations/MatchSigns.h"
 #include "vectorlib/relations/PairConsensus.h"
 #include "vectorlib/relations/PairSearch.h"
 #include "vectorlib/relations/RelationMatch.h"
@@ -14,7 +15,8 @@ namespace vectorlib {
 /// chapters 3 to 5. Relations that are rare tell most.
 ///
 /// The search of Algorithm 5 is repeated without the pairs that it found, and the place that brings most
-/// length together is the match. Where another place does nearly as well the match is ambiguous.
+/// length together is the match, if enough speaks for it (MatchSigns) and little against it (SeenThrough).
+/// Where another place does nearly as well the match is ambiguous.
 ///
 /// Never more than settings.maxSegments segments, maxVirtualEdges virtual edges of a scan and maxScores
 /// scores take part, and about maxCompared comparisons are made, so that time and memory are bounded; the
@@ -51,6 +53,11 @@ private:
     using Pairs = std::vector<CorrespondencePair>;
     static constexpr int mostPairs = 48; ///< of the last search
 
+    struct Place {
+        Transformation2D pose;
+        double evidence = 0; // metres
+    };
+
     void clear() {
         result_.pose = result_.byEdges = Transformation2D();
         result_.byScores.clear();
@@ -59,6 +66,8 @@ private:
         result_.matchedLength = result_.evidence = result_.rivalEvidence = 0;
         result_.leftOut = result_.virtualLeftOut = result_.scores = result_.compared = 0;
         result_.isCut = false;
+        places_.clear();
+        isUnspecific_ = false;
     }
     const RelationMatch &end(RelationOutcome outcome) {
         result_.outcome = outcome;
@@ -83,6 +92,7 @@ private:
         leastSeen_ = std::min(lengthOf(reference), lengthOf(current));
         consensus_.distance = settings.distanceWindow;
         consensus_.angle = settings.angleWindow;
+        signs_.distance = settings.distanceWindow;
         const RelationOutcome first = searchFirst();
         for (int i = 1; i < settings.searches; ++i)
             if (!searchAgain())
@@ -90,7 +100,8 @@ private:
         if (result_.evidence == 0 && settings.searches > 1)
             searchAll();
         if (result_.evidence == 0)
-            return end(first);
+            return end(isUnspecific_ ? RelationOutcome::Unspecific : first);
+        result_.rivalEvidence = rivalEvidence();
         return end(result_.rivalEvidence >= settings.rivalShare * result_.evidence
                        ? RelationOutcome::Ambiguous
                        : RelationOutcome::Matched);
@@ -168,22 +179,29 @@ private:
             isAny = judge(consensus_.settle(i, reference_.segments(), current_.segments())) || isAny;
         return isAny;
     }
-    // Takes a place for the result if more speaks for it than for those before, else perhaps for a rival.
+    // Takes a place for the result if more speaks for it than for those before; keeps all as rivals.
     bool judge(const Transformation2D &pose) {
-        const LineSegmentRegistration &registration = consensus_.registration();
         if (!pose.isFinite() || consensus_.pairs().size() < 2 ||
             !(consensus_.deviation() <= settings.deviation))
             return false;
         const double against = seenThrough_(reference_.segments(), current_.segments(), pose);
         const double evidence = consensus_.length() - against;
-        if (against > settings.seenThroughShare * consensus_.length() ||
-            consensus_.length() < settings.matchedShare * leastSeen_)
+        if (evidence <= 0 || consensus_.length() < settings.matchedShare * leastSeen_)
             return false;
-        const bool isBest = evidence > result_.evidence;
-        if (!isSamePlace(pose))
-            result_.rivalEvidence = std::max(result_.rivalEvidence, isBest ? result_.evidence : evidence);
-        if (!isBest)
-            return true;
+        places_.push_back({pose, evidence});
+        if (against > settings.seenThroughShare * consensus_.length())
+            return false;
+        if (signs_(consensus_.pairs(), reference_.segments(), current_.segments(), pose) <
+            settings.leastSigns) {
+            isUnspecific_ = true;
+            return false;
+        }
+        if (evidence > result_.evidence)
+            take(pose, evidence);
+        return true;
+    }
+    void take(const Transformation2D &pose, double evidence) {
+        const LineSegmentRegistration &registration = consensus_.registration();
         result_.evidence = evidence;
         result_.pose = pose;
         result_.matchedLength = consensus_.length();
@@ -193,11 +211,15 @@ private:
         result_.pairs.clear();
         for (const CorrespondencePair &p : consensus_.pairs())
             result_.pairs.push_back({reference_.given(p.fixed), current_.given(p.moving)});
-        return true;
     }
-    bool isSamePlace(const Transformation2D &pose) const {
-        if (result_.matchedLength == 0)
-            return true;
+    double rivalEvidence() const {
+        double most = 0;
+        for (const Place &place : places_)
+            if (!isFound(place.pose))
+                most = std::max(most, place.evidence);
+        return most;
+    }
+    bool isFound(const Transformation2D &pose) const {
         const Transformation2D apart = result_.pose.inverse() * pose;
         return apart.translation().norm() <= 2 * settings.distanceWindow &&
                std::abs(apart.alpha()) <= 2 * settings.angleWindow;
@@ -210,7 +232,10 @@ private:
     PairSearch search_;
     PairConsensus consensus_;
     SeenThrough seenThrough_;
-    double leastSeen_ = 0; // length of all segments of the scan that has less; metres
+    MatchSigns signs_;
+    std::vector<Place> places_;
+    bool isUnspecific_ = false; // a place was found that too little tells
+    double leastSeen_ = 0;      // length of all segments of the scan that has less; metres
     RelationMatch result_;
 };
 

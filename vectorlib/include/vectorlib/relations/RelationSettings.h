@@ -25,9 +25,10 @@ struct RelationSettings {
     /// Least length of the pairs, as a share of what the scan that sees less sees.
     double matchedShare = 0.3;
     /// Most length that stands where the other scan looked through, as a share (below 1) of the matched one.
-    double seenThroughShare = 0.25;
-    /// A rival whose pairs are of as much length as this share of the found ones makes the match ambiguous.
-    double rivalShare = 0.7;
+    double seenThroughShare = 0.15;
+    int leastSigns = 3; ///< that must agree at the place that is found (MatchSigns); 0: any
+    /// A place elsewhere with this share of the evidence of the found one makes the match ambiguous.
+    double rivalShare = 0.6;
     int searches = 20;            ///< of Algorithm 5, each without the pairs of those before; 1: as published
     double deviation = 0.06;      ///< largest standard deviation of the position; metres
     std::size_t maxSegments = 64; ///< of a scan: the longest; more are left out
@@ -41,9 +42,9 @@ struct RelationSettings {
         return angleWindow > 0 && angleWindow < pi / 4 && distanceWindow > 0 &&
                std::isfinite(distanceWindow) && threshold >= 0 && threshold <= 1 && laterThreshold >= 0 &&
                virtualReach >= 0 && virtualAngle > 0 && virtualAngle < pi / 2 && leastEdgeDistance >= 0 &&
-               rivalShare > 0 && seenThroughShare >= 0 && seenThroughShare < 1 && matchedShare >= 0 &&
-               searches >= 1 && searches <= 100 && places >= 1 && places <= 8 && deviation > 0 &&
-               maxSegments <= 255 && maxVirtualEdges <= 256 && maxScores <= 10000000;
+               rivalShare > 0 && leastSigns >= 0 && seenThroughShare >= 0 && seenThroughShare < 1 &&
+               matchedShare >= 0 && searches >= 1 && searches <= 100 && places >= 1 && places <= 8 &&
+               deviation > 0 && maxSegments <= 255 && maxVirtualEdges <= 256 && maxScores <= 10000000;
     }
 };
 

@@ -1,0 +1,147 @@
+#include "RepeatingWorld.h"
+
+#include "tests/support/RandomRoom.h"
+#include "vectorlib/observation/SimulatedScanner.h"
+#include "vectorlib/relations/MatchSigns.h"
+#include "vectorlib/relations/RelationMatcher.h"
+#include "vectorlib/relations/TypedSegmentExtractor.h"
+
+#include <QtTest>
+
+using namespace vectorlib;
+using TypedSegments = std::vector<TypedSegment>;
+
+/// Matching without any pose where things repeat: no wrong place may be told as found too often, and where
+/// nothing repeats the true one must be.
+class TestRelationsRepeating : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void signsAreLinesJumpsAndObliqueAngles();
+    void aCornerAloneIsUnspecific();
+    void wrongPlacesAreRarelyFound_data();
+    void wrongPlacesAreRarelyFound();
+    void roomsThatDoNotRepeatAreFound_data();
+    void roomsThatDoNotRepeatAreFound();
+
+private:
+    struct Count {
+        int matched = 0, wrong = 0;
+    };
+    /// Wrong is what errs by more than 0.5 m or 10 degrees.
+    template <typename World>
+    void add(const World &world, bool isFullTurn, std::uint64_t seed, Count &count) {
+        const TypedSegments reference = scanned(world.edges, world.first, isFullTurn, 2 * seed);
+        const RelationMatch &found =
+            match_(reference, scanned(world.edges, world.second, isFullTurn, 2 * seed + 1));
+        if (!found.isMatched())
+            return;
+        const Transformation2D truth =
+            Transformation2D(world.first).inverse() * Transformation2D(world.second);
+        const Transformation2D error = truth.inverse() * found.pose;
+        ++count.matched;
+        count.wrong += error.translation().norm() > 0.5 || std::abs(error.alpha()) > 10 * pi / 180;
+    }
+    static TypedSegments scanned(const std::vector<LineSegment2D<double>> &edges, const Pose2D &pose,
+                                 bool isFullTurn, std::uint64_t seed) {
+        SimulatedScanner<double> scanner(seed);
+        scanner.fieldOfView = isFullTurn ? 2 * pi : pi;
+        scanner.rays = isFullTurn ? 720 : 361;
+        std::vector<Vector2D<float>> points;
+        for (const Vector2D<double> &p : scanner(edges, pose))
+            points.emplace_back(p);
+        TypedSegmentExtractor extract;
+        extract.setScanner(scanner.fieldOfView, std::size_t(scanner.rays));
+        return extract(points);
+    }
+    static TypedSegment segment(Vector2D<double> begin, Vector2D<double> end, EndType beginType,
+                                EndType endType) {
+        TypedSegment s{LineSegment2D<double>(begin, end), {}, {}, false, {}};
+        s.begin.type = beginType;
+        s.end.type = endType;
+        return s;
+    }
+    RelationMatcher match_;
+};
+
+void TestRelationsRepeating::signsAreLinesJumpsAndObliqueAngles() {
+    const EndType angle = EndType::Angle, jump = EndType::Jump, interior = EndType::Interior;
+    const TypedSegments corner{segment({3, -2}, {3, 1}, interior, angle),
+                               segment({3, 1}, {-1, 1}, angle, interior)};
+    const TypedSegments jumps{segment({3, -2}, {3, 1}, jump, angle), segment({3, 1}, {-1, 1}, angle, jump)};
+    const TypedSegments oblique{segment({3, -2}, {3, 1}, interior, angle),
+                                segment({3, 1}, {1, 3}, angle, interior)};
+    const TypedSegments oneLine{segment({3, -2}, {3, -1}, interior, interior),
+                                segment({3, 0}, {3, 1}, interior, interior)};
+    const std::vector<CorrespondencePair> both{{0, 0}, {1, 1}};
+    const MatchSigns signs;
+    QCOMPARE(signs(both, corner, corner, {}), 2);
+    QCOMPARE(signs(both, jumps, jumps, {}), 4);
+    QCOMPARE(signs(both, jumps, corner, {}), 2); // what is an edge in one scan only tells nothing
+    QCOMPARE(signs(both, oblique, oblique, {}), 3);
+    QCOMPARE(signs(both, oneLine, oneLine, {}), 1);
+    QCOMPARE(signs({}, corner, corner, {}), 0);
+}
+
+void TestRelationsRepeating::aCornerAloneIsUnspecific() {
+    const TypedSegments corner{segment({3, -2}, {3, 1}, EndType::Interior, EndType::Angle),
+                               segment({3, 1}, {-1, 1}, EndType::Angle, EndType::Interior)};
+    TypedSegments joined = corner;
+    joined[0].joined = true;
+    const RelationMatch &found = match_(joined, joined);
+    QCOMPARE(describe(found.outcome), describe(RelationOutcome::Unspecific));
+    QVERIFY(found.pairs.empty() && found.evidence == 0);
+    RelationMatcher any;
+    any.settings.leastSigns = 0;
+    QCOMPARE(describe(any(joined, joined).outcome), describe(RelationOutcome::Matched));
+}
+
+void TestRelationsRepeating::wrongPlacesAreRarelyFound_data() {
+    QTest::addColumn<int>("kind");
+    QTest::addColumn<bool>("isFullTurn");
+    QTest::addColumn<int>("mostWrong"); // of 80
+    const std::tuple<const char *, int, int> rows[] = {
+        {"desks", 4, 10},    {"pillars", 1, 2},    {"round", 0, 0}, {"niches", 1, 13},
+        {"rectangle", 1, 6}, {"half turn", 1, 15}, {"rooms", 5, 7}};
+    int kind = 0;
+    for (const auto &[name, full, half] : rows) {
+        QTest::addRow("%s, full turn", name) << kind << true << full;
+        QTest::addRow("%s, half a turn", name) << kind++ << false << half;
+    }
+}
+
+void TestRelationsRepeating::wrongPlacesAreRarelyFound() {
+    QFETCH(int, kind);
+    QFETCH(bool, isFullTurn);
+    QFETCH(int, mostWrong);
+    Count count;
+    for (std::uint64_t seed = 1000; seed < 1080; ++seed)
+        add(RepeatingWorld(RepeatingWorld::Kind(kind), seed, seed % 2 ? 3 : 0.5), isFullTurn, seed, count);
+    QVERIFY2(count.wrong <= mostWrong,
+             qPrintable(
+                 QString("seeds 1000 to 1079: %1 wrong of %2 matched").arg(count.wrong).arg(count.matched)));
+}
+
+void TestRelationsRepeating::roomsThatDoNotRepeatAreFound_data() {
+    QTest::addColumn<bool>("isFullTurn");
+    QTest::addColumn<int>("least"); // of 80
+    QTest::newRow("full turn") << true << 80;
+    QTest::newRow("half a turn, any heading") << false << 40;
+}
+
+void TestRelationsRepeating::roomsThatDoNotRepeatAreFound() {
+    QFETCH(bool, isFullTurn);
+    QFETCH(int, least);
+    Count count;
+    for (std::uint64_t seed = 1000; seed < 1080; ++seed) {
+        RandomRoom room(seed);
+        room.second.theta = 0.77 * double(seed);
+        add(room, isFullTurn, seed, count);
+    }
+    const QString found =
+        QString("seeds 1000 to 1079: %1 matched, %2 wrong").arg(count.matched).arg(count.wrong);
+    QVERIFY2(count.matched >= least && count.wrong <= 1, qPrintable(found));
+}
+
+QTEST_APPLESS_MAIN(TestRelationsRepeating)
+#include "TestRelationsRepeating.moc"
