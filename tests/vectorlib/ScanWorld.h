@@ -18,6 +18,7 @@ struct ScanWorld {
         int rays = 361;
         double fieldOfView = vectorlib::pi; ///< about straight ahead; radians
         double sigma = 0.01;                ///< of the ranges; metres
+        double reach = 80;                  ///< nothing is seen farther away; metres
     };
     std::vector<vectorlib::LineSegment2D<double>> walls;
     std::vector<Circle> pillars;
@@ -51,7 +52,7 @@ struct ScanWorld {
             const double angle = scanner.fieldOfView * (double(i) / (scanner.rays - 1) - 0.5);
             const Point ray(std::cos(angle), std::sin(angle));
             const double r = range(pose.translation(), pose.rotate(ray));
-            if (r < 80)
+            if (r < scanner.reach)
                 points.emplace_back(ray * (r + scanner.sigma * noise(random)));
         }
         return points;

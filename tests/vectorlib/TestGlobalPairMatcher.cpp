@@ -1,6 +1,7 @@
 #include <vectorlib/mapping/GlobalPairMatcher.h>
 
 #include "tests/support/AllocationCounter.h"
+#include "tests/vectorlib/RepeatingWorlds.h"
 #include "tests/vectorlib/ScanWorld.h"
 
 #include <QtTest>
@@ -32,6 +33,13 @@ double probabilities(const GlobalPairMatch &match) {
         sum += s.probability;
     return sum;
 }
+/// One is contradicted hardly more, of what both scans could see, and explains 0.6 of as much or more.
+bool fitsAlike(const SurfaceAgreement &one, const SurfaceAgreement &other) {
+    const auto contradicted = [](const SurfaceAgreement &a) {
+        return a.contradicted() / (a.explained() + a.contradicted());
+    };
+    return one.explained() > 0.6 * other.explained() && contradicted(one) < contradicted(other) + 0.02;
+}
 /// A hall with niches and pillars, of which every part looks different.
 ScanWorld hall() {
     ScanWorld w = ScanWorld::of(
@@ -52,6 +60,7 @@ private Q_SLOTS:
     void corridorIsOpenAlongIt();
     void symmetricRoomIsAmbiguous_data();
     void symmetricRoomIsAmbiguous();
+    void whatFitsAlikeIsAmbiguous();
     void mirroredRoomIsNotTheSame();
     void anotherPlaceIsRefused();
     void covarianceTellsTheSpread();
@@ -171,6 +180,36 @@ void TestGlobalPairMatcher::symmetricRoomIsAmbiguous() {
     }
     QVERIFY(found.solutions[0].probability < 0.9);
     QVERIFY(found.solutions[1].probability > 0.02);
+}
+
+// Where all looks alike the true motion may explain less than another one, as the views overlap less. If it
+// fits as well what both scans could see, the other one is hardly ever accepted.
+void TestGlobalPairMatcher::whatFitsAlikeIsAmbiguous() {
+    constexpr unsigned seed = 13;
+    qInfo("seed %u", seed);
+    std::mt19937 random(seed);
+    RepeatingWorlds worlds(random);
+    GlobalPairMatcher match, judge;
+    int right = 0, wrong = 0, alike = 0;
+    constexpr int kinds = 8, runs = 80;
+    for (int i = 0; i < kinds * runs; ++i) {
+        const RepeatingWorlds::Pair pair = worlds.draw(RepeatingWorlds::Kind(i % kinds));
+        const GlobalPairMatch &found = match(pair.fixed, pair.moving);
+        if (!found.isAccepted())
+            continue;
+        const GlobalPairSolution &best = found.solutions[0];
+        if (metres(best.pose, pair.motion) < 0.5 && degrees(best.pose, pair.motion) < 10) {
+            ++right;
+            continue;
+        }
+        ++wrong;
+        const GlobalPairMatch &truth = judge.judge(pair.fixed, pair.moving, pair.motion);
+        alike += !truth.solutions.empty() && fitsAlike(truth.solutions[0].agreement, best.agreement);
+    }
+    qInfo("accepted: %d right, %d far wrong, %d of them while the truth fits alike", right, wrong, alike);
+    QVERIFY2(alike <= runs * kinds / 80, qPrintable(QString::number(alike))); // of some the search sees none
+    QVERIFY2(wrong <= runs * kinds / 32, qPrintable(QString::number(wrong)));
+    QVERIFY2(right >= 0.4 * runs * kinds, qPrintable(QString::number(right)));
 }
 
 void TestGlobalPairMatcher::mirroredRoomIsNotTheSame() {

@@ -58,7 +58,7 @@ MatchProbability::Features fittedWeights(const std::vector<GlobalPairResult> &pa
     return result;
 }
 
-/// With which the right solutions have the greatest share of the powers of all scores.
+/// With which the right solutions have the greatest share of the powers of all consistencies.
 double fittedSharpness(const std::vector<GlobalPairResult> &pairs) {
     double best = 1, most = -1e300;
     for (double sharpness = 4; sharpness < 400; sharpness *= 1.02) {
@@ -66,7 +66,7 @@ double fittedSharpness(const std::vector<GlobalPairResult> &pairs) {
         for (const GlobalPairResult &pair : pairs) {
             double right = 0, all = 0;
             for (const GlobalPairSolution &s : pair.match.solutions) {
-                const double power = std::exp(sharpness * (s.score - pair.match.solutions[0].score));
+                const double power = std::exp(sharpness * s.agreement.consistency());
                 all += power;
                 right += isRight(pair, s) ? power : 0;
             }

@@ -13,28 +13,30 @@ struct GlobalSearchEffort {
     std::size_t turns;      ///< rotations for which shifts are voted
     std::size_t candidates; ///< motions of most votes that are refined roughly
     std::size_t refined;    ///< the best of them, refined with all points
+    std::size_t rivals;     ///< refined too: those that are as consistent, though they explain less
 };
 
 struct GlobalPairSettings {
-    GlobalSearchEffort quick{8, 12, 3};
-    GlobalSearchEffort wide{20, 64, 8}; ///< where the quick search does not convince
-    double convincing = 0.4;            ///< score of a quick search that is enough
-    double lead = 0.15;                 ///< of score over any other, which it must have, too
-    double hopeless = 0.25;             ///< what scores less than the best by so much is not refined further
-    double sameXY = 0.10;               ///< solutions nearer to each other are one; metres
-    double sameAlpha = 0.035;           ///< the same; radians
-    double farXY = 0.5;                 ///< rivals are solutions farther away; metres
-    double farAlpha = 0.17;             ///< the same; radians
-    float reach = 10;                   ///< longest motion looked for in small places; metres
-    float reachByRange = 2;             ///< and in larger ones, in median ranges of the scans
-    double slideStep = 0.25;            ///< of trials along the direction that is held least; metres
-    double slideMargin = 0.1;           ///< loss of score with which a trial is still a solution
-    double openMargin = 0.05;           ///< loss with which half a metre farther is as good a place
-    double rivalMargin = 0.08;          ///< by which the best must lead over motions that differ much
-    double enough = 0.85;               ///< probability of a solution to be trusted
-    double minScore = 0.25;             ///< the same, its score
-    double maxContradicted = 0.2;       ///< the same, the part contradicted of all that is judged
-    std::size_t minPieces = 8;          ///< a scan with fewer pieces of surface shows too little
+    GlobalSearchEffort quick{8, 12, 3, 1};
+    GlobalSearchEffort wide{20, 64, 8, 4}; ///< where the quick search does not convince
+    double convincing = 0.57;              ///< score of a quick search that is enough
+    double lead = 0.15;                    ///< of score over any other, which it must have, too
+    double hopeless = 0.25;       ///< what scores less than the best by so much is not refined further
+    double sameXY = 0.10;         ///< solutions nearer to each other are one; metres
+    double sameAlpha = 0.035;     ///< the same; radians
+    double farXY = 0.5;           ///< rivals are solutions farther away; metres
+    double farAlpha = 0.17;       ///< the same; radians
+    float reach = 10;             ///< longest motion looked for in small places; metres
+    float reachByRange = 2;       ///< and in larger ones, in median ranges of the scans
+    double slideStep = 0.25;      ///< of trials along the direction that is held least; metres
+    double slideMargin = 0.1;     ///< loss of score with which a trial is still a solution
+    double openMargin = 0.05;     ///< loss with which half a metre farther is as good a place
+    double rivalMargin = 0.09;    ///< of consistency; a rival that falls behind by less is as good
+    double possibleMargin = 0.3;  ///< the same of one that is looked for
+    double enough = 0.80;         ///< probability of a solution to be trusted
+    double minScore = 0.4;        ///< the same, its score
+    double maxContradicted = 0.2; ///< the same, the part contradicted of all that is judged
+    std::size_t minPieces = 8;    ///< a scan with fewer pieces of surface shows too little
     double roughDeviation = 0.10, deviation = 0.05; ///< see SurfaceAgreement; metres
     int roughPoints = 60, slidePoints = 180;        ///< how many of a scan judge rough motions, and slides
     /// Standard deviation of a point from its wall, for the covariance; metres. With it the motions of three
@@ -127,25 +129,46 @@ private:
             candidates_.push_back(
                 judged(refineRoughly(vote.pose), settings.roughDeviation, settings.roughPoints));
         keepDistinct(candidates_);
-        if (candidates_.size() > effort.refined)
-            candidates_.resize(effort.refined);
+        refineBest(effort);
+    }
+    // Rivals explain less than what is refined before them, and are far from it.
+    void refineBest(const GlobalSearchEffort &effort) {
+        std::size_t found = 0;
         match_.solutions.clear();
-        for (const GlobalPairSolution &c : candidates_)
-            if (c.score >= candidates_[0].score - settings.hopeless)
+        for (std::size_t i = 0; i < candidates_.size() && found < effort.rivals; ++i) {
+            const GlobalPairSolution &c = candidates_[i];
+            const bool isHopeful = i < effort.refined && c.score >= candidates_[0].score - settings.hopeless;
+            const bool other = !isHopeful && isNew(c) && isRival(c, candidates_[0], settings.possibleMargin);
+            if (isHopeful || other)
                 match_.solutions.push_back(refined(c.pose));
-            else if (std::none_of(match_.solutions.begin(), match_.solutions.end(), [&](const auto &s) {
-                         return isNear(s.pose, c.pose, settings.farXY, settings.farAlpha);
-                     }))
+            else if (i < effort.refined && isNew(c))
                 match_.solutions.push_back(judged(c.pose, settings.deviation, settings.slidePoints));
+            found += other;
+        }
         keepDistinct(match_.solutions);
+    }
+    bool isFar(const GlobalPairSolution &a, const GlobalPairSolution &b) const {
+        return !isNear(a.pose, b.pose, settings.farXY, settings.farAlpha);
+    }
+    bool isNew(const GlobalPairSolution &s) const {
+        return std::all_of(match_.solutions.begin(), match_.solutions.end(),
+                           [&](const GlobalPairSolution &k) { return isFar(k, s); });
+    }
+    bool isRival(const GlobalPairSolution &s, const GlobalPairSolution &best, double margin) const {
+        return isFar(s, best) && s.agreement.consistency() > best.agreement.consistency() - margin;
+    }
+    bool hasRival(double margin) const {
+        const Solutions &all = match_.solutions;
+        return std::any_of(all.begin(), all.end(), [&](const auto &s) { return isRival(s, all[0], margin); });
     }
     bool convinces() const {
         const Solutions &s = match_.solutions;
-        return !s.empty() && s[0].score >= settings.convincing &&
-               (s.size() < 2 || s[0].score - s[1].score >= settings.lead);
+        if (s.empty() || s[0].score < settings.convincing || hasRival(settings.possibleMargin))
+            return false;
+        return s.size() < 2 || s[0].score - s[1].score >= settings.lead;
     }
 
-    // By about so many points of each scan; a first look needs few of them.
+    // By about so many points of each scan.
     GlobalPairSolution judged(const Transformation2D &pose, double deviation, int points) const {
         const int most = std::max(refine.fixed().size(), refine.moving().size());
         GlobalPairSolution s;
@@ -185,9 +208,8 @@ private:
         return judged({t.x, t.y, from.pose.alpha()}, settings.deviation, settings.slidePoints);
     }
     double slideLossOf(const GlobalPairSolution &s) const {
-        const double way = 2 * settings.slideStep;
-        return judged(s.pose, settings.deviation, settings.slidePoints).score -
-               std::max(slid(s, way).score, slid(s, -way).score);
+        const double own = judged(s.pose, settings.deviation, settings.slidePoints).score;
+        return own - std::max(slid(s, 2 * settings.slideStep).score, slid(s, -2 * settings.slideStep).score);
     }
     // Where the best solution is held least, places beside it may be better, and how much worse they are
     // tells how firmly it is held at all.
@@ -255,16 +277,11 @@ private:
         if (match_.slideLoss < settings.openMargin)
             return GlobalPairVerdict::OpenDirection;
         double any = 0;
-        bool hasRival = false;
-        for (const GlobalPairSolution &s : match_.solutions) {
+        for (const GlobalPairSolution &s : match_.solutions)
             any += s.probability;
-            hasRival = hasRival || (s.score > best.score - settings.rivalMargin &&
-                                    !isNear(s.pose, best.pose, settings.farXY, settings.farAlpha));
-        }
-        const bool isSure = best.probability >= settings.enough;
-        if (hasRival || (!isSure && any >= settings.enough))
+        if (hasRival(settings.rivalMargin) || (best.probability < settings.enough && any >= settings.enough))
             return GlobalPairVerdict::Ambiguous;
-        return isSure ? GlobalPairVerdict::Found : GlobalPairVerdict::TooUnlike;
+        return any >= settings.enough ? GlobalPairVerdict::Found : GlobalPairVerdict::TooUnlike;
     }
 
     static constexpr int allPoints = 1 << 20;

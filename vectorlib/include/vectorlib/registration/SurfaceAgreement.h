@@ -29,8 +29,12 @@ public:
     double explained() const { return length_ > 0 ? explained_ / length_ : 0; }
     /// Share at whose place the other scan saw through.
     double contradicted() const { return length_ > 0 ? contradicted_ / length_ : 0; }
-    /// In [-1, 1]; 1 is perfect. The rest is out of the other scan's sight.
-    double score() const { return explained() - contradicted(); }
+    /// In [-1, 1]; 1 is perfect: explained less contradicted length, as a share of both and of half of what
+    /// is out of the other scan's sight.
+    double score() const { return balance(0.5); }
+    /// The same with little weight, 0.15, on what is out of sight: the other scan says nothing of it. Two
+    /// motions that fit alike what both scans could see are about equal, unless one hardly overlaps.
+    double consistency() const { return balance(0.15); }
     /// In [0, 1], of the directions of what is explained as that of lines (paper (28)): small along a
     /// corridor.
     double reliability() const {
@@ -44,6 +48,11 @@ public:
     }
 
 private:
+    // What is out of sight weighs `hidden` of its length.
+    double balance(double hidden) const {
+        const double judged = explained_ + contradicted_, all = judged + hidden * (length_ - judged);
+        return all > 0 ? (explained_ - contradicted_) / all : 0;
+    }
     void add(Scan scan, const Transformation2D &motion, const ScanIndex &other, double deviation,
              int sample) {
         constexpr float gate = 0.3f, beside = 0.2f, sameWay = 0.7f; // metres, metres, cosine
