@@ -61,7 +61,7 @@ void ScanMatcher::declareMatcherCommands() {
                                         scanSchema()))
                    .param(Field::schema("expected", "Where the current one is expected", schemaOf<Pose2D>())
                               .byDefault(QJsonObject{{"x", 0}, {"y", 0}, {"theta", 0}}))
-                   .takes(100000)
+                   .takes(20000)
                    .gives<PairMatch>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { matchTwo(call, reply); }));
     addCommand(Command("pose.set", "Tells where the sensor is, standing still, in the map's frame")
