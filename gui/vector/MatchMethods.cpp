@@ -83,7 +83,7 @@ MatchedSolution solutionOf(const vectorlib::GlobalPairSolution &s, bool accepted
 Matched matchedOf(const GlobalPairMatch &match, const SegmentSet &fixed, const SegmentSet &moving) {
     Matched result;
     result.outcome = outcomeOf(match.verdict);
-    result.reason = reasonOf(match.verdict);
+    result.reason = describe(match.verdict);
     SegmentsUnderMotion segments(fixed, moving);
     for (const vectorlib::GlobalPairSolution &s : match.solutions) {
         const bool best = result.solutions.empty();

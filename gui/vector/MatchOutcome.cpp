@@ -39,13 +39,6 @@ MatchOutcome outcomeOf(GlobalPairVerdict verdict) {
     return MatchOutcome::Nowhere;
 }
 
-std::string reasonOf(GlobalPairVerdict verdict) {
-    return verdict == GlobalPairVerdict::Ambiguous ? "several motions fit alike"
-           : verdict == GlobalPairVerdict::OpenDirection
-               ? "the scans slide on each other, as along a corridor"
-               : describe(verdict);
-}
-
 MatchOutcome outcomeOf(RelationOutcome outcome) {
     switch (outcome) {
     case RelationOutcome::Matched:

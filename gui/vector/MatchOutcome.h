@@ -54,9 +54,9 @@ inline const char *describe(MatchOutcome outcome) {
     }
 }
 
-/// The outcome in these words, and for outcomes but Found the reason, for people.
+/// The outcome in these words; and for outcomes but Found the reason, for people, where the method's own
+/// words do not tell it.
 MatchOutcome outcomeOf(vectorlib::GlobalPairVerdict verdict);
-std::string reasonOf(vectorlib::GlobalPairVerdict verdict);
 MatchOutcome outcomeOf(vectorlib::RelationOutcome outcome);
 std::string reasonOf(vectorlib::RelationOutcome outcome);
 /// Accepted solutions over 0.5 m or 10 degrees from the first one make it ambiguous.

@@ -6,14 +6,28 @@
 /// Metres. The same state of the generator gives the same world.
 class RepeatingWorlds {
 public:
-    enum Kind { Desks, Niches, Rooms, Doors, Shelves, Pillars, Offices, CarPark };
-    static constexpr const char *names[] = {"desks",   "niches",  "rooms",   "doors",
-                                            "shelves", "pillars", "offices", "car park"};
+    enum Kind {
+        Desks,
+        Niches,
+        Rooms,
+        Doors,
+        Shelves,
+        Pillars,
+        Offices,
+        CarPark,
+        Round,
+        HalfTurn,
+        EqualRooms
+    };
+    static constexpr const char *names[] = {"desks",   "niches",    "rooms",      "doors",
+                                            "shelves", "pillars",   "offices",    "car park",
+                                            "round",   "half turn", "equal rooms"};
 
     /// What two scans of a world show, and how the second one was moved.
     struct Pair {
         ScanWorld::Points fixed, moving;
         vectorlib::Transformation2D motion;
+        ScanWorld::Scanner scanner;
     };
 
     explicit RepeatingWorlds(std::mt19937 &random)
@@ -37,7 +51,8 @@ public:
                                                      most * angle());
             const vectorlib::Transformation2D to = from * motion;
             if (isFree(from.translation()) && isFree(to.translation()))
-                return {world_.scan(from, random_, scanner), world_.scan(to, random_, scanner), motion};
+                return {world_.scan(from, random_, scanner), world_.scan(to, random_, scanner), motion,
+                        scanner};
         }
     }
 
@@ -66,6 +81,12 @@ private:
             return roundHall();
         case CarPark:
             return rows(between(0.3, 0.6), between(0.3, 0.6), between(2, 4), between(2, 4));
+        case Round:
+            return roundWall(between(3, 7), 6 + any(15));
+        case HalfTurn:
+            return sameAfterHalfATurn();
+        case EqualRooms:
+            return equalRooms();
         }
     }
     void hall(double width, double depth) {
@@ -134,13 +155,44 @@ private:
     }
     void roundHall() {
         const double radius = between(5, 10), ring = between(2, radius - 1.2), size = between(0.15, 0.4);
-        const int pillars = 5 + any(10), corners = 90;
-        for (int i = 0; i < corners; ++i)
-            world_.walls.emplace_back(onCircle(radius, i, corners), onCircle(radius, i + 1, corners));
+        const int pillars = 5 + any(10);
+        roundWall(radius, 90);
         for (int i = 0; i < pillars; ++i)
             world_.pillars.push_back({onCircle(ring, i, pillars), size});
+    }
+    void roundWall(double radius, int corners) {
+        for (int i = 0; i < corners; ++i)
+            world_.walls.emplace_back(onCircle(radius, i, corners), onCircle(radius, i + 1, corners));
         low_ = {-radius, -radius};
         high_ = {radius, radius};
+    }
+    // A hall with two boxes.
+    void sameAfterHalfATurn() {
+        hall(between(5, 10), between(4, 8));
+        const double width = between(0.3, 0.7), depth = between(0.3, 0.7);
+        const double x = high_.x / 2 + between(0.3, high_.x / 2 - 1), y = between(0.3, high_.y - 1);
+        box(x, y, width, depth);
+        box(high_.x - x - width, high_.y - y - depth, width, depth);
+    }
+    // Along a corridor, with a door each.
+    void equalRooms() {
+        const double step = between(3, 5), depth = between(3, 5), width = between(1.6, 2.5),
+                     gap = between(0.8, 1.1), door = between(0.4, 1.5), inner = width + 0.1;
+        const int count = 4 + any(4);
+        std::vector<Point> corners{{0, 0}, {count * step, 0}, {count * step, width}};
+        for (double x = (count - 1) * step; x > -0.5 * step; x -= step)
+            corners.insert(corners.end(), {{x + door + gap, width},
+                                           {x + door + gap, inner},
+                                           {x + step - 0.1, inner},
+                                           {x + step - 0.1, width + depth},
+                                           {x, width + depth},
+                                           {x, inner},
+                                           {x + door, inner},
+                                           {x + door, width}});
+        corners.push_back({0, width});
+        world_ = ScanWorld::of(corners);
+        low_ = {0, 0};
+        high_ = {count * step, width + depth};
     }
     static Point onCircle(double radius, int i, int count) {
         const double a = 2 * vectorlib::pi * i / count;

@@ -34,9 +34,9 @@ inline const char *describe(GlobalPairVerdict verdict) {
     case GlobalPairVerdict::Found:
         return "found";
     case GlobalPairVerdict::Ambiguous:
-        return "ambiguous: several motions fit alike";
+        return "several motions fit alike";
     case GlobalPairVerdict::OpenDirection:
-        return "ambiguous: the scans slide on each other, as along a corridor";
+        return "the scans slide on each other, as along a corridor";
     case GlobalPairVerdict::TooUnlike:
         return "no motion explains enough of what the scans show";
     case GlobalPairVerdict::NothingFixed:
