@@ -26,18 +26,29 @@ Turns &Turns::ofThread() {
     return *all.localData();
 }
 
-void Turns::add(QObject *owner, const std::function<bool()> &step) {
-    (hasRested(owner) ? rested_ : busy_).push_back({owner, step});
+void Turns::add(QObject *owner, const Step &step) {
+    add(owner, step, hasRested(owner) ? rested_ : busy_);
+}
+
+void Turns::add(QObject *owner, const Step &step, Owners &owners) {
+    auto work = works_.find(owner);
+    if (work == works_.end()) {
+        work = works_.insert(owner, {owner, {}});
+        owners.push_back(owner);
+    } else if (!work->owner) { // another one was at this address
+        *work = {owner, {}};
+    }
+    work->steps.push_back(step);
     post();
 }
 
-bool Turns::hasRested(QObject *owner) {
+bool Turns::hasRested(QObject *owner) const {
     const auto last = lastSteps_.constFind(owner);
     return last == lastSteps_.constEnd() || monotonicNow() - *last > rest_s;
 }
 
 // In turn, so that a crowd of those who have rested does not keep the others waiting for good.
-Turns::Works &Turns::next() {
+Turns::Owners &Turns::next() {
     wasRested_ = !rested_.empty() && (busy_.empty() || !wasRested_);
     return wasRested_ ? rested_ : busy_;
 }
@@ -51,23 +62,33 @@ void Turns::post() {
 void Turns::run() {
     posted_ = false;
     const double end = monotonicNow() + longest_s;
-    for (double now = monotonicNow(); now < end && !(rested_.empty() && busy_.empty());
-         now = monotonicNow()) {
-        Works &works = next();
-        const Work work = std::move(works.front());
-        works.pop_front();
-        if (!(rested_.empty() && busy_.empty()))
-            post(); // a step may run an event loop of its own, which waits for the others
-        if (!work.owner)
-            continue;
-        if (lastSteps_.size() > mostKnown)
-            lastSteps_.clear();
-        lastSteps_.insert(work.owner, now);
-        if (work.step() && work.owner)
-            busy_.push_back(work);
-    }
-    if (!(rested_.empty() && busy_.empty()))
+    for (double now = monotonicNow(); now < end && !isIdle(); now = monotonicNow())
+        runNext(now);
+    if (!isIdle())
         post();
+}
+
+void Turns::runNext(double now) {
+    Owners &owners = next();
+    QObject *const key = owners.front();
+    owners.pop_front();
+    const auto work = works_.find(key);
+    const QPointer<QObject> owner = work->owner;
+    const Step step = std::move(work->steps.front());
+    work->steps.pop_front();
+    if (!owner || work->steps.empty())
+        works_.erase(work);
+    else
+        busy_.push_back(key);
+    if (!isIdle())
+        post(); // a step may run an event loop of its own, which waits for the others
+    if (!owner)
+        return;
+    if (lastSteps_.size() > mostKnown)
+        lastSteps_.clear();
+    lastSteps_.insert(key, now);
+    if (step() && owner)
+        add(owner, step, busy_);
 }
 
 void inBackground(const std::function<void()> &work) {

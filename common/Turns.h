@@ -8,33 +8,40 @@
 
 namespace hermes {
 
-/// Work of a thread's event loop that may wait, in small steps: one step of each work in turn, for a
-/// millisecond altogether, then sockets and timers are served. However much there is to do, what is urgent
-/// waits no longer than that and one step. Who has had nothing to do for a while goes first: whoever asks now
-/// and then does not wait for all of a crowd that asks without end.
+/// Work of a thread's event loop that may wait, in small steps: one step of each owner in turn, those of one
+/// owner in the order in which they came, for a millisecond altogether, then sockets and timers are served.
+/// However much there is to do, what is urgent waits no longer than that and one step. Who has had nothing to
+/// do for a while goes first: whoever asks now and then does not wait for all of a crowd that asks without
+/// end.
 class Turns : public QObject {
     Q_OBJECT
 public:
     /// That of the calling thread.
     static Turns &ofThread();
 
+    using Step = std::function<bool()>;
+
     /// Calls step from the event loop until it gives false, or owner is gone.
-    void add(QObject *owner, const std::function<bool()> &step);
+    void add(QObject *owner, const Step &step);
 
 private:
     struct Work {
         QPointer<QObject> owner;
-        std::function<bool()> step;
+        std::deque<Step> steps;
     };
-    using Works = std::deque<Work>;
+    using Owners = std::deque<QObject *>;
 
+    void add(QObject *owner, const Step &step, Owners &owners);
     void post();
     void run();
-    Works &next();
-    bool hasRested(QObject *owner);
+    void runNext(double now);
+    bool isIdle() const { return rested_.empty() && busy_.empty(); }
+    Owners &next();
+    bool hasRested(QObject *owner) const;
 
-    Works rested_;
-    Works busy_;
+    QHash<QObject *, Work> works_; // whoever has one is once in one of these:
+    Owners rested_;
+    Owners busy_;
     bool wasRested_ = false;             // the step before was of one of those
     QHash<QObject *, double> lastSteps_; // monotonic; of some who have gone, too
     bool posted_ = false;                // a call is in the event queue

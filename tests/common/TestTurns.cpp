@@ -1,0 +1,126 @@
+#include "common/Time.h"
+#include "common/Turns.h"
+
+#include <QEventLoop>
+#include <QTest>
+#include <QTimer>
+#include <algorithm>
+#include <memory>
+#include <random>
+#include <vector>
+
+namespace hermes {
+namespace {
+
+void spend(double duration_s) {
+    const double end = monotonicNow() + duration_s;
+    while (monotonicNow() < end) {
+    }
+}
+
+} // namespace
+
+class TestTurns : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void stepsOfAnOwnerKeepTheirOrder_data();
+    void stepsOfAnOwnerKeepTheirOrder();
+    void whoRestedWaitsForNoCrowd();
+    void aStepMayWaitForALaterOne();
+    void whoIsGoneHasNoSteps();
+};
+
+void TestTurns::stepsOfAnOwnerKeepTheirOrder_data() {
+    QTest::addColumn<unsigned>("seed");
+    for (unsigned seed = 1; seed <= 10; ++seed)
+        QTest::addRow("%u", seed) << seed;
+}
+
+// Steps come while others wait and run, before and after the time in which an owner counts as rested.
+void TestTurns::stepsOfAnOwnerKeepTheirOrder() {
+    QFETCH(unsigned, seed);
+    std::mt19937 random(seed);
+    const auto draw = [&](int most) { return std::uniform_int_distribution<>(0, most)(random); };
+    constexpr int owners = 4, steps = 200;
+    std::vector<QObject> all(owners);
+    std::vector<std::vector<int>> done(owners);
+    std::vector<int> added(owners);
+    const auto addSome = [&] {
+        for (int count = draw(5); count > 0; --count) {
+            const int i = draw(owners - 1);
+            if (added[i] == steps)
+                continue;
+            const double duration_s = draw(3) == 0 ? draw(3) * 1e-3 : 0;
+            Turns::ofThread().add(&all[i], [&done, i, number = added[i]++, duration_s] {
+                spend(duration_s);
+                done[i].push_back(number);
+                return false;
+            });
+        }
+    };
+    QTimer more;
+    connect(&more, &QTimer::timeout, this, addSome);
+    more.start(0);
+    const auto isDone = [&] {
+        return std::all_of(done.begin(), done.end(), [](const auto &of) { return of.size() == steps; });
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(isDone(), 30000);
+    for (const std::vector<int> &of : done)
+        QVERIFY(std::is_sorted(of.begin(), of.end()));
+}
+
+void TestTurns::whoRestedWaitsForNoCrowd() {
+    std::vector<QObject> crowd(200);
+    int stepsOfCrowd = 0;
+    for (QObject &one : crowd)
+        Turns::ofThread().add(&one, [&] {
+            spend(50e-6);
+            return ++stepsOfCrowd < 4000;
+        });
+    QTRY_VERIFY(stepsOfCrowd > 400); // nobody of them has rested any more
+    QObject rested;
+    int before = -1;
+    const int now = stepsOfCrowd;
+    Turns::ofThread().add(&rested, [&] {
+        before = stepsOfCrowd - now;
+        return false;
+    });
+    QTRY_VERIFY(before >= 0);
+    QVERIFY2(before <= 2, qPrintable(QString::number(before)));
+    QTRY_VERIFY(stepsOfCrowd >= 4000);
+    QTest::qWait(50);
+}
+
+void TestTurns::aStepMayWaitForALaterOne() {
+    QObject owner;
+    QEventLoop loop;
+    bool isDone = false;
+    Turns::ofThread().add(&owner, [&] {
+        loop.exec();
+        isDone = true;
+        return false;
+    });
+    Turns::ofThread().add(&owner, [&] {
+        loop.quit();
+        return false;
+    });
+    QTRY_VERIFY(isDone);
+}
+
+void TestTurns::whoIsGoneHasNoSteps() {
+    auto gone = std::make_unique<QObject>();
+    QObject other;
+    int ofGone = 0, ofOther = 0;
+    for (int i = 0; i < 3; ++i) {
+        Turns::ofThread().add(gone.get(), [&] { return ++ofGone > 0; });
+        Turns::ofThread().add(&other, [&] { return ++ofOther < 10; });
+    }
+    gone.reset();
+    QTRY_VERIFY(ofOther >= 12);
+    QCOMPARE(ofGone, 0);
+}
+
+} // namespace hermes
+
+QTEST_GUILESS_MAIN(hermes::TestTurns)
+#include "TestTurns.moc"
