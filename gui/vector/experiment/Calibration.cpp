@@ -30,35 +30,73 @@ void divide(std::array<CalibrationTenth, 10> &tenths) {
         }
 }
 
-/// The logistic regression on whether the right solution is among those of a pair: Newton's method, with a
-/// weak pull towards 0 that keeps it finite.
-MatchProbability::Features fittedWeights(const std::vector<GlobalPairResult> &pairs) {
-    constexpr int count = std::tuple_size<MatchProbability::Features>::value;
-    using Vector = Eigen::Matrix<double, count, 1>;
-    Vector weights = Vector::Zero();
+constexpr int featureCount = std::tuple_size<MatchProbability::Features>::value;
+using Weights = Eigen::Matrix<double, featureCount, 1>;
+
+/// What tells of a pair with solutions whether the right one is among them, and whether it is.
+struct AnyCase {
+    Weights features;
+    bool right;
+};
+
+std::vector<AnyCase> anyCases(const std::vector<GlobalPairResult> &pairs) {
+    std::vector<AnyCase> cases;
+    for (const GlobalPairResult &pair : pairs) {
+        const auto &solutions = pair.match.solutions;
+        if (solutions.empty())
+            continue;
+        const MatchProbability::Features features = MatchProbability::features(pair.match);
+        cases.push_back({Eigen::Map<const Weights>(features.data()),
+                         std::any_of(solutions.begin(), solutions.end(),
+                                     [&](const auto &s) { return isRight(pair, s); })});
+    }
+    return cases;
+}
+
+/// The logistic regression below a ceiling by Fisher's scoring, with a weak pull towards 0 that keeps it
+/// finite.
+Weights fittedWeights(const std::vector<AnyCase> &cases, double ceiling) {
+    Weights weights = Weights::Zero();
     for (int step = 0; step < 50; ++step) {
-        Eigen::Matrix<double, count, count> h = 1e-3 * Eigen::Matrix<double, count, count>::Identity();
-        Vector g = -1e-3 * weights;
-        for (const GlobalPairResult &pair : pairs) {
-            const auto &solutions = pair.match.solutions;
-            if (solutions.empty())
-                continue;
-            const bool right = std::any_of(solutions.begin(), solutions.end(),
-                                           [&](const auto &s) { return isRight(pair, s); });
-            const MatchProbability::Features features = MatchProbability::features(pair.match);
-            const Vector f = Eigen::Map<const Vector>(features.data());
-            const double p = 1 / (1 + std::exp(-weights.dot(f)));
-            g += (right - p) * f;
-            h += p * (1 - p) * f * f.transpose();
+        Eigen::Matrix<double, featureCount, featureCount> h =
+            1e-3 * Eigen::Matrix<double, featureCount, featureCount>::Identity();
+        Weights g = -1e-3 * weights;
+        for (const AnyCase &c : cases) {
+            const double s = 1 / (1 + std::exp(-weights.dot(c.features))), p = ceiling * s;
+            const double slope = p * (1 - s), spread = std::max(1e-12, p * (1 - p));
+            g += slope * (c.right - p) / spread * c.features;
+            h += slope * slope / spread * c.features * c.features.transpose();
         }
         weights += h.ldlt().solve(g);
     }
-    MatchProbability::Features result;
-    Eigen::Map<Vector>(result.data()) = weights;
-    return result;
+    return weights;
 }
 
-/// With which the right solutions have the greatest share of the powers of all consistencies.
+double likelihood(const std::vector<AnyCase> &cases, const Weights &weights, double ceiling) {
+    double sum = 0;
+    for (const AnyCase &c : cases) {
+        const double p = ceiling / (1 + std::exp(-weights.dot(c.features)));
+        sum += std::log(std::max(1e-12, c.right ? p : 1 - p));
+    }
+    return sum;
+}
+
+/// The likeliest weights and ceiling.
+void fitAny(const std::vector<GlobalPairResult> &pairs, MatchProbability &fitted) {
+    const std::vector<AnyCase> cases = anyCases(pairs);
+    double most = -1e300;
+    for (int thousandths = 900; thousandths <= 1000; thousandths += 2) {
+        const Weights weights = fittedWeights(cases, thousandths / 1000.0);
+        const double l = likelihood(cases, weights, thousandths / 1000.0);
+        if (l <= most)
+            continue;
+        most = l;
+        fitted.ceiling = thousandths / 1000.0;
+        Eigen::Map<Weights>(fitted.weights.data()) = weights;
+    }
+}
+
+/// With which the right solutions have the greatest share of the powers of all fits.
 double fittedSharpness(const std::vector<GlobalPairResult> &pairs) {
     double best = 1, most = -1e300;
     for (double sharpness = 4; sharpness < 400; sharpness *= 1.02) {
@@ -66,7 +104,7 @@ double fittedSharpness(const std::vector<GlobalPairResult> &pairs) {
         for (const GlobalPairResult &pair : pairs) {
             double right = 0, all = 0;
             for (const GlobalPairSolution &s : pair.match.solutions) {
-                const double power = std::exp(sharpness * s.agreement.consistency());
+                const double power = std::exp(sharpness * MatchProbability::fit(s));
                 all += power;
                 right += isRight(pair, s) ? power : 0;
             }
@@ -100,7 +138,7 @@ Calibration calibrationOf(const std::vector<GlobalPairResult> &pairs) {
         }
     divide(c.best);
     divide(c.all);
-    c.fitted.weights = fittedWeights(pairs);
+    fitAny(pairs, c.fitted);
     c.fitted.sharpness = fittedSharpness(pairs);
     return c;
 }
@@ -109,6 +147,7 @@ nlohmann::ordered_json summaryOf(const Calibration &calibration) {
     return {{"best", jsonOf(calibration.best)},
             {"all", jsonOf(calibration.all)},
             {"fitted_weights", calibration.fitted.weights},
+            {"fitted_ceiling", calibration.fitted.ceiling},
             {"fitted_sharpness", calibration.fitted.sharpness}};
 }
 

@@ -10,36 +10,44 @@ namespace vectorlib {
 
 /// How probable it is that a solution of a match without estimate is right: within 10 cm and 2 degrees of
 /// corrected poses, whose own errors count as those of the match. A logistic function of how well the best
-/// solution agrees tells whether the right one is among them, and powers of their consistency divide that
-/// among them: of two that fit alike each has half. It takes for granted that the scans show the same place.
+/// solution agrees, up to a ceiling, tells whether the right one is among them; powers of how well each of
+/// them fits divide that among them: of two that fit alike each has half. It takes for granted that the scans
+/// show the same place.
 struct MatchProbability {
-    using Features = std::array<double, 4>;
+    using Features = std::array<double, 5>;
 
-    /// Of the features, and how much a difference of consistency tells. Fitted to the first half of the pairs
-    /// of five logs, neighbouring scans and ones farther apart, by hermes-vector experiment calibration
+    /// Of the features, the ceiling, and how much a difference of fit tells. Fitted to the first half of the
+    /// pairs of five logs, neighbouring scans and ones farther apart, by hermes-vector experiment calibration
     /// --half 1 --log intel... (docs/algorithms.md has all of it).
-    Features weights{-2.65, -10.14, 5.08, 1.38};
-    double sharpness = 31;
+    Features weights{-3.92, -10.99, 12.39, 2.44, -3.19};
+    double ceiling = 0.986; ///< however well two scans agree: corrected poses have errors, too
+    double sharpness = 36.7;
 
-    /// What tells whether the right solution is among those of a match that has some: a constant 1, the share
-    /// of surfaces that the best contradicts, what it loses by sliding, and the logarithm of how many metres
-    /// of surface it explains.
+    /// What tells whether the right solution is among those of a match that has some: a constant 1, the part
+    /// that the best contradicts of what it explains or contradicts, what it loses by sliding, the logarithm
+    /// of how many metres of surface it explains, and its score.
     static Features features(const GlobalPairMatch &match) {
         const SurfaceAgreement &a = match.solutions[0].agreement;
-        return {1, a.contradicted(), std::clamp(match.slideLoss, -0.1, 0.4),
-                std::log(std::max(0.3, a.explained() * a.length()))};
+        const double judged = a.explained() + a.contradicted();
+        return {1, judged > 0 ? a.contradicted() / judged : 1, std::clamp(match.slideLoss, -0.1, 0.25),
+                std::log(std::max(0.3, a.explained() * a.length())), a.score()};
+    }
+    /// Half of it counts what is out of the other scan's sight, half of it hardly does.
+    static double fit(const GlobalPairSolution &s) {
+        return (s.agreement.score() + s.agreement.consistency()) / 2;
     }
     void operator()(GlobalPairMatch &match) const {
         if (match.solutions.empty())
             return;
         const Features f = features(match);
-        const double best = match.solutions[0].agreement.consistency();
-        double sum = 0, total = 0;
+        double sum = 0, total = 0, best = -1;
         for (std::size_t i = 0; i < f.size(); ++i)
             sum += weights[i] * f[i];
-        const double any = 1 / (1 + std::exp(-sum));
+        const double any = ceiling / (1 + std::exp(-sum));
+        for (const GlobalPairSolution &s : match.solutions)
+            best = std::max(best, fit(s));
         for (GlobalPairSolution &s : match.solutions)
-            total += s.probability = std::exp(sharpness * (s.agreement.consistency() - best));
+            total += s.probability = std::exp(sharpness * (fit(s) - best));
         for (GlobalPairSolution &s : match.solutions)
             s.probability *= any / total;
     }
