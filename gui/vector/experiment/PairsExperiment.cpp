@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iomanip>
+#include <sstream>
 
 namespace hermes::vector {
 
@@ -129,11 +131,14 @@ void draw(std::ostream &svg, const vectorlib::CarmenLog &log, const LogPair &pai
             points.push_back(motion * p);
         return points;
     };
-    const auto hundredths = [](double v) { return std::to_string(std::lround(100 * v)); };
+    const auto rounded = [](double v, int digits) {
+        std::ostringstream text;
+        text << std::fixed << std::setprecision(digits) << v;
+        return text.str();
+    };
     vectorlib::SvgPicture picture("scans " + std::to_string(pair.from) + " and " + std::to_string(pair.to) +
-                                  ": " + hundredths(pair.errorMetres(found)) + " cm and " +
-                                  hundredths(pair.errorDegrees(found)) +
-                                  " hundredths of a degree from the reference");
+                                  ": " + rounded(100 * pair.errorMetres(found), 0) + " cm and " +
+                                  rounded(pair.errorDegrees(found), 1) + " degrees from the reference");
     picture.points({vectorlib::colour::reference, 3, "second scan by the reference"}, moved(pair.reference));
     picture.points({vectorlib::colour::points, 3, "first scan"}, pointsOf(log.scans[pair.from]));
     picture.points({vectorlib::colour::estimate, 3, "second scan as matched"}, moved(found));
