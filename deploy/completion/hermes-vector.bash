@@ -13,7 +13,7 @@ _hermes_vector() {
         esac
     done
     if [ -z "$command" ]; then
-        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity match relocalize observe map ring experiment report --help --version" -- "$word")
+        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity match relocalize observe map evaluate ring experiment report --help --version" -- "$word")
         return
     fi
     local help choices

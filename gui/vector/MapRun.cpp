@@ -1,5 +1,7 @@
 #include "gui/vector/MapRun.h"
 
+#include "gui/vector/evaluation/MotionErrors.h"
+
 #include <algorithm>
 
 namespace hermes::vector {
@@ -47,34 +49,22 @@ nlohmann::ordered_json MapRun::summary() const {
 // Consecutive motions are compared, as errors of the past do not count twice then; the drift is what they add
 // up to.
 nlohmann::ordered_json MapRun::errors() const {
-    constexpr double nearMetres = 0.10, nearDegrees = 2;
-    constexpr double degrees = 180 / vectorlib::pi;
-    std::vector<double> metres, turned;
-    std::size_t near = 0;
-    const auto difference = [&](std::size_t from, std::size_t to) {
-        const auto motion = [&](const std::vector<vectorlib::StampedPose> &poses) {
-            return Transformation2D(poses[from].pose).inverse() * Transformation2D(poses[to].pose);
-        };
-        return motion(reference_).inverse() * motion(trajectory_);
+    MotionErrors motions;
+    const auto motion = [](const std::vector<vectorlib::StampedPose> &poses, std::size_t from,
+                           std::size_t to) {
+        return Transformation2D(poses[from].pose).inverse() * Transformation2D(poses[to].pose);
     };
-    for (std::size_t i = 1; i < reference_.size(); ++i) {
-        const Transformation2D d = difference(i - 1, i);
-        metres.push_back(d.translation().norm());
-        turned.push_back(std::abs(d.alpha()) * degrees);
-        near += metres.back() <= nearMetres && turned.back() <= nearDegrees;
-    }
-    const auto median = [](std::vector<double> &values) {
-        const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
-    };
-    const Transformation2D drift = difference(0, reference_.size() - 1);
-    return {{"motions", metres.size()},
-            {"within_10cm_2deg", double(near) / double(metres.size())},
-            {"median_error_m", median(metres)},
-            {"median_error_deg", median(turned)},
+    const std::size_t last = reference_.size() - 1;
+    for (std::size_t i = 1; i <= last; ++i)
+        motions.add(motion(reference_, i - 1, i), motion(trajectory_, i - 1, i));
+    const nlohmann::ordered_json of = motions.summary();
+    const Transformation2D drift = motion(reference_, 0, last).inverse() * motion(trajectory_, 0, last);
+    return {{"motions", motions.size()},
+            {"within_10cm_2deg", of["within_10cm_2deg"]},
+            {"median_error_m", of["median_m"]},
+            {"median_error_deg", of["median_deg"]},
             {"final_drift_m", drift.translation().norm()},
-            {"final_drift_deg", std::abs(drift.alpha()) * degrees}};
+            {"final_drift_deg", std::abs(drift.alpha()) * 180 / vectorlib::pi}};
 }
 
 } // namespace hermes::vector

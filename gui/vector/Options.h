@@ -58,6 +58,7 @@ void addMapCommand(CLI::App &app);
 void addMatchCommand(CLI::App &app);
 void addReportCommand(CLI::App &app);
 void addRelocalizeCommand(CLI::App &app);
+void addEvaluateCommand(CLI::App &app);
 void addRingCommand(CLI::App &app);
 
 } // namespace hermes::vector

@@ -1,0 +1,54 @@
+#include "gui/vector/Failure.h"
+#include "gui/vector/Input.h"
+#include "gui/vector/Options.h"
+#include "gui/vector/Output.h"
+#include "gui/vector/evaluation/Evaluation.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace hermes::vector {
+
+namespace {
+
+struct EvaluateCommand {
+    std::string log, trajectory;
+    OutputOptions output;
+
+    void run() const {
+        OutputSet files(output.force);
+        std::ostream &out = files.open(output.out);
+        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        Input logInput(log), trajectoryInput(trajectory);
+        const Evaluation evaluation(
+            valueOrFail(vectorlib::readCarmenLog(logInput.stream(), logInput.name())),
+            valueOrFail(vectorlib::readTum(trajectoryInput.stream(), trajectoryInput.name())),
+            trajectoryInput.name());
+        out << evaluation.summary().dump(2) << '\n';
+        if (svg)
+            evaluation.draw(*svg, fileName(trajectory) + " beside the reference of " + fileName(log));
+        files.commit();
+    }
+    static std::string fileName(const std::string &path) {
+        return std::filesystem::path(path).filename().string();
+    }
+};
+
+} // namespace
+
+void addEvaluateCommand(CLI::App &app) {
+    auto command = std::make_shared<EvaluateCommand>();
+    CLI::App *sub = app.add_subcommand(
+        "evaluate", "Errors of a trajectory beside a log's corrected poses: from pose to pose, and where a "
+                    "place is met again (JSON)");
+    sub->add_option("LOG", command->log, "CARMEN log whose scan poses are a corrected reference")->required();
+    sub->add_option("TRAJECTORY", command->trajectory,
+                    "TUM file: stamp x y z qx qy qz qw; of as many poses as the log has scans, or poses at "
+                    "the times of some scans")
+        ->required();
+    command->output.addTo(*sub, true);
+    sub->footer(example("hermes-vector evaluate intel.log.gz intel.tum --svg errors.svg"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes::vector

@@ -1,0 +1,160 @@
+#include "gui/vector/evaluation/Evaluation.h"
+
+#include "gui/vector/Failure.h"
+#include "gui/vector/evaluation/Revisits.h"
+#include "vectorlib/io/Svg.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+namespace hermes::vector {
+
+using vectorlib::Pose2D;
+using vectorlib::StampedPose;
+using vectorlib::Transformation2D;
+
+Evaluation::Evaluation(const vectorlib::CarmenLog &log, const std::vector<StampedPose> &trajectory,
+                       const std::string &name)
+    : poses_(trajectory.size()) {
+    for (const vectorlib::CarmenScan &scan : log.scans)
+        reference_.push_back(scan.laserPose);
+    if (trajectory.size() == log.scans.size())
+        pairOneByOne(trajectory);
+    else
+        pairByStamps(log, trajectory);
+    if (pairs_.size() < 2)
+        throw Failure(name + ": found " + std::to_string(trajectory.size()) + " poses, " +
+                      std::to_string(pairs_.size()) + " of them at the time of one of the log's " +
+                      std::to_string(log.scans.size()) + " scans, expected two or more");
+    compareConsecutive();
+    compareRevisits();
+}
+
+void Evaluation::pairOneByOne(const std::vector<StampedPose> &trajectory) {
+    for (std::size_t i = 0; i < trajectory.size(); ++i)
+        pairs_.push_back({i, trajectory[i].pose});
+}
+
+// Each pose to the nearest scan that none has yet; scans of one stamp are taken in their order.
+void Evaluation::pairByStamps(const vectorlib::CarmenLog &log, const std::vector<StampedPose> &trajectory) {
+    std::vector<std::size_t> byStamp(log.scans.size());
+    std::iota(byStamp.begin(), byStamp.end(), std::size_t(0));
+    const auto stampOf = [&](std::size_t scan) { return log.scans[scan].stamp; };
+    std::stable_sort(byStamp.begin(), byStamp.end(),
+                     [&](std::size_t a, std::size_t b) { return stampOf(a) < stampOf(b); });
+    std::vector<bool> isTaken(log.scans.size());
+    for (const StampedPose &p : trajectory) {
+        std::optional<std::size_t> nearest;
+        for (auto at =
+                 std::lower_bound(byStamp.begin(), byStamp.end(), p.stamp - sameStamp,
+                                  [&](std::size_t scan, double stamp) { return stampOf(scan) < stamp; });
+             at != byStamp.end() && stampOf(*at) <= p.stamp + sameStamp; ++at)
+            if (!isTaken[*at] &&
+                (!nearest || std::abs(stampOf(*at) - p.stamp) < std::abs(stampOf(*nearest) - p.stamp)))
+                nearest = *at;
+        if (!nearest)
+            continue;
+        isTaken[*nearest] = true;
+        pairs_.push_back({*nearest, p.pose});
+    }
+    std::sort(pairs_.begin(), pairs_.end(), [](const Pair &a, const Pair &b) { return a.scan < b.scan; });
+}
+
+Transformation2D Evaluation::motionOf(const Pair &from, const Pair &to) const {
+    return Transformation2D(from.pose).inverse() * Transformation2D(to.pose);
+}
+
+Transformation2D Evaluation::referenceOf(const Pair &from, const Pair &to) const {
+    return Transformation2D(reference_[from.scan]).inverse() * Transformation2D(reference_[to.scan]);
+}
+
+void Evaluation::compareConsecutive() {
+    for (std::size_t i = 1; i < pairs_.size(); ++i)
+        consecutive_.add(referenceOf(pairs_[i - 1], pairs_[i]), motionOf(pairs_[i - 1], pairs_[i]));
+}
+
+void Evaluation::compareRevisits() {
+    std::vector<const Pair *> pairOf(reference_.size());
+    for (const Pair &p : pairs_)
+        pairOf[p.scan] = &p;
+    const auto forEachPair = [&](auto take) {
+        forEachRevisit(reference_, {}, [&](std::size_t earlier, std::size_t later) {
+            if (pairOf[earlier] && pairOf[later])
+                take(*pairOf[earlier], *pairOf[later]);
+        });
+    };
+    forEachPair([this](const Pair &, const Pair &) { ++revisitPairs_; });
+    const std::size_t step = revisitPairs_ / mostPairs + 1;
+    errorOf_.resize(reference_.size());
+    std::size_t number = 0;
+    forEachPair([&](const Pair &earlier, const Pair &later) {
+        if (number++ % step != 0)
+            return;
+        revisits_.add(referenceOf(earlier, later), motionOf(earlier, later));
+        ScanError &error = errorOf_[later.scan];
+        error.sum += revisits_.lastMetres();
+        ++error.count;
+    });
+}
+
+nlohmann::ordered_json Evaluation::summary() const {
+    nlohmann::ordered_json consecutive = {{"motions", consecutive_.size()}};
+    consecutive.update(consecutive_.summary());
+    nlohmann::ordered_json revisits = {{"pairs", revisitPairs_}, {"compared", revisits_.size()}};
+    revisits.update(revisits_.summary());
+    return {{"scans", reference_.size()},
+            {"poses", poses_},
+            {"compared", pairs_.size()},
+            {"consecutive", consecutive},
+            {"revisits", revisits}};
+}
+
+// The motion with the least squares of distances between the places of both.
+Transformation2D Evaluation::ontoReference() const {
+    Point from, to;
+    for (const Pair &p : pairs_) {
+        from = from + Point(p.pose.x, p.pose.y);
+        to = to + Point(reference_[p.scan].x, reference_[p.scan].y);
+    }
+    from = from * (1 / double(pairs_.size()));
+    to = to * (1 / double(pairs_.size()));
+    double along = 0, across = 0;
+    for (const Pair &p : pairs_) {
+        const Point a = Point(p.pose.x, p.pose.y) - from,
+                    b = Point(reference_[p.scan].x, reference_[p.scan].y) - to;
+        along += a.dot(b);
+        across += a.x * b.y - a.y * b.x;
+    }
+    const Transformation2D turned(0, 0, std::atan2(across, along));
+    const Point shift = to - turned * from;
+    return {shift.x, shift.y, turned.alpha()};
+}
+
+void Evaluation::draw(std::ostream &svg, const std::string &title) const {
+    namespace colour = vectorlib::colour;
+    constexpr double small = 0.1, large = 0.5; // metres
+    const Transformation2D onto = ontoReference();
+    Path reference, found;
+    for (const Pose2D &p : reference_)
+        reference.emplace_back(p.x, p.y);
+    for (const Pair &p : pairs_)
+        found.push_back(onto * Point(p.pose.x, p.pose.y));
+    vectorlib::SvgPicture picture(title);
+    picture.path({colour::reference, 1.5, "reference", true}, reference);
+    picture.path({colour::estimate, 1.2, "trajectory, laid onto it"}, found);
+    std::array<Path, 3> again;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        const ScanError &error = errorOf_[pairs_[i].scan];
+        if (error.count == 0)
+            continue;
+        const double mean = error.sum / double(error.count);
+        again[mean < small ? 0 : mean < large ? 1 : 2].push_back(found[i]);
+    }
+    picture.points({"#009e73", 5, "place met again: off by less than 10 cm"}, again[0]);
+    picture.points({colour::before, 5, "by 10 to 50 cm"}, again[1]);
+    picture.points({colour::outliers, 5, "by more"}, again[2]);
+    picture.write(svg);
+}
+
+} // namespace hermes::vector

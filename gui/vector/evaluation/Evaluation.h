@@ -1,0 +1,58 @@
+#pragma once
+
+#include "gui/vector/evaluation/MotionErrors.h"
+#include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/Tum.h"
+
+#include <ostream>
+
+namespace hermes::vector {
+
+/// A trajectory beside the reference poses of the log from whose scans it was made. Relative motions are
+/// compared, so that neither frame matters and an error of the past does not count twice (Kuemmerle et al.,
+/// On measuring the accuracy of SLAM algorithms, 2009).
+class Evaluation {
+public:
+    /// Stamps belong to each other within this; seconds.
+    static constexpr double sameStamp = 0.01;
+    /// More pairs of places met again than this are thinned evenly.
+    static constexpr std::size_t mostPairs = 2000000;
+
+    /// A trajectory of as many poses as the log has scans belongs to them one by one, another one by its
+    /// stamps. Throws Failure when fewer than two poses have a scan.
+    Evaluation(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory,
+               const std::string &name);
+
+    nlohmann::ordered_json summary() const;
+    /// Both trajectories, laid on each other, and how far off the motions between places met again are.
+    void draw(std::ostream &svg, const std::string &title) const;
+
+private:
+    using Point = vectorlib::Vector2D<double>;
+    using Path = std::vector<Point>;
+    /// A pose of the trajectory and the number of its scan.
+    struct Pair {
+        std::size_t scan;
+        vectorlib::Pose2D pose;
+    };
+    void pairOneByOne(const std::vector<vectorlib::StampedPose> &trajectory);
+    void pairByStamps(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory);
+    void compareConsecutive();
+    void compareRevisits();
+    vectorlib::Transformation2D motionOf(const Pair &from, const Pair &to) const;
+    vectorlib::Transformation2D referenceOf(const Pair &from, const Pair &to) const;
+    vectorlib::Transformation2D ontoReference() const;
+
+    std::vector<vectorlib::Pose2D> reference_; ///< of all scans
+    std::vector<Pair> pairs_;                  ///< in the order of the scans
+    std::size_t poses_ = 0;                    ///< of the trajectory
+    MotionErrors consecutive_, revisits_;
+    std::size_t revisitPairs_ = 0;
+    struct ScanError {
+        double sum = 0; ///< metres
+        std::size_t count = 0;
+    };
+    std::vector<ScanError> errorOf_; ///< of each scan that comes to a place again
+};
+
+} // namespace hermes::vector

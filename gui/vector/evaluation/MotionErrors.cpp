@@ -1,0 +1,50 @@
+#include "gui/vector/evaluation/MotionErrors.h"
+
+#include "vectorlib/geometry/Angle.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hermes::vector {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The value below which so much of all lies.
+double quantileOf(std::vector<double> values, double share) {
+    const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+void addSummary(Json &json, const std::string &unit, const std::vector<double> &values) {
+    const bool any = !values.empty();
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    json["mean_" + unit] = any ? Json(sum / double(values.size())) : Json();
+    json["median_" + unit] = any ? Json(quantileOf(values, 0.5)) : Json();
+    json["percentile_95_" + unit] = any ? Json(quantileOf(values, 0.95)) : Json();
+}
+
+} // namespace
+
+void MotionErrors::add(const vectorlib::Transformation2D &reference,
+                       const vectorlib::Transformation2D &found) {
+    const vectorlib::Transformation2D difference = reference.inverse() * found;
+    metres_.push_back(difference.translation().norm());
+    degrees_.push_back(std::abs(difference.alpha()) * 180 / vectorlib::pi);
+}
+
+Json MotionErrors::summary() const {
+    constexpr double nearMetres = 0.10, nearDegrees = 2;
+    Json json;
+    addSummary(json, "m", metres_);
+    addSummary(json, "deg", degrees_);
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < size(); ++i)
+        near += metres_[i] <= nearMetres && degrees_[i] <= nearDegrees;
+    json["within_10cm_2deg"] = size() > 0 ? Json(double(near) / double(size())) : Json();
+    return json;
+}
+
+} // namespace hermes::vector

@@ -1,0 +1,186 @@
+#include "tests/gui/VectorProgram.h"
+
+#include "vectorlib/geometry/Transformation2D.h"
+
+#include <QXmlStreamReader>
+#include <random>
+
+using vectorlib::Pose2D;
+using vectorlib::Transformation2D;
+
+/// hermes-vector evaluate: a trajectory beside the reference poses of a log.
+class TestEvaluate : public QObject {
+    Q_OBJECT
+
+    TestFolder folder_;
+    using Drive = std::vector<Pose2D>;
+
+    QString path(const char *name) const { return folder_.path(name); }
+    /// A log of the poses, a tenth of a second apart, and a trajectory of some of them.
+    void writeLog(const Drive &drive) const {
+        QByteArray text;
+        for (std::size_t i = 0; i < drive.size(); ++i) {
+            const QByteArray pose = numbers({drive[i].x, drive[i].y, drive[i].theta});
+            text += "FLASER 3 1 1 1 " + pose + ' ' + pose + ' ' + numbers({stampOf(i)}) + " host " +
+                    numbers({stampOf(i)}) + '\n';
+        }
+        write(path("a.log"), text);
+    }
+    void writeTrajectory(const Drive &drive, std::size_t every = 1) const {
+        QByteArray text = "# stamp x y z qx qy qz qw\n";
+        for (std::size_t i = 0; i < drive.size(); i += every)
+            text += numbers({stampOf(i), drive[i].x, drive[i].y, 0, 0, 0, std::sin(drive[i].theta / 2),
+                             std::cos(drive[i].theta / 2)}) +
+                    '\n';
+        write(path("a.tum"), text);
+    }
+    static double stampOf(std::size_t scan) { return 1000 + 0.1 * double(scan); }
+    static QByteArray numbers(const std::vector<double> &values) {
+        QByteArrayList list;
+        for (const double v : values)
+            list.append(QByteArray::number(v, 'g', 12));
+        return list.join(' ');
+    }
+    Result evaluate(const QStringList &more = {}) const {
+        return run(QStringList{"evaluate", path("a.log"), path("a.tum")} + more);
+    }
+    static Drive wandering(std::mt19937 &random, int poses) {
+        std::uniform_real_distribution<double> step(0, 0.6), turn(-0.5, 0.5);
+        Drive drive{{0, 0, 0}};
+        for (int i = 1; i < poses; ++i) {
+            const Pose2D &p = drive.back();
+            const double length = step(random);
+            const Pose2D next{p.x + length * std::cos(p.theta), p.y + length * std::sin(p.theta),
+                              p.theta + turn(random)};
+            const bool isInside = std::abs(next.x) < 8 && std::abs(next.y) < 8;
+            drive.push_back(isInside ? next : Pose2D{p.x, p.y, p.theta + 0.7});
+        }
+        return drive;
+    }
+    static Drive moved(const Drive &drive, const Transformation2D &motion) {
+        Drive result;
+        for (const Pose2D &p : drive) {
+            const Transformation2D m = motion * Transformation2D(p);
+            result.push_back({m.x(), m.y(), m.alpha()});
+        }
+        return result;
+    }
+
+private Q_SLOTS:
+    void initTestCase() { QVERIFY(folder_.isValid()); }
+    void init() { folder_.empty(); }
+
+    // Against all pairs, one by one, as the rule says.
+    void findsEveryPlaceMetAgain() {
+        const unsigned seed = unsigned(QDateTime::currentMSecsSinceEpoch());
+        qInfo("seed %u", seed);
+        std::mt19937 random(seed);
+        const Drive drive = wandering(random, 800);
+        std::vector<double> way{0};
+        for (std::size_t i = 1; i < drive.size(); ++i)
+            way.push_back(way[i - 1] + std::hypot(drive[i].x - drive[i - 1].x, drive[i].y - drive[i - 1].y));
+        int expected = 0;
+        for (std::size_t k = 0; k < drive.size(); ++k)
+            for (std::size_t i = 0; i + 40 <= k; ++i)
+                expected += way[k] - way[i] >= 15 &&
+                            std::hypot(drive[i].x - drive[k].x, drive[i].y - drive[k].y) < 2 &&
+                            std::cos(drive[i].theta - drive[k].theta) > 0.5;
+        QVERIFY(expected > 100);
+        writeLog(drive);
+        writeTrajectory(drive);
+        const QJsonObject found = json(evaluate().out)["revisits"].toObject();
+        QVERIFY2(std::abs(found["pairs"].toInt() - expected) <= 2, // numbers are rounded in the files
+                 qPrintable(QString("%1 of %2").arg(found["pairs"].toInt()).arg(expected)));
+    }
+
+    void whereTheFramesLieDoesNotMatter() {
+        std::mt19937 random(3);
+        const Drive drive = wandering(random, 400);
+        writeLog(drive);
+        writeTrajectory(moved(drive, {100, -20, 2.5}));
+        const QJsonObject found = json(evaluate().out);
+        QCOMPARE(found["compared"].toInt(), 400);
+        QVERIFY(found["consecutive"].toObject()["mean_m"].toDouble() < 1e-6);
+        QVERIFY(found["revisits"].toObject()["mean_m"].toDouble() < 1e-6);
+        QCOMPARE(found["revisits"].toObject()["within_10cm_2deg"].toDouble(), 1.0);
+    }
+
+    // Twice round the same square: the second time everything lies 30 cm aside.
+    void tellsWhatIsOff() {
+        Drive drive;
+        for (int i = 0; i < 160; ++i) {
+            const int side = i / 20 % 4;
+            const double along = 0.5 * (i % 20), x[] = {along, 10, 10 - along, 0},
+                         y[] = {0, along, 10, 10 - along};
+            drive.push_back({x[side], y[side], side * 1.5707963267948966});
+        }
+        writeLog(drive);
+        for (std::size_t i = 80; i < drive.size(); ++i)
+            drive[i].y += 0.3;
+        writeTrajectory(drive);
+        const Result r = evaluate({"--svg", path("a.svg")});
+        const QJsonObject found = json(r.out), again = found["revisits"].toObject();
+        QVERIFY2(std::abs(again["mean_m"].toDouble() - 0.3) < 0.01, r.out.constData());
+        QVERIFY(std::abs(again["percentile_95_m"].toDouble() - 0.3) < 1e-6);
+        const QJsonObject next = found["consecutive"].toObject();
+        QCOMPARE(next["motions"].toInt(), 159);
+        QVERIFY(next["median_m"].toDouble() < 1e-6);
+        QVERIFY(std::abs(next["mean_m"].toDouble() - 0.3 / 159) < 1e-6);
+        const QByteArray svg = contents(path("a.svg"));
+        QXmlStreamReader xml(svg);
+        while (!xml.atEnd())
+            xml.readNext();
+        QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
+        QVERIFY(svg.contains("by 10 to 50 cm") && svg.contains("a.tum beside the reference of a.log"));
+    }
+
+    void fewerPosesAreTakenByTheirStamps() {
+        std::mt19937 random(4);
+        const Drive drive = wandering(random, 300);
+        writeLog(drive);
+        writeTrajectory(drive, 3);
+        const QJsonObject found = json(evaluate().out);
+        QCOMPARE(found["scans"].toInt(), 300);
+        QCOMPARE(found["compared"].toInt(), 100);
+        QCOMPARE(found["consecutive"].toObject()["motions"].toInt(), 99);
+        QVERIFY(found["consecutive"].toObject()["mean_m"].toDouble() < 1e-6);
+    }
+
+    void saysWhatIsWrong_data() {
+        QTest::addColumn<QByteArray>("trajectory");
+        QTest::addColumn<QByteArray>("message");
+        QTest::newRow("empty") << QByteArray() << QByteArray("found 0 poses");
+        QTest::newRow("other times") << QByteArray("1 0 0 0 0 0 0 1\n")
+                                     << QByteArray("0 of them at the time");
+        QTest::newRow("seven fields") << QByteArray("1 0 0 0 0 0 1\n") << QByteArray("7 fields");
+        QTest::newRow("a word") << QByteArray("1 x 0 0 0 0 0 1\n") << QByteArray("\"x\"");
+        QTest::newRow("not a number") << QByteArray("1 0 nan 0 0 0 0 1\n") << QByteArray("\"nan\"");
+        QTest::newRow("no heading") << QByteArray("1 0 0 0 0 0 0 0\n") << QByteArray("quaternion");
+        QTest::newRow("far away") << QByteArray("1 1e300 0 0 0 0 0 1\n") << QByteArray("beyond all measure");
+    }
+    void saysWhatIsWrong() {
+        QFETCH(QByteArray, trajectory);
+        QFETCH(QByteArray, message);
+        writeLog({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+        write(path("a.tum"), trajectory);
+        const Result r = evaluate({"--svg", path("a.svg")});
+        QCOMPARE(r.status, 1);
+        QVERIFY2(r.err.contains("a.tum") && r.err.contains(message), r.err.constData());
+        QVERIFY(!QFile::exists(path("a.svg")));
+    }
+
+    void aDriveThatNeverReturnsHasNoRevisits() {
+        Drive drive;
+        for (int i = 0; i < 60; ++i)
+            drive.push_back({double(i), 0, 0});
+        writeLog(drive);
+        writeTrajectory(drive);
+        const Result r = evaluate({"--svg", path("a.svg")});
+        QCOMPARE(r.status, 0);
+        QVERIFY(json(r.out)["revisits"].toObject()["mean_m"].isNull());
+        QCOMPARE(json(r.out)["revisits"].toObject()["pairs"].toInt(), 0);
+    }
+};
+
+QTEST_GUILESS_MAIN(TestEvaluate)
+#include "TestEvaluate.moc"
