@@ -4,6 +4,7 @@
 #include "gui/vector/Options.h"
 #include "gui/vector/Progress.h"
 #include "vectorlib/io/CsvPoints.h"
+#include "vectorlib/io/G2o.h"
 #include "vectorlib/io/MapCsv.h"
 
 #include <chrono>
@@ -20,6 +21,8 @@ struct MapCommand {
     std::string odometry = "use";
     std::string outMap;
     std::string outTrajectory;
+    std::string outGraph;
+    std::string loops = "close";
     std::string summary;
     std::string svg;
     std::optional<std::size_t> onlyScan;
@@ -32,6 +35,7 @@ struct MapCommand {
         MapRun run;
         vectorlib::ScanTrackerSettings settings;
         settings.useOdometry = odometry == "use";
+        run.closesLoops = loops == "close";
         run.tracker.apply(settings);
         segment.over({}); // contradictions come to light before any file is touched
         run.tracker.segmentation = [this](const vectorlib::EarSettings &scanner) {
@@ -45,6 +49,7 @@ struct MapCommand {
         if (!outMap.empty())
             mapFile.emplace(files, outMap);
         std::ostream *trajectoryFile = outTrajectory.empty() ? nullptr : &files.open(outTrajectory);
+        std::ostream *graphFile = outGraph.empty() ? nullptr : &files.open(outGraph);
         std::ostream *svgFile = svg.empty() ? nullptr : &files.open(svg);
         std::ostream &summaryFile = files.open(summary);
 
@@ -55,6 +60,8 @@ struct MapCommand {
         vectorlib::StampMend mend;
         if (trajectoryFile)
             mend = vectorlib::writeTum(*trajectoryFile, run.trajectory());
+        if (graphFile)
+            vectorlib::writeG2o(*graphFile, run.graph());
         if (svgFile)
             drawMap(*svgFile, drawing);
 
@@ -95,11 +102,17 @@ struct MapCommand {
     }
 
     MapSourceReport readScans(MapRun &run) const {
-        Progress progress("scan");
-        return readMapScans(source, [&](MapScan &scan, std::size_t number, std::size_t total) {
-            run.take(scan);
-            progress.update(number + 1, total);
-        });
+        MapSourceReport report;
+        {
+            Progress progress("scan");
+            report = readMapScans(source, [&](MapScan &scan, std::size_t number, std::size_t total) {
+                run.take(scan);
+                progress.update(number + 1, total);
+            });
+        }
+        Progress progress("looking for loops");
+        run.finish([&](std::size_t done, std::size_t all) { progress.update(done, all); });
+        return report;
     }
     static nlohmann::ordered_json tell(const vectorlib::StampMend &mend) {
         std::cerr << "hermes-vector: moved " << mend.moved
@@ -155,6 +168,9 @@ void addMapCommand(CLI::App &app) {
                     "The sensor's poses, TUM format: stamp x y z qx qy qz qw; a stamp that is not later than "
                     "the one before is moved to a microsecond behind it")
         ->type_name("FILE");
+    CLI::Option *graph = sub->add_option("--out-graph", command->outGraph,
+                                         "The poses and the motions measured between them, g2o format")
+                             ->type_name("FILE");
     sub->add_option("--summary,--out", command->summary,
                     "The summary, or the points of --scan; standard output when not given")
         ->type_name("FILE");
@@ -163,6 +179,13 @@ void addMapCommand(CLI::App &app) {
                     "use: expect the motion that the log's odometry tells; ignore: expect "
                     "the motion to go on as before")
         ->check(CLI::IsMember({"use", "ignore"}))
+        ->type_name("HOW")
+        ->capture_default_str();
+    sub->add_option(
+           "--loops", command->loops,
+           "close: match scans of places that were met again and bring the whole drive into one frame; "
+           "leave: poses as they were tracked")
+        ->check(CLI::IsMember({"close", "leave"}))
         ->type_name("HOW")
         ->capture_default_str();
     sub->add_flag(
@@ -185,10 +208,14 @@ void addMapCommand(CLI::App &app) {
     sub->add_flag("--force", command->force, "Overwrite files that exist");
     sub->footer(
         example("hermes-vector map intel.log.gz --corrected --out-map intel.svg --out-trajectory intel.tum"));
-    for (const char *ofMap :
-         {"--out-map", "--out-trajectory", "--svg", "--odometry", "--corrected", "--every"})
+    for (const char *ofMap : {"--out-map", "--out-trajectory", "--out-graph", "--svg", "--odometry",
+                              "--loops", "--corrected", "--every"})
         scan->excludes(sub->get_option(ofMap));
-    sub->callback([command] { command->onlyScan ? command->writeScan() : command->run(); });
+    sub->callback([command, graph] {
+        if (command->loops == "leave" && graph->count() > 0)
+            throw CLI::ValidationError("--out-graph", "there is a graph only with --loops close");
+        command->onlyScan ? command->writeScan() : command->run();
+    });
 }
 
 } // namespace hermes::vector

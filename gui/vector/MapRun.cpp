@@ -3,9 +3,11 @@
 #include "gui/vector/evaluation/MotionErrors.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace hermes::vector {
 
+using vectorlib::TrackedBy;
 using vectorlib::Transformation2D;
 
 void MapRun::take(MapScan &scan) {
@@ -16,10 +18,38 @@ void MapRun::take(MapScan &scan) {
     // A reference gives the map its frame, by the first pose, and nothing else.
     if (trajectory_.empty() && scan.reference)
         tracker.place(*scan.reference);
-    const vectorlib::Pose2D pose = tracker.process(scan).pose;
-    trajectory_.push_back({scan.stamp, pose});
+    const std::uint64_t byOdometry = tracker.counts().byOdometry;
+    const vectorlib::ScanReport &report = tracker.process(scan);
+    trajectory_.push_back({scan.stamp, report.pose});
+    if (closesLoops) {
+        const bool isMatched = report.outcome == vectorlib::ScanReport::Outcome::Matched;
+        const bool isExpected = tracker.counts().byOdometry > byOdometry;
+        loops_.add(scan.points, report.pose,
+                   !isExpected ? TrackedBy::Nothing
+                   : isMatched ? TrackedBy::Map
+                               : TrackedBy::Odometry);
+        edges_.push_back(tracker.builder.edges());
+    }
     if (scan.reference)
         reference_.push_back({scan.stamp, *scan.reference});
+}
+
+void MapRun::finish(const std::function<void(std::size_t, std::size_t)> &progress) {
+    if (!closesLoops)
+        return;
+    const auto begin = std::chrono::steady_clock::now();
+    closures_ = loops_.close(progress);
+    if (closures_.closed > 0)
+        rebuild();
+    closeMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void MapRun::rebuild() {
+    tracker.builder.clear();
+    for (std::size_t i = 0; i < trajectory_.size(); ++i) {
+        trajectory_[i].pose = loops_.poses()[i];
+        tracker.builder.place(edges_[i], trajectory_[i].pose);
+    }
 }
 
 std::vector<vectorlib::MapEdge> MapRun::segments() const {
@@ -36,11 +66,14 @@ nlohmann::ordered_json MapRun::summary() const {
     json["skipped"] = counts.skipped + partial_;
     json["matched"] = counts.matched;
     json["lost"] = counts.lost;
-    json["closures"] = 0;
+    json["closures"] = closures_.closed;
+    json["closures_tried"] = closures_.tried;
+    json["closures_refused"] = closures_.refused;
     json["ms_per_scan"] = {{"segment", counts.segmentMs / scans},
                            {"vectorize", counts.vectorizeMs / scans},
                            {"match", counts.matchMs / scans},
-                           {"map", counts.mapMs / scans}};
+                           {"map", counts.mapMs / scans},
+                           {"close", closeMs_ / scans}};
     if (reference_.size() > 1)
         json["reference"] = errors();
     return json;

@@ -27,7 +27,7 @@ QT_ALLOWED = {"vectorlib": set(), "protocol": {"QByteArray", "QCborStreamReader"
                                                "QJsonObject", "QJsonArray", "QJsonValue", "QJsonDocument", "QMap"}}
 # The rooms of vectorlib, from the ground up: each may include those before it.
 ROOMS = ("error", "geometry", "simd", "tls", "segmentation", "vectorization", "edges", "observation", "registration", "similarity",
-         "correspondence", "motion", "places", "mapping", "relations", "io")
+         "correspondence", "motion", "places", "mapping", "relations", "graph", "io")
 OURS = ("vectorlib", "protocol", "common", "daemons", "gui")
 # The namespace of each program's code; what is shared is in hermes.
 NAMESPACES = {**{folder: "hermes::" + folder.split("/")[1] for folder in ALLOWED if folder.startswith("daemons/")},

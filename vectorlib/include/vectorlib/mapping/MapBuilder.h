@@ -88,6 +88,23 @@ public:
         return report_;
     }
 
+    /// The map takes edges (sensor frame) that were seen from a pose that is known otherwise; it stays as it
+    /// is told.
+    void place(const std::vector<EdgeRaw2D> &edges, const Pose2D &pose) {
+        constexpr double sure = 1e-3; // metres, radians
+        const TrackingSettings usual = track.settings;
+        track.settings.expectedDeviationXY = track.settings.expectedDeviationAlpha = sure;
+        edges_ = &edges;
+        locate(Transformation2D(pose));
+        track.settings = usual;
+        pose_ = Transformation2D(pose);
+        report_.pose = pose;
+        concluded_ = true;
+        lost_ = settings.lostBeforeRestart; // where nothing matches there was nothing before
+        updateMap();
+        forgetPrevious();
+    }
+
     const ScanReport &report() const { return report_; }
     /// The match of the last scan; pairs refer to candidates() and edges().
     const Match &match() const { return match_; }

@@ -1,0 +1,148 @@
+#pragma once
+
+#include "vectorlib/graph/PoseConstraint.h"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <vector>
+
+namespace vectorlib {
+
+struct PoseGraphSettings {
+    /// Squared error of a constraint, in squared standard deviations, at which a doubtful one has a quarter
+    /// of its weight: of three degrees of freedom one in a hundred has more.
+    double doubt = 11.3;
+    double narrowing = 2.5; ///< by how much graduation narrows from step to step
+    int steps = 10;         ///< most Gauss-Newton steps at the end of graduation
+    double enough = 1e-4;   ///< a step that moves no pose farther is the last; metres
+};
+
+/// Poses and measured motions between them: finds the poses that fit all motions best, by Gauss-Newton steps
+/// with a sparse Cholesky factorization. Motions that may be wrong are weighted by the function of Geman and
+/// McClure, from nearly convex to sharp (graduated non-convexity; Yang et al., Graduated non-convexity for
+/// robust spatial perception, 2020): a wrong one that the others contradict ends without weight. The first
+/// pose stays; a part that nothing connects with it stays where it is.
+class PoseGraph {
+public:
+    PoseGraphSettings settings;
+    std::vector<Pose2D> poses; ///< metres, radians
+    std::vector<PoseConstraint> constraints;
+
+    /// By how much the poses miss the motion; metres, metres, radians, in the frame of its first pose.
+    Eigen::Vector3d errorOf(const PoseConstraint &c) const {
+        const Transformation2D is = Transformation2D(poses[c.from]).inverse() * Transformation2D(poses[c.to]);
+        const double turn = (c.motion.inverse() * is).alpha();
+        return {is.x() - c.motion.x(), is.y() - c.motion.y(), turn};
+    }
+    /// The same in squared standard deviations.
+    double squaredErrorOf(const PoseConstraint &c) const {
+        const Eigen::Vector3d e = errorOf(c);
+        return e.dot(c.information * e);
+    }
+    /// Moves the poses; how many steps that took. Constraints must refer to poses that there are, and
+    /// information must be positive definite.
+    int optimise() {
+        if (poses.size() < 2 || constraints.empty())
+            return 0;
+        isAnalysed_ = false;
+        int steps = 0;
+        for (double width = startWidth();; width = std::max(1.0, width / settings.narrowing)) {
+            weigh(width * settings.doubt);
+            const bool isLast = width <= 1;
+            for (int i = 0; i < (isLast ? settings.steps : 2); ++i) {
+                ++steps;
+                if (step() < settings.enough)
+                    break;
+            }
+            if (isLast)
+                return steps;
+        }
+    }
+
+private:
+    using Sparse = Eigen::SparseMatrix<double>;
+
+    // So wide that the worst motion still counts.
+    double startWidth() const {
+        double worst = 0;
+        for (const PoseConstraint &c : constraints)
+            if (c.mayBeWrong)
+                worst = std::max(worst, squaredErrorOf(c));
+        return std::max(1.0, 2 * worst / settings.doubt);
+    }
+    void weigh(double scale) {
+        for (PoseConstraint &c : constraints)
+            if (c.mayBeWrong) {
+                const double part = scale / (scale + squaredErrorOf(c));
+                c.weight = part * part;
+            }
+    }
+    // The farthest that a pose was moved.
+    double step() {
+        const auto size = static_cast<Eigen::Index>(3 * poses.size());
+        entries_.clear();
+        gradient_.setZero(size);
+        for (const PoseConstraint &c : constraints)
+            add(c);
+        constexpr double fixed = 1e12, loose = 1e-9; // the first pose, and what nothing holds
+        for (Eigen::Index i = 0; i < size; ++i)
+            entries_.emplace_back(i, i, i < 3 ? fixed : loose);
+        Sparse h(size, size);
+        h.setFromTriplets(entries_.begin(), entries_.end());
+        if (!isAnalysed_)
+            solver_.analyzePattern(h);
+        isAnalysed_ = true;
+        solver_.factorize(h);
+        if (solver_.info() != Eigen::Success)
+            return 0;
+        const Eigen::VectorXd by = solver_.solve(gradient_);
+        return by.allFinite() ? moveBy(by) : 0;
+    }
+    double moveBy(const Eigen::VectorXd &by) {
+        double farthest = 0;
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+            const auto k = static_cast<Eigen::Index>(3 * i);
+            Pose2D &p = poses[i];
+            p = {p.x + by[k], p.y + by[k + 1], std::remainder(p.theta + by[k + 2], 2 * pi)};
+            farthest = std::max(farthest, std::hypot(by[k], by[k + 1]));
+        }
+        return farthest;
+    }
+    // The derivatives of the error by both poses, and what they add to the normal equations; of the matrix
+    // the lower half.
+    void add(const PoseConstraint &c) {
+        const Pose2D &a = poses[c.from], &b = poses[c.to];
+        const double cosA = std::cos(a.theta), sinA = std::sin(a.theta), x = b.x - a.x, y = b.y - a.y;
+        Eigen::Matrix3d byTo = Eigen::Matrix3d::Identity();
+        byTo.topLeftCorner<2, 2>() << cosA, sinA, -sinA, cosA;
+        Eigen::Matrix3d byFrom = -byTo;
+        byFrom(0, 2) = cosA * y - sinA * x;
+        byFrom(1, 2) = -cosA * x - sinA * y;
+        const Eigen::Matrix3d information = c.weight * c.information;
+        const Eigen::Matrix3d fromI = byFrom.transpose() * information, toI = byTo.transpose() * information;
+        const Eigen::Vector3d error = errorOf(c);
+        const auto i = static_cast<Eigen::Index>(3 * c.from), k = static_cast<Eigen::Index>(3 * c.to);
+        gradient_.segment<3>(i) -= fromI * error;
+        gradient_.segment<3>(k) -= toI * error;
+        addBlock(i, i, fromI * byFrom);
+        addBlock(k, k, toI * byTo);
+        if (k > i)
+            addBlock(k, i, toI * byFrom);
+        else
+            addBlock(i, k, fromI * byTo);
+    }
+    void addBlock(Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d &block) {
+        for (int c = 0; c < 3; ++c)
+            for (int r = row == column ? c : 0; r < 3; ++r)
+                entries_.emplace_back(row + r, column + c, block(r, c));
+    }
+
+    std::vector<Eigen::Triplet<double, Eigen::Index>> entries_;
+    Eigen::VectorXd gradient_;
+    Eigen::SimplicialLDLT<Sparse> solver_;
+    bool isAnalysed_ = false;
+};
+
+} // namespace vectorlib
