@@ -36,7 +36,7 @@ private:
 
     vectorlib::LoopCloser loops_;
     vectorlib::LoopCounts closures_;
-    double closeMs_ = 0;
+    double closeSeconds_ = 0;
     std::vector<std::vector<vectorlib::EdgeRaw2D>> edges_; // of each scan, sensor frame
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;

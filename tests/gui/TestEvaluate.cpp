@@ -1,5 +1,6 @@
 #include "tests/gui/VectorProgram.h"
 
+#include "tests/support/RealData.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
 #include <QXmlStreamReader>
@@ -167,6 +168,38 @@ private Q_SLOTS:
         QCOMPARE(r.status, 1);
         QVERIFY2(r.err.contains("a.tum") && r.err.contains(message), r.err.constData());
         QVERIFY(!QFile::exists(path("a.svg")));
+    }
+
+    /// Of real buildings: with loops closed the places met again lie on each other.
+    void loopsOfRealLogsAreClosed_data() {
+        QTest::addColumn<double>("tracked");
+        QTest::addColumn<double>("closed");
+        QTest::newRow("intel") << 0.5 << 0.045;
+        QTest::newRow("fhw") << 0.3 << 0.055;
+        QTest::newRow("belgioioso") << 0.05 << 0.035;
+        QTest::newRow("orebro") << 1.0 << 0.15; // has no odometry
+    }
+    void loopsOfRealLogsAreClosed() {
+        QFETCH(double, tracked);
+        QFETCH(double, closed);
+        const QString log = realData(QString("%1-corrected.log.gz").arg(QTest::currentDataTag()));
+        if (log.isEmpty())
+            QSKIP("the logs of real robots are not here; HERMES_DATA names their folder");
+        const auto errorOf = [&](const char *loops) {
+            const QString tum = path("real.tum");
+            const Result r =
+                run({"map", log, "--corrected", "--loops", loops, "--out-trajectory", tum, "--force"});
+            const QJsonObject found = json(run({"evaluate", log, tum}).out)["revisits"].toObject();
+            return r.status == 0 ? found["mean_m"].toDouble(1e9) : 1e9;
+        };
+        const double before = errorOf("leave"), after = errorOf("close");
+        QVERIFY2(before > tracked && after < closed, qPrintable(QString("%1 to %2").arg(before).arg(after)));
+    }
+    void thereIsNoGraphWithoutLoops() {
+        writeLog({{0, 0, 0}, {1, 0, 0}});
+        const Result r = run({"map", path("a.log"), "--loops", "leave", "--out-graph", path("a.g2o")});
+        QCOMPARE(r.status, 2);
+        QVERIFY2(r.err.contains("--out-graph") && r.err.contains("--loops close"), r.err.constData());
     }
 
     void aDriveThatNeverReturnsHasNoRevisits() {

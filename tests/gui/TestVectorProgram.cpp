@@ -116,18 +116,21 @@ private Q_SLOTS:
     }
 
     void mapWritesEveryKind() {
-        const Result r =
-            run({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv"), "--out-trajectory",
-                 path("t.tum"), "--summary", path("s.json"), "--svg", path("p.svg")});
+        const Result r = run({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv"),
+                              "--out-trajectory", path("t.tum"), "--out-graph", path("g.g2o"), "--summary",
+                              path("s.json"), "--svg", path("p.svg")});
         QCOMPARE(r.err, QByteArray());
         QCOMPARE(r.out, QByteArray());
         QCOMPARE(r.status, 0);
-        QCOMPARE(files(), (QStringList{"m.csv", "p.svg", "s.json", "t.tum"}));
+        QCOMPARE(files(), (QStringList{"g.g2o", "m.csv", "p.svg", "s.json", "t.tum"}));
         QVERIFY(contents(path("m.csv")).startsWith("id,x1,y1,x2,y2,n,sigma,observations,"));
         QVERIFY(contents(path("p.svg")).startsWith("<svg"));
+        QCOMPARE(contents(path("g.g2o")).count("VERTEX_SE2 "), 8);
+        QCOMPARE(contents(path("g.g2o")).count("EDGE_SE2 "), 7);
         const QJsonObject s = json(contents(path("s.json")));
-        for (const char *key : {"scans", "skipped", "matched", "lost", "closures", "ms_per_scan", "segments",
-                                "map_bytes", "seconds"})
+        for (const char *key :
+             {"scans", "skipped", "matched", "lost", "closures", "closures_tried", "closures_refused",
+              "closures_seconds", "ms_per_scan", "segments", "map_bytes", "seconds"})
             QVERIFY2(s.contains(QLatin1String(key)), key);
         QCOMPARE(s["ms_per_scan"].toObject().keys(), (QStringList{"map", "match", "segment", "vectorize"}));
         QCOMPARE(s["scans"].toInt(), 8);

@@ -17,7 +17,7 @@ struct LoopCloserSettings {
     std::size_t perScan = 2;          ///< earlier passes that a scan is compared with
     double passWay = 2;               ///< of the drive between two passes; metres
     /// Standard deviations of a motion from one scan to the next as it was tracked; metres, radians.
-    double trackedXY = 0.03, trackedAlpha = 0.01;
+    double trackedXY = 0.015, trackedAlpha = 0.005;
     /// Of one that was guessed and not found by matching; metres, radians, and of its length.
     double guessedXY = 1, guessedAlpha = 0.3, guessedPart = 0.5;
     double odometryPart = 0.3;   ///< of the metres, where it is by odometry
@@ -51,7 +51,8 @@ public:
     /// The next scan of the drive: its points in the sensor's frame, where it was tracked, and by what.
     /// Unless that is the map it is matched with the scans before it, too.
     void add(PointSpan<float> points, const Pose2D &tracked, TrackedBy by) {
-        scans_.push_back({{points.begin(), points.end()}, 0, 0, 0});
+        scans_.emplace_back();
+        scans_.back().points.assign(points.begin(), points.end());
         if (scans_.size() == 1) {
             graph_.poses.push_back(tracked);
         } else {
@@ -59,21 +60,22 @@ public:
         }
         last_ = tracked;
     }
-    /// Looks for loops and moves the poses. `progress` is told how many of how many scans are done.
+    /// Looks for loops and moves the poses; to be called once, after the last scan. `progress` is told how
+    /// many of how many scans are done.
     LoopCounts close(const std::function<void(std::size_t, std::size_t)> &progress = {}) {
         const std::vector<std::size_t> keys = keyScans();
-        LoopCounts counts;
         for (std::size_t k = 0; k < keys.size(); ++k) {
-            tryLoopsOf(keys, k, counts);
+            tryLoopsOf(keys, k);
             if (progress)
                 progress(k + 1, keys.size());
         }
-        if (hasLoops())
+        const auto isLoop = [](const PoseConstraint &c) { return c.mayBeWrong; };
+        if (std::any_of(graph_.constraints.begin(), graph_.constraints.end(), isLoop))
             graph_.optimise();
         for (const PoseConstraint &c : graph_.constraints)
-            counts.closed += c.mayBeWrong && !isContradicted(c);
-        counts.refused = counts.tried - counts.closed;
-        return counts;
+            counts_.closed += c.mayBeWrong && !isContradicted(c);
+        counts_.refused = counts_.tried - counts_.closed;
+        return counts_;
     }
     /// One a scan.
     const std::vector<Pose2D> &poses() const { return graph_.poses; }
@@ -132,7 +134,7 @@ private:
         return keys;
     }
     // The nearest scans of earlier passes, one of each pass.
-    void tryLoopsOf(const std::vector<std::size_t> &keys, std::size_t number, LoopCounts &counts) {
+    void tryLoopsOf(const std::vector<std::size_t> &keys, std::size_t number) {
         const std::size_t scan = keys[number];
         const Pose2D &here = graph_.poses[scan];
         candidates_.clear();
@@ -156,11 +158,11 @@ private:
             if (passes_.size() == settings.perScan || std::any_of(passes_.begin(), passes_.end(), isSamePass))
                 continue;
             passes_.push_back(way);
-            ++counts.tried;
             tryLoop(c.scan, scan);
         }
     }
     void tryLoop(std::size_t earlier, std::size_t later) {
+        ++counts_.tried;
         const GlobalPairMatch &found = match(scans_[earlier].points, scans_[later].points);
         if (!found.isAccepted())
             return;
@@ -175,10 +177,6 @@ private:
         c.information = covariance.inverse();
         graph_.constraints.push_back(c);
     }
-    bool hasLoops() const {
-        return std::any_of(graph_.constraints.begin(), graph_.constraints.end(),
-                           [](const PoseConstraint &c) { return c.mayBeWrong; });
-    }
     static bool isContradicted(const PoseConstraint &c) {
         constexpr double least = 0.25;
         return c.weight < least;
@@ -186,6 +184,7 @@ private:
 
     std::vector<Scan> scans_;
     PoseGraph graph_;
+    LoopCounts counts_;
     Pose2D last_; // as it was tracked
     std::vector<Candidate> candidates_;
     std::vector<double> passes_;

@@ -6,6 +6,7 @@
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -46,14 +47,14 @@ public:
     int optimise() {
         if (poses.size() < 2 || constraints.empty())
             return 0;
-        isAnalysed_ = false;
+        Equations equations;
         int steps = 0;
         for (double width = startWidth();; width = std::max(1.0, width / settings.narrowing)) {
             weigh(width * settings.doubt);
             const bool isLast = width <= 1;
             for (int i = 0; i < (isLast ? settings.steps : 2); ++i) {
                 ++steps;
-                if (step() < settings.enough)
+                if (step(equations) < settings.enough)
                     break;
             }
             if (isLast)
@@ -63,6 +64,19 @@ public:
 
 private:
     using Sparse = Eigen::SparseMatrix<double>;
+    /// The normal equations of a step.
+    struct Equations {
+        std::vector<Eigen::Triplet<double, Eigen::Index>> entries; // of the lower half
+        Eigen::VectorXd gradient;
+        Eigen::SimplicialLDLT<Sparse> solver;
+        bool isAnalysed = false;
+
+        void addBlock(Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d &block) {
+            for (int c = 0; c < 3; ++c)
+                for (int r = row == column ? c : 0; r < 3; ++r)
+                    entries.emplace_back(row + r, column + c, block(r, c));
+        }
+    };
 
     // So wide that the worst motion still counts.
     double startWidth() const {
@@ -80,24 +94,23 @@ private:
             }
     }
     // The farthest that a pose was moved.
-    double step() {
+    double step(Equations &e) {
         const auto size = static_cast<Eigen::Index>(3 * poses.size());
-        entries_.clear();
-        gradient_.setZero(size);
+        e.entries.clear();
+        e.gradient.setZero(size);
         for (const PoseConstraint &c : constraints)
-            add(c);
+            add(c, e);
         constexpr double fixed = 1e12, loose = 1e-9; // the first pose, and what nothing holds
         for (Eigen::Index i = 0; i < size; ++i)
-            entries_.emplace_back(i, i, i < 3 ? fixed : loose);
+            e.entries.emplace_back(i, i, i < 3 ? fixed : loose);
         Sparse h(size, size);
-        h.setFromTriplets(entries_.begin(), entries_.end());
-        if (!isAnalysed_)
-            solver_.analyzePattern(h);
-        isAnalysed_ = true;
-        solver_.factorize(h);
-        if (solver_.info() != Eigen::Success)
+        h.setFromTriplets(e.entries.begin(), e.entries.end());
+        if (!std::exchange(e.isAnalysed, true))
+            e.solver.analyzePattern(h);
+        e.solver.factorize(h);
+        if (e.solver.info() != Eigen::Success)
             return 0;
-        const Eigen::VectorXd by = solver_.solve(gradient_);
+        const Eigen::VectorXd by = e.solver.solve(e.gradient);
         return by.allFinite() ? moveBy(by) : 0;
     }
     double moveBy(const Eigen::VectorXd &by) {
@@ -110,9 +123,8 @@ private:
         }
         return farthest;
     }
-    // The derivatives of the error by both poses, and what they add to the normal equations; of the matrix
-    // the lower half.
-    void add(const PoseConstraint &c) {
+    // The derivatives of the error by both poses, and what they add to the normal equations.
+    void add(const PoseConstraint &c, Equations &e) const {
         const Pose2D &a = poses[c.from], &b = poses[c.to];
         const double cosA = std::cos(a.theta), sinA = std::sin(a.theta), x = b.x - a.x, y = b.y - a.y;
         Eigen::Matrix3d byTo = Eigen::Matrix3d::Identity();
@@ -124,25 +136,15 @@ private:
         const Eigen::Matrix3d fromI = byFrom.transpose() * information, toI = byTo.transpose() * information;
         const Eigen::Vector3d error = errorOf(c);
         const auto i = static_cast<Eigen::Index>(3 * c.from), k = static_cast<Eigen::Index>(3 * c.to);
-        gradient_.segment<3>(i) -= fromI * error;
-        gradient_.segment<3>(k) -= toI * error;
-        addBlock(i, i, fromI * byFrom);
-        addBlock(k, k, toI * byTo);
+        e.gradient.segment<3>(i) -= fromI * error;
+        e.gradient.segment<3>(k) -= toI * error;
+        e.addBlock(i, i, fromI * byFrom);
+        e.addBlock(k, k, toI * byTo);
         if (k > i)
-            addBlock(k, i, toI * byFrom);
+            e.addBlock(k, i, toI * byFrom);
         else
-            addBlock(i, k, fromI * byTo);
+            e.addBlock(i, k, fromI * byTo);
     }
-    void addBlock(Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d &block) {
-        for (int c = 0; c < 3; ++c)
-            for (int r = row == column ? c : 0; r < 3; ++r)
-                entries_.emplace_back(row + r, column + c, block(r, c));
-    }
-
-    std::vector<Eigen::Triplet<double, Eigen::Index>> entries_;
-    Eigen::VectorXd gradient_;
-    Eigen::SimplicialLDLT<Sparse> solver_;
-    bool isAnalysed_ = false;
 };
 
 } // namespace vectorlib

@@ -1,0 +1,105 @@
+#pragma once
+
+#include "tests/vectorlib/ScanWorld.h"
+
+/// A building drawn at random in which much looks alike: a corridor around a block, with rooms of one size
+/// and shape along its outer side, some of them furnished; metres. The same state of the generator gives the
+/// same building.
+class RingBuilding {
+public:
+    ScanWorld world;
+
+    explicit RingBuilding(std::mt19937 &random)
+        : random_(random)
+        , width_(between(1.8, 2.6))
+        , pitch_(between(3, 4.5))
+        , depth_(between(3, 4.5))
+        , door_(between(0.4, pitch_ - 1.6))
+        , a_(pitch_ * double(4 + any(3)) - 2 * width_)
+        , b_(pitch_ * double(2 + any(3)) - 2 * width_ + pitch_) {
+        box({0, 0}, {a_, b_});
+        const Point corners[] = {
+            {-width_, -width_}, {a_ + width_, -width_}, {a_ + width_, b_ + width_}, {-width_, b_ + width_}};
+        for (int i = 0; i < 4; ++i)
+            roomsAlong(corners[i], corners[(i + 1) % 4]);
+    }
+
+    /// Around the corridor, counter-clockwise, as often as asked for, into a room now and then; a pose about
+    /// every 30 cm.
+    std::vector<vectorlib::Pose2D> drive(int rounds) {
+        const double m = width_ / 2;
+        const Point corners[] = {{-m, -m}, {a_ + m, -m}, {a_ + m, b_ + m}, {-m, b_ + m}};
+        std::vector<vectorlib::Pose2D> way{{-m, -m, 0}};
+        for (int side = 0; side < 4 * rounds; ++side) {
+            const Point to = corners[(side + 1) % 4];
+            for (const Door &door : doors_[std::size_t(side % 4)])
+                if (any(4) == 0) {
+                    goTo(way, door.before);
+                    goTo(way, door.inside);
+                    goTo(way, door.before);
+                }
+            goTo(way, to);
+        }
+        return way;
+    }
+
+private:
+    using Point = ScanWorld::Point;
+    struct Door {
+        Point before, inside; // in the middle of the corridor, and in the room
+    };
+
+    double between(double a, double b) { return a + (b - a) * double(random_() % 100001) / 100000; }
+    int any(unsigned count) { return int(random_() % count); }
+    void wall(Point from, Point to) { world.walls.emplace_back(from, to); }
+    void box(Point low, Point high) {
+        wall(low, {high.x, low.y});
+        wall({high.x, low.y}, high);
+        wall(high, {low.x, high.y});
+        wall({low.x, high.y}, low);
+    }
+    // Outside of the wall from one corner of the corridor to the next.
+    void roomsAlong(Point from, Point to) {
+        const Point along = (to - from) * (1 / (to - from).norm()), out(along.y, -along.x);
+        const int rooms = int((to - from).norm() / pitch_);
+        doors_.emplace_back();
+        wall(from + along * (pitch_ * rooms), to);
+        for (int i = 0; i <= rooms; ++i)
+            wall(from + along * (pitch_ * i), from + along * (pitch_ * i) + out * depth_);
+        for (int i = 0; i < rooms; ++i) {
+            const Point corner = from + along * (pitch_ * i);
+            const auto at = [&](double x, double y) { return corner + along * x + out * y; };
+            constexpr double gap = 1;
+            wall(at(0, 0), at(door_, 0));
+            wall(at(door_ + gap, 0), at(pitch_, 0));
+            wall(at(0, depth_), at(pitch_, depth_));
+            doors_.back().push_back({at(door_ + gap / 2, -width_ / 2), at(door_ + gap / 2, depth_ / 2)});
+            if (any(3) == 0) {
+                const double x = between(0.2, pitch_ - 0.9), y = depth_ - between(0.1, 0.6);
+                wall(at(x, y), at(x + 0.6, y));
+                wall(at(x, y), at(x, y - 0.4));
+                wall(at(x + 0.6, y), at(x + 0.6, y - 0.4));
+                wall(at(x, y - 0.4), at(x + 0.6, y - 0.4));
+            }
+        }
+    }
+    static void goTo(std::vector<vectorlib::Pose2D> &way, Point to) {
+        constexpr double step = 0.3, turn = 0.3; // metres, radians
+        const Point from(way.back().x, way.back().y);
+        const double length = (to - from).norm(), heading = std::atan2(to.y - from.y, to.x - from.x);
+        const double wrong = std::remainder(heading - way.back().theta, 2 * vectorlib::pi);
+        const int turns = int(std::abs(wrong) / turn) + 1, steps = int(length / step) + 1;
+        const double begin = way.back().theta;
+        for (int i = 1; i <= turns && std::abs(wrong) > 0.01; ++i)
+            way.push_back({from.x, from.y, begin + wrong * i / turns});
+        for (int i = 1; i <= steps && length > 0.01; ++i) {
+            const Point p = from + (to - from) * (double(i) / steps);
+            way.push_back({p.x, p.y, heading});
+        }
+    }
+
+    std::mt19937 &random_;
+    double width_, pitch_, depth_, door_;  // of the corridor, the rooms, and a door's place in its room
+    double a_, b_;                         // sides of the block
+    std::vector<std::vector<Door>> doors_; // of each side
+};
