@@ -64,17 +64,6 @@ public:
         }
         return pose;
     }
-    /// How firmly the points hold the pose: the matrix of the normal equations in x, y (fixed frame) and the
-    /// rotation about the moving sensor, for residuals of deviation 1 metre. Judged by a sample of the
-    /// points.
-    Eigen::Matrix3d information(const Transformation2D &pose) {
-        const int sample = std::max(1, settings.sample);
-        pairUp(pose, settings.gate, sample);
-        const Sums s = sumsAt(pose, settings.gate);
-        Eigen::Matrix3d h;
-        h << s.xx, s.xy, s.xa, s.xy, s.yy, s.ya, s.xa, s.ya, s.aa;
-        return sample * h;
-    }
     /// How well the scans agree when the moving one lies at the pose; by a sample of their points.
     PointAgreement agreement(const Transformation2D &pose) const {
         PointAgreement a;
