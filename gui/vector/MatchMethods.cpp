@@ -66,8 +66,8 @@ private:
     vectorlib::CorrespondenceFinder find_;
 };
 
-MatchedSolution solutionOf(const vectorlib::GlobalPairSolution &s, bool accepted,
-                           const std::string &verdict) {
+MatchedSolution solutionOf(const vectorlib::GlobalPairSolution &s, const Eigen::Matrix3d &covariance,
+                           bool accepted, const std::string &verdict) {
     MatchedSolution m;
     m.solution.pose = s.pose;
     m.solution.score = s.score;
@@ -75,12 +75,13 @@ MatchedSolution solutionOf(const vectorlib::GlobalPairSolution &s, bool accepted
     m.solution.accepted = accepted;
     m.verdict = accepted ? "accepted" : verdict;
     m.probability = s.probability;
-    m.covariance = s.covariance;
+    m.covariance = covariance;
     return m;
 }
 
-/// The solutions in the given form, with their segments.
-Matched matchedOf(const GlobalPairMatch &match, const SegmentSet &fixed, const SegmentSet &moving) {
+/// The solutions of a matcher's last match in the given form, with their segments.
+Matched matchedOf(const GlobalPairMatch &match, const vectorlib::GlobalPairMatcher &matcher,
+                  const SegmentSet &fixed, const SegmentSet &moving) {
     Matched result;
     result.outcome = outcomeOf(match.verdict);
     result.reason = describe(match.verdict);
@@ -88,7 +89,8 @@ Matched matchedOf(const GlobalPairMatch &match, const SegmentSet &fixed, const S
     for (const vectorlib::GlobalPairSolution &s : match.solutions) {
         const bool best = result.solutions.empty();
         const std::string verdict = best ? result.reason : "another solution fits better";
-        result.solutions.push_back(solutionOf(s, best && match.isAccepted(), verdict));
+        result.solutions.push_back(
+            solutionOf(s, matcher.covarianceOf(s), best && match.isAccepted(), verdict));
         segments.addTo(result.solutions.back());
         if (best) {
             result.potentialPairs = segments.potentialPairs;
@@ -152,9 +154,9 @@ Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
 Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving, double noise) {
     vectorlib::GlobalPairMatcher match;
     if (noise > 0)
-        match.settings.noise = noise;
+        match.tellCovariance.noise = noise;
     const GlobalPairMatch &found = match(pointsOf(fixed), pointsOf(moving));
-    Matched result = matchedOf(found, fixed, moving);
+    Matched result = matchedOf(found, match, fixed, moving);
     result.method = "global";
     return result;
 }
@@ -192,8 +194,8 @@ Matched matchTracking(const SegmentSet &fixed, const SegmentSet &moving, const M
     const vectorlib::ScanPairMatch &tracked = track(fixed.points, moving.points, expected.pose);
     vectorlib::GlobalPairMatcher judge;
     if (noise > 0)
-        judge.settings.noise = noise;
-    Matched result = matchedOf(judge.judge(fixed.points, moving.points, tracked.pose), fixed, moving);
+        judge.tellCovariance.noise = noise;
+    Matched result = matchedOf(judge.judge(fixed.points, moving.points, tracked.pose), judge, fixed, moving);
     result.method = "tracking";
     if (result.solutions.empty()) { // too little to be judged
         result.solutions.emplace_back();

@@ -45,7 +45,7 @@ Matched matchByFinder(const SegmentSet &fixed, const SegmentSet &moving,
                       const vectorlib::SearchSettings &settings, const vectorlib::Transformation2D &around,
                       bool inMap);
 /// From nothing but the two sets. Segments are matched as a scanner would see them, and then exactly.
-/// noise: standard deviation of points for the covariance, metres; 0: the usual one.
+/// noise: standard deviation of points for the covariance, metres; 0: as they scatter.
 Matched matchGlobally(const SegmentSet &fixed, const SegmentSet &moving, double noise);
 /// From nothing but the two sets, by relations of their segments. Ends of segments that come without points
 /// may go on unseen.

@@ -3,8 +3,6 @@
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/registration/SurfaceAgreement.h"
 
-#include <Eigen/Core>
-
 #include <vector>
 
 namespace vectorlib {
@@ -15,8 +13,6 @@ struct GlobalPairSolution {
     SurfaceAgreement agreement; ///< of both scans
     double score = 0;           ///< that of the agreement; solutions are ranked by it
     double probability = 0;     ///< that the motion is within 10 cm and 2 degrees; see MatchProbability
-    /// Of x, y (metres, frame of the first scan) and alpha (radians), if the solution is the right one.
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
 /// What is known of the motion between two scans.

@@ -3,7 +3,7 @@
 #include "vectorlib/correspondence/ShiftVotes.h"
 #include "vectorlib/correspondence/TurnVotes.h"
 #include "vectorlib/mapping/MatchProbability.h"
-#include "vectorlib/registration/PointRefinement.h"
+#include "vectorlib/registration/PointCovariance.h"
 #include "vectorlib/registration/SurfaceRefinement.h"
 
 namespace vectorlib {
@@ -39,9 +39,6 @@ struct GlobalPairSettings {
     std::size_t minPieces = 8;    ///< a scan with fewer pieces of surface shows too little
     double roughDeviation = 0.10, deviation = 0.05; ///< see SurfaceAgreement; metres
     int roughPoints = 60, slidePoints = 180;        ///< how many of a scan judge rough motions, and slides
-    /// Standard deviation of a point from its wall, for the covariance; metres. With it the motions of three
-    /// scans close in a triangle as their covariances say, in most of the logs.
-    double noise = 0.03;
 };
 
 /// Finds the motion between two scans of which nothing is known but the scans. The directions of surfaces
@@ -54,6 +51,7 @@ public:
     PointRefinement refine;
     SurfaceRefinement refineRoughly;
     MatchProbability tellProbability;
+    PointCovariance tellCovariance;
 
     /// Both scans in their sensor's frame, counter-clockwise; metres. Valid until the next call.
     const GlobalPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving) {
@@ -73,6 +71,17 @@ public:
             conclude();
         }
         return match_;
+    }
+    /// Of x, y (metres, frame of the first scan) and alpha (radians) of a solution of the last match, if it
+    /// is the right one; see PointCovariance.
+    Eigen::Matrix3d covarianceOf(const GlobalPairSolution &s) const {
+        Eigen::Matrix3d covariance = tellCovariance(refine, s.pose);
+        if (match_.slideLoss < settings.openMargin) { // what seems to hold the scans there is noise
+            const Vector2D<double> way = s.agreement.openDirection();
+            const double half = 2 * settings.slideStep;
+            covariance += square(half * half, Eigen::Vector3d(way.x, way.y, 0));
+        }
+        return covariance;
     }
 
 private:
@@ -112,8 +121,6 @@ private:
         if (match_.solutions.empty())
             return;
         tellProbability(match_);
-        for (GlobalPairSolution &s : match_.solutions)
-            s.covariance = covarianceOf(s);
         match_.verdict = verdict();
     }
     void search(const GlobalSearchEffort &effort) {
@@ -251,22 +258,6 @@ private:
         }
         match_.solutions.insert(match_.solutions.end(), candidates_.begin(), candidates_.end());
         keepDistinct(match_.solutions);
-    }
-    // Where the scans slide on each other, what seems to hold them is noise.
-    Eigen::Matrix3d covarianceOf(const GlobalPairSolution &s) {
-        constexpr double unknown = 1e-4; // what is not held at all is unknown within 100 m, or radians
-        Eigen::Matrix3d h = refine.information(s.pose) / (settings.noise * settings.noise);
-        h.diagonal().array() += unknown;
-        Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-        for (int i = 0; i < 3; ++i)
-            if (const auto column = solveSymmetric(h, Eigen::Vector3d::Unit(i)))
-                covariance.col(i) = *column;
-        if (match_.slideLoss < settings.openMargin) {
-            const Vector2D<double> way = s.agreement.openDirection();
-            const double half = 2 * settings.slideStep;
-            covariance += square(half * half, Eigen::Vector3d(way.x, way.y, 0));
-        }
-        return covariance;
     }
     GlobalPairVerdict verdict() const {
         const GlobalPairSolution &best = match_.solutions[0];

@@ -2,8 +2,7 @@
 
 #include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/registration/PointAgreement.h"
-#include "vectorlib/registration/ScanIndex.h"
+#include "vectorlib/registration/PointPairs.h"
 
 #include <Eigen/Core>
 #include <optional>
@@ -65,17 +64,6 @@ public:
         }
         return pose;
     }
-    /// How firmly the points hold the pose: the matrix of the normal equations in x, y (fixed frame) and the
-    /// rotation about the moving sensor, for residuals of deviation 1 metre. Judged by a sample of the
-    /// points.
-    Eigen::Matrix3d information(const Transformation2D &pose) {
-        const int sample = std::max(1, settings.sample);
-        pairUp(pose, settings.gate, sample);
-        const Sums s = sumsAt(pose, settings.gate);
-        Eigen::Matrix3d h;
-        h << s.xx, s.xy, s.xa, s.xy, s.yy, s.ya, s.xa, s.ya, s.aa;
-        return sample * h;
-    }
     /// How well the scans agree when the moving one lies at the pose; by a sample of their points.
     PointAgreement agreement(const Transformation2D &pose) const {
         PointAgreement a;
@@ -86,28 +74,15 @@ public:
     }
 
 private:
-    struct Pair {
-        Vector2D<float> moving; // its own frame
-        Vector2D<float> normal; // of the wall, fixed frame
-        float offset;           // of the wall along the normal
-    };
-
     void pairUp(const Transformation2D &pose, double gate, int sample) {
         const bool wide = gate > settings.gate;
         const float squaredGate = float(gate * gate);
         const auto partner = [&](const ScanIndex &scan, Vector2D<float> p) {
             return wide ? scan.nearest(p, squaredGate) : scan.nearestAhead(p, squaredGate);
         };
-        const FloatMotion forth(pose), back(pose.inverse());
         pairs_.clear();
-        for (int i = 0; i < moving_.size(); i += sample)
-            if (const int k = partner(fixed_, forth * moving_.point(i)); k >= 0)
-                pairs_.push_back({moving_.point(i), fixed_.normal(k), fixed_.normal(k).dot(fixed_.point(k))});
-        for (int i = 0; i < fixed_.size(); i += sample)
-            if (const int k = partner(moving_, back * fixed_.point(i)); k >= 0) {
-                const Vector2D<float> normal = forth.rotate(moving_.normal(k));
-                pairs_.push_back({moving_.point(k), normal, normal.dot(fixed_.point(i))});
-            }
+        forEachPair(fixed_, moving_, pose, sample, partner,
+                    [this](const PointPair &pair) { pairs_.push_back(pair); });
     }
     // Sums over the pairs of weighted products of the derivatives with each other and with the residuals. The
     // unknowns are the translation and the rotation about the moving sensor, where both are least correlated.
@@ -118,9 +93,9 @@ private:
         const FloatMotion motion(pose);
         const float inverse = float(1 / (settings.scale * settings.scale * gate * gate));
         Sums s;
-        for (const Pair &pair : pairs_) {
+        for (const PointPair &pair : pairs_) {
             const Vector2D<float> n = pair.normal, turned = motion.rotate(pair.moving);
-            const float r = n.dot(turned + motion.translation) - pair.offset, u = turned.cross(n);
+            const float r = pair.residual(turned, motion), u = turned.cross(n);
             const float q = 1 / (1 + r * r * inverse), w = q * q; // Geman and McClure
             s.xx += w * n.x * n.x;
             s.xy += w * n.x * n.y;
@@ -151,7 +126,7 @@ private:
     }
 
     ScanIndex fixed_, moving_;
-    std::vector<Pair> pairs_;
+    std::vector<PointPair> pairs_;
 };
 
 } // namespace vectorlib
