@@ -40,6 +40,7 @@ private Q_SLOTS:
     void sameSearchSameResult();
     void saysWhatIsWrong_data();
     void saysWhatIsWrong();
+    void looksAtTheScanFirst();
     void endsInTime();
     void boundsLongAndFarWalls();
     void takesRefusedWallsWhenThereIsRoom();
@@ -238,6 +239,17 @@ void TestPlaceSearch::saysWhatIsWrong() {
     QVERIFY2(result.outcome == outcome, result.text().c_str());
     QVERIFY(!result.text().empty());
     QVERIFY(outcome != Outcome::Found || isNear(result.places.front().pose, {2.5, 1.5, 0.7}));
+}
+
+// A scan with too little in it does not wait for the index of a map.
+void TestPlaceSearch::looksAtTheScanFirst() {
+    QCOMPARE(find(room(0, 0), Points(1000, {1, 1})).outcome, Outcome::TooLittle);
+    QCOMPARE(search->index().size(), std::size_t(0));
+    std::vector<MapEdge> slots = mapOf(room(0, 0)); // of edges that are no more
+    for (MapEdge &edge : slots)
+        edge.observations = 0;
+    const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
+    QCOMPARE((*search)(slots, extract(points), points).outcome, Outcome::NoMap);
 }
 
 void TestPlaceSearch::endsInTime() {

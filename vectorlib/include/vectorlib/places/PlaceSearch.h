@@ -36,15 +36,16 @@ public:
         result_.places.clear();
         result_.alike = result_.parts = result_.searched = 0;
         scan.take(edges, points);
-        const bool followed = index_.follow(slots, isLate);
-        if (slots.empty() || (followed && index_.size() == 0))
+        if (slots.empty())
             result_.outcome = Relocalized::Outcome::NoMap;
         else if (scan.walls().size() < 2 || scan.points().empty())
-            result_.outcome = Relocalized::Outcome::TooLittle;
-        else if (!followed) {
+            result_.outcome = Relocalized::Outcome::TooLittle; // before a large map is indexed for nothing
+        else if (!index_.follow(slots, isLate)) {
             result_.outcome = Relocalized::Outcome::Unfinished;
             result_.parts = slots.size();
-        } else
+        } else if (index_.size() == 0)
+            result_.outcome = Relocalized::Outcome::NoMap;
+        else
             search(isLate);
         result_.ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
         return result_;
