@@ -1,8 +1,8 @@
 // What one object says is no evidence of a place.
-#include "FloorPlan.h"
 #include "PlaceCase.h"
 
 #include <vectorlib/edges/EdgeExtractor.h>
+#include <vectorlib/observation/FloorPlan.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 

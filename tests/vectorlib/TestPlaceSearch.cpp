@@ -1,10 +1,10 @@
 // The search of a scan's place in a whole map.
-#include "FloorPlan.h"
 #include "PlaceCase.h"
 
 #include "tests/support/AllocationCounter.h"
 
 #include <vectorlib/edges/EdgeExtractor.h>
+#include <vectorlib/observation/FloorPlan.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 

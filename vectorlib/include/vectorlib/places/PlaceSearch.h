@@ -113,7 +113,7 @@ private:
         result_.alike = std::size_t(std::count_if(odds_.begin(), odds_.end(), isAlike));
         const bool isOneOf = isFixed && result_.alike > 1 && places >= minProbability * all;
         for (std::size_t i = 0; i < fits_.size() && i < maxPlaces; ++i) {
-            result_.places.push_back(placeOf(fits_[i], odds_[i] / all));
+            result_.places.push_back(placeOf(fits_[i], odds_[i] / all, leads_[i]));
             result_.places.back().fault = isFound && i == 0              ? PlaceFault::None
                                           : isOneOf && isAlike(odds_[i]) ? PlaceFault::Alike
                                                                          : faultOf(fits_[i]);
@@ -127,20 +127,21 @@ private:
     // The odds of the places, and of none of them, to those of the first.
     double weigh() {
         const PlaceFit &best = fits_.front();
-        double least = best.leadOver({});
+        leads_.assign(1, best.leadOver({}));
         odds_.assign(1, 1.0);
         for (std::size_t i = 1; i < fits_.size(); ++i) {
-            const double lead = best.leadOver(fits_[i]);
-            least = std::min(least, lead);
-            odds_.push_back(trust.oddsOfRival(lead));
+            leads_.push_back(best.leadOver(fits_[i]));
+            leads_.front() = std::min(leads_.front(), leads_.back());
+            odds_.push_back(trust.oddsOfRival(leads_.back()));
         }
-        return trust.oddsOfNone(best.score(), least);
+        return trust.oddsOfNone(best.score(), leads_.front());
     }
-    static Place placeOf(const PlaceFit &f, double probability) {
+    static Place placeOf(const PlaceFit &f, double probability, double lead) {
         Place place;
         place.pose = f.pose.pose();
         place.score = f.score();
         place.probability = probability;
+        place.lead = lead;
         place.reliability = f.reliability();
         place.ambiguity = f.meanSquare();
         place.discrepancy = f.discrepancy;
@@ -160,6 +161,7 @@ private:
     PlaceIndex index_;
     std::vector<PlaceFit> fits_, rough_; // best first
     std::vector<double> odds_;           // of the fits, to those of the first
+    std::vector<double> leads_;          // of the first over each; its own is the least
     Relocalized result_;
 };
 
