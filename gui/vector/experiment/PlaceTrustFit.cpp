@@ -22,12 +22,11 @@ double weightOf(const PlaceTrial &trial) {
 
 // What may be right of a trial: its places, and last none of them. The logarithm of the odds of each to those
 // of the first place is linear in the weights; these are its factors.
-std::vector<Weights> alternativesOf(const PlaceTrial &trial, double mostLead) {
-    const auto clamped = [mostLead](double lead) { return std::clamp(lead, 0.0, mostLead); };
+std::vector<Weights> alternativesOf(const PlaceTrial &trial, const PlaceTrust &trust) {
     std::vector<Weights> all{Weights::Zero()};
     for (std::size_t i = 1; i < trial.leads.size(); ++i)
-        all.emplace_back(0, 0, 0, -clamped(trial.leads[i]));
-    all.emplace_back(-1, -trial.score, -clamped(trial.leads.front()), 0);
+        all.emplace_back(0, 0, 0, -trust.relativeLead(trial.score, trial.leads[i]));
+    all.emplace_back(-1, -trial.score, -trust.clampedLead(trial.leads.front()), 0);
     return all;
 }
 
@@ -50,24 +49,24 @@ std::vector<double> probabilitiesOf(const std::vector<Weights> &alternatives, co
     return p;
 }
 
-double lossOf(const std::vector<PlaceTrial> &trials, double mostLead, const Weights &weights) {
+double lossOf(const std::vector<PlaceTrial> &trials, const PlaceTrust &trust, const Weights &weights) {
     double loss = pull / 2 * weights.squaredNorm();
     for (const PlaceTrial &trial : trials)
         if (!trial.leads.empty()) {
-            const std::vector<double> p = probabilitiesOf(alternativesOf(trial, mostLead), weights);
+            const std::vector<double> p = probabilitiesOf(alternativesOf(trial, trust), weights);
             loss -= weightOf(trial) * std::log(p[trial.right.value_or(p.size() - 1)]);
         }
     return loss;
 }
 
 // To the least loss, were it a parabola.
-Weights newtonStep(const std::vector<PlaceTrial> &trials, double mostLead, const Weights &weights) {
+Weights newtonStep(const std::vector<PlaceTrial> &trials, const PlaceTrust &trust, const Weights &weights) {
     Eigen::Matrix4d h = pull * Eigen::Matrix4d::Identity();
     Weights g = -pull * weights;
     for (const PlaceTrial &trial : trials) {
         if (trial.leads.empty())
             continue;
-        const std::vector<Weights> all = alternativesOf(trial, mostLead);
+        const std::vector<Weights> all = alternativesOf(trial, trust);
         const std::vector<double> p = probabilitiesOf(all, weights);
         Weights mean = Weights::Zero();
         for (std::size_t i = 0; i < all.size(); ++i)
@@ -91,24 +90,21 @@ nlohmann::ordered_json jsonOf(const PlaceTrustQuality &quality) {
 }
 
 nlohmann::ordered_json jsonOf(const PlaceTrust &trust) {
-    return {{"constant", trust.constant},
-            {"score", trust.score},
-            {"ahead", trust.ahead},
-            {"rival", trust.rival},
-            {"most_lead", trust.mostLead}};
+    return {
+        {"constant", trust.constant}, {"score", trust.score}, {"ahead", trust.ahead}, {"rival", trust.rival}};
 }
 
 } // namespace
 
 PlaceTrust fittedTrust(const std::vector<PlaceTrial> &trials, PlaceTrust trust) {
     Weights weights = weightsOf(trust);
-    double loss = lossOf(trials, trust.mostLead, weights);
+    double loss = lossOf(trials, trust, weights);
     for (int steps = 0; steps < 100; ++steps) {
-        Weights step = newtonStep(trials, trust.mostLead, weights);
-        double next = lossOf(trials, trust.mostLead, weights + step);
+        Weights step = newtonStep(trials, trust, weights);
+        double next = lossOf(trials, trust, weights + step);
         while (!(next <= loss) && step.norm() > 1e-9) { // too far
             step /= 2;
-            next = lossOf(trials, trust.mostLead, weights + step);
+            next = lossOf(trials, trust, weights + step);
         }
         if (!(next <= loss))
             break;
@@ -131,8 +127,7 @@ PlaceTrustQuality qualityOf(const PlaceTrust &trust, const std::vector<PlaceTria
         weight += weightOf(trial);
         if (trial.leads.empty())
             continue;
-        const std::vector<double> p =
-            probabilitiesOf(alternativesOf(trial, trust.mostLead), weightsOf(trust));
+        const std::vector<double> p = probabilitiesOf(alternativesOf(trial, trust), weightsOf(trust));
         quality.loss -= weightOf(trial) * std::log(std::max(1e-12, p[trial.right.value_or(p.size() - 1)]));
         const bool isFound = trial.reliability >= search.minReliability && p[0] >= search.minProbability;
         quality.found += isFound;

@@ -16,8 +16,8 @@ struct PlaceTrustQuality {
 };
 
 /// The weights of the greatest likelihood (multinomial logistic, Newton's method); trials of other buildings
-/// weigh six times. mostLead is that of the weights to begin with.
-vectorlib::PlaceTrust fittedTrust(const std::vector<PlaceTrial> &trials, vectorlib::PlaceTrust begin);
+/// weigh six times. All else is as in the trust to begin with.
+vectorlib::PlaceTrust fittedTrust(const std::vector<PlaceTrial> &trials, vectorlib::PlaceTrust trust);
 PlaceTrustQuality qualityOf(const vectorlib::PlaceTrust &trust, const std::vector<PlaceTrial> &trials);
 
 /// What fittedTrust gives from the first half of trials, and how well it and the present weights do on the

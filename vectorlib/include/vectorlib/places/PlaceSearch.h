@@ -18,6 +18,7 @@ public:
     double maxSeconds = 3;        ///< and the time of the last steps, a few milliseconds
     double minProbability = 0.9;  ///< of a place that is found
     double minReliability = 0.02; ///< of a place that is found
+    double minSeveral = 0.5;      ///< probability of places that fit alike, that one of them is right
     std::size_t maxPlaces = 24;   ///< in the result
     double rivalLead = 0.25;      ///< in score; places that are farther behind are no rivals
     PlaceScan scan;
@@ -111,7 +112,7 @@ private:
         const bool isFixed = fits_.front().reliability() >= minReliability;
         const bool isFound = isFixed && 1 >= minProbability * all;
         result_.alike = std::size_t(std::count_if(odds_.begin(), odds_.end(), isAlike));
-        const bool isOneOf = isFixed && result_.alike > 1 && places >= minProbability * all;
+        const bool isOneOf = isFixed && result_.alike > 1 && places >= minSeveral * all;
         for (std::size_t i = 0; i < fits_.size() && i < maxPlaces; ++i) {
             result_.places.push_back(placeOf(fits_[i], odds_[i] / all, leads_[i]));
             result_.places.back().fault = isFound && i == 0              ? PlaceFault::None
@@ -132,7 +133,7 @@ private:
         for (std::size_t i = 1; i < fits_.size(); ++i) {
             leads_.push_back(best.leadOver(fits_[i]));
             leads_.front() = std::min(leads_.front(), leads_.back());
-            odds_.push_back(trust.oddsOfRival(leads_.back()));
+            odds_.push_back(trust.oddsOfRival(best.score(), leads_.back()));
         }
         return trust.oddsOfNone(best.score(), leads_.front());
     }
