@@ -44,6 +44,11 @@ constexpr Experiment experiments[] = {
      &ExperimentCommand::calibration, "--log --every --first --half"},
     {"places", "scans of --log searched in a map of every other scan: how often their place is found",
      &ExperimentCommand::places, "--log --other"},
+    {"drawn-places", "scans of simulated worlds, floor plans and towns searched in their maps",
+     &ExperimentCommand::drawnPlaces, "--worlds --runs --seed"},
+    {"place-trust",
+     "the weights of PlaceTrust, fitted to one half of scans of --log ... and of drawn buildings",
+     &ExperimentCommand::placeTrust, "--log --other --worlds --runs --seed"},
     {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion, ""},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
      &ExperimentCommand::criterionTime, "--seed"},
@@ -127,12 +132,12 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option(
            "--log", command->logs,
            "CARMEN log for log, pairs, places, free-log, empty-room, corridor and laboratory; several for "
-           "calibration")
+           "calibration and place-trust")
         ->allow_extra_args(false)
         ->type_name("FILE");
-    sub->add_option(
-           "--other", command->other,
-           "places: search the scans of this CARMEN log of another building, which are to be refused")
+    sub->add_option("--other", command->other,
+                    "places, place-trust: search the scans of this CARMEN log of another building, which are "
+                    "to be refused")
         ->type_name("FILE");
     sub->add_option(
            "--every", command->every,
@@ -159,12 +164,14 @@ void addExperimentCommand(CLI::App &app) {
         ->check(between(0, 10000))
         ->type_name("N")
         ->capture_default_str();
-    sub->add_option(
-           "--worlds", command->worlds,
-           "Folder of cutsquare.json, oblique.json, pillars.json, home.json and corner.json instead of "
-           "those installed with the program")
+    sub->add_option("--worlds", command->worlds,
+                    "Folder of cutsquare.json, oblique.json, pillars.json, home.json, corner.json and "
+                    "quadratic.json instead "
+                    "of those installed with the program")
         ->type_name("FOLDER");
-    sub->add_option("--runs", command->options.runs, "Scans for each number of points (and each pose)")
+    sub->add_option(
+           "--runs", command->options.runs,
+           "Scans for each number of points (and each pose); floor plans of drawn-places and place-trust")
         ->check(between(1, 10000))
         ->type_name("N")
         ->capture_default_str();

@@ -60,6 +60,8 @@ struct ExperimentCommand {
     void pairs(OutputSet &files, std::ostream &csv) const;
     void calibration(OutputSet &files, std::ostream &csv) const;
     void places(OutputSet &files, std::ostream &csv) const;
+    void drawnPlaces(OutputSet &files, std::ostream &csv) const;
+    void placeTrust(OutputSet &files, std::ostream &csv) const;
 
     void freeHome(OutputSet &files, std::ostream &csv) const;
     void freeLeaps(OutputSet &files, std::ostream &csv) const;
@@ -90,6 +92,7 @@ private:
     static void tell(std::ostream &json, const nlohmann::ordered_json &summary);
     std::ostream &open(OutputSet &files, const std::string &suffix) const;
     World world(const std::string &place) const;
+    std::vector<World> allWorlds() const;
     vectorlib::CarmenLog readLog() const;
     static vectorlib::CarmenLog readLog(const std::string &file);
     void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "") const;

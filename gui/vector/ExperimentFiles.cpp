@@ -31,6 +31,13 @@ World ExperimentCommand::world(const std::string &place) const {
     return *found;
 }
 
+std::vector<World> ExperimentCommand::allWorlds() const {
+    std::vector<World> all;
+    for (const char *place : {"corner", "cutsquare", "home", "oblique", "pillars", "quadratic"})
+        all.push_back(world(place));
+    return all;
+}
+
 vectorlib::CarmenLog ExperimentCommand::readLog() const {
     if (logs.size() != 1)
         throw CLI::ValidationError("--log", "the experiment " + name + " needs the name of a CARMEN log");

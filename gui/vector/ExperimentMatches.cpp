@@ -2,6 +2,8 @@
 
 #include "gui/vector/experiment/Calibration.h"
 #include "gui/vector/experiment/GlobalPairsExperiment.h"
+#include "gui/vector/experiment/PlaceTrustFit.h"
+#include "gui/vector/experiment/PlaceTrustTrials.h"
 #include "gui/vector/experiment/PlacesExperiment.h"
 
 #include <iostream>
@@ -56,6 +58,30 @@ void ExperimentCommand::places(OutputSet &files, std::ostream &csv) const {
     const PlacesReport report = placesExperiment(read, strange ? &*strange : nullptr, options.progress);
     writeCsv(csv, report);
     tell(json, summaryOf(report));
+}
+
+void ExperimentCommand::drawnPlaces(OutputSet &files, std::ostream &csv) const {
+    std::ostream &json = open(files, ".json");
+    std::vector<PlaceTrial> trials = drawnPlacesExperiment(allWorlds(), options);
+    const std::vector<PlaceTrial> towns = townsExperiment(options);
+    writeCsv(csv, trials);
+    tell(json, {{"sets", summaryBySet(trials)},
+                {"walls_of_towns", summaryBySet(towns)},
+                {"slope_of_time", slopeOf(towns)}});
+}
+
+void ExperimentCommand::placeTrust(OutputSet &files, std::ostream &csv) const {
+    std::ostream &json = open(files, ".json");
+    std::vector<vectorlib::CarmenLog> read;
+    for (const std::string &log : logs)
+        read.push_back(readLog(log));
+    std::optional<vectorlib::CarmenLog> strange;
+    if (!other.empty())
+        strange = readLog(other);
+    const std::vector<PlaceTrial> trials =
+        placeTrustTrials(read, strange ? &*strange : nullptr, allWorlds(), options);
+    writeCsv(csv, trials);
+    tell(json, trustSummary(trials));
 }
 
 } // namespace hermes::vector

@@ -106,6 +106,28 @@ private Q_SLOTS:
         QVERIFY(!json(r.out).contains("first_right"));
         QVERIFY(json(r.out).contains("found_wrong"));
     }
+
+    void drawnPlacesNeedNoLog() {
+        const Result r = run({"experiment", "drawn-places", "--runs", "1", "--out", path("drawn")});
+        QVERIFY2(r.status == 0, r.err.constData());
+        QCOMPARE(json(r.out)["sets"].toObject()["home"].toObject()["scans"].toInt(), 50);
+        QVERIFY(json(r.out)["slope_of_time"].toDouble() > 0);
+        QCOMPARE(contents(path("drawn/drawn-places.json")), r.out);
+        QVERIFY(firstLine(path("drawn/drawn-places.csv")).startsWith("set,has_place,outcome,"));
+    }
+    void trustIsFittedToLogsAndDrawnBuildings() {
+        const Result r = run({"experiment", "place-trust", "--log", log(), "--log", log(), "--other", log(),
+                              "--runs", "1", "--out", path("trust")});
+        QVERIFY2(r.status == 0, r.err.constData());
+        for (const char *weights : {"present", "fitted"}) {
+            const QJsonObject of = json(r.out)[QLatin1String(weights)].toObject();
+            QVERIFY(of["weights"].toObject()["rival"].toDouble() > 0);
+            QCOMPARE(of["second_half"].toObject()["tenths"].toArray().size(), 10);
+        }
+        for (const char *set :
+             {"\"logs\"", "\"logs, map with drift\"", "\"logs, other building\"", "\"worlds\""})
+            QVERIFY2(contents(path("trust/place-trust.csv")).contains(set), set);
+    }
 };
 
 QTEST_GUILESS_MAIN(TestExperimentUse)

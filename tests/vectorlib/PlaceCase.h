@@ -28,6 +28,13 @@ inline Walls room(double x, double y) {
     return walls;
 }
 
+// A cupboard in it, its lower left corner at x, y.
+inline void putBox(Walls &walls, double x, double y, double width = 0.9, double depth = 0.6) {
+    const vectorlib::Vector2D<double> a(x, y), b(x, y + depth), c(x + width, y + depth), d(x + width, y);
+    for (const auto &side : {vectorlib::LineSegment2D<double>(a, b), {b, c}, {c, d}, {d, a}})
+        walls.push_back(side);
+}
+
 inline bool isNear(const vectorlib::Pose2D &a, const vectorlib::Pose2D &b, double metres = 0.05,
                    double radians = 0.02) {
     return std::hypot(a.x - b.x, a.y - b.y) < metres &&

@@ -1,10 +1,10 @@
 // The search of a scan's place in a whole map.
-#include "FloorPlan.h"
 #include "PlaceCase.h"
 
 #include "tests/support/AllocationCounter.h"
 
 #include <vectorlib/edges/EdgeExtractor.h>
+#include <vectorlib/observation/FloorPlan.h>
 #include <vectorlib/observation/SimulatedScanner.h>
 #include <vectorlib/places/PlaceSearch.h>
 
@@ -32,6 +32,7 @@ private Q_SLOTS:
     void findsPlacesOfFloorPlans();
     void findsByEdgesAlone();
     void findsAmongOtherThings();
+    void tellsIdenticalRooms_data();
     void tellsIdenticalRooms();
     void refusesScansOfOtherBuildings();
     void followsAChangingMap_data();
@@ -40,6 +41,7 @@ private Q_SLOTS:
     void sameSearchSameResult();
     void saysWhatIsWrong_data();
     void saysWhatIsWrong();
+    void looksAtTheScanFirst();
     void endsInTime();
     void boundsLongAndFarWalls();
     void takesRefusedWallsWhenThereIsRoom();
@@ -112,21 +114,35 @@ void TestPlaceSearch::findsAmongOtherThings() {
     }
 }
 
+void TestPlaceSearch::tellsIdenticalRooms_data() {
+    QTest::addColumn<int>("rooms");
+    QTest::addColumn<bool>("isChanged"); // a cupboard stands there that the map does not know
+    for (const int rooms : {2, 4, 5}) {
+        QTest::addRow("%d rooms", rooms) << rooms << false;
+        QTest::addRow("%d rooms, changed", rooms) << rooms << true;
+    }
+}
+
 void TestPlaceSearch::tellsIdenticalRooms() {
-    Walls map;
-    for (int i = 0; i < 5; ++i)
+    QFETCH(int, rooms);
+    QFETCH(bool, isChanged);
+    Walls map, world = room(0, 0);
+    for (int i = 0; i < rooms; ++i)
         for (const auto &wall : room(7 * i, 0))
             map.push_back(wall);
-    const Relocalized result = find(map, see(room(0, 0), {2.5, 1.5, 0.7}));
+    if (isChanged)
+        putBox(world, 3.9, 1.6, 0.8, 0.6);
+    const Relocalized result = find(map, see(world, {2.5, 1.5, 0.7}));
     QCOMPARE(result.outcome, Outcome::Ambiguous);
-    QCOMPARE(result.alike, std::size_t(5));
-    QCOMPARE(result.text(), std::string("5 places in the map fit alike"));
-    for (int i = 0; i < 5; ++i)
+    QCOMPARE(result.alike, std::size_t(rooms));
+    QCOMPARE(result.text(), std::to_string(rooms) + " places in the map fit alike");
+    QVERIFY(!isChanged || std::abs(result.places.front().score - 0.96) < 0.01);
+    for (int i = 0; i < rooms; ++i)
         QVERIFY(std::any_of(result.places.begin(), result.places.end(), [i](const Place &p) {
             return p.fault == PlaceFault::Alike && isNear(p.pose, {2.5 + 7 * i, 1.5, 0.7});
         }));
     for (const Place &p : result.places)
-        QVERIFY(p.probability <= 0.2);
+        QVERIFY(p.probability <= 1.0 / rooms);
 }
 
 void TestPlaceSearch::refusesScansOfOtherBuildings() {
@@ -238,6 +254,17 @@ void TestPlaceSearch::saysWhatIsWrong() {
     QVERIFY2(result.outcome == outcome, result.text().c_str());
     QVERIFY(!result.text().empty());
     QVERIFY(outcome != Outcome::Found || isNear(result.places.front().pose, {2.5, 1.5, 0.7}));
+}
+
+// A scan with too little in it does not wait for the index of a map.
+void TestPlaceSearch::looksAtTheScanFirst() {
+    QCOMPARE(find(room(0, 0), Points(1000, {1, 1})).outcome, Outcome::TooLittle);
+    QCOMPARE(search->index().size(), std::size_t(0));
+    std::vector<MapEdge> slots = mapOf(room(0, 0)); // of edges that are no more
+    for (MapEdge &edge : slots)
+        edge.observations = 0;
+    const Points points = see(room(0, 0), {2.5, 1.5, 0.7});
+    QCOMPARE((*search)(slots, extract(points), points).outcome, Outcome::NoMap);
 }
 
 void TestPlaceSearch::endsInTime() {

@@ -16,8 +16,9 @@ namespace vectorlib {
 
 /// How a scan lies in a map at some pose.
 struct PlaceFit {
-    Transformation2D pose;  ///< of the sensor in the map's frame
-    double points = 0;      ///< that were compared
+    static constexpr double mostHiddenLead = 0.0125; ///< of a lead, by what walls hide
+    Transformation2D pose;                           ///< of the sensor in the map's frame
+    double points = 0;                               ///< that were compared
     double explained = 0;   ///< of them, with a wall of the map beside them that faces alike
     double distances = 0;   ///< sum of their squared distances from it; m^2
     double hidden = 0;      ///< explained points that another wall of the map hides
@@ -33,15 +34,18 @@ struct PlaceFit {
     /// Up to 1: the explained share, less what lies apart and what is seen through walls.
     double score() const { return points > 0 ? std::accumulate(said.begin(), said.end(), 0.0) / points : 0; }
     /// How much higher the score is than that of another place of the same scan, when the object that speaks
-    /// most for this one is not heard. Against a place that is not there when the other has no points.
+    /// most for this one is not heard, and what walls hide little: an object that was moved onto one of the
+    /// other place explains points, and can be looked through where it stood. Against a place that is not
+    /// there when the other has no points.
     double leadOver(const PlaceFit &other) const {
         double sum = 0, strongest = 0;
-        for (std::size_t i = 0; i < said.size(); ++i) {
+        for (std::size_t i = 0; i + 1 < said.size(); ++i) {
             const double more = said[i] - other.said[i];
             sum += more;
             strongest = std::max(strongest, more);
         }
-        return points > 0 ? (sum - strongest) / points : 0;
+        const double byHidden = std::min(said.back() - other.said.back(), mostHiddenLead * points);
+        return points > 0 ? (sum - strongest + byHidden) / points : 0;
     }
     /// Mean squared distance of the explained points; m^2.
     double meanSquare() const { return explained > 0 ? distances / explained : 0; }

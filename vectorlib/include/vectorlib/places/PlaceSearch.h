@@ -18,6 +18,7 @@ public:
     double maxSeconds = 3;        ///< and the time of the last steps, a few milliseconds
     double minProbability = 0.9;  ///< of a place that is found
     double minReliability = 0.02; ///< of a place that is found
+    double minSeveral = 0.5;      ///< probability of places that fit alike, that one of them is right
     std::size_t maxPlaces = 24;   ///< in the result
     double rivalLead = 0.25;      ///< in score; places that are farther behind are no rivals
     PlaceScan scan;
@@ -36,15 +37,16 @@ public:
         result_.places.clear();
         result_.alike = result_.parts = result_.searched = 0;
         scan.take(edges, points);
-        const bool followed = index_.follow(slots, isLate);
-        if (slots.empty() || (followed && index_.size() == 0))
+        if (slots.empty())
             result_.outcome = Relocalized::Outcome::NoMap;
         else if (scan.walls().size() < 2 || scan.points().empty())
-            result_.outcome = Relocalized::Outcome::TooLittle;
-        else if (!followed) {
+            result_.outcome = Relocalized::Outcome::TooLittle; // before a large map is indexed for nothing
+        else if (!index_.follow(slots, isLate)) {
             result_.outcome = Relocalized::Outcome::Unfinished;
             result_.parts = slots.size();
-        } else
+        } else if (index_.size() == 0)
+            result_.outcome = Relocalized::Outcome::NoMap;
+        else
             search(isLate);
         result_.ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
         return result_;
@@ -110,9 +112,9 @@ private:
         const bool isFixed = fits_.front().reliability() >= minReliability;
         const bool isFound = isFixed && 1 >= minProbability * all;
         result_.alike = std::size_t(std::count_if(odds_.begin(), odds_.end(), isAlike));
-        const bool isOneOf = isFixed && result_.alike > 1 && places >= minProbability * all;
+        const bool isOneOf = isFixed && result_.alike > 1 && places >= minSeveral * all;
         for (std::size_t i = 0; i < fits_.size() && i < maxPlaces; ++i) {
-            result_.places.push_back(placeOf(fits_[i], odds_[i] / all));
+            result_.places.push_back(placeOf(fits_[i], odds_[i] / all, leads_[i]));
             result_.places.back().fault = isFound && i == 0              ? PlaceFault::None
                                           : isOneOf && isAlike(odds_[i]) ? PlaceFault::Alike
                                                                          : faultOf(fits_[i]);
@@ -126,20 +128,21 @@ private:
     // The odds of the places, and of none of them, to those of the first.
     double weigh() {
         const PlaceFit &best = fits_.front();
-        double least = best.leadOver({});
+        leads_.assign(1, best.leadOver({}));
         odds_.assign(1, 1.0);
         for (std::size_t i = 1; i < fits_.size(); ++i) {
-            const double lead = best.leadOver(fits_[i]);
-            least = std::min(least, lead);
-            odds_.push_back(trust.oddsOfRival(lead));
+            leads_.push_back(best.leadOver(fits_[i]));
+            leads_.front() = std::min(leads_.front(), leads_.back());
+            odds_.push_back(trust.oddsOfRival(best.score(), leads_.back()));
         }
-        return trust.oddsOfNone(best.score(), least);
+        return trust.oddsOfNone(best.score(), leads_.front());
     }
-    static Place placeOf(const PlaceFit &f, double probability) {
+    static Place placeOf(const PlaceFit &f, double probability, double lead) {
         Place place;
         place.pose = f.pose.pose();
         place.score = f.score();
         place.probability = probability;
+        place.lead = lead;
         place.reliability = f.reliability();
         place.ambiguity = f.meanSquare();
         place.discrepancy = f.discrepancy;
@@ -159,6 +162,7 @@ private:
     PlaceIndex index_;
     std::vector<PlaceFit> fits_, rough_; // best first
     std::vector<double> odds_;           // of the fits, to those of the first
+    std::vector<double> leads_;          // of the first over each; its own is the least
     Relocalized result_;
 };
 

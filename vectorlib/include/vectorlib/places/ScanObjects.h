@@ -42,6 +42,10 @@ public:
             else
                 points[i].object = std::min(next++, most - 1);
         }
+        // What of an object was seen before its wall.
+        for (std::size_t i = points.size(); i-- > 1;)
+            if (points[i - 1].object >= count_ && (points[i].position - points[i - 1].position).norm() < gap)
+                points[i - 1].object = points[i].object;
     }
 
 private:

@@ -1,18 +1,20 @@
 #pragma once
 
-#include <vectorlib/geometry/Pose2D.h>
-#include <vectorlib/observation/Ray.h>
+#include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/observation/Ray.h"
 
 #include <algorithm>
 #include <random>
 #include <vector>
 
+namespace vectorlib {
+
 /// Floor plans at random: rooms on both sides of a corridor, each with a door and one to four pieces of
 /// furniture; metres. The same seed gives the same plan.
 class FloorPlan {
 public:
-    using Wall = vectorlib::LineSegment2D<double>;
-    using Point = vectorlib::Vector2D<double>;
+    using Wall = LineSegment2D<double>;
+    using Point = Vector2D<double>;
 
     enum class Rooms { Different, Alike };
 
@@ -50,17 +52,21 @@ public:
         later.pieces_.clear(); // its walls have other numbers now
         return later;
     }
-    /// A place at random, 30 cm from every wall, from where all walls around show their free side.
-    vectorlib::Pose2D place() {
+    /// A place at random, as placeAmong.
+    Pose2D place() { return placeAmong(walls_, random_); }
+    /// A place at random, 30 cm from every wall, from where all walls around show their free side. There must
+    /// be such places. With `isOpen` there may be no wall in some directions.
+    static Pose2D placeAmong(const std::vector<Wall> &walls, std::mt19937 &random, bool isOpen = false) {
         Point low(1e9, 1e9), high(-1e9, -1e9);
-        for (const Wall &w : walls_)
+        for (const Wall &w : walls)
             for (const Point p : {w.begin(), w.end()}) {
                 low = {std::min(low.x, p.x), std::min(low.y, p.y)};
                 high = {std::max(high.x, p.x), std::max(high.y, p.y)};
             }
         for (;;)
-            if (const Point p(between(low.x, high.x), between(low.y, high.y)); isFree(p))
-                return {p.x, p.y, between(-vectorlib::pi, vectorlib::pi)};
+            if (const Point p(between(random, low.x, high.x), between(random, low.y, high.y));
+                isFree(walls, p, isOpen))
+                return {p.x, p.y, between(random, -pi, pi)};
     }
 
 private:
@@ -73,7 +79,10 @@ private:
         std::size_t firstWall; ///< of four
     };
 
-    double between(double a, double b) { return a + (b - a) * double(random_() % 100001) / 100000; }
+    static double between(std::mt19937 &random, double a, double b) {
+        return a + (b - a) * double(random() % 100001) / 100000;
+    }
+    double between(double a, double b) { return between(random_, a, b); }
     // An outline with the free space outside.
     void block(double x0, double y0, double x1, double y1) {
         const double left = std::min(x0, x1), right = std::max(x0, x1), low = std::min(y0, y1),
@@ -115,17 +124,16 @@ private:
         const double deep = between(0.9, room.depth - b - 0.1);
         block(at, room.y + room.side * deep, at + a, room.y + room.side * (deep + b));
     }
-    bool isFree(Point p) const {
-        for (const Wall &w : walls_)
+    static bool isFree(const std::vector<Wall> &walls, Point p, bool isOpen) {
+        for (const Wall &w : walls)
             if (w.distance(p) < 0.3)
                 return false;
         for (int k = 0; k < 16; ++k) {
-            const double angle = k * vectorlib::pi / 8 + 0.01;
+            const double angle = k * pi / 8 + 0.01;
             double nearest = 1e9;
-            bool showsFront = false;
-            for (const Wall &w : walls_) {
-                const double t =
-                    vectorlib::rayDistance({std::cos(angle), std::sin(angle)}, w.begin() - p, w.end() - p);
+            bool showsFront = isOpen;
+            for (const Wall &w : walls) {
+                const double t = rayDistance({std::cos(angle), std::sin(angle)}, w.begin() - p, w.end() - p);
                 if (t < nearest) {
                     nearest = t;
                     showsFront = w.across(p) > 0;
@@ -142,3 +150,5 @@ private:
     std::vector<Wall> walls_;
     std::vector<Piece> pieces_; // of furniture
 };
+
+} // namespace vectorlib

@@ -1,0 +1,108 @@
+#include "gui/vector/experiment/PlaceTrustTrials.h"
+
+#include "gui/vector/experiment/PairsExperiment.h"
+#include "vectorlib/mapping/MapBuilder.h"
+
+namespace hermes::vector {
+
+using vectorlib::CarmenLog;
+using vectorlib::FloorPlan;
+using vectorlib::Pose2D;
+using vectorlib::Transformation2D;
+
+namespace {
+
+constexpr int fewPlaces = 20, placesOfWorld = 200;
+
+// A scan of a log in the map that is set.
+void search(PlaceTrials &trials, const std::string &set, const CarmenLog &log, std::size_t i,
+            const std::optional<Pose2D> &truth) {
+    trials.extract.segment.settings = scannerOf(log.scans[i]);
+    PlaceTrial &trial = trials.add(pointsOf(log.scans[i]), truth);
+    trial.scan = i;
+    trial.set = set;
+    trial.isFirstHalf = i / 50 % 2 == 0;
+}
+
+// By odometry and matching alone: places are those beside the scan before, wherever the map took it.
+void searchDriftedMap(PlaceTrials &trials, const CarmenLog &log) {
+    vectorlib::MapBuilder build;
+    std::vector<Pose2D> poses;
+    for (std::size_t i = 0; i < log.scans.size(); i += 2) {
+        Transformation2D expected;
+        if (i > 0)
+            expected = Transformation2D(poses.back()) *
+                       log.odometryMotion(i - 2, i, vectorlib::CarmenOdometryKind::Corrected)
+                           .value_or(Transformation2D());
+        build.extract.segment.settings = scannerOf(log.scans[i]);
+        poses.push_back(build.process(pointsOf(log.scans[i]), expected.pose()).pose);
+    }
+    trials.setMap(build.map.slots());
+    for (std::size_t i = 1; i < log.scans.size(); i += 2)
+        search(trials, "logs, map with drift", log, i,
+               (Transformation2D(poses[i / 2]) * log.referenceMotion(i - 1, i)).pose());
+}
+
+void searchLogs(PlaceTrials &trials, const std::vector<CarmenLog> &logs, const CarmenLog *other) {
+    for (const CarmenLog &log : logs) {
+        const std::vector<vectorlib::MapEdge> map = mapOfHalf(log);
+        trials.setMap(map);
+        for (std::size_t i = 1; i < log.scans.size(); i += 2)
+            search(trials, "logs", log, i, log.scans[i].laserPose);
+        for (const CarmenLog &strange : logs)
+            for (std::size_t i = 0; i < strange.scans.size() && &strange != &log; i += 3)
+                search(trials, "logs, other building", strange, i, std::nullopt);
+        for (std::size_t i = 0; other && i < other->scans.size(); i += 3)
+            search(trials, "logs, other building", *other, i, std::nullopt);
+        searchDriftedMap(trials, log);
+    }
+}
+
+void searchPlans(DrawnPlaces &drawn, const ExperimentOptions &options) {
+    for (int i = 0; i < 2 * options.runs; ++i) {
+        const auto seed = unsigned(options.seed * 1000 + 500 + std::uint64_t(i));
+        const bool isFirstHalf = i % 2 == 0;
+        const FloorPlan plan(seed, DrawnPlaces::rooms), other(seed + 500000, DrawnPlaces::rooms);
+        drawn.setMap(plan.walls());
+        for (const int percent : {0, 10, 30, 60}) {
+            drawn.begin("plans, " + std::to_string(percent) + " % refurnished", isFirstHalf);
+            drawn.search(plan.refurnished(seed, percent / 100.0).walls(), fewPlaces);
+        }
+        drawn.begin("plans, other building", isFirstHalf);
+        drawn.search(other.walls(), fewPlaces, false);
+        if (options.progress)
+            options.progress(std::size_t(i + 1), std::size_t(2 * options.runs));
+    }
+}
+
+void searchWorlds(DrawnPlaces &drawn, const std::vector<World> &worlds) {
+    drawn.isOpen = true;
+    for (const World &world : worlds) {
+        drawn.setMap(wallsIn(world));
+        for (const bool isFirstHalf : {true, false}) {
+            drawn.begin("worlds", isFirstHalf);
+            drawn.search(wallsIn(world), placesOfWorld);
+            for (const World &other : worlds)
+                if (&other != &world) {
+                    drawn.begin("worlds, other world", isFirstHalf);
+                    drawn.search(wallsIn(other), placesOfWorld / 10, false);
+                }
+        }
+    }
+}
+
+} // namespace
+
+std::vector<PlaceTrial> placeTrustTrials(const std::vector<CarmenLog> &logs, const CarmenLog *other,
+                                         const std::vector<World> &worlds, const ExperimentOptions &options) {
+    PlaceTrials ofLogs;
+    searchLogs(ofLogs, logs, other);
+    DrawnPlaces drawn(options.seed);
+    searchPlans(drawn, options);
+    searchWorlds(drawn, worlds);
+    std::vector<PlaceTrial> all = std::move(ofLogs.all);
+    all.insert(all.end(), drawn.trials().begin(), drawn.trials().end());
+    return all;
+}
+
+} // namespace hermes::vector
