@@ -8,6 +8,7 @@
 #include "vectorlib/io/CsvSegments.h"
 #include "vectorlib/io/MapCsv.h"
 #include "vectorlib/io/Pcd.h"
+#include "vectorlib/segmentation/ScanOrder.h"
 
 #include <algorithm>
 #include <sstream>
@@ -47,14 +48,10 @@ void take(SegmentSet &set, const vectorlib::EdgeRaw2D &edge, double noise) {
 
 /// Counter-clockwise, so that free space lies on the left of segments: some scanners, the HDL-32E among them,
 /// turn the other way.
-void turnCounterClockwise(std::vector<vectorlib::Vector2D<float>> &points) {
-    long left = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const float turn = points[i - 1].cross(points[i]);
-        left += turn > 0 ? 1 : turn < 0 ? -1 : 0;
-    }
-    if (left < 0)
-        std::reverse(points.begin(), points.end());
+std::vector<vectorlib::Vector2D<float>> inOrder(const std::vector<vectorlib::Vector2D<float>> &points) {
+    vectorlib::ScanOrder order;
+    const vectorlib::PointSpan<float> ordered = order(points);
+    return {ordered.begin(), ordered.end()};
 }
 
 void vectorize(SegmentSet &set, const SegmentSetSettings &settings) {
@@ -76,9 +73,8 @@ SegmentSet loadSegmentSet(const std::string &path, const SegmentSetSettings &set
     set.kind = isPcd ? Kind::Points : kindOf(text);
     switch (set.kind) {
     case Kind::Points:
-        set.points = valueOrFail(isPcd ? vectorlib::readPcd<float>(in, input.name())
-                                       : vectorlib::readCsvPoints<float>(in, input.name()));
-        turnCounterClockwise(set.points);
+        set.points = inOrder(valueOrFail(isPcd ? vectorlib::readPcd<float>(in, input.name())
+                                               : vectorlib::readCsvPoints<float>(in, input.name())));
         vectorize(set, settings);
         break;
     case Kind::Segments:

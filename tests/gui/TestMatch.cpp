@@ -3,6 +3,8 @@
 #include <QJsonArray>
 #include <QXmlStreamReader>
 
+#include <random>
+
 /// hermes-vector match: scans of a room from two places, as points, as segments and against a map.
 class TestMatch : public QObject {
     Q_OBJECT
@@ -19,7 +21,8 @@ private Q_SLOTS:
     void init() { folder_.empty(); }
     void findsTheMotion_data();
     void findsTheMotion();
-    void scannersMayTurnEitherWay();
+    void pointsMayComeInAnyOrder_data();
+    void pointsMayComeInAnyOrder();
     void mapHidesNothing();
     void mapFileIsAMap();
     void expectedPoseMovesTheSearch();
@@ -101,13 +104,37 @@ void TestMatch::findsTheMotion() {
             QVERIFY(pair.toArray()[0].toInt() < result["static"].toArray().size());
 }
 
-void TestMatch::scannersMayTurnEitherWay() {
+void TestMatch::pointsMayComeInAnyOrder_data() {
+    QTest::addColumn<bool>("isShuffled");
+    QTest::addColumn<QStringList>("options");
+    for (const char *method : {"global", "finder", "relations"}) {
+        QTest::addRow("clockwise, %s", method) << false << QStringList{"--method", method};
+        QTest::addRow("shuffled, %s", method) << true << QStringList{"--method", method};
+    }
+    QTest::newRow("shuffled, expected") << true << QStringList{"--expected", "0.1,0,0"};
+}
+
+void TestMatch::pointsMayComeInAnyOrder() {
+    QFETCH(bool, isShuffled);
+    QFETCH(QStringList, options);
     const QString a = seen("a.csv", "0,0,0", true), b = seen("b.csv", "0.2,0.1,0.1", true);
     QList<QByteArray> rows = contents(a).trimmed().split('\n').mid(1);
-    std::reverse(rows.begin(), rows.end());
-    write(path("clockwise.csv"), rows.join('\n') + '\n');
-    const Result r = run({"match", path("clockwise.csv"), b});
-    QVERIFY2(json(r.out)["solutions"].toArray()[0].toObject()["accepted"].toBool(), r.out.constData());
+    std::mt19937 random(1);
+    if (isShuffled)
+        std::shuffle(rows.begin(), rows.end(), random);
+    else
+        std::reverse(rows.begin(), rows.end());
+    write(path("other.csv"), rows.join('\n') + '\n');
+    const auto poseOf = [&](const QString &fixed) {
+        const QJsonObject found = json(run(QStringList{"match", fixed, b} + options).out);
+        return found["outcome"].toString() == "found"
+                   ? found["solutions"].toArray()[0].toObject()["pose"].toObject()
+                   : QJsonObject();
+    };
+    const QJsonObject ordered = poseOf(a), other = poseOf(path("other.csv"));
+    for (const char *key : {"x", "y", "alpha"})
+        QVERIFY2(other.contains(key) && std::abs(other[key].toDouble() - ordered[key].toDouble()) < 0.01,
+                 key);
 }
 
 // The second sensor stands where the first one has not looked: two walls of the room are all that it saw.

@@ -51,14 +51,15 @@ void TestSearchVerdicts::saysWhyThereIsNothing_data() {
                            "no solution wanted",
                            "infinite reach",
                            "NaN pose",
-                           "too many pairs"};
+                           "too many pairs",
+                           "too many near each other"};
     const SearchOutcome outcomes[] = {
         SearchOutcome::NothingFixed,    SearchOutcome::NothingMoving, SearchOutcome::NothingMoving,
         SearchOutcome::NoPotentialPair, SearchOutcome::OneDirection,  SearchOutcome::OneDirection,
         SearchOutcome::NoCombination,   SearchOutcome::BadSettings,   SearchOutcome::BadSettings,
         SearchOutcome::BadSettings,     SearchOutcome::BadSettings,   SearchOutcome::BadSettings,
-        SearchOutcome::TooManyPairs};
-    for (int i = 0; i < 13; ++i)
+        SearchOutcome::TooManyPairs,    SearchOutcome::TooManyPairs};
+    for (int i = 0; i < 14; ++i)
         QTest::newRow(names[i]) << i << static_cast<int>(outcomes[i]);
 }
 
@@ -110,6 +111,9 @@ void TestSearchVerdicts::saysWhyThereIsNothing() {
         break;
     case 12:
         find.settings.maxPairs = 3;
+        break;
+    case 13:
+        find.settings.maxCompared = 3;
         break;
     }
     const auto &result = find(fixed, moving, expected);

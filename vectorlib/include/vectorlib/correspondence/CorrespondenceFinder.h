@@ -2,6 +2,7 @@
 
 #include "vectorlib/correspondence/BundleCombinations.h"
 #include "vectorlib/correspondence/ExpectedViewTest.h"
+#include "vectorlib/correspondence/NearLines.h"
 #include "vectorlib/correspondence/PairSelection.h"
 #include "vectorlib/correspondence/PotentialPairs.h"
 #include "vectorlib/correspondence/SearchResult.h"
@@ -23,6 +24,7 @@ struct SearchSettings {
     double matchedShare = 0.30; ///< least share of the dynamic length that must have partners
     std::size_t maxSolutions = 16;
     std::size_t maxPairs = 5000;           ///< potential pairs
+    std::size_t maxCompared = 50000000;    ///< pairs of segments that are near each other, half a second
     std::uint64_t maxCombinations = 20000; ///< bundles tried
 };
 
@@ -88,7 +90,7 @@ private:
                              s.sharedView, s.matchedShare})
             if (!(value >= 0) || !std::isfinite(value))
                 return false;
-        return s.maxSolutions > 0 && s.maxPairs > 0 && s.maxCombinations > 0;
+        return s.maxSolutions > 0 && s.maxPairs > 0 && s.maxCompared > 0 && s.maxCombinations > 0;
     }
     bool start(const Segments &moving, const Transformation2D &expected) {
         spare_.insert(spare_.end(), std::make_move_iterator(result_.solutions.begin()),
@@ -127,11 +129,10 @@ private:
             return SearchOutcome::NothingMoving;
         if (fixed_.segments.empty())
             return SearchOutcome::NothingFixed;
-        collectPairs();
+        if (!collectPairs())
+            return SearchOutcome::TooManyPairs;
         if (pairs_.empty())
             return SearchOutcome::NoPotentialPair;
-        if (pairs_.size() > settings.maxPairs)
-            return SearchOutcome::TooManyPairs;
         bundle_.reliability = buckets_.reliability = combine_.reliability = settings.reliability;
         bundle_.ambiguity = combine_.ambiguity = settings.ambiguity;
         bundle_.stiffness = settings.stiffness;
@@ -148,18 +149,29 @@ private:
                : result_.buckets < 2     ? SearchOutcome::OneDirection
                                          : SearchOutcome::NoCombination;
     }
-    void collectPairs() {
+    // False where a bound ended it.
+    bool collectPairs() {
         pairs_.clear();
         const double cosine = std::cos(std::min(pi, settings.permitted.dalpha)) - 1e-9;
-        for (std::size_t m = 0; m < moving_.segments.size(); ++m)
-            for (std::size_t f = 0; f < fixed_.segments.size() && pairs_.size() <= settings.maxPairs; ++f) {
-                const LineSegment2D<double> &fixed = fixed_.segments[f], &moving = moving_.segments[m];
+        lines_.build(fixed_.segments, std::hypot(settings.permitted.dx, settings.permitted.dy));
+        std::size_t compared = 0;
+        const auto isWithinBounds = [&] {
+            return compared <= settings.maxCompared && pairs_.size() <= settings.maxPairs;
+        };
+        for (std::size_t m = 0; m < moving_.segments.size() && isWithinBounds(); ++m) {
+            const LineSegment2D<double> &moving = moving_.segments[m];
+            lines_.query(moving, [&](int f) {
+                ++compared;
+                const LineSegment2D<double> &fixed = fixed_.segments[static_cast<std::size_t>(f)];
                 if (fixed.direction().dot(moving.direction()) >= cosine && // most end here
                     mayCorrespond(fixed, moving, settings.permitted))
-                    pairs_.emplace_back(CorrespondencePair{static_cast<int>(f), static_cast<int>(m)}, fixed,
-                                        moving, settings.stiffness);
-            }
+                    pairs_.emplace_back(CorrespondencePair{f, static_cast<int>(m)}, fixed, moving,
+                                        settings.stiffness);
+                return isWithinBounds();
+            });
+        }
         result_.potentialPairs = pairs_.size();
+        return isWithinBounds();
     }
 
     // Makes a solution of the selected pairs and the transformation that fits them.
@@ -235,6 +247,7 @@ private:
 
     Transformation2D expected_, toLocal_;
     NumberedSegments fixed_, moving_; // in the expected sensor frame
+    NearLines lines_;
     std::vector<PotentialPair> pairs_;
     CollinearBundles bundle_;
     BundleBuckets buckets_;

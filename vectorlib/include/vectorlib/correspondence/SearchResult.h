@@ -73,7 +73,7 @@ inline const char *describe(SearchOutcome outcome) {
     case SearchOutcome::NoPotentialPair:
         return "no permitted transformation brings any two segments together";
     case SearchOutcome::TooManyPairs:
-        return "more potential pairs than the bound on pairs: permit less motion";
+        return "more pairs of segments near each other than the bounds on pairs: permit less motion";
     case SearchOutcome::OneDirection:
         return "all potential pairs are parallel: the shift along them is not known";
     case SearchOutcome::NoCombination:

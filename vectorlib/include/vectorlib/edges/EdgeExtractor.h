@@ -2,6 +2,7 @@
 
 #include "vectorlib/edges/EdgeRaw2D.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
+#include "vectorlib/segmentation/ScanOrder.h"
 #include "vectorlib/vectorization/AftlsVectorizer.h"
 
 #include <vector>
@@ -14,15 +15,17 @@ class EdgeExtractor {
 public:
     EarSegmenter<float> segment;
     AftlsVectorizer<float> vectorize;
+    ScanOrder order;
     std::size_t minPoints = 4; ///< lines through fewer points are no edges
     double minLength = 0.10;   ///< shorter lines are no edges; metres
 
-    /// The edges of a scan: sensor frame, points in order of acquisition.
-    const std::vector<EdgeRaw2D> &operator()(PointSpan<float> scan) {
+    /// The edges of a scan: sensor frame, points in the order of ScanOrder, free space on the left of edges.
+    const std::vector<EdgeRaw2D> &operator()(PointSpan<float> given) {
+        const PointSpan<float> scan = order(given);
         return vectorizeClusters(segment(scan), scan);
     }
 
-    /// The second half of operator(), for callers that time both halves.
+    /// The last step of operator(), for callers that time the steps.
     const std::vector<EdgeRaw2D> &vectorizeClusters(const Segmentation &clusters, PointSpan<float> scan) {
         edges_.clear();
         for (std::size_t c = 0; c < clusters.size(); ++c) {

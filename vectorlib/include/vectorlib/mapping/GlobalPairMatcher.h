@@ -53,7 +53,7 @@ public:
     MatchProbability tellProbability;
     PointCovariance tellCovariance;
 
-    /// Both scans in their sensor's frame, counter-clockwise; metres. Valid until the next call.
+    /// Both scans in their sensor's frame, in the order of ScanOrder; metres. Valid until the next call.
     const GlobalPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving) {
         if (take(fixed, moving)) {
             find();

@@ -46,7 +46,7 @@ public:
     ScanPairMatcher matchPair; ///< of the scan before with this one
     VectorMap map;
 
-    /// Takes a scan (sensor frame, in order of acquisition) and where the sensor is expected to be (map
+    /// Takes a scan (sensor frame, in the order of ScanOrder) and where the sensor is expected to be (map
     /// frame), by odometry or by its motion so far.
     const ScanReport &process(PointSpan<float> scan, const Pose2D &expected) {
         find(scan, expected);
@@ -54,10 +54,11 @@ public:
     }
     /// The first half of it, which may be done again for the same scan, straightened otherwise or expected
     /// elsewhere: the pose. Leaves the map alone.
-    const ScanReport &find(PointSpan<float> scan, const Pose2D &expected) {
+    const ScanReport &find(PointSpan<float> given, const Pose2D &expected) {
         if (std::exchange(concluded_, false))
             report_ = ScanReport();
         const auto t0 = Clock::now();
+        const PointSpan<float> scan = extract.order(given);
         const Segmentation &clusters = extract.segment(scan);
         const auto t1 = Clock::now();
         const std::vector<EdgeRaw2D> &edges = extract.vectorizeClusters(clusters, scan);

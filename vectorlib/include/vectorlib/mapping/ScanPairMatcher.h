@@ -57,8 +57,8 @@ public:
     EdgeExtractor extract; ///< its segmentation is to be set up for the scanner
     PointRefinement refine;
 
-    /// Both scans in their sensor's frame, counter-clockwise; metres. `expected` is the motion as far as it
-    /// is known, from odometry.
+    /// Both scans in their sensor's frame, in the order of ScanOrder; metres. `expected` is the motion as far
+    /// as it is known, from odometry.
     const ScanPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving,
                                     const Transformation2D &expected) {
         fixedEdges_ = extract(fixed);

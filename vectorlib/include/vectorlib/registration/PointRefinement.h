@@ -36,7 +36,7 @@ class PointRefinement {
 public:
     PointRefinementSettings settings;
 
-    /// Takes two scans, each in its sensor's frame and counter-clockwise; metres.
+    /// Takes two scans, each in its sensor's frame and in the order of ScanOrder; metres.
     void start(PointSpan<float> fixed, PointSpan<float> moving) {
         fixed_.build(fixed, settings.mostPoints);
         moving_.build(moving, settings.mostPoints);

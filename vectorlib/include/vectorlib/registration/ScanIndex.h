@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/segmentation/ScanOrder.h"
 #include "vectorlib/simd/NearestOfEight.h"
 
 #include <cmath>
@@ -13,14 +13,17 @@ namespace vectorlib {
 /// scans.
 class ScanIndex {
 public:
-    /// Takes a scan in its sensor's frame, counter-clockwise; of a scan of more than `most` points only every
-    /// n-th. Points that are not finite or farther away than 1,000 km are left out.
-    void build(PointSpan<float> scan, std::size_t most) {
+    /// Takes a scan in its sensor's frame, in the order of ScanOrder; of a scan of more than `most` points
+    /// only every n-th. Points that are not finite or farther away than 1,000 km are left out, and those that
+    /// repeat the one before.
+    void build(PointSpan<float> given, std::size_t most) {
+        const PointSpan<float> scan = order_(given);
         x_.assign(window, far);
         y_.assign(window, far);
         const std::size_t step = 1 + scan.size() / (std::max<std::size_t>(1, most) + 1);
         for (std::size_t i = 0; i < scan.size(); i += step)
-            if (const Vector2D<float> &p = scan[i]; std::abs(p.x) < 1e6f && std::abs(p.y) < 1e6f) {
+            if (const Vector2D<float> &p = scan[i];
+                std::abs(p.x) < 1e6f && std::abs(p.y) < 1e6f && (p.x != x_.back() || p.y != y_.back())) {
                 x_.push_back(p.x);
                 y_.push_back(p.y);
             }
@@ -112,6 +115,7 @@ private:
         }
     }
 
+    ScanOrder order_;
     std::vector<float> x_, y_; // with padding at both ends
     int size_ = 0;
     std::vector<Vector2D<float>> normals_;

@@ -8,7 +8,8 @@ namespace vectorlib {
 
 /// The segments of a scan that take part in a match, with their relations. Left out are those that are not
 /// finite, lie beyond 1000 km or have no length, and of more than the bound all but the longest; the order
-/// stays. Memory for n segments: n numbers, and what the bound needs. Keeps its buffers.
+/// stays. An angle edge with the next segment counts only where the two meet: in a set out of order they do
+/// not. Memory for n segments: n numbers, and what the bound needs. Keeps its buffers.
 class RelationScan {
 public:
     void build(const std::vector<TypedSegment> &all, const RelationSettings &settings) {
@@ -19,7 +20,8 @@ public:
             segments_.push_back(all[numbers_[k]]);
             // A neighbour that is left out takes the angle edge with it.
             TypedSegment &s = segments_.back();
-            s.joined = s.joined && k + 1 < numbers_.size() && numbers_[k + 1] == numbers_[k] + 1;
+            s.joined = s.joined && k + 1 < numbers_.size() && numbers_[k + 1] == numbers_[k] + 1 &&
+                       (s.segment.end() - all[numbers_[k + 1]].segment.begin()).norm() < meeting;
         }
         leftOut_ = all.size() - numbers_.size();
         relations_.build(segments_, settings);
@@ -31,6 +33,8 @@ public:
     int given(int number) const { return static_cast<int>(numbers_[static_cast<std::size_t>(number)]); }
 
 private:
+    static constexpr double meeting = 0.01; // between ends that are one angle edge; metres
+
     static bool isWithinReach(Vector2D<double> p) { return std::max(std::abs(p.x), std::abs(p.y)) < 1e6; }
 
     void chooseUsable(const std::vector<TypedSegment> &all) {

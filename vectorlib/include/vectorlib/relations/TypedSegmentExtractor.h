@@ -1,8 +1,8 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
 #include "vectorlib/relations/Corner.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
+#include "vectorlib/segmentation/ScanOrder.h"
 #include "vectorlib/tls/LineCovariance.h"
 #include "vectorlib/vectorization/AftlsVectorizer.h"
 
@@ -28,8 +28,9 @@ public:
         vectorize.settings.sigma = 0.025;
         vectorize.settings.polyline = false;
     }
-    /// The points of a scan, counter-clockwise, in the sensor's frame. Valid until the next call.
-    const std::vector<TypedSegment> &operator()(PointSpan<float> scan) {
+    /// The points of a scan in the sensor's frame, in the order of ScanOrder. Valid until the next call.
+    const std::vector<TypedSegment> &operator()(PointSpan<float> given) {
+        const PointSpan<float> scan = order_(given);
         takeLines(scan);
         segments_.clear();
         for (std::size_t i = 0; i < lines_.size(); ++i)
@@ -145,6 +146,7 @@ private:
 
     static constexpr std::size_t leastTrimmed = 7; // points of a line whose outermost are left out
 
+    ScanOrder order_;
     double step_ = pi / 180;
     std::vector<Vector2D<float>> cluster_;
     std::vector<ScanLine> lines_;
