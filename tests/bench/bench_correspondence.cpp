@@ -9,6 +9,9 @@
 #ifdef BENCH_MRPT
 #include "tests/bench/MrptGlobal.h"
 #endif
+#ifdef BENCH_PCL
+#include "tests/bench/PclPrerejective.h"
+#endif
 
 #include <benchmark/benchmark.h>
 
@@ -91,6 +94,14 @@ bool addPillars() {
     return true;
 }
 
+/// For a rival that takes long.
+[[maybe_unused]] bench::SharedPairs everyTenth(const bench::SharedPairs &pairs) {
+    bench::ScanPairs some;
+    for (std::size_t i = 0; i < pairs->size(); i += 10)
+        some.push_back((*pairs)[i]);
+    return bench::shared(some);
+}
+
 /// Two scans and nothing else: the same pairs for all.
 void addPairs(const std::string &what, const bench::SharedPairs &pairs) {
     bench::addRow<bench::ByGlobalPairMatcher>("GlobalPairMatcher", what, pairs);
@@ -101,6 +112,9 @@ void addPairs(const std::string &what, const bench::SharedPairs &pairs) {
 #ifdef BENCH_MRPT
     bench::addRow<bench::MrptGridMaps>("MRPT CGridMapAligner", what, pairs);
     bench::addRow<bench::MrptLandmarks>("MRPT se2_l2_robust, then CICP", what, pairs);
+#endif
+#ifdef BENCH_PCL
+    bench::addRow<bench::PclPrerejective>("PCL prerejective, then ICP", what, everyTenth(pairs));
 #endif
 }
 
@@ -128,7 +142,10 @@ int main(int argc, char **argv) {
     if (!addPillars())
         return 1;
 #ifndef BENCH_MRPT
-    std::cerr << "MRPT (libmrpt-slam-dev) was not installed when this was built: no rivals\n";
+    std::cerr << "MRPT (libmrpt-slam-dev) was not installed when this was built: no rivals of it\n";
+#endif
+#ifndef BENCH_PCL
+    std::cerr << "PCL (libpcl-dev) was not installed when this was built: no rival of it\n";
 #endif
     addPairs("floor plans", bench::shared(bench::FloorPlanPairs(1).draw(bench::casesOf(300))));
     try {

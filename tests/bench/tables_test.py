@@ -45,7 +45,7 @@ def check_pairs():
     shown = pair_table(pairs(0.9, 0.8))
     assert shown.count("reached") == 1 and "missed" not in shown, shown
     assert re.search(r"rooms: MRPT one +\| +10 +\| +80.0 % .*\| +500 +\| +2000 +\| +2.50 +\|", shown), shown
-    assert "MRPT missed" in pair_table(pairs(0.8, 0.8))
+    assert "rivals missed" in pair_table(pairs(0.8, 0.8))
 
 
 if __name__ == "__main__":
