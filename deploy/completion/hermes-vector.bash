@@ -1,45 +1,55 @@
-# Bash completion of hermes-vector. The options are those its own --help lists.
+# Bash completion of hermes-vector. Its --help tells the commands, their options, and what follows each.
+
+_hermes_vector_words() {
+    mapfile -t COMPREPLY < <(compgen -W "${2//,/ }" -- "$1")
+}
+
+_hermes_vector_files() {
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -f -W "$2" -- "$1")
+}
+
+# What follows an option is told by the word after it in the help: "KIND:{one,other}", "FILE", "N"; an option that takes no value
+# has none. False where nothing is known of what follows the word before.
+_hermes_vector_value() {
+    local word=$1 previous=$2 help=$3 kind
+    [[ $previous == --* ]] || return 1
+    kind=$(sed -nE "s/^  (-h,|--[a-z-]+,)?$previous (.*)/\2/p" <<<"$help")
+    case ${kind%% *} in
+    "" | Needs: | Excludes:) return 1 ;;
+    FILE* | FOLDER*) _hermes_vector_files "$word" ;;
+    *:*) [[ $kind =~ ^[^\ ]+:.*\{([^}]*)\} ]] && _hermes_vector_words "$word" "${BASH_REMATCH[1]}" ;;
+    esac
+    return 0
+}
 
 _hermes_vector() {
-    local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command="" i
+    local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]} command="" help names i
     COMPREPLY=()
-    for ((i = 1; i < COMP_CWORD; ++i)); do
-        case ${COMP_WORDS[i]} in
-        -*) ;;
-        *)
-            command=${COMP_WORDS[i]}
-            break
-            ;;
-        esac
+    for ((i = COMP_CWORD - 1; i > 0; --i)); do
+        [[ ${COMP_WORDS[i]} != -* ]] && command=${COMP_WORDS[i]}
     done
-    if [ -z "$command" ]; then
-        mapfile -t COMPREPLY < <(compgen -W "segment vectorize register similarity match relocalize observe map evaluate ring experiment report --help --version" -- "$word")
+    help=$("$1" ${command:+"$command"} --help 2>/dev/null)
+    if [[ -z $command ]]; then
+        names=$(sed -nE '1,/^Subcommands:/d; s/^  ([a-z]+) .*/\1/p' <<<"$help")
+        _hermes_vector_words "$word" "$names --help --version"
         return
     fi
-    local help choices
-    help=$(hermes-vector "$command" --help 2>/dev/null)
-    if [[ $previous == --* ]]; then # "--format KIND:{json,csv}": one of these
-        choices=$(sed -nE "s/^ +$previous .*\{([^}]*)\}.*/\1/p" <<<"$help")
-        [ -n "$choices" ] && mapfile -t COMPREPLY < <(compgen -W "${choices//,/ }" -- "$word") && return
-    fi
-    case $previous in
-    --k | --min-threshold | --max-threshold | --min-points | --sigma | --delta | --k-alpha | --k-xy | --pose | --expected | --scan | \
-        --noise | --fov | --outliers | --seed | --every | --laser | --turn | --case | --rays | --max-dx | --max-dy | \
-        --max-dalpha | --deviation-xy | --deviation-alpha | --half | --reliability | --ambiguity | --discrepancy | --runs | --max-points | --first | --draw | --seconds) return ;;
+    case $word:$previous in # Bash cuts "--method=global" at its "="
+    =:*) word="" ;;
+    *:=) previous=${COMP_WORDS[COMP_CWORD - 2]} ;;
     esac
+    _hermes_vector_value "$word" "$previous" "$help" && return
     if [[ $word == -* ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "$(grep -oE -- '--[a-z-]+' <<<"$help" | sort -u)" -- "$word")
+        _hermes_vector_words "$word" "$(sed -nE 's/^  (-h,)?(--[a-z,-]+).*/\2/p' <<<"$help")"
         return
     fi
-    compopt -o filenames 2>/dev/null
-    local worlds=""
-    [ "$command" = report ] && worlds="pillars quadratic cutsquare oblique"
-    if [ "$command" = experiment ]; then
-        choices=$(sed -nE "s/^ +NAME .*\{([^}]*)\}.*/\1/p" <<<"$help")
-        mapfile -t COMPREPLY < <(compgen -W "${choices//,/ }" -- "$word")
-        return
-    fi
-    mapfile -t COMPREPLY < <(compgen -f -W "$worlds" -- "$word")
+    names=$(sed -nE 's/^  NAME [^ ]*\{([^}]*)\}.*/\1/p' <<<"$help")
+    case $command in
+    experiment) _hermes_vector_words "$word" "$names" ;;
+    report) _hermes_vector_files "$word" "pillars quadratic cutsquare oblique" ;;
+    *) _hermes_vector_files "$word" ;;
+    esac
 }
 
 complete -F _hermes_vector hermes-vector

@@ -1,6 +1,17 @@
 #include "common/world/WorldFile.h"
 #include "gui/vector/report/ScanPair.h"
+#include "tests/bench/FloorPlanPairs.h"
+#include "tests/bench/Logs.h"
+#include "tests/bench/PlaceRows.h"
+#include "tests/bench/PoseFree.h"
 #include "tests/support/Hall.h"
+
+#ifdef BENCH_MRPT
+#include "tests/bench/MrptGlobal.h"
+#endif
+#ifdef BENCH_PCL
+#include "tests/bench/PclPrerejective.h"
+#endif
 
 #include <benchmark/benchmark.h>
 
@@ -83,6 +94,44 @@ bool addPillars() {
     return true;
 }
 
+/// For a rival that takes long.
+[[maybe_unused]] bench::SharedPairs everyTenth(const bench::SharedPairs &pairs) {
+    bench::ScanPairs some;
+    for (std::size_t i = 0; i < pairs->size(); i += 10)
+        some.push_back((*pairs)[i]);
+    return bench::shared(some);
+}
+
+/// Two scans and nothing else: the same pairs for all.
+void addPairs(const std::string &what, const bench::SharedPairs &pairs) {
+    bench::addRow<bench::ByGlobalPairMatcher>("GlobalPairMatcher", what, pairs);
+    bench::addRow<bench::ByRelations>("RelationMatcher", what, pairs);
+    bench::addRow<bench::ByRelationsOfEdges>("RelationMatcher, edges given", what, pairs);
+    bench::addRow<bench::ByFinder>("CorrespondenceFinder", what, pairs);
+    bench::addRow<bench::ByFinderOfEdges>("CorrespondenceFinder, edges given", what, pairs);
+#ifdef BENCH_MRPT
+    bench::addRow<bench::MrptGridMaps>("MRPT CGridMapAligner", what, pairs);
+    bench::addRow<bench::MrptLandmarks>("MRPT se2_l2_robust, then CICP", what, pairs);
+#endif
+#ifdef BENCH_PCL
+    bench::addRow<bench::PclPrerejective>("PCL prerejective, then ICP", what, everyTenth(pairs));
+#endif
+}
+
+void addRealPairs() {
+    if (!bench::haveLogs()) {
+        std::cerr << "the logs of real scanners are not here (HERMES_DATA names their folder): simulated "
+                     "pairs only\n";
+        return;
+    }
+    const std::size_t most = bench::casesOf(300);
+    addPairs("intel, consecutive",
+             bench::shared(bench::ofSecondHalf(bench::pairsOf(bench::readLog("intel"), 1, 100000), most)));
+    addPairs(
+        "freiburg-079, every 5th",
+        bench::shared(bench::ofSecondHalf(bench::pairsOf(bench::readLog("freiburg-079"), 5, 100000), most)));
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
@@ -92,6 +141,20 @@ int main(int argc, char **argv) {
     benchmark::RegisterBenchmark("search in a map", searchMap)->Arg(100)->Arg(100000);
     if (!addPillars())
         return 1;
+#ifndef BENCH_MRPT
+    std::cerr << "MRPT (libmrpt-slam-dev) was not installed when this was built: no rivals of it\n";
+#endif
+#ifndef BENCH_PCL
+    std::cerr << "PCL (libpcl-dev) was not installed when this was built: no rival of it\n";
+#endif
+    addPairs("floor plans", bench::shared(bench::FloorPlanPairs(1).draw(bench::casesOf(300))));
+    try {
+        addRealPairs();
+    } catch (const hermes::vector::Failure &failure) {
+        std::cerr << failure.what() << '\n';
+        return 1;
+    }
+    bench::addPlaceRows();
     benchmark::AddCustomContext("compiler", BENCH_COMPILER);
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();
