@@ -1,7 +1,7 @@
 #pragma once
 
 #include "tests/bench/ScanPair.h"
-#include "tests/vectorlib/FloorPlan.h"
+#include <vectorlib/observation/FloorPlan.h>
 
 #include <vectorlib/observation/SimulatedScanner.h>
 
@@ -18,7 +18,7 @@ public:
     ScanPairs draw(std::size_t count) {
         ScanPairs pairs;
         for (std::size_t i = 0; i < count; ++i) {
-            FloorPlan plan(seed_ + unsigned(i), 6);
+            vectorlib::FloorPlan plan(seed_ + unsigned(i), 6);
             const vectorlib::Pose2D from = plan.place(), to = placeBeside(from, plan);
             pairs.push_back(pairOf(plan, from, to));
         }
@@ -28,7 +28,7 @@ public:
 private:
     using Point = vectorlib::Vector2D<double>;
 
-    static vectorlib::Pose2D placeBeside(const vectorlib::Pose2D &from, FloorPlan &plan) {
+    static vectorlib::Pose2D placeBeside(const vectorlib::Pose2D &from, vectorlib::FloorPlan &plan) {
         for (;;) {
             const vectorlib::Pose2D to = plan.place();
             const Point start(from.x, from.y), way = Point(to.x, to.y) - start;
@@ -41,7 +41,8 @@ private:
                 return to;
         }
     }
-    ScanPair pairOf(const FloorPlan &plan, const vectorlib::Pose2D &from, const vectorlib::Pose2D &to) {
+    ScanPair pairOf(const vectorlib::FloorPlan &plan, const vectorlib::Pose2D &from,
+                    const vectorlib::Pose2D &to) {
         world_.clear();
         for (const auto &wall : plan.walls())
             world_.emplace_back(wall);

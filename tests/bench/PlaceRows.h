@@ -1,8 +1,8 @@
 #pragma once
 
 #include "tests/bench/PairRows.h"
-#include "tests/vectorlib/FloorPlan.h"
 #include "tests/vectorlib/PlaceCase.h"
+#include <vectorlib/observation/FloorPlan.h>
 
 #include <vectorlib/edges/EdgeExtractor.h>
 #include <vectorlib/observation/SimulatedScanner.h>
@@ -22,7 +22,7 @@ public:
     Town(std::size_t walls, std::size_t scans) {
         const int rooms = int(std::clamp<std::size_t>(walls / 25, 4, 20));
         const auto side = unsigned(std::ceil(std::sqrt(double(walls) / (25 * rooms))));
-        std::vector<FloorPlan> plans;
+        std::vector<vectorlib::FloorPlan> plans;
         for (unsigned seed = 1; walls_.size() < walls; ++seed) {
             plans.emplace_back(seed, rooms);
             corners_.emplace_back(80.0 * (seed % side), 20.0 * (seed / side));
@@ -38,7 +38,7 @@ public:
     const std::vector<Scan> &scans() const { return scans_; }
 
 private:
-    void add(FloorPlan &plan, vectorlib::Vector2D<double> corner) {
+    void add(vectorlib::FloorPlan &plan, vectorlib::Vector2D<double> corner) {
         std::vector<vectorlib::LineSegment2D<float>> world;
         for (const auto &wall : plan.walls())
             world.emplace_back(wall);

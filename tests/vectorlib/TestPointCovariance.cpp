@@ -1,7 +1,7 @@
 #include <vectorlib/mapping/GlobalPairMatcher.h>
 
-#include "tests/vectorlib/FloorPlan.h"
 #include "tests/vectorlib/ScanWorld.h"
+#include <vectorlib/observation/FloorPlan.h>
 
 #include <QtTest>
 

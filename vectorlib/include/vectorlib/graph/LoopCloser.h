@@ -172,7 +172,7 @@ private:
         c.motion = found.solutions[0].pose;
         c.mayBeWrong = true;
         const double xy = settings.matchedXY, alpha = settings.matchedAlpha;
-        Eigen::Matrix3d covariance = found.solutions[0].covariance;
+        Eigen::Matrix3d covariance = match.covarianceOf(found.solutions[0]);
         covariance.diagonal() += Eigen::Vector3d(xy * xy, xy * xy, alpha * alpha);
         c.information = covariance.inverse();
         graph_.constraints.push_back(c);
