@@ -122,7 +122,7 @@ void DrawnPlaces::setMap(const Walls &walls) {
     trials_.setMap(map_);
 }
 
-void DrawnPlaces::search(const Walls &walls, int places, bool hasPlace, Scan scan, Point shift) {
+void DrawnPlaces::search(const Walls &walls, int places, bool hasPlace, Scan scan) {
     scanner_.rays = scan == Scan::HalfTurn ? 361 : 720;
     scanner_.fieldOfView = scan == Scan::HalfTurn ? vectorlib::pi : 2 * vectorlib::pi;
     trials_.extract.segment.settings =
@@ -132,10 +132,8 @@ void DrawnPlaces::search(const Walls &walls, int places, bool hasPlace, Scan sca
         world.emplace_back(wall);
     for (int i = 0; i < places; ++i) {
         const vectorlib::Pose2D pose = FloorPlan::placeAmong(walls, random_, isOpen);
-        std::optional<vectorlib::Pose2D> truth;
-        if (hasPlace)
-            truth = vectorlib::Pose2D{pose.x + shift.x, pose.y + shift.y, pose.theta};
-        PlaceTrial &trial = trials_.add(scanner_(world, pose), truth, scan == Scan::EdgesAlone);
+        PlaceTrial &trial = trials_.add(scanner_(world, pose), hasPlace ? std::optional(pose) : std::nullopt,
+                                        scan == Scan::EdgesAlone);
         trial.set = set_;
         trial.isFirstHalf = isFirstHalf_;
         trial.scan = trials_.all.size() - 1;

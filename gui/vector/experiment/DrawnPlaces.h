@@ -37,10 +37,9 @@ public:
     void begin(const std::string &set, bool isFirstHalf = true);
     /// The map of the scans to come, as it is known.
     void setMap(const Walls &walls);
-    /// Scans at so many places among walls, seen as they stand there now; each has its place in the map,
-    /// moved by a shift, or none.
-    void search(const Walls &walls, int places, bool hasPlace = true, Scan scan = Scan::FullTurn,
-                vectorlib::Vector2D<double> shift = {});
+    /// Scans at so many places among walls, seen as they stand there now; they have their place in the map,
+    /// or are of another building.
+    void search(const Walls &walls, int places, bool hasPlace = true, Scan scan = Scan::FullTurn);
     const std::vector<PlaceTrial> &trials() const { return trials_.all; }
 
 private:

@@ -7,9 +7,9 @@ namespace hermes::vector {
 
 /// The trials to which PlaceTrust is fitted, in two halves. Of logs: scans in the map of every other scan, in
 /// maps of the other logs and in a map that odometry and matching made, which drifts and has walls twice. Of
-/// `other`, if any, scans in the maps of the logs only. Of worlds and floor plans: scans in their own maps,
+/// `other`, if any: scans in the maps of the logs only. Of worlds and floor plans: scans in their own maps,
 /// after some of the furniture was moved, and in maps of others. Halves are blocks of 50 scans of a log; of
-/// drawn buildings every other one.
+/// floor plans every other one, of scans in a world half.
 std::vector<PlaceTrial> placeTrustTrials(const std::vector<vectorlib::CarmenLog> &logs,
                                          const vectorlib::CarmenLog *other, const std::vector<World> &worlds,
                                          const ExperimentOptions &options);
