@@ -104,6 +104,9 @@ void TestMapBuilder::collinearEdgesJoin() {
     QCOMPARE(map.slots()[std::size_t(middle)].sums.n, 153.0);
     QCOMPARE(map.takeChanges(), (std::vector<int>{0, 1, 2}));
     QVERIFY(map.takeChanges().empty());
+    QVERIFY(!map.merge(0, straight({0, 0}, {1, 0}))); // it is not there any more
+    QCOMPARE(map.slots()[0].observations, std::int64_t(0));
+    QCOMPARE(map.size(), std::size_t(1));
 }
 
 void TestMapBuilder::parallelWallsStayApart() {

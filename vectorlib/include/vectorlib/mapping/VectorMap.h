@@ -61,11 +61,11 @@ public:
         return number;
     }
     /// Merges an edge (map frame) into the map's edge of that number; false, and nothing changed, when the
-    /// points would no longer lie within maxSigma of one line.
+    /// points would no longer lie within maxSigma of one line, or another edge has taken that one in.
     bool merge(int number, const EdgeRaw2D &edge) {
         MapEdge &target = edges_[static_cast<std::size_t>(number)];
         const EdgeRaw2D joint = merged(target, edge);
-        if (joint.sigma > settings.maxSigma)
+        if (target.observations == 0 || joint.sigma > settings.maxSigma)
             return false;
         static_cast<EdgeRaw2D &>(target) = joint;
         ++target.observations;
