@@ -59,15 +59,15 @@ public:
             addMotion(Transformation2D(last_).inverse() * Transformation2D(tracked), by);
         }
         last_ = tracked;
+        keep();
     }
     /// Looks for loops and moves the poses; to be called once, after the last scan. `progress` is told how
     /// many of how many scans are done.
     LoopCounts close(const std::function<void(std::size_t, std::size_t)> &progress = {}) {
-        const std::vector<std::size_t> keys = keyScans();
-        for (std::size_t k = 0; k < keys.size(); ++k) {
-            tryLoopsOf(keys, k);
+        for (std::size_t k = 0; k < keys_.size(); ++k) {
+            tryLoopsOf(k);
             if (progress)
-                progress(k + 1, keys.size());
+                progress(k + 1, keys_.size());
         }
         const auto isLoop = [](const PoseConstraint &c) { return c.mayBeWrong; };
         if (std::any_of(graph_.constraints.begin(), graph_.constraints.end(), isLoop))
@@ -85,6 +85,7 @@ private:
     struct Scan {
         std::vector<Vector2D<float>> points;
         double way = 0, turned = 0; // since the start of the drive; metres, radians
+        bool isKey = false;         // compared with others
         double doubt = 0;           // by how much the drive since then may have gone astray; metres
     };
     struct Candidate {
@@ -123,31 +124,32 @@ private:
         for (std::size_t back = 2; back <= settings.mostBridged && back <= scan; ++back)
             tryLoop(scan - back, scan);
     }
-    std::vector<std::size_t> keyScans() const {
-        std::vector<std::size_t> keys;
-        for (std::size_t i = 0; i < scans_.size(); ++i) {
-            const Scan *last = keys.empty() ? nullptr : &scans_[keys.back()];
-            if (!last || scans_[i].way - last->way >= settings.keyWay ||
-                scans_[i].turned - last->turned >= settings.keyTurn)
-                keys.push_back(i);
-        }
-        return keys;
+    // The others' points are needed for the next scans only.
+    void keep() {
+        const std::size_t scan = scans_.size() - 1, past = settings.mostBridged + 1;
+        const Scan *last = keys_.empty() ? nullptr : &scans_[keys_.back()];
+        scans_[scan].isKey = !last || scans_[scan].way - last->way >= settings.keyWay ||
+                             scans_[scan].turned - last->turned >= settings.keyTurn;
+        if (scans_[scan].isKey)
+            keys_.push_back(scan);
+        if (scan >= past && !scans_[scan - past].isKey)
+            scans_[scan - past].points = {};
     }
     // The nearest scans of earlier passes, one of each pass.
-    void tryLoopsOf(const std::vector<std::size_t> &keys, std::size_t number) {
-        const std::size_t scan = keys[number];
+    void tryLoopsOf(std::size_t number) {
+        const std::size_t scan = keys_[number];
         const Pose2D &here = graph_.poses[scan];
         candidates_.clear();
         for (std::size_t k = 0; k < number; ++k) {
-            const double way = scans_[scan].way - scans_[keys[k]].way;
+            const double way = scans_[scan].way - scans_[keys_[k]].way;
             if (way < settings.leastWay)
                 break;
-            const Pose2D &there = graph_.poses[keys[k]];
+            const Pose2D &there = graph_.poses[keys_[k]];
             const double apart = std::hypot(here.x - there.x, here.y - there.y);
-            const double doubt = scans_[scan].doubt - scans_[keys[k]].doubt;
+            const double doubt = scans_[scan].doubt - scans_[keys_[k]].doubt;
             if (apart < settings.reach + std::min(doubt, settings.mostDrift))
                 candidates_.push_back(
-                    {keys[k], apart + 0.5 * std::abs(std::remainder(here.theta - there.theta, 2 * pi))});
+                    {keys_[k], apart + 0.5 * std::abs(std::remainder(here.theta - there.theta, 2 * pi))});
         }
         std::sort(candidates_.begin(), candidates_.end(),
                   [](const Candidate &a, const Candidate &b) { return a.apart < b.apart; });
@@ -183,6 +185,7 @@ private:
     }
 
     std::vector<Scan> scans_;
+    std::vector<std::size_t> keys_; // numbers of the scans that are compared
     PoseGraph graph_;
     LoopCounts counts_;
     Pose2D last_; // as it was tracked
