@@ -51,8 +51,8 @@ public:
 private:
     static constexpr double farthest = 100;                         // metres, radians
     static constexpr double leastLever = 0.5;                       // metres
-    static constexpr double leastStep = 0.005, stepByScatter = 1.3; // metres, by metre of the residuals
-    static constexpr int enoughPoints = 300;                        // of both scans together
+    static constexpr double leastStep = 0.005, stepByScatter = 1.6; // metres, by metre of the residuals
+    static constexpr int enoughPoints = 500;                        // of both scans together
     static constexpr double leastHold = 0.005;                      // of the weight of all pairs
     static constexpr double leastResidual = 0.001; // to which ranges are told at best; metres
 
