@@ -56,8 +56,9 @@ def place_table(rows):
             c = r.counters
             searched = (f"{c['slowest_us']:.0f}", f"{100 * c['found']:.0f} %", f"{100 * c['wrong']:.0f} %") if kind == PLACE else ("",) * 3
             body.append((kind, f"{c['walls']:,.0f}", f"{us:.0f}", *searched, ""))
-        grows = slope([(r.counters["walls"], us) for r, us in zip(own, times)])
-        body.append(("slope", "", f"{grows:.2f}", "", "", "", f"under {goal} {verdict(grows < goal)}"))
+        points = [(r.counters["walls"], us) for r, us in zip(own, times)]
+        body.append(("slope", "", f"{slope(points):.2f}", "", "", "", f"under {goal} {verdict(slope(points) < goal)}"))
+        body.append(("slope of the last two", "", f"{slope(points[-2:]):.2f}", "", "", "", ""))
     return markdown(("what", "walls", "us", "slowest", "found", "found wrongly", "goal"), body)
 
 
