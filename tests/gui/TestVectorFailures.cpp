@@ -41,6 +41,9 @@ private Q_SLOTS:
         row("every 0th", {"map", log, "--every", "0"}, "--every");
         row("odometry", {"map", log, "--odometry", "maybe"}, "--odometry");
         row("laser 32", {"ring", "x.pcap", "--laser", "32"}, "--laser");
+        row("scan beyond all", {"map", log, "--scan", "1e15"}, "found \"1e15\", expected a whole number");
+        row("half a scan", {"map", log, "--scan", "1.5"}, "found \"1.5\", expected a whole number");
+        row("no whole number", {"segment", room, "--k", "2.5"}, "found \"2.5\", expected a whole number");
         row("port 0", {"ring", "x.pcap", "--port", "0"}, "--port");
         row("no address", {"map", "x.pcap", "--sender", "sensor"}, "--sender");
         row("offsets without z", {"ring", "x.pcap", "--no-vertical-offsets"}, "--all");
