@@ -144,11 +144,11 @@ void addExperimentCommand(CLI::App &app) {
            "pairs, calibration, free-log, free-approach: only every N-th scan, and its next N-th one; of "
            "several logs the first N for the first, the last for all that follow")
         ->allow_extra_args(false)
-        ->check(between(1, 1e9))
+        ->transform(wholeNumber(1, 1e9))
         ->type_name("N")
         ->capture_default_str();
     sub->add_option("--first", command->pairOptions.first, "pairs, calibration: only the first N pairs")
-        ->check(between(1, 1e9))
+        ->transform(wholeNumber(1, 1e9))
         ->type_name("N");
     sub->add_flag("--no-guess", command->noGuess,
                   "pairs: match by the two scans alone, without odometry or any other estimate");
@@ -161,7 +161,7 @@ void addExperimentCommand(CLI::App &app) {
         ->type_name("1|2");
     sub->add_option("--draw", command->pictures,
                     "pairs: draw the first N pairs that are not within 10 cm and 2 degrees")
-        ->check(between(0, 10000))
+        ->transform(wholeNumber(0, 10000))
         ->type_name("N")
         ->capture_default_str();
     sub->add_option("--worlds", command->worlds,
@@ -172,11 +172,11 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option(
            "--runs", command->options.runs,
            "Scans for each number of points (and each pose); floor plans of drawn-places and place-trust")
-        ->check(between(1, 10000))
+        ->transform(wholeNumber(1, 10000))
         ->type_name("N")
         ->capture_default_str();
     sub->add_option("--max-points", command->options.maxPoints, "Leave out larger clouds")
-        ->check(between(20, 1e6))
+        ->transform(wholeNumber(20, 1e6))
         ->type_name("N")
         ->capture_default_str();
     sub->add_option("--seed", command->options.seed, "Of the noise; the same seed gives the same scans")

@@ -37,7 +37,7 @@ std::string listOthers(const SensorChoice &choice) {
 
 void SensorOptions::addTo(CLI::App &sub) {
     sub.add_option("--port", port, "Of a capture: the sensor that sends its data packets to this port")
-        ->check(between(1, 65535))
+        ->transform(wholeNumber(1, 65535))
         ->type_name("PORT");
     sub.add_option("--sender", sender, "Of a capture: the sensor that has this address")
         ->check(CLI::ValidIPV4)

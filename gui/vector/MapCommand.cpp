@@ -151,7 +151,7 @@ void addMapCommand(CLI::App &app) {
                "--scan", command->onlyScan,
                "Build no map: write the points of scan N, from 0, as CSV x,y in its sensor's frame, for "
                "the commands that take one scan")
-            ->check(between(0, 1e15))
+            ->transform(wholeNumber(0, 1e9))
             ->type_name("N");
     sub->add_option("--out-map", command->outMap,
                     "The map; its kind follows from the extension: csv, svg, geojson, dxf, pgm")
@@ -193,7 +193,7 @@ void addMapCommand(CLI::App &app) {
         "The log's scan poses are a corrected reference: odometry is taken from its ODOM lines only, and the "
         "summary tells the error against the reference");
     sub->add_option("--every", command->source.every, "Take every N-th scan only")
-        ->check(between(1, 1e9))
+        ->transform(wholeNumber(1, 1e9))
         ->type_name("N")
         ->capture_default_str();
     sub->add_flag("--skip-damaged", command->source.skipDamaged,

@@ -100,7 +100,7 @@ void addObserveCommand(CLI::App &app) {
         ->check(poseText())
         ->type_name("X,Y,THETA");
     CLI::Option *scan = sub->add_option("--scan", command->rays, "Simulate a scan of so many rays")
-                            ->check(between(1, 1e7))
+                            ->transform(wholeNumber(1, 1e7))
                             ->type_name("N");
     sub->add_option("--fov", command->fieldOfView,
                     "Field of view, half of it to each side of the heading, degrees")

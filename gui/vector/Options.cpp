@@ -2,6 +2,7 @@
 
 #include "vectorlib/io/TextInput.h"
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -31,6 +32,19 @@ std::string plain(double value) {
 CLI::Validator between(double low, double high) {
     return numberThat("a number from " + plain(low) + " to " + plain(high),
                       [low, high](double v) { return v >= low && v <= high; });
+}
+
+CLI::Validator wholeNumber(double low, double high) {
+    const std::string expected = "a whole number from " + plain(low) + " to " + plain(high);
+    return CLI::Validator(
+        [=](std::string &text) {
+            const auto number = vectorlib::parseNumber(text);
+            if (!number || *number < low || *number > high || *number != std::floor(*number))
+                return "found " + vectorlib::quoted(text) + ", expected " + expected;
+            text = std::to_string(static_cast<long long>(*number));
+            return std::string();
+        },
+        "", "number");
 }
 
 CLI::Validator aboveZero() {
@@ -70,7 +84,7 @@ void OutputOptions::addTo(CLI::App &command, bool withSvg) {
 void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {
     const std::string group = "Segmentation (" + defaults + ")";
     command.add_option("--k", neighbours_, "How many earlier points each point is compared with")
-        ->check(between(1, 100000))
+        ->transform(wholeNumber(1, 100000))
         ->type_name("N")
         ->group(group);
     command.add_option("--min-threshold", minThreshold_, "Lower bound of the distance threshold, metres")
@@ -82,7 +96,7 @@ void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {
         ->type_name("M")
         ->group(group);
     command.add_option("--min-points", minPoints_, "Smaller clusters are outliers")
-        ->check(between(1, 1e9))
+        ->transform(wholeNumber(1, 1e9))
         ->type_name("N")
         ->group(group);
     command.add_flag("--open", open, "The last point is no neighbour of the first: less than a full turn")

@@ -22,6 +22,8 @@ struct OutputOptions {
 
 /// A finite number from low to high, both included.
 CLI::Validator between(double low, double high);
+/// A whole number from low to high, both included; for transform(), which writes it by its digits alone.
+CLI::Validator wholeNumber(double low, double high);
 /// A finite number above 0.
 CLI::Validator aboveZero();
 /// Three finite numbers `x,y,theta`.

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iostream>
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -78,12 +79,21 @@ void handleSignals() {
 
 struct OutputSet::File {
     std::string path;
-    std::string temporary; ///< empty when written directly: standard output, a pipe, a device
+    int unnamed = -1;      ///< handle of a file without a name, where the file system offers one
+    std::string temporary; ///< else its name until it is complete
     std::size_t slot = mostNames;
     std::ofstream file;
     std::ostream *stream = nullptr;
 
+    /// Not so what is written directly: standard output, a pipe, a device.
+    bool isHeldBack() const { return unnamed >= 0 || !temporary.empty(); }
+    /// By which it can be opened, and given a name.
+    std::string procPath() const { return "/proc/self/fd/" + std::to_string(unnamed); }
+    std::string writtenAs() const { return unnamed >= 0 ? procPath() : temporary.empty() ? path : temporary; }
     void forget() {
+        if (unnamed >= 0)
+            close(unnamed);
+        unnamed = -1;
         forgetName(slot);
         temporary.clear();
     }
@@ -92,6 +102,23 @@ struct OutputSet::File {
         if (!temporary.empty())
             unlink(temporary.c_str());
         forget();
+    }
+    /// Keeps what is written from the target; a file without a name is gone with the program, whatever ends
+    /// it.
+    void hold() {
+        unnamed = ::open(fs::absolute(path).parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        if (unnamed >= 0 && access(procPath().c_str(), W_OK) == 0)
+            return;
+        forget();
+        makeTemporary();
+    }
+    bool giveName(const std::string &name) const {
+        return linkat(AT_FDCWD, procPath().c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    }
+    /// One that is taken by nothing else, for a file that is to replace another.
+    bool giveTemporaryName() {
+        makeTemporary();
+        return unlink(temporary.c_str()) == 0 && giveName(temporary);
     }
     void makeTemporary() {
         temporary = path + ".part-XXXXXX";
@@ -142,8 +169,10 @@ std::ostream &OutputSet::open(const std::string &path) {
                 throw Failure(
                     "standard output: asked for twice, expected a name of its own for every output");
     } else {
-        std::error_code ignored;
-        const fs::file_status status = fs::status(path, ignored);
+        std::error_code error;
+        const fs::file_status status = fs::status(path, error);
+        if (error == std::errc::filename_too_long) // which a file without a name would tell at its end only
+            throw Failure(path + ": cannot be written: " + error.message());
         if (fs::is_directory(status))
             throw Failure(path + ": found a folder, expected the name of a file to write");
         const bool plain = !fs::exists(status) || fs::is_regular_file(status);
@@ -155,8 +184,8 @@ std::ostream &OutputSet::open(const std::string &path) {
             if (fs::absolute(other->path).lexically_normal() == fs::absolute(file->path).lexically_normal())
                 throw Failure(path + ": asked for twice, expected a name of its own for every output");
         if (plain)
-            file->makeTemporary();
-        file->file.open(file->temporary.empty() ? file->path : file->temporary, std::ios::binary);
+            file->hold();
+        file->file.open(file->writtenAs(), std::ios::binary);
         file->stream = &file->file;
         if (!file->file) {
             const std::string why = std::strerror(errno);
@@ -170,10 +199,10 @@ std::ostream &OutputSet::open(const std::string &path) {
 
 void OutputSet::commit() {
     for (const auto &file : files_)
-        if (!file->temporary.empty())
+        if (file->isHeldBack())
             finish(file->file, file->path, [&file] { file->file.close(); });
     for (const auto &file : files_)
-        if (!file->temporary.empty())
+        if (file->isHeldBack())
             putInPlace(*file);
     committed_ = true;
     // Pipes and devices last: no file is to be missed because the reader of a pipe has gone.
@@ -184,13 +213,22 @@ void OutputSet::commit() {
 }
 
 void OutputSet::putInPlace(File &file) const {
-    // Another program may have made the file meanwhile: without force it is not replaced.
-    const int result = force_ ? rename(file.temporary.c_str(), file.path.c_str())
-                              : link(file.temporary.c_str(), file.path.c_str());
-    if (result != 0 && (force_ || errno == EEXIST || rename(file.temporary.c_str(), file.path.c_str()) != 0))
+    if (!(file.unnamed >= 0 ? nameIt(file) : renameIt(file)))
         throw Failure(file.path + ": cannot be put in its place: " + std::strerror(errno));
-    unlink(file.temporary.c_str());
     file.forget();
+}
+
+// Another program may have made the file meanwhile: without force it is not replaced.
+bool OutputSet::nameIt(File &file) const {
+    return file.giveName(file.path) ||
+           (force_ && errno == EEXIST && file.giveTemporaryName() && renameIt(file));
+}
+
+bool OutputSet::renameIt(File &file) const {
+    const char *from = file.temporary.c_str(), *to = file.path.c_str();
+    if (!force_ && link(from, to) == 0)
+        return unlink(from) == 0;
+    return (force_ || errno != EEXIST) && rename(from, to) == 0;
 }
 
 } // namespace hermes::vector

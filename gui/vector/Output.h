@@ -7,10 +7,11 @@
 
 namespace hermes::vector {
 
-/// What a command writes. Every file is written under a temporary name beside its target and takes its place
-/// in commit(); when the command fails, is interrupted or commit() is not reached, no trace is left. `-` and
-/// the empty path are standard output, which is not held back. Where its reader goes away early, the files
-/// are still put in their places.
+/// What a command writes. Every file is written without a name, or under a temporary one where the file
+/// system knows no files without, and takes its place in commit(); when the command fails, is interrupted or
+/// commit() is not reached, no trace is left; where it is killed, only a temporary name. `-` and the empty
+/// path are standard output, which is not held back. Where its reader goes away early, the files are still
+/// put in their places.
 class OutputSet {
 public:
     explicit OutputSet(bool force);
@@ -35,6 +36,8 @@ private:
         std::size_t slot; ///< in the list of what a signal removes
     };
     void putInPlace(File &file) const;
+    bool nameIt(File &file) const;
+    bool renameIt(File &file) const;
 
     bool force_, committed_ = false;
     std::vector<std::unique_ptr<File>> files_;

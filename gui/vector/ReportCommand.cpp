@@ -94,7 +94,7 @@ void addReportCommand(CLI::App &app) {
         ->type_name("KIND");
     constexpr const char *scans = "Scans";
     sub->add_option("--rays", command->rays, "Rays of a scan (2000)")
-        ->check(between(3, 1e6))
+        ->transform(wholeNumber(3, 1e6))
         ->type_name("N")
         ->group(scans);
     sub->add_option("--noise", command->noise, "Standard deviation of the range, metres (0.01)")

@@ -107,7 +107,7 @@ void addRingCommand(CLI::App &app) {
     CLI::Option *laser = sub->add_option("--laser", command->laser,
                                          "Which laser, else the one that looks nearest to the horizon (" +
                                              velodyne::horizonLasers() + ")")
-                             ->check(between(0, velodyne::mostLasers() - 1))
+                             ->transform(wholeNumber(0, velodyne::mostLasers() - 1))
                              ->type_name("ID");
     sub->add_option("--model", command->model,
                     "The sensor, or auto: as the packets say (hdl32e where they do not)")
@@ -120,7 +120,7 @@ void addRingCommand(CLI::App &app) {
         ->type_name("RETURNS")
         ->capture_default_str();
     sub->add_option("--turn", command->turn, "This turn only, from 0; the first and the last may be partial")
-        ->check(between(0, 1e15))
+        ->transform(wholeNumber(0, 1e9))
         ->type_name("N");
     CLI::Option *all =
         sub->add_flag("--all", command->all, "Every laser; adds the columns laser and z")->excludes(laser);

@@ -1,5 +1,8 @@
 #include "tests/gui/VectorProgram.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 /// hermes-vector when something is wrong: exit status, message, and no trace of a file.
 class TestVectorFailures : public QObject {
     Q_OBJECT
@@ -38,6 +41,9 @@ private Q_SLOTS:
         row("noise without scan", {"observe", world, "--pose", "0,0,0", "--noise", "1"}, "--noise");
         row("field of view", {"observe", world, "--pose", "0,0,0", "--fov", "400"}, "--fov");
         row("unknown map", {"map", log, "--out-map", "map.png"}, "--out-map");
+        row("scan beyond all", {"map", log, "--scan", "1e15"}, "found \"1e15\", expected a whole number");
+        row("half a scan", {"map", log, "--scan", "1.5"}, "found \"1.5\", expected a whole number");
+        row("no whole number", {"segment", room, "--k", "2.5"}, "found \"2.5\", expected a whole number");
         row("every 0th", {"map", log, "--every", "0"}, "--every");
         row("odometry", {"map", log, "--odometry", "maybe"}, "--odometry");
         row("laser 32", {"ring", "x.pcap", "--laser", "32"}, "--laser");
@@ -141,6 +147,45 @@ private Q_SLOTS:
         QCOMPARE(run({"segment", data("room.csv"), "--out", path("a"), "--svg", path("a")}).status, 1);
         QCOMPARE(run({"segment", data("room.csv"), "--out", path("no/such/folder")}).status, 1);
         QCOMPARE(files(), QStringList{"out"});
+    }
+
+    void longNamesAreToldBeforeTheWork() {
+        const QString name = folder_.path(QByteArray(300, 'n').constData());
+        const Result r = run({"segment", path("missing.csv"), "--out", name});
+        QCOMPARE(r.status, 1);
+        QVERIFY2(r.err.contains("nnn: cannot be written: File name too long"), r.err.constData());
+    }
+
+    void killLeavesNoFile_data() {
+        QTest::addColumn<bool>("isThere");
+        QTest::newRow("new file") << false;
+        QTest::newRow("instead of another") << true;
+    }
+    /// The program waits for the rest of its input when it is killed: nothing it could do about its files.
+    void killLeavesNoFile() {
+        QFETCH(bool, isThere);
+        const int probe = ::open(qPrintable(folder_.path()), O_TMPFILE | O_WRONLY, 0600);
+        if (probe < 0)
+            QSKIP("this file system knows no files without a name");
+        ::close(probe);
+        if (isThere)
+            write(path("scan.csv"), "precious");
+        QProcess process;
+        process.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-vector",
+                      {"map", "-", "--scan", "1", "--out", path("scan.csv"), "--force"});
+        process.write(contents(data("corrected.log")));
+        const QString handles = QStringLiteral("/proc/%1/fd").arg(process.processId());
+        const auto holds = [&] { // the file that it writes
+            for (const QFileInfo &file : QDir(handles).entryInfoList(QDir::AllEntries | QDir::System))
+                if (file.symLinkTarget().startsWith(folder_.path()))
+                    return true;
+            return false;
+        };
+        QTRY_VERIFY_WITH_TIMEOUT(holds(), 30000);
+        process.kill();
+        QVERIFY(process.waitForFinished(30000));
+        QCOMPARE(files(), isThere ? QStringList{"scan.csv"} : QStringList());
+        QCOMPARE(contents(path("scan.csv")), isThere ? QByteArray("precious") : QByteArray());
     }
 
     void closedPipe_data() {
