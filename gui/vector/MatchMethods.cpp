@@ -1,5 +1,6 @@
 #include "gui/vector/MatchMethods.h"
 
+#include "gui/vector/Progress.h"
 #include "vectorlib/correspondence/SolutionCovariance.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
@@ -86,7 +87,9 @@ Matched matchedOf(const GlobalPairMatch &match, const vectorlib::GlobalPairMatch
     result.outcome = outcomeOf(match.verdict);
     result.reason = describe(match.verdict);
     SegmentsUnderMotion segments(fixed, moving);
+    Progress progress("solution");
     for (const vectorlib::GlobalPairSolution &s : match.solutions) {
+        progress.update(result.solutions.size() + 1, match.solutions.size());
         const bool best = result.solutions.empty();
         const std::string verdict = best ? result.reason : "another solution fits better";
         result.solutions.push_back(

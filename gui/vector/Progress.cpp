@@ -8,7 +8,8 @@ namespace hermes::vector {
 
 Progress::Progress(std::string what)
     : what_(std::move(what))
-    , terminal_(isatty(STDERR_FILENO) != 0) {}
+    , terminal_(isatty(STDERR_FILENO) != 0)
+    , next_(std::chrono::steady_clock::now() + std::chrono::seconds(1)) {}
 
 Progress::~Progress() {
     if (shown_)
@@ -18,9 +19,9 @@ Progress::~Progress() {
 void Progress::update(std::size_t done, std::size_t total) {
     using namespace std::chrono_literals;
     const auto now = std::chrono::steady_clock::now();
-    if (!terminal_ || (shown_ && now - last_ < 100ms))
+    if (!terminal_ || now < next_)
         return;
-    last_ = now;
+    next_ = now + 100ms;
     shown_ = true;
     if (total > 0)
         std::fprintf(stderr, "\r\033[K%s %zu of %zu (%zu %%)", what_.c_str(), done, total,

@@ -6,7 +6,8 @@
 
 namespace hermes::vector {
 
-/// One line on stderr that says how far long work has come; silent when stderr is no terminal.
+/// One line on stderr that says how far work has come which takes longer than a second; silent when stderr is
+/// no terminal.
 class Progress {
 public:
     explicit Progress(std::string what);
@@ -19,7 +20,7 @@ private:
     std::string what_;
     bool terminal_;
     bool shown_ = false;
-    std::chrono::steady_clock::time_point last_;
+    std::chrono::steady_clock::time_point next_; ///< when it is told again
 };
 
 } // namespace hermes::vector
