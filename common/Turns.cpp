@@ -62,13 +62,13 @@ void Turns::post() {
 void Turns::run() {
     posted_ = false;
     const double end = monotonicNow() + longest_s;
-    for (double now = monotonicNow(); now < end && !isIdle(); now = monotonicNow())
-        runNext(now);
+    while (monotonicNow() < end && !isIdle())
+        runNext();
     if (!isIdle())
         post();
 }
 
-void Turns::runNext(double now) {
+void Turns::runNext() {
     Owners &owners = next();
     QObject *const key = owners.front();
     owners.pop_front();
@@ -84,10 +84,11 @@ void Turns::runNext(double now) {
         post(); // a step may run an event loop of its own, which waits for the others
     if (!owner)
         return;
+    const bool again = step();
     if (lastSteps_.size() > mostKnown)
         lastSteps_.clear();
-    lastSteps_.insert(key, now);
-    if (step() && owner)
+    lastSteps_.insert(key, monotonicNow());
+    if (again && owner)
         add(owner, step, busy_);
 }
 

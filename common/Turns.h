@@ -9,10 +9,10 @@
 namespace hermes {
 
 /// Work of a thread's event loop that may wait, in small steps: one step of each owner in turn, those of one
-/// owner in the order in which they came, for a millisecond altogether, then sockets and timers are served.
-/// However much there is to do, what is urgent waits no longer than that and one step. Who has had nothing to
-/// do for a while goes first: whoever asks now and then does not wait for all of a crowd that asks without
-/// end.
+/// owner in the order in which they were added, for a millisecond altogether, then sockets and timers are
+/// served. However much there is to do, what is urgent waits no longer than that and one step. Who has had
+/// nothing to do for a while goes first: whoever asks now and then does not wait for all of a crowd that asks
+/// without end.
 class Turns : public QObject {
     Q_OBJECT
 public:
@@ -21,7 +21,8 @@ public:
 
     using Step = std::function<bool()>;
 
-    /// Calls step from the event loop until it gives false, or owner is gone.
+    /// Calls step from the event loop until it gives false, or owner is gone; one that gives true is added
+    /// again. The owner lives in this thread.
     void add(QObject *owner, const Step &step);
 
 private:
@@ -34,7 +35,7 @@ private:
     void add(QObject *owner, const Step &step, Owners &owners);
     void post();
     void run();
-    void runNext(double now);
+    void runNext();
     bool isIdle() const { return rested_.empty() && busy_.empty(); }
     Owners &next();
     bool hasRested(QObject *owner) const;
@@ -47,7 +48,8 @@ private:
     bool posted_ = false;                // a call is in the event queue
 };
 
-/// Does this in a thread of its own, one after the other, where it delays nothing that is urgent.
+/// Does this in a thread of its own, one after the other, where it delays nothing that is urgent. To be
+/// called from the main thread.
 void inBackground(const std::function<void()> &work);
 
 } // namespace hermes

@@ -18,17 +18,17 @@ void MapRun::take(MapScan &scan) {
     // A reference gives the map its frame, by the first pose, and nothing else.
     if (trajectory_.empty() && scan.reference)
         tracker.place(*scan.reference);
-    const std::uint64_t byOdometry = tracker.counts().byOdometry;
     const vectorlib::ScanReport &report = tracker.process(scan);
     trajectory_.push_back({scan.stamp, report.pose});
     if (closesLoops) {
         const bool isMatched = report.outcome == vectorlib::ScanReport::Outcome::Matched;
-        const bool isExpected = tracker.counts().byOdometry > byOdometry;
         loops_.add(scan.points, report.pose,
-                   !isExpected ? TrackedBy::Nothing
-                   : isMatched ? TrackedBy::Map
-                               : TrackedBy::Odometry);
-        edges_.push_back(tracker.builder.edges());
+                   !tracker.isByOdometry() ? TrackedBy::Nothing
+                   : isMatched             ? TrackedBy::Map
+                                           : TrackedBy::Odometry);
+        edges_.emplace_back();
+        if (tracker.isStraight())
+            edges_.back() = tracker.builder.edges();
     }
     if (scan.reference)
         reference_.push_back({scan.stamp, *scan.reference});

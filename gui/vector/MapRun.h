@@ -37,7 +37,7 @@ private:
     vectorlib::LoopCloser loops_;
     vectorlib::LoopCounts closures_;
     double closeSeconds_ = 0;
-    std::vector<std::vector<vectorlib::EdgeRaw2D>> edges_; // of each scan, sensor frame
+    std::vector<std::vector<vectorlib::EdgeRaw2D>> edges_; // of each scan, sensor frame; none of one in doubt
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
     std::size_t partial_ = 0;

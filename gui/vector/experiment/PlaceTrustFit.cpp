@@ -124,9 +124,9 @@ PlaceTrustQuality qualityOf(const PlaceTrust &trust, const std::vector<PlaceTria
     double weight = 0;
     for (const PlaceTrial &trial : trials) {
         ++quality.trials;
-        weight += weightOf(trial);
         if (trial.leads.empty())
             continue;
+        weight += weightOf(trial);
         const std::vector<double> p = probabilitiesOf(alternativesOf(trial, trust), weightsOf(trust));
         quality.loss -= weightOf(trial) * std::log(std::max(1e-12, p[trial.right.value_or(p.size() - 1)]));
         const bool isFound = trial.reliability >= search.minReliability && p[0] >= search.minProbability;

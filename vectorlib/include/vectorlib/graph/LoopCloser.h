@@ -4,7 +4,10 @@
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <vector>
 
 namespace vectorlib {
 
@@ -12,17 +15,17 @@ struct LoopCloserSettings {
     double keyWay = 1, keyTurn = 0.6; ///< between scans that are compared; metres, radians
     double leastWay = 8;              ///< of the drive between two scans of a loop; metres
     double reach = 2;                 ///< scans nearer than this show the same; metres
-    double drift = 0.02;              ///< by which more they may be apart, a metre of way between them
-    double mostDrift = 6;             ///< at most; metres
-    std::size_t perScan = 2;          ///< earlier passes that a scan is compared with
-    double passWay = 2;               ///< of the drive between two passes; metres
+    double drift = 0.02;     ///< metres that they may be farther apart, for each metre of way between them
+    double mostDrift = 6;    ///< at most; metres
+    std::size_t perScan = 2; ///< earlier passes that a scan is compared with
+    double passWay = 2;      ///< of the drive between two passes; metres
     /// Standard deviations of a motion from one scan to the next as it was tracked; metres, radians.
     double trackedXY = 0.015, trackedAlpha = 0.005;
     /// Of one that was guessed and not found by matching; metres, radians, and of its length.
     double guessedXY = 1, guessedAlpha = 0.3, guessedPart = 0.5;
     double odometryPart = 0.3;   ///< of the metres, where it is by odometry
     double likely = 0.3;         ///< probability with which a motion that is not accepted is a better guess
-    std::size_t mostBridged = 3; ///< scans before such a one that it is matched with
+    std::size_t mostBridged = 3; ///< how many scans back such a one is matched at most
     /// What a match has beside its own covariance: scans are never quite of one moment and one plane.
     double matchedXY = 0.02, matchedAlpha = 0.005;
 };
@@ -36,7 +39,7 @@ enum class TrackedBy {
 
 /// How closing loops went.
 struct LoopCounts {
-    std::size_t tried = 0;   ///< pairs of scans compared
+    std::size_t tried = 0;   ///< pairs of scans compared, those that bridge a doubtful one among them
     std::size_t closed = 0;  ///< motions found that the whole drive agrees with
     std::size_t refused = 0; ///< no motion was found or accepted, or the drive contradicts it
 };
@@ -70,10 +73,10 @@ public:
                 progress(k + 1, keys_.size());
         }
         const auto isLoop = [](const PoseConstraint &c) { return c.mayBeWrong; };
-        if (std::any_of(graph_.constraints.begin(), graph_.constraints.end(), isLoop))
-            graph_.optimise();
+        const bool isSolved =
+            std::none_of(graph_.constraints.begin(), graph_.constraints.end(), isLoop) || graph_.optimise();
         for (const PoseConstraint &c : graph_.constraints)
-            counts_.closed += c.mayBeWrong && !isContradicted(c);
+            counts_.closed += c.mayBeWrong && isSolved && !isContradicted(c);
         counts_.refused = counts_.tried - counts_.closed;
         return counts_;
     }
@@ -86,7 +89,7 @@ private:
         std::vector<Vector2D<float>> points;
         double way = 0, turned = 0; // since the start of the drive; metres, radians
         bool isKey = false;         // compared with others
-        double doubt = 0;           // by how much the drive since then may have gone astray; metres
+        double doubt = 0;           // by how much the drive may have gone astray since its start; metres
     };
     struct Candidate {
         std::size_t scan;

@@ -6,6 +6,8 @@
 #include <Eigen/SparseCholesky>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,7 +19,7 @@ struct PoseGraphSettings {
     double doubt = 11.3;
     double narrowing = 2.5; ///< by how much graduation narrows from step to step
     int steps = 10;         ///< most Gauss-Newton steps at the end of graduation
-    double enough = 1e-4;   ///< a step that moves no pose farther is the last; metres
+    double enough = 1e-4;   ///< a step that moves no pose farther is the last; metres, radians
 };
 
 /// Poses and measured motions between them: finds the poses that fit all motions best, by Gauss-Newton steps
@@ -42,24 +44,31 @@ public:
         const Eigen::Vector3d e = errorOf(c);
         return e.dot(c.information * e);
     }
-    /// Moves the poses; how many steps that took. Constraints must refer to poses that there are, and
-    /// information must be positive definite.
-    int optimise() {
+    /// Moves the poses and weighs the doubtful constraints. False, and the poses are as before, where the
+    /// equations cannot be solved. Poses and motions must be finite, constraints must refer to poses that
+    /// there are, and information must be positive definite.
+    bool optimise() {
         if (poses.size() < 2 || constraints.empty())
-            return 0;
+            return true;
+        const std::vector<Pose2D> before = poses;
         Equations equations;
-        int steps = 0;
         for (double width = startWidth();; width = std::max(1.0, width / settings.narrowing)) {
-            weigh(width * settings.doubt);
-            const bool isLast = width <= 1;
+            const bool isLast = !(width > 1);
             for (int i = 0; i < (isLast ? settings.steps : 2); ++i) {
-                ++steps;
-                if (step(equations) < settings.enough)
+                weigh(width * settings.doubt);
+                const std::optional<double> moved = step(equations);
+                if (!moved) {
+                    poses = before;
+                    return false;
+                }
+                if (*moved < settings.enough)
                     break;
             }
             if (isLast)
-                return steps;
+                break;
         }
+        weigh(settings.doubt);
+        return true;
     }
 
 private:
@@ -93,8 +102,8 @@ private:
                 c.weight = part * part;
             }
     }
-    // The farthest that a pose was moved.
-    double step(Equations &e) {
+    // The farthest that a pose was moved; nothing where there is no solution.
+    std::optional<double> step(Equations &e) {
         const auto size = static_cast<Eigen::Index>(3 * poses.size());
         e.entries.clear();
         e.gradient.setZero(size);
@@ -109,9 +118,9 @@ private:
             e.solver.analyzePattern(h);
         e.solver.factorize(h);
         if (e.solver.info() != Eigen::Success)
-            return 0;
+            return std::nullopt;
         const Eigen::VectorXd by = e.solver.solve(e.gradient);
-        return by.allFinite() ? moveBy(by) : 0;
+        return by.allFinite() ? std::optional(moveBy(by)) : std::nullopt;
     }
     double moveBy(const Eigen::VectorXd &by) {
         double farthest = 0;
@@ -119,7 +128,7 @@ private:
             const auto k = static_cast<Eigen::Index>(3 * i);
             Pose2D &p = poses[i];
             p = {p.x + by[k], p.y + by[k + 1], std::remainder(p.theta + by[k + 2], 2 * pi)};
-            farthest = std::max(farthest, std::hypot(by[k], by[k + 1]));
+            farthest = std::max({farthest, std::hypot(by[k], by[k + 1]), std::abs(by[k + 2])});
         }
         return farthest;
     }

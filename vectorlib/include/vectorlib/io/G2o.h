@@ -8,8 +8,8 @@
 namespace vectorlib {
 
 /// A graph in the format of g2o: `VERTEX_SE2 number x y theta` and `EDGE_SE2 from to x y theta` with the
-/// upper triangle of the information matrix, which is told in the frame of the pose as measured; metres,
-/// radians.
+/// upper triangle of the information matrix, multiplied by the weight of the constraint, in the frame of the
+/// second pose as measured; metres, radians.
 inline void writeG2o(std::ostream &out, const PoseGraph &graph) {
     for (std::size_t i = 0; i < graph.poses.size(); ++i)
         out << "VERTEX_SE2 " << i << ' ' << Number(graph.poses[i].x) << ' ' << Number(graph.poses[i].y) << ' '

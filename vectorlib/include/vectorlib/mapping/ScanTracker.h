@@ -62,8 +62,8 @@ public:
         EarSettings scanner = EarSettings::forScanner(scan.fieldOfView, scan.rays);
         scanner.closed = scan.closed;
         builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
-        const bool sure = locate(scan, begin, end);
-        const ScanReport &report = builder.conclude(scan.points, sure);
+        straight_ = locate(scan, begin, end);
+        const ScanReport &report = builder.conclude(scan.points, straight_);
         points_ = scan.points;
         motion_.update(report.pose, scan.stamp);
         if (scan.odometry)
@@ -108,6 +108,10 @@ public:
         counts_ = ScanTrackerCounts();
     }
 
+    /// Whether the last scan was expected where its odometry tells, and found from there.
+    bool isByOdometry() const { return byOdometry_; }
+    /// Whether the last scan is straight; else it is in doubt and stays out of the map.
+    bool isStraight() const { return straight_; }
     const MotionModel &motion() const { return motion_; }
     const ScanTrackerCounts &counts() const { return counts_; }
 
@@ -146,6 +150,7 @@ private:
             if (const auto expected = odometry_.expect(*scan.odometry, scan.stamp))
                 guess = {expected->pose, guess.twist, true, true, expected->deviations};
         }
+        byOdometry_ = false;
         Found found = find(scan, guess);
         const bool doubtful = found.again || found.score < 0 || leaps(byMotion, guess, end - begin);
         if (isStraightened(scan) && scan.odometry && doubtful) {
@@ -155,7 +160,8 @@ private:
                 return other.straight;
             found = find(scan, guess);
         }
-        counts_.byOdometry += guess.byOdometry;
+        byOdometry_ = guess.byOdometry;
+        counts_.byOdometry += byOdometry_;
         return found.straight;
     }
     // Straightens the scan by the velocity that is guessed, and again by what its points say of it then.
@@ -270,6 +276,7 @@ private:
     std::vector<Vector2D<float>> points_; // of the last scan, at one moment
     TwistCorrection correct_;
     std::optional<double> lastStamp_; // of the scan before, unless the sensor was put elsewhere since
+    bool byOdometry_ = false, straight_ = true; // the last scan
     int lostInARow_ = 0;
     Clock::time_point nextSearch_;
 };
