@@ -77,6 +77,7 @@ struct MapCommand {
             json["moved_stamps"] = tell(mend);
         if (!report.otherSensors.empty())
             std::cerr << "hermes-vector: " << report.otherSensors << '\n';
+        warnOfLost(run.tracker.counts());
         json["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         summaryFile << json.dump(2) << '\n';
         files.commit();
@@ -113,6 +114,13 @@ struct MapCommand {
         Progress progress("looking for loops");
         run.finish([&](std::size_t done, std::size_t all) { progress.update(done, all); });
         return report;
+    }
+    static void warnOfLost(const vectorlib::ScanTrackerCounts &counts) {
+        if (counts.lost * 20 > counts.scans)
+            std::cerr
+                << "hermes-vector: " << counts.lost << " of " << counts.scans
+                << " scans were lost: what the map shows of them stands where they were expected, which may "
+                   "be far off\n";
     }
     static nlohmann::ordered_json tell(const vectorlib::StampMend &mend) {
         std::cerr << "hermes-vector: moved " << mend.moved

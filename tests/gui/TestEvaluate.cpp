@@ -147,6 +147,23 @@ private Q_SLOTS:
         QVERIFY(found["consecutive"].toObject()["mean_m"].toDouble() < 1e-6);
     }
 
+    // As in logs whose stamps were rounded: which scan a pose belongs to cannot be told.
+    void tiedStampsTellNoScan() {
+        std::mt19937 random(4);
+        const Drive drive = wandering(random, 50);
+        QByteArray log, tum;
+        for (const Pose2D &p : drive)
+            log += "FLASER 3 1 1 1 " + numbers({p.x, p.y, p.theta}) + ' ' + numbers({p.x, p.y, p.theta}) +
+                   " 1000 host 1000\n";
+        write(path("a.log"), log);
+        for (std::size_t i = 0; i < drive.size(); i += 2)
+            tum += numbers({1000 + 1e-6 * double(i), drive[i].x, drive[i].y, 0, 0, 0, 0, 1}) + '\n';
+        write(path("a.tum"), tum);
+        const Result r = evaluate();
+        QCOMPARE(r.status, 1);
+        QVERIFY2(r.err.contains("25 of 25 poses with several scans"), r.err.constData());
+    }
+
     void saysWhatIsWrong_data() {
         QTest::addColumn<QByteArray>("trajectory");
         QTest::addColumn<QByteArray>("message");

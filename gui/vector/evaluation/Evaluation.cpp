@@ -22,7 +22,7 @@ Evaluation::Evaluation(const vectorlib::CarmenLog &log, const std::vector<Stampe
     if (trajectory.size() == log.scans.size())
         pairOneByOne(trajectory);
     else
-        pairByStamps(log, trajectory);
+        pairByStamps(log, trajectory, name);
     if (pairs_.size() < 2)
         throw Failure(name + ": found " + std::to_string(trajectory.size()) + " poses, " +
                       std::to_string(pairs_.size()) + " of them at the time of one of the log's " +
@@ -37,27 +37,39 @@ void Evaluation::pairOneByOne(const std::vector<StampedPose> &trajectory) {
 }
 
 // Each pose to the nearest scan that none has yet; scans of one stamp are taken in their order.
-void Evaluation::pairByStamps(const vectorlib::CarmenLog &log, const std::vector<StampedPose> &trajectory) {
+void Evaluation::pairByStamps(const vectorlib::CarmenLog &log, const std::vector<StampedPose> &trajectory,
+                              const std::string &name) {
     std::vector<std::size_t> byStamp(log.scans.size());
     std::iota(byStamp.begin(), byStamp.end(), std::size_t(0));
     const auto stampOf = [&](std::size_t scan) { return log.scans[scan].stamp; };
     std::stable_sort(byStamp.begin(), byStamp.end(),
                      [&](std::size_t a, std::size_t b) { return stampOf(a) < stampOf(b); });
     std::vector<bool> isTaken(log.scans.size());
+    std::size_t several = 0; // poses at the time of more than one scan
     for (const StampedPose &p : trajectory) {
         std::optional<std::size_t> nearest;
+        int scans = 0;
         for (auto at =
                  std::lower_bound(byStamp.begin(), byStamp.end(), p.stamp - sameStamp,
                                   [&](std::size_t scan, double stamp) { return stampOf(scan) < stamp; });
-             at != byStamp.end() && stampOf(*at) <= p.stamp + sameStamp; ++at)
+             at != byStamp.end() && stampOf(*at) <= p.stamp + sameStamp && scans < 2; ++at) {
+            ++scans;
             if (!isTaken[*at] &&
                 (!nearest || std::abs(stampOf(*at) - p.stamp) < std::abs(stampOf(*nearest) - p.stamp)))
                 nearest = *at;
+        }
+        several += scans > 1;
         if (!nearest)
             continue;
         isTaken[*nearest] = true;
         pairs_.push_back({*nearest, p.pose});
     }
+    if (several * 10 > trajectory.size())
+        throw Failure(
+            name + ": found " + std::to_string(several) + " of " + std::to_string(trajectory.size()) +
+            " poses with several scans of the log within 10 ms, so that their stamps do not tell the "
+            "scan; expected a pose for each of its " +
+            std::to_string(log.scans.size()) + " scans");
     std::sort(pairs_.begin(), pairs_.end(), [](const Pair &a, const Pair &b) { return a.scan < b.scan; });
 }
 

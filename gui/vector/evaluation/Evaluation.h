@@ -19,7 +19,8 @@ public:
     static constexpr std::size_t mostPairs = 2000000;
 
     /// A trajectory of as many poses as the log has scans belongs to them one by one, another one by its
-    /// stamps. Throws Failure when fewer than two poses have a scan.
+    /// stamps. `name` is that of the trajectory, for messages. Throws Failure when fewer than two poses have
+    /// a scan, or stamps do not tell which.
     Evaluation(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory,
                const std::string &name);
 
@@ -36,7 +37,8 @@ private:
         vectorlib::Pose2D pose;
     };
     void pairOneByOne(const std::vector<vectorlib::StampedPose> &trajectory);
-    void pairByStamps(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory);
+    void pairByStamps(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory,
+                      const std::string &name);
     void compareConsecutive();
     void compareRevisits();
     vectorlib::Transformation2D motionOf(const Pair &from, const Pair &to) const;
