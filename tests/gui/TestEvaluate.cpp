@@ -147,6 +147,40 @@ private Q_SLOTS:
         QVERIFY(found["consecutive"].toObject()["mean_m"].toDouble() < 1e-6);
     }
 
+    // As from a tracker that tells poses at its own rate.
+    void morePosesThanScansAreTakenByTheNearest() {
+        std::mt19937 random(6);
+        const Drive drive = wandering(random, 200);
+        writeLog(drive);
+        QByteArray tum;
+        for (std::size_t i = 0; i + 1 < drive.size(); ++i)
+            for (int k = -10; k < 10; ++k) { // 200 Hz
+                const double part = k / 20.0;
+                const Pose2D &p = drive[i], &next = drive[k < 0 && i > 0 ? i - 1 : i + 1];
+                const double x = p.x + std::abs(part) * (next.x - p.x),
+                             y = p.y + std::abs(part) * (next.y - p.y);
+                tum += numbers({stampOf(i) + 0.1 * part, x, y, 0, 0, 0, std::sin(p.theta / 2),
+                                std::cos(p.theta / 2)}) +
+                       '\n';
+            }
+        write(path("a.tum"), tum);
+        const QJsonObject found = json(evaluate().out);
+        QCOMPARE(found["compared"].toInt(), 199);
+        QVERIFY(found["consecutive"].toObject()["mean_m"].toDouble() < 1e-6);
+    }
+    void posesOfOtherTimesAreNotTakenOneByOne() {
+        std::mt19937 random(7);
+        const Drive drive = wandering(random, 50);
+        writeLog(drive);
+        QByteArray tum;
+        for (std::size_t i = 0; i < drive.size(); ++i)
+            tum += numbers({1e6 + stampOf(i), drive[i].x, drive[i].y, 0, 0, 0, 0, 1}) + '\n';
+        write(path("a.tum"), tum);
+        const Result r = evaluate();
+        QCOMPARE(r.status, 1);
+        QVERIFY2(r.err.contains("0 of them at the time"), r.err.constData());
+    }
+
     // As in logs whose stamps were rounded: which scan a pose belongs to cannot be told.
     void tiedStampsTellNoScan() {
         std::mt19937 random(4);
@@ -161,7 +195,7 @@ private Q_SLOTS:
         write(path("a.tum"), tum);
         const Result r = evaluate();
         QCOMPARE(r.status, 1);
-        QVERIFY2(r.err.contains("25 of 25 poses with several scans"), r.err.constData());
+        QVERIFY2(r.err.contains("25 of 25 poses at the time of several scans"), r.err.constData());
     }
 
     void saysWhatIsWrong_data() {

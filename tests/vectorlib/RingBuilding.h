@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tests/vectorlib/DriveWay.h"
 #include "tests/vectorlib/ScanWorld.h"
 
 /// A building drawn at random in which much looks alike: a corridor around a block, with rooms of one size
@@ -29,18 +30,18 @@ public:
     std::vector<vectorlib::Pose2D> drive(int rounds) {
         const double m = width_ / 2;
         const Point corners[] = {{-m, -m}, {a_ + m, -m}, {a_ + m, b_ + m}, {-m, b_ + m}};
-        std::vector<vectorlib::Pose2D> way{{-m, -m, 0}};
+        DriveWay way({-m, -m, 0}, 0.3);
         for (int side = 0; side < 4 * rounds; ++side) {
             const Point to = corners[(side + 1) % 4];
             for (const Door &door : doors_[std::size_t(side % 4)])
                 if (any(4) == 0) {
-                    goTo(way, door.before);
-                    goTo(way, door.inside);
-                    goTo(way, door.before);
+                    way.goTo(door.before);
+                    way.goTo(door.inside);
+                    way.goTo(door.before);
                 }
-            goTo(way, to);
+            way.goTo(to);
         }
-        return way;
+        return way.poses();
     }
 
 private:
@@ -83,21 +84,6 @@ private:
             }
         }
     }
-    static void goTo(std::vector<vectorlib::Pose2D> &way, Point to) {
-        constexpr double step = 0.3, turn = 0.3; // metres, radians
-        const Point from(way.back().x, way.back().y);
-        const double length = (to - from).norm(), heading = std::atan2(to.y - from.y, to.x - from.x);
-        const double wrong = std::remainder(heading - way.back().theta, 2 * vectorlib::pi);
-        const int turns = int(std::abs(wrong) / turn) + 1, steps = int(length / step) + 1;
-        const double begin = way.back().theta;
-        for (int i = 1; i <= turns && std::abs(wrong) > 0.01; ++i)
-            way.push_back({from.x, from.y, begin + wrong * i / turns});
-        for (int i = 1; i <= steps && length > 0.01; ++i) {
-            const Point p = from + (to - from) * (double(i) / steps);
-            way.push_back({p.x, p.y, heading});
-        }
-    }
-
     std::mt19937 &random_;
     double width_, pitch_, depth_, door_;  // of the corridor, the rooms, and a door's place in its room
     double a_, b_;                         // sides of the block

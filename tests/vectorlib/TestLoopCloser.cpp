@@ -26,6 +26,31 @@ double revisitError(const std::vector<Pose2D> &drive, const std::vector<Pose2D> 
             }
     return pairs > 0 ? sum / pairs : 1e9;
 }
+/// Eight equal rooms on both sides of a corridor of 2 m, each with a door and a box.
+ScanWorld rowsOfRooms(double pitch) {
+    using Point = ScanWorld::Point;
+    ScanWorld world;
+    const auto wall = [&](double x0, double y0, double x1, double y1) {
+        world.walls.emplace_back(Point(x0, y0), Point(x1, y1));
+    };
+    constexpr int rooms = 8;
+    for (const double side : {-1.0, 1.0}) {
+        const double near = side > 0 ? 2 : 0, back = near + side * 3.5;
+        for (int i = 0; i < rooms; ++i) {
+            const double x = i * pitch, door = x + pitch / 2;
+            wall(x, near, door - 0.5, near);
+            wall(door + 0.5, near, x + pitch, near);
+            wall(x, near, x, back);
+            wall(x, back, x + pitch, back);
+            wall(x + 0.2, back - side * 0.6, x + 0.8, back - side * 0.6);
+            wall(x + 0.8, back - side * 0.6, x + 0.8, back);
+        }
+        wall(rooms * pitch, near, rooms * pitch, back);
+    }
+    wall(0, 0, 0, 2);
+    wall(rooms * pitch, 0, rooms * pitch, 2);
+    return world;
+}
 bool isWrong(const PoseConstraint &c, const std::vector<Pose2D> &drive) {
     const Transformation2D off = between(drive[c.from], drive[c.to]).inverse() * c.motion;
     return off.translation().norm() > 0.5 || std::abs(off.alpha()) > 0.17;
@@ -132,6 +157,68 @@ private Q_SLOTS:
         const double after = revisitError(drive, loops.poses());
         qInfo("%.3f to %.3f", before, after);
         QVERIFY2(before > 0.3 && after < 0.05, qPrintable(QString("%1 to %2").arg(before).arg(after)));
+    }
+
+    // Rooms that are alike offer loops that are off by the same way and so agree with each other; many scans
+    // on a short way are no reason to believe them.
+    void aDriveThatWasRightStaysRight() {
+        std::mt19937 random(2);
+        for (const double pitch : {2.2, 2.6, 3.0}) {
+            const ScanWorld world = rowsOfRooms(pitch);
+            DriveWay way({0.5, 1, 0}, 0.1);
+            for (int i = 0; i < 16; ++i) { // even rooms on the way out, odd ones on the way back
+                const int room = i < 8 ? i : 15 - i;
+                const double x = (room + 0.5) * pitch;
+                way.goTo({x, 1});
+                if (room % 2 == (i < 8 ? 0 : 1)) {
+                    way.goTo({x, 3.4});
+                    way.goTo({x, 1});
+                }
+            }
+            LoopCloser loops;
+            for (const Pose2D &pose : way.poses())
+                loops.add(world.scan(Transformation2D(pose), random, {361, 1.5 * pi, 0.01, 8}), pose,
+                          TrackedBy::Map);
+            loops.close();
+            double farthest = 0;
+            for (std::size_t i = 0; i < way.poses().size(); ++i)
+                farthest = std::max(farthest, between(way.poses()[i], loops.poses()[i]).translation().norm());
+            QVERIFY2(farthest < 0.2, qPrintable(QString("%1 m, rooms of %2 m").arg(farthest).arg(pitch)));
+        }
+    }
+
+    // Against drives with noise, drawn.
+    void uncertaintyOfADrive() {
+        constexpr unsigned seed = 9;
+        std::mt19937 random(seed);
+        std::normal_distribution<double> noise;
+        std::vector<Transformation2D> motions;
+        for (int i = 0; i < 60; ++i)
+            motions.emplace_back(0.5, 0, i % 15 == 14 ? pi / 2 : 0.02);
+        constexpr double xy = 0.01, alpha = 0.004;
+        DriveUncertainty told;
+        std::vector<Pose2D> drive{{2, 1, 0.4}};
+        told.add(drive[0], 0, 0);
+        for (const Transformation2D &m : motions) {
+            drive.push_back((Transformation2D(drive.back()) * m).pose());
+            told.add(drive.back(), xy * xy, alpha * alpha);
+        }
+        constexpr std::size_t from = 10;
+        Eigen::Matrix3d seen = Eigen::Matrix3d::Zero();
+        constexpr int runs = 4000;
+        for (int run = 0; run < runs; ++run) {
+            Transformation2D pose(drive[from]);
+            for (std::size_t i = from; i < motions.size(); ++i)
+                pose = pose * motions[i] *
+                       Transformation2D(xy * noise(random), xy * noise(random), alpha * noise(random));
+            const Pose2D &end = drive.back();
+            const Eigen::Vector3d off(pose.x() - end.x, pose.y() - end.y,
+                                      std::remainder(pose.alpha() - end.theta, 2 * pi));
+            seen += off * off.transpose() / runs;
+        }
+        const Eigen::Matrix3d expected = told.between(from, motions.size());
+        QVERIFY((seen - expected).norm() < 0.1 * expected.norm());
+        QCOMPARE(expected, Eigen::Matrix3d(expected.transpose()));
     }
 
     // As it was tracked: poses stay to the last digit where nothing is met again.

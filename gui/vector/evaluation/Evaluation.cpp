@@ -19,7 +19,7 @@ Evaluation::Evaluation(const vectorlib::CarmenLog &log, const std::vector<Stampe
     : poses_(trajectory.size()) {
     for (const vectorlib::CarmenScan &scan : log.scans)
         reference_.push_back(scan.laserPose);
-    if (trajectory.size() == log.scans.size())
+    if (isOneByOne(log, trajectory))
         pairOneByOne(trajectory);
     else
         pairByStamps(log, trajectory, name);
@@ -36,41 +36,52 @@ void Evaluation::pairOneByOne(const std::vector<StampedPose> &trajectory) {
         pairs_.push_back({i, trajectory[i].pose});
 }
 
-// Each pose to the nearest scan that none has yet; scans of one stamp are taken in their order.
+// As many poses as scans; a tenth at the same time are enough, as where a log steps back others cannot be.
+bool Evaluation::isOneByOne(const vectorlib::CarmenLog &log, const std::vector<StampedPose> &trajectory) {
+    if (trajectory.size() != log.scans.size())
+        return false;
+    std::size_t same = 0;
+    for (std::size_t i = 0; i < trajectory.size(); ++i)
+        same += std::abs(trajectory[i].stamp - log.scans[i].stamp) <= sameStamp;
+    return same * 10 >= trajectory.size();
+}
+
+// Each scan and the pose nearest to it that has no scan nearer to itself.
 void Evaluation::pairByStamps(const vectorlib::CarmenLog &log, const std::vector<StampedPose> &trajectory,
                               const std::string &name) {
+    constexpr double oneStamp = 0.001; // seconds
     std::vector<std::size_t> byStamp(log.scans.size());
     std::iota(byStamp.begin(), byStamp.end(), std::size_t(0));
-    const auto stampOf = [&](std::size_t scan) { return log.scans[scan].stamp; };
+    const auto stampAt = [&](std::size_t place) { return log.scans[byStamp[place]].stamp; };
     std::stable_sort(byStamp.begin(), byStamp.end(),
-                     [&](std::size_t a, std::size_t b) { return stampOf(a) < stampOf(b); });
-    std::vector<bool> isTaken(log.scans.size());
+                     [&](std::size_t a, std::size_t b) { return log.scans[a].stamp < log.scans[b].stamp; });
+    std::vector<const StampedPose *> poseOf(log.scans.size());
     std::size_t several = 0; // poses at the time of more than one scan
     for (const StampedPose &p : trajectory) {
-        std::optional<std::size_t> nearest;
-        int scans = 0;
-        for (auto at =
-                 std::lower_bound(byStamp.begin(), byStamp.end(), p.stamp - sameStamp,
-                                  [&](std::size_t scan, double stamp) { return stampOf(scan) < stamp; });
-             at != byStamp.end() && stampOf(*at) <= p.stamp + sameStamp && scans < 2; ++at) {
-            ++scans;
-            if (!isTaken[*at] &&
-                (!nearest || std::abs(stampOf(*at) - p.stamp) < std::abs(stampOf(*nearest) - p.stamp)))
-                nearest = *at;
-        }
-        several += scans > 1;
-        if (!nearest)
+        auto place = std::size_t(
+            std::lower_bound(byStamp.begin(), byStamp.end(), p.stamp,
+                             [&](std::size_t scan, double stamp) { return log.scans[scan].stamp < stamp; }) -
+            byStamp.begin());
+        if (place == byStamp.size() || (place > 0 && p.stamp - stampAt(place - 1) < stampAt(place) - p.stamp))
+            --place;
+        const double apart = std::abs(stampAt(place) - p.stamp);
+        if (!(apart <= sameStamp))
             continue;
-        isTaken[*nearest] = true;
-        pairs_.push_back({*nearest, p.pose});
+        several += (place > 0 && stampAt(place) - stampAt(place - 1) < oneStamp) ||
+                   (place + 1 < byStamp.size() && stampAt(place + 1) - stampAt(place) < oneStamp);
+        const StampedPose *&nearest = poseOf[byStamp[place]];
+        if (!nearest || apart < std::abs(nearest->stamp - stampAt(place)))
+            nearest = &p;
     }
     if (several * 10 > trajectory.size())
-        throw Failure(
-            name + ": found " + std::to_string(several) + " of " + std::to_string(trajectory.size()) +
-            " poses with several scans of the log within 10 ms, so that their stamps do not tell the "
-            "scan; expected a pose for each of its " +
-            std::to_string(log.scans.size()) + " scans");
-    std::sort(pairs_.begin(), pairs_.end(), [](const Pair &a, const Pair &b) { return a.scan < b.scan; });
+        throw Failure(name + ": found " + std::to_string(several) + " of " +
+                      std::to_string(trajectory.size()) +
+                      " poses at the time of several scans of the log, so that their stamps do not tell the "
+                      "scan; expected a pose for each of its " +
+                      std::to_string(log.scans.size()) + " scans");
+    for (std::size_t scan = 0; scan < poseOf.size(); ++scan)
+        if (poseOf[scan])
+            pairs_.push_back({scan, poseOf[scan]->pose});
 }
 
 Transformation2D Evaluation::motionOf(const Pair &from, const Pair &to) const {

@@ -36,6 +36,8 @@ private:
         std::size_t scan;
         vectorlib::Pose2D pose;
     };
+    static bool isOneByOne(const vectorlib::CarmenLog &log,
+                           const std::vector<vectorlib::StampedPose> &trajectory);
     void pairOneByOne(const std::vector<vectorlib::StampedPose> &trajectory);
     void pairByStamps(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory,
                       const std::string &name);
