@@ -219,6 +219,11 @@ private Q_SLOTS:
         const Eigen::Matrix3d expected = told.between(from, motions.size());
         QVERIFY((seen - expected).norm() < 0.1 * expected.norm());
         QCOMPARE(expected, Eigen::Matrix3d(expected.transpose()));
+        DriveUncertainty far; // in the coordinates of a country
+        for (std::size_t i = 0; i < drive.size(); ++i)
+            far.add({drive[i].x + 4e6, drive[i].y - 6e6, drive[i].theta}, i > 0 ? xy * xy : 0,
+                    i > 0 ? alpha * alpha : 0);
+        QVERIFY((far.between(from, motions.size()) - expected).norm() < 1e-6 * expected.norm());
     }
 
     // As it was tracked: poses stay to the last digit where nothing is met again.

@@ -5,8 +5,8 @@
 #include "vectorlib/io/Svg.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
-#include <optional>
 
 namespace hermes::vector {
 

@@ -16,8 +16,10 @@ class DriveUncertainty {
 public:
     /// The next pose, and the variances of the motion that led to it: of x and of y, and of the rotation.
     void add(const Pose2D &pose, double varianceXY, double varianceAlpha) {
+        if (sums_.empty())
+            origin_ = {pose.x, pose.y};
         Sums s = sums_.empty() ? Sums() : sums_.back();
-        const Eigen::Vector2d p(pose.x, pose.y);
+        const Eigen::Vector2d p = Eigen::Vector2d(pose.x, pose.y) - origin_; // squares stay small
         s.place = p;
         s.xy += varianceXY;
         s.alpha += varianceAlpha;
@@ -48,6 +50,7 @@ private:
         Eigen::Matrix2d second = Eigen::Matrix2d::Zero(); // of their squares
     };
 
+    Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
     std::vector<Sums> sums_;
 };
 

@@ -11,7 +11,7 @@
 namespace vectorlib {
 
 /// Puts the points of a scan into counter-clockwise order about the sensor. A scan that has this order is
-/// given back as it is, wherever it begins and however many turns it goes round; one that goes clockwise is
+/// given back as it is, wherever it begins and up to some sixty turns round; one that goes clockwise is
 /// reversed; one without order is sorted by direction. Sensor frame, metres. Looks at some 128 points of a
 /// scan, so that one in order costs next to nothing. Keeps its buffers.
 class ScanOrder {
