@@ -111,8 +111,7 @@ struct MapCommand {
                 progress.update(number + 1, total);
             });
         }
-        Progress progress("looking for loops");
-        run.finish([&](std::size_t done, std::size_t all) { progress.update(done, all); });
+        run.finish();
         return report;
     }
     static void warnOfLost(const vectorlib::ScanTrackerCounts &counts) {

@@ -10,6 +10,16 @@ namespace hermes::vector {
 using vectorlib::TrackedBy;
 using vectorlib::Transformation2D;
 
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+} // namespace
+
 void MapRun::take(MapScan &scan) {
     if (scan.partial) {
         ++partial_;
@@ -19,37 +29,37 @@ void MapRun::take(MapScan &scan) {
     if (trajectory_.empty() && scan.reference)
         tracker.place(*scan.reference);
     const vectorlib::ScanReport &report = tracker.process(scan);
+    if (closesLoops)
+        remember(scan, report);
     trajectory_.push_back({scan.stamp, report.pose});
-    if (closesLoops) {
-        const bool isMatched = report.outcome == vectorlib::ScanReport::Outcome::Matched;
-        loops_.add(scan.points, report.pose,
-                   !tracker.isByOdometry() ? TrackedBy::Nothing
-                   : isMatched             ? TrackedBy::Map
-                                           : TrackedBy::Odometry);
-        edges_.emplace_back();
-        if (tracker.isStraight())
-            edges_.back() = tracker.builder.edges();
-    }
     if (scan.reference)
         reference_.push_back({scan.stamp, *scan.reference});
 }
 
-void MapRun::finish(const std::function<void(std::size_t, std::size_t)> &progress) {
-    if (!closesLoops)
-        return;
-    const auto begin = std::chrono::steady_clock::now();
-    closures_ = loops_.close(progress);
-    if (closures_.closed > 0)
-        rebuild();
-    closeSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) {
+    const auto begin = Clock::now();
+    const bool isMatched = report.outcome == vectorlib::ScanReport::Outcome::Matched;
+    const TrackedBy by = !tracker.isByOdometry() ? TrackedBy::Nothing
+                         : isMatched             ? TrackedBy::Map
+                                                 : TrackedBy::Odometry;
+    const Transformation2D pose(report.pose);
+    static const std::vector<vectorlib::EdgeRaw2D> none;
+    drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none,
+               trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose, by);
+    if (drive_.loops.isDue())
+        drive_.loops.correct();
+    closeSeconds_ += secondsSince(begin);
 }
 
-void MapRun::rebuild() {
-    tracker.builder.clear();
-    for (std::size_t i = 0; i < trajectory_.size(); ++i) {
-        trajectory_[i].pose = loops_.poses()[i];
-        tracker.builder.place(edges_[i], trajectory_[i].pose);
+void MapRun::finish() {
+    const auto begin = Clock::now();
+    drive_.loops.correct();
+    if (drive_.loops.counts().closed > 0) {
+        for (std::size_t i = 0; i < trajectory_.size(); ++i)
+            trajectory_[i].pose = drive_.loops.pose(i);
+        drive_.rebuild(tracker.builder);
     }
+    closeSeconds_ += secondsSince(begin);
 }
 
 std::vector<vectorlib::MapEdge> MapRun::segments() const {
@@ -66,9 +76,10 @@ nlohmann::ordered_json MapRun::summary() const {
     json["skipped"] = counts.skipped + partial_;
     json["matched"] = counts.matched;
     json["lost"] = counts.lost;
-    json["closures"] = closures_.closed;
-    json["closures_tried"] = closures_.tried;
-    json["closures_refused"] = closures_.refused;
+    const vectorlib::LoopCounts loops = drive_.loops.counts();
+    json["closures"] = loops.closed;
+    json["closures_tried"] = loops.tried;
+    json["closures_refused"] = loops.refused;
     json["ms_per_scan"] = {{"segment", counts.segmentMs / scans},
                            {"vectorize", counts.vectorizeMs / scans},
                            {"match", counts.matchMs / scans},

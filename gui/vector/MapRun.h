@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gui/vector/MapSource.h"
-#include "vectorlib/graph/LoopCloser.h"
+#include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
@@ -17,27 +17,24 @@ public:
 
     /// A partial scan is counted and left out.
     void take(MapScan &scan);
-    /// After the last scan: closes loops, unless it is told not to, and makes the map anew from all edges
-    /// where that moved the poses. `progress` is told how many of how many scans are done.
-    void finish(const std::function<void(std::size_t, std::size_t)> &progress);
+    /// After the last scan: where loops were closed, moves the poses and makes the map anew from all edges.
+    void finish();
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Reference poses, one a pose of the trajectory; empty without reference.
     const std::vector<vectorlib::StampedPose> &reference() const { return reference_; }
-    /// The poses and the motions between them; without poses when loops were not to be closed.
-    const vectorlib::PoseGraph &graph() const { return loops_.graph(); }
+    /// The key scans' poses and the motions between them; without poses when loops were not to be closed.
+    const vectorlib::PoseGraph &graph() const { return drive_.loops.graph(); }
     std::vector<vectorlib::MapEdge> segments() const;
     /// Counts, milliseconds a scan and, with a reference, the errors against it.
     nlohmann::ordered_json summary() const;
 
 private:
     nlohmann::ordered_json errors() const;
-    void rebuild();
+    void remember(const MapScan &scan, const vectorlib::ScanReport &report);
 
-    vectorlib::LoopCloser loops_;
-    vectorlib::LoopCounts closures_;
+    vectorlib::MappedDrive drive_;
     double closeSeconds_ = 0;
-    std::vector<std::vector<vectorlib::EdgeRaw2D>> edges_; // of each scan, sensor frame; none of one in doubt
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
     std::size_t partial_ = 0;

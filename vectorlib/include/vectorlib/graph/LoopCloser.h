@@ -1,19 +1,21 @@
 #pragma once
 
 #include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/SegmentGrid.h"
 #include "vectorlib/graph/DriveUncertainty.h"
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace vectorlib {
 
 struct LoopCloserSettings {
-    double keyWay = 1, keyTurn = 0.6; ///< between scans that are compared; metres, radians
+    double keyWay = 1, keyTurn = 0.6; ///< between key scans, which are compared; metres, radians
     double leastWay = 8;              ///< of the drive between two scans of a loop; metres
     double reach = 2;                 ///< scans nearer than this show the same; metres
     double drift = 0.02;     ///< metres that they may be farther apart, for each metre of way between them
@@ -30,9 +32,14 @@ struct LoopCloserSettings {
     double guessedXY = 1, guessedAlpha = 0.3, guessedPart = 0.5;
     double odometryPart = 0.3;   ///< of the metres, where it is by odometry
     double likely = 0.3;         ///< probability with which a motion that is not accepted is a better guess
-    std::size_t mostBridged = 3; ///< how many scans back such a one is matched at most
+    std::size_t mostBridged = 3; ///< how many key scans back such a one is matched at most
     /// What a match has beside its own covariance: scans are never quite of one moment and one plane.
     double matchedXY = 0.02, matchedAlpha = 0.005;
+    /// A loop is news that misses the poses by more; metres, radians. Then they are due to be moved, unless
+    /// fewer key scans than this, or than this part of all, came since that was done last.
+    double newsXY = 0.05, newsAlpha = 0.02;
+    std::size_t fewKeys = 5;
+    double fewPart = 0.02;
 };
 
 /// What tells how a scan lies to the one before.
@@ -50,64 +57,117 @@ struct LoopCounts {
 };
 
 /// Brings a drive that bends into one frame: scans of places that were met again are matched with each other,
-/// without any estimate, and all poses move so that they fit these motions and those from scan to scan.
+/// without any estimate, and all poses move so that they fit these motions and those from scan to scan. Key
+/// scans are compared and are the nodes of the graph; the others keep their way between two of them.
 class LoopCloser {
 public:
     LoopCloserSettings settings;
     GlobalPairMatcher match;
 
-    /// The next scan of the drive: its points in the sensor's frame, where it was tracked, and by what.
-    /// Unless that is the map it is matched with the scans before it, too.
-    void add(PointSpan<float> points, const Pose2D &tracked, TrackedBy by) {
-        scans_.emplace_back();
-        scans_.back().points.assign(points.begin(), points.end());
-        if (scans_.size() == 1) {
-            graph_.poses.push_back(tracked);
-            uncertainty_.add(tracked, 0, 0);
+    /// The next scan of the drive: its points in the sensor's frame, the motion since the scan before (the
+    /// pose, for the first) as it was tracked, and by what. Unless that is the map the scan is matched with
+    /// the one before it, too. A key scan is compared with those of earlier passes.
+    void add(PointSpan<float> points, const Transformation2D &tracked, TrackedBy by) {
+        if (keys_.empty()) {
+            graph_.poses.push_back(tracked.pose());
+            addKey(points, tracked.pose(), 0);
+            return;
+        }
+        const double doubt = addMotion(points, tracked, by);
+        const double way = since_.way, turned = since_.turned;
+        if (by != TrackedBy::Map || way >= settings.keyWay || turned >= settings.keyTurn) {
+            link(points);
+            if (doubt > 0)
+                bridge();
+            tryLoops();
         } else {
-            addMotion(Transformation2D(last_).inverse() * Transformation2D(tracked), by);
+            scans_.push_back({keys_.size() - 1, since_.motion, way + turned});
+            last_.assign(points.begin(), points.end());
         }
-        last_ = tracked;
-        keep();
     }
-    /// Looks for loops and moves the poses; to be called once, after the last scan. `progress` is told how
-    /// many of how many scans are done.
-    LoopCounts close(const std::function<void(std::size_t, std::size_t)> &progress = {}) {
-        for (std::size_t k = 0; k < keys_.size(); ++k) {
-            tryLoopsOf(k);
-            if (progress)
-                progress(k + 1, keys_.size());
-        }
-        const auto isLoop = [](const PoseConstraint &c) { return c.mayBeWrong; };
-        const bool isSolved =
-            std::none_of(graph_.constraints.begin(), graph_.constraints.end(), isLoop) || graph_.optimise();
+    /// Whether a loop says that the poses are wrong.
+    bool isDue() const {
+        const auto few = static_cast<std::size_t>(settings.fewPart * double(keys_.size()));
+        return news_ && keys_.size() - corrected_ >= std::max(settings.fewKeys, few);
+    }
+    /// Moves the poses so that all motions fit best. False where none was found since the last time, or
+    /// nothing fits.
+    bool correct() {
+        news_ = false;
+        corrected_ = keys_.size();
+        if (!std::exchange(found_, false) || !graph_.optimise())
+            return false;
+        counts_.closed = 0;
         for (const PoseConstraint &c : graph_.constraints)
-            counts_.closed += c.mayBeWrong && isSolved && !isContradicted(c);
-        counts_.refused = counts_.tried - counts_.closed;
-        return counts_;
+            counts_.closed += c.mayBeWrong && !isContradicted(c);
+        grid_.clear();
+        for (std::size_t k = 0; k < keys_.size(); ++k)
+            enter(k);
+        return true;
     }
-    /// One a scan.
-    const std::vector<Pose2D> &poses() const { return graph_.poses; }
+    /// As of the last correction; of what was found since then nothing is closed.
+    LoopCounts counts() const {
+        LoopCounts counts = counts_;
+        counts.refused = counts.tried - counts.closed;
+        return counts;
+    }
+    std::size_t scans() const { return scans_.size(); }
+    /// Of a scan; one between two key scans has moved with them, by its part of the way.
+    Pose2D pose(std::size_t scan) const {
+        const OnTheWay &s = scans_[scan];
+        const Transformation2D from(graph_.poses[s.key]);
+        if (s.key + 1 == keys_.size())
+            return (from * s.motion).pose();
+        const Key &next = keys_[s.key + 1];
+        const Transformation2D off =
+            from.inverse() * Transformation2D(graph_.poses[s.key + 1]) * next.motion.inverse();
+        const double part = next.effort > 0 ? s.effort / next.effort : 0;
+        return (from * Transformation2D(part * off.x(), part * off.y(), part * off.alpha()) * s.motion)
+            .pose();
+    }
+    std::vector<Pose2D> poses() const {
+        std::vector<Pose2D> result(scans_.size());
+        for (std::size_t i = 0; i < result.size(); ++i)
+            result[i] = pose(i);
+        return result;
+    }
+    /// Of the key scans.
     const PoseGraph &graph() const { return graph_; }
+    /// The scan that a pose of the graph is of.
+    std::size_t scanOf(std::size_t key) const { return keys_[key].scan; }
 
 private:
-    struct Scan {
+    struct Key {
         std::vector<Vector2D<float>> points;
-        double way = 0, turned = 0; // since the start of the drive; metres, radians
-        bool isKey = false;         // compared with others
-        double doubt = 0;           // by how much the drive may have gone astray since its start; metres
+        std::size_t scan = 0;
+        Transformation2D motion; // since the key before
+        double effort = 0;       // of that motion; metres and radians
+        Pose2D tracked;          // without any loop
+        double way = 0;          // since the start of the drive; metres
+        double doubt = 0;        // by how much the drive may have gone astray since its start; metres
+    };
+    struct OnTheWay {
+        std::size_t key;
+        Transformation2D motion; // since that key
+        double effort;
+    };
+    struct SinceKey {
+        Transformation2D motion;
+        double way = 0, turned = 0;               // metres, radians
+        double varianceXY = 0, varianceAlpha = 0; // of the motion
+        double doubt = 0;                         // metres
     };
     struct Candidate {
-        std::size_t scan;
+        std::size_t key;
         double apart; // metres, and half of the radians
     };
 
-    void addMotion(const Transformation2D &tracked, TrackedBy by) {
-        const std::size_t from = scans_.size() - 2, to = from + 1;
+    // How much in doubt the motion is; metres.
+    double addMotion(PointSpan<float> points, const Transformation2D &tracked, TrackedBy by) {
         Transformation2D motion = tracked;
         double xy = 0, alpha = 0, doubt = 0;
         if (by != TrackedBy::Map) {
-            const GlobalPairMatch &found = match(scans_[from].points, scans_[to].points);
+            const GlobalPairMatch &found = match(last_, points);
             const bool isLikely = by == TrackedBy::Nothing && !found.solutions.empty() &&
                                   found.solutions[0].probability > settings.likely;
             if (found.isAccepted() || isLikely)
@@ -123,64 +183,85 @@ private:
         xy = std::hypot(xy, least, settings.trackedXY * std::sqrt(way));
         alpha = std::hypot(std::hypot(alpha, least), settings.trackedAlpha * std::sqrt(way),
                            settings.turnedAlpha * std::sqrt(turn));
-        scans_[to].way = scans_[from].way + way;
-        scans_[to].turned = scans_[from].turned + turn;
-        scans_[to].doubt = scans_[from].doubt + settings.drift * way + doubt;
-        graph_.poses.push_back((Transformation2D(graph_.poses[from]) * motion).pose());
-        uncertainty_.add(graph_.poses[to], xy * xy, alpha * alpha);
+        since_.motion = since_.motion * motion;
+        since_.way += way;
+        since_.turned += turn;
+        since_.varianceXY += xy * xy;
+        since_.varianceAlpha += alpha * alpha;
+        since_.doubt += settings.drift * way + doubt;
+        return doubt;
+    }
+    void addKey(PointSpan<float> points, const Pose2D &tracked, double doubt) {
+        Key key;
+        key.points.assign(points.begin(), points.end());
+        key.scan = scans_.size();
+        key.motion = since_.motion;
+        key.effort = since_.way + since_.turned;
+        key.tracked = tracked;
+        key.way = (keys_.empty() ? 0 : keys_.back().way) + since_.way;
+        key.doubt = doubt;
+        uncertainty_.add(tracked, since_.varianceXY, since_.varianceAlpha);
+        scans_.push_back({keys_.size(), {}, 0});
+        last_ = key.points;
+        keys_.push_back(std::move(key));
+        enter(keys_.size() - 1);
+        since_ = SinceKey();
+    }
+    // The motion since the last key scan becomes part of the graph.
+    void link(PointSpan<float> points) {
+        const std::size_t from = keys_.size() - 1;
+        const double xy = 1 / since_.varianceXY, alpha = 1 / since_.varianceAlpha;
         graph_.constraints.push_back(
-            {from, to, motion,
-             Eigen::Vector3d(1 / (xy * xy), 1 / (xy * xy), 1 / (alpha * alpha)).asDiagonal(), false, 1});
-        if (doubt > 0)
-            bridge(to);
+            {from, from + 1, since_.motion, Eigen::Vector3d(xy, xy, alpha).asDiagonal(), false, 1});
+        graph_.poses.push_back((Transformation2D(graph_.poses[from]) * since_.motion).pose());
+        addKey(points, (Transformation2D(keys_[from].tracked) * since_.motion).pose(),
+               keys_[from].doubt + since_.doubt);
     }
-    // What one scan does not show of the next, the one before it may.
-    void bridge(std::size_t scan) {
-        for (std::size_t back = 2; back <= settings.mostBridged && back <= scan; ++back)
-            tryLoop(scan - back, scan);
+    void enter(std::size_t key) {
+        const Vector2D<double> place(graph_.poses[key].x, graph_.poses[key].y);
+        grid_.insert(static_cast<int>(key), {place, place, {1, 0}});
     }
-    // The others' points are needed for the next scans only.
-    void keep() {
-        const std::size_t scan = scans_.size() - 1, past = settings.mostBridged + 1;
-        const Scan *last = keys_.empty() ? nullptr : &scans_[keys_.back()];
-        scans_[scan].isKey = !last || scans_[scan].way - last->way >= settings.keyWay ||
-                             scans_[scan].turned - last->turned >= settings.keyTurn;
-        if (scans_[scan].isKey)
-            keys_.push_back(scan);
-        if (scan >= past && !scans_[scan - past].isKey)
-            scans_[scan - past].points = {};
+    // What the scan before does not show of the last one, those before may.
+    void bridge() {
+        const std::size_t key = keys_.size() - 1;
+        for (std::size_t back = 2; back <= settings.mostBridged && back <= key; ++back)
+            tryLoop(key - back, key);
     }
     // The nearest scans of earlier passes, one of each pass.
-    void tryLoopsOf(std::size_t number) {
-        const std::size_t scan = keys_[number];
-        const Pose2D &here = graph_.poses[scan];
+    void tryLoops() {
+        const std::size_t last = keys_.size() - 1;
+        const Pose2D &here = graph_.poses[last];
+        const Vector2D<double> place(here.x, here.y);
+        const double most = settings.reach + settings.mostDrift;
         candidates_.clear();
-        for (std::size_t k = 0; k < number; ++k) {
-            const double way = scans_[scan].way - scans_[keys_[k]].way;
-            if (way < settings.leastWay)
-                break;
-            const Pose2D &there = graph_.poses[keys_[k]];
-            const double apart = std::hypot(here.x - there.x, here.y - there.y);
-            const double doubt = scans_[scan].doubt - scans_[keys_[k]].doubt;
-            if (apart < settings.reach + std::min(doubt, settings.mostDrift))
-                candidates_.push_back(
-                    {keys_[k], apart + 0.5 * std::abs(std::remainder(here.theta - there.theta, 2 * pi))});
-        }
-        std::sort(candidates_.begin(), candidates_.end(),
-                  [](const Candidate &a, const Candidate &b) { return a.apart < b.apart; });
+        grid_.query(
+            place - Vector2D<double>(most, most), place + Vector2D<double>(most, most), [&](int number) {
+                const auto k = static_cast<std::size_t>(number);
+                const Pose2D &there = graph_.poses[k];
+                const double apart = std::hypot(here.x - there.x, here.y - there.y);
+                const double doubt = std::min(keys_[last].doubt - keys_[k].doubt, settings.mostDrift);
+                if (keys_[last].way - keys_[k].way >= settings.leastWay && apart < settings.reach + doubt)
+                    candidates_.push_back(
+                        {k, apart + 0.5 * std::abs(std::remainder(here.theta - there.theta, 2 * pi))});
+            });
+        std::sort(candidates_.begin(), candidates_.end(), [](const Candidate &a, const Candidate &b) {
+            return std::tie(a.apart, a.key) < std::tie(b.apart, b.key);
+        });
         passes_.clear();
         for (const Candidate &c : candidates_) {
-            const double way = scans_[c.scan].way;
+            const double way = keys_[c.key].way;
             const auto isSamePass = [&](double other) { return std::abs(other - way) < settings.passWay; };
-            if (passes_.size() == settings.perScan || std::any_of(passes_.begin(), passes_.end(), isSamePass))
+            if (std::any_of(passes_.begin(), passes_.end(), isSamePass))
                 continue;
             passes_.push_back(way);
-            tryLoop(c.scan, scan);
+            tryLoop(c.key, last);
+            if (passes_.size() == settings.perScan)
+                break;
         }
     }
     void tryLoop(std::size_t earlier, std::size_t later) {
         ++counts_.tried;
-        const GlobalPairMatch &found = match(scans_[earlier].points, scans_[later].points);
+        const GlobalPairMatch &found = match(keys_[earlier].points, keys_[later].points);
         if (!found.isAccepted())
             return;
         PoseConstraint c;
@@ -192,13 +273,17 @@ private:
         Eigen::Matrix3d covariance = match.covarianceOf(found.solutions[0]);
         covariance.diagonal() += Eigen::Vector3d(xy * xy, xy * xy, alpha * alpha);
         c.information = covariance.inverse();
-        if (isCredible(c, covariance))
-            graph_.constraints.push_back(c);
+        if (!isCredible(c, covariance))
+            return;
+        const Eigen::Vector3d off = graph_.errorOf(c);
+        news_ = news_ || off.head<2>().norm() > settings.newsXY || std::abs(off[2]) > settings.newsAlpha;
+        found_ = true;
+        graph_.constraints.push_back(c);
     }
     // Where rooms are alike, loops that are off by the same way agree with each other: each has to agree with
     // the drive alone first.
     bool isCredible(const PoseConstraint &c, const Eigen::Matrix3d &covariance) const {
-        const Pose2D &from = graph_.poses[c.from], &to = graph_.poses[c.to];
+        const Pose2D &from = keys_[c.from].tracked, &to = keys_[c.to].tracked;
         const Transformation2D led = Transformation2D(from) * c.motion;
         const Eigen::Vector3d off(led.x() - to.x, led.y() - to.y,
                                   std::remainder(led.alpha() - to.theta, 2 * pi));
@@ -214,12 +299,16 @@ private:
         return c.weight < least;
     }
 
-    std::vector<Scan> scans_;
-    std::vector<std::size_t> keys_; // numbers of the scans that are compared
-    PoseGraph graph_;
-    DriveUncertainty uncertainty_;
+    std::vector<Key> keys_;
+    std::vector<OnTheWay> scans_;
+    SinceKey since_;
+    std::vector<Vector2D<float>> last_; // points of the last scan
+    PoseGraph graph_;                   // a pose each key scan
+    DriveUncertainty uncertainty_;      // of the key scans, without any loop
+    SegmentGrid grid_{4};               // of the key scans
     LoopCounts counts_;
-    Pose2D last_; // as it was tracked
+    bool found_ = false, news_ = false; // loops since the last correction
+    std::size_t corrected_ = 0;         // key scans then
     std::vector<Candidate> candidates_;
     std::vector<double> passes_;
 };
