@@ -7,7 +7,6 @@
 
 namespace hermes::vector {
 
-using vectorlib::TrackedBy;
 using vectorlib::Transformation2D;
 
 namespace {
@@ -38,14 +37,11 @@ void MapRun::take(MapScan &scan) {
 
 void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) {
     const auto begin = Clock::now();
-    const bool isMatched = report.outcome == vectorlib::ScanReport::Outcome::Matched;
-    const TrackedBy by = !tracker.isByOdometry() ? TrackedBy::Nothing
-                         : isMatched             ? TrackedBy::Map
-                                                 : TrackedBy::Odometry;
     const Transformation2D pose(report.pose);
     static const std::vector<vectorlib::EdgeRaw2D> none;
     drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none,
-               trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose, by);
+               trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose,
+               tracker.trackedBy());
     if (drive_.loops.isDue())
         drive_.loops.correct();
     closeSeconds_ += secondsSince(begin);

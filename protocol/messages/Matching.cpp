@@ -16,6 +16,20 @@ const Fields<PoseMessage> &fieldsOf(Of<PoseMessage>) {
             .add("outcome", &PoseMessage::outcome, "Of the scan; lost: the pose is the expected one")
             .choices({"matched", "lost", "skipped"})
             .add("scan", &PoseMessage::scan, "The turn it belongs to")
+            .mayBeMissing()
+            .add("trust", &PoseMessage::trust,
+                 "How far to trust the pose, 0 to 1: how likely it is within 10 cm and 2 degrees of where "
+                 "the map "
+                 "shows the same")
+            .mayBeMissing()
+            .add("corrected", &PoseMessage::corrected,
+                 "The map was corrected since the message before: the pose leapt, the robot did not")
+            .mayBeMissing()
+            .add("map_to_odometry", &PoseMessage::odometryFrame,
+                 "Where the frame of the odometry lies in the map; null without odometry. What follows a "
+                 "path by "
+                 "the odometry and this stays smooth when the map is corrected")
+            .orNull()
             .mayBeMissing();
     return fields;
 }

@@ -16,6 +16,9 @@ struct PoseMessage {
     std::optional<Covariance> covariance;
     QString outcome;
     quint64 scan = 0;
+    double trust = 0;
+    bool corrected = false;
+    std::optional<Pose2D> odometryFrame;
 };
 
 /// Milliseconds of each step of matching a scan.

@@ -5,6 +5,7 @@
 #include "vectorlib/graph/DriveUncertainty.h"
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
+#include "vectorlib/mapping/TrackedBy.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,7 @@ struct LoopCloserSettings {
     double gate = 18;
     /// Of one that was guessed and not found by matching; metres, radians, and of its length.
     double guessedXY = 1, guessedAlpha = 0.3, guessedPart = 0.5;
+    double placedAlpha = 2;      ///< where the sensor was put elsewhere, as far as it was put; radians
     double odometryPart = 0.3;   ///< of the metres, where it is by odometry
     double likely = 0.3;         ///< probability with which a motion that is not accepted is a better guess
     std::size_t mostBridged = 3; ///< how many key scans back such a one is matched at most
@@ -40,13 +42,6 @@ struct LoopCloserSettings {
     double newsXY = 0.05, newsAlpha = 0.02;
     std::size_t fewKeys = 5;
     double fewPart = 0.02;
-};
-
-/// What tells how a scan lies to the one before.
-enum class TrackedBy {
-    Map,      ///< it was found in the map where odometry expected it
-    Odometry, ///< that alone: it was lost
-    Nothing   ///< a guess, or found in the map where it was guessed
 };
 
 /// How closing loops went.
@@ -166,7 +161,10 @@ private:
     double addMotion(PointSpan<float> points, const Transformation2D &tracked, TrackedBy by) {
         Transformation2D motion = tracked;
         double xy = 0, alpha = 0, doubt = 0;
-        if (by != TrackedBy::Map) {
+        if (by == TrackedBy::Placed) {
+            doubt = xy = settings.guessedXY + motion.translation().norm();
+            alpha = settings.placedAlpha;
+        } else if (by != TrackedBy::Map) {
             const GlobalPairMatch &found = match(last_, points);
             const bool isLikely = by == TrackedBy::Nothing && !found.solutions.empty() &&
                                   found.solutions[0].probability > settings.likely;

@@ -118,6 +118,14 @@ public:
 
     /// The sensor was put elsewhere: the next scan is matched with the map alone.
     void forgetPrevious() { previousPoints_.clear(); }
+    /// Takes a map that was made anew and gives the old one; `moved` tells where in it a pose of the old one
+    /// lies.
+    void correct(VectorMap &other, const Transformation2D &moved) {
+        std::swap(map, other);
+        match_ = Match();
+        numbers_.clear();
+        previousPose_ = moved * previousPose_;
+    }
     void clear() {
         map.clear();
         lost_ = 0;

@@ -2,6 +2,7 @@
 
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/TimedScan.h"
+#include "vectorlib/mapping/TrackedBy.h"
 #include "vectorlib/motion/MotionCompensation.h"
 #include "vectorlib/motion/MotionModel.h"
 #include "vectorlib/motion/OdometryModel.h"
@@ -59,6 +60,7 @@ public:
         middle_ = middleTime(scan.seconds);
         scan.stamp += double(middle_);
         raw_ = scan.points;
+        wasPlaced_ = std::exchange(isPlaced_, false);
         EarSettings scanner = EarSettings::forScanner(scan.fieldOfView, scan.rays);
         scanner.closed = scan.closed;
         builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
@@ -75,6 +77,7 @@ public:
 
     /// Puts the sensor somewhere, standing still.
     void place(const Pose2D &pose) {
+        isPlaced_ = true;
         motion_.reset(pose);
         odometry_.reset();
         builder.forgetPrevious();
@@ -99,6 +102,14 @@ public:
         nextSearch_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
         return result;
     }
+    /// The map was made anew: takes it, and gives the old one. `moved` tells where in it a pose of the old
+    /// one lies; tracking goes on from there.
+    void correct(VectorMap &map, const Transformation2D &moved) {
+        builder.correct(map, moved);
+        search_.index().clear();
+        motion_.move(moved);
+        odometry_.move(moved);
+    }
     /// Forgets map, pose and counts.
     void clear() {
         builder.clear();
@@ -108,8 +119,17 @@ public:
         counts_ = ScanTrackerCounts();
     }
 
-    /// Whether the last scan was expected where its odometry tells, and found from there.
-    bool isByOdometry() const { return byOdometry_; }
+    /// What tells how the last scan lies to the one before.
+    TrackedBy trackedBy() const {
+        if (wasPlaced_)
+            return TrackedBy::Placed;
+        const bool isMatched = builder.report().outcome == ScanReport::Outcome::Matched;
+        return isMatched && isWellExpected_ ? TrackedBy::Map
+               : byOdometry_                ? TrackedBy::Odometry
+                                            : TrackedBy::Nothing;
+    }
+    /// The frame of the odometry in that of the map, by the last scan that had any.
+    std::optional<Transformation2D> odometryFrame() const { return odometry_.frame(); }
     /// Whether the last scan is straight; else it is in doubt and stays out of the map.
     bool isStraight() const { return straight_; }
     const MotionModel &motion() const { return motion_; }
@@ -151,6 +171,7 @@ private:
                 guess = {expected->pose, guess.twist, true, true, expected->deviations};
         }
         byOdometry_ = false;
+        isWellExpected_ = byMotion.well;
         Found found = find(scan, guess);
         const bool doubtful = found.again || found.score < 0 || leaps(byMotion, guess, end - begin);
         if (isStraightened(scan) && scan.odometry && doubtful) {
@@ -161,6 +182,7 @@ private:
             found = find(scan, guess);
         }
         byOdometry_ = guess.byOdometry;
+        isWellExpected_ = guess.well;
         counts_.byOdometry += byOdometry_;
         return found.straight;
     }
@@ -276,7 +298,8 @@ private:
     std::vector<Vector2D<float>> points_; // of the last scan, at one moment
     TwistCorrection correct_;
     std::optional<double> lastStamp_; // of the scan before, unless the sensor was put elsewhere since
-    bool byOdometry_ = false, straight_ = true; // the last scan
+    bool byOdometry_ = false, straight_ = true, isWellExpected_ = false; // the last scan
+    bool isPlaced_ = false, wasPlaced_ = false;                          // since the last scan, and before it
     int lostInARow_ = 0;
     Clock::time_point nextSearch_;
 };

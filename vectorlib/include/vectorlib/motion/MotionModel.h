@@ -33,6 +33,8 @@ public:
         twist_ = Twist2D();
         known_ = velocityKnown_ = false;
     }
+    /// All poses so far lie elsewhere: in another frame, or the map was corrected.
+    void move(const Transformation2D &moved) { pose_ = (moved * Transformation2D(pose_)).pose(); }
     Pose2D predict(double stamp) const {
         const double seconds = stamp - stamp_;
         if (!known_ || !(seconds > 0) || seconds > maxGap)

@@ -46,6 +46,18 @@ public:
         return e;
     }
 
+    /// The last pose lies elsewhere: the map was corrected.
+    void move(const Transformation2D &moved) {
+        if (last_)
+            last_->pose = moved * last_->pose;
+    }
+    /// The frame of the odometry in that of the map, as of the last update.
+    std::optional<Transformation2D> frame() const {
+        if (!last_)
+            return std::nullopt;
+        return last_->pose * mount_.inverse() * last_->robot.inverse();
+    }
+
     /// The sensor's mean velocity from begin to end. In a turn of 0.1 s a robot that brakes with 4 m/s^2 is
     /// never more than 5 mm from where this leads; the stamps of single samples are often worse.
     Twist2D twist(const OdometryTrack &track, double begin, double end) const {
