@@ -91,6 +91,7 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
 }
 
 void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer) {
+    corrector_->restart(tracker);
     tracker.builder.map.takeChanges(); // the mirror gets it whole
     auto edges = std::make_shared<MapMirror::Edges>();
     tracker.builder.map.forEach(

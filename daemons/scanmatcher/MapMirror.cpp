@@ -30,6 +30,25 @@ void MapMirror::replace(Edges &other) {
     ++revision_;
 }
 
+void MapMirror::correct(Edges &other, const std::vector<quint64> &numbers,
+                        const std::vector<vectorlib::Pose2D> &poses) {
+    edges_.swap(other);
+    ++revision_;
+    vectorlib::Transformation2D moved;
+    auto number = numbers.begin();
+    for (quint64 i = numbers.empty() ? poses_.size() : numbers.front(); i < poses_.size(); ++i) {
+        vectorlib::Pose2D &pose = poses_[i].pose;
+        const vectorlib::Transformation2D was(pose);
+        if (number != numbers.end() && *number == i) {
+            pose = poses[size_t(number - numbers.begin())];
+            moved = vectorlib::Transformation2D(pose) * was.inverse();
+            ++number;
+        } else {
+            pose = (moved * was).pose();
+        }
+    }
+}
+
 MapMessage MapMirror::message(bool cleared) const {
     return {revision_, cleared, {}, {}, qint64(edges_.size())};
 }

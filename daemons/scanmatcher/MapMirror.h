@@ -26,6 +26,10 @@ public:
 
     /// Takes the edges of another map over and forgets the trajectory; `other` has the old edges afterwards.
     void replace(Edges &other);
+    /// Takes the edges of the same map over, made anew, and where the scans of these numbers lie now; those
+    /// between and after them move with the one before.
+    void correct(Edges &other, const std::vector<quint64> &numbers,
+                 const std::vector<vectorlib::Pose2D> &poses);
     /// Takes the changes in and gives the data of the topic `map`.
     MapMessage apply(const MapChanges &changes);
     void addPose(const vectorlib::StampedPose &pose) { poses_.push_back(pose); }

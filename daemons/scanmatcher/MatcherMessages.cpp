@@ -69,7 +69,15 @@ const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
             .add("by_odometry", &S::byOdometry, "Scans whose pose was expected by odometry")
             .add("odometry", &S::odometry, "What comes as odometry")
             .add("ms_per_scan", &S::msPerScan, "Mean time to match one", "ms")
-            .add("map_segments", &S::mapSegments, "Edges of the map");
+            .add("map_segments", &S::mapSegments, "Edges of the map")
+            .add("key_scans", &S::keyScans, "Of the drive that is remembered to close loops")
+            .add("closures", &S::closures, "Loops closed")
+            .add("closures_tried", &S::closuresTried, "Pairs of key scans compared")
+            .add("corrections", &S::corrections, "Times that the map was made anew")
+            .add("loops_waiting", &S::loopsWaiting, "Scans not yet looked at for loops")
+            .add("loops_dropped", &S::loopsDropped,
+                 "Scans that the drive is remembered without, as too many waited")
+            .add("longest_stall_ms", &S::longestStallMs, "That matching waited for a map made anew", "ms");
     return fields;
 }
 

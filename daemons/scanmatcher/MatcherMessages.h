@@ -26,6 +26,9 @@ struct MatcherState {
     OdometryState odometry;
     double msPerScan = 0;
     quint64 mapSegments = 0;
+    quint64 keyScans = 0, closures = 0, closuresTried = 0, corrections = 0;
+    quint64 loopsWaiting = 0, loopsDropped = 0;
+    double longestStallMs = 0;
 };
 
 /// What matcher.match gives.

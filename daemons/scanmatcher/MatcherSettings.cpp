@@ -83,6 +83,12 @@ void ScanMatcher::declareSettings() {
                    .range(0, 1)
                    .byDefault(0.15)
                    .group("Matching"));
+    addSetting(Field::boolean(
+                   "matcher.close_loops",
+                   "Match scans of places that are met again, and make the map anew where the drive bent; "
+                   "only while the map grows")
+                   .byDefault(true)
+                   .group("Matching"));
     addSetting(Field::integer("matcher.relocalize_after",
                               "Lost scans in a row after which the whole map is searched; 0: never. "
                               "Only 1 and 2 act while the map grows")

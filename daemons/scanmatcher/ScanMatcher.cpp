@@ -46,8 +46,14 @@ ScanResult resultOf(const ScanTracker &tracker, const Scan &scan) {
     const vectorlib::Match &match = builder.match();
     ScanResult result;
     result.stamp = scan.data.stamp;
-    result.pose = {report.pose, tracker.motion().twist(), covariance(match), toText(report.outcome),
-                   scan.number};
+    result.pose.pose = report.pose;
+    result.pose.twist = tracker.motion().twist();
+    result.pose.covariance = covariance(match);
+    result.pose.outcome = toText(report.outcome);
+    result.pose.scan = scan.number;
+    result.pose.trust = tracker.trust();
+    if (const auto frame = tracker.odometryFrame())
+        result.pose.odometryFrame = frame->pose();
     result.match = {scan.number,
                     match.accepted,
                     {},
@@ -104,13 +110,27 @@ void ScanMatcher::declareTopics() {
                           "means that changes were missed: subscribe again or call map.get")
                  .carries<MapMessage>()
                  .snapshotParts([this](qint64 &cursor) { return mirror_.part(cursor); }));
+    addTopic(Topic("graph",
+                   "How the drive was put together: new key scans and the loops found with them. Begins "
+                   "with the whole graph, which comes again when the map was corrected")
+                 .carries<GraphMessage>()
+                 .snapshotParts([this](qint64 &cursor) { return graph_.part(cursor); }));
     addTopic(Topic("match", "How the last scan was matched").carries<MatchMessage>());
     addTopic(Topic("scan", "What pose, match and segments say of a scan, together").carries<ScanResult>());
 }
 
 Result<void> ScanMatcher::start() {
+    const auto correct = [this](const std::shared_ptr<Correction> &correction) {
+        worker_->post([this, correction](ScanTracker &tracker) { applyCorrection(tracker, correction); });
+    };
+    const auto grow = [this](const GraphMessage &more) {
+        QMetaObject::invokeMethod(this, [this, more] { showGraph(more); });
+    };
+    corrector_ = std::make_unique<MapCorrector>(correct, grow);
     worker_ = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
+        corrector_->add(tracker, scan.data.points);
         Outcome outcome = outcomeOf(tracker, scan);
+        outcome.result.pose.corrected = std::exchange(corrected_, false);
         outcome.recovery = tracker.recover();
         QMetaObject::invokeMethod(this, [this, outcome] { show(outcome); });
     });
@@ -126,6 +146,8 @@ Result<void> ScanMatcher::start() {
 void ScanMatcher::stop() {
     source_.close();
     odometry_.close();
+    if (corrector_)
+        corrector_->stop();
     worker_.reset();
     files_.waitForDone();
 }
@@ -134,11 +156,12 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
     if (!worker_)
         return;
     worker_->setQueueLimit(size_t(settings().integer("source.queue")));
-    worker_->post(
-        [s = trackerSettings(), sigma = settings().number("matcher.sigma_m")](ScanTracker &tracker) {
-            tracker.apply(s);
-            tracker.builder.extract.vectorize.settings.sigma = sigma;
-        });
+    worker_->post([this, s = trackerSettings(), sigma = settings().number("matcher.sigma_m"),
+                   closes = closesLoops()](ScanTracker &tracker) {
+        tracker.apply(s);
+        corrector_->follow(closes, tracker);
+        tracker.builder.extract.vectorize.settings.sigma = sigma;
+    });
     if (active_ && !paths.filter("source.").isEmpty())
         connectToSource();
     if (active_ && !paths.filter("odometry.").isEmpty())
@@ -147,7 +170,10 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
 
 void ScanMatcher::begin(bool toMap) {
     mapping_ = toMap;
-    worker_->post([toMap](ScanTracker &tracker) { tracker.builder.settings.grow = toMap; });
+    worker_->post([this, toMap, closes = closesLoops()](ScanTracker &tracker) {
+        tracker.builder.settings.grow = toMap;
+        corrector_->follow(closes, tracker);
+    });
     active_ = true;
     connectToSource();
     connectToOdometry();
@@ -231,6 +257,38 @@ void ScanMatcher::show(const Outcome &o) {
         showRecovery(*o.recovery);
 }
 
+bool ScanMatcher::closesLoops() {
+    return mapping_ && settings().flag("matcher.close_loops");
+}
+
+void ScanMatcher::applyCorrection(ScanTracker &tracker, const std::shared_ptr<Correction> &correction) {
+    if (!corrector_->apply(tracker, *correction))
+        return corrector_->dispose(correction);
+    corrected_ = true;
+    QMetaObject::invokeMethod(this, [this, correction, since = takeChanges(tracker.builder.map)] {
+        showCorrection(correction, since);
+    });
+}
+
+void ScanMatcher::showCorrection(const std::shared_ptr<Correction> &correction, const MapChanges &since) {
+    logInfo(
+        "loops",
+        QString("the map was made anew; the drive moved by up to %1 m").arg(correction->farthest, 0, 'f', 2));
+    mirror_.correct(correction->edges, correction->numbers, correction->poses);
+    mirror_.apply(since);
+    graph_.replace(std::move(correction->graph));
+    publishSnapshot("map");
+    publishSnapshot("graph");
+    corrector_->dispose(correction);
+}
+
+void ScanMatcher::showGraph(GraphMessage more) {
+    if (!more.cleared)
+        return publish("graph", graph_.grow(std::move(more)));
+    graph_.replace(std::move(more));
+    publishSnapshot("graph");
+}
+
 void ScanMatcher::updateHealth() {
     const QString address = settings().text("source.address");
     if (!active_)
@@ -277,6 +335,14 @@ MatcherState ScanMatcher::matcherState() const {
     state.odometry = odometry_.state();
     state.msPerScan = counts_.totalMs() / std::max<double>(1, double(counts_.scans));
     state.mapSegments = mirror_.size();
+    const CorrectorState loops = corrector_ ? corrector_->state() : CorrectorState();
+    state.keyScans = loops.keys;
+    state.closures = loops.loops.closed;
+    state.closuresTried = loops.loops.tried;
+    state.corrections = loops.corrections;
+    state.loopsWaiting = loops.waiting;
+    state.loopsDropped = loops.dropped;
+    state.longestStallMs = loops.longestStallMs;
     return state;
 }
 

@@ -3,6 +3,8 @@
 #include "common/client/Client.h"
 #include "common/daemon/Daemon.h"
 #include "common/daemon/PastFaults.h"
+#include "daemons/scanmatcher/GraphMirror.h"
+#include "daemons/scanmatcher/MapCorrector.h"
 #include "daemons/scanmatcher/MapFile.h"
 #include "daemons/scanmatcher/MapMirror.h"
 #include "daemons/scanmatcher/OdometrySource.h"
@@ -51,6 +53,10 @@ private:
     void pause();
     static Outcome outcomeOf(vectorlib::ScanTracker &tracker, const Scan &scan);
     void show(const Outcome &outcome);
+    bool closesLoops();
+    void applyCorrection(vectorlib::ScanTracker &tracker, const std::shared_ptr<Correction> &correction);
+    void showCorrection(const std::shared_ptr<Correction> &correction, const MapChanges &since);
+    void showGraph(GraphMessage more);
     void relocalize(bool apply, const Reply &reply);
     void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
@@ -67,12 +73,15 @@ private:
     std::atomic<int> filesUnderWay_{0};
     QThreadPool files_; ///< one thread, which writes maps: a disk may take its time
     std::unique_ptr<Worker> worker_;
+    std::unique_ptr<MapCorrector> corrector_;
+    bool corrected_ = false; ///< since the last scan; the worker's
     Client source_;
     int subscription_ = 0;
     OdometrySource odometry_;
     bool active_ = false;
     bool mapping_ = true; ///< the map grows; else it stays as it is
     MapMirror mirror_;
+    GraphMirror graph_;
     vectorlib::ScanTrackerCounts counts_;
     int lostInARow_ = 0;
     bool relocalizing_ = false; ///< for a command

@@ -80,7 +80,8 @@ public:
             last_.assign(points.begin(), points.end());
         }
     }
-    /// Whether a loop says that the poses are wrong.
+    /// Whether a loop says that the poses are wrong, and whether it is time to move them.
+    bool hasNews() const { return news_; }
     bool isDue() const {
         const auto few = static_cast<std::size_t>(settings.fewPart * double(keys_.size()));
         return news_ && keys_.size() - corrected_ >= std::max(settings.fewKeys, few);
@@ -100,7 +101,7 @@ public:
             enter(k);
         return true;
     }
-    /// As of the last correction; of what was found since then nothing is closed.
+    /// Loops found since the last correction count as closed.
     LoopCounts counts() const {
         LoopCounts counts = counts_;
         counts.refused = counts.tried - counts.closed;
@@ -276,6 +277,7 @@ private:
         const Eigen::Vector3d off = graph_.errorOf(c);
         news_ = news_ || off.head<2>().norm() > settings.newsXY || std::abs(off[2]) > settings.newsAlpha;
         found_ = true;
+        ++counts_.closed;
         graph_.constraints.push_back(c);
     }
     // Where rooms are alike, loops that are off by the same way agree with each other: each has to agree with

@@ -83,27 +83,32 @@ public:
             remember(scan);
         else
             forgetPrevious();
-        if (sure)
+        const bool isWelcome =
+            report_.outcome == ScanReport::Outcome::Matched ||
+            (report_.outcome == ScanReport::Outcome::Lost && lost_ >= settings.lostBeforeRestart);
+        if (sure && settings.grow && isWelcome)
             updateMap();
         report_.mapMs = milliseconds(begin, Clock::now());
         return report_;
     }
 
     /// The map takes edges (sensor frame) that were seen from a pose that is known otherwise; it stays as it
-    /// is told.
+    /// is told, and so does what is known of the last scan but for match() and its candidates.
     void place(const std::vector<EdgeRaw2D> &edges, const Pose2D &pose) {
         constexpr double sure = 1e-3; // metres, radians
         const TrackingSettings usual = track.settings;
         track.settings.expectedDeviationXY = track.settings.expectedDeviationAlpha = sure;
-        edges_ = &edges;
+        const std::vector<EdgeRaw2D> *const last = std::exchange(edges_, &edges);
+        const Transformation2D lastPose = pose_;
+        const ScanReport lastReport = report_;
         locate(Transformation2D(pose));
         track.settings = usual;
         pose_ = Transformation2D(pose);
-        report_.pose = pose;
-        concluded_ = true;
-        lost_ = settings.lostBeforeRestart; // where nothing matches there was nothing before
-        updateMap();
-        forgetPrevious();
+        if (report_.outcome != ScanReport::Outcome::Skipped)
+            updateMap();
+        edges_ = last;
+        pose_ = lastPose;
+        report_ = lastReport;
     }
 
     const ScanReport &report() const { return report_; }
@@ -191,9 +196,6 @@ private:
         }
     }
     void updateMap() {
-        if (!settings.grow || report_.outcome == ScanReport::Outcome::Skipped ||
-            (report_.outcome == ScanReport::Outcome::Lost && lost_ < settings.lostBeforeRestart))
-            return;
         partner_.assign(edges_->size(), -1);
         if (report_.outcome == ScanReport::Outcome::Matched)
             for (const CorrespondencePair &p : match_.pairs)

@@ -128,6 +128,14 @@ public:
                : byOdometry_                ? TrackedBy::Odometry
                                             : TrackedBy::Nothing;
     }
+    /// How far to trust the pose of the last scan, 0 to 1.
+    double trust() const {
+        const Match &m = builder.match();
+        if (builder.report().outcome != ScanReport::Outcome::Matched || !(m.visibleLength > 0))
+            return 0;
+        const double apart = m.rms / builder.track.settings.finalDistance;
+        return std::clamp(m.matchedLength / m.visibleLength * (1 - apart * apart), 0.0, 1.0);
+    }
     /// The frame of the odometry in that of the map, by the last scan that had any.
     std::optional<Transformation2D> odometryFrame() const { return odometry_.frame(); }
     /// Whether the last scan is straight; else it is in doubt and stays out of the map.

@@ -1,0 +1,292 @@
+#include "daemons/scanmatcher/MapCorrector.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace hermes::scanmatcher {
+
+using vectorlib::PoseConstraint;
+using vectorlib::ScanTracker;
+using vectorlib::Transformation2D;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr quint64 mostWaiting = 1000;               // scans
+constexpr std::chrono::milliseconds pause(500);     // without a scan, after which all news count
+constexpr double least_m = 0.01, least_rad = 0.003; // by which a pose must move to be worth a new map
+constexpr quint64 fewLeft = 2;                      // scans that the matching places itself
+constexpr int mostRounds = 20;                      // in which the thread catches up
+
+} // namespace
+
+MapCorrector::MapCorrector(Corrected corrected, Grown grown)
+    : corrected_(std::move(corrected))
+    , grown_(std::move(grown))
+    , thread_([this] { run(); }) {}
+
+void MapCorrector::stop() {
+    {
+        const std::lock_guard lock(mutex_);
+        ending_ = true;
+    }
+    wake_.notify_all();
+    if (thread_.joinable())
+        thread_.join();
+}
+
+void MapCorrector::follow(bool follows, const ScanTracker &tracker) {
+    if (std::exchange(follows_, follows) != follows && follows)
+        restart(tracker);
+}
+
+void MapCorrector::restart(const ScanTracker &tracker) {
+    {
+        const std::lock_guard lock(mutex_);
+        ++drive_;
+        taken_ = 0;
+    }
+    added_ = 0;
+    pose_.reset();
+    leftOut_.reset();
+    pending_.clear();
+    Item item;
+    item.drive = drive_;
+    tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { item.known.push_back(edge); });
+    push(std::move(item));
+}
+
+void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points) {
+    if (!follows_)
+        return;
+    const Transformation2D pose(tracker.builder.report().pose);
+    Seen seen;
+    seen.number = tracker.counts().scans - 1;
+    seen.motion = pose_ ? pose_->inverse() * pose : pose;
+    seen.by = tracker.trackedBy();
+    seen.trust = tracker.trust();
+    pose_ = pose;
+    if (leftOut_) {
+        seen.motion = leftOut_->motion * seen.motion;
+        seen.by = std::max(seen.by, leftOut_->by);
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        if (state_.waiting >= mostWaiting) {
+            ++state_.dropped;
+            leftOut_ = std::move(seen);
+            return;
+        }
+        ++state_.waiting;
+        while (!pending_.empty() && added_ - pending_.size() < taken_)
+            pending_.pop_front();
+    }
+    leftOut_.reset();
+    seen.points = points;
+    if (tracker.isStraight())
+        seen.edges = tracker.builder.edges();
+    ++added_;
+    Item item;
+    item.drive = drive_;
+    item.scan = std::make_shared<const Seen>(std::move(seen));
+    pending_.push_back({item.scan, pose});
+    push(std::move(item));
+}
+
+bool MapCorrector::apply(ScanTracker &tracker, Correction &correction) {
+    const auto begin = Clock::now();
+    const bool isOfThisDrive = correction.drive == drive_ && pose_;
+    if (isOfThisDrive) {
+        tracker.correct(correction.map, correction.moved);
+        pose_ = correction.moved * *pose_;
+        while (!pending_.empty() && added_ - pending_.size() < correction.scans)
+            pending_.pop_front();
+        for (Pending &p : pending_) {
+            p.pose = correction.moved * p.pose;
+            tracker.builder.place(p.scan->edges, p.pose.pose());
+        }
+    }
+    const std::chrono::duration<double, std::milli> stall = Clock::now() - begin;
+    {
+        const std::lock_guard lock(mutex_);
+        isHandedOver_ = false;
+        state_.corrections += isOfThisDrive;
+        state_.longestStallMs = std::max(state_.longestStallMs, stall.count());
+    }
+    wake_.notify_all();
+    return isOfThisDrive;
+}
+
+void MapCorrector::dispose(std::shared_ptr<Correction> old) {
+    Item item;
+    item.old = std::move(old);
+    push(std::move(item));
+}
+
+CorrectorState MapCorrector::state() const {
+    const std::lock_guard lock(mutex_);
+    return state_;
+}
+
+void MapCorrector::push(Item item) {
+    {
+        const std::lock_guard lock(mutex_);
+        items_.push_back(std::move(item));
+    }
+    wake_.notify_all();
+}
+
+void MapCorrector::run() {
+    for (;;) {
+        const bool isQuiet = !wait();
+        {
+            const std::lock_guard lock(mutex_);
+            if (ending_)
+                return;
+        }
+        take();
+        if (memory_.loops.isDue() || (isQuiet && memory_.loops.hasNews()))
+            correct();
+        else
+            tellGrown();
+    }
+}
+
+// False where nothing came for a while.
+bool MapCorrector::wait() {
+    std::unique_lock lock(mutex_);
+    return wake_.wait_for(lock, pause, [this] { return ending_ || !items_.empty(); });
+}
+
+// What waits, and no more: a queue that fills meanwhile must not keep a correction from being made.
+void MapCorrector::take() {
+    std::size_t count;
+    {
+        const std::lock_guard lock(mutex_);
+        count = items_.size();
+    }
+    for (; count > 0; --count) {
+        Item item;
+        {
+            const std::lock_guard lock(mutex_);
+            if (ending_)
+                return;
+            item = std::move(items_.front());
+            items_.pop_front();
+        }
+        take(item);
+    }
+}
+
+void MapCorrector::take(const Item &item) {
+    if (item.old)
+        return;
+    if (!item.scan) {
+        memory_ = vectorlib::MappedDrive();
+        memory_.known = item.known;
+        remembered_ = item.drive;
+        numbers_.clear();
+        trust_.clear();
+        toldKeys_ = toldConstraints_ = 0;
+        grown_(graph(0, 0));
+        const std::lock_guard lock(mutex_);
+        state_.keys = 0;
+        state_.loops = {};
+        return;
+    }
+    const Seen &seen = *item.scan;
+    memory_.add(seen.points, seen.edges, seen.motion, seen.by);
+    numbers_.push_back(seen.number);
+    trust_.push_back(seen.trust);
+    const std::lock_guard lock(mutex_);
+    taken_ += item.drive == drive_;
+    --state_.waiting;
+    state_.keys = memory_.loops.graph().poses.size();
+    state_.loops = memory_.loops.counts();
+}
+
+void MapCorrector::correct() {
+    const std::vector<vectorlib::Pose2D> before = memory_.loops.graph().poses;
+    const std::size_t last = memory_.loops.scans() - 1;
+    const Transformation2D from(memory_.loops.pose(last));
+    if (!memory_.loops.correct())
+        return;
+    toldKeys_ = toldConstraints_ = 0; // weights are others
+    const auto c = std::make_shared<Correction>();
+    double turned = 0;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+        const vectorlib::Pose2D by = before[k].inverse() * memory_.loops.graph().poses[k];
+        c->farthest = std::max(c->farthest, std::hypot(by.x, by.y));
+        turned = std::max(turned, std::abs(by.theta));
+    }
+    c->moved = Transformation2D(memory_.loops.pose(last)) * from.inverse();
+    if (c->farthest < least_m && turned < least_rad) // poses that are in use differ from these by less
+        return tellGrown();
+    memory_.rebuild(builder_);
+    const quint64 drive = remembered_;
+    for (int round = 0; round < mostRounds; ++round) {
+        if (state().waiting <= fewLeft)
+            break;
+        const std::size_t known = memory_.loops.scans();
+        take();
+        if (remembered_ != drive)
+            return; // that drive is over
+        memory_.extend(builder_, known);
+    }
+    handOver(c);
+}
+
+void MapCorrector::handOver(std::shared_ptr<Correction> c) {
+    c->drive = remembered_;
+    c->scans = memory_.loops.scans();
+    builder_.map.takeChanges(); // all of it is new
+    std::swap(c->map, builder_.map);
+    builder_.clear();
+    c->map.forEach([&](const vectorlib::MapEdge &e) { c->edges.emplace_hint(c->edges.end(), e.id, e); });
+    c->numbers = numbers_;
+    c->poses = memory_.loops.poses();
+    c->graph = graph(0, 0);
+    toldKeys_ = c->graph.poses.size();
+    toldConstraints_ = memory_.loops.graph().constraints.size();
+    {
+        const std::lock_guard lock(mutex_);
+        if (ending_)
+            return;
+        isHandedOver_ = true;
+    }
+    corrected_(c);
+    c.reset();
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, [this] { return ending_ || !isHandedOver_; });
+}
+
+void MapCorrector::tellGrown() {
+    const vectorlib::PoseGraph &g = memory_.loops.graph();
+    if (g.poses.size() == toldKeys_ && g.constraints.size() == toldConstraints_)
+        return;
+    grown_(graph(toldKeys_, toldConstraints_));
+    toldKeys_ = g.poses.size();
+    toldConstraints_ = g.constraints.size();
+}
+
+GraphMessage MapCorrector::graph(std::size_t first, std::size_t constraint) const {
+    const vectorlib::PoseGraph &g = memory_.loops.graph();
+    GraphMessage message;
+    message.cleared = first == 0;
+    message.first = qint64(first);
+    message.size = qint64(g.poses.size());
+    for (std::size_t k = first; k < g.poses.size(); ++k) {
+        const vectorlib::Pose2D &p = g.poses[k];
+        message.poses.push_back({p.x, p.y, p.theta});
+        message.trust.push_back(trust_[memory_.loops.scanOf(k)]);
+    }
+    for (std::size_t i = constraint; i < g.constraints.size(); ++i) {
+        const PoseConstraint &c = g.constraints[i];
+        if (c.mayBeWrong)
+            message.loops.push_back({qint64(c.from), qint64(c.to), c.weight});
+    }
+    return message;
+}
+
+} // namespace hermes::scanmatcher

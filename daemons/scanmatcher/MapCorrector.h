@@ -1,0 +1,128 @@
+#pragma once
+
+#include "protocol/messages/DriveGraph.h"
+#include "vectorlib/graph/MappedDrive.h"
+#include "vectorlib/mapping/ScanTracker.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+namespace hermes::scanmatcher {
+
+/// A map that was made anew, as the drive came back to a place.
+struct Correction {
+    quint64 drive = 0;                          ///< the drive it is of
+    quint64 scans = 0;                          ///< of that drive, that it has
+    vectorlib::VectorMap map;                   ///< for the matching; the old one once it is applied
+    std::map<qint64, vectorlib::MapEdge> edges; ///< the same, for the main thread
+    std::vector<quint64> numbers;               ///< of the scans, since the map was begun
+    std::vector<vectorlib::Pose2D> poses;       ///< of these scans
+    vectorlib::Transformation2D moved;          ///< where the frame of the last pose lies now
+    double farthest = 0;                        ///< that a pose was moved; metres
+    GraphMessage graph;
+};
+
+/// How closing loops goes.
+struct CorrectorState {
+    vectorlib::LoopCounts loops;
+    quint64 keys = 0, corrections = 0, waiting = 0, dropped = 0;
+    double longestStallMs = 0; ///< that the matching waited for a correction
+};
+
+/// A thread that remembers the drive, closes its loops and makes the map anew while the matching goes on.
+/// Scans wait in a bounded queue; one that finds it full leaves its motion to the next and is counted.
+class MapCorrector {
+public:
+    /// Both are called in its thread. After a correction was told it rests until apply() was called.
+    using Corrected = std::function<void(std::shared_ptr<Correction>)>;
+    using Grown = std::function<void(const GraphMessage &)>;
+
+    MapCorrector(Corrected corrected, Grown grown);
+    ~MapCorrector() { stop(); }
+    /// Ends the thread; nothing is told from then on.
+    void stop();
+
+    // In the matching's thread.
+
+    /// Whether the scans that come are part of a drive. A drive begins in the tracker's map.
+    void follow(bool follows, const vectorlib::ScanTracker &tracker);
+    /// The map is another one: what was remembered belongs to the old one.
+    void restart(const vectorlib::ScanTracker &tracker);
+    /// The scan that the tracker took last.
+    void add(const vectorlib::ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points);
+    /// The tracker gets the map and goes on where it lies in it. False: it is of another drive, and nothing
+    /// happened.
+    bool apply(vectorlib::ScanTracker &tracker, Correction &correction);
+
+    // In any thread.
+
+    /// Frees what may take its time.
+    void dispose(std::shared_ptr<Correction> old);
+    CorrectorState state() const;
+
+private:
+    struct Seen {
+        quint64 number = 0; // of the scan, since the map was begun
+        std::vector<vectorlib::Vector2D<float>> points;
+        std::vector<vectorlib::EdgeRaw2D> edges;
+        vectorlib::Transformation2D motion; // since the scan before; the pose of the first
+        vectorlib::TrackedBy by = vectorlib::TrackedBy::Map;
+        double trust = 0;
+    };
+    struct Item {
+        quint64 drive = 0;
+        std::shared_ptr<const Seen> scan;      // of that drive; else the drive begins,
+        std::vector<vectorlib::MapEdge> known; // in this map;
+        std::shared_ptr<Correction> old;       // or this is to be freed
+    };
+    struct Pending {
+        std::shared_ptr<const Seen> scan;
+        vectorlib::Transformation2D pose;
+    };
+
+    void push(Item item);
+    void run();
+    bool wait();
+    void take();
+    void take(const Item &item);
+    void correct();
+    void tellGrown();
+    GraphMessage graph(std::size_t first, std::size_t constraint) const;
+    void handOver(std::shared_ptr<Correction> correction);
+
+    const Corrected corrected_;
+    const Grown grown_;
+
+    // Of the matching's thread:
+    bool follows_ = false;
+    quint64 added_ = 0;                               // scans of it
+    std::optional<vectorlib::Transformation2D> pose_; // of the last scan
+    std::optional<Seen> leftOut_;                     // motions that have no scan, as the queue was full
+    std::deque<Pending> pending_;                     // the last scans, which a correction may lack
+
+    // Of its own thread:
+    vectorlib::MappedDrive memory_;
+    vectorlib::MapBuilder builder_;
+    quint64 remembered_ = 0; // the drive that is remembered
+    std::vector<quint64> numbers_;
+    std::vector<double> trust_;
+    std::size_t toldKeys_ = 0, toldConstraints_ = 0;
+
+    mutable std::mutex mutex_;
+    std::condition_variable wake_;
+    std::deque<Item> items_;
+    CorrectorState state_;
+    quint64 drive_ = 0;         // the one under way; only the matching's thread begins one
+    quint64 taken_ = 0;         // its scans that this thread has
+    bool isHandedOver_ = false; // a correction that is not applied yet
+    bool ending_ = false;
+    std::thread thread_;
+};
+
+} // namespace hermes::scanmatcher
