@@ -11,8 +11,8 @@ using vectorlib::TrackedBy;
 using vectorlib::Transformation2D;
 
 void MapRun::take(MapScan &scan) {
-    if (scan.partial) {
-        ++partial_;
+    if (scan.fault != MapScan::Fault::None) {
+        ++leftOut_;
         return;
     }
     // A reference gives the map its frame, by the first pose, and nothing else.
@@ -62,8 +62,8 @@ nlohmann::ordered_json MapRun::summary() const {
     const vectorlib::ScanTrackerCounts &counts = tracker.counts();
     const double scans = std::max<double>(1, double(counts.scans));
     nlohmann::ordered_json json;
-    json["scans"] = counts.scans + partial_;
-    json["skipped"] = counts.skipped + partial_;
+    json["scans"] = counts.scans + leftOut_;
+    json["skipped"] = counts.skipped + leftOut_;
     json["matched"] = counts.matched;
     json["lost"] = counts.lost;
     json["closures"] = closures_.closed;

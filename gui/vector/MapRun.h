@@ -15,7 +15,7 @@ public:
     vectorlib::ScanTracker tracker;
     bool closesLoops = true;
 
-    /// A partial scan is counted and left out.
+    /// A scan with a fault is counted and left out.
     void take(MapScan &scan);
     /// After the last scan: closes loops, unless it is told not to, and makes the map anew from all edges
     /// where that moved the poses. `progress` is told how many of how many scans are done.
@@ -40,7 +40,7 @@ private:
     std::vector<std::vector<vectorlib::EdgeRaw2D>> edges_; // of each scan, sensor frame; none of one in doubt
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
-    std::size_t partial_ = 0;
+    std::size_t leftOut_ = 0;
 };
 
 } // namespace hermes::vector
