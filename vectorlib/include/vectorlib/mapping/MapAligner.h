@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/mapping/MapOverlap.h"
+#include "vectorlib/mapping/MapRegistration.h"
 #include "vectorlib/observation/Observer.h"
 #include "vectorlib/places/PlaceSearch.h"
 
@@ -53,7 +53,7 @@ public:
         result.outcome = MapAlignment::Outcome::Ambiguous;
         if (2 * result.rival >= result.agree)
             return result;
-        result.overlap = registration(fixed, moving, votes_[best].motion);
+        result.overlap = registration(fixed, moving, motionOfAll(votes_[best]));
         result.against = countContradictions(result.overlap.motion);
         const bool isContradicted = 2 * result.against >= result.agree;
         result.outcome = isContradicted ? MapAlignment::Outcome::Contradicted : MapAlignment::Outcome::Found;
@@ -150,6 +150,28 @@ private:
             if (!agree(votes_[best], vote))
                 result.rival = std::max(result.rival, count(vote, &votes_[best]));
         return best;
+    }
+    // Least squares over the places that agree with one: they lie apart, and tell the angle better than each.
+    Transformation2D motionOfAll(const Vote &best) const {
+        Vector2D<double> from, to;
+        double count = 0, sine = 0, cosine = 0;
+        const auto forEach = [&](auto take) {
+            for (const Vote &vote : votes_)
+                if (const Vector2D<double> p(vote.pose.x, vote.pose.y); agree(best, vote))
+                    take(p, vote.motion * p);
+        };
+        forEach([&](Vector2D<double> p, Vector2D<double> q) {
+            from += p;
+            to += q;
+            ++count;
+        });
+        from = from * (1 / count);
+        to = to * (1 / count);
+        forEach([&](Vector2D<double> p, Vector2D<double> q) {
+            sine += (p - from).cross(q - to);
+            cosine += (p - from).dot(q - to);
+        });
+        return Transformation2D(to.x, to.y, std::atan2(sine, cosine)) * Transformation2D(-from.x, -from.y, 0);
     }
     // Places where the first map shows something else, and walls that would be looked through. Doors and
     // furniture move: places that agree, or where most is alike, are none.
