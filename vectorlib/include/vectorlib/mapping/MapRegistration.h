@@ -17,7 +17,7 @@ struct MapOverlap {
 /// and the motion follows from all pairs in closed form, step by step nearer.
 class MapRegistration {
 public:
-    double firstGate = 0.5, lastGate = 0.1;   ///< most distance of two walls, as maps bend; metres
+    double firstGate = 0.5, lastGate = 0.2;   ///< most distance of two walls, as maps bend; metres
     double firstTurn = 0.15, lastTurn = 0.05; ///< most angle between them; radians
     double leastOverlap = 0.2;                ///< of two walls; metres
     int steps = 16;
