@@ -31,7 +31,7 @@ _hermes_vector() {
     done
     help=$("$1" ${command:+"$command"} --help 2>/dev/null)
     if [[ -z $command ]]; then
-        names=$(sed -nE '1,/^Subcommands:/d; s/^  ([a-z]+) .*/\1/p' <<<"$help")
+        names=$(sed -nE '1,/^Subcommands:/d; s/^  ([a-z-]+) .*/\1/p' <<<"$help")
         _hermes_vector_words "$word" "$names --help --version"
         return
     fi

@@ -22,6 +22,15 @@ bool MapFile::isKnown(const std::string &path) {
     return std::find(extensions().begin(), extensions().end(), extension) != extensions().end();
 }
 
+CLI::Validator MapFile::knownName() {
+    const auto check = [](const std::string &path) {
+        return isKnown(path)
+                   ? std::string()
+                   : "found " + path + ", expected a name that ends with .csv, .svg, .geojson, .dxf or .pgm";
+    };
+    return {check, ""};
+}
+
 MapFile::MapFile(OutputSet &files, const std::string &path)
     : path_(path)
     , out_(&files.open(path)) {
@@ -46,6 +55,14 @@ void MapFile::write(const vectorlib::MapDrawing &map) {
         picture->writePgm(*out_);
         picture->writeYaml(*yaml_, std::filesystem::path(path_).filename().string());
     }
+}
+
+std::vector<vectorlib::MapEdge> loadMap(const std::string &path) {
+    Input input(path);
+    std::vector<vectorlib::MapEdge> map = valueOrFail(vectorlib::readMapCsv(input.stream(), input.name()));
+    if (map.empty())
+        throw Failure(input.name() + ": found a map without a wall, expected at least one");
+    return map;
 }
 
 } // namespace hermes::vector

@@ -20,8 +20,8 @@ double secondsSince(Clock::time_point begin) {
 } // namespace
 
 void MapRun::take(MapScan &scan) {
-    if (scan.partial) {
-        ++partial_;
+    if (scan.fault != MapScan::Fault::None) {
+        ++leftOut_;
         return;
     }
     // A reference gives the map its frame, by the first pose, and nothing else.
@@ -68,8 +68,8 @@ nlohmann::ordered_json MapRun::summary() const {
     const vectorlib::ScanTrackerCounts &counts = tracker.counts();
     const double scans = std::max<double>(1, double(counts.scans));
     nlohmann::ordered_json json;
-    json["scans"] = counts.scans + partial_;
-    json["skipped"] = counts.skipped + partial_;
+    json["scans"] = counts.scans + leftOut_;
+    json["skipped"] = counts.skipped + leftOut_;
     json["matched"] = counts.matched;
     json["lost"] = counts.lost;
     const vectorlib::LoopCounts loops = drive_.loops.counts();

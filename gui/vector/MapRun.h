@@ -15,7 +15,7 @@ public:
     vectorlib::ScanTracker tracker;
     bool closesLoops = true;
 
-    /// A partial scan is counted and left out.
+    /// A scan with a fault is counted and left out.
     void take(MapScan &scan);
     /// After the last scan: where loops were closed, moves the poses and makes the map anew from all edges.
     void finish();
@@ -37,7 +37,7 @@ private:
     double closeSeconds_ = 0;
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
-    std::size_t partial_ = 0;
+    std::size_t leftOut_ = 0;
 };
 
 } // namespace hermes::vector

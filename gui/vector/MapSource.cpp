@@ -3,7 +3,7 @@
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
 #include "gui/vector/Points.h"
-#include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/CarmenDrive.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,28 +16,23 @@ namespace fs = std::filesystem;
 
 MapSourceReport readLog(const MapSourceOptions &options, const MapScanSink &sink) {
     Input input(options.path);
-    vectorlib::CarmenOptions carmenOptions;
-    carmenOptions.skipDamaged = options.skipDamaged;
-    const vectorlib::CarmenLog log =
-        valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name(), carmenOptions));
     const auto kind =
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
+    const vectorlib::CarmenLog log =
+        valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name(), {options.skipDamaged, kind}));
     const std::size_t total = (log.scans.size() + options.every - 1) / options.every;
     MapScan scan;
-    vectorlib::Transformation2D robot; // by odometry, since its last gap
-    std::uint64_t epoch = 0;
-    for (std::size_t i = 0; i < log.scans.size(); i += options.every) {
+    vectorlib::CarmenDrive drive(log, kind);
+    for (std::size_t i = 0; i < log.scans.size(); ++i) {
+        drive.advance();
+        if (i % options.every != 0)
+            continue;
         const vectorlib::CarmenScan &source = log.scans[i];
         scan.points.clear();
         source.appendPoints(scan.points);
         scan.stamp = source.stamp;
-        const auto motion = i > 0 ? log.odometryMotion(i - options.every, i, kind) : std::nullopt;
-        if (motion)
-            robot = robot * *motion;
-        else
-            ++epoch;
-        scan.odometry.emplace(epoch,
-                              std::vector<vectorlib::OdometrySample>{{source.stamp, robot.pose(), {}, {}}});
+        scan.odometry = drive.odometry();
+        scan.fault = drive.isRepeated() ? MapScan::Fault::Repeated : MapScan::Fault::None;
         if (options.corrected)
             scan.reference = source.laserPose;
         scan.rays = source.ranges.size();
@@ -47,6 +42,8 @@ MapSourceReport readLog(const MapSourceOptions &options, const MapScanSink &sink
     }
     MapSourceReport report;
     report.damagedLines = log.damaged;
+    report.odometryRefused = log.odometryRefused;
+    report.odometryLeaps = drive.leaps();
     if (log.firstDamage)
         report.firstDamage = log.firstDamage->message();
     return report;
@@ -63,7 +60,7 @@ void takeTurn(const velodyne::Turn &turn, MapScan &scan) {
     }
     scan.stamp = double(turn.begin_ns) * 1e-9;
     scan.rays = turn.firings;
-    scan.partial = turn.partial;
+    scan.fault = turn.partial ? MapScan::Fault::Partial : MapScan::Fault::None;
 }
 
 MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &sink) {
@@ -93,6 +90,7 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
     scan.closed = !options.open;
     for (std::size_t i = 0; i < names.size(); i += options.every) {
         scan.points.clear();
+        scan.fault = MapScan::Fault::None;
         for (const auto &p : loadPoints(names[i]))
             scan.points.emplace_back(p);
         scan.stamp = double(i / options.every);
@@ -101,13 +99,61 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
     return {};
 }
 
-} // namespace
-
-MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink &sink) {
+MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
     std::error_code ignored;
     if (fs::is_directory(options.path, ignored))
         return readFolder(options, sink);
     return isCapture(options.path) ? readCapture(options, sink) : readLog(options, sink);
+}
+
+} // namespace
+
+MapSourceReport readMapScans(const MapSourceOptions &options, const MapScanSink &sink) {
+    using Fault = MapScan::Fault;
+    std::size_t repeated = 0, empty = 0, stampsBack = 0;
+    std::optional<double> last;
+    MapSourceReport report = readAny(options, [&](MapScan &scan, std::size_t number, std::size_t total) {
+        if (scan.fault == Fault::None && scan.points.empty())
+            scan.fault = Fault::Empty;
+        repeated += scan.fault == Fault::Repeated;
+        empty += scan.fault == Fault::Empty;
+        if (scan.fault != Fault::Repeated) {
+            stampsBack += last && scan.stamp < *last;
+            last = scan.stamp;
+        }
+        sink(scan, number, total);
+    });
+    report.repeated = repeated;
+    report.empty = empty;
+    report.stampsBack = stampsBack;
+    return report;
+}
+
+nlohmann::ordered_json MapSourceReport::summary() const {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const auto &[key, count] :
+         {std::pair("damaged_lines", damagedLines), std::pair("duplicated", repeated),
+          std::pair("empty", empty), std::pair("stamps_back", stampsBack),
+          std::pair("odometry_refused", odometryRefused), std::pair("odometry_leaps", odometryLeaps)})
+        if (count > 0)
+            json[key] = count;
+    return json;
+}
+
+void MapSourceReport::warn(std::ostream &out) const {
+    const auto tell = [&out](std::size_t count, const std::string &text) {
+        if (count > 0)
+            out << "hermes-vector: " << count << ' ' << text << '\n';
+    };
+    tell(damagedLines, "damaged line(s) left out, the first: " + firstDamage);
+    tell(repeated, "scan(s) left out that repeat one shortly before, stamp and ranges");
+    tell(empty, "scan(s) left out in which no ray has a return");
+    tell(stampsBack,
+         "scan(s) have a stamp before that of the last one: they are taken in the order of the log");
+    tell(odometryRefused, "pose(s) of the odometry refused: expected finite numbers below 1e7");
+    tell(odometryLeaps, "motion(s) of the odometry refused: no robot drives or turns that fast");
+    if (!otherSensors.empty())
+        out << "hermes-vector: " << otherSensors << '\n';
 }
 
 } // namespace hermes::vector

@@ -3,6 +3,8 @@
 #include "gui/vector/LidarCapture.h"
 #include "vectorlib/mapping/TimedScan.h"
 
+#include <nlohmann/json.hpp>
+
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,7 +15,13 @@ namespace hermes::vector {
 /// One scan on its way into a map.
 struct MapScan : vectorlib::TimedScan {
     std::optional<vectorlib::Pose2D> reference; ///< the true pose as far as it is known
-    bool partial = false;                       ///< too little of a turn to be used
+    enum class Fault {
+        None,
+        Partial,  ///< too little of a turn
+        Repeated, ///< the stamp and the ranges of a scan shortly before
+        Empty     ///< no ray had a return
+    };
+    Fault fault = Fault::None; ///< why it is not to be used
 };
 
 /// What is read and how.
@@ -31,6 +39,14 @@ struct MapSourceReport {
     std::size_t damagedLines = 0;
     std::string firstDamage;
     std::string otherSensors; ///< a message about those in a capture that were not read, or nothing
+    std::size_t repeated = 0, empty = 0;                ///< scans
+    std::size_t stampsBack = 0;                         ///< scans with a stamp before the last one's
+    std::size_t odometryRefused = 0, odometryLeaps = 0; ///< poses, and motions between scans
+
+    /// For the summary: what there was none of is left out.
+    nlohmann::ordered_json summary() const;
+    /// The same for people, a line each.
+    void warn(std::ostream &out) const;
 };
 
 /// Takes a scan, which it may alter, how many were delivered before it and how many there are in all (0 when

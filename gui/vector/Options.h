@@ -57,6 +57,7 @@ void addSimilarityCommand(CLI::App &app);
 void addObserveCommand(CLI::App &app);
 void addExperimentCommand(CLI::App &app);
 void addMapCommand(CLI::App &app);
+void addMapMergeCommand(CLI::App &app);
 void addMatchCommand(CLI::App &app);
 void addReportCommand(CLI::App &app);
 void addRelocalizeCommand(CLI::App &app);

@@ -1,5 +1,7 @@
 #include "gui/vector/Progress.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <unistd.h>
@@ -9,7 +11,8 @@ namespace hermes::vector {
 Progress::Progress(std::string what)
     : what_(std::move(what))
     , terminal_(isatty(STDERR_FILENO) != 0)
-    , next_(std::chrono::steady_clock::now() + std::chrono::seconds(1)) {}
+    , begin_(std::chrono::steady_clock::now())
+    , next_(begin_ + std::chrono::seconds(1)) {}
 
 Progress::~Progress() {
     if (shown_)
@@ -23,10 +26,12 @@ void Progress::update(std::size_t done, std::size_t total) {
         return;
     next_ = now + 100ms;
     shown_ = true;
-    if (total > 0)
-        std::fprintf(stderr, "\r\033[K%s %zu of %zu (%zu %%)", what_.c_str(), done, total,
-                     100 * done / total);
-    else
+    if (total > 0 && done > 0) {
+        const double spent = std::chrono::duration<double>(now - begin_).count();
+        std::fprintf(stderr, "\r\033[K%s %zu of %zu (%zu %%), %.0f s left", what_.c_str(), done, total,
+                     100 * done / total,
+                     std::ceil(spent * double(total - std::min(done, total)) / double(done)));
+    } else
         std::fprintf(stderr, "\r\033[K%s %zu", what_.c_str(), done);
     std::fflush(stderr);
 }

@@ -6,8 +6,8 @@
 
 namespace hermes::vector {
 
-/// One line on stderr that says how far work has come which takes longer than a second; silent when stderr is
-/// no terminal.
+/// One line on stderr that says how far work has come which takes longer than a second, and how long the rest
+/// takes at this pace; silent when stderr is no terminal.
 class Progress {
 public:
     explicit Progress(std::string what);
@@ -20,6 +20,7 @@ private:
     std::string what_;
     bool terminal_;
     bool shown_ = false;
+    std::chrono::steady_clock::time_point begin_;
     std::chrono::steady_clock::time_point next_; ///< when it is told again
 };
 

@@ -27,6 +27,7 @@ int main(int argc, char **argv) {
     addRelocalizeCommand(app);
     addObserveCommand(app);
     addMapCommand(app);
+    addMapMergeCommand(app);
     addEvaluateCommand(app);
     addRingCommand(app);
     addExperimentCommand(app);

@@ -16,6 +16,9 @@ enum class CarmenOdometryKind {
 
 struct CarmenOptions {
     bool skipDamaged = false; ///< count damaged lines instead of giving an error
+    /// Count poses of the odometry that are no finite numbers below 1e7 m, of such a log, instead of giving
+    /// an error: a scan is kept without them.
+    std::optional<CarmenOdometryKind> refusesOdometry;
 };
 
 /// A robot's log in CARMEN's text format.
@@ -24,13 +27,16 @@ struct CarmenLog {
     std::vector<CarmenOdometry> odometry;
     std::size_t damaged = 0;               ///< lines left out, with CarmenOptions::skipDamaged only
     std::optional<InputError> firstDamage; ///< the first of them
+    std::size_t odometryRefused = 0;       ///< poses, with CarmenOptions::refusesOdometry only
 
     /// Motion of the robot from one scan to a later one as its odometry tells it, composed over the scans
     /// between. Nothing when a part of the way has no odometry.
     std::optional<Transformation2D> odometryMotion(std::size_t from, std::size_t to,
                                                    CarmenOdometryKind kind) const {
-        if (kind == CarmenOdometryKind::Raw)
+        if (kind == CarmenOdometryKind::Raw && scans[from].hasOdometry && scans[to].hasOdometry)
             return Transformation2D(scans[from].robotPose).inverse() * Transformation2D(scans[to].robotPose);
+        if (kind == CarmenOdometryKind::Raw)
+            return std::nullopt;
         Transformation2D motion;
         for (std::size_t i = from + 1; i <= to; ++i) {
             if (!scans[i].wheelMotion)
@@ -121,7 +127,7 @@ private:
         if (fields_.size() < 10)
             return tooShort("ODOM", 10);
         if (const auto problem = readPose(1, odometry.pose))
-            return problem;
+            return refuse(problem);
         if (const auto problem = readField(7, "the time stamp", odometry.stamp))
             return problem;
         follow(odometry.pose);
@@ -198,10 +204,8 @@ private:
 
     Problem finish(CarmenScan &scan, std::size_t poses, std::size_t stamp) {
         scan.line = lines_.number();
-        for (const auto &[at, pose] :
-             {std::pair(poses, &scan.laserPose), std::pair(poses + 3, &scan.robotPose)})
-            if (const auto problem = readPose(at, *pose))
-                return problem;
+        if (const auto problem = readPosesOfScan(poses, scan))
+            return problem;
         if (const auto problem = readField(stamp, "the time stamp", scan.stamp))
             return problem;
         // A single ODOM that repeats the pose of the scan before it tells nothing: the wheels were not asked
@@ -215,6 +219,28 @@ private:
         last_.reset();
         follows_ = 0;
         log_.scans.push_back(std::move(scan));
+        return {};
+    }
+
+    Problem readPosesOfScan(std::size_t at, CarmenScan &scan) {
+        Problem problem = readPose(at, scan.laserPose);
+        if (problem && options_.refusesOdometry == CarmenOdometryKind::Corrected)
+            return problem; // the reference
+        if (!problem)
+            problem = readPose(at + 3, scan.robotPose);
+        if (!problem)
+            return {};
+        scan.hasOdometry = false;
+        scan.robotPose = {};
+        if (options_.refusesOdometry == CarmenOdometryKind::Raw)
+            scan.laserPose = {};
+        return refuse(problem);
+    }
+    /// Nothing where it is counted only.
+    Problem refuse(const Problem &problem) {
+        if (!options_.refusesOdometry)
+            return problem;
+        ++log_.odometryRefused;
         return {};
     }
 
@@ -271,8 +297,8 @@ private:
 } // namespace detail
 
 /// The scans and the odometry of a CARMEN log. A line cut short, a field that is no finite number or binary
-/// data is an error that names `name` and the line (or is counted, with skipDamaged); so is a log without a
-/// scan.
+/// data is an error that names `name` and the line (or is counted, with skipDamaged or refusesOdometry); so
+/// is a log without a scan.
 inline Expected<CarmenLog> readCarmenLog(std::istream &in, std::string name, CarmenOptions options = {}) {
     return detail::CarmenReader(in, std::move(name), options).read();
 }

@@ -30,6 +30,7 @@ struct CarmenScan {
     /// corrected logs write it. Never holds this scan's own pose. Nothing when no ODOM line stands between
     /// that says more than the scan itself.
     std::optional<Transformation2D> wheelMotion;
+    bool hasOdometry = true; ///< robotPose is a pose; else it was refused (CarmenOptions::refusesOdometry)
 
     bool isReturn(std::size_t ray) const { return ranges[ray] > 0 && ranges[ray] < maxRange; }
     /// Appends the points of the rays with return, in the sensor's frame and in ray order.

@@ -164,8 +164,9 @@ private:
         double score = -1;                   // matched length less what lies apart, metres; below 0: lost
     };
 
-    // False when the scan is in doubt: it stays bent. Where the odometry bends or loses it, or leaps, the
-    // scan is sought where the motion so far leads, too, and the better place counts.
+    // False when the scan is in doubt: it stays bent. Where the odometry loses it, or bends it or leaps and
+    // its points have times, the scan is sought where the motion so far leads, too, and the better place
+    // counts.
     bool locate(TimedScan &scan, double begin, double end) {
         const Guess byMotion{motion_.predict(scan.stamp),
                              motion_.twist(),
@@ -181,8 +182,8 @@ private:
         byOdometry_ = false;
         isWellExpected_ = byMotion.well;
         Found found = find(scan, guess);
-        const bool doubtful = found.again || found.score < 0 || leaps(byMotion, guess, end - begin);
-        if (isStraightened(scan) && scan.odometry && doubtful) {
+        const bool doubtful = found.again || leaps(byMotion, guess, end - begin);
+        if (scan.odometry && (found.score < 0 || (isStraightened(scan) && doubtful))) {
             const Found other = find(scan, byMotion);
             const bool better = other.score > muchBetter * found.score || (other.straight && !found.straight);
             if (other.score > 0 && better)

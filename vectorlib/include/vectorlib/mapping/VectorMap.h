@@ -62,13 +62,13 @@ public:
     }
     /// Merges an edge (map frame) into the map's edge of that number; false, and nothing changed, when the
     /// points would no longer lie within maxSigma of one line, or another edge has taken that one in.
-    bool merge(int number, const EdgeRaw2D &edge) {
+    bool merge(int number, const EdgeRaw2D &edge, std::int64_t observations = 1) {
         MapEdge &target = edges_[static_cast<std::size_t>(number)];
         const EdgeRaw2D joint = merged(target, edge);
         if (target.observations == 0 || joint.sigma > settings.maxSigma)
             return false;
         static_cast<EdgeRaw2D &>(target) = joint;
-        ++target.observations;
+        target.observations += observations;
         grid_.insert(number, joint.segment);
         changed_.push_back(number);
         return true;

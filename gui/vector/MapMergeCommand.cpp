@@ -1,0 +1,133 @@
+#include "gui/vector/Failure.h"
+#include "gui/vector/MapFiles.h"
+#include "gui/vector/Options.h"
+#include "vectorlib/mapping/MapAligner.h"
+#include "vectorlib/mapping/MergeMap.h"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+#include <memory>
+
+namespace hermes::vector {
+
+namespace {
+
+using vectorlib::MapAlignment;
+
+class MapMergeCommand {
+public:
+    std::string first, second, at, out, summary;
+    bool force = false;
+
+    void run() const {
+        OutputSet files(force);
+        MapFile mapFile(files, out);
+        std::ostream &summaryFile = files.open(summary);
+        vectorlib::VectorMap map;
+        for (const vectorlib::MapEdge &edge : loadMap(first))
+            map.add(edge, edge.observations);
+        const std::vector<vectorlib::MapEdge> added = loadMap(second);
+
+        const MapAlignment found = at.empty() ? align(map, added) : refine(map, added);
+        const vectorlib::MapOverlap &overlap = found.overlap;
+        if (overlap.length < leastOverlap || overlap.reliability < leastReliability)
+            throw Failure(refused("walls of " + std::to_string(overlap.length) +
+                                  " m lie on each other with directions of reliability " +
+                                  std::to_string(overlap.reliability)) +
+                          ", expected at least 5 m and 0.02");
+        vectorlib::mergeMap(map, added, overlap.motion);
+        vectorlib::MapDrawing drawing;
+        drawing.title = first + " and " + second;
+        map.forEach([&](const vectorlib::MapEdge &edge) { drawing.segments.push_back(edge); });
+        mapFile.write(drawing);
+        nlohmann::ordered_json json = summaryOf(found, added);
+        json["segments"] = drawing.segments.size();
+        summaryFile << json.dump(2) << '\n';
+        files.commit();
+    }
+
+private:
+    static constexpr double leastOverlap = 5, leastReliability = 0.02; // metres, none
+
+    MapAlignment align(vectorlib::VectorMap &map, const std::vector<vectorlib::MapEdge> &added) const {
+        vectorlib::MapAligner aligner;
+        const MapAlignment found = aligner(map, added);
+        const auto count = [](std::size_t n) { return std::to_string(n); };
+        const std::string of = count(found.places) + " places of the second map ";
+        switch (found.outcome) {
+        case MapAlignment::Outcome::Found:
+            break;
+        case MapAlignment::Outcome::Nowhere:
+            throw Failure(refused("of " + of + count(found.found) + " were found in the first and " +
+                                  count(found.agree) + " agree, expected at least " +
+                                  count(aligner.leastAgree) + "; --at x,y,theta tells the motion"));
+        case MapAlignment::Outcome::Ambiguous:
+            throw Failure(refused("of " + of + count(found.agree) + " agree on one motion and " +
+                                  count(found.rival) +
+                                  " on another, expected less than half; --at x,y,theta tells the motion"));
+        case MapAlignment::Outcome::Contradicted:
+            throw Failure(refused("of " + of + count(found.agree) + " agree, but " + count(found.against) +
+                                  " would be looked at through walls of the first, expected less than half"));
+        }
+        return found;
+    }
+    MapAlignment refine(vectorlib::VectorMap &map, const std::vector<vectorlib::MapEdge> &added) const {
+        MapAlignment given;
+        given.outcome = MapAlignment::Outcome::Found;
+        given.overlap = vectorlib::MapRegistration()(map, added, vectorlib::Transformation2D(parsePose(at)));
+        return given;
+    }
+    std::string refused(const std::string &why) const {
+        return first + " and " + second + ": not joined: " + why;
+    }
+    nlohmann::ordered_json summaryOf(const MapAlignment &found,
+                                     const std::vector<vectorlib::MapEdge> &added) const {
+        const vectorlib::Pose2D motion = found.overlap.motion.pose();
+        double length = 0;
+        for (const vectorlib::MapEdge &edge : added)
+            length += edge.segment.length();
+        nlohmann::ordered_json json;
+        json["transformation"] = {{"x", motion.x}, {"y", motion.y}, {"theta", motion.theta}};
+        json["overlap_m"] = found.overlap.length;
+        json["overlap_share"] = found.overlap.length / std::max(1e-9, length);
+        json["residual_rms_m"] = found.overlap.rms;
+        json["reliability"] = found.overlap.reliability;
+        if (at.empty()) {
+            json["places"] = found.places;
+            json["places_found"] = found.found;
+            json["places_agree"] = found.agree;
+            json["places_rival"] = found.rival;
+            json["places_against"] = found.against;
+        }
+        return json;
+    }
+};
+
+} // namespace
+
+void addMapMergeCommand(CLI::App &app) {
+    auto command = std::make_shared<MapMergeCommand>();
+    CLI::App *sub = app.add_subcommand(
+        "map-merge", "Join two maps where they show the same place (the motion between them as JSON)");
+    sub->add_option("A", command->first, "A map (CSV by map --out-map); the result has its frame")
+        ->required();
+    sub->add_option("B", command->second, "The map that is moved onto it")->required();
+    sub->add_option("--out", command->out,
+                    "The map of both; its kind follows from the extension: csv, svg, geojson, dxf, pgm")
+        ->required()
+        ->check(MapFile::knownName())
+        ->type_name("FILE");
+    sub->add_option("--at", command->at,
+                    "Where B's frame lies in A's, about: within 0.5 m and 0.15 rad; not given: it is sought")
+        ->check(poseText())
+        ->type_name("X,Y,THETA");
+    sub->add_option("--summary", command->summary,
+                    "The motion and how sure it is; standard output when not given")
+        ->type_name("FILE");
+    sub->add_flag("--force", command->force, "Overwrite files that exist");
+    sub->footer(example("hermes-vector map-merge monday.csv tuesday.csv --out both.csv"));
+    sub->callback([command] { command->run(); });
+}
+
+} // namespace hermes::vector

@@ -1,0 +1,98 @@
+#include "gui/vector/MapOptions.h"
+
+#include "gui/vector/MapFiles.h"
+
+namespace hermes::vector {
+
+void MapOptions::addTo(CLI::App &command) {
+    addInput(command);
+    addFiles(command);
+    addWays(command);
+    command.footer(
+        example("hermes-vector map intel.log.gz --corrected --out-map intel.svg --out-trajectory intel.tum"));
+    const auto excludes = [&command](const char *option, std::initializer_list<const char *> others) {
+        for (const char *other : others)
+            command.get_option(option)->excludes(command.get_option(other));
+    };
+    excludes("--scan", {"--out-map", "--out-trajectory", "--out-graph", "--svg", "--odometry", "--loops",
+                        "--corrected", "--every", "--localize"});
+    excludes("--localize", {"--out-map", "--out-graph", "--loops"});
+}
+
+void MapOptions::addInput(CLI::App &command) {
+    command
+        .add_option("LOG", source.path,
+                    "CARMEN log, pcap of an " + velodyne::sensorNames() +
+                        ", or a folder of points files taken in name order")
+        ->required();
+    command
+        .add_option("--scan", onlyScan,
+                    "Build no map: write the points of scan N, from 0, as CSV x,y in its sensor's frame, for "
+                    "the commands that take one scan")
+        ->transform(wholeNumber(0, 1e9))
+        ->type_name("N");
+    command
+        .add_option(
+            "--localize", localize,
+            "Build no map: find the poses in this finished one (CSV by map --out-map), which does not "
+            "change")
+        ->type_name("FILE");
+}
+
+void MapOptions::addFiles(CLI::App &command) {
+    command
+        .add_option("--out-map", outMap,
+                    "The map; its kind follows from the extension: csv, svg, geojson, dxf, pgm")
+        ->check(MapFile::knownName())
+        ->type_name("FILE");
+    command
+        .add_option("--out-trajectory", outTrajectory,
+                    "The sensor's poses, TUM format: stamp x y z qx qy qz qw; a stamp that is not later than "
+                    "the one before is moved to a microsecond behind it")
+        ->type_name("FILE");
+    command
+        .add_option("--out-graph", outGraph, "The poses and the motions measured between them, g2o format")
+        ->type_name("FILE");
+    command
+        .add_option("--summary,--out", summary,
+                    "The summary, or the points of --scan; standard output when not given")
+        ->type_name("FILE");
+    command.add_option("--svg", svg, "Also draw a picture of map and trajectory")->type_name("FILE");
+}
+
+void MapOptions::addWays(CLI::App &command) {
+    command
+        .add_option("--odometry", odometry,
+                    "use: expect the motion that the log's odometry tells; ignore: expect "
+                    "the motion to go on as before")
+        ->check(CLI::IsMember({"use", "ignore"}))
+        ->type_name("HOW")
+        ->capture_default_str();
+    command
+        .add_option("--loops", loops,
+                    "close: match scans of places that were met again and bring the whole drive into one "
+                    "frame; leave: poses as they were tracked")
+        ->check(CLI::IsMember({"close", "leave"}))
+        ->type_name("HOW")
+        ->capture_default_str();
+    command.add_flag(
+        "--corrected", source.corrected,
+        "The log's scan poses are a corrected reference: odometry is taken from its ODOM lines only, and the "
+        "summary tells the error against the reference");
+    command.add_option("--every", source.every, "Take every N-th scan only")
+        ->transform(wholeNumber(1, 1e9))
+        ->type_name("N")
+        ->capture_default_str();
+    command.add_flag("--skip-damaged", source.skipDamaged,
+                     "Count damaged lines of a log and go on instead of stopping at the first");
+    source.sensor.addTo(command);
+    command.add_option("--sigma", sigma, "Largest standard deviation of points from their line, metres")
+        ->check(aboveZero())
+        ->type_name("M")
+        ->capture_default_str();
+    segment.addTo(command,
+                  "defaults by the scanner: 10, 0.05, 0.20, 15 for a dense one, else 5, 0.10, 0.60, 4");
+    command.add_flag("--force", force, "Overwrite files that exist");
+}
+
+} // namespace hermes::vector
