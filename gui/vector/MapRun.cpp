@@ -1,6 +1,7 @@
 #include "gui/vector/MapRun.h"
 
 #include "gui/vector/evaluation/MotionErrors.h"
+#include "vectorlib/mapping/WallIds.h"
 
 #include <algorithm>
 #include <chrono>
@@ -26,10 +27,10 @@ void MapRun::take(MapScan &scan) {
                    !tracker.isByOdometry() ? TrackedBy::Nothing
                    : isMatched             ? TrackedBy::Map
                                            : TrackedBy::Odometry);
-        edges_.emplace_back();
-        if (tracker.isStraight())
-            edges_.back() = tracker.builder.edges();
     }
+    edges_.emplace_back();
+    if (tracker.isStraight())
+        edges_.back() = tracker.builder.edges();
     if (scan.reference)
         reference_.push_back({scan.stamp, *scan.reference});
 }
@@ -41,15 +42,28 @@ void MapRun::finish(const std::function<void(std::size_t, std::size_t)> &progres
     closures_ = loops_.close(progress);
     if (closures_.closed > 0)
         rebuild();
-    closeSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const auto closed = std::chrono::steady_clock::now();
+    reviewed_ = vectorlib::MapReview()(tracker.builder.map, {edges_, poses()});
+    closeSeconds_ = std::chrono::duration<double>(closed - begin).count();
+    reviewSeconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - closed).count();
 }
 
 void MapRun::rebuild() {
+    vectorlib::WallIds ids;
+    ids.remember(tracker.builder.map, {edges_, poses()});
     tracker.builder.clear();
     for (std::size_t i = 0; i < trajectory_.size(); ++i) {
         trajectory_[i].pose = loops_.poses()[i];
         tracker.builder.place(edges_[i], trajectory_[i].pose);
     }
+    ids.keep(tracker.builder.map, {edges_, poses()});
+}
+
+std::vector<vectorlib::Pose2D> MapRun::poses() const {
+    std::vector<vectorlib::Pose2D> result;
+    for (const vectorlib::StampedPose &stamped : trajectory_)
+        result.push_back(stamped.pose);
+    return result;
 }
 
 std::vector<vectorlib::MapEdge> MapRun::segments() const {
@@ -74,9 +88,21 @@ nlohmann::ordered_json MapRun::summary() const {
                            {"match", counts.matchMs / scans},
                            {"map", counts.mapMs / scans}};
     json["closures_seconds"] = closeSeconds_;
+    if (closesLoops)
+        json["review"] = {{"merged", reviewed_.merged},   {"joined", reviewed_.joined},
+                          {"removed", reviewed_.removed}, {"cut", reviewed_.cut},
+                          {"corners", reviewed_.corners}, {"contradicted_m", reviewed_.contradicted},
+                          {"seconds", reviewSeconds_}};
+    json["parallel_twins"] = twins();
     if (reference_.size() > 1)
         json["reference"] = errors();
     return json;
+}
+
+nlohmann::ordered_json MapRun::twins() const {
+    vectorlib::ParallelTwins find;
+    const vectorlib::TwinShare found = find.share(tracker.builder.map, {edges_, poses()});
+    return {{"share", found.share()}, {"m", found.twins}, {"of_m", found.walls}, {"real_m", found.real}};
 }
 
 // Consecutive motions are compared, as errors of the past do not count twice then; the drift is what they add

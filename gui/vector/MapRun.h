@@ -3,6 +3,7 @@
 #include "gui/vector/MapSource.h"
 #include "vectorlib/graph/LoopCloser.h"
 #include "vectorlib/io/Tum.h"
+#include "vectorlib/mapping/MapReview.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
 #include <nlohmann/json.hpp>
@@ -17,8 +18,9 @@ public:
 
     /// A partial scan is counted and left out.
     void take(MapScan &scan);
-    /// After the last scan: closes loops, unless it is told not to, and makes the map anew from all edges
-    /// where that moved the poses. `progress` is told how many of how many scans are done.
+    /// After the last scan, unless it is told not to close loops: closes them, makes the map anew from all
+    /// edges where that moved the poses (a wall keeps its id), and reviews it. `progress` is told how many of
+    /// how many scans are done.
     void finish(const std::function<void(std::size_t, std::size_t)> &progress);
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
@@ -27,16 +29,20 @@ public:
     /// The poses and the motions between them; without poses when loops were not to be closed.
     const vectorlib::PoseGraph &graph() const { return loops_.graph(); }
     std::vector<vectorlib::MapEdge> segments() const;
-    /// Counts, milliseconds a scan and, with a reference, the errors against it.
+    /// Counts, milliseconds a scan, walls that are there twice and, with a reference, the errors against it.
     nlohmann::ordered_json summary() const;
 
 private:
     nlohmann::ordered_json errors() const;
+    nlohmann::ordered_json twins() const;
     void rebuild();
+    std::vector<vectorlib::Pose2D> poses() const;
 
     vectorlib::LoopCloser loops_;
     vectorlib::LoopCounts closures_;
     double closeSeconds_ = 0;
+    vectorlib::MapReviewCounts reviewed_;
+    double reviewSeconds_ = 0;
     std::vector<std::vector<vectorlib::EdgeRaw2D>> edges_; // of each scan, sensor frame; none of one in doubt
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
