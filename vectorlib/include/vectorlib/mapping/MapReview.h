@@ -12,11 +12,10 @@ struct MapReviewSettings {
     int fewestLater = 8;        ///< or that was seen through so often since it was seen last
     double unlikely = 1e-3;     ///< if that is so improbable by how often it was missed before
     double shortestGone = 0.35; ///< shorter parts of a wall stay; metres
-    double shortestLeft =
-        0.15;               ///< what is left of a wall between parts that leave, is at least so long; metres
-    double widestGap = 0.5; ///< walls on one line join over a gap that nothing was seen through; metres
-    double cornerReach = 0.10; ///< ends nearer to where two lines meet move there; metres
-    double leastCornerSine = 0.5;
+    double shortestLeft = 0.15; ///< shorter pieces between parts that leave, leave with them; metres
+    double widestGap = 0.5;     ///< walls on one line join over a gap that nothing was seen through; metres
+    double cornerReach = 0.10;  ///< ends nearer to where two lines meet move there; metres
+    double leastCornerSine = 0.5; ///< of the angle between these lines
 };
 
 /// What a review changed.
@@ -31,8 +30,8 @@ struct MapReviewCounts {
 
 /// Reviews a finished map by all scans of the drive that made it: walls that are there twice become one, what
 /// scans saw through leaves, pieces of one wall join, corners close. Poses stay, and lines too, but for those
-/// that take in others. Needs only the edges of the scans, no points; nothing of it is needed by the next
-/// scan.
+/// that take in others. Needs only the edges of the scans, no points; on a copy of the map it may run beside
+/// the drive.
 class MapReview {
 public:
     MapReviewSettings settings;

@@ -5,6 +5,7 @@
 #include "vectorlib/observation/Sector.h"
 
 #include <array>
+#include <utility>
 
 namespace vectorlib {
 
