@@ -1,6 +1,7 @@
 #include "gui/vector/MapRun.h"
 
 #include "gui/vector/evaluation/MotionErrors.h"
+#include "vectorlib/mapping/WallIds.h"
 
 #include <algorithm>
 #include <chrono>
@@ -48,14 +49,29 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
 }
 
 void MapRun::finish() {
+    if (!closesLoops)
+        return;
     const auto begin = Clock::now();
     drive_.loops.correct();
-    if (drive_.loops.counts().closed > 0) {
-        for (std::size_t i = 0; i < trajectory_.size(); ++i)
-            trajectory_[i].pose = drive_.loops.pose(i);
-        drive_.rebuild(tracker.builder);
-    }
+    if (drive_.loops.counts().closed > 0)
+        rebuild();
     closeSeconds_ += secondsSince(begin);
+    const auto closed = Clock::now();
+    reviewed_ = drive_.review(tracker.builder.map);
+    reviewSeconds_ = secondsSince(closed);
+}
+
+void MapRun::rebuild() {
+    vectorlib::WallIds ids;
+    std::vector<vectorlib::Pose2D> tracked;
+    for (const vectorlib::StampedPose &stamped : trajectory_)
+        tracked.push_back(stamped.pose);
+    ids.remember(tracker.builder.map, {drive_.edges(), tracked});
+    const std::vector<vectorlib::Pose2D> poses = drive_.loops.poses();
+    for (std::size_t i = 0; i < poses.size(); ++i)
+        trajectory_[i].pose = poses[i];
+    drive_.rebuild(tracker.builder);
+    ids.keep(tracker.builder.map, {drive_.edges(), poses});
 }
 
 std::vector<vectorlib::MapEdge> MapRun::segments() const {
@@ -81,9 +97,23 @@ nlohmann::ordered_json MapRun::summary() const {
                            {"match", counts.matchMs / scans},
                            {"map", counts.mapMs / scans}};
     json["closures_seconds"] = closeSeconds_;
+    if (closesLoops) {
+        json["review"] = {{"merged", reviewed_.merged},   {"joined", reviewed_.joined},
+                          {"removed", reviewed_.removed}, {"cut", reviewed_.cut},
+                          {"corners", reviewed_.corners}, {"contradicted_m", reviewed_.contradicted},
+                          {"seconds", reviewSeconds_}};
+        json["parallel_twins"] = twins();
+    }
     if (reference_.size() > 1)
         json["reference"] = errors();
     return json;
+}
+
+nlohmann::ordered_json MapRun::twins() const {
+    const std::vector<vectorlib::Pose2D> poses = drive_.loops.poses();
+    vectorlib::ParallelTwins find;
+    const vectorlib::TwinShare found = find.share(tracker.builder.map, {drive_.edges(), poses});
+    return {{"share", found.share()}, {"m", found.twins}, {"of_m", found.walls}, {"real_m", found.real}};
 }
 
 // Consecutive motions are compared, as errors of the past do not count twice then; the drift is what they add

@@ -17,7 +17,8 @@ public:
 
     /// A scan with a fault is counted and left out.
     void take(MapScan &scan);
-    /// After the last scan: where loops were closed, moves the poses and makes the map anew from all edges.
+    /// After the last scan, unless it is told not to close loops: makes the map anew from all edges where
+    /// loops moved the poses (a wall keeps its id), and reviews it.
     void finish();
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
@@ -26,15 +27,19 @@ public:
     /// The key scans' poses and the motions between them; without poses when loops were not to be closed.
     const vectorlib::PoseGraph &graph() const { return drive_.loops.graph(); }
     std::vector<vectorlib::MapEdge> segments() const;
-    /// Counts, milliseconds a scan and, with a reference, the errors against it.
+    /// Counts, milliseconds a scan, walls that are there twice and, with a reference, the errors against it.
     nlohmann::ordered_json summary() const;
 
 private:
     nlohmann::ordered_json errors() const;
     void remember(const MapScan &scan, const vectorlib::ScanReport &report);
+    void rebuild();
+    nlohmann::ordered_json twins() const;
 
     vectorlib::MappedDrive drive_;
     double closeSeconds_ = 0;
+    vectorlib::MapReviewCounts reviewed_;
+    double reviewSeconds_ = 0;
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
     std::size_t leftOut_ = 0;

@@ -128,11 +128,16 @@ private Q_SLOTS:
         QCOMPARE(contents(path("g.g2o")).count("VERTEX_SE2 "), 8);
         QCOMPARE(contents(path("g.g2o")).count("EDGE_SE2 "), 7);
         const QJsonObject s = json(contents(path("s.json")));
-        for (const char *key :
-             {"scans", "skipped", "matched", "lost", "closures", "closures_tried", "closures_refused",
-              "closures_seconds", "ms_per_scan", "segments", "map_bytes", "seconds"})
+        for (const char *key : {"scans", "skipped", "matched", "lost", "closures", "closures_tried",
+                                "closures_refused", "closures_seconds", "review", "parallel_twins",
+                                "ms_per_scan", "segments", "map_bytes", "seconds"})
             QVERIFY2(s.contains(QLatin1String(key)), key);
         QCOMPARE(s["ms_per_scan"].toObject().keys(), (QStringList{"map", "match", "segment", "vectorize"}));
+        QCOMPARE(s["review"].toObject().keys(),
+                 (QStringList{"contradicted_m", "corners", "cut", "joined", "merged", "removed", "seconds"}));
+        QCOMPARE(s["parallel_twins"].toObject().keys(), (QStringList{"m", "of_m", "real_m", "share"}));
+        QVERIFY(s["parallel_twins"].toObject()["of_m"].toDouble() > 1);
+        QCOMPARE(s["parallel_twins"].toObject()["share"].toDouble(), 0.0);
         QCOMPARE(s["scans"].toInt(), 8);
         QCOMPARE(s["matched"].toInt(), 8);
         QCOMPARE(s["map_bytes"].toInt(), contents(path("m.csv")).size());

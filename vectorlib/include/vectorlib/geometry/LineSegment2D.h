@@ -50,6 +50,10 @@ public:
         const Scalar from = std::max(Scalar(0), std::min(t0, t1)), to = std::min(length(), std::max(t0, t1));
         return std::max(Scalar(0), to - from);
     }
+    /// From one distance along the line to another; before begin and beyond the end it goes on straight.
+    LineSegment2D part(Scalar from, Scalar to) const {
+        return {begin_ + direction_ * from, begin_ + direction_ * to, direction_};
+    }
     LineSegment2D reversed() const { return {end_, begin_, -direction_}; }
     bool isFinite() const { return begin_.isFinite() && end_.isFinite(); }
 

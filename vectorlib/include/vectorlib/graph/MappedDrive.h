@@ -2,6 +2,7 @@
 
 #include "vectorlib/graph/LoopCloser.h"
 #include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/mapping/MapReview.h"
 
 #include <vector>
 
@@ -37,8 +38,13 @@ public:
                 builder.place(edges_[i], loops.pose(i));
     }
 
+    /// Walls that stand twice and those that scans saw through leave the map.
+    MapReviewCounts review(VectorMap &map) const { return MapReview()(map, {edges_, loops.poses()}); }
+    /// Of each scan, sensor frame.
+    const std::vector<std::vector<EdgeRaw2D>> &edges() const { return edges_; }
+
 private:
-    std::vector<std::vector<EdgeRaw2D>> edges_; // of each scan, sensor frame
+    std::vector<std::vector<EdgeRaw2D>> edges_;
 };
 
 } // namespace vectorlib

@@ -67,10 +67,7 @@ public:
         const EdgeRaw2D joint = merged(target, edge);
         if (target.observations == 0 || joint.sigma > settings.maxSigma)
             return false;
-        static_cast<EdgeRaw2D &>(target) = joint;
-        target.observations += observations;
-        grid_.insert(number, joint.segment);
-        changed_.push_back(number);
+        take(target, joint, target.observations + observations);
         return true;
     }
     /// Joins the edge with others that lie on the same line and touch it; returns how many it took in.
@@ -93,6 +90,57 @@ public:
         }
         return joined;
     }
+    /// Takes another edge in, wherever it lies: by its sums, or, where the points would no longer lie within
+    /// maxSigma of one line, only by how far it reaches along this one's. `observations` are those of the
+    /// wall that both are.
+    void absorb(int number, int other, std::int64_t observations) {
+        MapEdge &a = edges_[static_cast<std::size_t>(number)];
+        const MapEdge &b = edges_[static_cast<std::size_t>(other)];
+        EdgeRaw2D joint = merged(a, b);
+        if (joint.sigma > settings.maxSigma) {
+            const LineSegment2D<double> &s = a.segment;
+            const double from = std::min({0.0, s.along(b.segment.begin()), s.along(b.segment.end())});
+            const double to = std::max({s.length(), s.along(b.segment.begin()), s.along(b.segment.end())});
+            joint = {a.sums, s.part(from, to), a.sigma};
+        }
+        take(a, joint, observations);
+        remove(other);
+    }
+    /// Holds these edges instead, each under its own id; no two have one, and none is below 0.
+    void assign(const std::vector<MapEdge> &edges) {
+        for (const MapEdge &old : edges_)
+            if (old.observations > 0)
+                changed_.push_back(static_cast<int>(old.id));
+        std::vector<int> changed = std::move(changed_);
+        const std::size_t known = edges_.size();
+        clear();
+        for (std::size_t i = 0; i < known; ++i)
+            edges_.emplace_back(std::int64_t(i), EdgeRaw2D(), 0);
+        for (const MapEdge &e : edges) {
+            while (edges_.size() <= static_cast<std::size_t>(e.id))
+                edges_.emplace_back(std::int64_t(edges_.size()), EdgeRaw2D(), 0);
+            take(edges_[static_cast<std::size_t>(e.id)], e, e.observations);
+            ++alive_;
+        }
+        changed_.insert(changed_.end(), changed.begin(), changed.end());
+    }
+    /// Other ends on the same line; the sums stay.
+    void reshape(int number, const LineSegment2D<double> &segment) {
+        MapEdge &edge = edges_[static_cast<std::size_t>(number)];
+        edge.segment = segment;
+        grid_.insert(number, segment);
+        changed_.push_back(number);
+    }
+    /// Another edge on the same wall; id and observations stay.
+    void replace(int number, const EdgeRaw2D &edge) {
+        MapEdge &known = edges_[static_cast<std::size_t>(number)];
+        take(known, edge, known.observations);
+    }
+    void remove(int number) {
+        edges_[static_cast<std::size_t>(number)].observations = 0;
+        --alive_;
+        changed_.push_back(number);
+    }
     /// Numbers of edges that were added, merged or removed since the last call, for those who send changes.
     std::vector<int> takeChanges() {
         std::sort(changed_.begin(), changed_.end());
@@ -102,7 +150,8 @@ public:
 
 private:
     bool join(int number, int other) {
-        MapEdge &a = edges_[static_cast<std::size_t>(number)], &b = edges_[static_cast<std::size_t>(other)];
+        MapEdge &a = edges_[static_cast<std::size_t>(number)];
+        const MapEdge &b = edges_[static_cast<std::size_t>(other)];
         const LineSegment2D<double> &s = a.segment, &o = b.segment;
         if (s.direction().dot(o.direction()) < std::cos(settings.joinAngle))
             return false;
@@ -115,14 +164,15 @@ private:
         const EdgeRaw2D joint = merged(a, b);
         if (joint.sigma > settings.maxSigma)
             return false;
-        static_cast<EdgeRaw2D &>(a) = joint;
-        a.observations = std::max(a.observations, b.observations);
-        b.observations = 0;
-        --alive_;
-        grid_.insert(number, joint.segment);
-        changed_.push_back(number);
-        changed_.push_back(other);
+        take(a, joint, std::max(a.observations, b.observations));
+        remove(other);
         return true;
+    }
+    void take(MapEdge &edge, const EdgeRaw2D &joint, std::int64_t observations) {
+        static_cast<EdgeRaw2D &>(edge) = joint;
+        edge.observations = observations;
+        grid_.insert(static_cast<int>(edge.id), joint.segment);
+        changed_.push_back(static_cast<int>(edge.id));
     }
 
     std::vector<MapEdge> edges_; // by number; an id is never used again
