@@ -39,9 +39,11 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     const auto begin = Clock::now();
     const Transformation2D pose(report.pose);
     static const std::vector<vectorlib::EdgeRaw2D> none;
-    drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none,
-               trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose,
+    const Transformation2D tracked =
+        trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose;
+    drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none, tracked,
                tracker.trackedBy());
+    refine_.add(scan.points, tracked);
     if (drive_.loops.isDue())
         drive_.loops.correct();
     closeSeconds_ += secondsSince(begin);
@@ -51,9 +53,11 @@ void MapRun::finish() {
     const auto begin = Clock::now();
     drive_.loops.correct();
     if (drive_.loops.counts().closed > 0) {
+        std::vector<vectorlib::Pose2D> poses = drive_.loops.poses();
+        refine_(poses, drive_.loopsOfScans());
         for (std::size_t i = 0; i < trajectory_.size(); ++i)
-            trajectory_[i].pose = drive_.loops.pose(i);
-        drive_.rebuild(tracker.builder);
+            trajectory_[i].pose = poses[i];
+        drive_.rebuild(tracker.builder, poses);
     }
     closeSeconds_ += secondsSince(begin);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/vector/MapSource.h"
+#include "vectorlib/graph/DriveRefiner.h"
 #include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/ScanTracker.h"
@@ -17,13 +18,15 @@ public:
 
     /// A partial scan is counted and left out.
     void take(MapScan &scan);
-    /// After the last scan: where loops were closed, moves the poses and makes the map anew from all edges.
+    /// After the last scan: where loops were closed, moves and refines the poses and makes the map anew from
+    /// all edges.
     void finish();
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Reference poses, one a pose of the trajectory; empty without reference.
     const std::vector<vectorlib::StampedPose> &reference() const { return reference_; }
-    /// The key scans' poses and the motions between them; without poses when loops were not to be closed.
+    /// The key scans' poses as loops were closed, not yet refined, and the motions between them; without
+    /// poses when loops were not to be closed.
     const vectorlib::PoseGraph &graph() const { return drive_.loops.graph(); }
     std::vector<vectorlib::MapEdge> segments() const;
     /// Counts, milliseconds a scan and, with a reference, the errors against it.
@@ -34,6 +37,7 @@ private:
     void remember(const MapScan &scan, const vectorlib::ScanReport &report);
 
     vectorlib::MappedDrive drive_;
+    vectorlib::DriveRefiner refine_;
     double closeSeconds_ = 0;
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
