@@ -224,7 +224,7 @@ void MapCorrector::correct() {
     if (c->farthest < least_m && turned < least_rad) // poses that are in use differ from these by less
         return tellGrown();
     memory_.rebuild(builder_);
-    memory_.review(builder_.map);
+    memory_.review(builder_.map, memory_.loops.poses());
     const quint64 drive = remembered_;
     for (int round = 0; round < mostRounds; ++round) {
         if (state().waiting <= fewLeft)

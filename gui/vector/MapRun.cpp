@@ -40,9 +40,11 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     const auto begin = Clock::now();
     const Transformation2D pose(report.pose);
     static const std::vector<vectorlib::EdgeRaw2D> none;
-    drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none,
-               trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose,
+    const Transformation2D tracked =
+        trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose;
+    drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none, tracked,
                tracker.trackedBy());
+    refine_.add(scan.points, tracked);
     if (drive_.loops.isDue())
         drive_.loops.correct();
     closeSeconds_ += secondsSince(begin);
@@ -57,21 +59,26 @@ void MapRun::finish() {
         rebuild();
     closeSeconds_ += secondsSince(begin);
     const auto closed = Clock::now();
-    reviewed_ = drive_.review(tracker.builder.map);
+    reviewed_ = drive_.review(tracker.builder.map, poses());
     reviewSeconds_ = secondsSince(closed);
 }
 
 void MapRun::rebuild() {
     vectorlib::WallIds ids;
-    std::vector<vectorlib::Pose2D> tracked;
+    ids.remember(tracker.builder.map, {drive_.edges(), poses()});
+    std::vector<vectorlib::Pose2D> refined = drive_.loops.poses();
+    refine_(refined, drive_.loopsOfScans());
+    for (std::size_t i = 0; i < refined.size(); ++i)
+        trajectory_[i].pose = refined[i];
+    drive_.rebuild(tracker.builder, refined);
+    ids.keep(tracker.builder.map, {drive_.edges(), refined});
+}
+
+std::vector<vectorlib::Pose2D> MapRun::poses() const {
+    std::vector<vectorlib::Pose2D> result;
     for (const vectorlib::StampedPose &stamped : trajectory_)
-        tracked.push_back(stamped.pose);
-    ids.remember(tracker.builder.map, {drive_.edges(), tracked});
-    const std::vector<vectorlib::Pose2D> poses = drive_.loops.poses();
-    for (std::size_t i = 0; i < poses.size(); ++i)
-        trajectory_[i].pose = poses[i];
-    drive_.rebuild(tracker.builder);
-    ids.keep(tracker.builder.map, {drive_.edges(), poses});
+        result.push_back(stamped.pose);
+    return result;
 }
 
 std::vector<vectorlib::MapEdge> MapRun::segments() const {
@@ -110,9 +117,8 @@ nlohmann::ordered_json MapRun::summary() const {
 }
 
 nlohmann::ordered_json MapRun::twins() const {
-    const std::vector<vectorlib::Pose2D> poses = drive_.loops.poses();
     vectorlib::ParallelTwins find;
-    const vectorlib::TwinShare found = find.share(tracker.builder.map, {drive_.edges(), poses});
+    const vectorlib::TwinShare found = find.share(tracker.builder.map, {drive_.edges(), poses()});
     return {{"share", found.share()}, {"m", found.twins}, {"of_m", found.walls}, {"real_m", found.real}};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/vector/MapSource.h"
+#include "vectorlib/graph/DriveRefiner.h"
 #include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/ScanTracker.h"
@@ -17,14 +18,15 @@ public:
 
     /// A scan with a fault is counted and left out.
     void take(MapScan &scan);
-    /// After the last scan, unless it is told not to close loops: makes the map anew from all edges where
-    /// loops moved the poses (a wall keeps its id), and reviews it.
+    /// After the last scan, unless it is told not to close loops: where there were any, moves and refines the
+    /// poses and makes the map anew from all edges (a wall keeps its id); reviews the map.
     void finish();
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Reference poses, one a pose of the trajectory; empty without reference.
     const std::vector<vectorlib::StampedPose> &reference() const { return reference_; }
-    /// The key scans' poses and the motions between them; without poses when loops were not to be closed.
+    /// The key scans' poses as loops were closed, not yet refined, and the motions between them; without
+    /// poses when loops were not to be closed.
     const vectorlib::PoseGraph &graph() const { return drive_.loops.graph(); }
     std::vector<vectorlib::MapEdge> segments() const;
     /// Counts, milliseconds a scan, walls that are there twice and, with a reference, the errors against it.
@@ -34,9 +36,11 @@ private:
     nlohmann::ordered_json errors() const;
     void remember(const MapScan &scan, const vectorlib::ScanReport &report);
     void rebuild();
+    std::vector<vectorlib::Pose2D> poses() const;
     nlohmann::ordered_json twins() const;
 
     vectorlib::MappedDrive drive_;
+    vectorlib::DriveRefiner refine_;
     double closeSeconds_ = 0;
     vectorlib::MapReviewCounts reviewed_;
     double reviewSeconds_ = 0;

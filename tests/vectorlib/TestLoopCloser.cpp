@@ -1,6 +1,7 @@
 #include <vectorlib/graph/LoopCloser.h>
 #include <vectorlib/mapping/ScanTracker.h>
 
+#include "tests/vectorlib/RevisitError.h"
 #include "tests/vectorlib/RingBuilding.h"
 
 #include <QtTest>
@@ -9,23 +10,6 @@ using namespace vectorlib;
 
 namespace {
 
-Transformation2D between(const Pose2D &from, const Pose2D &to) {
-    return Transformation2D(from).inverse() * Transformation2D(to);
-}
-/// Of motions between places that were met again; metres.
-double revisitError(const std::vector<Pose2D> &drive, const std::vector<Pose2D> &found) {
-    double sum = 0;
-    int pairs = 0;
-    for (std::size_t k = 0; k < drive.size(); ++k)
-        for (std::size_t i = 0; i + 100 < k; ++i)
-            if (std::hypot(drive[i].x - drive[k].x, drive[i].y - drive[k].y) < 2) {
-                sum += (between(drive[i], drive[k]).inverse() * between(found[i], found[k]))
-                           .translation()
-                           .norm();
-                ++pairs;
-            }
-    return pairs > 0 ? sum / pairs : 1e9;
-}
 /// Takes scans by where the drive was tracked, and moves the poses as it goes.
 class Closing {
 public:

@@ -26,10 +26,15 @@ public:
     }
     /// The builder's map becomes that of all scans so far, where they are now.
     void rebuild(MapBuilder &builder) const {
-        builder.clear();
-        for (const MapEdge &edge : known)
-            builder.map.add(edge, edge.observations);
+        startAnew(builder);
         extend(builder, 0);
+    }
+    /// The same at other poses, one a scan.
+    void rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses) const {
+        startAnew(builder);
+        for (std::size_t i = 0; i < edges_.size(); ++i)
+            if (!edges_[i].empty())
+                builder.place(edges_[i], poses[i]);
     }
     /// The builder's map takes the scans from that number on.
     void extend(MapBuilder &builder, std::size_t from) const {
@@ -37,13 +42,32 @@ public:
             if (!edges_[i].empty())
                 builder.place(edges_[i], loops.pose(i));
     }
+    /// The loops of the graph as motions between scans.
+    std::vector<PoseConstraint> loopsOfScans() const {
+        std::vector<PoseConstraint> result;
+        for (PoseConstraint c : loops.graph().constraints)
+            if (c.mayBeWrong) {
+                c.from = loops.scanOf(c.from);
+                c.to = loops.scanOf(c.to);
+                result.push_back(c);
+            }
+        return result;
+    }
 
-    /// Walls that stand twice and those that scans saw through leave the map.
-    MapReviewCounts review(VectorMap &map) const { return MapReview()(map, {edges_, loops.poses()}); }
+    /// Walls that stand twice and those that scans saw through leave the map, which was made at these poses.
+    MapReviewCounts review(VectorMap &map, const std::vector<Pose2D> &poses) const {
+        return MapReview()(map, {edges_, poses});
+    }
     /// Of each scan, sensor frame.
     const std::vector<std::vector<EdgeRaw2D>> &edges() const { return edges_; }
 
 private:
+    void startAnew(MapBuilder &builder) const {
+        builder.clear();
+        for (const MapEdge &edge : known)
+            builder.map.add(edge, edge.observations);
+    }
+
     std::vector<std::vector<EdgeRaw2D>> edges_;
 };
 

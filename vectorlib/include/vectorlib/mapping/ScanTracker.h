@@ -145,6 +145,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
+    static constexpr double followed_s = 0.2;  // since the scan before: a guess by the motion so far is good
     static constexpr double straight_m = 0.01; // a scan bent by no more is straight
     static constexpr int mostTries = 3;
     static constexpr double leap_m = 0.1, leap_rad = 0.1;
@@ -180,7 +181,7 @@ private:
                 guess = {expected->pose, guess.twist, true, true, expected->deviations};
         }
         byOdometry_ = false;
-        isWellExpected_ = byMotion.well;
+        isWellExpected_ = lastStamp_ && scan.stamp - *lastStamp_ <= followed_s;
         Found found = find(scan, guess);
         const bool doubtful = found.again || leaps(byMotion, guess, end - begin);
         if (scan.odometry && (found.score < 0 || (isStraightened(scan) && doubtful))) {
@@ -191,7 +192,7 @@ private:
             found = find(scan, guess);
         }
         byOdometry_ = guess.byOdometry;
-        isWellExpected_ = guess.well;
+        isWellExpected_ = isWellExpected_ || guess.byOdometry;
         counts_.byOdometry += byOdometry_;
         return found.straight;
     }
