@@ -61,7 +61,7 @@ class Course:
 class Tour(Course):
     """How it drives through a building, where the map bends until loops are closed."""
 
-    simulator = {"frame.slip": 0.04, "frame.slip_spread": 0.02, "lidar.max_range_m": 21}
+    simulator = {"frame.slip": 0.04, "frame.slip_spread": 0.02, "lidar.max_range_m": 16}
     motors = {"motion.vx": 1.5}
     records = False  # half a gigabyte
 
@@ -249,6 +249,8 @@ def drive_world(world, course, folder, logs, with_window):
         "skipped": state["skipped"], "dropped": state["dropped"] + state["dropped_by_source"] + poses.dropped,
         "by_odometry": state["by_odometry"], "ms_per_scan": state["ms_per_scan"], "map_segments": state["map_segments"],
         **final_and_largest("error", deviations), **final_and_largest("drift", drift),
+        **{name: state[name] for name in ("closures", "corrections") if name in state},
+        "touched": sum(message["data"]["touching"] for message in truth.messages),
         "pauses": demo.pauses, "recording": demo.recording, "exit_status": statuses, "seconds": seconds}
 
 
@@ -276,8 +278,8 @@ def table(summary):
     rows += [(name, f"{100 * summary[member + '_m']:.1f} cm, {summary[member + '_deg']:.2f} deg") for name, member in
              (("final error", "final_error"), ("largest error", "largest_error"), ("final drift", "final_drift"),
               ("largest drift", "largest_drift")) if summary.get(member + "_m") is not None]
-    if summary.get("pauses"):
-        rows.append(("pauses", f"{summary['pauses']}"))
+    rows += [(name, f"{summary[member]}") for name, member in
+             (("loops closed", "closures"), ("wall touched", "touched"), ("pauses", "pauses")) if summary.get(member)]
     rows.append(("seconds", f"{summary['seconds']:.1f}"))
     return "\n".join(f"  {name:<14}{value:>22}" for name, value in rows)
 
