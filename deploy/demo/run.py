@@ -61,7 +61,7 @@ class Course:
 class Tour(Course):
     """How it drives through a building, where the map bends until loops are closed."""
 
-    simulator = {"frame.slip": 0.04, "frame.slip_spread": 0.02, "lidar.max_range_m": 16}
+    simulator = {"frame.slip": 0.04, "frame.slip_spread": 0.02, "lidar.max_range_m": 18}
     motors = {"motion.vx": 1.5}
     records = False  # half a gigabyte
 

@@ -1,5 +1,6 @@
 """What lets a robot follow a long path by a map that still bends: only where its lidar sees free floor, and without leaping when
 the map is corrected."""
+import itertools
 import math
 import threading
 import time
@@ -13,7 +14,9 @@ SIGHT_M = 3.0  # farther points are no obstacle yet
 ROOM_M = 0.9  # kept between the robot's centre and what it passes, where there is so much
 OUTLINE_M = 0.4  # of the robot, with a margin: where it brakes for what is ahead
 NEEDED_M = 1.0  # of free floor in a direction that is taken
-TURNS = [sign * math.radians(angle) for angle in range(0, 61, 5) for sign in (1, -1)]  # from the wanted direction
+# From the wanted direction: first the small ones, for each point ahead, then the large ones, round a corner that is not where
+# the map has it.
+TURNS = [[sign * math.radians(angle) for angle in angles for sign in (1, -1)] for angles in (range(0, 61, 5), range(65, 96, 5))]
 LOOK_AHEAD_M = (1.0, 2.0, 3.0, 4.0)  # the farther ones where the map is wrong by so much that the path leads into a wall
 SLOW_MPS, NARROW_PS = 0.3, 4.0  # where things are near: at OUTLINE_M, and how much faster a metre farther
 AWAY_RAD_PER_M = 0.8  # how it turns from what is nearer than ROOM_M
@@ -26,7 +29,6 @@ class FreeView(threading.Thread):
 
     def __init__(self, port):
         super().__init__(daemon=True)
-        self.name = f"topic scan2d of port {port}"
         self.stream = Daemon(port=port).subscribe("scan2d", queue=1)
         self.newest = None
         self.start()
@@ -99,11 +101,11 @@ class CarefulFollower:
         distance, side = min(((math.hypot(*point), point[1]) for point in points), default=(SIGHT_M, 0.0))
         room = min(ROOM_M, 0.98 * distance)
         away = math.copysign(AWAY_RAD_PER_M * (ROOM_M - room), -side)
-        for ahead in LOOK_AHEAD_M:
+        for turns, ahead in itertools.product(TURNS, LOOK_AHEAD_M):
             px, py = self.path.at(self.path.way + ahead)
             bearing = math.atan2(py - y, px - x) - theta + away
             needed = min(NEEDED_M, math.dist((px, py), (x, y)))
-            for turn in TURNS:
+            for turn in turns:
                 if free_way(points, bearing + turn, room) >= needed:
                     return math.remainder(bearing + turn, 2 * math.pi)
         return None
@@ -133,7 +135,6 @@ class SteadyPoses(PoseTopic):
     def __init__(self, port):
         self.left = (0.0, 0.0, 0.0)  # of the corrections, not yet taken over
         self.told = self.told_at = self.stamp = None
-        self.leaps = 0
         super().__init__("pose", port=port)
 
     def now(self):
@@ -160,4 +161,3 @@ class SteadyPoses(PoseTopic):
         self.stamp = stamp
         if corrected or math.hypot(*leap[:2]) > self.LEAP_M or abs(leap[2]) > self.LEAP_RAD:
             self.left = tuple(part - step for part, step in zip(self.left, leap))
-            self.leaps += 1
