@@ -298,10 +298,11 @@ def main():
     parser = argparse.ArgumentParser(
         prog="./demo", description="Starts simulator, motor control, Velodyne logger and scan matcher as processes of their own, "
         "drives once through a world as any client would, and leaves map, trajectories, recording and summary in demo-out/.")
-    parser.add_argument("--log", metavar="FILE", help="map a CARMEN log (also .gz) or an HDL-32E capture instead")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--log", metavar="FILE", help="map a CARMEN log (also .gz) or an HDL-32E capture instead")
+    what.add_argument("--tour", action="store_true", help="drive for five minutes through an office floor with two loops and "
+                      "people, on wheels that slip each by itself")
     parser.add_argument("--corrected", action="store_true", help="the log's scan poses are a corrected reference")
-    parser.add_argument("--tour", action="store_true",
-                        help="drive for five minutes through a building with two loops, people and wheels that slip at random")
     parser.add_argument("--world", metavar="FILE", help="world to drive through (pillars; with --tour: tour)")
     parser.add_argument("--out", default=os.path.join(ROOT, "demo-out"), metavar="FOLDER",
                         help="where the results go (demo-out); replaced when it holds earlier results")

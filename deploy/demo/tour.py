@@ -13,6 +13,7 @@ SECTORS = 90  # of a turn, each with its nearest point
 SIGHT_M = 3.0  # farther points are no obstacle yet
 ROOM_M = 0.9  # kept between the robot's centre and what it passes, where there is so much
 OUTLINE_M = 0.4  # of the robot, with a margin: where it brakes for what is ahead
+ROBOT_M = 0.3  # its outline; nothing may be nearer
 NEEDED_M = 1.0  # of free floor in a direction that is taken
 # From the wanted direction: first the small ones, for each point ahead, then the large ones, round a corner that is not where
 # the map has it.
@@ -99,7 +100,7 @@ class CarefulFollower:
         """The free direction next to that of a point ahead on the path, the nearest point that has one. Where the robot is too
         near to something, it goes past that and away from it."""
         distance, side = min(((math.hypot(*point), point[1]) for point in points), default=(SIGHT_M, 0.0))
-        room = min(ROOM_M, 0.98 * distance)
+        room = min(ROOM_M, max(ROBOT_M, 0.98 * distance))
         away = math.copysign(AWAY_RAD_PER_M * (ROOM_M - room), -side)
         for turns, ahead in itertools.product(TURNS, LOOK_AHEAD_M):
             px, py = self.path.at(self.path.way + ahead)
@@ -116,7 +117,7 @@ class CarefulFollower:
             return 0.0, math.copysign(self.path.turn_rate, bearing)
         curvature = 2 * math.sin(bearing) / LOOK_AHEAD_M[0]
         nearest = min((math.hypot(*point) for point in points), default=SIGHT_M)
-        outline = min(OUTLINE_M, 0.98 * nearest)
+        outline = min(OUTLINE_M, max(ROBOT_M, 0.98 * nearest))
         ahead = min(free_way(points, 0.0, outline), free_way(points, bearing / 2, outline))
         braking = self.path.braking
         stopping = math.sqrt((braking * REACTION_S) ** 2 + 2 * braking * ahead) - braking * REACTION_S

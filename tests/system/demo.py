@@ -135,7 +135,7 @@ class DemoTest(unittest.TestCase):
             self.assertNotEqual(free_port(taken.getsockname()[1]), taken.getsockname()[1])
 
     def test_usage_errors(self):
-        for arguments in (["--log", "/no/such/file"], ["--world", "/no/such/world"], ["--nonsense"]):
+        for arguments in (["--log", "/no/such/file"], ["--world", "/no/such/world"], ["--nonsense"], ["--tour", "--log", RUN]):
             status, _, err = self.finish(self.start(*arguments), 20)
             self.assertEqual(status, 2, err)
             self.assertIn(arguments[0], err)

@@ -30,7 +30,7 @@ ROUND = [[3, 1.2, 0], [12, 1.2, 0], [12.8, 2, 1.571], [12.8, 8, 1.571], [12, 8.8
 def seen(walls, x, y, theta):
     """What the lidar sees there, in the robot's frame."""
     xs, ys = [], []
-    for ray in range(360):
+    for ray in range(0, 360, 2):
         c, s = math.cos(theta + math.radians(ray)), math.sin(theta + math.radians(ray))
         distance = math.inf
         for x1, y1, x2, y2 in walls:
@@ -95,7 +95,7 @@ class DriverTest(unittest.TestCase):
         self.assertGreater(nearest, 0.5)
 
     def test_a_map_that_is_wrong_leads_into_no_wall(self):
-        for error in ((1, 0), (-1, 0), (0, 0.8), (0.7, -0.7)):
+        for error in ((1, 0), (-1, 0.5), (0.5, -0.8)):
             with self.subTest(error):
                 self.now = 0.0
                 _, nearest = self.drive(RING, error)
