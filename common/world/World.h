@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Vector2D.h"
 
 #include <string>
 #include <vector>
@@ -14,9 +15,16 @@ struct World {
         double x1, y1, x2, y2;
     };
 
+    /// Someone who walks along a polyline and back, again and again.
+    struct Person {
+        double speed;                                 ///< m/s
+        std::vector<vectorlib::Vector2D<double>> way; ///< two or more points; metres
+    };
+
     std::string name;
     std::vector<Edge> edges;
     std::vector<vectorlib::Pose2D> poses;
+    std::vector<Person> people;
 };
 
 } // namespace hermes

@@ -16,6 +16,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double shortestEdge = 1e-6; // metres
+constexpr double fastestPerson = 10;  // m/s
 
 /// What is wrong, and in which line; 0 where no line can be told.
 struct Fault {
@@ -88,6 +89,8 @@ Document parse(const std::string &text) {
     return document;
 }
 
+constexpr std::size_t anyWidth = 0;
+
 /// The rows of a list of number lists, each with width numbers.
 std::vector<std::vector<double>> rows(const Document &document, const std::string &list, std::size_t width,
                                       const std::string &expected) {
@@ -102,7 +105,7 @@ std::vector<std::vector<double>> rows(const Document &document, const std::strin
         };
         if (!value[i].is_array())
             refuse(value[i].type_name());
-        if (value[i].size() != width)
+        if (width != anyWidth && value[i].size() != width)
             refuse(std::to_string(value[i].size()) + " values");
         result.emplace_back();
         for (const Json &number : value[i]) {
@@ -114,6 +117,31 @@ std::vector<std::vector<double>> rows(const Document &document, const std::strin
     return result;
 }
 
+std::vector<World::Person> peopleOf(const Document &document) {
+    const std::string expected = "[speed, x1, y1, x2, y2, ...] in m/s and metres";
+    std::vector<World::Person> people;
+    for (const auto &row : rows(document, "people", anyWidth, expected)) {
+        const auto refuse = [&](const std::string &found) {
+            const std::size_t i = people.size();
+            throw Fault{document.lineOf("people", i),
+                        "people[" + std::to_string(i) + "]: " + expected + " expected, found " + found};
+        };
+        if (row.size() < 5 || row.size() % 2 == 0)
+            refuse(std::to_string(row.size()) + " values");
+        if (!(row[0] > 0 && row[0] <= fastestPerson))
+            refuse("a speed that is not above 0 and at most " + std::to_string(int(fastestPerson)));
+        World::Person person{row[0], {}};
+        for (std::size_t i = 1; i < row.size(); i += 2)
+            person.way.emplace_back(row[i], row[i + 1]);
+        for (std::size_t i = 1; i < person.way.size(); ++i) {
+            if ((person.way[i] - person.way[i - 1]).norm() < shortestEdge)
+                refuse("the same point twice in a row");
+        }
+        people.push_back(person);
+    }
+    return people;
+}
+
 World toWorld(const Document &document) {
     if (!document.root.is_object())
         throw Fault{0, std::string("an object with \"edges\" expected, found ") + document.root.type_name()};
@@ -123,8 +151,8 @@ World toWorld(const Document &document) {
             world.name = value;
         else if (key == "name")
             throw Fault{0, "\"name\": a string expected, found " + std::string(value.type_name())};
-        else if (key != "edges" && key != "poses")
-            throw Fault{0, "unknown key \"" + key + "\", expected are name, edges and poses"};
+        else if (key != "edges" && key != "poses" && key != "people")
+            throw Fault{0, "unknown key \"" + key + "\", expected are name, edges, poses and people"};
     }
     if (!document.root.contains("edges") || document.root["edges"].empty())
         throw Fault{0, "no edges: \"edges\": [[x1, y1, x2, y2], ...] expected, metres"};
@@ -135,10 +163,12 @@ World toWorld(const Document &document) {
             throw Fault{document.lineOf("edges", i),
                         "edges[" + std::to_string(i) + "]: an edge must not begin where it ends"};
     }
-    if (!document.root.contains("poses"))
-        return world;
-    for (const auto &row : rows(document, "poses", 3, "[x, y, theta] in metres and radians"))
-        world.poses.push_back({row[0], row[1], row[2]});
+    if (document.root.contains("poses")) {
+        for (const auto &row : rows(document, "poses", 3, "[x, y, theta] in metres and radians"))
+            world.poses.push_back({row[0], row[1], row[2]});
+    }
+    if (document.root.contains("people"))
+        world.people = peopleOf(document);
     return world;
 }
 

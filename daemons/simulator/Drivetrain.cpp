@@ -2,6 +2,7 @@
 
 #include "vectorlib/geometry/Angle.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hermes::simulator {
@@ -9,6 +10,7 @@ namespace hermes::simulator {
 namespace {
 
 constexpr double electronics = 0.3; // A that are always drawn
+constexpr double patch = 1;         // metres of like ground under a wheel
 
 } // namespace
 
@@ -21,7 +23,8 @@ std::array<RoboClawEmulator::Options, Drivetrain::controllers> Drivetrain::twoAd
 Drivetrain::Drivetrain(const Options &options)
     : options_(options)
     , controllers_{RoboClawEmulator(options.controller[0]), RoboClawEmulator(options.controller[1])}
-    , battery_(options.battery) {}
+    , battery_(options.battery)
+    , random_(options.seed) {}
 
 std::vector<RoboClawEmulator::Answer> Drivetrain::receive(int line, const std::uint8_t *data,
                                                           std::size_t size, double now) {
@@ -63,9 +66,19 @@ Twist2D Drivetrain::advance(double seconds) {
             current += controller.channel(motor).current() * std::abs(controller.channel(motor).duty());
     }
     battery_.draw(current, seconds);
-    Twist2D twist = options_.base.twistOf(wheelSpeeds());
-    const double grip = 1 - options_.slip;
-    return {twist.vx * grip, twist.vy * grip, twist.omega * grip};
+    return options_.base.twistOf(gripping(seconds));
+}
+
+std::array<double, 4> Drivetrain::gripping(double seconds) {
+    std::array<double, 4> speeds = wheelSpeeds();
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+        Ground &ground = grounds_[i];
+        ground.left -= std::abs(speeds[i]) * options_.base.radius * seconds;
+        if (options_.slipSpread > 0 && ground.left < 0)
+            ground = {std::normal_distribution<double>(0, options_.slipSpread)(random_), patch};
+        speeds[i] *= 1 - std::clamp(options_.slip + ground.slip, 0.0, 1.0);
+    }
+    return speeds;
 }
 
 MotorChannel &Drivetrain::wheel(int number) {

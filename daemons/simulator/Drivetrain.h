@@ -4,6 +4,8 @@
 #include "daemons/simulator/RoboClawEmulator.h"
 #include "daemons/simulator/RobotBody.h"
 
+#include <random>
+
 namespace hermes::simulator {
 
 /// What drives the robot: two RoboClaws with two motors each, four wheels, a battery. Time comes from
@@ -22,6 +24,8 @@ public:
         std::array<Mount, 4> wheels{{{0, 0}, {0, 1}, {1, 0}, {1, 1}}}; ///< as in WheelBase
         double countsPerTurn = 38000;
         double slip = 0;       ///< share of the wheels' way that the robot does not make
+        double slipSpread = 0; ///< standard deviation of each wheel's slip, drawn anew for each metre
+        std::uint64_t seed = 1;
         bool ownLines = false; ///< each controller has a line of its own; else both share line 0
         std::array<RoboClawEmulator::Options, controllers> controller = twoAddresses();
         Battery::Options battery;
@@ -56,10 +60,19 @@ public:
 private:
     void delayAnswer(RoboClawEmulator::Answer &answer, int line, double now);
     static std::array<RoboClawEmulator::Options, controllers> twoAddresses();
+    /// The wheels' speeds less their slip.
+    std::array<double, 4> gripping(double seconds);
 
+    /// What lies under a wheel.
+    struct Ground {
+        double slip = 0; ///< besides that of all wheels
+        double left = 0; ///< metres to the next patch
+    };
     Options options_;
     std::array<RoboClawEmulator, controllers> controllers_;
     Battery battery_;
+    std::mt19937_64 random_;
+    std::array<Ground, 4> grounds_;
     std::array<double, 2> latency_{}, bunchEnds_{}; // of each line; seconds
 };
 

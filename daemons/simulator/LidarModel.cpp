@@ -11,8 +11,9 @@ namespace {
 
 using velodyne::hdl32e;
 constexpr double degree = vectorlib::pi / 180;
-constexpr std::uint8_t wallIntensity = 100; // made up, to tell the two apart
+constexpr std::uint8_t wallIntensity = 100; // made up, to tell them apart
 constexpr std::uint8_t floorIntensity = 40;
+constexpr std::uint8_t personIntensity = 60;
 constexpr int normalBits = 12; // a table that stays in the first cache
 constexpr std::size_t normals = 1 << normalBits;
 
@@ -53,16 +54,17 @@ LidarModel::LidarModel(const std::vector<vectorlib::LineSegment2D<double>> &wall
     }
 }
 
-void LidarModel::fire(const vectorlib::Pose2D &pose, double azimuth, double gap,
+void LidarModel::fire(const vectorlib::Pose2D &pose, const People &people, double azimuth, double gap,
                       velodyne::DataPacketWriter &packet, int block) {
     // The head turns clockwise: from left to right.
     const double first = pose.theta - azimuth * degree;
     const double last = first - gap * firingShare * degree;
     const Vector left(std::cos(first), std::sin(first)), right(std::cos(last), std::sin(last));
     selectWalls({pose.x, pose.y}, left, right);
+    selectPeople(people, {pose.x, pose.y}, left, right);
     const Vector step = (right - left) / (hdl32e.lasers - 1); // the arc is so short that its chord serves
     for (int laser = 0; laser < hdl32e.lasers; ++laser)
-        measure(laser, wallDistance(left + step * laser), packet, block);
+        measure(laser, left + step * laser, packet, block);
 }
 
 void LidarModel::selectWalls(Vector position, Vector left, Vector right) {
@@ -77,10 +79,32 @@ void LidarModel::selectWalls(Vector position, Vector left, Vector right) {
     }
 }
 
+void LidarModel::selectPeople(const People &people, Vector position, Vector left, Vector right) {
+    peopleInReach_.clear();
+    for (const People::Person &person : people.all()) {
+        const Vector centre = person.position - position;
+        const bool beside = left.cross(centre) > People::radius || right.cross(centre) < -People::radius;
+        if (!beside && left.dot(centre) > 0)
+            peopleInReach_.push_back(centre);
+    }
+}
+
 double LidarModel::wallDistance(Vector direction) const {
     double distance = vectorlib::noHit;
     for (const Wall &wall : inReach_)
         distance = std::min(distance, vectorlib::rayDistance(direction, wall.begin, wall.end));
+    return distance;
+}
+
+/// To the near side of the nearest person; a sensor inside one sees nothing of it.
+double LidarModel::personDistance(Vector direction) const {
+    double distance = vectorlib::noHit;
+    for (const Vector &centre : peopleInReach_) {
+        const double aside = direction.cross(centre), ahead = direction.dot(centre);
+        const double depth = People::radius * People::radius - aside * aside;
+        if (depth > 0 && ahead > std::sqrt(depth))
+            distance = std::min(distance, ahead - std::sqrt(depth));
+    }
     return distance;
 }
 
@@ -100,15 +124,17 @@ double LidarModel::noise() {
     return double(normal_[drawn]);
 }
 
-void LidarModel::measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block) {
+void LidarModel::measure(int laser, Vector direction, velodyne::DataPacketWriter &packet, int block) {
     const Beam &beam = beams[laser];
     const double height = options_.sensorHeight + beam.offset;
-    double horizontal = wallDistance;
-    std::uint8_t intensity = wallIntensity;
-    if (beam.tangent < 0 && height / -beam.tangent < wallDistance) {
+    const double wall = wallDistance(direction), person = personDistance(direction);
+    const bool meetsPerson = person < wall && height + person * beam.tangent <= People::height;
+    double horizontal = meetsPerson ? person : wall;
+    std::uint8_t intensity = meetsPerson ? personIntensity : wallIntensity;
+    if (beam.tangent < 0 && height / -beam.tangent < horizontal) {
         horizontal = height / -beam.tangent;
         intensity = floorIntensity;
-    } else if (height + wallDistance * beam.tangent > options_.wallHeight) {
+    } else if (!meetsPerson && height + wall * beam.tangent > options_.wallHeight) {
         horizontal = vectorlib::noHit;
     }
     double range = horizontal / beam.cosine;

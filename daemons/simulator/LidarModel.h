@@ -1,5 +1,6 @@
 #pragma once
 
+#include "daemons/simulator/People.h"
 #include "protocol/velodyne/DataPacket.h"
 #include "protocol/velodyne/Hdl32e.h"
 #include "vectorlib/geometry/LineSegment2D.h"
@@ -10,8 +11,8 @@
 
 namespace hermes::simulator {
 
-/// What an HDL-32E measures in a world of upright walls on a level floor. The sensor stands upright at the
-/// robot's pose.
+/// What an HDL-32E measures in a world of upright walls and people on a level floor. The sensor stands
+/// upright at the robot's pose.
 class LidarModel {
 public:
     struct Options {
@@ -33,10 +34,10 @@ public:
     void setOutliers(double share) { options_.outliers = share; }
     const Options &options() const { return options_; }
 
-    /// Measures with all lasers and fills a block. azimuth: of the first laser, degrees clockwise from the
-    /// heading; gap: how far the head turns until the next firing, degrees.
-    void fire(const vectorlib::Pose2D &pose, double azimuth, double gap, velodyne::DataPacketWriter &packet,
-              int block);
+    /// Measures with all lasers and fills a block. people: where they stand; azimuth: of the first laser,
+    /// degrees clockwise from the heading; gap: how far the head turns until the next firing, degrees.
+    void fire(const vectorlib::Pose2D &pose, const People &people, double azimuth, double gap,
+              velodyne::DataPacketWriter &packet, int block);
 
 private:
     using Vector = vectorlib::Vector2D<double>;
@@ -46,10 +47,12 @@ private:
     };
 
     void selectWalls(Vector position, Vector left, Vector right);
+    void selectPeople(const People &people, Vector position, Vector left, Vector right);
     double wallDistance(Vector direction) const;
+    double personDistance(Vector direction) const;
     bool chance(double share);
     double noise();
-    void measure(int laser, double wallDistance, velodyne::DataPacketWriter &packet, int block);
+    void measure(int laser, Vector direction, velodyne::DataPacketWriter &packet, int block);
 
     std::vector<vectorlib::LineSegment2D<double>> walls_;
     Options options_;
@@ -57,7 +60,8 @@ private:
     std::vector<float> normal_; ///< values of a standard normal distribution, of which each ray draws one
     std::uint64_t bits_ = 0;    ///< drawn, not yet used
     int bitsLeft_ = 0;
-    std::vector<Wall> inReach_; ///< of the current firing
+    std::vector<Wall> inReach_;         ///< of the current firing
+    std::vector<Vector> peopleInReach_; ///< relative to the sensor
 };
 
 } // namespace hermes::simulator

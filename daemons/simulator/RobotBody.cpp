@@ -20,7 +20,7 @@ Twist2D WheelBase::twistOf(const std::array<double, 4> &wheels) const {
             quarter * (-fl + fr - rl + rr) / (halfBase + halfTrack)};
 }
 
-Pose2D RobotBody::move(const Pose2D &from, const Twist2D &twist, double seconds) {
+Pose2D RobotBody::move(const Pose2D &from, const Twist2D &twist, double seconds, const People &people) {
     const Pose2D to = from * twist.motion(seconds);
     Vector position(to.x, to.y);
     touching_ = false;
@@ -33,11 +33,25 @@ Pose2D RobotBody::move(const Pose2D &from, const Twist2D &twist, double seconds)
         position = nearest + (outward == Vector() ? wall.normal() : outward) * radius_;
         touching_ = true;
     }
-    for (const auto &wall : walls_) { // in a corner narrower than the robot it stays where it was
-        if (touching_ && wall.distance(position) < radius_ - 1e-9)
-            position = {from.x, from.y};
+    for (const People::Person &person : people.all()) {
+        const Vector outward = position - person.position;
+        if (outward.norm() >= radius_ + People::radius || outward == Vector())
+            continue;
+        position = person.position + outward.normalized() * (radius_ + People::radius);
+        touching_ = true;
     }
+    if (touching_ && enters(position, people)) // a corner narrower than the robot: it stays where it was
+        position = {from.x, from.y};
     return {position.x, position.y, to.theta};
+}
+
+bool RobotBody::enters(Vector position, const People &people) const {
+    const auto &persons = people.all();
+    return std::any_of(walls_.begin(), walls_.end(),
+                       [&](const auto &wall) { return wall.distance(position) < radius_ - 1e-9; }) ||
+           std::any_of(persons.begin(), persons.end(), [&](const People::Person &person) {
+               return (person.position - position).norm() < radius_ + People::radius - 1e-9;
+           });
 }
 
 } // namespace hermes::simulator

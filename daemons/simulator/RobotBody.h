@@ -1,5 +1,6 @@
 #pragma once
 
+#include "daemons/simulator/People.h"
 #include "protocol/messages/Motion.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
@@ -23,7 +24,7 @@ struct WheelBase {
     Twist2D twistOf(const std::array<double, 4> &wheels) const;
 };
 
-/// The outline of a robot, a circle, that walls stop.
+/// The outline of a robot, a circle, that walls and people stop.
 class RobotBody {
 public:
     RobotBody() = default;
@@ -31,12 +32,15 @@ public:
         : walls_(walls)
         , radius_(radius) {}
 
-    /// Where it comes to with this twist, along an arc. It slides along walls and never enters one.
-    Pose2D move(const Pose2D &from, const Twist2D &twist, double seconds);
-    /// A wall held it in the last move.
+    /// Where it comes to with this twist, along an arc. It slides along walls and people and never enters
+    /// one.
+    Pose2D move(const Pose2D &from, const Twist2D &twist, double seconds, const People &people = {});
+    /// A wall or a person held it in the last move.
     bool isTouching() const { return touching_; }
 
 private:
+    bool enters(vectorlib::Vector2D<double> position, const People &people) const;
+
     std::vector<vectorlib::LineSegment2D<double>> walls_;
     double radius_ = 0.3;
     bool touching_ = false;

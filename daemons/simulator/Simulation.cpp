@@ -22,6 +22,7 @@ Simulation::Simulation(const World &world, const Options &options, std::int64_t 
     : follower_(PosePath(world.poses, options.speed, options.turnRate), options.acceleration / options.speed)
     , drivetrain_(options.drivetrain)
     , body_(wallsOf(world), options.radius)
+    , people_(world.people, options.radius)
     , lidar_(wallsOf(world), options.lidar, options.seed)
     , gps_(options.gps)
     , gap_(options.rpm / 60 * 360 * firingPeriod)
@@ -63,7 +64,8 @@ void Simulation::advancePose(double seconds) {
     if (!placed_)
         follower_.advance(seconds);
     else if (rolls) // one that stands is where it was put, be it in a wall
-        place_ = body_.move(place_, rolling_, seconds);
+        place_ = body_.move(place_, rolling_, seconds, people_);
+    people_.advance(seconds, {pose().x, pose().y});
 }
 
 const std::array<std::uint8_t, velodyne::packetSize> &Simulation::nextPacket() {
@@ -72,7 +74,7 @@ const std::array<std::uint8_t, velodyne::packetSize> &Simulation::nextPacket() {
     for (int block = 0; block < velodyne::blocksPerPacket; ++block) {
         const double azimuth = std::fmod(double(firings_) * gap_, 360.0);
         packet_.setAzimuth(block, std::uint16_t(std::lround(azimuth * 100) % velodyne::azimuthSteps));
-        lidar_.fire(pose(), azimuth, gap_, packet_, block);
+        lidar_.fire(pose(), people_, azimuth, gap_, packet_, block);
         advancePose(firingPeriod);
         ++firings_;
     }

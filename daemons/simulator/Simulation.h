@@ -31,7 +31,7 @@ public:
         double progress = 0; ///< share of the path, 0 to 1
         bool driving = false;
         bool finished = false;
-        bool touching = false; ///< a wall holds it
+        bool touching = false; ///< a wall or a person holds it
     };
 
     Simulation() = default;
@@ -57,6 +57,7 @@ public:
     /// Time passes without packets being made.
     void skip(std::uint64_t packets);
 
+    const People &people() const { return people_; }
     /// The wheels take the robot off its path unless it is following it just now.
     Drivetrain &drivetrain() { return drivetrain_; }
     Truth truth() const;
@@ -75,6 +76,7 @@ private:
     Drivetrain drivetrain_;
     RobotBody body_;
     Twist2D rolling_; ///< how the wheels move the robot
+    People people_;
     LidarModel lidar_;
     GpsModel gps_;
     velodyne::PositionPacket position_;

@@ -102,7 +102,7 @@ const Fields<SimulatorState> &fieldsOf(Of<SimulatorState>) {
                                    .add("driving", &S::driving, "It follows the path")
                                    .add("finished", &S::finished, "It is at the end of the path")
                                    .add("placed", &S::placed, "It was placed off the path")
-                                   .add("touching", &S::touching, "A wall holds it")
+                                   .add("touching", &S::touching, "A wall or a person holds it")
                                    .add("motors", &S::motors, "What drives it")
                                    .add("gps", &S::gps, "Line of the GPS receiver")
                                    .include(&S::lidar)

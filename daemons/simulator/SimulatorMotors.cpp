@@ -97,6 +97,8 @@ void Simulator::declareMotorSettings() {
     addNumber("Wheels", "frame.half_track_m", "From the centre to the middle of a wheel", "m", 0.01, 5, 0.25);
     addNumber("Wheels", "frame.counts_per_turn", "Encoder counts in one turn of a wheel", "", 1, 1e7, 38000);
     addNumber("Wheels", "frame.slip", "Share of the wheels' way that the robot does not make", "", 0, 1, 0);
+    addNumber("Wheels", "frame.slip_spread",
+              "Standard deviation of each wheel's slip, drawn anew for each metre it rolls", "", 0, 1, 0);
 }
 
 Drivetrain::Options Simulator::drivetrainOptions() {
@@ -109,6 +111,8 @@ Drivetrain::Options Simulator::drivetrainOptions() {
     options.base.halfTrack = values.number("frame.half_track_m");
     options.countsPerTurn = values.number("frame.counts_per_turn");
     options.slip = values.number("frame.slip");
+    options.slipSpread = values.number("frame.slip_spread");
+    options.seed = std::uint64_t(values.number("seed"));
     options.ownLines = lines_.count() > 1;
     options.battery.capacity_Ah = values.number("battery.capacity_ah");
     options.battery.full = values.number("battery.full_v");

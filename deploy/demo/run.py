@@ -16,11 +16,11 @@ import time
 
 from processes import Daemon, DaemonError, Process, free_port
 from window import Window, has_display
+from tour import CarefulFollower, FreeView, SteadyPoses
 from drive import DriveError, PathFollower, PoseTopic, drive  # of docs/examples
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-SPEED_MPS = 0.8
-SLIP = 0.03  # of the simulated wheels, that the odometry does not know of
+WORLDS = os.path.join(ROOT, "deploy", "worlds")
 MOST_PAUSES = 20
 CONTROL_LOST, DEVICE_FAULT = -32002, -32004
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(ROOT, "build", "release", "bin"))
@@ -46,11 +46,35 @@ class Listener(threading.Thread):
             pass  # the daemon has ended
 
 
+class Course:
+    """How the demo drives through a room: way points followed as the map has them."""
+
+    simulator = {"frame.slip": 0.03}  # that the odometry does not know of
+    motors = {}
+    records = True
+
+    def follower(self, way_points, ports):
+        """What gives velocities, and the poses by which it does."""
+        return PathFollower(way_points, 0.8), PoseTopic("pose", port=ports["scanmatcher"])
+
+
+class Tour(Course):
+    """How it drives through a building, where the map bends until loops are closed."""
+
+    simulator = {"frame.slip": 0.04, "frame.slip_spread": 0.02, "lidar.max_range_m": 18}
+    motors = {"motion.vx": 1.5}
+    records = False  # half a gigabyte
+
+    def follower(self, way_points, ports):
+        path = PathFollower(way_points, 1.5, turn_rate=1.4, look_ahead=1.0)
+        return CarefulFollower(path, FreeView(ports["velodynelogger"])), SteadyPoses(ports["scanmatcher"])
+
+
 class Demo:
     """The four daemons and one drive."""
 
-    def __init__(self, world, folder, logs):
-        self.world = world
+    def __init__(self, world, course, folder, logs):
+        self.world, self.course = world, course
         lidar_port, motor_line = free_port(2368, socket.SOCK_DGRAM), os.path.join(logs, "motors")
         self.ports = {name: free_port(port) for name, port in
                       (("simulator", 7490), ("motorcontrol", 7410), ("velodynelogger", 7420), ("scanmatcher", 7450))}
@@ -62,9 +86,9 @@ class Demo:
                                              "map.folder": folder, "matcher.start": "nothing"})
             self.start("velodynelogger", logs, {"source.port": lidar_port, "record.folder": folder})
             self.start("simulator", logs, {"world": world, "lidar.port": lidar_port, "motors.link": motor_line,
-                                           "frame.slip": SLIP})
+                                           **course.simulator})
             line = f"serial://{motor_line}?baud=115200"
-            self.start("motorcontrol", logs, {"controllers.1.url": line, "controllers.2.url": line})
+            self.start("motorcontrol", logs, {"controllers.1.url": line, "controllers.2.url": line, **course.motors})
             self.matcher, self.logger, self.simulator, self.motors = [process.connect() for process in self.processes]
         except BaseException:
             self.stop()
@@ -83,7 +107,7 @@ class Demo:
 
     def drive(self):
         """One drive through the world; gives the messages of matcher, odometry and truth."""
-        path = PathFollower(self.way_points(), SPEED_MPS)
+        follower, steered_by = self.course.follower(self.way_points(), self.ports)
         start = self.simulator.call("sim.state")["pose"]
         self.wait(lambda: self.motors.call("motor.state")["ready"], "the motor controllers")
         self.motors.call("odometry.reset", **start)
@@ -92,29 +116,33 @@ class Demo:
         poses = Listener(self.ports["scanmatcher"], "pose", 1000)
         odometry = Listener(self.ports["motorcontrol"], "odometry", 1000)
         truth = Listener(self.ports["simulator"], "truth", 1000)
-        self.logger.call("record.start", name="recording")
+        if self.course.records:
+            self.logger.call("record.start", name="recording")
         self.wait(lambda: poses.messages, "the first scan")
-        self.pauses = self.follow(path, lambda follower: self.show(follower.progress, poses.messages))
+        self.pauses = self.follow(follower, steered_by, lambda follower: self.show(follower.progress, poses.messages))
         # A few scans more, taken standing still, then the end of the stream.
         self.wait(lambda: self.motors.call("motor.state")["twist"] == {"vx": 0, "vy": 0, "omega": 0}, "the standstill")
         seen = len(poses.messages)
         self.wait(lambda: len(poses.messages) >= seen + 5, "the last scans")
-        told = self.logger.call("record.stop")
-        self.recording = {"path": os.path.join("recording", os.path.basename(told["path"])),  # where it will be
-                          "bytes": told["bytes"], **told["counts"], "losses": told["losses"]}
+        self.recording = self.recorded() if self.course.records else None
         self.matcher.call("matcher.stop")
         self.wait(lambda: self.matcher.call("matcher.state")["waiting"] == 0, "the matcher")
         if sys.stderr.isatty():
             print(file=sys.stderr)
         return poses, odometry, truth
 
-    def follow(self, path, watch):
+    def recorded(self):
+        """Ends the recording."""
+        told = self.logger.call("record.stop")
+        return {"path": os.path.join("recording", os.path.basename(told["path"])),  # where it will be
+                "bytes": told["bytes"], **told["counts"], "losses": told["losses"]}
+
+    def follow(self, follower, steered_by, watch):
         """To the end of the path. On a machine that is busy with other things the simulated controllers may be silent for so
         long that the robot stops; then it goes on when they answer. Gives how often that was."""
-        poses = PoseTopic("pose", port=self.ports["scanmatcher"])
         for pauses in range(MOST_PAUSES + 1):
             try:
-                drive(self.motors, poses, path, "the demo", watch)
+                drive(self.motors, steered_by, follower, "the demo", watch)
                 return pauses
             except DriveError as error:
                 wanted = error.halted.startswith("stopped by")
@@ -192,10 +220,10 @@ def write_tum(path, poses):
                        f"{math.sin(half):.9f} {math.cos(half):.9f}\n")
 
 
-def drive_world(world, folder, logs, with_window):
+def drive_world(world, course, folder, logs, with_window):
     """The demo without a log; gives the summary."""
     begin = time.monotonic()
-    demo = Demo(world, folder, logs)
+    demo = Demo(world, course, folder, logs)
     window = None
     try:
         if with_window:
@@ -221,6 +249,8 @@ def drive_world(world, folder, logs, with_window):
         "skipped": state["skipped"], "dropped": state["dropped"] + state["dropped_by_source"] + poses.dropped,
         "by_odometry": state["by_odometry"], "ms_per_scan": state["ms_per_scan"], "map_segments": state["map_segments"],
         **final_and_largest("error", deviations), **final_and_largest("drift", drift),
+        **{name: state[name] for name in ("closures", "corrections") if name in state},
+        "touched": sum(message["data"]["touching"] for message in truth.messages),
         "pauses": demo.pauses, "recording": demo.recording, "exit_status": statuses, "seconds": seconds}
 
 
@@ -248,8 +278,8 @@ def table(summary):
     rows += [(name, f"{100 * summary[member + '_m']:.1f} cm, {summary[member + '_deg']:.2f} deg") for name, member in
              (("final error", "final_error"), ("largest error", "largest_error"), ("final drift", "final_drift"),
               ("largest drift", "largest_drift")) if summary.get(member + "_m") is not None]
-    if summary.get("pauses"):
-        rows.append(("pauses", f"{summary['pauses']}"))
+    rows += [(name, f"{summary[member]}") for name, member in
+             (("loops closed", "closures"), ("wall touched", "touched"), ("pauses", "pauses")) if summary.get(member)]
     rows.append(("seconds", f"{summary['seconds']:.1f}"))
     return "\n".join(f"  {name:<14}{value:>22}" for name, value in rows)
 
@@ -268,15 +298,19 @@ def main():
     parser = argparse.ArgumentParser(
         prog="./demo", description="Starts simulator, motor control, Velodyne logger and scan matcher as processes of their own, "
         "drives once through a world as any client would, and leaves map, trajectories, recording and summary in demo-out/.")
-    parser.add_argument("--log", metavar="FILE", help="map a CARMEN log (also .gz) or an HDL-32E capture instead")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--log", metavar="FILE", help="map a CARMEN log (also .gz) or an HDL-32E capture instead")
+    what.add_argument("--tour", action="store_true", help="drive for five minutes through an office floor with two loops and "
+                      "people, on wheels that slip each by itself")
     parser.add_argument("--corrected", action="store_true", help="the log's scan poses are a corrected reference")
-    parser.add_argument("--world", default=os.path.join(ROOT, "deploy", "worlds", "pillars.json"), metavar="FILE",
-                        help="world to drive through (pillars)")
+    parser.add_argument("--world", metavar="FILE", help="world to drive through (pillars; with --tour: tour)")
     parser.add_argument("--out", default=os.path.join(ROOT, "demo-out"), metavar="FOLDER",
                         help="where the results go (demo-out); replaced when it holds earlier results")
     parser.add_argument("--no-window", action="store_true",
                         help="stay without the operator's window, which opens where there is a display")
     arguments = parser.parse_args()
+    course = Tour() if arguments.tour else Course()
+    world = arguments.world or os.path.join(WORLDS, "tour.json" if arguments.tour else "pillars.json")
     if os.path.exists(arguments.out) and not os.path.exists(os.path.join(arguments.out, "summary.json")) \
             and os.listdir(arguments.out):
         parser.error(f"--out {arguments.out}: holds other things than results of the demo")
@@ -294,7 +328,7 @@ def main():
                 summary = map_log(os.path.abspath(arguments.log), arguments.corrected, results)
             else:
                 with_window = has_display() and not arguments.no_window
-                summary = drive_world(os.path.abspath(arguments.world), results, work, with_window)
+                summary = drive_world(os.path.abspath(world), course, results, work, with_window)
         except KeyboardInterrupt:
             print("\nInterrupted: all daemons are stopped, nothing was written.", file=sys.stderr)
             return 130

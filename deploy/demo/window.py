@@ -32,7 +32,7 @@ class Window:
                 self.process.wait()
             except KeyboardInterrupt:
                 pass
-        if self.process.returncode > 0:
+        if (self.process.poll() or 0) > 0:
             with open(self.log_name, encoding="utf-8", errors="replace") as log:
                 print(f"  hermes-gui ended with status {self.process.returncode}: {log.read()[-500:].strip()}", file=sys.stderr)
 

@@ -53,7 +53,7 @@ const Fields<TruthMessage> &fieldsOf(Of<TruthMessage>) {
             .range(0, 1)
             .add("driving", &TruthMessage::driving, "It follows the path")
             .add("finished", &TruthMessage::finished, "It is at the end of the path")
-            .add("touching", &TruthMessage::touching, "A wall holds it");
+            .add("touching", &TruthMessage::touching, "A wall or a person holds it");
     return fields;
 }
 

@@ -4,6 +4,7 @@
 #include <QTemporaryDir>
 #include <QtTest>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -44,13 +45,16 @@ private Q_SLOTS:
     void stairsGrowQuadratically();
     void roomsAreClosed_data();
     void roomsAreClosed();
+    void theTourIsLargeAndOpen();
 };
 
 void TestWorld::refusesBadFiles_data() {
     QTest::addColumn<QByteArray>("text");
     QTest::addColumn<QByteArray>("message"); ///< what it begins with
     const QByteArray good = square;
-    const auto with = [&](const char *from, const char *to) { return QByteArray(good).replace(from, to); };
+    const auto with = [&](const char *from, const QByteArray &to) {
+        return QByteArray(good).replace(from, to);
+    };
     QTest::newRow("empty") << QByteArray() << QByteArray("w:1: not JSON: ");
     QTest::newRow("a list") << QByteArray("[]")
                             << QByteArray("w: an object with \"edges\" expected, found array");
@@ -78,6 +82,17 @@ void TestWorld::refusesBadFiles_data() {
                                  << QByteArray("w: unknown key \"pose\", expected are ");
     QTest::newRow("twice") << QByteArray("{\"edges\": [[0,0,1,0]],\n\"edges\": []}")
                            << QByteArray("w:2: \"edges\" appears twice");
+    const auto people = [&](const QByteArray &row) {
+        return with("]}", "],\n\"people\": [[1,0,0,1,0],\n" + row + "]}");
+    };
+    QTest::newRow("person") << people("[1,0,0]")
+                            << QByteArray("w:6: people[1]: [speed, x1, y1, x2, y2, ...] in m/s and metres "
+                                          "expected, found 3 values");
+    QTest::newRow("half a point") << people("[1,0,0,1,0,2]") << QByteArray("w:6: people[1]: ");
+    QTest::newRow("nobody walks") << people("[0,0,0,1,0]") << QByteArray("w:6: people[1]: ");
+    QTest::newRow("nobody runs so fast") << people("[11,0,0,1,0]") << QByteArray("w:6: people[1]: ");
+    QTest::newRow("no way") << people("[1,0,0,1,0,1,0]") << QByteArray("w:6: people[1]: ");
+    QTest::newRow("person no list") << people("3") << QByteArray("w:6: people[1]: ");
     QTest::newRow("more behind") << good + "x" << QByteArray("w:4: not JSON: ");
 }
 
@@ -173,6 +188,38 @@ void TestWorld::stairsGrowQuadratically() {
             ++treads;
         }
     QCOMPARE(treads, 12);
+}
+
+void TestWorld::theTourIsLargeAndOpen() {
+    const auto world = shipped("tour");
+    QVERIFY(world.ok());
+    double width = 0, depth = 0;
+    for (const World::Edge &edge : world->edges) {
+        width = std::max({width, edge.x1, edge.x2});
+        depth = std::max({depth, edge.y1, edge.y2});
+    }
+    QVERIFY(width >= 60 && depth >= 40); // its corner is the origin
+    const auto clear = [&](double x, double y, double room) {
+        return std::all_of(world->edges.begin(), world->edges.end(),
+                           [&](const World::Edge &edge) { return distance(edge, x, y) > room; });
+    };
+    double length = 0;
+    for (std::size_t i = 1; i < world->poses.size(); ++i) {
+        const Pose2D &pose = world->poses[i], &last = world->poses[i - 1];
+        QVERIFY(clear(pose.x, pose.y, 0.9));
+        length += std::hypot(pose.x - last.x, pose.y - last.y);
+    }
+    QVERIFY(length > 360); // each corridor twice
+    QCOMPARE(world->poses.back().x, world->poses.front().x);
+    QCOMPARE(world->poses.back().y, world->poses.front().y);
+    QVERIFY(world->people.size() >= 10);
+    for (const World::Person &person : world->people) {
+        for (std::size_t i = 1; i < person.way.size(); ++i)
+            for (double t = 0; t <= 1; t += 0.01) {
+                const auto at = person.way[i - 1] + (person.way[i] - person.way[i - 1]) * t;
+                QVERIFY(clear(at.x, at.y, 0.3));
+            }
+    }
 }
 
 QTEST_APPLESS_MAIN(TestWorld)

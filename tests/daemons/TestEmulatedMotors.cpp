@@ -22,6 +22,7 @@ private Q_SLOTS:
     void brokenEncoderStandsStill();
     void emergencyStopHolds();
     void slipShortensTheWay();
+    void wheelsSlipEachByItself();
 };
 
 void TestEmulatedMotors::speedFollowsTheRamp() {
@@ -319,6 +320,32 @@ void TestEmulatedMotors::slipShortensTheWay() {
     pass(drivetrain, 2);
     const double rim = 30000 / 38000.0 * 2 * M_PI * 0.1;
     QVERIFY(std::abs(drivetrain.advance(0.001).vx - 0.8 * rim) < 0.01 * rim);
+}
+
+void TestEmulatedMotors::wheelsSlipEachByItself() {
+    const auto drive = [](std::uint64_t seed) { // for 20 s; where it comes to
+        Drivetrain::Options options;
+        options.slip = 0.1;
+        options.slipSpread = 0.03;
+        options.seed = seed;
+        Drivetrain drivetrain(options);
+        RoboClawClient client(drivetrain);
+        setQpps(client, 150000);
+        client.speeds(0x80, 76000, 76000, 3000000);
+        client.speeds(0x81, 76000, 76000, 3000000);
+        pass(drivetrain, 1);
+        Pose2D pose;
+        for (int i = 0; i < 20000; ++i)
+            pose = pose * drivetrain.advance(0.001).motion(0.001);
+        return pose;
+    };
+    const double way = 20 * 2 * 2 * M_PI * 0.1; // of the rims
+    const Pose2D pose = drive(1);
+    const double share = std::hypot(pose.x, pose.y) / way;
+    QVERIFY2(share > 0.8 && share < 0.93, qPrintable(QString::number(share)));
+    QVERIFY(std::abs(pose.theta) > 0.01);
+    QCOMPARE(drive(1).theta, pose.theta); // the same seed, the same ground
+    QVERIFY(drive(2).theta != pose.theta);
 }
 
 QTEST_GUILESS_MAIN(TestEmulatedMotors)

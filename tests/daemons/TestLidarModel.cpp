@@ -26,6 +26,8 @@ private Q_SLOTS:
     void rangesAreQuantised();
     void returnsDropOutAndLieFar();
     void sameSeedSamePackets();
+    void peopleStandBeforeTheWall();
+    void peopleAreWhereTheyAreAtEachFiring();
 };
 
 void TestLidarModel::ringPointsLieOnTheWalls_data() {
@@ -188,6 +190,51 @@ void TestLidarModel::sameSeedSamePackets() {
         const auto packet = a.nextPacket();
         QVERIFY(packet == b.nextPacket());
         QVERIFY(packet != c.nextPacket());
+    }
+}
+
+void TestLidarModel::peopleStandBeforeTheWall() {
+    World world;
+    world.edges = {{5, -9, 5, 9}};
+    world.poses = {{0, 0, 0}};
+    world.people = {{1e-6, {{2, 0}, {2, 1}}}};
+    Simulation::Options options;
+    options.lidar.sigma = 0;
+    options.rpm = 1e-3; // as good as standing still, looking straight ahead
+    const auto distance = [&](int laser) {
+        Simulation simulation(world, options, start_ns);
+        return double(velodyne::DataPacket(simulation.nextPacket().data()).distance(0, laser)) * 0.002;
+    };
+    const int horizon = velodyne::hdl32e.horizonLaser;
+    QVERIFY(std::abs(distance(horizon) - (2 - People::radius)) < 0.002);
+    options.lidar.sensorHeight = People::height + 0.1; // over the head
+    QVERIFY(std::abs(distance(horizon) - 5) < 0.002);
+    options.lidar.sensorHeight = 0.5;
+    world.people[0].way = {{2, People::radius + 0.01}, {2, 1}}; // beside
+    QVERIFY(std::abs(distance(horizon) - 5) < 0.002);
+    world.people[0].way = {{-2, 0}, {-2, 1}}; // behind
+    QVERIFY(std::abs(distance(horizon) - 5) < 0.002);
+    world.people[0].way = {{7, 0}, {7, 1}}; // hidden
+    QVERIFY(std::abs(distance(horizon) - 5) < 0.002);
+}
+
+void TestLidarModel::peopleAreWhereTheyAreAtEachFiring() {
+    World world;
+    world.edges = {{9, -9, 9, 9}};
+    world.poses = {{0, 0, 0}};
+    world.people = {{2, {{4, 0}, {8, 0}}}};
+    Simulation::Options options;
+    options.lidar.sigma = 0;
+    options.rpm = 1e-3;
+    Simulation simulation(world, options, start_ns);
+    int firings = 0;
+    for (int i = 0; i < 1808; ++i) {
+        const velodyne::DataPacket packet(simulation.nextPacket().data());
+        for (int block = 0; block < velodyne::blocksPerPacket; ++block) {
+            const double seconds = firings++ * velodyne::hdl32e.firingPeriod_ns * 1e-9;
+            const double distance = packet.distance(block, velodyne::hdl32e.horizonLaser) * 0.002;
+            QVERIFY(std::abs(distance - (4 + 2 * seconds - People::radius)) < 0.0015);
+        }
     }
 }
 

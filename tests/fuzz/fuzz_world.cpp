@@ -15,5 +15,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
                      std::isfinite(e.y2));
     for (const auto &p : world->poses)
         FUZZ_REQUIRE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.theta));
+    for (const auto &person : world->people) {
+        FUZZ_REQUIRE(person.way.size() > 1 && person.speed > 0);
+        for (const auto &p : person.way)
+            FUZZ_REQUIRE(std::isfinite(p.x) && std::isfinite(p.y));
+    }
     return 0;
 }

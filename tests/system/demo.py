@@ -12,8 +12,10 @@ import tempfile
 import time
 import unittest
 import uuid
+from unittest import mock
 
 from support import DATA, SOURCE
+import window  # of deploy/demo
 
 RUN = os.path.join(SOURCE, "deploy", "demo", "run.py")
 
@@ -118,6 +120,16 @@ class DemoTest(unittest.TestCase):
         self.assertEqual(status, 130, out + err)
         self.assertIn("opening hermes-gui", out)
 
+    def test_ctrl_c_while_the_window_stays(self):
+        """Is as good as closing it."""
+        stays = window.Window.__new__(window.Window)
+        with subprocess.Popen(["sleep", "60"]) as stays.process:
+            self.addCleanup(stays.process.kill)
+            with mock.patch.object(stays.process, "wait", side_effect=KeyboardInterrupt):
+                stays.stay("The window stays.")
+            self.assertIsNone(stays.process.poll())
+            stays.stop()
+
     def test_kill_leaves_no_process(self):
         self.with_window()
         process = self.start()
@@ -135,7 +147,7 @@ class DemoTest(unittest.TestCase):
             self.assertNotEqual(free_port(taken.getsockname()[1]), taken.getsockname()[1])
 
     def test_usage_errors(self):
-        for arguments in (["--log", "/no/such/file"], ["--world", "/no/such/world"], ["--nonsense"]):
+        for arguments in (["--log", "/no/such/file"], ["--world", "/no/such/world"], ["--nonsense"], ["--tour", "--log", RUN]):
             status, _, err = self.finish(self.start(*arguments), 20)
             self.assertEqual(status, 2, err)
             self.assertIn(arguments[0], err)

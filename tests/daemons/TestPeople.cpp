@@ -1,0 +1,87 @@
+#include "daemons/simulator/RobotBody.h"
+
+#include <QtTest>
+
+#include <cmath>
+
+using namespace hermes;
+using namespace hermes::simulator;
+using Point = vectorlib::Vector2D<double>;
+
+namespace {
+
+constexpr double step = 0.001; // seconds
+constexpr double robotRadius = 0.3;
+const Point farAway(100, 100);
+
+void pass(People &people, double seconds, Point robot) {
+    for (int i = 0; i < std::lround(seconds / step); ++i)
+        people.advance(step, robot);
+}
+
+} // namespace
+
+class TestPeople : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void walkToAndFro_data();
+    void walkToAndFro();
+    void stopBeforeTheRobotAndTurnBack();
+    void walkAwayFromARobotBesideThem();
+    void holdTheRobot();
+};
+
+void TestPeople::walkToAndFro_data() {
+    QTest::addColumn<double>("seconds");
+    QTest::addColumn<double>("x");
+    QTest::addColumn<double>("y");
+    QTest::newRow("begin") << 0.0 << 0.0 << 0.0;
+    QTest::newRow("first leg") << 2.0 << 1.0 << 0.0;
+    QTest::newRow("second leg") << 5.0 << 2.0 << 0.5;
+    QTest::newRow("end") << 6.0 << 2.0 << 1.0;
+    QTest::newRow("way back") << 7.0 << 2.0 << 0.5;
+    QTest::newRow("begin again") << 12.0 << 0.0 << 0.0;
+    QTest::newRow("second time") << 14.0 << 1.0 << 0.0;
+}
+
+void TestPeople::walkToAndFro() {
+    QFETCH(double, seconds);
+    QFETCH(double, x);
+    QFETCH(double, y);
+    People people({{0.5, {{0, 0}, {2, 0}, {2, 1}}}}, robotRadius);
+    pass(people, seconds, farAway);
+    QVERIFY((people.all()[0].position - Point(x, y)).norm() < 0.005);
+}
+
+void TestPeople::stopBeforeTheRobotAndTurnBack() {
+    People people({{1, {{0, 0}, {10, 0}}}}, robotRadius);
+    const Point robot(5, 0);
+    const double nearest = robotRadius + People::distance + People::radius;
+    pass(people, 5 - nearest + 1, robot);
+    QVERIFY(std::abs(people.all()[0].position.x - (5 - nearest)) < 0.005);
+    pass(people, People::patience + 1, robot);
+    QVERIFY(people.all()[0].position.x < 5 - nearest - 1.5);
+    pass(people, 30, robot); // to the begin and here again
+    QVERIFY(people.all()[0].position.x <= 5 - nearest);
+}
+
+void TestPeople::walkAwayFromARobotBesideThem() {
+    People people({{1, {{0, 0}, {10, 0}}}}, robotRadius);
+    pass(people, 2, {-0.5, 0});
+    QVERIFY(std::abs(people.all()[0].position.x - 2) < 0.005);
+}
+
+void TestPeople::holdTheRobot() {
+    const People people({{1, {{2, 0}, {3, 0}}}}, robotRadius);
+    RobotBody body({}, robotRadius);
+    Pose2D pose{0, 0, 0};
+    for (int i = 0; i < 3000; ++i) {
+        pose = body.move(pose, {1, 0, 0}, step, people);
+        QVERIFY(std::hypot(pose.x - 2, pose.y) > robotRadius + People::radius - 1e-9);
+    }
+    QVERIFY(body.isTouching());
+    QVERIFY(std::abs(pose.x - (2 - robotRadius - People::radius)) < 1e-6);
+}
+
+QTEST_APPLESS_MAIN(TestPeople)
+#include "TestPeople.moc"
