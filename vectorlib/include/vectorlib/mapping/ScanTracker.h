@@ -181,7 +181,7 @@ private:
                 guess = {expected->pose, guess.twist, true, true, expected->deviations};
         }
         byOdometry_ = false;
-        isWellExpected_ = lastStamp_ && scan.stamp - *lastStamp_ <= followed_s;
+        isWellExpected_ = lastStamp_ && scan.stamp > *lastStamp_ && scan.stamp - *lastStamp_ <= followed_s;
         Found found = find(scan, guess);
         const bool doubtful = found.again || leaps(byMotion, guess, end - begin);
         if (scan.odometry && (found.score < 0 || (isStraightened(scan) && doubtful))) {
