@@ -20,7 +20,7 @@ void MapModel::onGraph(const GraphMessage &message) {
         graphs_.renew();
     else if (graph_.isWhole() && graph_.known().size() > 0)
         graphIsWhole();
-    startIfComplete();
+    goOn();
     Q_EMIT changed();
 }
 
@@ -98,18 +98,31 @@ void MapModel::expectCorrection(Sign sign) {
             now.ways[i] = paths_[i].way();
         glide_.hold(now, pose_.value_or(Pose2D()));
         signs_ = 0;
+        glideClock_.start();
         wait_.start();
     }
     signs_ |= sign;
 }
 
-void MapModel::startIfComplete() {
-    if (glide_.phase() == Glide::Phase::Holds && signs_ == AllSigns && isWhole() && graph_.isWhole())
+/// After each message: the picture waits on, or begins to move.
+void MapModel::goOn() {
+    if (glide_.phase() != Glide::Phase::Holds)
+        return;
+    const bool areParts = !isWhole() || !graph_.isWhole();
+    if (signs_ == AllSigns && !areParts)
         startGlide();
+    else if (areParts && glideClock_.elapsed() < partsWait.count())
+        wait_.start();
+}
+
+void MapModel::onWaitOver() {
+    const bool isMap = (signs_ & MapSign) && isWhole(), isGraph = (signs_ & GraphSign) && graph_.isWhole();
+    isMap &&isGraph ? startGlide() : endGlide();
 }
 
 void MapModel::startGlide() {
     wait_.stop();
+    poseLead_ = 0;
     if (!glide_.start(edges_.size(), graph_.known()))
         return endGlide();
     glideClock_.start();

@@ -53,11 +53,8 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
     });
     frames_.setInterval(framePeriod);
     connect(&frames_, &QTimer::timeout, this, &MapModel::showGlide);
-    wait_.setInterval(correctionWait);
-    connect(&wait_, &QTimer::timeout, this, [this] {
-        poseLead_ = 0;
-        startGlide();
-    });
+    wait_.setInterval(signWait);
+    connect(&wait_, &QTimer::timeout, this, &MapModel::onWaitOver);
     notice_.setInterval(noticeTime);
     connect(&notice_, &QTimer::timeout, this, [this] {
         correction_m_.reset();
@@ -113,7 +110,7 @@ void MapModel::onMap(const MapMessage &map) {
         addEdge(edge);
     for (qint64 removed : map.removed)
         removeEdge(removed);
-    startIfComplete();
+    goOn();
     Q_EMIT changed();
 }
 
@@ -171,7 +168,7 @@ void MapModel::onPose(const PoseMessage &message) {
     if (poseLead_ == 0)
         paths_[MovingMap::Matched].add(*pose_, newestKeyScan());
     placeScan();
-    startIfComplete();
+    goOn();
     Q_EMIT changed();
 }
 

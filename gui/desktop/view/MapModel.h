@@ -18,8 +18,9 @@ class MapModel : public QObject {
     Q_OBJECT
 public:
     static constexpr int mostEdges = 200000;
-    /// So long the picture waits for all of a corrected map, and so long the notice of it stands.
-    static constexpr std::chrono::milliseconds correctionWait{2000}, noticeTime{4000};
+    /// So long the picture waits for a corrected map, longer while parts of it come, and so long the notice
+    /// of it stands.
+    static constexpr std::chrono::milliseconds signWait{2000}, partsWait{10000}, noticeTime{4000};
 
     explicit MapModel(Fleet &fleet, QObject *parent = nullptr);
 
@@ -97,7 +98,8 @@ private:
     void graphIsWhole();
     void correctPaths(const QVector<Pose2D> &before);
     void forgetGraph();
-    void startIfComplete();
+    void goOn();
+    void onWaitOver();
     void startGlide();
     void showGlide();
     void endGlide();
@@ -127,7 +129,7 @@ private:
     int signs_ = 0;    // of the correction that the picture waits for
     std::optional<double> correction_m_;
     Glide glide_;
-    QElapsedTimer glideClock_;
+    QElapsedTimer glideClock_; // since it holds or moves
     QTimer frames_, wait_, notice_;
     TopicFeed maps_, graphs_, poses_, results_, scans_, odometryFeed_, truthFeed_;
 };

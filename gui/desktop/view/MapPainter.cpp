@@ -2,6 +2,7 @@
 
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/view/Clipping.h"
+#include "gui/desktop/view/MapColours.h"
 
 #include <QPainter>
 #include <QPainterPath>
@@ -10,54 +11,11 @@
 namespace hermes::desktop {
 namespace {
 
-struct Colours {
-    QColor background, grid, axis, map, accent, scan, correspondence, path, odometry, truth, robot, text,
-        loop;
-    std::array<QColor, 5> trust; // from none to full: orange to blue, which all eyes tell apart
-};
-
-Colours colours() {
-    if (theme::isDark())
-        return {QColor(0x17, 0x1a, 0x1c),
-                QColor(0x2a, 0x2f, 0x33),
-                QColor(0x45, 0x4c, 0x52),
-                QColor(0xd5, 0xda, 0xde),
-                QColor(0x4d, 0xc4, 0xff),
-                QColor(0xc9, 0x8a, 0x2b),
-                QColor(0x6d, 0x8b, 0x74),
-                QColor(0x5a, 0xa9, 0xff),
-                QColor(0xb8, 0x8c, 0xe0),
-                QColor(0x8f, 0x98, 0x9f),
-                QColor(0xff, 0x8a, 0x3d),
-                QColor(0xc3, 0xc9, 0xce),
-                QColor(0xf0, 0xe4, 0x42),
-                {QColor(0xff, 0x7a, 0x1a), QColor(0xf2, 0xb1, 0x6e), QColor(0xd8, 0xd4, 0xc8),
-                 QColor(0x85, 0xb4, 0xe0), QColor(0x35, 0x8c, 0xe8)}};
-    return {QColor(0xfc, 0xfc, 0xfb),
-            QColor(0xe9, 0xea, 0xe8),
-            QColor(0xc9, 0xcc, 0xc9),
-            QColor(0x24, 0x29, 0x2e),
-            QColor(0x00, 0x7d, 0xc5),
-            QColor(0xb8, 0x5c, 0x00),
-            QColor(0x86, 0xa8, 0x8c),
-            QColor(0x0b, 0x63, 0xc4),
-            QColor(0x8a, 0x4f, 0xbf),
-            QColor(0x6a, 0x71, 0x78),
-            QColor(0xd9, 0x53, 0x00),
-            QColor(0x3b, 0x41, 0x47),
-            QColor(0x7d, 0x6f, 0x00),
-            {QColor(0xc4, 0x4e, 0x00), QColor(0xe0, 0x8e, 0x4c), QColor(0xa8, 0xa4, 0x98),
-             QColor(0x5b, 0x93, 0xc9), QColor(0x0a, 0x4f, 0xa0)}};
-}
-
 constexpr double robotRadius_m = 0.3; // as large as it is drawn
 /// One pixel lines are fast without smoothing; beyond so many lines nobody sees the difference.
 constexpr int smoothUpTo = 2000;
 /// Pixels of lines that are drawn smoothly, and at all: a picture is not to take longer than 50 ms.
 constexpr double longestSmooth = 2e5, longestDrawn = 1e6, longestDashed = 4e4;
-/// Pixels between key scans that are drawn, and how many dots at most.
-constexpr double leastStep = 4;
-constexpr int mostDots = 10000;
 
 QVector<QLineF> mapped(const QVector<QLineF> &lines, const QTransform &transform) {
     QVector<QLineF> result;
@@ -65,26 +23,6 @@ QVector<QLineF> mapped(const QVector<QLineF> &lines, const QTransform &transform
     for (const QLineF &line : lines)
         result.append(transform.map(line));
     return result;
-}
-
-double trustWidth(std::size_t trustClass) {
-    return 7 - double(trustClass);
-}
-
-/// For text on the map.
-void paintBox(QPainter &painter, const QRectF &box) {
-    QColor back = colours().background;
-    back.setAlpha(220);
-    painter.setRenderHint(QPainter::Antialiasing, true);
-    painter.setPen(QPen(colours().grid, 1));
-    painter.setBrush(back);
-    painter.drawRoundedRect(box, 4, 4);
-    painter.setBrush(Qt::NoBrush);
-}
-
-/// Of so many classes; trust in 0 to 1.
-int classOf(double trust, std::size_t classes) {
-    return qMin(int(trust * double(classes)), int(classes) - 1);
 }
 
 } // namespace
@@ -99,7 +37,7 @@ double gridStep_m(double pixelsPerMetre) {
 }
 
 void MapPainter::paint(QPainter &painter) const {
-    const Colours c = colours();
+    const MapColours c = mapColours();
     painter.fillRect(QRect({}, size_), c.background);
     if (layers_.grid)
         paintGrid(painter);
@@ -112,17 +50,17 @@ void MapPainter::paint(QPainter &painter) const {
         leftOut += paintCorrespondences(painter);
     if (layers_.segments)
         leftOut += paintLines(painter, mapped(model_.segments(), sensorTransform()), QPen(c.accent, 2));
+    if (layers_.paths) {
+        paintPath(painter, model_.truthPath(), c.truth, Qt::DotLine);
+        paintPath(painter, model_.odometryPath(), c.odometry, Qt::DashLine);
+        paintPath(painter, model_.matchedPath(), c.path, Qt::SolidLine);
+    }
     if (layers_.trust)
         leftOut += paintTrust(painter);
     if (layers_.graph)
         leftOut += paintGraph(painter);
     if (layers_.loops)
         leftOut += paintLoops(painter);
-    if (layers_.paths) {
-        paintPath(painter, model_.truthPath(), c.truth, Qt::DotLine);
-        paintPath(painter, model_.odometryPath(), c.odometry, Qt::DashLine);
-        paintPath(painter, model_.matchedPath(), c.path, Qt::SolidLine);
-    }
     if (layers_.robot && model_.pose()) {
         paintUncertainty(painter);
         paintRobot(painter);
@@ -138,7 +76,7 @@ void MapPainter::paint(QPainter &painter) const {
 }
 
 void MapPainter::paintGrid(QPainter &painter) const {
-    const Colours c = colours();
+    const MapColours c = mapColours();
     const double step = gridStep_m(scale());
     const QRectF world = transform_.inverted().mapRect(QRectF(QPointF(), size_));
     painter.setRenderHint(QPainter::Antialiasing, false);
@@ -186,88 +124,9 @@ QTransform MapPainter::sensorTransform() const {
     return QTransform(c, s, -s, c, shift.x, shift.y) * transform_;
 }
 
-std::vector<MapPainter::Step> MapPainter::drive() const {
-    const KeyScans &graph = model_.graph();
-    std::vector<Step> steps;
-    QPointF last;
-    double trust = 1;
-    for (int i = 0; i < graph.size(); ++i) {
-        const QPointF at = transform_.map(QPointF(graph.poses[i].x, graph.poses[i].y));
-        trust = qMin(trust, graph.trust[i]);
-        const bool isEnd = i == 0 || i == graph.size() - 1;
-        if (!isEnd && (at - last).manhattanLength() < leastStep)
-            continue;
-        steps.push_back({QLineF(i == 0 ? at : last, at), trust});
-        last = at;
-        trust = graph.trust[i];
-    }
-    return steps;
-}
-
-int MapPainter::paintGraph(QPainter &painter) const {
-    const QRectF seen(QPointF(), size_);
-    QVector<QLineF> lines;
-    QVector<QPointF> dots;
-    int leftOut = 0;
-    for (const Step &step : drive()) {
-        lines.append(step.line);
-        const bool isSeen = seen.contains(step.line.p2());
-        leftOut += isSeen && dots.size() >= mostDots;
-        if (isSeen && dots.size() < mostDots)
-            dots.append(step.line.p2());
-    }
-    leftOut += paintLines(painter, lines, QPen(colours().text, 1));
-    painter.setRenderHint(QPainter::Antialiasing, false);
-    painter.setPen(QPen(colours().text, 3));
-    painter.drawPoints(dots.data(), dots.size());
-    return leftOut;
-}
-
-int MapPainter::paintLoops(QPainter &painter) const {
-    const KeyScans &graph = model_.graph();
-    QVector<QLineF> closed, refused;
-    for (const GraphLoop &loop : graph.loops) {
-        const Pose2D &from = graph.poses[int(loop.from)], &to = graph.poses[int(loop.to)];
-        const QLineF line = transform_.map(QLineF(from.x, from.y, to.x, to.y));
-        (loop.weight < KeyScans::leastWeight ? refused : closed).append(line);
-    }
-    return paintLines(painter, refused, QPen(colours().truth, 1, Qt::DashLine)) +
-           paintLines(painter, closed, QPen(colours().loop, 1.5));
-}
-
-// Least trust is widest: what is to be looked at stands out, to those who see no colour, too.
-int MapPainter::paintTrust(QPainter &painter) const {
-    const auto palette = colours().trust;
-    std::array<QVector<QLineF>, palette.size()> lines;
-    for (const Step &step : drive())
-        lines[std::size_t(classOf(step.trust, lines.size()))].append(step.line);
-    int leftOut = 0;
-    for (std::size_t i = lines.size(); i-- > 0;)
-        leftOut +=
-            paintLines(painter, lines[i], QPen(palette[i], trustWidth(i), Qt::SolidLine, Qt::RoundCap));
-    return leftOut;
-}
-
-void MapPainter::paintTrustLegend(QPainter &painter) const {
-    const auto palette = colours().trust;
-    const QFontMetrics metrics(painter.font());
-    const double part = 26, width = double(palette.size()) * part + 16, height = 2 * metrics.height() + 14;
-    const QRectF box(size_.width() - 12 - width, 12, width, height);
-    paintBox(painter, box);
-    painter.setPen(colours().text);
-    painter.drawText(box.adjusted(8, 2, -8, 0), Qt::AlignHCenter | Qt::AlignTop, QObject::tr("trust"));
-    painter.drawText(box.adjusted(8, 0, -8, -2), Qt::AlignLeft | Qt::AlignBottom, "0");
-    painter.drawText(box.adjusted(8, 0, -8, -2), Qt::AlignRight | Qt::AlignBottom, "1");
-    for (std::size_t i = 0; i < palette.size(); ++i) {
-        painter.setPen(QPen(palette[i], trustWidth(i), Qt::SolidLine, Qt::FlatCap));
-        const QPointF from(box.left() + 8 + double(i) * part, box.center().y());
-        painter.drawLine(from, from + QPointF(part, 0));
-    }
-}
-
 void MapPainter::paintScan(QPainter &painter) const {
     painter.setRenderHint(QPainter::Antialiasing, false);
-    painter.setPen(QPen(colours().scan, 2));
+    painter.setPen(QPen(mapColours().scan, 2));
     painter.drawPoints(sensorTransform().map(model_.scan()));
 }
 
@@ -285,7 +144,7 @@ int MapPainter::paintCorrespondences(QPainter &painter) const {
             arrows.append(head);
         }
     }
-    return paintLines(painter, arrows, QPen(colours().correspondence, 1));
+    return paintLines(painter, arrows, QPen(mapColours().correspondence, 1));
 }
 
 void MapPainter::paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour,
@@ -307,11 +166,11 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
     const auto axis = [&](double variance) { // no longer than anything that can be seen
         return qMin(chi95 * enlarged * std::sqrt(qMax(0.0, variance)) * scale(), 1e5);
     };
-    QColor fill = colours().path;
+    QColor fill = mapColours().path;
     fill.setAlpha(50);
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing, true);
-    painter.setPen(QPen(colours().path, 1));
+    painter.setPen(QPen(mapColours().path, 1));
     painter.setBrush(fill);
     painter.translate(transform_.map(QPointF(pose.x, pose.y)));
     const double spread = qMin(180.0, qRadiansToDegrees(normal95 * enlarged * std::sqrt(qMax(0.0, c[8]))));
@@ -328,13 +187,23 @@ void MapPainter::paintRobot(QPainter &painter) const {
     const double r = robotRadius_m;
     const auto at = [&](double x, double y) { return transform_.map(pose * QPointF(x, y)); };
     painter.setRenderHint(QPainter::Antialiasing, true);
-    QColor fill = colours().robot;
+    QColor fill = mapColours().robot;
     painter.setPen(QPen(fill, 2));
     fill.setAlpha(60);
     painter.setBrush(fill);
     painter.drawEllipse(at(0, 0), r * scale(), r * scale());
-    painter.setBrush(colours().robot);
+    painter.setBrush(mapColours().robot);
     painter.drawPolygon(QVector<QPointF>{at(r, 0), at(0.3 * r, 0.35 * r), at(0.3 * r, -0.35 * r)});
+    painter.setBrush(Qt::NoBrush);
+}
+
+void MapPainter::paintBox(QPainter &painter, const QRectF &box) const {
+    QColor back = mapColours().background;
+    back.setAlpha(220);
+    painter.setRenderHint(QPainter::Antialiasing, true);
+    painter.setPen(QPen(mapColours().grid, 1));
+    painter.setBrush(back);
+    painter.drawRoundedRect(box, 4, 4);
     painter.setBrush(Qt::NoBrush);
 }
 
@@ -342,7 +211,7 @@ void MapPainter::paintScaleBar(QPainter &painter, double step_m) const {
     const double length = step_m * scale();
     const QPointF right(size_.width() - 12, size_.height() - 12), left = right - QPointF(length, 0);
     painter.setRenderHint(QPainter::Antialiasing, false);
-    painter.setPen(QPen(colours().text, 2));
+    painter.setPen(QPen(mapColours().text, 2));
     painter.drawLine(left, right);
     for (const QPointF &end : {left, right})
         painter.drawLine(end - QPointF(0, 4), end);
@@ -381,13 +250,13 @@ void MapPainter::paintMatch(QPainter &painter) const {
     paintBox(painter, box);
     const QRectF bar = QRectF(box.left() + 8, box.bottom() - 14, box.width() - 16, 6);
     painter.setPen(Qt::NoPen);
-    painter.setBrush(colours().grid);
+    painter.setBrush(mapColours().grid);
     painter.drawRect(bar);
     painter.setBrush(theme::colour(condition));
     painter.drawRect(QRectF(bar.topLeft(), QSizeF(bar.width() * reliability, bar.height())));
     painter.setBrush(Qt::NoBrush);
     for (int i = 0; i < lines.size(); ++i) {
-        painter.setPen(isLost && i == 0 ? theme::colour(condition) : colours().text);
+        painter.setPen(isLost && i == 0 ? theme::colour(condition) : mapColours().text);
         painter.drawText(box.topLeft() + QPointF(8, 4 + i * height + metrics.ascent()), lines[i]);
     }
 }
@@ -398,10 +267,12 @@ void MapPainter::paintCorrection(QPainter &painter) const {
         return;
     const QString text = QObject::tr("map corrected: %1 m").arg(*model_.correction_m(), 0, 'f', 2);
     const QFontMetrics metrics(painter.font());
-    QRectF box(0, 12, metrics.horizontalAdvance(text) + 24, metrics.height() + 12);
+    constexpr int narrow = 640; // pixels: what stands in the corners leaves no room between
+    QRectF box(0, size_.width() < narrow ? 5 * metrics.height() : 12, metrics.horizontalAdvance(text) + 24,
+               metrics.height() + 12);
     box.moveLeft((size_.width() - box.width()) / 2);
     paintBox(painter, box);
-    painter.setPen(colours().text);
+    painter.setPen(mapColours().text);
     painter.drawText(box, Qt::AlignCenter, text);
 }
 

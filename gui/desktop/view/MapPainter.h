@@ -47,6 +47,8 @@ private:
     void paintScaleBar(QPainter &painter, double step_m) const;
     void paintMatch(QPainter &painter) const;
     void paintCorrection(QPainter &painter) const;
+    /// For text on the map.
+    void paintBox(QPainter &painter, const QRectF &box) const;
     void paintNotice(QPainter &painter, int leftOut) const;
 
     /// Part of the drive from key scan to key scan, on the screen.

@@ -22,7 +22,9 @@ private Q_SLOTS:
     void correctionGlides();
     void viewThatFollowsDoesNotLeap();
     void correctedAgainWhileItGlides();
+    void correctionOfWhichNotAllComes_data();
     void correctionOfWhichNotAllComes();
+    void partsThatComeSlowly();
     void largeMapIsNotAnimated();
     void clearedMapIsNoCorrection();
     void layersAreSwitched();
@@ -229,15 +231,43 @@ void TestMapCorrection::correctedAgainWhileItGlides() {
     QVERIFY(Session::isAt(s.model.matchedPath().back(), other.pose(last)));
 }
 
-// Only the graph was corrected: the picture waits, but not for ever, and the path goes on.
+void TestMapCorrection::correctionOfWhichNotAllComes_data() {
+    QTest::addColumn<QByteArray>("what");
+    for (const char *const what : {"g", "m", "mg", "pg"})
+        QTest::newRow(what) << QByteArray(what);
+}
+
+// The picture waits, but not for ever, and the path goes on.
 void TestMapCorrection::correctionOfWhichNotAllComes() {
+    QFETCH(QByteArray, what);
     Session s;
-    s.sayCorrected('g');
+    for (const char one : what)
+        s.sayCorrected(one);
     QTRY_VERIFY(s.model.isGliding());
     QTRY_VERIFY_WITH_TIMEOUT(!s.model.isGliding(), 6000);
-    QVERIFY(Session::isAt(s.model.matchedPath().back(), s.straight.pose(last)));
+    const bool isCorrected = what.contains('g');
+    QVERIFY(Session::isAt(s.model.matchedPath().back(), (isCorrected ? s.straight : s.bent).pose(last)));
+    const EightDrive &walls = what.contains('m') ? s.straight : s.bent;
+    QVERIFY(QLineF(s.model.edges().last().p2(), walls.wall(last, 0.5, 1.5)).length() < 1e-6);
     s.daemon.say("pose", s.straight.poseMessage(last + 0.5, false, s.bent));
     QTRY_VERIFY(Session::isAt(s.model.matchedPath().back(), s.straight.pose(last + 0.5)));
+}
+
+// Parts may take longer than the picture waits for nothing.
+void TestMapCorrection::partsThatComeSlowly() {
+    Session s;
+    s.sayCorrected('p');
+    s.sayCorrected('m');
+    s.daemon.say("graph", s.straight.graph(200, true, 0, 40, last + 1, ""));
+    for (const int first : {40, 80}) {
+        QTest::qWait(int(MapModel::signWait.count()) - 500);
+        QVERIFY(s.model.isGliding());
+        s.daemon.say("graph", s.straight.graph(200, false, first, first + 40, last + 1, ""));
+    }
+    QTRY_VERIFY(s.part(pointOf(*s.model.shownPose())) > 0.1);
+    QVERIFY(s.model.isGliding());
+    QTRY_VERIFY(!s.model.isGliding());
+    QVERIFY(Session::isAt(s.model.matchedPath().back(), s.straight.pose(last)));
 }
 
 void TestMapCorrection::largeMapIsNotAnimated() {
