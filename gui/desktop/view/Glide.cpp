@@ -5,8 +5,8 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr double cell_m = 4;
-constexpr int farthestCells = 2; // an edge stands still that is farther from any key scan
+constexpr double cell_m = 2;
+constexpr int farthestCells = 3; // an edge stands still that is farther from any key scan
 
 Pose2D between(const Pose2D &from, const Pose2D &to, double part) {
     return {from.x + part * (to.x - from.x), from.y + part * (to.y - from.y),

@@ -67,9 +67,9 @@ void TestSpeed::framesOfALargeMap() {
     QVERIFY2(rate > 15, qPrintable(QString::number(rate)));
 }
 
-/// The topic graph of 50,000 key scans in parts, along a spiral; corrected: turned a little.
-static std::vector<QByteArray> longDrive(int revision, double turn) {
-    constexpr int keyScans = 50000, part = 1000;
+/// The topic graph in parts, along a spiral; corrected: turned a little.
+static std::vector<QByteArray> longDrive(int revision, int keyScans, double turn) {
+    constexpr int part = 1000;
     std::vector<QByteArray> messages;
     for (int first = 0; first < keyScans; first += part) {
         QByteArray poses, trust, loops;
@@ -102,9 +102,9 @@ static std::vector<QByteArray> longDrive(int revision, double turn) {
     return messages;
 }
 
-/// 20,000 short walls among them.
-static std::vector<QByteArray> manyWalls(int revision) {
-    constexpr int edges = 20000, part = 1000;
+/// Short walls among them.
+static std::vector<QByteArray> manyWalls(int revision, int edges) {
+    constexpr int part = 1000;
     std::vector<QByteArray> messages;
     for (int first = 0; first < edges; first += part) {
         QByteArray list;
@@ -130,6 +130,11 @@ static std::vector<QByteArray> manyWalls(int revision) {
 }
 
 void TestSpeed::framesOfALongDrive() {
+    // Before the link stands: it would be lost while nobody answers.
+    const auto walls = manyWalls(1, 20000), drive = longDrive(1, 50000, 0);
+    const int edges = Glide::mostEdges, keyScans = Glide::mostKeyScans;
+    const auto fewer = manyWalls(2, edges), same = manyWalls(3, edges);
+    const auto bent = longDrive(2, keyScans, 0), corrected = longDrive(3, keyScans, 0.05);
     FakeDaemon daemon{Mischief{}};
     Fleet fleet;
     MapPanel panel(fleet);
@@ -138,15 +143,15 @@ void TestSpeed::framesOfALongDrive() {
     fleet.add(QString("127.0.0.1:%1").arg(daemon.port()));
     for (const char *const topic : {"map", "graph", "pose"})
         QTRY_VERIFY(daemon.subscriptions(topic) > 0);
-    const auto sayAll = [&](int revision, double turn, const QByteArray &pose) {
-        const auto walls = manyWalls(revision), drive = longDrive(revision, turn);
-        for (const QByteArray &message : walls)
+    const auto sayAll = [&](const std::vector<QByteArray> &map, const std::vector<QByteArray> &graph,
+                            const QByteArray &pose) {
+        for (const QByteArray &message : map)
             daemon.say("map", message);
-        for (const QByteArray &message : drive)
+        for (const QByteArray &message : graph)
             daemon.say("graph", message);
         daemon.say("pose", pose);
     };
-    sayAll(1, 0, R"({"x":50,"y":0,"theta":0,"covariance":null,"outcome":"matched","trust":1})");
+    sayAll(walls, drive, R"({"x":50,"y":0,"theta":0,"covariance":null,"outcome":"matched","trust":1})");
     const MapModel &model = panel.model();
     QTRY_COMPARE_WITH_TIMEOUT(model.graph().size(), 50000, 20000);
     QTRY_VERIFY(model.edges().size() == 20000 && model.pose());
@@ -166,18 +171,22 @@ void TestSpeed::framesOfALongDrive() {
     view.layers().loops = view.layers().graph = view.layers().trust = true;
     const double all = frame_ms();
     figure("a frame, 20,000 edges, 50,000 key scans, graph, loops and trust", all, "ms of the processor");
-    QVERIFY2(all < 150 * slowness, qPrintable(QString::number(all)));
+    QVERIFY2(all < 100 * slowness, qPrintable(QString::number(all)));
 
+    // The largest map that moves.
+    sayAll(fewer, bent, R"({"x":50,"y":0,"theta":0,"covariance":null,"outcome":"matched","trust":1})");
+    QTRY_VERIFY_WITH_TIMEOUT(model.graph().size() == keyScans && model.edges().size() == edges, 20000);
+    QTRY_VERIFY(!model.isGliding());
     int pictures = 0;
     connect(&model, &MapModel::changed, &view,
             [&] { pictures += model.shownPose()->y > 0.01 && model.isGliding(); });
-    sayAll(2, 0.05,
+    sayAll(same, corrected,
            R"({"x":50,"y":2,"theta":0,"covariance":null,"outcome":"matched","trust":1,"corrected":true})");
     LoopWatch watch;
     QTRY_VERIFY_WITH_TIMEOUT(model.correction_m() && !model.isGliding(), 20000);
-    figure("a corrected map of it moves in", pictures, "pictures");
+    figure("a corrected map, 10,000 edges and 20,000 key scans, moves in", pictures, "pictures");
     figure("event loop busy at most, it arrives and moves", watch.longestCpu_ms(), "ms of the processor");
-    QVERIFY2(watch.longestCpu_ms() < 250 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
+    QVERIFY2(watch.longestCpu_ms() < 100 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
 }
 
 void TestSpeed::largeMapArrivesWhole() {
