@@ -95,6 +95,9 @@ void MapPanel::addLayers(QToolBar &bar) {
     add(tr("Correspondences"), &MapLayers::correspondences);
     add(tr("Paths (matched solid, odometry dashed, truth dotted)"), &MapLayers::paths);
     add(tr("Robot, with its uncertainty ten times enlarged"), &MapLayers::robot);
+    add(tr("Loops (places met again; those refused dashed)"), &MapLayers::loops);
+    add(tr("Graph (key scans of the drive)"), &MapLayers::graph);
+    add(tr("Trust (how well the drive is known)"), &MapLayers::trust);
     menu->addSeparator();
     menu->addAction(tr("Clear paths"), &model_, &MapModel::clearPaths);
     auto *const button = new QToolButton;

@@ -1,5 +1,6 @@
 #include "gui/desktop/view/MapModel.h"
 
+#include "gui/desktop/view/Plausible.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
@@ -10,22 +11,8 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr double pathStep_m = 0.02;
-constexpr int mostPathPoints = 100000;
-
+constexpr std::chrono::milliseconds framePeriod{30}; // of the movement of a corrected map
 constexpr int longestOutcome = 20;
-
-bool isPlausible(double metresOrRadians) {
-    return std::abs(metresOrRadians) <= MapModel::farthest_m; // not NaN
-}
-
-bool isPlausible(const Pose2D &pose) {
-    return isPlausible(pose.x) && isPlausible(pose.y) && isPlausible(pose.theta);
-}
-
-bool isPlausible(const Twist2D &twist) {
-    return isPlausible(twist.vx) && isPlausible(twist.vy) && isPlausible(twist.omega);
-}
 
 std::optional<QLineF> toLine(double x1, double y1, double x2, double y2) {
     if (!isPlausible(x1) || !isPlausible(y1) || !isPlausible(x2) || !isPlausible(y2))
@@ -34,20 +21,6 @@ std::optional<QLineF> toLine(double x1, double y1, double x2, double y2) {
 }
 
 } // namespace
-
-QPointF operator*(const Pose2D &pose, QPointF point) {
-    const double c = std::cos(pose.theta), s = std::sin(pose.theta);
-    return {pose.x + c * point.x() - s * point.y(), pose.y + s * point.x() + c * point.y()};
-}
-
-void MapModel::Path::add(const Pose2D &pose) {
-    const QPointF point(pose.x, pose.y);
-    if (!way.isEmpty() && QLineF(way.back(), point).length() < pathStep_m)
-        return;
-    if (way.size() >= mostPathPoints)
-        way.remove(0, mostPathPoints / 10);
-    way.append(point);
-}
 
 template <typename Message>
 Client::TopicCallback MapModel::reader(void (MapModel::*take)(const Message &)) {
@@ -63,26 +36,50 @@ Client::TopicCallback MapModel::reader(void (MapModel::*take)(const Message &)) 
 MapModel::MapModel(Fleet &fleet, QObject *parent)
     : QObject(parent)
     , maps_(fleet, "map", {{"queue", 100}}, reader(&MapModel::onMap), this)
+    , graphs_(fleet, "graph", {{"queue", 100}}, reader(&MapModel::onGraph), this)
     , poses_(fleet, "pose", {}, reader(&MapModel::onPose), this)
     , results_(fleet, "scan", {{"max_rate_hz", 10}}, reader(&MapModel::onResult), this)
     , scans_(fleet, "scan2d", {{"max_rate_hz", 10}}, reader(&MapModel::onScan), this)
     , odometryFeed_(fleet, "odometry", {{"max_rate_hz", 10}}, reader(&MapModel::onOdometry), this)
     , truthFeed_(fleet, "truth", {{"max_rate_hz", 10}}, reader(&MapModel::onTruth), this) {
     connect(&maps_, &TopicFeed::sourceChanged, this, [this] { onMap({0, true, {}, {}, 0}); });
+    connect(&graphs_, &TopicFeed::sourceChanged, this, [this] { onGraph({0, true, 0, {}, {}, {}, 0}); });
     connect(&poses_, &TopicFeed::sourceChanged, this, [this] {
+        endGlide();
         pose_.reset();
+        trust_.reset();
+        odometryFrame_.reset();
         clearPaths();
     });
+    frames_.setInterval(framePeriod);
+    connect(&frames_, &QTimer::timeout, this, &MapModel::showGlide);
+    wait_.setInterval(signWait);
+    connect(&wait_, &QTimer::timeout, this, &MapModel::onWaitOver);
+    notice_.setInterval(noticeTime);
+    connect(&notice_, &QTimer::timeout, this, [this] {
+        correction_m_.reset();
+        Q_EMIT changed();
+    });
+    wait_.setSingleShot(true);
+    notice_.setSingleShot(true);
 }
 
 void MapModel::clearPaths() {
-    matched_ = odometry_ = truth_ = {};
+    paths_ = {};
     Q_EMIT changed();
+}
+
+const QPolygonF &MapModel::way(MovingMap::Path path) const {
+    return isGliding() ? glide_.shown().ways[path] : paths_[path].way();
+}
+
+std::optional<Pose2D> MapModel::shownPose() const {
+    return pose_ ? std::optional(glide_.shownPose(*pose_)) : std::nullopt;
 }
 
 QRectF MapModel::bounds() const {
     QRectF all;
-    for (const QLineF &edge : edges_) {
+    for (const QLineF &edge : edges()) {
         const QRectF one = QRectF(edge.p1(), edge.p2()).normalized();
         all = all.isNull()
                   ? one
@@ -94,11 +91,17 @@ QRectF MapModel::bounds() const {
 
 void MapModel::onMap(const MapMessage &map) {
     if (map.cleared) {
+        if (map.size <= 0)
+            endGlide(); // the map was cleared, not corrected
+        else if (!edges_.isEmpty() && !isMapRenewed_ && graph_.known().size() > 0)
+            expectCorrection(MapSign);
+        isMapRenewed_ = false;
         edges_.clear();
         rows_.clear();
         ids_.clear();
     } else if (double(map.revision) > revision_ + 1) {
         revision_ = std::numeric_limits<double>::infinity(); // changes were lost: the whole map anew, once
+        isMapRenewed_ = true;
         return maps_.renew();
     }
     revision_ = double(map.revision);
@@ -107,6 +110,7 @@ void MapModel::onMap(const MapMessage &map) {
         addEdge(edge);
     for (qint64 removed : map.removed)
         removeEdge(removed);
+    goOn();
     Q_EMIT changed();
 }
 
@@ -147,7 +151,9 @@ void MapModel::onPose(const PoseMessage &message) {
         ++ignored_;
         return Q_EMIT changed();
     }
+    takeLeap(message);
     pose_ = message.pose;
+    takeTrust(message.trust);
     outcome_ = shortLine(message.outcome, longestOutcome);
     covariance_ = message.covariance;
     const auto isVariance = [](double v) { return std::abs(v) <= farthest_m * farthest_m; };
@@ -159,9 +165,21 @@ void MapModel::onPose(const PoseMessage &message) {
     twist_ = isMoving ? message.twist : Twist2D();
     ignored_ += !isMoving;
     poseScan_ = message.scan;
-    matched_.add(*pose_);
+    if (poseLead_ == 0)
+        paths_[MovingMap::Matched].add(*pose_, newestKeyScan());
     placeScan();
+    goOn();
     Q_EMIT changed();
+}
+
+void MapModel::takeTrust(double trust) {
+    trust_.reset();
+    if (!graphs_.source())
+        return; // a matcher without a graph has no trust to tell
+    if (trust >= 0 && trust <= 1)
+        trust_ = trust;
+    else
+        ++ignored_;
 }
 
 void MapModel::onResult(const ScanResult &result) {
@@ -211,23 +229,25 @@ void MapModel::placeScan() {
 }
 
 void MapModel::onOdometry(const OdometryMessage &odometry) {
-    follow(odometry_, odometry.pose);
+    follow(paths_[MovingMap::Odometry], odometry.pose);
 }
 
 void MapModel::onTruth(const TruthMessage &truth) {
-    follow(truth_, truth.pose);
+    follow(paths_[MovingMap::Truth], truth.pose);
 }
 
-void MapModel::follow(Path &path, const Pose2D &pose) {
-    if (!pose_ && poses_.source())
+void MapModel::follow(DrivenPath &path, const Pose2D &pose) {
+    if (!path.frame && (poseLead_ != 0 || (!pose_ && poses_.source())))
         return; // nothing to lay it against yet
     if (!isPlausible(pose)) {
         ++ignored_;
         return Q_EMIT changed();
     }
-    if (!path.frame)
+    if (!path.frame) {
         path.frame = pose_ ? *pose_ * pose.inverse() : Pose2D();
-    path.add(*path.frame * pose);
+        path.frameKeyScan = newestKeyScan();
+    }
+    path.add(*path.frame * pose, path.frameKeyScan);
 }
 
 } // namespace hermes::desktop

@@ -1,35 +1,35 @@
 #pragma once
 
 #include "gui/desktop/model/TopicFeed.h"
+#include "gui/desktop/view/Glide.h"
 #include "protocol/messages/Matching.h"
 #include "protocol/messages/Turns.h"
 #include "protocol/messages/VectorMap.h"
 
-#include <QLineF>
-#include <QPolygonF>
-#include <QVector>
-#include <array>
-#include <optional>
+#include <QElapsedTimer>
+#include <QTimer>
 
 namespace hermes::desktop {
 
-/// A point of the pose's own frame in the frame that the pose is given in; metres.
-QPointF operator*(const Pose2D &pose, QPointF point);
-
 /// Everything that the map view shows of the chosen robot, in the map's frame and in metres, as it comes from
-/// the topics map, pose, scan, scan2d, odometry and truth of whichever daemons have them.
+/// the topics map, graph, pose, scan, scan2d, odometry and truth of whichever daemons have them. When the
+/// map was corrected, edges, graph and paths are those of the picture that glides to the corrected map.
 class MapModel : public QObject {
     Q_OBJECT
 public:
-    static constexpr double farthest_m = 1e6;
     static constexpr int mostEdges = 200000;
+    /// So long the picture waits for a corrected map, longer while parts of it come, and so long the notice
+    /// of it stands.
+    static constexpr std::chrono::milliseconds signWait{2000}, partsWait{10000}, noticeTime{4000};
 
     explicit MapModel(Fleet &fleet, QObject *parent = nullptr);
 
     /// The edges of the map, free space on their left.
-    const QVector<QLineF> &edges() const { return edges_; }
+    const QVector<QLineF> &edges() const { return isGliding() ? glide_.shown().edges : edges_; }
     /// A large map comes in parts.
     bool isWhole() const { return edges_.size() >= size_; }
+    /// How the matcher put the drive together.
+    const KeyScans &graph() const { return isGliding() ? glide_.shown().graph : graph_.known(); }
     /// The last scan's segments and points; the segments' partners in the map.
     const QVector<QLineF> &segments() const { return segments_; }
     const QPolygonF &scan() const { return scan_; }
@@ -37,6 +37,11 @@ public:
 
     /// The sensor's pose as matched; absent before the first scan.
     const std::optional<Pose2D> &pose() const { return pose_; }
+    /// Where the robot is shown: elsewhere only while a correction of the map is shown as a movement.
+    std::optional<Pose2D> shownPose() const;
+    bool isGliding() const { return glide_.phase() != Glide::Phase::Rests; }
+    /// How far the key scan that moved most did (m); for a few seconds after the map was corrected.
+    const std::optional<double> &correction_m() const { return correction_m_; }
     /// Of x, y and theta, row by row; absent when the last scan was lost.
     const std::optional<std::array<double, 9>> &covariance() const { return covariance_; }
     /// "matched", "lost" or "skipped".
@@ -44,17 +49,19 @@ public:
     /// 0 to 1, and m^2, of the last match.
     double reliability() const { return reliability_; }
     double ambiguity() const { return ambiguity_; }
+    /// 0 to 1, of the pose; absent when the matcher does not tell it.
+    const std::optional<double> &trust() const { return trust_; }
 
-    /// Ways so far, thinned to steps of 2 cm. Odometry and truth have frames of their own: they are laid so
+    /// Ways so far, corrected as the map is. Odometry and truth have frames of their own: they are laid so
     /// that they begin where the matched path was at that time.
-    const QPolygonF &matchedPath() const { return matched_.way; }
-    const QPolygonF &odometryPath() const { return odometry_.way; }
-    const QPolygonF &truthPath() const { return truth_.way; }
+    const QPolygonF &matchedPath() const { return way(MovingMap::Matched); }
+    const QPolygonF &odometryPath() const { return way(MovingMap::Odometry); }
+    const QPolygonF &truthPath() const { return way(MovingMap::Truth); }
     /// Forgets the paths.
     void clearPaths();
 
     /// What came and is not shown: values that are no numbers or beyond any place on Earth (farthest_m),
-    /// edges beyond mostEdges.
+    /// edges beyond mostEdges, and of the graph what KeyScanGraph passes over.
     quint64 ignored() const { return ignored_; }
 
     /// All edges; null rectangle without any.
@@ -66,33 +73,44 @@ Q_SIGNALS:
     void changed();
 
 private:
-    /// A path and the frame it comes in.
-    struct Path {
-        QPolygonF way;
-        std::optional<Pose2D> frame; // of the source, in the map
-
-        void add(const Pose2D &pose);
-    };
+    /// What tells that the map was corrected, in any order.
+    enum Sign { MapSign = 1, GraphSign = 2, PoseSign = 4, AllSigns = 7 };
 
     template <typename Message>
     Client::TopicCallback reader(void (MapModel::*take)(const Message &));
     void onMap(const MapMessage &map);
+    void onGraph(const GraphMessage &message);
     void onPose(const PoseMessage &message);
     void onResult(const ScanResult &result);
     void onScan(const ScanMessage &scan);
     void onOdometry(const OdometryMessage &odometry);
     void onTruth(const TruthMessage &truth);
+    void takeTrust(double trust);
     void addEdge(const MapEdgeMessage &edge);
     void removeEdge(qint64 id);
-    void follow(Path &path, const Pose2D &pose);
+    void follow(DrivenPath &path, const Pose2D &pose);
     void placeScan();
 
+    const QPolygonF &way(MovingMap::Path path) const;
+    int newestKeyScan() const;
+    void expectCorrection(Sign sign);
+    void takeLeap(const PoseMessage &message);
+    void graphIsWhole();
+    void correctPaths(const QVector<Pose2D> &before);
+    void forgetGraph();
+    void goOn();
+    void onWaitOver();
+    void startGlide();
+    void showGlide();
+    void endGlide();
+
     QVector<QLineF> edges_, segments_, correspondences_;
-    QHash<qint64, int> rows_; // of an edge in edges_, by its id
-    QVector<qint64> ids_;     // of each row
-    double revision_ = 0;     // of the map, counts its changes
-    int size_ = 0;            // edges that the daemon's map has
-    ScanMessage rawScan_;     // waits for its pose
+    QHash<qint64, int> rows_;   // of an edge in edges_, by its id
+    QVector<qint64> ids_;       // of each row
+    double revision_ = 0;       // of the map, counts its changes
+    bool isMapRenewed_ = false; // asked for anew, not corrected
+    int size_ = 0;              // edges that the daemon's map has
+    ScanMessage rawScan_;       // waits for its pose
     QPolygonF scan_;
     Twist2D twist_;                  // of the sensor
     quint64 poseScan_ = ~quint64(0); // the number of the scan that the pose belongs to
@@ -101,8 +119,19 @@ private:
     QString outcome_;
     quint64 ignored_ = 0;
     double reliability_ = 0, ambiguity_ = 0;
-    Path matched_, odometry_, truth_;
-    TopicFeed maps_, poses_, results_, scans_, odometryFeed_, truthFeed_;
+    std::optional<double> trust_;
+    std::array<DrivenPath, 3> paths_; // by MovingMap::Path
+
+    KeyScanGraph graph_;
+    QVector<Pose2D> before_;              // key scans before the correction that is coming in
+    std::optional<Pose2D> odometryFrame_; // in the map
+    int poseLead_ = 0; // corrections that the pose is ahead of the graph; the path waits until they agree
+    int signs_ = 0;    // of the correction that the picture waits for
+    std::optional<double> correction_m_;
+    Glide glide_;
+    QElapsedTimer glideClock_; // since it holds or moves
+    QTimer frames_, wait_, notice_;
+    TopicFeed maps_, graphs_, poses_, results_, scans_, odometryFeed_, truthFeed_;
 };
 
 } // namespace hermes::desktop

@@ -2,6 +2,7 @@
 
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/view/Clipping.h"
+#include "gui/desktop/view/MapColours.h"
 
 #include <QPainter>
 #include <QPainterPath>
@@ -10,27 +11,19 @@
 namespace hermes::desktop {
 namespace {
 
-struct Colours {
-    QColor background, grid, axis, map, accent, scan, correspondence, path, odometry, truth, robot, text;
-};
-
-Colours colours() {
-    if (theme::isDark())
-        return {QColor(0x17, 0x1a, 0x1c), QColor(0x2a, 0x2f, 0x33), QColor(0x45, 0x4c, 0x52),
-                QColor(0xd5, 0xda, 0xde), QColor(0x4d, 0xc4, 0xff), QColor(0xc9, 0x8a, 0x2b),
-                QColor(0x6d, 0x8b, 0x74), QColor(0x5a, 0xa9, 0xff), QColor(0xb8, 0x8c, 0xe0),
-                QColor(0x8f, 0x98, 0x9f), QColor(0xff, 0x8a, 0x3d), QColor(0xc3, 0xc9, 0xce)};
-    return {QColor(0xfc, 0xfc, 0xfb), QColor(0xe9, 0xea, 0xe8), QColor(0xc9, 0xcc, 0xc9),
-            QColor(0x24, 0x29, 0x2e), QColor(0x00, 0x7d, 0xc5), QColor(0xb8, 0x5c, 0x00),
-            QColor(0x86, 0xa8, 0x8c), QColor(0x0b, 0x63, 0xc4), QColor(0x8a, 0x4f, 0xbf),
-            QColor(0x6a, 0x71, 0x78), QColor(0xd9, 0x53, 0x00), QColor(0x3b, 0x41, 0x47)};
-}
-
 constexpr double robotRadius_m = 0.3; // as large as it is drawn
 /// One pixel lines are fast without smoothing; beyond so many lines nobody sees the difference.
 constexpr int smoothUpTo = 2000;
 /// Pixels of lines that are drawn smoothly, and at all: a picture is not to take longer than 50 ms.
-constexpr double longestSmooth = 2e5, longestDrawn = 1e6;
+constexpr double longestSmooth = 2e5, longestDrawn = 1e6, longestDashed = 4e4;
+
+QVector<QLineF> mapped(const QVector<QLineF> &lines, const QTransform &transform) {
+    QVector<QLineF> result;
+    result.reserve(lines.size());
+    for (const QLineF &line : lines)
+        result.append(transform.map(line));
+    return result;
+}
 
 } // namespace
 
@@ -44,37 +37,46 @@ double gridStep_m(double pixelsPerMetre) {
 }
 
 void MapPainter::paint(QPainter &painter) const {
-    const Colours c = colours();
+    const MapColours c = mapColours();
     painter.fillRect(QRect({}, size_), c.background);
     if (layers_.grid)
         paintGrid(painter);
     int leftOut = 0;
     if (layers_.map)
-        leftOut += paintLines(painter, onScreen(model_.edges()), c.map, 2);
+        leftOut += paintLines(painter, mapped(model_.edges(), transform_), QPen(c.map, 2));
     if (layers_.scan)
         paintScan(painter);
-    if (layers_.correspondences)
+    if (layers_.correspondences && !model_.isGliding())
         leftOut += paintCorrespondences(painter);
     if (layers_.segments)
-        leftOut += paintLines(painter, onScreen(model_.segments()), c.accent, 2);
+        leftOut += paintLines(painter, mapped(model_.segments(), sensorTransform()), QPen(c.accent, 2));
     if (layers_.paths) {
         paintPath(painter, model_.truthPath(), c.truth, Qt::DotLine);
         paintPath(painter, model_.odometryPath(), c.odometry, Qt::DashLine);
         paintPath(painter, model_.matchedPath(), c.path, Qt::SolidLine);
     }
+    if (layers_.trust)
+        leftOut += paintTrust(painter);
+    if (layers_.graph)
+        leftOut += paintGraph(painter);
+    if (layers_.loops)
+        leftOut += paintLoops(painter);
     if (layers_.robot && model_.pose()) {
         paintUncertainty(painter);
         paintRobot(painter);
     }
     if (layers_.grid)
         paintScaleBar(painter, gridStep_m(scale()));
+    if (layers_.trust)
+        paintTrustLegend(painter);
     if (model_.pose())
         paintMatch(painter);
+    paintCorrection(painter);
     paintNotice(painter, leftOut);
 }
 
 void MapPainter::paintGrid(QPainter &painter) const {
-    const Colours c = colours();
+    const MapColours c = mapColours();
     const double step = gridStep_m(scale());
     const QRectF world = transform_.inverted().mapRect(QRectF(QPointF(), size_));
     painter.setRenderHint(QPainter::Antialiasing, false);
@@ -91,8 +93,7 @@ void MapPainter::paintGrid(QPainter &painter) const {
         line((top + i) * step, false);
 }
 
-int MapPainter::paintLines(QPainter &painter, const QVector<QLineF> &lines, const QColor &colour,
-                           double width) const {
+int MapPainter::paintLines(QPainter &painter, const QVector<QLineF> &lines, QPen pen) const {
     const QRectF seen = QRectF(QPointF(), size_).adjusted(-5, -5, 5, 5);
     QVector<QLineF> shown;
     shown.reserve(lines.size());
@@ -105,25 +106,28 @@ int MapPainter::paintLines(QPainter &painter, const QVector<QLineF> &lines, cons
         leftOut += part && length >= longestDrawn;
         length += part ? part->length() : 0;
     }
-    const bool isSmooth = shown.size() <= smoothUpTo && length <= longestSmooth;
+    const bool isDashed = pen.style() != Qt::SolidLine;
+    const bool isSmooth = shown.size() <= smoothUpTo && length <= (isDashed ? longestDashed : longestSmooth);
     painter.setRenderHint(QPainter::Antialiasing, isSmooth);
-    painter.setPen(QPen(colour, isSmooth ? width : 1));
+    if (!isSmooth)
+        pen = QPen(pen.color(), 1);
+    painter.setPen(pen);
     painter.drawLines(shown);
     return leftOut;
 }
 
-QVector<QLineF> MapPainter::onScreen(const QVector<QLineF> &lines) const {
-    QVector<QLineF> mapped;
-    mapped.reserve(lines.size());
-    for (const QLineF &line : lines)
-        mapped.append(transform_.map(line));
-    return mapped;
+QTransform MapPainter::sensorTransform() const {
+    if (!model_.isGliding() || !model_.pose())
+        return transform_;
+    const Pose2D shift = *model_.shownPose() * model_.pose()->inverse();
+    const double c = std::cos(shift.theta), s = std::sin(shift.theta);
+    return QTransform(c, s, -s, c, shift.x, shift.y) * transform_;
 }
 
 void MapPainter::paintScan(QPainter &painter) const {
     painter.setRenderHint(QPainter::Antialiasing, false);
-    painter.setPen(QPen(colours().scan, 2));
-    painter.drawPoints(transform_.map(model_.scan()));
+    painter.setPen(QPen(mapColours().scan, 2));
+    painter.drawPoints(sensorTransform().map(model_.scan()));
 }
 
 int MapPainter::paintCorrespondences(QPainter &painter) const {
@@ -140,7 +144,7 @@ int MapPainter::paintCorrespondences(QPainter &painter) const {
             arrows.append(head);
         }
     }
-    return paintLines(painter, arrows, colours().correspondence, 1);
+    return paintLines(painter, arrows, QPen(mapColours().correspondence, 1));
 }
 
 void MapPainter::paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour,
@@ -157,19 +161,20 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
         return;
     constexpr double enlarged = 10, chi95 = 2.4477, normal95 = 1.96;
     const auto &c = *model_.covariance();
+    const Pose2D pose = *model_.shownPose();
     const double mean = (c[0] + c[4]) / 2, root = std::hypot((c[0] - c[4]) / 2, c[1]);
     const auto axis = [&](double variance) { // no longer than anything that can be seen
         return qMin(chi95 * enlarged * std::sqrt(qMax(0.0, variance)) * scale(), 1e5);
     };
-    QColor fill = colours().path;
+    QColor fill = mapColours().path;
     fill.setAlpha(50);
     painter.save();
     painter.setRenderHint(QPainter::Antialiasing, true);
-    painter.setPen(QPen(colours().path, 1));
+    painter.setPen(QPen(mapColours().path, 1));
     painter.setBrush(fill);
-    painter.translate(transform_.map(QPointF(model_.pose()->x, model_.pose()->y)));
+    painter.translate(transform_.map(QPointF(pose.x, pose.y)));
     const double spread = qMin(180.0, qRadiansToDegrees(normal95 * enlarged * std::sqrt(qMax(0.0, c[8]))));
-    const double radius = 2.5 * robotRadius_m * scale(), heading = qRadiansToDegrees(model_.pose()->theta);
+    const double radius = 2.5 * robotRadius_m * scale(), heading = qRadiansToDegrees(pose.theta);
     painter.drawPie(QRectF(-radius, -radius, 2 * radius, 2 * radius), qRound(16 * (heading - spread)),
                     qRound(16 * 2 * spread));
     painter.rotate(-qRadiansToDegrees(std::atan2(2 * c[1], c[0] - c[4]) / 2));
@@ -178,17 +183,27 @@ void MapPainter::paintUncertainty(QPainter &painter) const {
 }
 
 void MapPainter::paintRobot(QPainter &painter) const {
-    const Pose2D pose = *model_.pose();
+    const Pose2D pose = *model_.shownPose();
     const double r = robotRadius_m;
     const auto at = [&](double x, double y) { return transform_.map(pose * QPointF(x, y)); };
     painter.setRenderHint(QPainter::Antialiasing, true);
-    QColor fill = colours().robot;
+    QColor fill = mapColours().robot;
     painter.setPen(QPen(fill, 2));
     fill.setAlpha(60);
     painter.setBrush(fill);
     painter.drawEllipse(at(0, 0), r * scale(), r * scale());
-    painter.setBrush(colours().robot);
+    painter.setBrush(mapColours().robot);
     painter.drawPolygon(QVector<QPointF>{at(r, 0), at(0.3 * r, 0.35 * r), at(0.3 * r, -0.35 * r)});
+    painter.setBrush(Qt::NoBrush);
+}
+
+void MapPainter::paintBox(QPainter &painter, const QRectF &box) const {
+    QColor back = mapColours().background;
+    back.setAlpha(220);
+    painter.setRenderHint(QPainter::Antialiasing, true);
+    painter.setPen(QPen(mapColours().grid, 1));
+    painter.setBrush(back);
+    painter.drawRoundedRect(box, 4, 4);
     painter.setBrush(Qt::NoBrush);
 }
 
@@ -196,7 +211,7 @@ void MapPainter::paintScaleBar(QPainter &painter, double step_m) const {
     const double length = step_m * scale();
     const QPointF right(size_.width() - 12, size_.height() - 12), left = right - QPointF(length, 0);
     painter.setRenderHint(QPainter::Antialiasing, false);
-    painter.setPen(QPen(colours().text, 2));
+    painter.setPen(QPen(mapColours().text, 2));
     painter.drawLine(left, right);
     for (const QPointF &end : {left, right})
         painter.drawLine(end - QPointF(0, 4), end);
@@ -222,29 +237,43 @@ void MapPainter::paintMatch(QPainter &painter) const {
     const Condition condition = isLost              ? Condition::Fault
                                 : reliability < 0.1 ? Condition::Warning
                                                     : Condition::Ready;
-    const QStringList lines{
-        QObject::tr("%1, reliability %2").arg(model_.outcome()).arg(reliability, 0, 'f', 2),
-        QObject::tr("ambiguity %1 m²").arg(model_.ambiguity(), 0, 'g', 2)};
+    QStringList lines{QObject::tr("%1, reliability %2").arg(model_.outcome()).arg(reliability, 0, 'f', 2),
+                      QObject::tr("ambiguity %1 m²").arg(model_.ambiguity(), 0, 'g', 2)};
+    if (model_.trust())
+        lines.append(QObject::tr("trust of the pose %1").arg(*model_.trust(), 0, 'f', 2));
     const QFontMetrics metrics(painter.font());
     const int height = metrics.height();
-    const QRectF box(12, 12, metrics.horizontalAdvance(lines[0]) + 24, 2 * height + 24);
-    QColor back = colours().background;
-    back.setAlpha(220);
-    painter.setRenderHint(QPainter::Antialiasing, true);
-    painter.setPen(QPen(colours().grid, 1));
-    painter.setBrush(back);
-    painter.drawRoundedRect(box, 4, 4);
+    int width = 0;
+    for (const QString &line : lines)
+        width = qMax(width, metrics.horizontalAdvance(line));
+    const QRectF box(12, 12, width + 24, lines.size() * height + 24);
+    paintBox(painter, box);
     const QRectF bar = QRectF(box.left() + 8, box.bottom() - 14, box.width() - 16, 6);
     painter.setPen(Qt::NoPen);
-    painter.setBrush(colours().grid);
+    painter.setBrush(mapColours().grid);
     painter.drawRect(bar);
     painter.setBrush(theme::colour(condition));
     painter.drawRect(QRectF(bar.topLeft(), QSizeF(bar.width() * reliability, bar.height())));
     painter.setBrush(Qt::NoBrush);
-    painter.setPen(isLost ? theme::colour(condition) : colours().text);
-    painter.drawText(box.topLeft() + QPointF(8, 4 + metrics.ascent()), lines[0]);
-    painter.setPen(colours().text);
-    painter.drawText(box.topLeft() + QPointF(8, 4 + height + metrics.ascent()), lines[1]);
+    for (int i = 0; i < lines.size(); ++i) {
+        painter.setPen(isLost && i == 0 ? theme::colour(condition) : mapColours().text);
+        painter.drawText(box.topLeft() + QPointF(8, 4 + i * height + metrics.ascent()), lines[i]);
+    }
+}
+
+// What an operator must know who saw the map move, or looked elsewhere.
+void MapPainter::paintCorrection(QPainter &painter) const {
+    if (!model_.correction_m())
+        return;
+    const QString text = QObject::tr("map corrected: %1 m").arg(*model_.correction_m(), 0, 'f', 2);
+    const QFontMetrics metrics(painter.font());
+    constexpr int narrow = 640; // pixels: what stands in the corners leaves no room between
+    QRectF box(0, size_.width() < narrow ? 5 * metrics.height() : 12, metrics.horizontalAdvance(text) + 24,
+               metrics.height() + 12);
+    box.moveLeft((size_.width() - box.width()) / 2);
+    paintBox(painter, box);
+    painter.setPen(mapColours().text);
+    painter.drawText(box, Qt::AlignCenter, text);
 }
 
 } // namespace hermes::desktop

@@ -3,7 +3,9 @@
 #include "gui/desktop/view/MapModel.h"
 
 #include <QColor>
+#include <QPen>
 #include <QTransform>
+#include <vector>
 
 class QPainter;
 
@@ -12,7 +14,7 @@ namespace hermes::desktop {
 /// What of the map is drawn.
 struct MapLayers {
     bool grid = true, map = true, scan = true, segments = true, correspondences = true, paths = true,
-         robot = true;
+         robot = true, loops = true, graph = false, trust = false;
 };
 
 /// Draws a map model. World to screen is `transform` (metres to pixels, y up).
@@ -29,9 +31,14 @@ public:
 private:
     double scale() const { return transform_.m11(); } // pixels a metre
     void paintGrid(QPainter &painter) const;
-    QVector<QLineF> onScreen(const QVector<QLineF> &lines) const;
+    /// What the sensor sees goes with the robot while a correction of the map is shown as a movement.
+    QTransform sensorTransform() const;
     /// Lines on the screen; gives how many were left out, for they would take too long.
-    int paintLines(QPainter &painter, const QVector<QLineF> &lines, const QColor &colour, double width) const;
+    int paintLines(QPainter &painter, const QVector<QLineF> &lines, QPen pen) const;
+    int paintGraph(QPainter &painter) const;
+    int paintLoops(QPainter &painter) const;
+    int paintTrust(QPainter &painter) const;
+    void paintTrustLegend(QPainter &painter) const;
     void paintScan(QPainter &painter) const;
     int paintCorrespondences(QPainter &painter) const;
     void paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour, Qt::PenStyle style) const;
@@ -39,7 +46,17 @@ private:
     void paintRobot(QPainter &painter) const;
     void paintScaleBar(QPainter &painter, double step_m) const;
     void paintMatch(QPainter &painter) const;
+    void paintCorrection(QPainter &painter) const;
+    /// For text on the map.
+    void paintBox(QPainter &painter, const QRectF &box) const;
     void paintNotice(QPainter &painter, int leftOut) const;
+
+    /// Part of the drive from key scan to key scan, on the screen.
+    struct Step {
+        QLineF line;
+        double trust; // the least of the key scans it passes
+    };
+    std::vector<Step> drive() const;
 
     const MapModel &model_;
     const MapLayers layers_;

@@ -34,8 +34,8 @@ void MapView::refresh() {
         fit();
         isFollowing_ = follows;
     }
-    if (isFollowing_ && model_.pose())
-        centre_ = QPointF(model_.pose()->x, model_.pose()->y);
+    if (const auto pose = model_.shownPose(); isFollowing_ && pose)
+        centre_ = QPointF(pose->x, pose->y);
     update();
 }
 

@@ -3,10 +3,12 @@
 #include <QJsonDocument>
 #include <QJsonObject>
 #include <QMap>
+#include <QPointer>
 #include <QTcpServer>
 #include <QTcpSocket>
 #include <QThread>
 #include <QTimer>
+#include <QVector>
 #include <mutex>
 
 namespace hermes {
@@ -43,6 +45,17 @@ public:
     }
 
     quint16 port() const { return port_; }
+    /// A message to all who have subscribed to the topic.
+    void say(const QByteArray &topic, const QByteArray &data) {
+        QMetaObject::invokeMethod(
+            this,
+            [&] {
+                for (const Subscriber &one : qAsConst(subscribers_))
+                    if (one.client && one.topic == topic)
+                        one.client->write(message(one.subscription, topic, 0, data));
+            },
+            Qt::BlockingQueuedConnection);
+    }
     /// How often a method was called.
     int calls(const QString &method) const {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -51,6 +64,12 @@ public:
     int subscriptions(const QString &topic) const { return calls("topics.subscribe " + topic); }
 
 private:
+    struct Subscriber {
+        QPointer<QTcpSocket> client;
+        QByteArray topic;
+        int subscription;
+    };
+
     static constexpr qint64 mostWaiting = 1 << 20; // bytes
 
     void listen() {
@@ -86,6 +105,8 @@ private:
         QByteArray reply = mischief_.reply;
         client.write(reply.replace("%1", QByteArray::number(request["id"].toInt()))
                          .replace("%2", mischief_.results.value(method, good(method, usual))));
+        if (!topic.isEmpty())
+            subscribers_.append({&client, topic.toUtf8(), subscription});
         if (mischief_.topics.contains(topic))
             publish(client, topic, subscription);
     }
@@ -99,10 +120,8 @@ private:
     void publish(QTcpSocket &client, const QString &topic, int subscription) {
         const auto one = [this, &client, topic, subscription, count = 0]() mutable {
             QByteArray data = mischief_.topics.value(topic);
-            client.write("{\"jsonrpc\":\"2.0\",\"method\":\"topic\",\"params\":{\"subscription\":" +
-                         QByteArray::number(subscription) + ",\"topic\":\"" + topic.toUtf8() + "\",\"seq\":" +
-                         QByteArray::number(count) + ",\"dropped\":0,\"stamp\":" + mischief_.stamp +
-                         ",\"data\":" + data.replace("%1", QByteArray::number(count)) + "}}\n");
+            client.write(
+                message(subscription, topic.toUtf8(), count, data.replace("%1", QByteArray::number(count))));
             ++count;
         };
         if (mischief_.messages < 0)
@@ -110,6 +129,12 @@ private:
         auto next = one;
         for (int i = 0; i < mischief_.messages; ++i)
             next();
+    }
+    QByteArray message(int subscription, const QByteArray &topic, int count, const QByteArray &data) const {
+        return "{\"jsonrpc\":\"2.0\",\"method\":\"topic\",\"params\":{\"subscription\":" +
+               QByteArray::number(subscription) + ",\"topic\":\"" + topic +
+               "\",\"seq\":" + QByteArray::number(count) + ",\"dropped\":0,\"stamp\":" + mischief_.stamp +
+               ",\"data\":" + data + "}}\n";
     }
     /// As much as the client takes.
     template <typename Write>
@@ -141,7 +166,7 @@ private:
             methods << "motor.drive"
                     << "motor.estop"
                     << "motor.state";
-        QStringList topics{"map",   "pose",   "scan",     "scan2d", "odometry",  "truth",
+        QStringList topics{"map",   "pose",   "scan",     "scan2d", "odometry",  "truth", "graph",
                            "power", "status", "settings", "log",    "processes", "free"};
         if (!mischief_.hasTopics)
             topics.clear();
@@ -160,6 +185,7 @@ private:
     QTcpServer *server_ = nullptr;
     quint16 port_ = 0;
     int lastSubscription_ = 0;
+    QVector<Subscriber> subscribers_;
     mutable std::mutex mutex_;
     QMap<QString, int> calls_;
 };

@@ -85,8 +85,8 @@ inline void addNonsenseEverywhere() {
         {"many members", objectOf("1", 20000)}};
     for (const auto &[name, json] : nonsense) {
         Mischief topics, results;
-        for (const char *const topic : {"map", "pose", "scan", "scan2d", "odometry", "truth", "power",
-                                        "status", "settings", "log", "processes", "free"})
+        for (const char *const topic : {"map", "graph", "pose", "scan", "scan2d", "odometry", "truth",
+                                        "power", "status", "settings", "log", "processes", "free"})
             topics.topics[topic] = json;
         for (const char *const method : {"daemon.status", "settings.schema", "record.status", "record.list",
                                          "log.tail", "topics.subscribe", "fake.call"})
@@ -118,6 +118,21 @@ inline void addMap() {
         "map",
         R"({"revision":1e300,"edges":[{"id":1e300,"x1":1e300},{"id":2,"x1":1e300,"y1":0,"x2":0,"y2":0},{}]})");
     row("revisions jump") << ofTopic("map", R"({"revision":%1%1,"edges":[]})", 2000);
+    row("key scans far away") << ofTopic(
+        "graph", "{\"revision\":1,\"cleared\":true,\"first\":0,\"size\":3000,\"poses\":" +
+                     listOf("[-1e%1,1e6,1e6]", 3000) + ",\"trust\":" + listOf("-1e%1", 3000) +
+                     ",\"loops\":" + listOf(R"({"from":%1,"to":-1,"weight":1e300})", 1000) + '}');
+    row("key scans across the window") << ofTopic(
+        "graph", "{\"revision\":1,\"cleared\":true,\"first\":0,\"size\":3000,\"poses\":" +
+                     listOf("[%1e3,-%1e3,0],[-%1e3,%1e3,0]", 1500) + ",\"trust\":" + listOf("1", 3000) +
+                     ",\"loops\":" + listOf(R"({"from":%1,"to":2999,"weight":0})", 2000) + '}');
+    row("corrected all the time") << ofTopic(
+        "graph",
+        R"({"revision":%1,"cleared":true,"first":0,"size":2,"poses":[[%1,0,0],[0,%1,0]],"trust":[1,1],"loops":[]})",
+        -1);
+    row("graph revisions jump") << ofTopic(
+        "graph",
+        R"({"revision":%1%1,"cleared":false,"first":%1,"size":1e9,"poses":[],"trust":[],"loops":[]})", 2000);
     row("scan far away") << ofTopic("scan2d", "{\"turn\":-1,\"x\":" + listOf("1e%1", 300) +
                                                   ",\"y\":" + listOf("-1e%1", 300) + ",\"t\":[1e300]}");
     row("large scan") << ofTopic("scan2d", "{\"turn\":-1,\"x\":" + listOf("1", 60000) +

@@ -1,4 +1,5 @@
 #include "gui/desktop/MainWindow.h"
+#include "gui/desktop/panels/MapPanel.h"
 #include "tests/gui/desktop/HostileRows.h"
 #include "tests/support/LoopWatch.h"
 #include "tests/support/Patience.h"
@@ -7,6 +8,7 @@
 #include <QFile>
 #include <QLabel>
 #include <QListWidget>
+#include <QMenu>
 #include <QPainter>
 #include <QPushButton>
 #include <QTreeWidget>
@@ -84,6 +86,8 @@ void TestHostileDaemon::lookAround(MainWindow &window, Fleet &fleet, DaemonLink 
         dock->raise();
         QTest::qWait(10);
     }
+    for (QAction *const layer : window.findChild<MapPanel *>()->findChild<QMenu *>()->actions())
+        layer->setChecked(true);
     auto *const topics = window.findChild<QTreeWidget *>("topics");
     for (QTreeWidgetItem *item : topics->findItems("free", Qt::MatchExactly | Qt::MatchRecursive)) {
         item->setExpanded(true);

@@ -1,5 +1,6 @@
 #include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
+#include "tests/gui/desktop/FakeDaemon.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
 #include "tests/support/Patience.h"
@@ -8,6 +9,7 @@
 #include <QTcpServer>
 #include <QTcpSocket>
 #include <csignal>
+#include <ctime>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -18,6 +20,7 @@ class TestSpeed : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void framesOfALargeMap();
+    void framesOfALongDrive();
     void largeMapArrivesWhole();
     void daemonThatDoesNotAnswer();
     void daemonThatFloods();
@@ -27,6 +30,11 @@ private Q_SLOTS:
 private:
     static void figure(const char *name, double value, const char *unit) {
         qInfo("figure %s: %.3g %s", name, value, unit);
+    }
+    static double processor_ms() { // of this thread
+        timespec now{};
+        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+        return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
     }
     static double median(std::vector<double> values) {
         std::sort(values.begin(), values.end());
@@ -57,6 +65,128 @@ void TestSpeed::framesOfALargeMap() {
     figure("frames, 20,000 edges and 2,000 points at 10 Hz", rate, "a second");
     figure("a frame of it, median", median(frames_ms), "ms");
     QVERIFY2(rate > 15, qPrintable(QString::number(rate)));
+}
+
+/// The topic graph in parts, along a spiral; corrected: turned a little.
+static std::vector<QByteArray> longDrive(int revision, int keyScans, double turn) {
+    constexpr int part = 1000;
+    std::vector<QByteArray> messages;
+    for (int first = 0; first < keyScans; first += part) {
+        QByteArray poses, trust, loops;
+        for (int i = first; i < first + part; ++i) {
+            const char *const comma = i > first ? "," : "";
+            const double angle = 0.02 * i + turn, radius = 5 + 45.0 * i / keyScans;
+            poses += QString("%1[%2,%3,%4]")
+                         .arg(comma)
+                         .arg(radius * std::cos(angle))
+                         .arg(radius * std::sin(angle))
+                         .arg(std::remainder(angle, 2 * M_PI))
+                         .toLatin1();
+            trust += comma + QByteArray::number(1 - double(i) / keyScans);
+            if (i % 10 == 0 && i > 1000)
+                loops += QString("%1{\"from\":%2,\"to\":%3,\"weight\":%4}")
+                             .arg(loops.isEmpty() ? "" : ",")
+                             .arg(i - 314)
+                             .arg(i)
+                             .arg(i % 100 == 0 ? 0.1 : 0.9)
+                             .toLatin1();
+        }
+        messages.push_back(QString("{\"revision\":%1,\"cleared\":%2,\"first\":%3,\"size\":%4,\"poses\":[")
+                               .arg(revision)
+                               .arg(first == 0 ? "true" : "false")
+                               .arg(first)
+                               .arg(keyScans)
+                               .toLatin1() +
+                           poses + "],\"trust\":[" + trust + "],\"loops\":[" + loops + "]}");
+    }
+    return messages;
+}
+
+/// Short walls among them.
+static std::vector<QByteArray> manyWalls(int revision, int edges) {
+    constexpr int part = 1000;
+    std::vector<QByteArray> messages;
+    for (int first = 0; first < edges; first += part) {
+        QByteArray list;
+        for (int i = first; i < first + part; ++i) {
+            const double x = std::fmod(i * 61.803398875, 100) - 50, y = std::fmod(i * 7.548776662, 100) - 50;
+            list += QString("%1{\"id\":%2,\"x1\":%3,\"y1\":%4,\"x2\":%5,\"y2\":%6}")
+                        .arg(i > first ? "," : "")
+                        .arg(i)
+                        .arg(x)
+                        .arg(y)
+                        .arg(x + std::cos(i))
+                        .arg(y + std::sin(i))
+                        .toLatin1();
+        }
+        messages.push_back(QString("{\"revision\":%1,\"cleared\":%2,\"removed\":[],\"size\":%3,\"edges\":[")
+                               .arg(revision)
+                               .arg(first == 0 ? "true" : "false")
+                               .arg(edges)
+                               .toLatin1() +
+                           list + "]}");
+    }
+    return messages;
+}
+
+void TestSpeed::framesOfALongDrive() {
+    // Before the link stands: it would be lost while nobody answers.
+    const auto walls = manyWalls(1, 20000), drive = longDrive(1, 50000, 0);
+    const int edges = Glide::mostEdges, keyScans = Glide::mostKeyScans;
+    const auto fewer = manyWalls(2, edges), same = manyWalls(3, edges);
+    const auto bent = longDrive(2, keyScans, 0), corrected = longDrive(3, keyScans, 0.05);
+    FakeDaemon daemon{Mischief{}};
+    Fleet fleet;
+    MapPanel panel(fleet);
+    panel.resize(1280, 720);
+    panel.show();
+    fleet.add(QString("127.0.0.1:%1").arg(daemon.port()));
+    for (const char *const topic : {"map", "graph", "pose"})
+        QTRY_VERIFY(daemon.subscriptions(topic) > 0);
+    const auto sayAll = [&](const std::vector<QByteArray> &map, const std::vector<QByteArray> &graph,
+                            const QByteArray &pose) {
+        for (const QByteArray &message : map)
+            daemon.say("map", message);
+        for (const QByteArray &message : graph)
+            daemon.say("graph", message);
+        daemon.say("pose", pose);
+    };
+    sayAll(walls, drive, R"({"x":50,"y":0,"theta":0,"covariance":null,"outcome":"matched","trust":1})");
+    const MapModel &model = panel.model();
+    QTRY_COMPARE_WITH_TIMEOUT(model.graph().size(), 50000, 20000);
+    QTRY_VERIFY(model.edges().size() == 20000 && model.pose());
+    MapView &view = panel.view();
+    view.fit();
+    const auto frame_ms = [&] {
+        std::vector<double> times;
+        for (int i = 0; i < 20; ++i) {
+            const double before = processor_ms();
+            view.repaint();
+            times.push_back(processor_ms() - before);
+        }
+        return median(times);
+    };
+    view.layers().loops = false;
+    figure("a frame, 20,000 edges", frame_ms(), "ms of the processor");
+    view.layers().loops = view.layers().graph = view.layers().trust = true;
+    const double all = frame_ms();
+    figure("a frame, 20,000 edges, 50,000 key scans, graph, loops and trust", all, "ms of the processor");
+    QVERIFY2(all < 100 * slowness, qPrintable(QString::number(all)));
+
+    // The largest map that moves.
+    sayAll(fewer, bent, R"({"x":50,"y":0,"theta":0,"covariance":null,"outcome":"matched","trust":1})");
+    QTRY_VERIFY_WITH_TIMEOUT(model.graph().size() == keyScans && model.edges().size() == edges, 20000);
+    QTRY_VERIFY(!model.isGliding());
+    int pictures = 0;
+    connect(&model, &MapModel::changed, &view,
+            [&] { pictures += model.shownPose()->y > 0.01 && model.isGliding(); });
+    sayAll(same, corrected,
+           R"({"x":50,"y":2,"theta":0,"covariance":null,"outcome":"matched","trust":1,"corrected":true})");
+    LoopWatch watch;
+    QTRY_VERIFY_WITH_TIMEOUT(model.correction_m() && !model.isGliding(), 20000);
+    figure("a corrected map, 10,000 edges and 20,000 key scans, moves in", pictures, "pictures");
+    figure("event loop busy at most, it arrives and moves", watch.longestCpu_ms(), "ms of the processor");
+    QVERIFY2(watch.longestCpu_ms() < 100 * slowness, qPrintable(QString::number(watch.longestCpu_ms())));
 }
 
 void TestSpeed::largeMapArrivesWhole() {
