@@ -59,6 +59,9 @@ const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
             .add("matched", &S::matched, "Of them")
             .add("lost", &S::lost, "Of them: no match was good enough")
             .add("skipped", &S::skipped, "Of them: too little to see")
+            .add("doubted", &S::doubted, "Of the matched: the scan before shows something else")
+            .add("restarts", &S::restarts,
+                 "Times that the map went on where a scan was expected, lost for too long")
             .add("waiting", &S::waiting, "Scans not yet matched")
             .add("dropped", &S::dropped, "As too many waited")
             .add("dropped_by_source", &S::droppedBySource, "As this daemon read too slowly")

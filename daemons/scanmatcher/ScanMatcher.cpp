@@ -324,6 +324,8 @@ MatcherState ScanMatcher::matcherState() const {
     state.matched = quint64(counts_.matched);
     state.lost = quint64(counts_.lost);
     state.skipped = quint64(counts_.skipped);
+    state.doubted = quint64(counts_.doubted);
+    state.restarts = quint64(counts_.restarts);
     state.waiting = worker_ ? worker_->waiting() : 0;
     state.dropped = worker_ ? worker_->dropped() : 0;
     state.droppedBySource = droppedBySource_;

@@ -95,6 +95,8 @@ nlohmann::ordered_json MapRun::summary() const {
     json["skipped"] = counts.skipped + leftOut_;
     json["matched"] = counts.matched;
     json["lost"] = counts.lost;
+    json["doubted"] = counts.doubted;
+    json["restarts"] = counts.restarts;
     const vectorlib::LoopCounts loops = drive_.loops.counts();
     json["closures"] = loops.closed;
     json["closures_tried"] = loops.tried;

@@ -111,6 +111,12 @@ public:
         report_ = lastReport;
     }
 
+    /// False where the last scan could not be matched with the one before.
+    bool isFollowed() const { return followed_; }
+    /// Whether the map goes on where the last scan was expected, as so many before it were lost, too.
+    bool isRestart() const {
+        return report_.outcome == ScanReport::Outcome::Lost && lost_ == settings.lostBeforeRestart;
+    }
     const ScanReport &report() const { return report_; }
     /// The match of the last scan; pairs refer to candidates() and edges().
     const Match &match() const { return match_; }
@@ -149,10 +155,12 @@ private:
     // the tracker how good it is.
     Transformation2D expectedByPrevious(PointSpan<float> scan, const Pose2D &given) {
         const Transformation2D expected(given);
+        followed_ = true;
         if (previousPoints_.empty())
             return expected;
         const ScanPairMatch &motion =
             matchPair(previousPoints_, previousEdges_, scan, *edges_, previousPose_.inverse() * expected);
+        followed_ = motion.accepted;
         if (!motion.accepted)
             return expected;
         track.settings = settings.tracking;
@@ -230,6 +238,7 @@ private:
     ScanReport report_;
     int lost_ = 0;
     bool concluded_ = true;
+    bool followed_ = true;
 };
 
 } // namespace vectorlib

@@ -27,6 +27,10 @@ struct ScanTrackerSettings {
 /// Counts of all scans since the start or the last clear, and the time of each step; milliseconds.
 struct ScanTrackerCounts {
     std::uint64_t scans = 0, matched = 0, lost = 0, skipped = 0;
+    /// Scans found in the map though the one before shows something else, and times that the map went on
+    /// where the scan was expected, as it was lost for too long: the sensor may have been carried elsewhere
+    /// there.
+    std::uint64_t doubted = 0, restarts = 0;
     std::uint64_t byOdometry = 0; ///< scans whose expected pose came from the odometry
     double segmentMs = 0, vectorizeMs = 0, matchMs = 0, mapMs = 0;
     double totalMs() const { return segmentMs + vectorizeMs + matchMs + mapMs; }
@@ -278,6 +282,8 @@ private:
                Clock::now() >= nextSearch_;
     }
     void count(const ScanReport &report) {
+        counts_.doubted += report.outcome == ScanReport::Outcome::Matched && !builder.isFollowed();
+        counts_.restarts += builder.isRestart();
         lostInARow_ = report.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
         ++counts_.scans;
         switch (report.outcome) {
