@@ -125,8 +125,8 @@ private Q_SLOTS:
         QCOMPARE(files(), (QStringList{"g.g2o", "m.csv", "p.svg", "s.json", "t.tum"}));
         QVERIFY(contents(path("m.csv")).startsWith("id,x1,y1,x2,y2,n,sigma,observations,"));
         QVERIFY(contents(path("p.svg")).startsWith("<svg"));
-        QCOMPARE(contents(path("g.g2o")).count("VERTEX_SE2 "), 8);
-        QCOMPARE(contents(path("g.g2o")).count("EDGE_SE2 "), 7);
+        QCOMPARE(contents(path("g.g2o")).count("VERTEX_SE2 "), 2); // key scans
+        QCOMPARE(contents(path("g.g2o")).count("EDGE_SE2 "), 1);
         const QJsonObject s = json(contents(path("s.json")));
         for (const char *key : {"scans", "skipped", "matched", "lost", "closures", "closures_tried",
                                 "closures_refused", "closures_seconds", "review", "parallel_twins",
@@ -186,8 +186,8 @@ private Q_SLOTS:
         QVERIFY2(r.err.contains("moved 4 stamp(s)") && r.err.contains("2 tie(s)") &&
                      r.err.contains("1 step(s) back"),
                  r.err.constData());
-        // Nothing is said where nothing was written.
-        QCOMPARE(run({"map", path("in.log"), "--corrected"}).err, QByteArray());
+        // Nothing is said of what was moved where nothing was written.
+        QVERIFY(!run({"map", path("in.log"), "--corrected"}).err.contains("moved"));
     }
 
     /// Of the public logs one steps back, two lost the digits of their stamps.
