@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/PackedPoints.h"
 #include "vectorlib/geometry/SegmentGrid.h"
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/registration/PointCovariance.h"
@@ -46,12 +46,13 @@ public:
         if (!keys_.empty()) {
             since_ = since_ * tracked;
             way_ += tracked.translation().norm();
-            if (const auto c = measured(keys_.back(), {scans_, points}, since_))
+            if (const auto c = measured({keys_.back().scan, keyPoints_}, {scans_, points}, since_))
                 nexts_.push_back(*c);
         }
         if (keys_.empty() || since_.translation().norm() >= settings.keyWay ||
             std::abs(since_.alpha()) >= settings.keyTurn) {
-            keys_.push_back({scans_, way_, {points.begin(), points.end()}});
+            keys_.push_back({scans_, way_, PackedPoints(points)});
+            keyPoints_.assign(points.begin(), points.end());
             since_ = Transformation2D();
         }
         ++scans_;
@@ -86,9 +87,7 @@ private:
     struct Key {
         std::size_t scan;
         double way; // since the start of the drive; metres
-        std::vector<Vector2D<float>> points;
-
-        operator Scan() const { return {scan, points}; }
+        PackedPoints points;
     };
     struct Candidate {
         double apart; // metres, and half of the radians
@@ -145,6 +144,7 @@ private:
     void compareWithNearest(std::size_t key, SegmentGrid &grid) {
         findCandidates(key, grid);
         passes_.clear();
+        keys_[key].points.unpack(keyPoints_);
         for (const Candidate &c : candidates_) {
             const Key &earlier = keys_[c.key], &later = keys_[key];
             const auto isSamePass = [&](double way) {
@@ -153,7 +153,9 @@ private:
             if (std::any_of(passes_.begin(), passes_.end(), isSamePass))
                 continue;
             passes_.push_back(earlier.way);
-            if (const auto found = measured(earlier, later, motionBetween(earlier.scan, later.scan)))
+            earlier.points.unpack(earlier_);
+            if (const auto found = measured({earlier.scan, earlier_}, {later.scan, keyPoints_},
+                                            motionBetween(earlier.scan, later.scan)))
                 take(*found);
             if (passes_.size() == settings.perScan)
                 break;
@@ -181,8 +183,9 @@ private:
     double way_ = 0;         // since the start of the drive; metres
     Transformation2D since_; // motion since the last key scan
     std::vector<Key> keys_;
-    std::vector<PoseConstraint> nexts_; // from each scan's key scan to it
-    PoseGraph graph_;                   // a pose each scan
+    std::vector<Vector2D<float>> keyPoints_, earlier_; // of the key scan at hand, and of one before it
+    std::vector<PoseConstraint> nexts_;                // from each scan's key scan to it
+    PoseGraph graph_;                                  // a pose each scan
     std::vector<Candidate> candidates_;
     std::vector<double> passes_;
 };

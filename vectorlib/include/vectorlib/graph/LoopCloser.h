@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vectorlib/geometry/PointSpan.h"
+#include "vectorlib/geometry/PackedPoints.h"
 #include "vectorlib/geometry/SegmentGrid.h"
 #include "vectorlib/graph/DriveUncertainty.h"
 #include "vectorlib/graph/PoseGraph.h"
@@ -134,7 +134,7 @@ public:
 
 private:
     struct Key {
-        std::vector<Vector2D<float>> points;
+        PackedPoints points;
         std::size_t scan = 0;
         Transformation2D motion; // since the key before
         double effort = 0;       // of that motion; metres and radians
@@ -192,7 +192,7 @@ private:
     }
     void addKey(PointSpan<float> points, const Pose2D &tracked, double doubt) {
         Key key;
-        key.points.assign(points.begin(), points.end());
+        key.points = PackedPoints(points);
         key.scan = scans_.size();
         key.motion = since_.motion;
         key.effort = since_.way + since_.turned;
@@ -201,7 +201,7 @@ private:
         key.doubt = doubt;
         uncertainty_.add(tracked, since_.varianceXY, since_.varianceAlpha);
         scans_.push_back({keys_.size(), {}, 0});
-        last_ = key.points;
+        last_.assign(points.begin(), points.end());
         keys_.push_back(std::move(key));
         enter(keys_.size() - 1);
         since_ = SinceKey();
@@ -224,7 +224,7 @@ private:
     void bridge() {
         const std::size_t key = keys_.size() - 1;
         for (std::size_t back = 2; back <= settings.mostBridged && back <= key; ++back)
-            tryLoop(key - back, key);
+            tryLoop(key - back);
     }
     // The nearest scans of earlier passes, one of each pass.
     void tryLoops() {
@@ -253,19 +253,21 @@ private:
             if (std::any_of(passes_.begin(), passes_.end(), isSamePass))
                 continue;
             passes_.push_back(way);
-            tryLoop(c.key, last);
+            tryLoop(c.key);
             if (passes_.size() == settings.perScan)
                 break;
         }
     }
-    void tryLoop(std::size_t earlier, std::size_t later) {
+    // With the last key scan.
+    void tryLoop(std::size_t earlier) {
         ++counts_.tried;
-        const GlobalPairMatch &found = match(keys_[earlier].points, keys_[later].points);
+        keys_[earlier].points.unpack(earlier_);
+        const GlobalPairMatch &found = match(earlier_, last_);
         if (!found.isAccepted())
             return;
         PoseConstraint c;
         c.from = earlier;
-        c.to = later;
+        c.to = keys_.size() - 1;
         c.motion = found.solutions[0].pose;
         c.mayBeWrong = true;
         const double xy = settings.matchedXY, alpha = settings.matchedAlpha;
@@ -302,10 +304,11 @@ private:
     std::vector<Key> keys_;
     std::vector<OnTheWay> scans_;
     SinceKey since_;
-    std::vector<Vector2D<float>> last_; // points of the last scan
-    PoseGraph graph_;                   // a pose each key scan
-    DriveUncertainty uncertainty_;      // of the key scans, without any loop
-    SegmentGrid grid_{4};               // of the key scans
+    std::vector<Vector2D<float>> last_;    // points of the last scan
+    std::vector<Vector2D<float>> earlier_; // and of one that it is compared with
+    PoseGraph graph_;                      // a pose each key scan
+    DriveUncertainty uncertainty_;         // of the key scans, without any loop
+    SegmentGrid grid_{4};                  // of the key scans
     LoopCounts counts_;
     bool found_ = false, news_ = false; // loops since the last correction
     std::size_t corrected_ = 0;         // key scans then

@@ -75,23 +75,25 @@ private:
     using Sparse = Eigen::SparseMatrix<double>;
     /// The normal equations of a step.
     struct Equations {
-        std::vector<Eigen::Triplet<double, Eigen::Index>> entries; // of the lower half
+        std::vector<Eigen::Triplet<double, int>> entries; // of the lower half
         Eigen::VectorXd gradient;
         Eigen::SimplicialLDLT<Sparse> solver;
         bool isAnalysed = false;
 
-        void addBlock(Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d &block) {
+        void addBlock(int row, int column, const Eigen::Matrix3d &block) {
             for (int c = 0; c < 3; ++c)
                 for (int r = row == column ? c : 0; r < 3; ++r)
                     entries.emplace_back(row + r, column + c, block(r, c));
         }
     };
 
-    // So wide that the worst motion still counts.
+    // So wide that the worst motion still counts; those that were found wrong before do so only if they fit
+    // now.
     double startWidth() const {
+        constexpr double wrong = 0.25;
         double worst = 0;
         for (const PoseConstraint &c : constraints)
-            if (c.mayBeWrong)
+            if (c.mayBeWrong && c.weight >= wrong)
                 worst = std::max(worst, squaredErrorOf(c));
         return std::max(1.0, 2 * worst / settings.doubt);
     }
@@ -104,13 +106,13 @@ private:
     }
     // The farthest that a pose was moved; nothing where there is no solution.
     std::optional<double> step(Equations &e) {
-        const auto size = static_cast<Eigen::Index>(3 * poses.size());
+        const auto size = static_cast<int>(3 * poses.size());
         e.entries.clear();
         e.gradient.setZero(size);
         for (const PoseConstraint &c : constraints)
             add(c, e);
         constexpr double fixed = 1e12, loose = 1e-9; // the first pose, and what nothing holds
-        for (Eigen::Index i = 0; i < size; ++i)
+        for (int i = 0; i < size; ++i)
             e.entries.emplace_back(i, i, i < 3 ? fixed : loose);
         Sparse h(size, size);
         h.setFromTriplets(e.entries.begin(), e.entries.end());
@@ -144,7 +146,7 @@ private:
         const Eigen::Matrix3d information = c.weight * c.information;
         const Eigen::Matrix3d fromI = byFrom.transpose() * information, toI = byTo.transpose() * information;
         const Eigen::Vector3d error = errorOf(c);
-        const auto i = static_cast<Eigen::Index>(3 * c.from), k = static_cast<Eigen::Index>(3 * c.to);
+        const auto i = static_cast<int>(3 * c.from), k = static_cast<int>(3 * c.to);
         e.gradient.segment<3>(i) -= fromI * error;
         e.gradient.segment<3>(k) -= toI * error;
         e.addBlock(i, i, fromI * byFrom);
