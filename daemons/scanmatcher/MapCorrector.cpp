@@ -16,6 +16,7 @@ using Clock = std::chrono::steady_clock;
 constexpr quint64 mostWaiting = 1000;               // scans
 constexpr std::chrono::milliseconds pause(500);     // without a scan, after which all news count
 constexpr double least_m = 0.01, least_rad = 0.003; // by which a pose must move to be worth a new map
+constexpr double still_m = 0.02, still_rad = 0.01;  // what the next scan shows is not worth remembering
 constexpr quint64 fewLeft = 2;                      // scans that the matching places itself
 constexpr int mostRounds = 20;                      // in which the thread catches up
 
@@ -39,6 +40,12 @@ void MapCorrector::stop() {
 void MapCorrector::follow(bool follows, const ScanTracker &tracker) {
     if (std::exchange(follows_, follows) != follows && follows)
         restart(tracker);
+}
+
+// A robot that stands for a day must not fill the memory with what it sees.
+bool MapCorrector::isStill(const Seen &seen) {
+    return seen.by == vectorlib::TrackedBy::Map && seen.motion.translation().norm() < still_m &&
+           std::abs(seen.motion.alpha()) < still_rad;
 }
 
 void MapCorrector::restart(const ScanTracker &tracker) {
@@ -70,6 +77,10 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     if (leftOut_) {
         seen.motion = leftOut_->motion * seen.motion;
         seen.by = std::max(seen.by, leftOut_->by);
+    }
+    if (added_ > 0 && isStill(seen)) {
+        leftOut_ = std::move(seen);
+        return;
     }
     {
         const std::lock_guard lock(mutex_);

@@ -86,6 +86,7 @@ private:
         vectorlib::Transformation2D pose;
     };
 
+    static bool isStill(const Seen &seen);
     void push(Item item);
     void run();
     bool wait();
@@ -103,8 +104,8 @@ private:
     bool follows_ = false;
     quint64 added_ = 0;                               // scans of it
     std::optional<vectorlib::Transformation2D> pose_; // of the last scan
-    std::optional<Seen> leftOut_;                     // motions that have no scan, as the queue was full
-    std::deque<Pending> pending_;                     // the last scans, which a correction may lack
+    std::optional<Seen> leftOut_; // motions that have no scan: it stood, or the queue was full
+    std::deque<Pending> pending_; // the last scans, which a correction may lack
 
     // Of its own thread:
     vectorlib::MappedDrive memory_;
