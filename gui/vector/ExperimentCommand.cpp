@@ -49,6 +49,9 @@ constexpr Experiment experiments[] = {
     {"place-trust",
      "the weights of PlaceTrust, fitted to one half of scans of --log ... and of drawn buildings",
      &ExperimentCommand::placeTrust, "--log --other --worlds --runs --seed"},
+    {"pose-trust",
+     "the weights of PoseTrust, fitted to one half of the poses tracked in --log ... and in drawn buildings",
+     &ExperimentCommand::poseTrust, "--log --other --runs --seed"},
     {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion, ""},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
      &ExperimentCommand::criterionTime, "--seed"},
@@ -95,6 +98,9 @@ void ExperimentCommand::refuseUnused(const CLI::App &sub) const {
             throw CLI::ValidationError(option->get_name(), "the experiment " + name +
                                                                " takes no such option; taken by: " + takers);
     }
+    if (others.size() > 1 && name != "pose-trust")
+        throw CLI::ValidationError("--other", "found " + std::to_string(others.size()) +
+                                                  " logs, the experiment " + name + " takes one");
     if (every.size() > std::max<std::size_t>(1, logs.size()))
         throw CLI::ValidationError("--every", "found " + std::to_string(every.size()) +
                                                   ", expected one for each --log at most");
@@ -132,12 +138,13 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option(
            "--log", command->logs,
            "CARMEN log for log, pairs, places, free-log, empty-room, corridor and laboratory; several for "
-           "calibration and place-trust")
+           "calibration, place-trust and pose-trust")
         ->allow_extra_args(false)
         ->type_name("FILE");
-    sub->add_option("--other", command->other,
+    sub->add_option("--other", command->others,
                     "places, place-trust: search the scans of this CARMEN log of another building, which are "
-                    "to be refused")
+                    "to be refused; pose-trust: a log, or several, that nothing is fitted to")
+        ->allow_extra_args(false)
         ->type_name("FILE");
     sub->add_option(
            "--every", command->every,
@@ -169,9 +176,9 @@ void addExperimentCommand(CLI::App &app) {
                     "quadratic.json instead "
                     "of those installed with the program")
         ->type_name("FOLDER");
-    sub->add_option(
-           "--runs", command->options.runs,
-           "Scans for each number of points (and each pose); floor plans of drawn-places and place-trust")
+    sub->add_option("--runs", command->options.runs,
+                    "Scans for each number of points (and each pose); floor plans of drawn-places and "
+                    "place-trust; drawn drives of pose-trust")
         ->transform(wholeNumber(1, 10000))
         ->type_name("N")
         ->capture_default_str();

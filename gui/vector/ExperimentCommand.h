@@ -24,7 +24,7 @@ struct ExperimentCommand {
     std::string folder = ".";
     std::vector<std::string> logs;
     std::vector<std::size_t> every{1};
-    std::string other;
+    std::vector<std::string> others;
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
@@ -62,6 +62,7 @@ struct ExperimentCommand {
     void places(OutputSet &files, std::ostream &csv) const;
     void drawnPlaces(OutputSet &files, std::ostream &csv) const;
     void placeTrust(OutputSet &files, std::ostream &csv) const;
+    void poseTrust(OutputSet &files, std::ostream &csv) const;
 
     void freeHome(OutputSet &files, std::ostream &csv) const;
     void freeLeaps(OutputSet &files, std::ostream &csv) const;

@@ -5,7 +5,9 @@
 #include "gui/vector/experiment/PlaceTrustFit.h"
 #include "gui/vector/experiment/PlaceTrustTrials.h"
 #include "gui/vector/experiment/PlacesExperiment.h"
+#include "gui/vector/experiment/PoseTrustTrials.h"
 
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -52,8 +54,8 @@ void ExperimentCommand::calibration(OutputSet &files, std::ostream &csv) const {
 void ExperimentCommand::places(OutputSet &files, std::ostream &csv) const {
     const vectorlib::CarmenLog read = readLog();
     std::optional<vectorlib::CarmenLog> strange;
-    if (!other.empty())
-        strange = readLog(other);
+    if (!others.empty())
+        strange = readLog(others[0]);
     std::ostream &json = open(files, ".json"); // before the work, as the table is
     const PlacesReport report = placesExperiment(read, strange ? &*strange : nullptr, options.progress);
     writeCsv(csv, report);
@@ -76,12 +78,28 @@ void ExperimentCommand::placeTrust(OutputSet &files, std::ostream &csv) const {
     for (const std::string &log : logs)
         read.push_back(readLog(log));
     std::optional<vectorlib::CarmenLog> strange;
-    if (!other.empty())
-        strange = readLog(other);
+    if (!others.empty())
+        strange = readLog(others[0]);
     const std::vector<PlaceTrial> trials =
         placeTrustTrials(read, strange ? &*strange : nullptr, allWorlds(), options);
     writeCsv(csv, trials);
     tell(json, trustSummary(trials));
+}
+
+void ExperimentCommand::poseTrust(OutputSet &files, std::ostream &csv) const {
+    std::ostream &json = open(files, ".json");
+    std::vector<PoseTrial> trials = posesOfDrawnDrives(options.seed, options.runs, options.progress);
+    const auto append = [&trials](const std::string &file, bool strange) {
+        const std::string base = std::filesystem::path(file).filename().string();
+        for (PoseTrial &trial : posesOfLog(base.substr(0, base.find('.')), readLog(file), strange))
+            trials.push_back(std::move(trial));
+    };
+    for (const std::string &log : logs)
+        append(log, false);
+    for (const std::string &log : others)
+        append(log, true);
+    writeCsv(csv, trials);
+    tell(json, poseTrustSummary(trials));
 }
 
 } // namespace hermes::vector

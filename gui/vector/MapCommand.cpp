@@ -7,6 +7,7 @@
 #include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/G2o.h"
 #include "vectorlib/io/MapCsv.h"
+#include "vectorlib/io/Number.h"
 
 #include <chrono>
 #include <filesystem>
@@ -47,6 +48,7 @@ private:
             mapFile.emplace(files, options.outMap);
         std::ostream *trajectoryFile = openIfNamed(files, options.outTrajectory);
         std::ostream *graphFile = openIfNamed(files, options.outGraph);
+        std::ostream *trustFile = openIfNamed(files, options.outTrust);
         std::ostream *svgFile = openIfNamed(files, options.svg);
         std::ostream &summaryFile = files.open(options.summary);
 
@@ -58,6 +60,8 @@ private:
             mapFile->write(drawing);
         if (graphFile)
             vectorlib::writeG2o(*graphFile, run.graph());
+        if (trustFile)
+            writeTrust(*trustFile, run);
         if (svgFile)
             drawMap(*svgFile, drawing);
         nlohmann::ordered_json json = run.summary();
@@ -174,6 +178,12 @@ private:
                                 {"ties", mend.ties},
                                 {"steps_back", mend.stepsBack},
                                 {"farthest_s", mend.farthest}};
+    }
+    static void writeTrust(std::ostream &out, const MapRun &run) {
+        out << "stamp,trust\n";
+        for (std::size_t i = 0; i < run.trust().size(); ++i)
+            out << vectorlib::Fixed{run.trajectory()[i].stamp, 6} << ',' << vectorlib::Number(run.trust()[i])
+                << '\n';
     }
     std::string title(const char *what, std::size_t scans) const {
         return std::filesystem::path(options.source.path).filename().string() + what + std::to_string(scans) +

@@ -14,9 +14,9 @@ void MapOptions::addTo(CLI::App &command) {
         for (const char *other : others)
             command.get_option(option)->excludes(command.get_option(other));
     };
-    excludes("--scan", {"--out-map", "--out-trajectory", "--out-graph", "--svg", "--odometry", "--loops",
-                        "--corrected", "--every", "--localize"});
-    excludes("--localize", {"--out-map", "--out-graph", "--loops"});
+    excludes("--scan", {"--out-map", "--out-trajectory", "--out-graph", "--out-trust", "--svg", "--odometry",
+                        "--loops", "--corrected", "--every", "--localize"});
+    excludes("--localize", {"--out-map", "--out-graph", "--out-trust", "--loops"});
 }
 
 void MapOptions::addInput(CLI::App &command) {
@@ -52,6 +52,10 @@ void MapOptions::addFiles(CLI::App &command) {
         ->type_name("FILE");
     command
         .add_option("--out-graph", outGraph, "The poses and the motions measured between them, g2o format")
+        ->type_name("FILE");
+    command
+        .add_option("--out-trust", outTrust,
+                    "How probable it is that each pose of the trajectory was found right, CSV stamp,trust")
         ->type_name("FILE");
     command
         .add_option("--summary,--out", summary,

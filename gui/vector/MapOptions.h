@@ -11,7 +11,7 @@ struct MapOptions {
     MapSourceOptions source;
     std::string odometry = "use";
     std::string localize; ///< a map; empty: one is built
-    std::string outMap, outTrajectory, outGraph;
+    std::string outMap, outTrajectory, outGraph, outTrust;
     std::string loops = "close";
     std::string summary, svg;
     std::optional<std::size_t> onlyScan;

@@ -1,10 +1,12 @@
 #include "gui/vector/MapRun.h"
 
 #include "gui/vector/evaluation/MotionErrors.h"
+#include "gui/vector/experiment/PairsExperiment.h"
 #include "vectorlib/mapping/WallIds.h"
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 
 namespace hermes::vector {
 
@@ -32,6 +34,7 @@ void MapRun::take(MapScan &scan) {
     if (closesLoops)
         remember(scan, report);
     trajectory_.push_back({scan.stamp, report.pose});
+    trust_.push_back(tracker.trust());
     if (scan.reference)
         reference_.push_back({scan.stamp, *scan.reference});
 }
@@ -97,6 +100,9 @@ nlohmann::ordered_json MapRun::summary() const {
     json["lost"] = counts.lost;
     json["doubted"] = counts.doubted;
     json["restarts"] = counts.restarts;
+    if (!trust_.empty())
+        json["trust"] = {{"mean", std::accumulate(trust_.begin(), trust_.end(), 0.0) / double(trust_.size())},
+                         {"percentile_5", quantile(trust_, 0.05)}};
     const vectorlib::LoopCounts loops = drive_.loops.counts();
     json["closures"] = loops.closed;
     json["closures_tried"] = loops.tried;

@@ -23,6 +23,8 @@ public:
     void finish();
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
+    /// Of each pose of the trajectory, as ScanTracker::trust told it when the pose was tracked.
+    const std::vector<double> &trust() const { return trust_; }
     /// Reference poses, one a pose of the trajectory; empty without reference.
     const std::vector<vectorlib::StampedPose> &reference() const { return reference_; }
     /// The key scans' poses as loops were closed, not yet refined, and the motions between them; without
@@ -46,6 +48,7 @@ private:
     double reviewSeconds_ = 0;
     std::vector<vectorlib::StampedPose> trajectory_;
     std::vector<vectorlib::StampedPose> reference_;
+    std::vector<double> trust_;
     std::size_t leftOut_ = 0;
 };
 

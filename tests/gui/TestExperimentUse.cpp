@@ -127,6 +127,25 @@ private Q_SLOTS:
              {"\"logs\"", "\"logs, map with drift\"", "\"logs, other building\"", "\"worlds\""})
             QVERIFY2(contents(path("trust/place-trust.csv")).contains(set), set);
     }
+    void trustOfPosesIsFittedToOneHalf() {
+        const Result r = run({"experiment", "pose-trust", "--log", log(), "--other", log(), "--other", log(),
+                              "--runs", "4", "--out", path("poses")});
+        QVERIFY2(r.status == 0, r.err.constData());
+        for (const char *weights : {"present", "fitted"}) {
+            const QJsonObject of = json(r.out)[QLatin1String(weights)].toObject();
+            QCOMPARE(of["weights"].toArray().size(), 6);
+            for (const char *part : {"first half", "second half", "never fitted"}) {
+                const QJsonObject result = of[QLatin1String(part)].toObject();
+                QCOMPARE(result["tenths"].toArray().size(), 10);
+                QVERIFY2(result["poses"].toInt() > 0, part);
+            }
+        }
+        QVERIFY(contents(path("poses/pose-trust.csv")).contains("\"drawn "));
+        QCOMPARE(run({"experiment", "places", "--log", log(), "--other", log(), "--other", log(), "--out",
+                      path("two")})
+                     .status,
+                 2);
+    }
 };
 
 QTEST_GUILESS_MAIN(TestExperimentUse)

@@ -118,11 +118,11 @@ private Q_SLOTS:
     void mapWritesEveryKind() {
         const Result r = run({"map", data("corrected.log"), "--corrected", "--out-map", path("m.csv"),
                               "--out-trajectory", path("t.tum"), "--out-graph", path("g.g2o"), "--summary",
-                              path("s.json"), "--svg", path("p.svg")});
+                              path("s.json"), "--svg", path("p.svg"), "--out-trust", path("t.csv")});
         QCOMPARE(r.err, QByteArray());
         QCOMPARE(r.out, QByteArray());
         QCOMPARE(r.status, 0);
-        QCOMPARE(files(), (QStringList{"g.g2o", "m.csv", "p.svg", "s.json", "t.tum"}));
+        QCOMPARE(files(), (QStringList{"g.g2o", "m.csv", "p.svg", "s.json", "t.csv", "t.tum"}));
         QVERIFY(contents(path("m.csv")).startsWith("id,x1,y1,x2,y2,n,sigma,observations,"));
         QVERIFY(contents(path("p.svg")).startsWith("<svg"));
         QCOMPARE(contents(path("g.g2o")).count("VERTEX_SE2 "), 2); // key scans
@@ -147,6 +147,13 @@ private Q_SLOTS:
         QCOMPARE(poses[7].split(' ').size(), 8);
         QCOMPARE(poses[7].split(' ')[0].toDouble(), 7.0);
         QVERIFY(std::abs(poses[7].split(' ')[1].toDouble() - 1.05) < 0.05);
+        const QList<QByteArray> trust = contents(path("t.csv")).trimmed().split('\n');
+        QCOMPARE(trust.size(), 9);
+        QCOMPARE(trust[0], QByteArray("stamp,trust"));
+        QCOMPARE(trust[8].split(',')[0].toDouble(), 7.0);
+        QVERIFY(trust[8].split(',')[1].toDouble() > 0.5 && trust[8].split(',')[1].toDouble() <= 1);
+        QVERIFY(s["trust"].toObject()["mean"].toDouble() > 0.5);
+        QCOMPARE(s["trust"].toObject()["percentile_5"].toDouble(), 0.0); // of the first, which had no map
 
         for (const char *name : {"m.svg", "m.geojson", "m.dxf", "m.pgm"})
             QCOMPARE(

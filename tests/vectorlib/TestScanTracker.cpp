@@ -4,6 +4,9 @@
 
 #include <QtTest>
 
+#include <limits>
+#include <random>
+
 using namespace vectorlib;
 
 namespace {
@@ -40,11 +43,20 @@ private Q_SLOTS:
     void knowsTheScannerOfEachScan();
     void aLieAboutTheRaysDoesNoHarm();
     void clearForgetsAll();
+    void trustIsHighInARoom();
+    void trustIsLowAlongABareCorridor();
+    void trustIsLowAmongPeople();
+    void trustIsNoneWhenLost();
+    void trustIsAProbabilityWhateverComes();
 
 private:
     const ScanReport &see(const Pose2D &pose, double stamp, std::optional<OdometryTrack> odometry = {}) {
+        return see(room, pose, stamp, std::move(odometry));
+    }
+    const ScanReport &see(const std::vector<LineSegment2D<float>> &world, const Pose2D &pose, double stamp,
+                          std::optional<OdometryTrack> odometry = {}) {
         TimedScan scan;
-        scan.points = scanner(room, pose);
+        scan.points = scanner(world, pose);
         scan.rays = std::size_t(scanner.rays);
         scan.stamp = stamp;
         scan.odometry = std::move(odometry);
@@ -151,6 +163,80 @@ void TestScanTracker::clearForgetsAll() {
     QVERIFY(tracker->builder.map.isEmpty());
     QCOMPARE(tracker->counts().scans, std::uint64_t(0));
     QVERIFY(isNear(see({3, 2, 1}, 5).pose, {0, 0, 0})); // the first scan makes the frame
+}
+
+void TestScanTracker::trustIsHighInARoom() {
+    for (int i = 1; i <= 20; ++i) {
+        see({-2 + 0.1 * i, -1, 0.05 * i}, 10 + 0.1 * i);
+        QVERIFY2(tracker->trust() > 0.9 && tracker->trust() <= 1,
+                 qPrintable(QString::number(tracker->trust())));
+    }
+}
+
+// Its ends are out of reach: nothing tells how far the sensor went.
+void TestScanTracker::trustIsLowAlongABareCorridor() {
+    const std::vector<LineSegment2D<float>> corridor{{{-40, -1}, {40, -1}}, {{40, 1}, {-40, 1}}};
+    scanner.maxRange = 6;
+    tracker = std::make_unique<ScanTracker>();
+    for (int i = 0; i <= 20; ++i) {
+        see(corridor, {0.1 * i, 0, 0}, 10 + 0.1 * i);
+        QVERIFY2(tracker->trust() < 0.5, qPrintable(QString::number(tracker->trust())));
+    }
+    QCOMPARE(tracker->counts().matched, std::uint64_t(21));
+}
+
+// They stand close around and are elsewhere in each scan; some wall is seen between them.
+void TestScanTracker::trustIsLowAmongPeople() {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> way(0.5, 1.5), angle(-pi, pi);
+    double sum = 0;
+    for (int i = 1; i <= 20; ++i) {
+        std::vector<LineSegment2D<float>> world = room;
+        for (int person = 0; person < 14; ++person) {
+            const double a = angle(random), r = way(random);
+            const Vector2D<float> p(float(-1.5 + r * std::cos(a)), float(-0.5 + r * std::sin(a)));
+            for (int k = 0; k < 4; ++k) {
+                const auto corner = [&](int n) {
+                    const double at = a + n * pi / 2;
+                    return p + Vector2D<float>(float(0.25 * std::cos(at)), float(0.25 * std::sin(at)));
+                };
+                world.emplace_back(corner(k + 1), corner(k));
+            }
+        }
+        see(world, {-1.5, -0.5, 0}, 10 + 0.1 * i);
+        sum += tracker->trust();
+    }
+    QVERIFY2(sum / 20 < 0.5, qPrintable(QString::number(sum / 20)));
+}
+
+void TestScanTracker::trustIsNoneWhenLost() {
+    ScanTrackerSettings settings;
+    settings.tracking.permitted = {0.2, 0.2, 0.2};
+    tracker->apply(settings);
+    tracker->builder.settings.grow = false;
+    QVERIFY(tracker->trust() == 0); // of the first scan: there was no map
+    tracker->place({1, 2, 1});
+    QCOMPARE(see({-2, -1, 0}, 10.1).outcome, ScanReport::Outcome::Lost);
+    QCOMPARE(tracker->trust(), 0.0);
+}
+
+void TestScanTracker::trustIsAProbabilityWhateverComes() {
+    const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+    const double hostile[] = {0, 1, -1, 1e300, -1e300, nan, infinite, -infinite};
+    const PoseTrust trust;
+    for (const double a : hostile)
+        for (const double b : hostile)
+            for (const double c : hostile) {
+                Match match;
+                match.pose = Transformation2D(a, b, 0);
+                match.reliability = a;
+                match.rms = b;
+                match.matchedLength = c;
+                match.visibleLength = a;
+                const double p = trust(PoseTrust::features(match, Transformation2D(c, 0, 0), b));
+                QVERIFY(p >= 0 && p <= 1);
+            }
+    QCOMPARE(trust({1, nan, 0, 0, 0, 0}), 0.0);
 }
 
 QTEST_APPLESS_MAIN(TestScanTracker)

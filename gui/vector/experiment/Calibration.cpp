@@ -1,8 +1,7 @@
 #include "gui/vector/experiment/Calibration.h"
 
+#include "gui/vector/experiment/LogisticFit.h"
 #include "vectorlib/io/Number.h"
-
-#include <Eigen/Cholesky>
 
 namespace hermes::vector {
 
@@ -15,29 +14,8 @@ bool isRight(const GlobalPairResult &pair, const GlobalPairSolution &s) {
     return pair.isWithin(s.pose, 0.10);
 }
 
-void add(std::array<CalibrationTenth, 10> &tenths, double probability, bool right) {
-    CalibrationTenth &t = tenths[std::size_t(std::clamp(probability * 10, 0.0, 9.0))];
-    ++t.solutions;
-    t.told += probability;
-    t.right += right;
-}
-
-void divide(std::array<CalibrationTenth, 10> &tenths) {
-    for (CalibrationTenth &t : tenths)
-        if (t.solutions > 0) {
-            t.told /= double(t.solutions);
-            t.right /= double(t.solutions);
-        }
-}
-
-constexpr int featureCount = std::tuple_size<MatchProbability::Features>::value;
-using Weights = Eigen::Matrix<double, featureCount, 1>;
-
 /// What tells of a pair with solutions whether the right one is among them, and whether it is.
-struct AnyCase {
-    Weights features;
-    bool right;
-};
+using AnyCase = LogisticCase<std::tuple_size<MatchProbability::Features>::value>;
 
 std::vector<AnyCase> anyCases(const std::vector<GlobalPairResult> &pairs) {
     std::vector<AnyCase> cases;
@@ -45,54 +23,27 @@ std::vector<AnyCase> anyCases(const std::vector<GlobalPairResult> &pairs) {
         const auto &solutions = pair.match.solutions;
         if (solutions.empty())
             continue;
-        const MatchProbability::Features features = MatchProbability::features(pair.match);
-        cases.push_back({Eigen::Map<const Weights>(features.data()),
+        cases.push_back({MatchProbability::features(pair.match),
                          std::any_of(solutions.begin(), solutions.end(),
                                      [&](const auto &s) { return isRight(pair, s); })});
     }
     return cases;
 }
 
-/// The logistic regression below a ceiling by Fisher's scoring, with a weak pull towards 0 that keeps it
-/// finite.
-Weights fittedWeights(const std::vector<AnyCase> &cases, double ceiling) {
-    Weights weights = Weights::Zero();
-    for (int step = 0; step < 50; ++step) {
-        Eigen::Matrix<double, featureCount, featureCount> h =
-            1e-3 * Eigen::Matrix<double, featureCount, featureCount>::Identity();
-        Weights g = -1e-3 * weights;
-        for (const AnyCase &c : cases) {
-            const double s = 1 / (1 + std::exp(-weights.dot(c.features))), p = ceiling * s;
-            const double slope = p * (1 - s), spread = std::max(1e-12, p * (1 - p));
-            g += slope * (c.right - p) / spread * c.features;
-            h += slope * slope / spread * c.features * c.features.transpose();
-        }
-        weights += h.ldlt().solve(g);
-    }
-    return weights;
-}
-
-double likelihood(const std::vector<AnyCase> &cases, const Weights &weights, double ceiling) {
-    double sum = 0;
-    for (const AnyCase &c : cases) {
-        const double p = ceiling / (1 + std::exp(-weights.dot(c.features)));
-        sum += std::log(std::max(1e-12, c.right ? p : 1 - p));
-    }
-    return sum;
-}
-
 /// The likeliest weights and ceiling.
 void fitAny(const std::vector<GlobalPairResult> &pairs, MatchProbability &fitted) {
     const std::vector<AnyCase> cases = anyCases(pairs);
-    double most = -1e300;
+    double least = 1e300;
     for (int thousandths = 900; thousandths <= 1000; thousandths += 2) {
-        const Weights weights = fittedWeights(cases, thousandths / 1000.0);
-        const double l = likelihood(cases, weights, thousandths / 1000.0);
-        if (l <= most)
-            continue;
-        most = l;
-        fitted.ceiling = thousandths / 1000.0;
-        Eigen::Map<Weights>(fitted.weights.data()) = weights;
+        MatchProbability candidate = fitted;
+        candidate.ceiling = thousandths / 1000.0;
+        candidate.weights = logisticFit(cases, candidate.ceiling);
+        const double loss =
+            logisticLoss(cases, [&](const MatchProbability::Features &f) { return candidate.ofAny(f); });
+        if (loss < least) {
+            least = loss;
+            fitted = candidate;
+        }
     }
 }
 
@@ -119,7 +70,7 @@ double fittedSharpness(const std::vector<GlobalPairResult> &pairs) {
     return best;
 }
 
-nlohmann::ordered_json jsonOf(const std::array<CalibrationTenth, 10> &tenths) {
+nlohmann::ordered_json jsonOf(const CalibrationTenths &tenths) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const CalibrationTenth &t : tenths)
         list.push_back({{"solutions", t.solutions}, {"told", t.told}, {"right", t.right}});
@@ -127,6 +78,21 @@ nlohmann::ordered_json jsonOf(const std::array<CalibrationTenth, 10> &tenths) {
 }
 
 } // namespace
+
+void add(CalibrationTenths &tenths, double probability, bool right) {
+    CalibrationTenth &t = tenths[std::size_t(std::clamp(probability * 10, 0.0, 9.0))];
+    ++t.solutions;
+    t.told += probability;
+    t.right += right;
+}
+
+void toMeans(CalibrationTenths &tenths) {
+    for (CalibrationTenth &t : tenths)
+        if (t.solutions > 0) {
+            t.told /= double(t.solutions);
+            t.right /= double(t.solutions);
+        }
+}
 
 Calibration calibrationOf(const std::vector<GlobalPairResult> &pairs) {
     Calibration c;
@@ -136,8 +102,8 @@ Calibration calibrationOf(const std::vector<GlobalPairResult> &pairs) {
             if (&s == &pair.match.solutions[0])
                 add(c.best, s.probability, isRight(pair, s));
         }
-    divide(c.best);
-    divide(c.all);
+    toMeans(c.best);
+    toMeans(c.all);
     fitAny(pairs, c.fitted);
     c.fitted.sharpness = fittedSharpness(pairs);
     return c;
@@ -154,7 +120,7 @@ nlohmann::ordered_json summaryOf(const Calibration &calibration) {
 void writeCsv(std::ostream &out, const Calibration &calibration) {
     using vectorlib::Number;
     out << "of,from,solutions,told,right\n";
-    const auto write = [&out](const char *of, const std::array<CalibrationTenth, 10> &tenths) {
+    const auto write = [&out](const char *of, const CalibrationTenths &tenths) {
         for (std::size_t i = 0; i < tenths.size(); ++i)
             out << of << ',' << Number(double(i) / 10) << ',' << tenths[i].solutions << ','
                 << Number(tenths[i].told) << ',' << Number(tenths[i].right) << '\n';
@@ -164,8 +130,7 @@ void writeCsv(std::ostream &out, const Calibration &calibration) {
 }
 
 Plot plotOf(const Calibration &calibration) {
-    const auto curve = [](const char *label, const char *colour,
-                          const std::array<CalibrationTenth, 10> &tenths) {
+    const auto curve = [](const char *label, const char *colour, const CalibrationTenths &tenths) {
         Curve c{label, colour, {}};
         for (const CalibrationTenth &t : tenths)
             if (t.solutions >= 20)

@@ -14,10 +14,16 @@ struct CalibrationTenth {
     double right = 0; ///< share within 10 cm and 2 degrees of the reference
 };
 
+using CalibrationTenths = std::array<CalibrationTenth, 10>;
+
+/// Adds to the sums in the tenth of this probability; toMeans makes means and shares of them.
+void add(CalibrationTenths &tenths, double probability, bool right);
+void toMeans(CalibrationTenths &tenths);
+
 /// How the probabilities that were told agree with what was right.
 struct Calibration {
-    std::array<CalibrationTenth, 10> best; ///< best solutions of pairs
-    std::array<CalibrationTenth, 10> all;  ///< all solutions, the best ones among them
+    CalibrationTenths best; ///< best solutions of pairs
+    CalibrationTenths all;  ///< all solutions, the best ones among them
     /// What a fit to these pairs gives.
     vectorlib::MatchProbability fitted;
 };

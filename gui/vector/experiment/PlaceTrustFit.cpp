@@ -1,6 +1,6 @@
 #include "gui/vector/experiment/PlaceTrustFit.h"
 
-#include <Eigen/Cholesky>
+#include "gui/vector/experiment/LogisticFit.h"
 
 #include <map>
 
@@ -97,20 +97,9 @@ nlohmann::ordered_json jsonOf(const PlaceTrust &trust) {
 } // namespace
 
 PlaceTrust fittedTrust(const std::vector<PlaceTrial> &trials, PlaceTrust trust) {
-    Weights weights = weightsOf(trust);
-    double loss = lossOf(trials, trust, weights);
-    for (int steps = 0; steps < 100; ++steps) {
-        Weights step = newtonStep(trials, trust, weights);
-        double next = lossOf(trials, trust, weights + step);
-        while (!(next <= loss) && step.norm() > 1e-9) { // too far
-            step /= 2;
-            next = lossOf(trials, trust, weights + step);
-        }
-        if (!(next <= loss))
-            break;
-        weights += step;
-        loss = next;
-    }
+    const Weights weights = leastLoss(
+        weightsOf(trust), [&](const Weights &w) { return lossOf(trials, trust, w); },
+        [&](const Weights &w) { return newtonStep(trials, trust, w); });
     trust.constant = weights(0);
     trust.score = weights(1);
     trust.ahead = weights(2);
@@ -132,16 +121,9 @@ PlaceTrustQuality qualityOf(const PlaceTrust &trust, const std::vector<PlaceTria
         const bool isFound = trial.reliability >= search.minReliability && p[0] >= search.minProbability;
         quality.found += isFound;
         quality.wrong += isFound && !trial.isRight();
-        CalibrationTenth &tenth = quality.tenths[std::size_t(std::clamp(p[0] * 10, 0.0, 9.0))];
-        ++tenth.solutions;
-        tenth.told += p[0];
-        tenth.right += trial.isRight();
+        add(quality.tenths, p[0], trial.isRight());
     }
-    for (CalibrationTenth &t : quality.tenths)
-        if (t.solutions > 0) {
-            t.told /= double(t.solutions);
-            t.right /= double(t.solutions);
-        }
+    toMeans(quality.tenths);
     quality.loss /= std::max(1.0, weight);
     return quality;
 }

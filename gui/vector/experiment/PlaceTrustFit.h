@@ -12,7 +12,7 @@ struct PlaceTrustQuality {
     double loss = 0;
     std::size_t trials = 0, found = 0, wrong = 0; ///< found and wrong at a probability of 0.9
     /// Of the first places, by the probability that was told.
-    std::array<CalibrationTenth, 10> tenths;
+    CalibrationTenths tenths;
 };
 
 /// The weights of the greatest likelihood (multinomial logistic, Newton's method); trials of other buildings

@@ -65,7 +65,8 @@ public:
         const auto t2 = Clock::now();
         edges_ = &edges;
         const TrackingSettings usual = track.settings;
-        locate(settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected));
+        expected_ = settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected);
+        locate(expected_);
         track.settings = usual;
         const auto t3 = Clock::now();
         report_.segmentMs += milliseconds(t0, t1);
@@ -120,6 +121,8 @@ public:
     const ScanReport &report() const { return report_; }
     /// The match of the last scan; pairs refer to candidates() and edges().
     const Match &match() const { return match_; }
+    /// Where the last scan was expected: by its match with the scan before, else as it was told.
+    const Transformation2D &expected() const { return expected_; }
     /// Map edges that the last scan was compared with, by index of the match's static set.
     const std::vector<int> &candidates() const { return numbers_; }
     /// Their segments.
@@ -230,7 +233,7 @@ private:
     std::vector<LineSegment2D<double>> static_;
     std::vector<int> numbers_;
     std::vector<int> partner_;
-    Transformation2D pose_;
+    Transformation2D pose_, expected_;
     std::vector<Vector2D<float>> previousPoints_;
     std::vector<EdgeRaw2D> previousEdges_;
     Transformation2D previousPose_;

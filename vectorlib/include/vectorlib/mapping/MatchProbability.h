@@ -36,14 +36,18 @@ struct MatchProbability {
     static double fit(const GlobalPairSolution &s) {
         return (s.agreement.score() + s.agreement.consistency()) / 2;
     }
+    /// That the right solution is among those of a match with these features.
+    double ofAny(const Features &f) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < f.size(); ++i)
+            sum += weights[i] * f[i];
+        return ceiling / (1 + std::exp(-sum));
+    }
     void operator()(GlobalPairMatch &match) const {
         if (match.solutions.empty())
             return;
-        const Features f = features(match);
-        double sum = 0, total = 0, best = -1;
-        for (std::size_t i = 0; i < f.size(); ++i)
-            sum += weights[i] * f[i];
-        const double any = ceiling / (1 + std::exp(-sum));
+        const double any = ofAny(features(match));
+        double total = 0, best = -1;
         for (const GlobalPairSolution &s : match.solutions)
             best = std::max(best, fit(s));
         for (GlobalPairSolution &s : match.solutions)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "vectorlib/mapping/MapBuilder.h"
+#include "vectorlib/mapping/PoseTrust.h"
 #include "vectorlib/mapping/TimedScan.h"
 #include "vectorlib/mapping/TrackedBy.h"
 #include "vectorlib/motion/MotionCompensation.h"
@@ -42,6 +43,7 @@ struct ScanTrackerCounts {
 class ScanTracker {
 public:
     MapBuilder builder;
+    PoseTrust poseTrust;
     /// What segmentation settings become that follow from a scan's scanner; nothing: they stay.
     std::function<EarSettings(const EarSettings &)> segmentation;
 
@@ -132,13 +134,18 @@ public:
                : byOdometry_                ? TrackedBy::Odometry
                                             : TrackedBy::Nothing;
     }
-    /// How far to trust the pose of the last scan, 0 to 1.
+    /// How probable it is that the pose of the last scan is right, as of PoseTrust; 0 of a scan that was lost
+    /// or skipped, or that the map had nothing to compare with.
     double trust() const {
+        const auto features = trustFeatures();
+        return features ? poseTrust(*features) : 0;
+    }
+    /// What it goes by; nothing where it is 0 anyway.
+    std::optional<PoseTrust::Features> trustFeatures() const {
         const Match &m = builder.match();
         if (builder.report().outcome != ScanReport::Outcome::Matched || !(m.visibleLength > 0))
-            return 0;
-        const double apart = m.rms / builder.track.settings.finalDistance;
-        return std::clamp(m.matchedLength / m.visibleLength * (1 - apart * apart), 0.0, 1.0);
+            return std::nullopt;
+        return PoseTrust::features(m, builder.expected(), builder.track.settings.finalDistance);
     }
     /// The frame of the odometry in that of the map, by the last scan that had any.
     std::optional<Transformation2D> odometryFrame() const { return odometry_.frame(); }
