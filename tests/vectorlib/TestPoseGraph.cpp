@@ -155,6 +155,26 @@ private Q_SLOTS:
         QVERIFY2(kept > 0.9 * right, qPrintable(QString("%1 of %2").arg(kept).arg(right)));
     }
 
+    void whatWasRefusedCountsAgainWhenItFits() {
+        PoseGraph graph;
+        graph.poses = {{0, 0, 0}, {1.3, 0, 0}};
+        graph.constraints = {{0, 1, {1.3, 0, 0}, informationOf(0.5, 0.1), false, 1}};
+        const auto tell = [&graph](double x) {
+            graph.constraints.push_back({0, 1, {x, 0, 0}, informationOf(0.01, 0.01), true, 1});
+        };
+        for (const double x : {1.0, 1.6, 1.6})
+            tell(x);
+        QVERIFY(graph.optimise());
+        QVERIFY(graph.constraints[1].weight < 0.01);
+        QVERIFY(graph.constraints[2].weight > 0.9);
+        for (int i = 0; i < 3; ++i)
+            tell(1.0);
+        QVERIFY(graph.optimise());
+        QVERIFY(graph.constraints[1].weight > 0.9);
+        QVERIFY(graph.constraints[2].weight < 0.01);
+        QVERIFY(std::abs(graph.poses[1].x - 1) < 0.01);
+    }
+
     void whatHasNoSolutionStays() {
         PoseGraph graph;
         graph.poses = {{0, 0, 0}, {1, 0.1, 0}};
