@@ -21,9 +21,10 @@ constexpr int mostRounds = 20;                      // in which the thread catch
 
 } // namespace
 
-MapCorrector::MapCorrector(Corrected corrected, Grown grown)
+MapCorrector::MapCorrector(Corrected corrected, Grown grown, QString folder, QString journal)
     : corrected_(std::move(corrected))
     , grown_(std::move(grown))
+    , journal_(std::move(folder), std::move(journal))
     , thread_([this] { run(); }) {}
 
 void MapCorrector::stop() {
@@ -37,23 +38,40 @@ void MapCorrector::stop() {
 }
 
 void MapCorrector::follow(bool follows, const ScanTracker &tracker) {
-    if (std::exchange(follows_, follows) != follows && follows)
+    if (std::exchange(follows_, follows) != follows && follows && !isResumed_)
         restart(tracker);
 }
 
-void MapCorrector::restart(const ScanTracker &tracker) {
+// That has some scans already.
+void MapCorrector::beginDrive(quint64 scans) {
     {
         const std::lock_guard lock(mutex_);
         ++drive_;
-        taken_ = 0;
+        taken_ = scans;
     }
-    added_ = 0;
+    added_ = scans;
     pose_.reset();
+    isResumed_ = false;
     leftOut_.reset();
     pending_.clear();
+}
+
+void MapCorrector::restart(const ScanTracker &tracker) {
+    beginDrive(0);
     Item item;
     item.drive = drive_;
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { item.known.push_back(edge); });
+    push(std::move(item));
+}
+
+void MapCorrector::resume(std::unique_ptr<RememberedDrive> remembered) {
+    const vectorlib::LoopCloser &loops = remembered->drive.loops;
+    beginDrive(loops.scans());
+    pose_ = Transformation2D(loops.pose(loops.scans() - 1));
+    isResumed_ = true;
+    Item item;
+    item.drive = drive_;
+    item.remembered = std::move(remembered);
     push(std::move(item));
 }
 
@@ -64,7 +82,7 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     Seen seen;
     seen.number = tracker.counts().scans - 1;
     seen.motion = pose_ ? pose_->inverse() * pose : pose;
-    seen.by = tracker.trackedBy();
+    seen.by = std::exchange(isResumed_, false) ? vectorlib::TrackedBy::Placed : tracker.trackedBy();
     seen.trust = tracker.trust();
     pose_ = pose;
     if (leftOut_) {
@@ -126,7 +144,9 @@ void MapCorrector::dispose(std::shared_ptr<Correction> old) {
 
 CorrectorState MapCorrector::state() const {
     const std::lock_guard lock(mutex_);
-    return state_;
+    CorrectorState state = state_;
+    state.journal = journal_.state();
+    return state;
 }
 
 void MapCorrector::push(Item item) {
@@ -143,14 +163,16 @@ void MapCorrector::run() {
         {
             const std::lock_guard lock(mutex_);
             if (ending_)
-                return;
+                break;
         }
         take();
         if (memory_.loops.isDue() || (isQuiet && memory_.loops.hasNews()))
             correct();
         else
             tellGrown();
+        journal_.write(memory_, trust_);
     }
+    journal_.finish(memory_, trust_);
 }
 
 // False where nothing came for a while.
@@ -182,27 +204,42 @@ void MapCorrector::take() {
 void MapCorrector::take(const Item &item) {
     if (item.old)
         return;
-    if (!item.scan) {
-        memory_ = vectorlib::MappedDrive();
-        memory_.known = item.known;
-        remembered_ = item.drive;
-        numbers_.clear();
-        trust_.clear();
-        toldKeys_ = toldConstraints_ = 0;
-        grown_(graph(0, 0));
-        const std::lock_guard lock(mutex_);
-        state_.keys = 0;
-        state_.loops = {};
-        return;
-    }
+    if (!item.scan)
+        return remember(item);
     const Seen &seen = *item.scan;
     memory_.add(seen.points, seen.edges, seen.motion, seen.by);
     numbers_.push_back(seen.number);
     trust_.push_back(seen.trust);
+    journal_.write(memory_, trust_);
     const std::lock_guard lock(mutex_);
     taken_ += item.drive == drive_;
     --state_.waiting;
     state_.keys = memory_.loops.graph().poses.size();
+    state_.loops = memory_.loops.counts();
+}
+
+// The drive that begins, or goes on.
+void MapCorrector::remember(const Item &item) {
+    journal_.finish(memory_, trust_);
+    journal_.begin();
+    remembered_ = item.drive;
+    numbers_.clear();
+    if (item.remembered) {
+        memory_ = std::move(item.remembered->drive);
+        trust_ = std::move(item.remembered->trust);
+    } else {
+        memory_ = vectorlib::MappedDrive();
+        memory_.known = item.known;
+        trust_.clear();
+    }
+    resumed_ = memory_.loops.scans();
+    GraphMessage all = graph(0, 0);
+    all.cleared = true;
+    grown_(all);
+    toldKeys_ = memory_.loops.graph().poses.size();
+    toldConstraints_ = memory_.loops.graph().constraints.size();
+    const std::lock_guard lock(mutex_);
+    state_.keys = toldKeys_;
     state_.loops = memory_.loops.counts();
 }
 
@@ -212,6 +249,7 @@ void MapCorrector::correct() {
     const Transformation2D from(memory_.loops.pose(last));
     if (!memory_.loops.correct())
         return;
+    journal_.corrected();
     toldKeys_ = toldConstraints_ = 0; // weights are others
     const auto c = std::make_shared<Correction>();
     double turned = 0;
@@ -246,7 +284,8 @@ void MapCorrector::handOver(std::shared_ptr<Correction> c) {
     builder_.clear();
     c->map.forEach([&](const vectorlib::MapEdge &e) { c->edges.emplace_hint(c->edges.end(), e.id, e); });
     c->numbers = numbers_;
-    c->poses = memory_.loops.poses();
+    for (std::size_t i = resumed_; i < memory_.loops.scans(); ++i)
+        c->poses.push_back(memory_.loops.pose(i));
     c->graph = graph(0, 0);
     toldKeys_ = c->graph.poses.size();
     toldConstraints_ = memory_.loops.graph().constraints.size();

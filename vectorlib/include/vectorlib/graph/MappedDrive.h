@@ -4,6 +4,7 @@
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MapReview.h"
 
+#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -23,6 +24,11 @@ public:
         loops.add(points, tracked, by);
         edges_.push_back(edges);
         edges_.back().shrink_to_fit();
+    }
+    /// Goes on with a drive that was remembered; edges: one list a scan.
+    void restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges) {
+        loops.restore(std::move(memory));
+        edges_ = std::move(edges);
     }
     /// The builder's map becomes that of all scans so far, where they are now.
     void rebuild(MapBuilder &builder) const {
