@@ -23,6 +23,7 @@ GraphMessage GraphMirror::part(qint64 &cursor) const {
     GraphMessage some;
     some.revision = all_.revision;
     some.cleared = cursor == 0;
+    cursor = std::min(cursor, qint64(all_.poses.size()));
     some.first = cursor;
     some.size = all_.size;
     const qint64 end = std::min(cursor + partKeys, qint64(all_.poses.size()));

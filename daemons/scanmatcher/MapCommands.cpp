@@ -1,3 +1,4 @@
+#include "common/Log.h"
 #include "daemons/scanmatcher/MapFile.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
 #include "protocol/wire/Fields.h"
@@ -37,7 +38,9 @@ void ScanMatcher::declareMapCommands() {
                      QJsonObject{{"path", "/home/robot/office.svg"}, {"segments", 48}, {"bytes", 9120}})
             .asyncHandler(
                 [this](const Call &call, const Reply &reply) { saveMap(call.text("format"), call, reply); }));
-    addCommand(Command("map.load", "Replaces the map by one that map.save wrote")
+    addCommand(Command("map.load",
+                       "Replaces the map by one that map.save wrote, or goes on with the drive of "
+                       "a journal")
                    .needs(Role::Engineer)
                    .param(path)
                    .gives<LoadedMap>()
@@ -47,6 +50,8 @@ void ScanMatcher::declareMapCommands() {
                    .asyncHandler([this](const Call &, const Reply &reply) {
                        worker_->post([this, reply](vectorlib::ScanTracker &tracker) {
                            tracker.clear();
+                           corrector_->restart(tracker);
+                           seeks_ = Seeks::Nothing;
                            showNewMap(tracker, reply, QJsonValue());
                        });
                    }));
@@ -80,18 +85,47 @@ void ScanMatcher::saveMap(const QString &format, const Call &call, const Reply &
 // In the worker, as the scans that come after it belong into the new map.
 void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
     worker_->post([this, file = mapPath(call), reply](vectorlib::ScanTracker &tracker) {
+        if (isDriveJournal(file))
+            return loadJournal(tracker, file, reply);
         const auto loaded = readMapFile(file);
         if (!loaded)
             return reply.error(loaded.error());
         tracker.clear();
         for (const vectorlib::MapEdge &edge : *loaded)
             tracker.builder.map.add(edge, edge.observations);
-        showNewMap(tracker, reply, asJson(LoadedMap{loaded->size()}));
+        corrector_->restart(tracker);
+        seeks_ = Seeks::Nothing;
+        showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}));
     });
 }
 
+void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply) {
+    auto loaded = readJournalFile(file);
+    if (!loaded)
+        return reply.error(loaded.error());
+    auto remembered = std::make_unique<RememberedDrive>(loaded.take());
+    const vectorlib::MappedDrive &drive = remembered->drive;
+    if (remembered->leftOut > 0)
+        logWarning("journal", QString("%1: the last %2 bytes are cut or damaged and were left out")
+                                  .arg(file.path)
+                                  .arg(remembered->leftOut));
+    vectorlib::MapBuilder builder;
+    const std::vector<vectorlib::Pose2D> poses = drive.loops.poses();
+    drive.rebuild(builder, poses);
+    drive.review(builder.map, poses);
+    tracker.clear();
+    std::swap(tracker.builder.map, builder.map);
+    tracker.place(poses.back());
+    seeks_ = Seeks::Anywhere;
+    LoadedMap answer{0, drive.loops.scans(), drive.loops.keys().size(), drive.loops.counts().closed,
+                     quint64(remembered->leftOut)};
+    tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
+    corrector_->resume(std::move(remembered));
+    showNewMap(tracker, reply, asJson(answer));
+}
+
 void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer) {
-    corrector_->restart(tracker);
+    setGrowth(tracker);
     tracker.builder.map.takeChanges(); // the mirror gets it whole
     auto edges = std::make_shared<MapMirror::Edges>();
     tracker.builder.map.forEach(

@@ -22,9 +22,10 @@ constexpr int mostRounds = 20;                      // in which the thread catch
 
 } // namespace
 
-MapCorrector::MapCorrector(Corrected corrected, Grown grown)
+MapCorrector::MapCorrector(Corrected corrected, Grown grown, QString folder, QString journal)
     : corrected_(std::move(corrected))
     , grown_(std::move(grown))
+    , journal_(std::move(folder), std::move(journal))
     , thread_([this] { run(); }) {}
 
 void MapCorrector::stop() {
@@ -38,29 +39,56 @@ void MapCorrector::stop() {
 }
 
 void MapCorrector::follow(bool follows, const ScanTracker &tracker) {
-    if (std::exchange(follows_, follows) != follows && follows)
+    if (std::exchange(follows_, follows) == follows)
+        return;
+    if (!follows)
+        forget({}); // a correction that is under way comes too late
+    else if (!isResumed_)
         restart(tracker);
 }
 
-// A robot that stands for a day must not fill the memory with what it sees.
+// A robot that stands for a day must not fill the memory with what it sees, or does not see.
 bool MapCorrector::isStill(const Seen &seen) {
-    return seen.by == vectorlib::TrackedBy::Map && seen.motion.translation().norm() < still_m &&
+    return seen.by != vectorlib::TrackedBy::Placed && seen.motion.translation().norm() < still_m &&
            std::abs(seen.motion.alpha()) < still_rad;
 }
 
-void MapCorrector::restart(const ScanTracker &tracker) {
+// That has some scans already.
+void MapCorrector::beginDrive(quint64 scans) {
     {
         const std::lock_guard lock(mutex_);
         ++drive_;
-        taken_ = 0;
+        taken_ = scans;
     }
-    added_ = 0;
+    added_ = scans;
     pose_.reset();
+    isResumed_ = false;
     leftOut_.reset();
     pending_.clear();
+}
+
+void MapCorrector::restart(const ScanTracker &tracker) {
+    std::vector<vectorlib::MapEdge> known;
+    tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { known.push_back(edge); });
+    forget(std::move(known));
+}
+
+void MapCorrector::forget(std::vector<vectorlib::MapEdge> known) {
+    beginDrive(0);
     Item item;
     item.drive = drive_;
-    tracker.builder.map.forEach([&](const vectorlib::MapEdge &edge) { item.known.push_back(edge); });
+    item.known = std::move(known);
+    push(std::move(item));
+}
+
+void MapCorrector::resume(std::unique_ptr<RememberedDrive> remembered) {
+    const vectorlib::LoopCloser &loops = remembered->drive.loops;
+    beginDrive(loops.scans());
+    pose_ = lastTaken_ = Transformation2D(loops.pose(loops.scans() - 1));
+    isResumed_ = true;
+    Item item;
+    item.drive = drive_;
+    item.remembered = std::move(remembered);
     push(std::move(item));
 }
 
@@ -71,14 +99,15 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     Seen seen;
     seen.number = tracker.counts().scans - 1;
     seen.motion = pose_ ? pose_->inverse() * pose : pose;
-    seen.by = tracker.trackedBy();
+    seen.by = std::exchange(isResumed_, false) ? vectorlib::TrackedBy::Placed : tracker.trackedBy();
     seen.trust = tracker.trust();
     pose_ = pose;
     if (leftOut_) {
         seen.motion = leftOut_->motion * seen.motion;
         seen.by = std::max(seen.by, leftOut_->by);
     }
-    if (added_ > 0 && isStill(seen)) {
+    const bool showsNothing = tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Skipped;
+    if (added_ > 0 && (showsNothing || isStill(seen))) {
         leftOut_ = std::move(seen);
         return;
     }
@@ -90,8 +119,7 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
             return;
         }
         ++state_.waiting;
-        while (!pending_.empty() && added_ - pending_.size() < taken_)
-            pending_.pop_front();
+        forgetPending(taken_);
     }
     leftOut_.reset();
     seen.points = points;
@@ -105,28 +133,41 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     push(std::move(item));
 }
 
+// Those below this number of the drive: the other thread has them.
+void MapCorrector::forgetPending(quint64 end) {
+    for (; !pending_.empty() && added_ - pending_.size() < end; pending_.pop_front())
+        lastTaken_ = pending_.front().pose;
+}
+
 bool MapCorrector::apply(ScanTracker &tracker, Correction &correction) {
     const auto begin = Clock::now();
     const bool isOfThisDrive = correction.drive == drive_ && pose_;
     if (isOfThisDrive) {
-        tracker.correct(correction.map, correction.moved);
-        pose_ = correction.moved * *pose_;
-        while (!pending_.empty() && added_ - pending_.size() < correction.scans)
-            pending_.pop_front();
+        forgetPending(correction.scans);
+        const Transformation2D last(correction.last), moved = last * lastTaken_.inverse();
+        lastTaken_ = last;
+        pose_ = moved * *pose_;
+        tracker.correct(correction.map, moved);
         for (Pending &p : pending_) {
-            p.pose = correction.moved * p.pose;
+            p.pose = moved * p.pose;
             tracker.builder.place(p.scan->edges, p.pose.pose());
         }
     }
     const std::chrono::duration<double, std::milli> stall = Clock::now() - begin;
     {
         const std::lock_guard lock(mutex_);
-        isHandedOver_ = false;
         state_.corrections += isOfThisDrive;
         state_.longestStallMs = std::max(state_.longestStallMs, stall.count());
     }
-    wake_.notify_all();
     return isOfThisDrive;
+}
+
+void MapCorrector::goOn() {
+    {
+        const std::lock_guard lock(mutex_);
+        isHandedOver_ = false;
+    }
+    wake_.notify_all();
 }
 
 void MapCorrector::dispose(std::shared_ptr<Correction> old) {
@@ -135,9 +176,16 @@ void MapCorrector::dispose(std::shared_ptr<Correction> old) {
     push(std::move(item));
 }
 
+bool MapCorrector::isEnding() const {
+    const std::lock_guard lock(mutex_);
+    return ending_;
+}
+
 CorrectorState MapCorrector::state() const {
     const std::lock_guard lock(mutex_);
-    return state_;
+    CorrectorState state = state_;
+    state.journal = journal_.state();
+    return state;
 }
 
 void MapCorrector::push(Item item) {
@@ -154,14 +202,16 @@ void MapCorrector::run() {
         {
             const std::lock_guard lock(mutex_);
             if (ending_)
-                return;
+                break;
         }
         take();
         if (memory_.loops.isDue() || (isQuiet && memory_.loops.hasNews()))
             correct();
         else
             tellGrown();
+        journal_.write(memory_, trust_);
     }
+    journal_.finish(memory_, trust_);
 }
 
 // False where nothing came for a while.
@@ -193,23 +243,13 @@ void MapCorrector::take() {
 void MapCorrector::take(const Item &item) {
     if (item.old)
         return;
-    if (!item.scan) {
-        memory_ = vectorlib::MappedDrive();
-        memory_.known = item.known;
-        remembered_ = item.drive;
-        numbers_.clear();
-        trust_.clear();
-        toldKeys_ = toldConstraints_ = 0;
-        grown_(graph(0, 0));
-        const std::lock_guard lock(mutex_);
-        state_.keys = 0;
-        state_.loops = {};
-        return;
-    }
+    if (!item.scan)
+        return remember(item);
     const Seen &seen = *item.scan;
     memory_.add(seen.points, seen.edges, seen.motion, seen.by);
     numbers_.push_back(seen.number);
     trust_.push_back(seen.trust);
+    journal_.write(memory_, trust_);
     const std::lock_guard lock(mutex_);
     taken_ += item.drive == drive_;
     --state_.waiting;
@@ -217,12 +257,36 @@ void MapCorrector::take(const Item &item) {
     state_.loops = memory_.loops.counts();
 }
 
+// The drive that begins, or goes on.
+void MapCorrector::remember(const Item &item) {
+    journal_.finish(memory_, trust_);
+    journal_.begin();
+    remembered_ = item.drive;
+    numbers_.clear();
+    if (item.remembered) {
+        memory_ = std::move(item.remembered->drive);
+        trust_ = std::move(item.remembered->trust);
+    } else {
+        memory_ = vectorlib::MappedDrive();
+        memory_.known = item.known;
+        trust_.clear();
+    }
+    resumed_ = memory_.loops.scans();
+    GraphMessage all = graph(0, 0);
+    all.cleared = true;
+    grown_(all);
+    toldKeys_ = memory_.loops.graph().poses.size();
+    toldConstraints_ = memory_.loops.graph().constraints.size();
+    const std::lock_guard lock(mutex_);
+    state_.keys = toldKeys_;
+    state_.loops = memory_.loops.counts();
+}
+
 void MapCorrector::correct() {
     const std::vector<vectorlib::Pose2D> before = memory_.loops.graph().poses;
-    const std::size_t last = memory_.loops.scans() - 1;
-    const Transformation2D from(memory_.loops.pose(last));
     if (!memory_.loops.correct())
         return;
+    journal_.corrected();
     toldKeys_ = toldConstraints_ = 0; // weights are others
     const auto c = std::make_shared<Correction>();
     double turned = 0;
@@ -231,10 +295,11 @@ void MapCorrector::correct() {
         c->farthest = std::max(c->farthest, std::hypot(by.x, by.y));
         turned = std::max(turned, std::abs(by.theta));
     }
-    c->moved = Transformation2D(memory_.loops.pose(last)) * from.inverse();
-    if (c->farthest < least_m && turned < least_rad) // poses that are in use differ from these by less
+    if ((c->farthest < least_m && turned < least_rad) || isEnding())
         return tellGrown();
     memory_.rebuild(builder_);
+    if (isEnding())
+        return;
     memory_.review(builder_.map, memory_.loops.poses());
     const quint64 drive = remembered_;
     for (int round = 0; round < mostRounds; ++round) {
@@ -252,12 +317,14 @@ void MapCorrector::correct() {
 void MapCorrector::handOver(std::shared_ptr<Correction> c) {
     c->drive = remembered_;
     c->scans = memory_.loops.scans();
+    c->last = memory_.loops.pose(c->scans - 1);
     builder_.map.takeChanges(); // all of it is new
     std::swap(c->map, builder_.map);
     builder_.clear();
     c->map.forEach([&](const vectorlib::MapEdge &e) { c->edges.emplace_hint(c->edges.end(), e.id, e); });
     c->numbers = numbers_;
-    c->poses = memory_.loops.poses();
+    for (std::size_t i = resumed_; i < memory_.loops.scans(); ++i)
+        c->poses.push_back(memory_.loops.pose(i));
     c->graph = graph(0, 0);
     toldKeys_ = c->graph.poses.size();
     toldConstraints_ = memory_.loops.graph().constraints.size();

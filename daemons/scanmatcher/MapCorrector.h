@@ -1,16 +1,17 @@
 #pragma once
 
+#include "daemons/scanmatcher/DriveJournal.h"
 #include "protocol/messages/DriveGraph.h"
 #include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
-#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 namespace hermes::scanmatcher {
@@ -23,7 +24,7 @@ struct Correction {
     std::map<qint64, vectorlib::MapEdge> edges; ///< the same, for the main thread
     std::vector<quint64> numbers;               ///< of the scans, since the map was begun
     std::vector<vectorlib::Pose2D> poses;       ///< of these scans
-    vectorlib::Transformation2D moved;          ///< where the frame of the last pose lies now
+    vectorlib::Pose2D last;                     ///< of the last of them
     double farthest = 0;                        ///< that a pose was moved; metres
     GraphMessage graph;
 };
@@ -33,17 +34,19 @@ struct CorrectorState {
     vectorlib::LoopCounts loops;
     quint64 keys = 0, corrections = 0, waiting = 0, dropped = 0;
     double longestStallMs = 0; ///< that the matching waited for a correction
+    JournalState journal;
 };
 
 /// A thread that remembers the drive, closes its loops and makes the map anew while the matching goes on.
 /// Scans wait in a bounded queue; one that finds it full leaves its motion to the next and is counted.
 class MapCorrector {
 public:
-    /// Both are called in its thread. After a correction was told it rests until apply() was called.
+    /// Both are called in its thread. After a correction was told it rests until goOn() is called.
     using Corrected = std::function<void(std::shared_ptr<Correction>)>;
     using Grown = std::function<void(const GraphMessage &)>;
 
-    MapCorrector(Corrected corrected, Grown grown);
+    /// The drive is written down in a journal of that name below the folder; without a name it is not.
+    MapCorrector(Corrected corrected, Grown grown, QString folder, QString journal);
     ~MapCorrector() { stop(); }
     /// Ends the thread; nothing is told from then on.
     void stop();
@@ -54,11 +57,15 @@ public:
     void follow(bool follows, const vectorlib::ScanTracker &tracker);
     /// The map is another one: what was remembered belongs to the old one.
     void restart(const vectorlib::ScanTracker &tracker);
+    /// The map is that of a drive that was remembered, which goes on with the next scan, wherever that is.
+    void resume(std::unique_ptr<RememberedDrive> remembered);
     /// The scan that the tracker took last.
     void add(const vectorlib::ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points);
     /// The tracker gets the map and goes on where it lies in it. False: it is of another drive, and nothing
     /// happened.
     bool apply(vectorlib::ScanTracker &tracker, Correction &correction);
+    /// After a correction was told, whether it was applied or not, and shown: the thread may go on.
+    void goOn();
 
     // In any thread.
 
@@ -77,9 +84,10 @@ private:
     };
     struct Item {
         quint64 drive = 0;
-        std::shared_ptr<const Seen> scan;      // of that drive; else the drive begins,
-        std::vector<vectorlib::MapEdge> known; // in this map;
-        std::shared_ptr<Correction> old;       // or this is to be freed
+        std::shared_ptr<const Seen> scan;            // of that drive; else the drive begins,
+        std::vector<vectorlib::MapEdge> known;       // in this map;
+        std::shared_ptr<RememberedDrive> remembered; // or goes on with this one;
+        std::shared_ptr<Correction> old;             // or this is to be freed
     };
     struct Pending {
         std::shared_ptr<const Seen> scan;
@@ -87,11 +95,16 @@ private:
     };
 
     static bool isStill(const Seen &seen);
+    void beginDrive(quint64 scans);
+    void forget(std::vector<vectorlib::MapEdge> known);
+    void forgetPending(quint64 end);
+    bool isEnding() const;
     void push(Item item);
     void run();
     bool wait();
     void take();
     void take(const Item &item);
+    void remember(const Item &item);
     void correct();
     void tellGrown();
     GraphMessage graph(std::size_t first, std::size_t constraint) const;
@@ -103,7 +116,9 @@ private:
     // Of the matching's thread:
     bool follows_ = false;
     quint64 added_ = 0;                               // scans of it
+    bool isResumed_ = false;                          // no scan came since
     std::optional<vectorlib::Transformation2D> pose_; // of the last scan
+    vectorlib::Transformation2D lastTaken_;           // of the last scan that the other thread has
     std::optional<Seen> leftOut_; // motions that have no scan: it stood, or the queue was full
     std::deque<Pending> pending_; // the last scans, which a correction may lack
 
@@ -111,7 +126,9 @@ private:
     vectorlib::MappedDrive memory_;
     vectorlib::MapBuilder builder_;
     quint64 remembered_ = 0; // the drive that is remembered
-    std::vector<quint64> numbers_;
+    DriveJournal journal_;
+    std::size_t resumed_ = 0;      // scans that were remembered before
+    std::vector<quint64> numbers_; // of those since
     std::vector<double> trust_;
     std::size_t toldKeys_ = 0, toldConstraints_ = 0;
 

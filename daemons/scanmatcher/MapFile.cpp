@@ -23,6 +23,17 @@ Result<std::vector<vectorlib::MapEdge>> readMapFile(const MapPath &file) {
     return std::move(*map);
 }
 
+bool isDriveJournal(const MapPath &file) {
+    return file.path.endsWith(".journal");
+}
+
+Result<RememberedDrive> readJournalFile(const MapPath &file) {
+    const Result<QByteArray> bytes = readNamedFile(file.path, {file.folder}, largestJournal);
+    if (!bytes)
+        return bytes.error();
+    return readDriveJournal(*bytes, file.path);
+}
+
 Result<SavedMap> writeMapFile(const MapPath &file, const QString &format, bool force,
                               const vectorlib::MapDrawing &map) {
     std::ostringstream text;

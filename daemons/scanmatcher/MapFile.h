@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "daemons/scanmatcher/DriveJournal.h"
 #include "daemons/scanmatcher/MatcherMessages.h"
 #include "vectorlib/io/MapDrawing.h"
 
@@ -19,6 +20,11 @@ struct MapPath {
 
 /// Reads what writeMapFile() wrote as csv. Waits for the disk. InputOutput with data.path.
 Result<std::vector<vectorlib::MapEdge>> readMapFile(const MapPath &file);
+
+/// Whether it is named as journals are.
+bool isDriveJournal(const MapPath &file);
+/// Reads what a DriveJournal wrote, as readDriveJournal() does. Waits for the disk.
+Result<RememberedDrive> readJournalFile(const MapPath &file);
 
 /// Writes a map as csv, svg, geojson or dxf (only svg takes more than its segments); the file appears when it
 /// is complete. Waits for the disk. InputOutput with data.path, also where the file

@@ -72,8 +72,10 @@ void ScanMatcher::declareMatcherCommands() {
                    .example({{"x", 1.5}, {"y", 0}, {"theta", 1.57}}, QJsonValue())
                    .asyncHandler([this](const Call &call, const Reply &reply) {
                        const Pose2D pose = toPose(call.params);
-                       worker_->post([pose, reply](vectorlib::ScanTracker &tracker) {
+                       worker_->post([this, pose, reply](vectorlib::ScanTracker &tracker) {
                            tracker.place(pose);
+                           seeks_ = Seeks::Nothing;
+                           setGrowth(tracker);
                            reply.result(QJsonValue());
                        });
                    }));

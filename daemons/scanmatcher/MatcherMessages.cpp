@@ -147,7 +147,13 @@ const Fields<SavedMap> &fieldsOf(Of<SavedMap>) {
 }
 
 const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>) {
-    static const auto fields = Fields<LoadedMap>().add("segments", &LoadedMap::segments, "Edges read");
+    static const auto fields =
+        Fields<LoadedMap>()
+            .add("segments", &LoadedMap::segments, "Edges read, or made of a journal's scans")
+            .add("scans", &LoadedMap::scans, "Scans that a journal remembers; 0: it is a map")
+            .add("key_scans", &LoadedMap::keyScans, "Key scans among them")
+            .add("closures", &LoadedMap::closures, "Loops among these")
+            .add("left_out", &LoadedMap::leftOut, "Damaged bytes at the journal's end");
     return fields;
 }
 

@@ -71,6 +71,8 @@ struct SavedMap {
 /// A map that was read.
 struct LoadedMap {
     quint64 segments = 0;
+    quint64 scans = 0, keyScans = 0, closures = 0; ///< of a journal
+    quint64 leftOut = 0;                           ///< bytes at its end
 };
 
 SearchAnswer answerOf(const vectorlib::Relocalized &search);

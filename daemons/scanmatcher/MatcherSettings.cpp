@@ -18,10 +18,19 @@ std::vector<SchemaViolation> checkAddresses(const QJsonObject &settings) {
     return wrong;
 }
 
+std::vector<SchemaViolation> checkJournal(const QJsonObject &settings) {
+    const QString name = valueAt(settings, "map.journal").toString();
+    const QString suffix = ".journal";
+    if (name.isEmpty() || (name.endsWith(suffix) && name.size() > suffix.size() && !name.contains('/')))
+        return {};
+    return {{"map.journal", name, "a file's name that ends with " + suffix + ", without a folder"}};
+}
+
 } // namespace
 
 void ScanMatcher::declareSettings() {
     settings().addRule(checkAddresses);
+    settings().addRule(checkJournal);
     addSetting(Field::text("source.address", "Daemon that publishes the scans: HOST:PORT or a URL")
                    .byDefault("127.0.0.1:7420")
                    .group("Source"));
@@ -104,6 +113,13 @@ void ScanMatcher::declareSettings() {
     addSetting(
         Field::text("map.folder", "Below it are the files of maps that clients name; made when missing")
             .byDefault(".")
+            .appliesOnRestart()
+            .group("Map"));
+    addSetting(
+        Field::text("map.journal",
+                    "File below map.folder, NAME.journal, in which the drive is written down while the "
+                    "map grows, every 4 s; where there is one, NAME-2.journal and so on. Empty: none")
+            .byDefault("")
             .appliesOnRestart()
             .group("Map"));
 }

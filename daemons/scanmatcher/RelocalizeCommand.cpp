@@ -49,6 +49,24 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
     });
 }
 
+// After a scan; searches the whole map when it is time to.
+std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
+    if (seeks_ == Seeks::Anywhere) {
+        seeks_ = Seeks::Here;
+        return tracker.relocalize(true);
+    }
+    if (seeks_ == Seeks::Here &&
+        tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Matched) {
+        seeks_ = Seeks::Nothing;
+        setGrowth(tracker);
+    }
+    return tracker.recover();
+}
+
+void ScanMatcher::setGrowth(vectorlib::ScanTracker &tracker) const {
+    tracker.builder.settings.grow = grows_ && seeks_ == Seeks::Nothing;
+}
+
 void ScanMatcher::showRecovery(const Relocalized &recovery) {
     ++recoveries_;
     recovered_ += recovery.isFound();
@@ -67,6 +85,8 @@ void ScanMatcher::updateTrackingHealth() {
     QString message = lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_) : QString("on track");
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
+    if (seeks_ != Seeks::Nothing)
+        message += "; the place in the loaded drive is sought: until then nothing is mapped";
     health().set("tracking", lostInARow_ >= 3 ? HealthLevel::Failed : HealthLevel::Ok, message,
                  {{"lost_in_a_row", lostInARow_},
                   {"recoveries", qint64(recoveries_)},

@@ -126,12 +126,15 @@ Result<void> ScanMatcher::start() {
     const auto grow = [this](const GraphMessage &more) {
         QMetaObject::invokeMethod(this, [this, more] { showGraph(more); });
     };
-    corrector_ = std::make_unique<MapCorrector>(correct, grow);
+    corrector_ = std::make_unique<MapCorrector>(correct, grow, settings().text("map.folder"),
+                                                settings().text("map.journal"));
     worker_ = std::make_unique<Worker>([this](ScanTracker &tracker, const Scan &scan) {
-        corrector_->add(tracker, scan.data.points);
+        const std::optional<vectorlib::Relocalized> recovery = find(tracker);
+        if (seeks_ == Seeks::Nothing)
+            corrector_->add(tracker, scan.data.points);
         Outcome outcome = outcomeOf(tracker, scan);
         outcome.result.pose.corrected = std::exchange(corrected_, false);
-        outcome.recovery = tracker.recover();
+        outcome.recovery = recovery;
         QMetaObject::invokeMethod(this, [this, outcome] { show(outcome); });
     });
     settingsChanged({});
@@ -171,7 +174,8 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
 void ScanMatcher::begin(bool toMap) {
     mapping_ = toMap;
     worker_->post([this, toMap, closes = closesLoops()](ScanTracker &tracker) {
-        tracker.builder.settings.grow = toMap;
+        grows_ = toMap;
+        setGrowth(tracker);
         corrector_->follow(closes, tracker);
     });
     active_ = true;
@@ -262,12 +266,15 @@ bool ScanMatcher::closesLoops() {
 }
 
 void ScanMatcher::applyCorrection(ScanTracker &tracker, const std::shared_ptr<Correction> &correction) {
-    if (!corrector_->apply(tracker, *correction))
-        return corrector_->dispose(correction);
-    corrected_ = true;
-    QMetaObject::invokeMethod(this, [this, correction, since = takeChanges(tracker.builder.map)] {
-        showCorrection(correction, since);
-    });
+    if (corrector_->apply(tracker, *correction)) {
+        corrected_ = true;
+        QMetaObject::invokeMethod(this, [this, correction, since = takeChanges(tracker.builder.map)] {
+            showCorrection(correction, since);
+        });
+    } else {
+        corrector_->dispose(correction);
+    }
+    corrector_->goOn(); // what it tells from now on comes behind the correction
 }
 
 void ScanMatcher::showCorrection(const std::shared_ptr<Correction> &correction, const MapChanges &since) {
@@ -279,7 +286,7 @@ void ScanMatcher::showCorrection(const std::shared_ptr<Correction> &correction, 
     graph_.replace(std::move(correction->graph));
     publishSnapshot("map");
     publishSnapshot("graph");
-    corrector_->dispose(correction);
+    corrector_->dispose(std::make_shared<Correction>(std::move(*correction)));
 }
 
 void ScanMatcher::showGraph(GraphMessage more) {
@@ -314,6 +321,18 @@ void ScanMatcher::updateHealth() {
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
                  asJson(matcherState()).toObject());
     updateTrackingHealth();
+    updateJournalHealth();
+}
+
+void ScanMatcher::updateJournalHealth() {
+    const JournalState journal = corrector_ ? corrector_->state().journal : JournalState();
+    if (settings().text("map.journal").isEmpty())
+        return health().set("journal", HealthLevel::Ok, "none is kept");
+    const QString message = !journal.fault.isEmpty() ? journal.fault
+                            : journal.path.isEmpty() ? QString("nothing to write yet")
+                                                     : "written to " + journal.path;
+    health().set("journal", journal.fault.isEmpty() ? HealthLevel::Ok : HealthLevel::Warn, message,
+                 {{"path", journal.path}, {"bytes", journal.bytes}, {"scans", qint64(journal.scans)}});
 }
 
 MatcherState ScanMatcher::matcherState() const {

@@ -23,6 +23,7 @@ class ScanMatcher : public Daemon {
     Q_OBJECT
 public:
     ScanMatcher();
+    ~ScanMatcher() override { ScanMatcher::stop(); }
 
 protected:
     Result<void> start() override;
@@ -60,10 +61,14 @@ private:
     void relocalize(bool apply, const Reply &reply);
     void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
+    void updateJournalHealth();
+    std::optional<vectorlib::Relocalized> find(vectorlib::ScanTracker &tracker);
+    void setGrowth(vectorlib::ScanTracker &tracker) const;
 
     vectorlib::ScanTrackerSettings trackerSettings() const;
     void saveMap(const QString &format, const Call &call, const Reply &reply);
     void loadMap(const Call &call, const Reply &reply);
+    void loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply);
     /// In the worker's thread, when the map is another one: hands it over to the main thread, then answers.
     void showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
@@ -75,6 +80,11 @@ private:
     std::unique_ptr<Worker> worker_;
     std::unique_ptr<MapCorrector> corrector_;
     bool corrected_ = false; ///< since the last scan; the worker's
+    /// A drive that was loaded goes on once its place is found: with the first scan in the whole map, then
+    /// where the sensor stood last.
+    enum class Seeks { Nothing, Anywhere, Here };
+    std::atomic<Seeks> seeks_{Seeks::Nothing}; ///< set by the worker
+    bool grows_ = true;                        ///< the map, while no place is sought; the worker's
     Client source_;
     int subscription_ = 0;
     OdometrySource odometry_;

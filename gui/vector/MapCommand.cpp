@@ -158,12 +158,6 @@ private:
                 << "hermes-vector: " << counts.lost << " of " << counts.scans
                 << " scans were lost: what the map shows of them stands where they were expected, which may "
                    "be far off\n";
-        if (counts.doubted > 0 || counts.restarts > 0)
-            std::cerr << "hermes-vector: the sensor may have been carried elsewhere: " << counts.doubted
-                      << " scan(s) show something else than the one before, and the map went on "
-                      << counts.restarts
-                      << " time(s) after lost scans; if it was, cut the log there and join the maps by "
-                         "map-merge\n";
     }
     static void writeTrajectory(std::ostream &out, const std::vector<vectorlib::StampedPose> &trajectory,
                                 nlohmann::ordered_json &json) {

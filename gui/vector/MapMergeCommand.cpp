@@ -49,6 +49,7 @@ public:
 
 private:
     static constexpr double leastOverlap = 5, leastReliability = 0.02; // metres, none
+    static constexpr double farthestMove = 0.5, farthestTurn = 0.15; // from what --at tells; metres, radians
 
     MapAlignment align(vectorlib::VectorMap &map, const std::vector<vectorlib::MapEdge> &added) const {
         vectorlib::MapAligner aligner;
@@ -75,7 +76,13 @@ private:
     MapAlignment refine(vectorlib::VectorMap &map, const std::vector<vectorlib::MapEdge> &added) const {
         MapAlignment given;
         given.outcome = MapAlignment::Outcome::Found;
-        given.overlap = vectorlib::MapRegistration()(map, added, vectorlib::Transformation2D(parsePose(at)));
+        const vectorlib::Transformation2D told(parsePose(at));
+        given.overlap = vectorlib::MapRegistration()(map, added, told);
+        const vectorlib::Transformation2D off = told.inverse() * given.overlap.motion;
+        if (std::abs(off.alpha()) > farthestTurn || off.translation().norm() > farthestMove)
+            throw Failure(refused("walls lie on each other " + std::to_string(off.translation().norm()) +
+                                  " m and " + std::to_string(std::abs(off.alpha())) +
+                                  " rad from --at, expected at most 0.5 m and 0.15 rad"));
         return given;
     }
     std::string refused(const std::string &why) const {

@@ -70,7 +70,7 @@ void MapRun::rebuild() {
     vectorlib::WallIds ids;
     ids.remember(tracker.builder.map, {drive_.edges(), poses()});
     std::vector<vectorlib::Pose2D> refined = drive_.loops.poses();
-    refine_(refined, drive_.loopsOfScans());
+    isRefined_ = refine_(refined, drive_.loopsOfScans());
     for (std::size_t i = 0; i < refined.size(); ++i)
         trajectory_[i].pose = refined[i];
     drive_.rebuild(tracker.builder, refined);
@@ -104,6 +104,7 @@ nlohmann::ordered_json MapRun::summary() const {
         json["trust"] = {{"mean", std::accumulate(trust_.begin(), trust_.end(), 0.0) / double(trust_.size())},
                          {"percentile_5", quantile(trust_, 0.05)}};
     const vectorlib::LoopCounts loops = drive_.loops.counts();
+    json["refined"] = isRefined_;
     json["closures"] = loops.closed;
     json["closures_tried"] = loops.tried;
     json["closures_refused"] = loops.refused;

@@ -43,6 +43,7 @@ private:
 
     vectorlib::MappedDrive drive_;
     vectorlib::DriveRefiner refine_;
+    bool isRefined_ = false;
     double closeSeconds_ = 0;
     vectorlib::MapReviewCounts reviewed_;
     double reviewSeconds_ = 0;

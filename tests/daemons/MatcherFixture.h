@@ -82,7 +82,7 @@ inline void MatcherFixture::setUp() {
     matcher = std::make_unique<ScanMatcher>();
     QVERIFY(!matcher->prepare({"scanmatcher", "--listen", "tcp://127.0.0.1:0", "--set",
                                QString("source.address=127.0.0.1:%1").arg(sourcePort), "--set",
-                               "map.folder=" + folder->path()}));
+                               "map.folder=" + folder->path(), "--set", "map.journal=drive.journal"}));
     QVERIFY(matcher->launch().ok());
     connectTo(*matcher);
     QTRY_VERIFY(source->hasSubscribers("scan2d"));

@@ -71,7 +71,8 @@ struct Robot {
 };
 
 World room() {
-    return {"room", {{-5, -5, 5, -5}, {5, -5, 5, 5}, {5, 5, -5, 5}, {-5, 5, -5, -5}}, {{0, 0, 0}, {2, 0, 0}}, {}};
+    return {
+        "room", {{-5, -5, 5, -5}, {5, -5, 5, 5}, {5, 5, -5, 5}, {-5, 5, -5, -5}}, {{0, 0, 0}, {2, 0, 0}}, {}};
 }
 
 /// Drives all wheels of a simulation with this speed, counts/s, as a host does.

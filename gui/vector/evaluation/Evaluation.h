@@ -25,6 +25,8 @@ public:
                const std::string &name);
 
     nlohmann::ordered_json summary() const;
+    std::size_t comparedPoses() const { return pairs_.size(); }
+    std::size_t givenPoses() const { return poses_; }
     /// Both trajectories, laid on each other, and how far off the motions between places met again are.
     void draw(std::ostream &svg, const std::string &title) const;
 

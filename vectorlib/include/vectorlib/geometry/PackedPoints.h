@@ -33,6 +33,7 @@ public:
                 coordinates_.push_back(packed(p.y));
             }
     }
+    std::size_t size() const { return coordinates_.size() / 2; }
     /// In the order in which they were given.
     void unpack(std::vector<Vector2D<float>> &points) const {
         points.clear();

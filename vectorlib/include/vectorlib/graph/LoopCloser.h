@@ -132,27 +132,71 @@ public:
     /// The scan that a pose of the graph is of.
     std::size_t scanOf(std::size_t key) const { return keys_[key].scan; }
 
-private:
+    /// A key scan, as it is remembered.
     struct Key {
         PackedPoints points;
         std::size_t scan = 0;
-        Transformation2D motion; // since the key before
-        double effort = 0;       // of that motion; metres and radians
-        Pose2D tracked;          // without any loop
-        double way = 0;          // since the start of the drive; metres
-        double doubt = 0;        // by how much the drive may have gone astray since its start; metres
+        Transformation2D motion;                  ///< since the key before
+        double effort = 0;                        ///< of that motion; metres and radians
+        double varianceXY = 0, varianceAlpha = 0; ///< of that motion
+        Pose2D tracked;                           ///< without any loop
+        double way = 0;                           ///< since the start of the drive; metres
+        double doubt = 0; ///< by how much the drive may have gone astray since its start; metres
     };
+    /// Any scan: a key scan has no motion.
     struct OnTheWay {
         std::size_t key;
-        Transformation2D motion; // since that key
-        double effort;
+        Transformation2D motion; ///< since that key
+        double effort;           ///< metres and radians
     };
+    /// Of the scans after the last key scan.
     struct SinceKey {
         Transformation2D motion;
-        double way = 0, turned = 0;               // metres, radians
-        double varianceXY = 0, varianceAlpha = 0; // of the motion
-        double doubt = 0;                         // metres
+        double way = 0, turned = 0;               ///< metres, radians
+        double varianceXY = 0, varianceAlpha = 0; ///< of the motion
+        double doubt = 0;                         ///< metres
     };
+    struct Progress {
+        LoopCounts counts;
+        bool found = false, news = false; ///< loops since the last correction
+        std::size_t corrected = 0;        ///< key scans then
+    };
+    /// What is remembered of a drive: all that a closer needs to go on with it.
+    struct Memory {
+        std::vector<Key> keys;
+        std::vector<OnTheWay> scans;
+        SinceKey since;
+        PoseGraph graph; ///< a pose each key scan
+        Progress progress;
+    };
+
+    // The parts of what it remembers; graph() is one, too.
+    const std::vector<Key> &keys() const { return keys_; }
+    const std::vector<OnTheWay> &onTheWay() const { return scans_; }
+    const SinceKey &sinceKey() const { return since_; }
+    Progress progress() const { return {counts_, found_, news_, corrected_}; }
+    /// Goes on with a drive as if it had seen it itself; nothing is matched. The numbers of keys and scans
+    /// must fit each other, and the graph be one that can be optimised. The next scan must not be tracked by
+    /// the scan before: the points of that one are kept with key scans only.
+    void restore(Memory memory) {
+        keys_ = std::move(memory.keys);
+        scans_ = std::move(memory.scans);
+        since_ = memory.since;
+        graph_ = std::move(memory.graph);
+        counts_ = memory.progress.counts;
+        found_ = memory.progress.found;
+        news_ = memory.progress.news;
+        corrected_ = memory.progress.corrected;
+        last_.clear();
+        uncertainty_ = DriveUncertainty();
+        grid_.clear();
+        for (std::size_t k = 0; k < keys_.size(); ++k) {
+            uncertainty_.add(keys_[k].tracked, keys_[k].varianceXY, keys_[k].varianceAlpha);
+            enter(k);
+        }
+    }
+
+private:
     struct Candidate {
         std::size_t key;
         double apart; // metres, and half of the radians
@@ -196,6 +240,8 @@ private:
         key.scan = scans_.size();
         key.motion = since_.motion;
         key.effort = since_.way + since_.turned;
+        key.varianceXY = since_.varianceXY;
+        key.varianceAlpha = since_.varianceAlpha;
         key.tracked = tracked;
         key.way = (keys_.empty() ? 0 : keys_.back().way) + since_.way;
         key.doubt = doubt;

@@ -4,6 +4,7 @@
 #include "vectorlib/mapping/MapBuilder.h"
 #include "vectorlib/mapping/MapReview.h"
 
+#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -23,6 +24,11 @@ public:
         loops.add(points, tracked, by);
         edges_.push_back(edges);
         edges_.back().shrink_to_fit();
+    }
+    /// Goes on with a drive that was remembered; edges: one list a scan.
+    void restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges) {
+        loops.restore(std::move(memory));
+        edges_ = std::move(edges);
     }
     /// The builder's map becomes that of all scans so far, where they are now.
     void rebuild(MapBuilder &builder) const {
@@ -56,7 +62,9 @@ public:
 
     /// Walls that stand twice and those that scans saw through leave the map, which was made at these poses.
     MapReviewCounts review(VectorMap &map, const std::vector<Pose2D> &poses) const {
-        return MapReview()(map, {edges_, poses});
+        MapReview review;
+        review.settings.known = static_cast<int>(known.size());
+        return review(map, {edges_, poses});
     }
     /// Of each scan, sensor frame.
     const std::vector<std::vector<EdgeRaw2D>> &edges() const { return edges_; }

@@ -42,6 +42,10 @@ inline Expected<std::vector<MapEdge>> readMapCsv(std::istream &in, std::string n
         for (const std::size_t column : {1, 2, 3, 4, 8, 9})
             if (std::abs(r[column]) > 1e6)
                 return csv.errorHere("a coordinate beyond 1000 km", "metres in the map's frame");
+        for (const std::size_t column : {5, 6, 10, 11, 12})
+            if (std::abs(r[column]) > 1e18)
+                return csv.errorHere("an n, sigma, xx, xy or yy beyond 1e18",
+                                     "what points of a map add up to");
         MapEdge m;
         m.id = static_cast<std::int64_t>(r[0]);
         m.segment = {{r[1], r[2]}, {r[3], r[4]}};

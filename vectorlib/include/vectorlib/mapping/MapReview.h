@@ -6,6 +6,7 @@
 namespace vectorlib {
 
 struct MapReviewSettings {
+    int known = 0;              ///< walls with smaller numbers were there before the drive: they stay
     double mergeWithin = 0.15;  ///< walls side by side that no two scans saw both of become one; metres
     double mostlyThrough = 4;   ///< a part leaves that was seen through so many times as often as it was seen
     int fewestThrough = 4;      ///< and so many times more
@@ -44,7 +45,8 @@ public:
             leave(map, i);
         joinOverGaps(map);
         for (const int number : numbersOf(map))
-            closeCorners(map, number);
+            if (!isKnown(number))
+                closeCorners(map, number);
         return counts_;
     }
 
@@ -55,6 +57,7 @@ private:
         return numbers;
     }
 
+    bool isKnown(int number) const { return number < settings.known; }
     void mergeTwins(VectorMap &map, const ScanDrive &drive) {
         twins_.settings.minObservations = 1;
         twins_.settings.least = 0;
@@ -65,7 +68,7 @@ private:
             for (const TwinWalls &pair : twins_(map, drive)) {
                 const std::int64_t a = map.slots()[std::size_t(pair.first)].observations;
                 const std::int64_t b = map.slots()[std::size_t(pair.second)].observations;
-                if (a == 0 || b == 0 || twins_.isReal(pair))
+                if (a == 0 || b == 0 || twins_.isReal(pair) || isKnown(pair.first) || isKnown(pair.second))
                     continue;
                 map.absorb(pair.first, pair.second, a + b);
                 ++counts_.merged;
@@ -74,13 +77,15 @@ private:
                 break;
         }
         for (const int number : numbersOf(map))
-            if (map.slots()[std::size_t(number)].observations > 0)
+            if (!isKnown(number) && map.slots()[std::size_t(number)].observations > 0)
                 counts_.joined += std::size_t(map.consolidate(number));
     }
 
     // What scans say of the walls, and of the gaps between walls on one line.
     void gather(VectorMap &map, const ScanDrive &drive) {
         walls_ = numbersOf(map);
+        walls_.erase(std::remove_if(walls_.begin(), walls_.end(), [this](int n) { return isKnown(n); }),
+                     walls_.end());
         gaps_.clear();
         pieces_.clear();
         for (const int number : walls_) {
@@ -102,7 +107,8 @@ private:
         for (const int other : map.near(wall.end() - margin, wall.end() + margin)) {
             const LineSegment2D<double> &next = map.slots()[std::size_t(other)].segment;
             const double gap = wall.along(next.begin()) - wall.length();
-            if (other == number || gap < 0 || gap > std::min({least, wall.length(), next.length()}) ||
+            if (other == number || isKnown(other) || gap < 0 ||
+                gap > std::min({least, wall.length(), next.length()}) ||
                 next.direction().dot(wall.direction()) < std::cos(map.settings.joinAngle) ||
                 std::abs(wall.across(next.begin())) > map.settings.joinDistance ||
                 std::abs(next.across(wall.end())) > map.settings.joinDistance)
@@ -243,7 +249,7 @@ private:
         for (const int other : map.near(wall.end() - margin, wall.end() + margin)) {
             const LineSegment2D<double> &next = map.slots()[std::size_t(other)].segment;
             const double sine = wall.direction().cross(next.direction());
-            if (other == number || std::abs(sine) < settings.leastCornerSine)
+            if (other == number || isKnown(other) || std::abs(sine) < settings.leastCornerSine)
                 continue;
             const double along = (next.begin() - wall.begin()).cross(next.direction()) / sine;
             const Vector2D<double> meet = wall.begin() + wall.direction() * along;

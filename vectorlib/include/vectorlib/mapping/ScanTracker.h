@@ -67,6 +67,7 @@ public:
         scan.stamp += double(middle_);
         raw_ = scan.points;
         wasPlaced_ = std::exchange(isPlaced_, false);
+        wasMatched_ = builder.report().outcome == ScanReport::Outcome::Matched;
         EarSettings scanner = EarSettings::forScanner(scan.fieldOfView, scan.rays);
         scanner.closed = scan.closed;
         builder.extract.segment.settings = segmentation ? segmentation(scanner) : scanner;
@@ -130,9 +131,9 @@ public:
         if (wasPlaced_)
             return TrackedBy::Placed;
         const bool isMatched = builder.report().outcome == ScanReport::Outcome::Matched;
-        return isMatched && isWellExpected_ ? TrackedBy::Map
-               : byOdometry_                ? TrackedBy::Odometry
-                                            : TrackedBy::Nothing;
+        return isMatched && wasMatched_ && isWellExpected_ ? TrackedBy::Map
+               : byOdometry_                               ? TrackedBy::Odometry
+                                                           : TrackedBy::Nothing;
     }
     /// How probable it is that the pose of the last scan is right, as of PoseTrust; 0 of a scan that was lost
     /// or skipped, or that the map had nothing to compare with.
@@ -322,7 +323,7 @@ private:
     TwistCorrection correct_;
     std::optional<double> lastStamp_; // of the scan before, unless the sensor was put elsewhere since
     bool byOdometry_ = false, straight_ = true, isWellExpected_ = false; // the last scan
-    bool isPlaced_ = false, wasPlaced_ = false;                          // since the last scan, and before it
+    bool isPlaced_ = false, wasPlaced_ = false, wasMatched_ = false;     // since the last scan, and before it
     int lostInARow_ = 0;
     Clock::time_point nextSearch_;
 };
