@@ -50,16 +50,17 @@ private Q_SLOTS:
     void trustIsAProbabilityWhateverComes();
 
 private:
-    const ScanReport &see(const Pose2D &pose, double stamp, std::optional<OdometryTrack> odometry = {}) {
-        return see(room, pose, stamp, std::move(odometry));
+    const ScanReport &see(const Pose2D &pose, double stamp,
+                          const std::optional<OdometryTrack> &odometry = std::nullopt) {
+        return see(room, pose, stamp, odometry);
     }
     const ScanReport &see(const std::vector<LineSegment2D<float>> &world, const Pose2D &pose, double stamp,
-                          std::optional<OdometryTrack> odometry = {}) {
+                          const std::optional<OdometryTrack> &odometry = std::nullopt) {
         TimedScan scan;
         scan.points = scanner(world, pose);
         scan.rays = std::size_t(scanner.rays);
         scan.stamp = stamp;
-        scan.odometry = std::move(odometry);
+        scan.odometry = odometry;
         return tracker->process(scan);
     }
 
