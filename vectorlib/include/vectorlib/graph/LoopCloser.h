@@ -308,7 +308,7 @@ private:
     void tryLoop(std::size_t earlier) {
         ++counts_.tried;
         keys_[earlier].points.unpack(earlier_);
-        const GlobalPairMatch &found = match(earlier_, last_);
+        const GlobalPairMatch &found = match.quickly(earlier_, last_); // other pairs will show the loop
         if (!found.isAccepted())
             return;
         PoseConstraint c;

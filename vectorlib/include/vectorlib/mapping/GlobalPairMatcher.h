@@ -55,11 +55,11 @@ public:
 
     /// Both scans in their sensor's frame, in the order of ScanOrder; metres. Valid until the next call.
     const GlobalPairMatch &operator()(PointSpan<float> fixed, PointSpan<float> moving) {
-        if (take(fixed, moving)) {
-            find();
-            conclude();
-        }
-        return match_;
+        return found(fixed, moving, true);
+    }
+    /// The same by the quick search alone: half of the time, where a pair that is not found is no loss.
+    const GlobalPairMatch &quickly(PointSpan<float> fixed, PointSpan<float> moving) {
+        return found(fixed, moving, false);
     }
     /// What speaks for a motion that is known from elsewhere: it is the only solution, as it is. No other
     /// motions are looked for.
@@ -101,13 +101,20 @@ private:
             match_.verdict = GlobalPairVerdict::NothingMoving;
         return match_.verdict == GlobalPairVerdict::TooUnlike;
     }
-    void find() {
+    const GlobalPairMatch &found(PointSpan<float> fixed, PointSpan<float> moving, bool mayBeWide) {
+        if (take(fixed, moving)) {
+            find(mayBeWide);
+            conclude();
+        }
+        return match_;
+    }
+    void find(bool mayBeWide) {
         reach_ = std::max(settings.reach,
                           settings.reachByRange * std::max(fixed_.medianRange(), moving_.medianRange()));
         refineRoughly.start(fixed_, moving_);
         shifts_.start(fixed_, moving_, reach_);
         search(settings.quick);
-        if (!convinces()) {
+        if (mayBeWide && !convinces()) {
             match_.searchedWidely = true;
             search(settings.wide);
         }
