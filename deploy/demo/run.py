@@ -14,6 +14,7 @@ import tempfile
 import threading
 import time
 
+from attendant import Attendant
 from processes import Daemon, DaemonError, Process, free_port
 from window import Window, has_display
 from tour import CarefulFollower, FreeView, SteadyPoses
@@ -21,8 +22,6 @@ from drive import DriveError, PathFollower, PoseTopic, drive  # of docs/examples
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 WORLDS = os.path.join(ROOT, "deploy", "worlds")
-MOST_PAUSES = 20
-CONTROL_LOST, DEVICE_FAULT = -32002, -32004
 BINARIES = os.environ.get("HERMES_BIN", os.path.join(ROOT, "build", "release", "bin"))
 
 
@@ -90,6 +89,7 @@ class Demo:
             line = f"serial://{motor_line}?baud=115200"
             self.start("motorcontrol", logs, {"controllers.1.url": line, "controllers.2.url": line, **course.motors})
             self.matcher, self.logger, self.simulator, self.motors = [process.connect() for process in self.processes]
+            self.attendant = Attendant(self.motors, self.simulator)
         except BaseException:
             self.stop()
             raise
@@ -119,7 +119,7 @@ class Demo:
         if self.course.records:
             self.logger.call("record.start", name="recording")
         self.wait(lambda: poses.messages, "the first scan")
-        self.pauses = self.follow(follower, steered_by, lambda follower: self.show(follower.progress, poses.messages))
+        self.follow(follower, steered_by, lambda follower: self.show(follower.progress, poses.messages))
         # A few scans more, taken standing still, then the end of the stream.
         self.wait(lambda: self.motors.call("motor.state")["twist"] == {"vx": 0, "vy": 0, "omega": 0}, "the standstill")
         seen = len(poses.messages)
@@ -138,17 +138,12 @@ class Demo:
                 "bytes": told["bytes"], **told["counts"], "losses": told["losses"]}
 
     def follow(self, follower, steered_by, watch):
-        """To the end of the path. On a machine that is busy with other things the simulated controllers may be silent for so
-        long that the robot stops; then it goes on when they answer. Gives how often that was."""
-        for pauses in range(MOST_PAUSES + 1):
+        """To the end of the path, with somebody beside the robot who helps it on."""
+        while True:
             try:
-                drive(self.motors, steered_by, follower, "the demo", watch)
-                return pauses
+                return drive(self.motors, steered_by, follower, "the demo", watch)
             except DriveError as error:
-                wanted = error.halted.startswith("stopped by")
-                if error.code not in (DEVICE_FAULT, CONTROL_LOST) or wanted or pauses == MOST_PAUSES:
-                    raise
-            self.wait(lambda: self.motors.call("motor.state")["ready"], "the motor controllers")
+                self.attendant.help(error)
 
     @staticmethod
     def show(progress, messages):
@@ -251,7 +246,8 @@ def drive_world(world, course, folder, logs, with_window):
         **final_and_largest("error", deviations), **final_and_largest("drift", drift),
         **{name: state[name] for name in ("closures", "corrections") if name in state},
         "touched": sum(message["data"]["touching"] for message in truth.messages),
-        "pauses": demo.pauses, "recording": demo.recording, "exit_status": statuses, "seconds": seconds}
+        "pauses": demo.attendant.pauses, "releases": demo.attendant.releases, "recording": demo.recording,
+        "exit_status": statuses, "seconds": seconds}
 
 
 def map_log(log, corrected, folder):
@@ -279,7 +275,8 @@ def table(summary):
              (("final error", "final_error"), ("largest error", "largest_error"), ("final drift", "final_drift"),
               ("largest drift", "largest_drift")) if summary.get(member + "_m") is not None]
     rows += [(name, f"{summary[member]}") for name, member in
-             (("loops closed", "closures"), ("wall touched", "touched"), ("pauses", "pauses")) if summary.get(member)]
+             (("loops closed", "closures"), ("wall touched", "touched"), ("pauses", "pauses"),
+              ("releases", "releases")) if summary.get(member)]
     rows.append(("seconds", f"{summary['seconds']:.1f}"))
     return "\n".join(f"  {name:<14}{value:>22}" for name, value in rows)
 
@@ -292,6 +289,16 @@ def replace(folder, target):
     if os.path.exists(target):
         shutil.rmtree(target)
     shutil.move(folder, target)
+
+
+def keep_logs(work):
+    """Leaves nothing else in the folder, and gives its name."""
+    for entry in os.scandir(work):
+        if entry.is_dir():
+            shutil.rmtree(entry.path)
+        elif not entry.name.endswith(".log"):
+            os.remove(entry.path)
+    return work
 
 
 def main():
@@ -320,25 +327,32 @@ def main():
 
     # From here on a signal to end becomes an exception, so that everything is stopped in order.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    with tempfile.TemporaryDirectory(prefix="hermes-demo-") as work:
+    work = tempfile.mkdtemp(prefix="hermes-demo-")
+    has_failed = False
+    try:
         results = os.path.join(work, "results")
         os.mkdir(results)
-        try:
-            if arguments.log:
-                summary = map_log(os.path.abspath(arguments.log), arguments.corrected, results)
-            else:
-                with_window = has_display() and not arguments.no_window
-                summary = drive_world(os.path.abspath(world), course, results, work, with_window)
-        except KeyboardInterrupt:
-            print("\nInterrupted: all daemons are stopped, nothing was written.", file=sys.stderr)
-            return 130
-        except (RuntimeError, DriveError, DaemonError, OSError) as error:
-            print(f"\ndemo: {error}", file=sys.stderr)
-            return 1
+        if arguments.log:
+            summary = map_log(os.path.abspath(arguments.log), arguments.corrected, results)
+        else:
+            with_window = has_display() and not arguments.no_window
+            summary = drive_world(os.path.abspath(world), course, results, work, with_window)
         with open(os.path.join(results, "summary.json"), "w", encoding="utf-8") as file:
             json.dump(summary, file, indent=2)
             file.write("\n")
         replace(results, arguments.out)
+    except KeyboardInterrupt:
+        print("\nInterrupted: all daemons are stopped, nothing was written.", file=sys.stderr)
+        return 130
+    except (RuntimeError, DriveError, DaemonError, OSError) as error:
+        print(f"\ndemo: {error}", file=sys.stderr)
+        has_failed = True
+    finally:
+        if not has_failed:
+            shutil.rmtree(work, ignore_errors=True)
+    if has_failed:
+        print(f"  logs of the daemons in {keep_logs(work)}", file=sys.stderr)
+        return 1
     print(table(summary))
     print(f"  results in {os.path.relpath(arguments.out)}: {', '.join(sorted(os.listdir(arguments.out)))}")
     return 0

@@ -23,6 +23,7 @@ SLOW_MPS, NARROW_PS = 0.3, 4.0  # where things are near: at OUTLINE_M, and how m
 AWAY_RAD_PER_M = 0.8  # how it turns from what is nearer than ROOM_M
 REACTION_S = 0.3  # from the firing to the wheels
 PATIENCE_S = 20.0  # with people in the way
+PAUSE_S = 1.0  # without being asked for a command: the robot was stopped, and the patience is for the time that it drives
 
 
 class FreeView(threading.Thread):
@@ -79,6 +80,7 @@ class CarefulFollower:
     def __init__(self, path, view):
         self.path, self.view = path, view
         self.furthest, self.advanced = 0.0, time.monotonic()  # on the path, and when
+        self.asked = self.advanced  # for a command, the last time
 
     @property
     def progress(self):
@@ -86,12 +88,15 @@ class CarefulFollower:
 
     def command(self, x, y, theta):
         """(vx, omega) from this pose, or None at the end."""
-        wanted, points = self.path.command(x, y, theta), self.view.obstacles()
+        wanted, points, now = self.path.command(x, y, theta), self.view.obstacles(), time.monotonic()
         if wanted is None:
             return None
         if self.path.way > self.furthest:
-            self.furthest, self.advanced = self.path.way, time.monotonic()
-        if time.monotonic() - self.advanced > PATIENCE_S:
+            self.furthest, self.advanced = self.path.way, now
+        if now - self.asked > PAUSE_S:
+            self.advanced += now - self.asked
+        self.asked = now
+        if now - self.advanced > PATIENCE_S:
             raise DriveError(f"no way forward for {PATIENCE_S:.0f} s: the lidar shows no free floor where the path leads")
         bearing = self.free_bearing(x, y, theta, points) if points is not None else None
         return (0.0, 0.0) if bearing is None else self.towards(bearing, wanted[0], points)

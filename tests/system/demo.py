@@ -3,6 +3,7 @@
 import glob
 import json
 import os
+import re
 import shutil
 import signal
 import socket
@@ -169,6 +170,9 @@ class DemoTest(unittest.TestCase):
         self.assertEqual(status, 1, err)
         self.assertIn("empty.json", err)
         self.assertFalse(os.path.exists(self.out))
+        logs = re.search(r"logs of the daemons in (\S+)", err)[1]
+        self.assertLessEqual({"scanmatcher.log", "simulator.log"}, set(os.listdir(logs)))
+        self.assertEqual([name for name in os.listdir(logs) if not name.endswith(".log")], [])
 
     @unittest.skipUnless(os.path.isdir(DATA), "no real data (HERMES_DATA)")
     def test_real_log(self):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The tour of the demo: its driver alone, in a corridor of mere numbers, and as a program with a small loop. With HERMES_TOUR=whole
-it goes through the whole floor."""
+"""The tour of the demo: its driver alone, in a corridor of mere numbers, who helps it on after a fault, and as a program with a
+small loop. With HERMES_TOUR=whole it goes through the whole floor."""
 import json
 import math
 import os
@@ -8,15 +8,17 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 from unittest import mock
 
-from support import SOURCE
+from support import BINARIES, SOURCE, DaemonError, Process, free_port, simulated_hall, wait_for
 
 sys.path.insert(0, os.path.join(SOURCE, "deploy", "demo"))
+import attendant  # noqa: E402
 import tour  # noqa: E402
-from drive import DriveError, PathFollower, PoseTopic  # noqa: E402
+from drive import DriveError, PathFollower, PoseTopic, drive  # noqa: E402
 
 RUN = os.path.join(SOURCE, "deploy", "demo", "run.py")
 WHOLE = os.environ.get("HERMES_TOUR") == "whole"
@@ -106,6 +108,16 @@ class DriverTest(unittest.TestCase):
         with self.assertRaisesRegex(DriveError, "no way forward for 20 s"):
             self.drive(blocked, (0, 0))
 
+    def test_a_pause_takes_no_patience(self):
+        view = View()
+        view.points = [(0.5 * math.cos(math.radians(a)), 0.5 * math.sin(math.radians(a))) for a in range(0, 360, 4)]
+        follower = tour.CarefulFollower(PathFollower([(0, 0), (9, 0)]), view)
+        for self.now in [t / 2 for t in range(20)] + [60 + t / 2 for t in range(20)]:
+            self.assertEqual(follower.command(0, 0, 0), (0.0, 0.0))
+        with self.assertRaisesRegex(DriveError, "no way forward"):
+            for self.now in [70 + t / 2 for t in range(10)]:
+                follower.command(0, 0, 0)
+
     def test_stands_without_a_scan(self):
         view = View()
         follower = tour.CarefulFollower(PathFollower([(0, 0), (9, 0)]), view)
@@ -152,6 +164,88 @@ class DriverTest(unittest.TestCase):
                 for before, after in zip(steered, steered[1:]):
                     self.assertLess(abs(after[0] - before[0] - 0.05), 0.04 * abs(size) + 1e-9)
                 self.assertAlmostEqual(steered[-1][0], told[-1][1], delta=0.01)
+
+
+def refusal(code, halted=""):
+    return DriveError(DaemonError({"code": code, "message": "refused"}), halted)
+
+
+class AttendantTest(unittest.TestCase):
+    def helped(self, error, *latched, pose=lambda: 0, ready=True):
+        """An attendant of a robot that was held by these causes, and what the motor control was told."""
+        told, left = [], list(latched)
+
+        def call(command, **_):
+            told.append(command)
+            if command == "motor.reset_estop":
+                left.pop(0)
+            return {"ready": ready, "latched": dict.fromkeys(left[:1], "a reason")}
+        motors, simulator = mock.Mock(), mock.Mock()
+        motors.call, simulator.call = call, lambda _: {"pose": pose()}
+        helper = attendant.Attendant(motors, simulator)
+        with mock.patch.object(attendant, "STILL_S", 0.1), mock.patch.object(attendant, "PATIENCE_S", 0.5), \
+                mock.patch("builtins.print"):
+            helper.help(error)
+        return helper, told
+
+    def test_waits_for_controllers_that_were_silent(self):
+        helper, told = self.helped(refusal(attendant.DEVICE_FAULT))
+        self.assertEqual((helper.pauses, helper.releases, told), (1, 0, ["motor.state"]))
+        with self.assertRaises(DriveError):
+            self.helped(refusal(attendant.DEVICE_FAULT), ready=False)
+
+    def test_releases_what_a_fault_holds(self):
+        helper, told = self.helped(refusal(attendant.DEVICE_FAULT), "controller_1", "encoder")
+        self.assertEqual((helper.pauses, helper.releases), (1, 2))
+        self.assertEqual(told.count("motor.reset_estop"), 2)
+
+    def test_releases_no_robot_that_moves(self):
+        places = iter(range(1000))
+        with self.assertRaisesRegex(DriveError, "does not come to a stand"):
+            self.helped(refusal(attendant.DEVICE_FAULT), "controller_1", pose=lambda: next(places))
+
+    def test_what_a_person_stopped_stays_stopped(self):
+        for error, latched in ((refusal(attendant.DEVICE_FAULT, "stopped by the operator"), "controller_1"),
+                               (refusal(attendant.DEVICE_FAULT), "estop"), (refusal(attendant.DEVICE_FAULT), "battery"),
+                               (DriveError("no way forward"), "controller_1")):
+            with self.subTest(error=error, latched=latched), self.assertRaises(DriveError):
+                self.helped(error, latched)
+
+    @unittest.skipIf("TSAN_OPTIONS" in os.environ, "the simulator does not keep its pace under the thread sanitizer")
+    def test_a_controller_that_did_not_obey(self):
+        """Simulator and motor control are true: the second controller keeps its set-point, whatever it hears, for two seconds."""
+        with tempfile.TemporaryDirectory(prefix="hermes-test-") as folder:
+            hall, link = simulated_hall(folder)
+            self.addCleanup(hall.stop)
+            simulator = hall.connect()
+            line = f"serial://{link}?baud=115200"
+            control = Process(BINARIES, "motorcontrol", free_port(0), folder,
+                              {"controllers.1.url": line, "controllers.2.url": line})
+            self.addCleanup(control.stop)
+            motors = control.connect()
+            wait_for("the motor control is ready", lambda: motors.call("motor.state")["ready"])
+
+            def disturb(follower):
+                if follower.progress > 0.3 and not disturbed:
+                    disturbed.append(threading.Timer(2, mend))
+                    disturbed[0].start()
+                    simulator.call("sim.fault", device="controller2", kind="latched")
+                    raise DriveError(DaemonError({"code": attendant.CONTROL_LOST, "message": "told to stand"}))
+
+            def mend():
+                with hall.connect() as connection:
+                    connection.call("sim.fault", device="controller2", kind="none")
+
+            disturbed, helper = [], attendant.Attendant(motors, simulator)
+            follower = PathFollower([(0, 0), (3, 0)])
+            while True:
+                try:
+                    drive(motors, PoseTopic("odometry", port=control.port), follower, "test", disturb)
+                    break
+                except DriveError as error:
+                    wait_for("a fault holds the robot", lambda: motors.call("motor.state")["latched"])
+                    helper.help(error)
+            self.assertGreater(helper.releases, 0)
 
 
 @unittest.skipIf("TSAN_OPTIONS" in os.environ, "the simulator does not keep its pace under the thread sanitizer")
