@@ -205,10 +205,13 @@ void MapCorrector::run() {
                 break;
         }
         take();
-        if (memory_.loops.isDue() || (isQuiet && memory_.loops.hasNews()))
+        if (memory_.loops.isDue() || (isQuiet && memory_.loops.hasNews())) {
+            tellUnderWay(true);
             correct();
-        else
+            tellUnderWay(false);
+        } else {
             tellGrown();
+        }
         journal_.write(memory_, trust_);
     }
     journal_.finish(memory_, trust_);
@@ -253,6 +256,7 @@ void MapCorrector::take(const Item &item) {
     const std::lock_guard lock(mutex_);
     taken_ += item.drive == drive_;
     --state_.waiting;
+    state_.isDue = state_.isDue || memory_.loops.hasNews();
     state_.keys = memory_.loops.graph().poses.size();
     state_.loops = memory_.loops.counts();
 }
@@ -280,6 +284,13 @@ void MapCorrector::remember(const Item &item) {
     const std::lock_guard lock(mutex_);
     state_.keys = toldKeys_;
     state_.loops = memory_.loops.counts();
+    state_.isDue = memory_.loops.hasNews();
+}
+
+void MapCorrector::tellUnderWay(bool isUnderWay) {
+    const std::lock_guard lock(mutex_);
+    state_.isUnderWay = isUnderWay;
+    state_.isDue = isUnderWay || memory_.loops.hasNews();
 }
 
 void MapCorrector::correct() {

@@ -33,6 +33,8 @@ struct Correction {
 struct CorrectorState {
     vectorlib::LoopCounts loops;
     quint64 keys = 0, corrections = 0, waiting = 0, dropped = 0;
+    bool isDue = false;        ///< loops say that the poses are wrong, or a correction is under way
+    bool isUnderWay = false;   ///< the map is being made anew
     double longestStallMs = 0; ///< that the matching waited for a correction
     JournalState journal;
 };
@@ -105,6 +107,7 @@ private:
     void take();
     void take(const Item &item);
     void remember(const Item &item);
+    void tellUnderWay(bool isUnderWay);
     void correct();
     void tellGrown();
     GraphMessage graph(std::size_t first, std::size_t constraint) const;

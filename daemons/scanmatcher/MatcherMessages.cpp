@@ -80,6 +80,8 @@ const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
             .add("loops_waiting", &S::loopsWaiting, "Scans not yet looked at for loops")
             .add("loops_dropped", &S::loopsDropped,
                  "Scans that the drive is remembered without, as too many waited")
+            .add("correction", &S::correction,
+                 "none; due: loops say that the drive bent; running: the map is being made anew")
             .add("longest_stall_ms", &S::longestStallMs, "That matching waited for a map made anew", "ms");
     return fields;
 }

@@ -28,6 +28,7 @@ struct MatcherState {
     quint64 mapSegments = 0;
     quint64 keyScans = 0, closures = 0, closuresTried = 0, corrections = 0;
     quint64 loopsWaiting = 0, loopsDropped = 0;
+    QString correction;
     double longestStallMs = 0;
 };
 

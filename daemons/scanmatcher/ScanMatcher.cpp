@@ -363,6 +363,7 @@ MatcherState ScanMatcher::matcherState() const {
     state.corrections = loops.corrections;
     state.loopsWaiting = loops.waiting;
     state.loopsDropped = loops.dropped;
+    state.correction = loops.isUnderWay ? "running" : loops.isDue ? "due" : "none";
     state.longestStallMs = loops.longestStallMs;
     return state;
 }

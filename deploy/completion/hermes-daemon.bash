@@ -19,7 +19,7 @@ _hermes_daemon() {
     *:--config | *:--layout) mapfile -t COMPREPLY < <(compgen -f -- "$current") ;;
     *:--listen | *:--connect) ;;
     *:--set) compopt -o nospace && mapfile -t COMPREPLY < <(compgen -W "$(_hermes_daemon_paths "$1")" -- "$current") ;;
-    *hermes-gui:*) mapfile -t COMPREPLY < <(compgen -W "--connect --layout --help --help-all --version" -- "$current") ;;
+    *hermes-gui:*) mapfile -t COMPREPLY < <(compgen -W "--connect --layout --whole-map --help --help-all --version" -- "$current") ;;
     *) mapfile -t COMPREPLY < <(compgen -W "--config --set --listen --print-settings --check --help --version" -- "$current") ;;
     esac
 }

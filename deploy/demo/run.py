@@ -51,6 +51,7 @@ class Course:
     simulator = {"frame.slip": 0.03}  # that the odometry does not know of
     motors = {}
     records = True
+    shows_all = False  # of the map, in the window
 
     def follower(self, way_points, ports):
         """What gives velocities, and the poses by which it does."""
@@ -63,6 +64,7 @@ class Tour(Course):
     simulator = {"frame.slip": 0.04, "frame.slip_spread": 0.02, "lidar.max_range_m": 18}
     motors = {"motion.vx": 1.5}
     records = False  # half a gigabyte
+    shows_all = True  # so that corrections are seen
 
     def follower(self, way_points, ports):
         path = PathFollower(way_points, 1.5, turn_rate=1.4, look_ahead=1.0)
@@ -222,7 +224,7 @@ def drive_world(world, course, folder, logs, with_window):
     window = None
     try:
         if with_window:
-            window = Window(BINARIES, demo.ports.values(), logs)
+            window = Window(BINARIES, demo.ports.values(), logs, course.shows_all)
         poses, odometry, truth = demo.drive()
         state = demo.save()
         seconds = time.monotonic() - begin

@@ -13,11 +13,12 @@ def has_display():
 class Window:
     """A running hermes-gui that is connected to daemons of this machine."""
 
-    def __init__(self, binaries, ports, folder):
+    def __init__(self, binaries, ports, folder, shows_all):
         self.log_name = os.path.join(folder, "gui.log")
         command = [os.path.join(binaries, "hermes-gui")]
         for port in ports:
             command += ["--connect", f"127.0.0.1:{port}"]
+        command += ["--whole-map"] if shows_all else []
         print("  opening hermes-gui", flush=True)
         with open(self.log_name, "w", encoding="utf-8") as log:
             parent = os.getpid()

@@ -32,7 +32,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
     bar->addWidget(new TopBar(fleet, drive_));
 
-    setCentralWidget(new MapPanel(fleet));
+    setCentralWidget(map_ = new MapPanel(fleet));
     for (const PanelKind &kind : panelKinds())
         addPanel(kind, kind.make(fleet, drive_));
     new DriveKeys(drive_, *this);

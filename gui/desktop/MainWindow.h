@@ -8,6 +8,7 @@ class QDockWidget;
 
 namespace hermes::desktop {
 
+class MapPanel;
 struct PanelKind;
 
 /// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
@@ -18,6 +19,7 @@ public:
     /// layoutFile: where the layout is kept between runs; empty: nowhere.
     MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent = nullptr);
     ~MainWindow() override;
+    MapPanel &map() { return *map_; }
 
 protected:
     void closeEvent(QCloseEvent *event) override;
@@ -28,6 +30,7 @@ private:
     void saveLayout() const;
 
     DriveControl &drive_;
+    MapPanel *map_;
     const QString layoutFile_;
     std::vector<QDockWidget *> docks_;
 };

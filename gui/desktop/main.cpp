@@ -1,6 +1,7 @@
 #include "common/Project.h"
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/MapPanel.h"
 
 #include <QApplication>
 #include <QCommandLineParser>
@@ -26,6 +27,8 @@ int main(int argc, char **argv) {
         {"connect", "A robot to connect to, or one of its daemons; repeatable (127.0.0.1).", "HOST[:PORT]"});
     parser.addOption({"layout", "Where the layout of the window is kept.", "FILE",
                       QStandardPaths::writableLocation(QStandardPaths::ConfigLocation) + "/hermes/gui.ini"});
+    parser.addOption(
+        {"whole-map", "Begin with the whole map in view, as it grows, and do not follow the robot."});
     if (!parser.parse(QApplication::arguments()) || !parser.positionalArguments().isEmpty()) {
         const QString wrong = parser.errorText().isEmpty()
                                   ? "unexpected argument '" + parser.positionalArguments().value(0) + "'"
@@ -49,6 +52,8 @@ int main(int argc, char **argv) {
         }
     DriveControl drive(fleet);
     MainWindow window(fleet, drive, parser.value("layout"));
+    if (parser.isSet("whole-map"))
+        window.map().view().fit();
     window.show();
     return QApplication::exec();
 }

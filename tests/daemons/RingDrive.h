@@ -22,7 +22,10 @@ protected:
     /// To what the matcher tells.
     void listen();
     void drive(std::size_t from, std::size_t to);
-    double worstAtRevisits() const;
+    /// Until every scan is looked at and the map made anew where loops say that it has to be.
+    void waitForCorrector();
+    /// How far the key scan that lies worst is from the way that was driven; metres.
+    double farthestFromTheWay() const;
     static QJsonArray numbers(const std::vector<vectorlib::Vector2D<float>> &points, bool ofX) {
         QJsonArray array;
         for (const auto &p : points)
@@ -106,8 +109,15 @@ inline void RingDrive::drive(std::size_t from, std::size_t to) {
     }
 }
 
-// By the key scans as they lie now: each stands for the scan that is nearest in the true drive.
-inline double RingDrive::worstAtRevisits() const {
+inline void RingDrive::waitForCorrector() {
+    const auto isDone = [this] {
+        const QJsonObject state = call("matcher.state");
+        return state["loops_waiting"].toInt() == 0 && state["correction"] == QJsonValue("none");
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(isDone(), 60000 * slowness);
+}
+
+inline double RingDrive::farthestFromTheWay() const {
     double worst = 0;
     for (const QJsonValue &key : graphPoses) {
         const Pose2D found{key.toArray()[0].toDouble(), key.toArray()[1].toDouble(), 0};

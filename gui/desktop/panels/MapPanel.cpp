@@ -39,6 +39,7 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
 
     connect(&fleet, &Fleet::changed, this, &MapPanel::updateTools);
     connect(view_, &MapView::followingChanged, follow_, &QAction::setChecked);
+    connect(view_, &MapView::fittingChanged, fit_, &QAction::setChecked);
     connect(view_, &MapView::toolChanged, this, &MapPanel::updateTools);
     connect(view_, &MapView::measured, this,
             [this](double distance) { message_->tell(tr("%1 m").arg(distance, 0, 'f', 3)); });
@@ -63,8 +64,8 @@ void MapPanel::addTools(QToolBar &bar) {
     follow_ = add("follow", tr("Follow"), tr("Keeps the robot in the middle (F)"), true);
     follow_->setChecked(view_->isFollowing());
     connect(follow_, &QAction::toggled, view_, &MapView::setFollowing);
-    connect(add("fit", tr("Fit"), tr("Shows the whole map (0)"), false), &QAction::triggered, view_,
-            &MapView::fit);
+    fit_ = add("fit", tr("Fit"), tr("Shows the whole map, also while it grows (0)"), true);
+    connect(fit_, &QAction::toggled, view_, &MapView::setFitting);
     measure_ = add("measure", tr("Measure"), tr("Drag from one point to another"), true);
     place_ = add("place", tr("Place"), tr("Press where the robot is and drag to where it looks"), true);
     const auto choose = [this](MapView::Tool tool) {

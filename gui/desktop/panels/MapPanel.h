@@ -31,7 +31,7 @@ private:
     MapModel model_;
     MapView *view_;
     MessageLabel *message_;
-    QAction *follow_, *measure_, *place_, *relocalize_;
+    QAction *follow_, *fit_, *measure_, *place_, *relocalize_;
 };
 
 } // namespace hermes::desktop

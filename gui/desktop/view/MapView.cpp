@@ -30,10 +30,10 @@ QTransform MapView::transform() const {
 void MapView::refresh() {
     if (!wasFitted_ && !model_.edges().isEmpty() && model_.isWhole()) {
         wasFitted_ = true;
-        const bool follows = isFollowing_;
-        fit();
-        isFollowing_ = follows;
+        showAll();
     }
+    if (isFitting_ && !showsAll())
+        showAll();
     if (const auto pose = model_.shownPose(); isFollowing_ && pose)
         centre_ = QPointF(pose->x, pose->y);
     update();
@@ -52,14 +52,29 @@ void MapView::setFollowing(bool isFollowing) {
         return;
     isFollowing_ = isFollowing;
     Q_EMIT followingChanged(isFollowing);
+    if (isFollowing)
+        setFitting(false);
     refresh();
 }
 
-void MapView::fit() {
+void MapView::setFitting(bool isFitting) {
+    if (isFitting) {
+        setFollowing(false);
+        showAll();
+    }
+    if (isFitting_ != isFitting)
+        Q_EMIT fittingChanged(isFitting_ = isFitting);
+}
+
+bool MapView::showsAll() const {
+    const QRectF all = model_.bounds();
+    return all.isNull() || QRectF(rect()).contains(transform().mapRect(all));
+}
+
+void MapView::showAll() {
     const QRectF all = model_.bounds();
     if (all.isNull())
         return;
-    setFollowing(false);
     constexpr double margin = 1.15;
     pixelsPerMetre_ = qBound(
         0.5, qMin(width() / qMax(1.0, margin * all.width()), height() / qMax(1.0, margin * all.height())),
@@ -73,6 +88,7 @@ void MapView::zoom(double factor) {
 }
 
 void MapView::zoomAt(QPointF pixel, double factor) {
+    setFitting(false);
     const QPointF fixed = toWorld(pixel);
     pixelsPerMetre_ = qBound(0.5, pixelsPerMetre_ * factor, 5000.0);
     if (!isFollowing_)
@@ -128,9 +144,10 @@ void MapView::mouseMoveEvent(QMouseEvent *event) {
         return;
     if (tool_ == Tool::Pan) {
         const QPointF way = event->localPos() - *pressed_;
-        if (isFollowing_ && way.manhattanLength() < 4)
+        if ((isFollowing_ || isFitting_) && way.manhattanLength() < 4)
             return; // a click is no wish to look elsewhere
         setFollowing(false);
+        setFitting(false);
         centre_ -= QPointF(way.x(), -way.y()) / pixelsPerMetre_;
         pressed_ = event->localPos();
     } else {
@@ -156,6 +173,11 @@ void MapView::mouseReleaseEvent(QMouseEvent *event) {
         dragged_ = way.p2(); // the distance stays until the next press
     }
     update();
+}
+
+void MapView::resizeEvent(QResizeEvent *) {
+    if (isFitting_)
+        showAll();
 }
 
 void MapView::keyPressEvent(QKeyEvent *event) {

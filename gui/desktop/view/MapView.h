@@ -25,8 +25,10 @@ public:
     Tool tool() const { return tool_; }
     bool isFollowing() const { return isFollowing_; }
     void setFollowing(bool isFollowing);
-    /// Shows all of the map.
-    void fit();
+    /// All of the map is shown, also while it grows, until the operator zooms, pans or follows.
+    bool isFitting() const { return isFitting_; }
+    void setFitting(bool isFitting);
+    void fit() { setFitting(true); }
     void zoom(double factor);
     /// World to screen: metres to pixels, y up.
     QTransform transform() const;
@@ -36,6 +38,7 @@ public:
 
 Q_SIGNALS:
     void followingChanged(bool isFollowing);
+    void fittingChanged(bool isFitting);
     void toolChanged();
     /// The operator has put the robot here; metres and radians in the map's frame.
     void placed(const vectorlib::Pose2D &pose);
@@ -49,17 +52,20 @@ protected:
     void mouseMoveEvent(QMouseEvent *event) override;
     void mouseReleaseEvent(QMouseEvent *event) override;
     void keyPressEvent(QKeyEvent *event) override;
+    void resizeEvent(QResizeEvent *event) override;
 
 private:
     void zoomAt(QPointF pixel, double factor);
     void refresh();
+    bool showsAll() const;
+    void showAll();
     QPointF toWorld(QPointF pixel) const { return transform().inverted().map(pixel); }
     void paintTool(QPainter &painter) const;
 
     const MapModel &model_;
     MapLayers layers_;
     Tool tool_ = Tool::Pan;
-    bool isFollowing_ = true;
+    bool isFollowing_ = true, isFitting_ = false;
     bool wasFitted_ = false;
     double pixelsPerMetre_ = 40;
     QPointF centre_;                 // metres

@@ -21,6 +21,7 @@ private Q_SLOTS:
     void correctionGlides_data();
     void correctionGlides();
     void viewThatFollowsDoesNotLeap();
+    void fittedViewShowsWhatGrows();
     void correctedAgainWhileItGlides();
     void correctionOfWhichNotAllComes_data();
     void correctionOfWhichNotAllComes();
@@ -76,6 +77,16 @@ struct Session {
             daemon.say("graph", straight.graph(200, true, 0, last + 1, last + 1, twoLoops));
         else
             daemon.say("pose", straight.poseMessage(last, true, bent));
+    }
+    /// Until what was said is taken: a message without sense behind it is counted, a pose is told.
+    void waitTaken(char what) {
+        if (what == 'p') {
+            QTRY_VERIFY(isAt(*model.pose(), straight.pose(last)));
+            return;
+        }
+        const quint64 before = model.ignored();
+        daemon.say(what == 'm' ? "map" : "graph", "[]");
+        QTRY_VERIFY(model.ignored() > before);
     }
     static bool isAt(const Pose2D &a, const EightDrive::Pose &b) {
         return std::hypot(a.x - b.x, a.y - b.y) < 1e-6;
@@ -144,7 +155,7 @@ void TestMapCorrection::correctionGlides() {
         if (i == 2)
             break;
         QTRY_VERIFY(s.model.isGliding());
-        QTest::qWait(30); // what came could be shown
+        s.waitTaken(order[i]);
         QCOMPARE(s.model.edges(), before);
         QVERIFY(std::abs(s.part(pointOf(*s.model.shownPose()))) < 1e-6);
         QVERIFY(std::abs(s.part(s.model.matchedPath().back())) < 1e-6);
@@ -211,6 +222,27 @@ void TestMapCorrection::viewThatFollowsDoesNotLeap() {
         s.sayCorrected(what);
     QTRY_VERIFY(Session::isAt(middle(), to));
     QVERIFY2(way > 0.1 && longest < 0.7 * way, qPrintable(QString("%1 of %2 m").arg(longest).arg(way)));
+}
+
+void TestMapCorrection::fittedViewShowsWhatGrows() {
+    Session s;
+    s.view.fit();
+    QVERIFY(s.view.isFitting() && !s.view.isFollowing());
+    const auto isInSight = [&](QPointF p) {
+        return QRectF(s.view.rect()).contains(s.view.transform().map(p));
+    };
+    QVERIFY(!isInSight({200, 0}));
+    s.daemon.say("map",
+                 R"({"revision":2,"cleared":false,"edges":[{"id":900,"x1":200,"y1":0,"x2":200,"y2":9}],)"
+                 R"("removed":[],"size":301})");
+    QTRY_VERIFY(isInSight({200, 0}) && isInSight({200, 9}));
+    s.view.resize(300, 500);
+    QVERIFY(isInSight({200, 0}) && isInSight({200, 9}));
+    s.view.zoom(4); // the operator looks closer: the view stays there
+    QVERIFY(!s.view.isFitting() && !isInSight({200, 0}));
+    s.view.fit();
+    s.view.setFollowing(true);
+    QVERIFY(!s.view.isFitting());
 }
 
 void TestMapCorrection::correctedAgainWhileItGlides() {
