@@ -1,5 +1,7 @@
 #include "common/files/NamedFile.h"
 
+#include "common/files/WriteAll.h"
+
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
@@ -148,17 +150,6 @@ Result<void> syncFolder(const QString &path) {
     return fileError(path, QStringLiteral("cannot be synchronized: ") + qt_error_string());
 }
 
-bool writeAll(int file, const QByteArray &bytes) {
-    qsizetype done = 0;
-    while (done < bytes.size()) {
-        const ssize_t written = ::write(file, bytes.constData() + done, size_t(bytes.size() - done));
-        if (written < 0 && errno != EINTR)
-            return false;
-        done += std::max<ssize_t>(written, 0);
-    }
-    return ::fsync(file) == 0;
-}
-
 } // namespace
 
 Result<QByteArray> readNamedFile(const QString &path, const QStringList &folders, qint64 mostBytes) {
@@ -219,8 +210,8 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
     const QByteArray draft = ".hermes-" + QUuid::createUuid().toByteArray(QUuid::Id128);
     const Descriptor file(
         ::openat(folder, draft.constData(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
-    const bool isWritten =
-        file >= 0 && (!exists || ::fchmod(file, status.st_mode & 0777) == 0) && writeAll(file, bytes);
+    const bool isWritten = file >= 0 && (!exists || ::fchmod(file, status.st_mode & 0777) == 0) &&
+                           writeAll(file, bytes) && ::fsync(file) == 0;
     // A file system may not know how not to replace; then it was seen above that there is nothing.
     if (isWritten && (::renameat2(folder, draft.constData(), folder, name.constData(),
                                   replace ? 0 : RENAME_NOREPLACE) == 0 ||

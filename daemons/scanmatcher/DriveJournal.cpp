@@ -1,5 +1,6 @@
 #include "daemons/scanmatcher/DriveJournal.h"
 
+#include "common/files/WriteAll.h"
 #include "daemons/scanmatcher/JournalTables.h"
 #include "protocol/serial/Crc32c.h"
 
@@ -163,17 +164,6 @@ QByteArray header(const MappedDrive &drive) {
     return out.item(true);
 }
 
-bool writeWhole(int file, const QByteArray &bytes) {
-    qsizetype done = 0;
-    while (done < bytes.size()) {
-        const ssize_t written = ::write(file, bytes.constData() + done, size_t(bytes.size() - done));
-        if (written < 0 && errno != EINTR)
-            return false;
-        done += std::max<ssize_t>(written, 0);
-    }
-    return ::fdatasync(file) == 0;
-}
-
 } // namespace
 
 DriveJournal::~DriveJournal() {
@@ -323,7 +313,7 @@ bool DriveJournal::File::append(const QByteArray &bytes, QString &fault) {
                     .arg(largestJournal);
         return true;
     }
-    if (writeWhole(number, bytes)) {
+    if (writeAll(number, bytes) && ::fdatasync(number) == 0) {
         size += bytes.size();
         return true;
     }

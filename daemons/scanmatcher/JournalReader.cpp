@@ -253,6 +253,7 @@ private:
             memory.scans.push_back({std::size_t(v[0]), motionOf(v + 1), v[4]});
             trust.push_back(v[5]);
             edges.emplace_back();
+            edges.back().reserve(std::size_t(v[6]));
             for (std::size_t end = next + std::size_t(v[6]); next < end; ++next)
                 edges.back().push_back(edgeOf(edges_[next]));
         }

@@ -59,6 +59,7 @@ void MapCorrector::beginDrive(quint64 scans) {
         const std::lock_guard lock(mutex_);
         ++drive_;
         taken_ = scans;
+        state_.isFull = false;
     }
     added_ = scans;
     pose_.reset();
@@ -93,7 +94,7 @@ void MapCorrector::resume(std::unique_ptr<RememberedDrive> remembered) {
 }
 
 void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points) {
-    if (!follows_)
+    if (!follows_ || isFull())
         return;
     const Transformation2D pose(tracker.builder.report().pose);
     Seen seen;
@@ -176,6 +177,14 @@ void MapCorrector::dispose(std::shared_ptr<Correction> old) {
     push(std::move(item));
 }
 
+// No correction comes any more that would need the last scans.
+bool MapCorrector::isFull() {
+    const std::lock_guard lock(mutex_);
+    if (state_.isFull)
+        pending_.clear();
+    return state_.isFull;
+}
+
 bool MapCorrector::isEnding() const {
     const std::lock_guard lock(mutex_);
     return ending_;
@@ -205,7 +214,7 @@ void MapCorrector::run() {
                 break;
         }
         take();
-        if (memory_.loops.isDue() || (isQuiet && memory_.loops.hasNews())) {
+        if (memory_.loops.isDue() || ((isQuiet || isFull_) && memory_.loops.hasNews())) {
             tellUnderWay(true);
             correct();
             tellUnderWay(false);
@@ -213,6 +222,8 @@ void MapCorrector::run() {
             tellGrown();
         }
         journal_.write(memory_, trust_);
+        if (isFull_ && !memory_.loops.hasNews())
+            tellFull();
     }
     journal_.finish(memory_, trust_);
 }
@@ -248,6 +259,12 @@ void MapCorrector::take(const Item &item) {
         return;
     if (!item.scan)
         return remember(item);
+    isFull_ = isFull_ || memory_.bytes() >= limit_;
+    if (isFull_) { // the last correction leaves it to the matching's thread
+        const std::lock_guard lock(mutex_);
+        --state_.waiting;
+        return;
+    }
     const Seen &seen = *item.scan;
     memory_.add(seen.points, seen.edges, seen.motion, seen.by);
     numbers_.push_back(seen.number);
@@ -259,6 +276,7 @@ void MapCorrector::take(const Item &item) {
     state_.isDue = state_.isDue || memory_.loops.hasNews();
     state_.keys = memory_.loops.graph().poses.size();
     state_.loops = memory_.loops.counts();
+    state_.bytes = memory_.bytes();
 }
 
 // The drive that begins, or goes on.
@@ -266,6 +284,7 @@ void MapCorrector::remember(const Item &item) {
     journal_.finish(memory_, trust_);
     journal_.begin();
     remembered_ = item.drive;
+    isFull_ = false;
     numbers_.clear();
     if (item.remembered) {
         memory_ = std::move(item.remembered->drive);
@@ -285,6 +304,13 @@ void MapCorrector::remember(const Item &item) {
     state_.keys = toldKeys_;
     state_.loops = memory_.loops.counts();
     state_.isDue = memory_.loops.hasNews();
+    state_.bytes = memory_.bytes();
+}
+
+// Once the last correction is applied.
+void MapCorrector::tellFull() {
+    const std::lock_guard lock(mutex_);
+    state_.isFull = drive_ == remembered_;
 }
 
 void MapCorrector::tellUnderWay(bool isUnderWay) {

@@ -5,9 +5,11 @@
 #include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -35,6 +37,8 @@ struct CorrectorState {
     quint64 keys = 0, corrections = 0, waiting = 0, dropped = 0;
     bool isDue = false;        ///< loops say that the poses are wrong, or a correction is under way
     bool isUnderWay = false;   ///< the map is being made anew
+    std::size_t bytes = 0;     ///< of memory that the drive takes
+    bool isFull = false;       ///< these are all it may: what is driven now is not remembered
     double longestStallMs = 0; ///< that the matching waited for a correction
     JournalState journal;
 };
@@ -52,6 +56,10 @@ public:
     ~MapCorrector() { stop(); }
     /// Ends the thread; nothing is told from then on.
     void stop();
+
+    /// Memory that a drive may take. What is driven beyond that is not remembered, so that the map is not
+    /// made anew any more, until another drive begins.
+    void setLimit(std::size_t bytes) { limit_ = bytes; }
 
     // In the matching's thread.
 
@@ -100,6 +108,7 @@ private:
     void beginDrive(quint64 scans);
     void forget(std::vector<vectorlib::MapEdge> known);
     void forgetPending(quint64 end);
+    bool isFull();
     bool isEnding() const;
     void push(Item item);
     void run();
@@ -108,6 +117,7 @@ private:
     void take(const Item &item);
     void remember(const Item &item);
     void tellUnderWay(bool isUnderWay);
+    void tellFull();
     void correct();
     void tellGrown();
     GraphMessage graph(std::size_t first, std::size_t constraint) const;
@@ -115,6 +125,7 @@ private:
 
     const Corrected corrected_;
     const Grown grown_;
+    std::atomic<std::size_t> limit_{std::numeric_limits<std::size_t>::max()}; // bytes
 
     // Of the matching's thread:
     bool follows_ = false;
@@ -130,6 +141,7 @@ private:
     vectorlib::MapBuilder builder_;
     quint64 remembered_ = 0; // the drive that is remembered
     DriveJournal journal_;
+    bool isFull_ = false;          // and takes no further scan
     std::size_t resumed_ = 0;      // scans that were remembered before
     std::vector<quint64> numbers_; // of those since
     std::vector<double> trust_;

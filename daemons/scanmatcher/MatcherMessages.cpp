@@ -82,6 +82,9 @@ const Fields<MatcherState> &fieldsOf(Of<MatcherState>) {
                  "Scans that the drive is remembered without, as too many waited")
             .add("correction", &S::correction,
                  "none; due: loops say that the drive bent; running: the map is being made anew")
+            .add("remembered_mb", &S::rememberedMb, "Memory that the drive takes", "MB")
+            .add("memory_full", &S::memoryFull,
+                 "It takes all of matcher.remember_mb: what is driven now is not remembered")
             .add("longest_stall_ms", &S::longestStallMs, "That matching waited for a map made anew", "ms");
     return fields;
 }

@@ -29,6 +29,8 @@ struct MatcherState {
     quint64 keyScans = 0, closures = 0, closuresTried = 0, corrections = 0;
     quint64 loopsWaiting = 0, loopsDropped = 0;
     QString correction;
+    double rememberedMb = 0;
+    bool memoryFull = false;
     double longestStallMs = 0;
 };
 

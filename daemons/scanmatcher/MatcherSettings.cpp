@@ -98,6 +98,13 @@ void ScanMatcher::declareSettings() {
                    "only while the map grows")
                    .byDefault(true)
                    .group("Matching"));
+    addSetting(Field::number("matcher.remember_mb",
+                             "Memory that a drive may take to close its loops; what is driven beyond that is "
+                             "not remembered")
+                   .unit("MB")
+                   .range(0.1, 100000)
+                   .byDefault(300)
+                   .group("Matching"));
     addSetting(Field::integer("matcher.relocalize_after",
                               "Lost scans in a row after which the whole map is searched; 0: never. "
                               "Only 1 and 2 act while the map grows")

@@ -158,6 +158,7 @@ void ScanMatcher::stop() {
 void ScanMatcher::settingsChanged(const QStringList &paths) {
     if (!worker_)
         return;
+    corrector_->setLimit(std::size_t(1e6 * settings().number("matcher.remember_mb")));
     worker_->setQueueLimit(size_t(settings().integer("source.queue")));
     worker_->post([this, s = trackerSettings(), sigma = settings().number("matcher.sigma_m"),
                    closes = closesLoops()](ScanTracker &tracker) {
@@ -321,7 +322,21 @@ void ScanMatcher::updateHealth() {
                  dropped ? QString("%1 scans were dropped").arg(dropped) : QString("no scan dropped"),
                  asJson(matcherState()).toObject());
     updateTrackingHealth();
+    updateMemoryHealth();
     updateJournalHealth();
+}
+
+void ScanMatcher::updateMemoryHealth() {
+    const MatcherState state = matcherState();
+    const QString message =
+        QString("the drive takes %1 of %2 MB")
+            .arg(state.rememberedMb, 0, 'f', 1)
+            .arg(settings().number("matcher.remember_mb"), 0, 'f', 1) +
+        (state.memoryFull ? ": what is driven now is not remembered and no loop is closed; map.save and "
+                            "map.load begin another drive in this map"
+                          : "");
+    health().set("memory", state.memoryFull ? HealthLevel::Warn : HealthLevel::Ok, message,
+                 {{"remembered_mb", state.rememberedMb}});
 }
 
 void ScanMatcher::updateJournalHealth() {
@@ -364,6 +379,8 @@ MatcherState ScanMatcher::matcherState() const {
     state.loopsWaiting = loops.waiting;
     state.loopsDropped = loops.dropped;
     state.correction = loops.isUnderWay ? "running" : loops.isDue ? "due" : "none";
+    state.rememberedMb = 1e-6 * double(loops.bytes);
+    state.memoryFull = loops.isFull;
     state.longestStallMs = loops.longestStallMs;
     return state;
 }

@@ -61,6 +61,7 @@ private:
     void relocalize(bool apply, const Reply &reply);
     void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
+    void updateMemoryHealth();
     void updateJournalHealth();
     std::optional<vectorlib::Relocalized> find(vectorlib::ScanTracker &tracker);
     void setGrowth(vectorlib::ScanTracker &tracker) const;

@@ -114,7 +114,7 @@ void TestKilledDrive::atMostFiveSecondsAreLost() {
           after["closures"].toInt(), after["corrections"].toInt(), farthestFromTheWay());
     QVERIFY(after["closures"].toInt() > loaded["closures"].toInt() + 20);
     QVERIFY(graphPoses.size() > loaded["key_scans"].toInt());
-    QVERIFY(farthestFromTheWay() < 0.25); // 30 cm lie between two poses of the way
+    QVERIFY(farthestFromTheWay() < 0.5); // a part that is laid to a room that is alike is metres off
     QTRY_VERIFY_WITH_TIMEOUT(QFile::exists(folder->filePath("drive-2.journal")), 10000 * slowness);
 }
 

@@ -12,6 +12,8 @@ private Q_SLOTS:
     void driveIsCorrectedWhileItGoesOn();
     void withoutClosingItStaysBent();
     void anotherMapForgetsTheDrive();
+    void aFullMemoryTakesNoMore_data();
+    void aFullMemoryTakesNoMore();
 
 private:
     bool clearsInTime();
@@ -123,6 +125,51 @@ void TestLiveLoops::anotherMapForgetsTheDrive() {
         init();
     }
     QFAIL("the map was never cleared while it was made anew");
+}
+
+void TestLiveLoops::aFullMemoryTakesNoMore_data() {
+    QTest::addColumn<double>("most"); // MB
+    QTest::addColumn<bool>("corrects");
+    QTest::newRow("before any loop") << 0.3 << false;
+    QTest::newRow("where a loop is closed") << 1.0 << true;
+    QTest::newRow("later") << 1.3 << true;
+}
+
+// The drive goes on in the map that it has.
+void TestLiveLoops::aFullMemoryTakesNoMore() {
+    QFETCH(double, most);
+    QFETCH(bool, corrects);
+    const auto limit = [&](double mb) {
+        call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{"remember_mb", mb}}}}}});
+    };
+    limit(most);
+    drive(0, way.size());
+    waitForCorrector();
+    const QJsonObject full = call("matcher.state");
+    const double end = distance(poseOf(poses.rbegin()->second), way.back());
+    qInfo("%.2f MB, %d key scans, %d corrections, end %.3f m off", full["remembered_mb"].toDouble(),
+          full["key_scans"].toInt(), full["corrections"].toInt(), end);
+    QVERIFY(full["memory_full"].toBool());
+    QVERIFY(full["remembered_mb"].toDouble() >= most && full["remembered_mb"].toDouble() < most + 0.02);
+    QCOMPARE(full["corrections"].toInt() > 0, corrects);
+    QCOMPARE(full["scans"].toInt(), int(way.size()));
+    QVERIFY2(end < 0.30, qPrintable(QString::number(end)));
+    QTRY_COMPARE(graphPoses.size(), full["key_scans"].toInt());
+    QCOMPARE(call("map.get")["size"].toInt(), full["map_segments"].toInt());
+    QCOMPARE(healthItem("memory")["level"].toString(), QString("warn"));
+
+    limit(300); // a drive with a gap is of no use
+    drive(way.size() - 40, way.size());
+    waitForCorrector();
+    QVERIFY(call("matcher.state")["memory_full"].toBool());
+    QCOMPARE(call("matcher.state")["key_scans"].toInt(), full["key_scans"].toInt());
+    call("map.clear");
+    drive(way.size() - 40, way.size());
+    waitForCorrector();
+    const QJsonObject anew = call("matcher.state");
+    QVERIFY(!anew["memory_full"].toBool());
+    QVERIFY(anew["key_scans"].toInt() > 0 && anew["remembered_mb"].toDouble() < most);
+    QCOMPARE(healthItem("memory")["level"].toString(), QString("ok"));
 }
 
 QTEST_GUILESS_MAIN(TestLiveLoops)

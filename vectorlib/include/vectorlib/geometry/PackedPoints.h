@@ -34,6 +34,8 @@ public:
             }
     }
     std::size_t size() const { return coordinates_.size() / 2; }
+    /// Memory beside the object itself.
+    std::size_t bytes() const { return coordinates_.capacity() * sizeof(std::int16_t); }
     /// In the order in which they were given.
     void unpack(std::vector<Vector2D<float>> &points) const {
         points.clear();

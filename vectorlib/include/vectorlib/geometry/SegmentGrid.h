@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace vectorlib {
@@ -43,20 +44,36 @@ public:
         ++query_;
         // Sampling at half a cell can cut a corner of at most a quarter of a cell: one cell of margin covers
         // it.
-        for (std::int64_t i = index(low.x) - 1; i <= index(high.x) + 1; ++i)
-            for (std::int64_t j = index(low.y) - 1; j <= index(high.y) + 1; ++j) {
+        const std::int64_t left = index(low.x) - 1, right = index(high.x) + 1;
+        const std::int64_t bottom = index(low.y) - 1, top = index(high.y) + 1;
+        const double cells =
+            std::max(0.0, double(right - left + 1)) * std::max(0.0, double(top - bottom + 1));
+        constexpr double many = 1e5; // of a box as large as a town most have nothing in them
+        if (cells > many && cells > double(cells_.size())) {
+            for (const auto &[place, numbers] : cells_) {
+                const auto [i, j] = cellOf(place);
+                if (i >= left && i <= right && j >= bottom && j <= top)
+                    takeNew(numbers, take);
+            }
+            return;
+        }
+        for (std::int64_t i = left; i <= right; ++i)
+            for (std::int64_t j = bottom; j <= top; ++j) {
                 const auto cell = cells_.find(key(i, j));
-                if (cell == cells_.end())
-                    continue;
-                for (int number : cell->second)
-                    if (mark_[static_cast<std::size_t>(number)] != query_) {
-                        mark_[static_cast<std::size_t>(number)] = query_;
-                        take(number);
-                    }
+                if (cell != cells_.end())
+                    takeNew(cell->second, take);
             }
     }
 
 private:
+    template <typename Take>
+    void takeNew(const std::vector<int> &numbers, Take &take) {
+        for (int number : numbers)
+            if (mark_[static_cast<std::size_t>(number)] != query_) {
+                mark_[static_cast<std::size_t>(number)] = query_;
+                take(number);
+            }
+    }
     // Cells beyond 10^9 are all one, so that no coordinate overflows; NaN is in cell 0.
     std::int64_t index(double v) const {
         const double i = std::floor(v / cell_);
@@ -65,6 +82,9 @@ private:
     static std::int64_t key(std::int64_t i, std::int64_t j) {
         return static_cast<std::int64_t>((static_cast<std::uint64_t>(i) << 32) ^
                                          (static_cast<std::uint64_t>(j) & 0xffffffffu));
+    }
+    static std::pair<std::int64_t, std::int64_t> cellOf(std::int64_t key) {
+        return {key >> 32, static_cast<std::int32_t>(static_cast<std::uint32_t>(key))};
     }
     // Of both halves of a key: std::hash of 32 bits takes the lower one.
     struct Hash {

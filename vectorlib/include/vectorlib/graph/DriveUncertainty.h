@@ -42,6 +42,9 @@ public:
         return c;
     }
 
+    /// Memory that it takes, but for what is in reserve.
+    std::size_t bytes() const { return sums_.size() * sizeof(Sums); }
+
 private:
     struct Sums {
         Eigen::Vector2d place = Eigen::Vector2d::Zero();

@@ -72,7 +72,7 @@ public:
         const double way = since_.way, turned = since_.turned;
         if (by != TrackedBy::Map || way >= settings.keyWay || turned >= settings.keyTurn) {
             link(points);
-            if (doubt > 0)
+            if (doubt > 0 && by != TrackedBy::Placed) // those before it lie anywhere
                 bridge();
             tryLoops();
         } else {
@@ -117,7 +117,7 @@ public:
         const Key &next = keys_[s.key + 1];
         const Transformation2D off =
             from.inverse() * Transformation2D(graph_.poses[s.key + 1]) * next.motion.inverse();
-        const double part = next.effort > 0 ? s.effort / next.effort : 0;
+        const double part = next.effort > 0 ? std::min(1.0, s.effort / next.effort) : 0;
         return (from * Transformation2D(part * off.x(), part * off.y(), part * off.alpha()) * s.motion)
             .pose();
     }
@@ -129,6 +129,12 @@ public:
     }
     /// Of the key scans.
     const PoseGraph &graph() const { return graph_; }
+    /// Memory that it takes, about, but for what is in reserve.
+    std::size_t bytes() const {
+        return pointBytes_ + keys_.size() * (sizeof(Key) + sizeof(Pose2D)) +
+               scans_.size() * sizeof(OnTheWay) + graph_.constraints.size() * sizeof(PoseConstraint) +
+               uncertainty_.bytes();
+    }
     /// The scan that a pose of the graph is of.
     std::size_t scanOf(std::size_t key) const { return keys_[key].scan; }
 
@@ -190,7 +196,9 @@ public:
         last_.clear();
         uncertainty_ = DriveUncertainty();
         grid_.clear();
+        pointBytes_ = 0;
         for (std::size_t k = 0; k < keys_.size(); ++k) {
+            pointBytes_ += keys_[k].points.bytes();
             uncertainty_.add(keys_[k].tracked, keys_[k].varianceXY, keys_[k].varianceAlpha);
             enter(k);
         }
@@ -237,6 +245,7 @@ private:
     void addKey(PointSpan<float> points, const Pose2D &tracked, double doubt) {
         Key key;
         key.points = PackedPoints(points);
+        pointBytes_ += key.points.bytes();
         key.scan = scans_.size();
         key.motion = since_.motion;
         key.effort = since_.way + since_.turned;
@@ -348,6 +357,7 @@ private:
     }
 
     std::vector<Key> keys_;
+    std::size_t pointBytes_ = 0; // of the keys
     std::vector<OnTheWay> scans_;
     SinceKey since_;
     std::vector<Vector2D<float>> last_;    // points of the last scan

@@ -24,12 +24,18 @@ public:
         loops.add(points, tracked, by);
         edges_.push_back(edges);
         edges_.back().shrink_to_fit();
+        edgeBytes_ += bytesOf(edges_.back());
     }
     /// Goes on with a drive that was remembered; edges: one list a scan.
     void restore(LoopCloser::Memory memory, std::vector<std::vector<EdgeRaw2D>> edges) {
         loops.restore(std::move(memory));
         edges_ = std::move(edges);
+        edgeBytes_ = 0;
+        for (const std::vector<EdgeRaw2D> &scan : edges_)
+            edgeBytes_ += bytesOf(scan);
     }
+    /// Memory that it takes, about, but for what is in reserve.
+    std::size_t bytes() const { return loops.bytes() + edgeBytes_ + known.size() * sizeof(MapEdge); }
     /// The builder's map becomes that of all scans so far, where they are now.
     void rebuild(MapBuilder &builder) const {
         startAnew(builder);
@@ -70,6 +76,9 @@ public:
     const std::vector<std::vector<EdgeRaw2D>> &edges() const { return edges_; }
 
 private:
+    static std::size_t bytesOf(const std::vector<EdgeRaw2D> &edges) {
+        return sizeof edges + edges.capacity() * sizeof(EdgeRaw2D);
+    }
     void startAnew(MapBuilder &builder) const {
         builder.clear();
         for (const MapEdge &edge : known)
@@ -77,6 +86,7 @@ private:
     }
 
     std::vector<std::vector<EdgeRaw2D>> edges_;
+    std::size_t edgeBytes_ = 0;
 };
 
 } // namespace vectorlib
