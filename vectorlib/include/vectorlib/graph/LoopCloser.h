@@ -95,7 +95,7 @@ public:
             return false;
         counts_.closed = 0;
         for (const PoseConstraint &c : graph_.constraints)
-            counts_.closed += c.mayBeWrong && !isContradicted(c);
+            counts_.closed += c.mayBeWrong && !c.isRefused();
         grid_.clear();
         for (std::size_t k = 0; k < keys_.size(); ++k)
             enter(k);
@@ -341,10 +341,6 @@ private:
         const Eigen::Matrix3d spread =
             uncertainty_.between(c.from, c.to) + turned * covariance * turned.transpose();
         return off.dot(spread.ldlt().solve(off)) <= settings.gate;
-    }
-    static bool isContradicted(const PoseConstraint &c) {
-        constexpr double least = 0.25;
-        return c.weight < least;
     }
 
     std::vector<Key> keys_;
