@@ -78,6 +78,7 @@ private:
             std::cerr << "hermes-vector: " << options.source.path
                       << ": the map is empty: no scan showed a wall\n";
         warnOfLost(run.tracker.counts());
+        run.warnOfBreaks(std::cerr);
         conclude(json, begin, summaryFile);
         files.commit();
     }
