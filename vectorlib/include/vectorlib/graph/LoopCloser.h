@@ -70,7 +70,7 @@ public:
         }
         const double doubt = addMotion(points, tracked, by);
         const double way = since_.way, turned = since_.turned;
-        if (by != TrackedBy::Map || way >= settings.keyWay || turned >= settings.keyTurn) {
+        if (by > TrackedBy::Scan || way >= settings.keyWay || turned >= settings.keyTurn) {
             link(points);
             if (doubt > 0)
                 bridge();
@@ -209,7 +209,7 @@ private:
         if (by == TrackedBy::Placed) {
             doubt = xy = settings.guessedXY + motion.translation().norm();
             alpha = settings.placedAlpha;
-        } else if (by != TrackedBy::Map) {
+        } else if (by > TrackedBy::Scan) {
             const GlobalPairMatch &found = match(last_, points);
             const bool isLikely = by == TrackedBy::Nothing && !found.solutions.empty() &&
                                   found.solutions[0].probability > settings.likely;
