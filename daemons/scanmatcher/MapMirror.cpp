@@ -1,13 +1,18 @@
 #include "daemons/scanmatcher/MapMirror.h"
 
+#include "vectorlib/io/Number.h"
+
 namespace hermes::scanmatcher {
 
 namespace {
 
+// As exact as in a file (writeMapCsv).
 MapEdgeMessage messageOf(const vectorlib::MapEdge &m) {
-    return {qint64(m.id),      m.segment.begin().x,   m.segment.begin().y,
-            m.segment.end().x, m.segment.end().y,     double(m.sums.n),
-            m.sigma,           qint64(m.observations)};
+    using vectorlib::micrometres;
+    const auto &s = m.segment;
+    return {qint64(m.id),           micrometres(s.begin().x), micrometres(s.begin().y),
+            micrometres(s.end().x), micrometres(s.end().y),   double(m.sums.n),
+            micrometres(m.sigma),   qint64(m.observations)};
 }
 
 } // namespace

@@ -53,26 +53,30 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     closeSeconds_ += secondsSince(begin);
 }
 
-void MapRun::finish() {
+void MapRun::finish(const std::function<void(const char *)> &tell) {
     if (!closesLoops)
         return;
     const auto begin = Clock::now();
+    tell("closing loops");
     drive_.loops.correct();
     if (drive_.loops.counts().closed > 0)
-        rebuild();
+        rebuild(tell);
     closeSeconds_ += secondsSince(begin);
     const auto closed = Clock::now();
+    tell("reviewing the walls");
     reviewed_ = drive_.review(tracker.builder.map, poses());
     reviewSeconds_ = secondsSince(closed);
 }
 
-void MapRun::rebuild() {
+void MapRun::rebuild(const std::function<void(const char *)> &tell) {
     vectorlib::WallIds ids;
     ids.remember(tracker.builder.map, {drive_.edges(), poses()});
+    tell("refining the poses");
     std::vector<vectorlib::Pose2D> refined = drive_.loops.poses();
     isRefined_ = refine_(refined, drive_.loopsOfScans());
     for (std::size_t i = 0; i < refined.size(); ++i)
         trajectory_[i].pose = refined[i];
+    tell("making the map anew");
     drive_.rebuild(tracker.builder, refined);
     ids.keep(tracker.builder.map, {drive_.edges(), refined});
 }

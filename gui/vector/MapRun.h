@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <functional>
+
 namespace hermes::vector {
 
 /// Builds a map from scans and keeps account of it.
@@ -19,8 +21,9 @@ public:
     /// A scan with a fault is counted and left out.
     void take(MapScan &scan);
     /// After the last scan, unless it is told not to close loops: where there were any, moves and refines the
-    /// poses and makes the map anew from all edges (a wall keeps its id); reviews the map.
-    void finish();
+    /// poses and makes the map anew from all edges (a wall keeps its id); reviews the map. `tell` takes what
+    /// it does now.
+    void finish(const std::function<void(const char *)> &tell);
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Of each pose of the trajectory, as ScanTracker::trust told it when the pose was tracked.
@@ -37,7 +40,7 @@ public:
 private:
     nlohmann::ordered_json errors() const;
     void remember(const MapScan &scan, const vectorlib::ScanReport &report);
-    void rebuild();
+    void rebuild(const std::function<void(const char *)> &tell);
     std::vector<vectorlib::Pose2D> poses() const;
     nlohmann::ordered_json twins() const;
 

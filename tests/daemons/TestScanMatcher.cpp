@@ -74,7 +74,7 @@ void TestScanMatcher::savedMapLoadsTheSame() {
     for (const char *format : {"svg", "geojson", "dxf"})
         QVERIFY(
             call("map.export", {{"format", format}, {"path", QString("room.") + format}})["bytes"].toInt() >
-            500);
+            300);
 }
 
 void TestScanMatcher::refusesToOverwriteAndNamesThePath() {

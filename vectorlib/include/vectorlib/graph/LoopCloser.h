@@ -96,7 +96,7 @@ public:
             return false;
         counts_.closed = 0;
         for (const PoseConstraint &c : graph_.constraints)
-            counts_.closed += c.mayBeWrong && !isContradicted(c);
+            counts_.closed += c.mayBeWrong && !c.isRefused();
         candidates_.move(graph_.poses);
         findLooped();
         return true;
@@ -350,7 +350,7 @@ private:
     void findLooped() {
         looped_ = 0;
         for (const PoseConstraint &c : graph_.constraints)
-            if (isLoop(c) && !isContradicted(c))
+            if (isLoop(c) && !c.isRefused())
                 looped_ = std::max(looped_, c.to);
     }
     // Where rooms are alike, loops that are off by the same way agree with each other: each has to agree with
@@ -366,10 +366,6 @@ private:
         const Eigen::Matrix3d spread =
             candidates_.uncertainty().between(c.from, c.to) + turned * covariance * turned.transpose();
         return off.dot(spread.ldlt().solve(off)) <= settings.gate;
-    }
-    static bool isContradicted(const PoseConstraint &c) {
-        constexpr double least = 0.25;
-        return c.weight < least;
     }
 
     std::vector<Key> keys_;

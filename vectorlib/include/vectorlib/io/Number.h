@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <ostream>
 #include <string_view>
 
@@ -32,5 +33,16 @@ struct Fixed {
         return out.write(text, end - text);
     }
 };
+
+/// A number with so many decimals, where it has more and they mean nothing; Number() writes it shortly then.
+/// What was rounded stays as it is.
+inline double rounded(double value, int decimals) {
+    const double scale = std::pow(10.0, decimals);
+    return std::abs(value) * scale < 1e15 ? std::round(value * scale) / scale : value;
+}
+/// A length, metres, to the micrometre.
+inline double micrometres(double length) {
+    return rounded(length, 6);
+}
 
 } // namespace vectorlib

@@ -243,8 +243,7 @@ private:
         }
     }
     bool mergeable(const LineSegment2D<double> &known, const LineSegment2D<double> &seen) const {
-        const double a = known.across(seen.begin()), b = known.across(seen.end());
-        return (a * a + a * b + b * b) / 3 <= settings.mergeDistance * settings.mergeDistance;
+        return known.meanSquareAcross(seen) <= settings.mergeDistance * settings.mergeDistance;
     }
 
     const std::vector<EdgeRaw2D> *edges_ = nullptr;
