@@ -46,7 +46,7 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     const Transformation2D pose(report.pose);
     static const std::vector<vectorlib::EdgeRaw2D> none;
     const Transformation2D tracked =
-        trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose;
+        trajectory_.empty() ? pose : tracker.tracked(Transformation2D(trajectory_.back().pose));
     drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none, tracked,
                tracker.trackedBy());
     refine_.add(scan.points, tracked);

@@ -60,7 +60,8 @@ public:
         return result;
     }
 
-    /// After the search: the same for a motion that is told, which many places must show again.
+    /// After the search: the same for a motion that is told. As it may be chosen by what a few places show,
+    /// three times as many must agree as where it is found.
     MapAlignment confirm(VectorMap &fixed, const std::vector<MapEdge> &moving, const Transformation2D &told) {
         MapAlignment result;
         result.places = places_.size();
@@ -69,7 +70,7 @@ public:
             result.agree += fit.explainedShare() >= leastAlike && fit.hiddenShare() <= mostHidden;
             result.against += isAgainst(fit);
         });
-        if (result.agree >= leastAgree)
+        if (result.agree >= 3 * leastAgree)
             result.outcome = 2 * result.against >= result.agree ? MapAlignment::Outcome::Contradicted
                                                                 : MapAlignment::Outcome::Found;
         return result;
