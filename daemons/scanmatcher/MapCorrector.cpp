@@ -99,8 +99,9 @@ void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::
     const Transformation2D pose(tracker.builder.report().pose);
     Seen seen;
     seen.number = tracker.counts().scans - 1;
-    seen.motion = pose_ ? pose_->inverse() * pose : pose;
-    seen.by = std::exchange(isResumed_, false) ? vectorlib::TrackedBy::Placed : tracker.trackedBy();
+    const bool isResumed = std::exchange(isResumed_, false);
+    seen.motion = !pose_ ? pose : isResumed ? pose_->inverse() * pose : tracker.tracked(*pose_);
+    seen.by = isResumed ? vectorlib::TrackedBy::Placed : tracker.trackedBy();
     seen.trust = tracker.trust();
     pose_ = pose;
     if (leftOut_) {

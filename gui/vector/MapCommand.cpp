@@ -53,7 +53,10 @@ private:
         std::ostream &summaryFile = files.open(options.summary);
 
         const MapSourceReport report = readScans("tracking, scan", [&](MapScan &scan) { run.take(scan); });
-        run.finish();
+        {
+            Progress progress("finishing");
+            run.finish([&](const char *stage) { progress.tell(stage); });
+        }
         const vectorlib::MapDrawing drawing = {title(": map of ", run.trajectory().size()), run.segments(),
                                                run.trajectory(), run.reference()};
         if (mapFile)
@@ -71,7 +74,11 @@ private:
         report.warn(std::cerr);
         if (trajectoryFile)
             writeTrajectory(*trajectoryFile, run.trajectory(), json);
+        if (drawing.segments.empty())
+            std::cerr << "hermes-vector: " << options.source.path
+                      << ": the map is empty: no scan showed a wall\n";
         warnOfLost(run.tracker.counts());
+        run.warnOfBreaks(std::cerr);
         conclude(json, begin, summaryFile);
         files.commit();
     }

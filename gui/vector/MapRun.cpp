@@ -2,11 +2,13 @@
 
 #include "gui/vector/evaluation/MotionErrors.h"
 #include "gui/vector/experiment/PairsExperiment.h"
+#include "vectorlib/io/Number.h"
 #include "vectorlib/mapping/WallIds.h"
 
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <ostream>
 
 namespace hermes::vector {
 
@@ -44,7 +46,7 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     const Transformation2D pose(report.pose);
     static const std::vector<vectorlib::EdgeRaw2D> none;
     const Transformation2D tracked =
-        trajectory_.empty() ? pose : Transformation2D(trajectory_.back().pose).inverse() * pose;
+        trajectory_.empty() ? pose : tracker.tracked(Transformation2D(trajectory_.back().pose));
     drive_.add(scan.points, tracker.isStraight() ? tracker.builder.edges() : none, tracked,
                tracker.trackedBy());
     refine_.add(scan.points, tracked);
@@ -53,26 +55,32 @@ void MapRun::remember(const MapScan &scan, const vectorlib::ScanReport &report) 
     closeSeconds_ += secondsSince(begin);
 }
 
-void MapRun::finish() {
+void MapRun::finish(const std::function<void(const char *)> &tell) {
     if (!closesLoops)
         return;
     const auto begin = Clock::now();
+    tell("closing loops");
     drive_.loops.correct();
-    if (drive_.loops.counts().closed > 0)
-        rebuild();
+    std::vector<vectorlib::Pose2D> found = drive_.loops.poses();
+    if (!found.empty())
+        parts_ = divide_(drive_, found);
+    if (drive_.loops.counts().closed > 0 || parts_.size() > 1)
+        rebuild(std::move(found), tell);
     closeSeconds_ += secondsSince(begin);
     const auto closed = Clock::now();
+    tell("reviewing the walls");
     reviewed_ = drive_.review(tracker.builder.map, poses());
     reviewSeconds_ = secondsSince(closed);
 }
 
-void MapRun::rebuild() {
+void MapRun::rebuild(std::vector<vectorlib::Pose2D> refined, const std::function<void(const char *)> &tell) {
     vectorlib::WallIds ids;
     ids.remember(tracker.builder.map, {drive_.edges(), poses()});
-    std::vector<vectorlib::Pose2D> refined = drive_.loops.poses();
+    tell("refining the poses");
     isRefined_ = refine_(refined, drive_.loopsOfScans());
     for (std::size_t i = 0; i < refined.size(); ++i)
         trajectory_[i].pose = refined[i];
+    tell("making the map anew");
     drive_.rebuild(tracker.builder, refined);
     ids.keep(tracker.builder.map, {drive_.edges(), refined});
 }
@@ -114,6 +122,7 @@ nlohmann::ordered_json MapRun::summary() const {
                            {"map", counts.mapMs / scans}};
     json["closures_seconds"] = closeSeconds_;
     if (closesLoops) {
+        json["parts"] = parts();
         json["review"] = {{"merged", reviewed_.merged},   {"joined", reviewed_.joined},
                           {"removed", reviewed_.removed}, {"cut", reviewed_.cut},
                           {"corners", reviewed_.corners}, {"contradicted_m", reviewed_.contradicted},
@@ -123,6 +132,25 @@ nlohmann::ordered_json MapRun::summary() const {
     if (reference_.size() > 1)
         json["reference"] = errors();
     return json;
+}
+
+void MapRun::warnOfBreaks(std::ostream &out) const {
+    for (std::size_t i = 1; i < parts_.size(); ++i)
+        out << "hermes-vector: the way to scan " << parts_[i].begin << " (stamp "
+            << vectorlib::Fixed{trajectory_[parts_[i].begin].stamp, 3}
+            << ") is not known: what was seen from there on contradicts what was seen before. "
+            << (parts_[i].isJoined && parts_[i - 1].isJoined ? "Their walls tell how both parts lie\n"
+                                                             : "One of the parts is laid beside the map\n");
+}
+
+nlohmann::ordered_json MapRun::parts() const {
+    nlohmann::ordered_json array = nlohmann::ordered_json::array();
+    for (const vectorlib::DrivePart &part : parts_)
+        array.push_back({{"first", part.begin},
+                         {"scans", part.end - part.begin},
+                         {"stamp", trajectory_[part.begin].stamp},
+                         {"joined", part.isJoined}});
+    return array;
 }
 
 nlohmann::ordered_json MapRun::twins() const {

@@ -1,12 +1,15 @@
 #pragma once
 
 #include "gui/vector/MapSource.h"
+#include "vectorlib/graph/DriveParts.h"
 #include "vectorlib/graph/DriveRefiner.h"
 #include "vectorlib/graph/MappedDrive.h"
 #include "vectorlib/io/Tum.h"
 #include "vectorlib/mapping/ScanTracker.h"
 
 #include <nlohmann/json.hpp>
+
+#include <functional>
 
 namespace hermes::vector {
 
@@ -19,8 +22,12 @@ public:
     /// A scan with a fault is counted and left out.
     void take(MapScan &scan);
     /// After the last scan, unless it is told not to close loops: where there were any, moves and refines the
-    /// poses and makes the map anew from all edges (a wall keeps its id); reviews the map.
-    void finish();
+    /// poses and makes the map anew from all edges (a wall keeps its id); reviews the map. `tell` takes what
+    /// it does now.
+    void finish(const std::function<void(const char *)> &tell);
+
+    /// For people: where the way is not known, a line each; nothing where the drive never broke.
+    void warnOfBreaks(std::ostream &out) const;
 
     const std::vector<vectorlib::StampedPose> &trajectory() const { return trajectory_; }
     /// Of each pose of the trajectory, as ScanTracker::trust told it when the pose was tracked.
@@ -37,12 +44,15 @@ public:
 private:
     nlohmann::ordered_json errors() const;
     void remember(const MapScan &scan, const vectorlib::ScanReport &report);
-    void rebuild();
+    void rebuild(std::vector<vectorlib::Pose2D> refined, const std::function<void(const char *)> &tell);
+    nlohmann::ordered_json parts() const;
     std::vector<vectorlib::Pose2D> poses() const;
     nlohmann::ordered_json twins() const;
 
     vectorlib::MappedDrive drive_;
     vectorlib::DriveRefiner refine_;
+    vectorlib::DriveParts divide_;
+    std::vector<vectorlib::DrivePart> parts_;
     bool isRefined_ = false;
     double closeSeconds_ = 0;
     vectorlib::MapReviewCounts reviewed_;

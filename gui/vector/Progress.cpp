@@ -36,4 +36,12 @@ void Progress::update(std::size_t done, std::size_t total) {
     std::fflush(stderr);
 }
 
+void Progress::tell(const std::string &what) {
+    if (!terminal_)
+        return;
+    shown_ = true;
+    std::fprintf(stderr, "\r\033[K%s: %s", what_.c_str(), what.c_str());
+    std::fflush(stderr);
+}
+
 } // namespace hermes::vector

@@ -15,6 +15,8 @@ public:
 
     /// total: 0 when it is not known.
     void update(std::size_t done, std::size_t total);
+    /// Of work that cannot tell how much of it is done: what it does now.
+    void tell(const std::string &what);
 
 private:
     std::string what_;

@@ -49,6 +49,16 @@ public:
         }
         return {way.poses().begin(), way.poses().begin() + std::ptrdiff_t(scans)};
     }
+    /// Around by the outermost corridors, counter-clockwise, and along the first of them again.
+    std::vector<vectorlib::Pose2D> around(double step) const {
+        const Point low(columns_.front().middle(), rows_.front().middle());
+        const Point high(columns_.back().middle(), rows_.back().middle());
+        DriveWay way({low.x, low.y, 0}, step);
+        for (const Point &corner :
+             {Point(high.x, low.y), high, Point(low.x, high.y), low, Point(high.x, low.y)})
+            way.goTo(corner);
+        return way.poses();
+    }
     /// As ScanWorld sees: the rays from right to left; what is out of reach has no point.
     ScanWorld::Points scan(const vectorlib::Transformation2D &pose, const ScanWorld::Scanner &scanner) {
         std::normal_distribution<double> noise;

@@ -1,10 +1,13 @@
 #include <vectorlib/graph/LoopCloser.h>
 #include <vectorlib/mapping/ScanTracker.h>
 
+#include "tests/vectorlib/OfficeFloor.h"
 #include "tests/vectorlib/RevisitError.h"
 #include "tests/vectorlib/RingBuilding.h"
 
 #include <QtTest>
+
+#include <limits>
 
 using namespace vectorlib;
 
@@ -163,6 +166,76 @@ private Q_SLOTS:
         const double after = revisitError(drive, loops.poses());
         qInfo("%.3f to %.3f", before, after);
         QVERIFY2(before > 0.3 && after < 0.05, qPrintable(QString("%1 to %2").arg(before).arg(after)));
+    }
+
+    // Around a floor of some 200 m, where wheels turn by 0.002 rad too much on each metre: farther off than
+    // the nearest scans are looked for.
+    void aLargeLoopThatMissesByFarIsClosed() {
+        std::mt19937 random(3); // others may bend by more than the drive allows
+        std::normal_distribution<double> noise;
+        OfficeFloor floor({62, 44}, random);
+        const std::vector<Pose2D> drive = floor.around(0.5);
+        Closing loops;
+        std::vector<Pose2D> bent{drive[0]};
+        double missed = 0;
+        for (std::size_t i = 0; i < drive.size(); ++i) {
+            if (i > 0) {
+                const Transformation2D m = between(drive[i - 1], drive[i]);
+                const double way = m.translation().norm();
+                const double turn = 0.002 * way + 0.003 * std::sqrt(way) * noise(random);
+                bent.push_back(
+                    (Transformation2D(bent.back()) * Transformation2D(1.005 * m.x(), m.y(), m.alpha() + turn))
+                        .pose());
+                const double back = between(drive[0], drive[i]).translation().norm();
+                if (back < 0.5)
+                    missed = std::max(missed, std::hypot(bent[i].x - drive[i].x, bent[i].y - drive[i].y));
+            }
+            loops.add(floor.scan(Transformation2D(drive[i]), {361, 1.5 * pi, 0.01, 30}), bent.back(),
+                      TrackedBy::Map);
+        }
+        loops.close();
+        const double after = revisitError(drive, loops.poses());
+        qInfo("it missed by %.1f m; %.3f m at revisits, %.3f m before", missed, after,
+              revisitError(drive, bent));
+        QVERIFY(missed > 9);
+        QVERIFY2(after < 0.05, qPrintable(QString::number(after)));
+    }
+
+    // Eight on a way of two metres each, and one that tells otherwise.
+    void loopsThatMoveFarWaitForOthers() {
+        LoopAgreement agreement;
+        const auto end = [](double way) { return LoopAgreement::End{Transformation2D(way, 0, 0), way}; };
+        const auto loop = [&](double from, double to, double off) {
+            PoseConstraint c;
+            c.motion = Transformation2D(0.5, off, 0.01);
+            return agreement.add(c, end(from), end(to), 4);
+        };
+        for (int i = 0; i < 8; ++i) {
+            const double way = 2.0 * i;
+            QVERIFY(loop(way, 300 + way, 0.2).empty()); // four agree soon, but on less than 15 m
+            if (i == 3)
+                QVERIFY(loop(way, 300 + way, 4).empty());
+        }
+        QVERIFY(agreement.newest(320));
+        QVERIFY(!agreement.newest(360));
+        QCOMPARE(loop(16, 316, 0.2).size(), std::size_t(9));
+        QVERIFY(loop(18, 318, 0.2).empty()); // the others are forgotten
+        for (int i = 0; i < 8; ++i)
+            QVERIFY(loop(2.0 * i, 500 + 40.0 * i, 0.2).empty()); // too far from each other
+    }
+
+    void aScanLooksTheSameHoweverTheSensorTurns() {
+        std::mt19937 random(8);
+        const ScanWorld room = ScanWorld::room(), grove = ScanWorld::grove();
+        const ScanWorld::Scanner scanner{720, 2 * pi, 0.01, 30};
+        const ScanSignature here(room.scan({1, 0.5, 0}, random, scanner));
+        QVERIFY(here.distance(ScanSignature(room.scan({1, 0.5, 2}, random, scanner))) < 0.1F);
+        QVERIFY(here.distance(ScanSignature(room.scan({1.5, 0.5, 1}, random, scanner))) < 0.7F);
+        QVERIFY(here.distance(ScanSignature(grove.scan({5, 0, 0}, random, scanner))) > 0.7F);
+        const float nan = std::numeric_limits<float>::quiet_NaN();
+        const std::vector<Vector2D<float>> broken{{nan, 1}, {1e30F, 1e30F}, {0, 0}};
+        QVERIFY(std::isfinite(here.distance(ScanSignature(broken))));
+        QVERIFY(std::isfinite(here.distance(ScanSignature())));
     }
 
     // Rooms that are alike offer loops that are off by the same way and so agree with each other; many scans

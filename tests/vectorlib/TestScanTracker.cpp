@@ -42,6 +42,8 @@ private Q_SLOTS:
     void placeForgetsTheScanBefore();
     void knowsTheScannerOfEachScan();
     void aLieAboutTheRaysDoesNoHarm();
+    void followsScansThatTheMapDoesNotShow();
+    void passesOverAScanOfNothing();
     void clearForgetsAll();
     void trustIsHighInARoom();
     void trustIsLowAlongABareCorridor();
@@ -157,6 +159,45 @@ void TestScanTracker::aLieAboutTheRaysDoesNoHarm() {
         scan.stamp = stamp += 0.1;
         QVERIFY(isNear(tracker->process(scan).pose, {-2, -1, 0}));
     }
+}
+
+void TestScanTracker::followsScansThatTheMapDoesNotShow() {
+    // Through a door: the map and the scan before show nothing of the hall behind it.
+    const std::vector<LineSegment2D<float>> hall{{{20, -9}, {37, -9}},
+                                                 {{37, -9}, {37, 4}},
+                                                 {{37, 4}, {29, 8}},
+                                                 {{29, 8}, {20, 8}},
+                                                 {{20, 8}, {20, -9}}};
+    const auto at = [](int i) { return Pose2D{27 + 0.1 * i, -1, 0.02 * i}; };
+    int followed = 0;
+    Pose2D before = tracker->builder.report().pose;
+    for (int i = 0; i < 8; ++i) {
+        const Pose2D told{28 + 0.15 * i, 0, 0.03 * i}; // of the wheels, which slip
+        see(hall, at(i), 10.1 + 0.1 * i, track(told, 10.1 + 0.1 * i));
+        const Transformation2D motion = tracker->tracked(Transformation2D(before));
+        before = tracker->builder.report().pose;
+        if (i > 0 && tracker->trackedBy() == TrackedBy::Scan && tracker->builder.isExpectedByScan()) {
+            const Pose2D from = at(i - 1), to = at(i);
+            QVERIFY(isNear(motion.pose(), from.inverse() * to));
+            ++followed;
+        }
+    }
+    QVERIFY2(followed > 0, qPrintable(QString::number(followed)));
+}
+
+void TestScanTracker::passesOverAScanOfNothing() {
+    see({-1.9, -1, 0}, 10.1, track({0.1, 0, 0}, 10.1));
+    TimedScan ground; // a row of points across the way
+    for (int i = 0; i < 40; ++i)
+        ground.points.emplace_back(1.5F, 0.05F * float(i) - 1);
+    ground.rays = std::size_t(scanner.rays);
+    ground.stamp = 10.2;
+    ground.odometry = track({0.2, 0, 0}, 10.2);
+    QVERIFY(tracker->process(ground).outcome != ScanReport::Outcome::Matched);
+    QVERIFY(tracker->builder.isPassedOver());
+    QVERIFY(isNear(see({-1.7, -1, 0}, 10.3, track({0.4, 0.1, 0.1}, 10.3)).pose, {-1.7, -1, 0}));
+    QVERIFY(tracker->builder.isExpectedByScan());
+    QVERIFY(!tracker->builder.isPassedOver());
 }
 
 void TestScanTracker::clearForgetsAll() {

@@ -57,6 +57,11 @@ private Q_SLOTS:
         row("no header", "points", "1,2\n3,4\n", 2);
         row("comments, header, blank lines", "points", "# a scan\nx,y\n\n 1 , 2\n# in between\n3,+4e0\n", 2);
         row("CR LF and no last line end", "points", "x,y\r\n1,2\r\n3,4", 2);
+        row("byte order mark", "points", "\xEF\xBB\xBFx,y\n1,2\n3,4\n", 2);
+        row("byte order mark, no header", "points",
+            "\xEF\xBB\xBF"
+            "1,2\n3,4\n",
+            2);
         row("columns by name", "points", "index,y,x\n0,1,2\n", 1);
         row("header alone", "points", "x,y\n", 0);
         row("further columns", "segments", "1,2,3,4,wall\n5,6,7,8,door\n", 2);
@@ -64,6 +69,8 @@ private Q_SLOTS:
         row("pairs", "pairs", pairRow + '\n' + pairRow, 2);
         row("pairs with weights", "pairs", "sx1,sy1,sx2,sy2,dx1,dy1,dx2,dy2,weight\n" + pairRow + ",0.5\n",
             1);
+        row("pcd after a byte order mark", "pcd",
+            "\xEF\xBB\xBF" + pcdHeader + "POINTS 1\nDATA ascii\n9 9 1 2\n", 1);
         row("pcd", "pcd", pcdHeader + "POINTS 2\nDATA ascii\n9 9 1 2\n9 9 3 4\n", 2);
     }
     void goodInput() {

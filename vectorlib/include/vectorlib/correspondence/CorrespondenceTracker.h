@@ -92,11 +92,6 @@ private:
         return std::atan2(moving.direction().cross(fixed.direction()),
                           moving.direction().dot(fixed.direction()));
     }
-    // Mean squared distance of a segment's points from the line.
-    static double squaredDistance(const LineSegment2D<double> &line, const LineSegment2D<double> &segment) {
-        const double a = line.across(segment.begin()), b = line.across(segment.end());
-        return (a * a + a * b + b * b) / 3;
-    }
 
     void collectCandidates() {
         candidates_.clear();
@@ -145,7 +140,7 @@ private:
             const LineSegment2D<double> &fixed = fixedOf(c);
             if (fixed.direction().dot(moved.direction()) < cosine)
                 continue;
-            const double distance = squaredDistance(fixed, moved);
+            const double distance = fixed.meanSquareAcross(moved);
             if (distance > nearest ||
                 fixed.overlap(moved) < settings.minOverlap * std::min(fixed.length(), moved.length()))
                 continue;
@@ -169,7 +164,7 @@ private:
         double sum = 0;
         for (const CorrespondencePair &p : pairs_) {
             const LineSegment2D<double> moved = correction * movingOf(p).segment;
-            const double distance = squaredDistance(fixedOf(p), moved);
+            const double distance = fixedOf(p).meanSquareAcross(moved);
             sum += fixedOf(p).overlap(moved) *
                    (1 - distance / (settings.finalDistance * settings.finalDistance));
         }
@@ -192,7 +187,7 @@ private:
             m.matchedLength += moving.length();
             registration_.add(fixed, moving, std::min(fixed.length(), moving.length()));
             const EdgeRaw2D moved = correction * movingOf(p);
-            squares += moved.sums.n * squaredDistance(fixed, moved.segment);
+            squares += moved.sums.n * fixed.meanSquareAcross(moved.segment);
             points += moved.sums.n;
             refinement_.add(fixed, moved.sums, 1 / (settings.pointDeviation * settings.pointDeviation));
         }

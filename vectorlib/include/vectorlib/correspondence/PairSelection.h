@@ -72,8 +72,7 @@ private:
             if (std::abs(wrapAngle(c.alpha - t.alpha())) > turn)
                 continue;
             const LineSegment2D<double> moved = t * at(moving, c.numbers.moving);
-            const double a = line.across(moved.begin()), b = line.across(moved.end());
-            if ((a * a + a * b + b * b) / 3 <= gate * gate &&
+            if (line.meanSquareAcross(moved) <= gate * gate &&
                 line.overlap(moved) >= overlap * std::min(line.length(), moved.length()))
                 pairs_.push_back(c.numbers);
         }

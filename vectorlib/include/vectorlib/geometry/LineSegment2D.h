@@ -50,6 +50,11 @@ public:
         const Scalar from = std::max(Scalar(0), std::min(t0, t1)), to = std::min(length(), std::max(t0, t1));
         return std::max(Scalar(0), to - from);
     }
+    /// Mean squared distance of the points of another segment from the line.
+    Scalar meanSquareAcross(const LineSegment2D &other) const {
+        const Scalar a = across(other.begin_), b = across(other.end_);
+        return (a * a + a * b + b * b) / 3;
+    }
     /// From one distance along the line to another; before begin and beyond the end it goes on straight.
     LineSegment2D part(Scalar from, Scalar to) const {
         return {begin_ + direction_ * from, begin_ + direction_ * to, direction_};

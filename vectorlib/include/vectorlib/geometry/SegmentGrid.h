@@ -65,6 +65,14 @@ public:
             }
     }
 
+    /// The same for every segment that may lie within `margin` of another one (metres).
+    template <typename Take>
+    void query(const LineSegment2D<double> &segment, double margin, Take take) {
+        const Vector2D<double> a = segment.begin(), b = segment.end(), beside(margin, margin);
+        query(Vector2D<double>(std::min(a.x, b.x), std::min(a.y, b.y)) - beside,
+              Vector2D<double>(std::max(a.x, b.x), std::max(a.y, b.y)) + beside, take);
+    }
+
 private:
     template <typename Take>
     void takeNew(const std::vector<int> &numbers, Take &take) {

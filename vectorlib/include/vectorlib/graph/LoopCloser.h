@@ -1,28 +1,28 @@
 #pragma once
 
 #include "vectorlib/geometry/PackedPoints.h"
-#include "vectorlib/geometry/SegmentGrid.h"
-#include "vectorlib/graph/DriveUncertainty.h"
+#include "vectorlib/graph/LoopAgreement.h"
+#include "vectorlib/graph/LoopCandidates.h"
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/TrackedBy.h"
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <optional>
 #include <utility>
 #include <vector>
 
 namespace vectorlib {
 
-struct LoopCloserSettings {
+struct LoopCloserSettings : LoopCandidateSettings {
     double keyWay = 1, keyTurn = 0.6; ///< between key scans, which are compared; metres, radians
-    double leastWay = 8;              ///< of the drive between two scans of a loop; metres
-    double reach = 2;                 ///< scans nearer than this show the same; metres
-    double drift = 0.02;     ///< metres that they may be farther apart, for each metre of way between them
-    double mostDrift = 6;    ///< at most; metres
-    std::size_t perScan = 2; ///< earlier passes that a scan is compared with
-    double passWay = 2;      ///< of the drive between two passes; metres
+    double drift = 0.02;              ///< metres that the drive may go astray, for each metre of its way
+    std::size_t perScan = 2;          ///< earlier passes that a scan is compared with, as the nearest ones
+    /// A loop that turns the scan by more, or moves it farther than the nearest scans are looked for, waits
+    /// until so many agree, and one more for each tenfold number of scans among which it was found; radians.
+    double mostTurn = 0.5;
+    std::size_t farAgreeing = 4;
     /// Standard deviations of a metre that was tracked, and of a radian; metres, radians. Variances grow with
     /// the way, however many scans were made on it.
     double trackedXY = 0.02, trackedAlpha = 0.007, turnedAlpha = 0.01;
@@ -58,6 +58,7 @@ class LoopCloser {
 public:
     LoopCloserSettings settings;
     GlobalPairMatcher match;
+    LoopAgreement agreement; ///< of loops that move a scan far
 
     /// The next scan of the drive: its points in the sensor's frame, the motion since the scan before (the
     /// pose, for the first) as it was tracked, and by what. Unless that is the map the scan is matched with
@@ -70,7 +71,7 @@ public:
         }
         const double doubt = addMotion(points, tracked, by);
         const double way = since_.way, turned = since_.turned;
-        if (by != TrackedBy::Map || way >= settings.keyWay || turned >= settings.keyTurn) {
+        if (by > TrackedBy::Scan || way >= settings.keyWay || turned >= settings.keyTurn) {
             link(points);
             if (doubt > 0 && by != TrackedBy::Placed) // those before it lie anywhere
                 bridge();
@@ -95,10 +96,9 @@ public:
             return false;
         counts_.closed = 0;
         for (const PoseConstraint &c : graph_.constraints)
-            counts_.closed += c.mayBeWrong && !isContradicted(c);
-        grid_.clear();
-        for (std::size_t k = 0; k < keys_.size(); ++k)
-            enter(k);
+            counts_.closed += c.mayBeWrong && !c.isRefused();
+        candidates_.move(graph_.poses);
+        findLooped();
         return true;
     }
     /// Loops found since the last correction count as closed.
@@ -133,7 +133,7 @@ public:
     std::size_t bytes() const {
         return pointBytes_ + keys_.size() * (sizeof(Key) + sizeof(Pose2D)) +
                scans_.size() * sizeof(OnTheWay) + graph_.constraints.size() * sizeof(PoseConstraint) +
-               uncertainty_.bytes();
+               candidates_.bytes();
     }
     /// The scan that a pose of the graph is of.
     std::size_t scanOf(std::size_t key) const { return keys_[key].scan; }
@@ -194,22 +194,18 @@ public:
         news_ = memory.progress.news;
         corrected_ = memory.progress.corrected;
         last_.clear();
-        uncertainty_ = DriveUncertainty();
-        grid_.clear();
+        agreement.clear();
+        candidates_ = LoopCandidates();
         pointBytes_ = 0;
         for (std::size_t k = 0; k < keys_.size(); ++k) {
             pointBytes_ += keys_[k].points.bytes();
-            uncertainty_.add(keys_[k].tracked, keys_[k].varianceXY, keys_[k].varianceAlpha);
-            enter(k);
+            keys_[k].points.unpack(earlier_);
+            enter(k, earlier_);
         }
+        findLooped();
     }
 
 private:
-    struct Candidate {
-        std::size_t key;
-        double apart; // metres, and half of the radians
-    };
-
     // How much in doubt the motion is; metres.
     double addMotion(PointSpan<float> points, const Transformation2D &tracked, TrackedBy by) {
         Transformation2D motion = tracked;
@@ -217,7 +213,7 @@ private:
         if (by == TrackedBy::Placed) {
             doubt = xy = settings.guessedXY + motion.translation().norm();
             alpha = settings.placedAlpha;
-        } else if (by != TrackedBy::Map) {
+        } else if (by > TrackedBy::Scan) {
             const GlobalPairMatch &found = match(last_, points);
             const bool isLikely = by == TrackedBy::Nothing && !found.solutions.empty() &&
                                   found.solutions[0].probability > settings.likely;
@@ -254,11 +250,10 @@ private:
         key.tracked = tracked;
         key.way = (keys_.empty() ? 0 : keys_.back().way) + since_.way;
         key.doubt = doubt;
-        uncertainty_.add(tracked, since_.varianceXY, since_.varianceAlpha);
         scans_.push_back({keys_.size(), {}, 0});
         last_.assign(points.begin(), points.end());
         keys_.push_back(std::move(key));
-        enter(keys_.size() - 1);
+        enter(keys_.size() - 1, points);
         since_ = SinceKey();
     }
     // The motion since the last key scan becomes part of the graph.
@@ -271,55 +266,72 @@ private:
         addKey(points, (Transformation2D(keys_[from].tracked) * since_.motion).pose(),
                keys_[from].doubt + since_.doubt);
     }
-    void enter(std::size_t key) {
-        const Vector2D<double> place(graph_.poses[key].x, graph_.poses[key].y);
-        grid_.insert(static_cast<int>(key), {place, place, {1, 0}});
+    void enter(std::size_t k, PointSpan<float> points) {
+        const Key &key = keys_[k];
+        candidates_.add(
+            {key.tracked, key.varianceXY, key.varianceAlpha, key.way, key.doubt, ScanSignature(points)},
+            graph_.poses[k]);
     }
     // What the scan before does not show of the last one, those before may.
     void bridge() {
         const std::size_t key = keys_.size() - 1;
         for (std::size_t back = 2; back <= settings.mostBridged && back <= key; ++back)
-            tryLoop(key - back);
+            if (const auto loop = loopWith(key - back))
+                believe(*loop);
     }
-    // The nearest scans of earlier passes, one of each pass.
+    // The nearest scans of earlier passes; where no loop was found, those near the place that the last
+    // waiting one tells; and where the drive may be astray by more, the one that looks most alike.
     void tryLoops() {
         const std::size_t last = keys_.size() - 1;
-        const Pose2D &here = graph_.poses[last];
-        const Vector2D<double> place(here.x, here.y);
-        const double most = settings.reach + settings.mostDrift;
-        candidates_.clear();
-        grid_.query(
-            place - Vector2D<double>(most, most), place + Vector2D<double>(most, most), [&](int number) {
-                const auto k = static_cast<std::size_t>(number);
-                const Pose2D &there = graph_.poses[k];
-                const double apart = std::hypot(here.x - there.x, here.y - there.y);
-                const double doubt = std::min(keys_[last].doubt - keys_[k].doubt, settings.mostDrift);
-                if (keys_[last].way - keys_[k].way >= settings.leastWay && apart < settings.reach + doubt)
-                    candidates_.push_back(
-                        {k, apart + 0.5 * std::abs(std::remainder(here.theta - there.theta, 2 * pi))});
-            });
-        std::sort(candidates_.begin(), candidates_.end(), [](const Candidate &a, const Candidate &b) {
-            return std::tie(a.apart, a.key) < std::tie(b.apart, b.key);
-        });
-        passes_.clear();
-        for (const Candidate &c : candidates_) {
-            const double way = keys_[c.key].way;
-            const auto isSamePass = [&](double other) { return std::abs(other - way) < settings.passWay; };
-            if (std::any_of(passes_.begin(), passes_.end(), isSamePass))
-                continue;
-            passes_.push_back(way);
-            tryLoop(c.key);
-            if (passes_.size() == settings.perScan)
-                break;
+        const auto waiting = agreement.newest(keys_[last].way);
+        tried_.clear();
+        tryNearest(graph_.poses[last], settings.perScan, 0);
+        if (waiting && looped_ != last) {
+            const Transformation2D there = Transformation2D(graph_.poses[waiting->loop.from]) *
+                                           waiting->loop.motion * between(waiting->loop.to, last);
+            tryNearest(there.pose(), 1, waiting->loop.to);
+        }
+        if (looped_ == last)
+            return;
+        if (const auto far = candidates_.far(looped_, tried_, settings)) {
+            among_ = far->among;
+            tryLoop(far->scan);
         }
     }
-    // With the last key scan.
+    void tryNearest(const Pose2D &here, std::size_t most, std::size_t sure) {
+        for (const std::size_t k : candidates_.nearest(here, most, sure, settings))
+            if (std::find(tried_.begin(), tried_.end(), k) == tried_.end())
+                tryLoop(k);
+    }
     void tryLoop(std::size_t earlier) {
+        tried_.push_back(earlier);
+        const auto loop = loopWith(earlier);
+        if (!loop)
+            return;
+        const Eigen::Vector3d off = graph_.errorOf(*loop);
+        const bool isNear = off.head<2>().norm() < candidates_.doubtBetween(loop->from, loop->to, settings) &&
+                            std::abs(off[2]) < settings.mostTurn;
+        if (isNear)
+            return believe(*loop);
+        const auto tens = static_cast<std::size_t>(std::log10(1 + double(among_)));
+        for (const PoseConstraint &c :
+             agreement.add(*loop, end(loop->from), end(loop->to), settings.farAgreeing + tens))
+            believe(c);
+    }
+    LoopAgreement::End end(std::size_t key) const {
+        return {Transformation2D(keys_[key].tracked), keys_[key].way};
+    }
+    // As the drive alone led.
+    Transformation2D between(std::size_t from, std::size_t to) const {
+        return Transformation2D(keys_[from].tracked).inverse() * Transformation2D(keys_[to].tracked);
+    }
+    // Of an earlier key scan with the last one, where they match and the drive allows it.
+    std::optional<PoseConstraint> loopWith(std::size_t earlier) {
         ++counts_.tried;
         keys_[earlier].points.unpack(earlier_);
         const GlobalPairMatch &found = match.quickly(earlier_, last_); // other pairs will show the loop
         if (!found.isAccepted())
-            return;
+            return std::nullopt;
         PoseConstraint c;
         c.from = earlier;
         c.to = keys_.size() - 1;
@@ -329,13 +341,26 @@ private:
         Eigen::Matrix3d covariance = match.covarianceOf(found.solutions[0]);
         covariance.diagonal() += Eigen::Vector3d(xy * xy, xy * xy, alpha * alpha);
         c.information = covariance.inverse();
-        if (!isCredible(c, covariance))
-            return;
+        return isCredible(c, covariance) ? std::optional(c) : std::nullopt;
+    }
+    void believe(const PoseConstraint &c) {
         const Eigen::Vector3d off = graph_.errorOf(c);
         news_ = news_ || off.head<2>().norm() > settings.newsXY || std::abs(off[2]) > settings.newsAlpha;
         found_ = true;
         ++counts_.closed;
         graph_.constraints.push_back(c);
+        if (isLoop(c))
+            looped_ = std::max(looped_, c.to);
+    }
+    // Not one that only bridges a doubtful motion.
+    bool isLoop(const PoseConstraint &c) const {
+        return c.mayBeWrong && keys_[c.to].way - keys_[c.from].way >= settings.leastWay;
+    }
+    void findLooped() {
+        looped_ = 0;
+        for (const PoseConstraint &c : graph_.constraints)
+            if (isLoop(c) && !c.isRefused())
+                looped_ = std::max(looped_, c.to);
     }
     // Where rooms are alike, loops that are off by the same way agree with each other: each has to agree with
     // the drive alone first.
@@ -348,12 +373,8 @@ private:
         turned.topLeftCorner<2, 2>() << std::cos(from.theta), -std::sin(from.theta), std::sin(from.theta),
             std::cos(from.theta);
         const Eigen::Matrix3d spread =
-            uncertainty_.between(c.from, c.to) + turned * covariance * turned.transpose();
+            candidates_.uncertainty().between(c.from, c.to) + turned * covariance * turned.transpose();
         return off.dot(spread.ldlt().solve(off)) <= settings.gate;
-    }
-    static bool isContradicted(const PoseConstraint &c) {
-        constexpr double least = 0.25;
-        return c.weight < least;
     }
 
     std::vector<Key> keys_;
@@ -363,13 +384,13 @@ private:
     std::vector<Vector2D<float>> last_;    // points of the last scan
     std::vector<Vector2D<float>> earlier_; // and of one that it is compared with
     PoseGraph graph_;                      // a pose each key scan
-    DriveUncertainty uncertainty_;         // of the key scans, without any loop
-    SegmentGrid grid_{4};                  // of the key scans
+    LoopCandidates candidates_;            // the key scans
+    std::size_t looped_ = 0;               // the last key scan that has a loop
+    std::size_t among_ = 0;                // where the last far one was found
+    std::vector<std::size_t> tried_;       // key scans, with the last one
     LoopCounts counts_;
     bool found_ = false, news_ = false; // loops since the last correction
     std::size_t corrected_ = 0;         // key scans then
-    std::vector<Candidate> candidates_;
-    std::vector<double> passes_;
 };
 
 } // namespace vectorlib

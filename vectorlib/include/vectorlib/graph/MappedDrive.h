@@ -44,15 +44,20 @@ public:
     /// The same at other poses, one a scan.
     void rebuild(MapBuilder &builder, const std::vector<Pose2D> &poses) const {
         startAnew(builder);
-        for (std::size_t i = 0; i < edges_.size(); ++i)
-            if (!edges_[i].empty())
-                builder.place(edges_[i], poses[i]);
+        extend(builder, poses, 0, edges_.size());
     }
     /// The builder's map takes the scans from that number on.
     void extend(MapBuilder &builder, std::size_t from) const {
         for (std::size_t i = from; i < edges_.size(); ++i)
             if (!edges_[i].empty())
                 builder.place(edges_[i], loops.pose(i));
+    }
+    /// The same at other poses (one a scan of the drive), up to that number.
+    void extend(MapBuilder &builder, const std::vector<Pose2D> &poses, std::size_t from,
+                std::size_t end) const {
+        for (std::size_t i = from; i < end; ++i)
+            if (!edges_[i].empty())
+                builder.place(edges_[i], poses[i]);
     }
     /// The loops of the graph as motions between scans.
     std::vector<PoseConstraint> loopsOfScans() const {

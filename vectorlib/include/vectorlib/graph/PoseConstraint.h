@@ -16,6 +16,12 @@ struct PoseConstraint {
     Eigen::Matrix3d information = Eigen::Matrix3d::Identity();
     bool mayBeWrong = false; ///< altogether: then it loses its weight where the others contradict it
     double weight = 1;       ///< in [0, 1], found with the poses
+
+    /// Whether the other motions contradict it, so that it counts little.
+    bool isRefused() const {
+        constexpr double least = 0.25;
+        return mayBeWrong && weight < least;
+    }
 };
 
 } // namespace vectorlib

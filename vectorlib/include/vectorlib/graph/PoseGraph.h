@@ -90,10 +90,9 @@ private:
     // So wide that the worst motion still counts; those that were found wrong before do so only if they fit
     // now.
     double startWidth() const {
-        constexpr double wrong = 0.25;
         double worst = 0;
         for (const PoseConstraint &c : constraints)
-            if (c.mayBeWrong && c.weight >= wrong)
+            if (c.mayBeWrong && !c.isRefused())
                 worst = std::max(worst, squaredErrorOf(c));
         return std::max(1.0, 2 * worst / settings.doubt);
     }

@@ -17,6 +17,7 @@ namespace vectorlib {
 class LineReader {
 public:
     static constexpr std::size_t maxLineLength = 1 << 20;
+    static constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
 
     LineReader(std::istream &in, std::string name)
         : in_(in)
@@ -35,6 +36,8 @@ public:
             return std::nullopt;
         if (!line_.empty() && line_.back() == '\r')
             line_.pop_back();
+        if (number_ == 1 && line_.rfind(byteOrderMark, 0) == 0) // as Windows begins text
+            line_.erase(0, byteOrderMark.size());
         if (line_.find('\0') != std::string::npos)
             return fail("a NUL byte", "a line of text");
         return line_;

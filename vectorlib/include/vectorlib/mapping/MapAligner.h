@@ -60,7 +60,25 @@ public:
         return result;
     }
 
+    /// After the search: the same for a motion that is told. As it may be chosen by what a few places show,
+    /// three times as many must agree as where it is found.
+    MapAlignment confirm(VectorMap &fixed, const std::vector<MapEdge> &moving, const Transformation2D &told) {
+        MapAlignment result;
+        result.places = places_.size();
+        result.overlap = registration(fixed, moving, told);
+        forEachFit(result.overlap.motion, [&](const PlaceFit &fit) {
+            result.agree += fit.explainedShare() >= leastAlike && fit.hiddenShare() <= mostHidden;
+            result.against += isAgainst(fit);
+        });
+        if (result.agree >= 3 * leastAgree)
+            result.outcome = 2 * result.against >= result.agree ? MapAlignment::Outcome::Contradicted
+                                                                : MapAlignment::Outcome::Found;
+        return result;
+    }
+
 private:
+    static constexpr double mostHidden = 0.25, leastAlike = 0.5; // shares of what is seen from a place
+
     struct PlaceOfMap {
         Pose2D pose;                  // in the second map
         std::vector<EdgeRaw2D> edges; // seen from there
@@ -176,16 +194,21 @@ private:
     // Places where the first map shows something else, and walls that would be looked through. Doors and
     // furniture move: places that agree, or where most is alike, are none.
     std::size_t countContradictions(const Transformation2D &motion) {
-        constexpr double mostHidden = 0.25, leastAlike = 0.5;
         std::size_t against = 0;
+        forEachFit(motion, [&](const PlaceFit &fit) { against += isAgainst(fit); });
+        return against;
+    }
+    static bool isAgainst(const PlaceFit &fit) {
+        return fit.hiddenShare() > mostHidden && fit.explainedShare() < leastAlike;
+    }
+    template <typename Take>
+    void forEachFit(const Transformation2D &motion, Take take) {
         for (const PlaceOfMap &place : places_) {
             inFixed_.scan.take(place.edges, {});
-            const PlaceFit fit = inFixed_.fit.judge(inFixed_.index().tiles(), inFixed_.scan.points(),
-                                                    motion * Transformation2D(place.pose), 1, true,
-                                                    inFixed_.scan.wallOfPoint());
-            against += fit.hiddenShare() > mostHidden && fit.explainedShare() < leastAlike;
+            take(inFixed_.fit.judge(inFixed_.index().tiles(), inFixed_.scan.points(),
+                                    motion * Transformation2D(place.pose), 1, true,
+                                    inFixed_.scan.wallOfPoint()));
         }
-        return against;
     }
 
     Observer<double> observe_;

@@ -64,6 +64,7 @@ public:
         const std::vector<EdgeRaw2D> &edges = extract.vectorizeClusters(clusters, scan);
         const auto t2 = Clock::now();
         edges_ = &edges;
+        byScan_ = false;
         const TrackingSettings usual = track.settings;
         expected_ = settings.matchPrevious ? expectedByPrevious(scan, expected) : Transformation2D(expected);
         locate(expected_);
@@ -80,10 +81,12 @@ public:
         const auto begin = Clock::now();
         concluded_ = true;
         lost_ = report_.outcome == ScanReport::Outcome::Lost ? lost_ + 1 : 0;
-        if (settings.matchPrevious && sure)
-            remember(scan);
-        else
+        if (!settings.matchPrevious || !sure)
             forgetPrevious();
+        else if (passesOver())
+            ++passedOver_;
+        else
+            remember(scan);
         const bool isWelcome =
             report_.outcome == ScanReport::Outcome::Matched ||
             (report_.outcome == ScanReport::Outcome::Lost && lost_ >= settings.lostBeforeRestart);
@@ -114,6 +117,11 @@ public:
 
     /// False where the last scan could not be matched with the one before.
     bool isFollowed() const { return followed_; }
+    /// Whether the last scan was matched with one before, which then tells expected().
+    bool isExpectedByScan() const { return byScan_; }
+    /// Whether neither the map nor the scan before shows the last scan, as when it saw the ground: the next
+    /// one is matched with that before it again.
+    bool isPassedOver() const { return passedOver_ > 0; }
     /// Whether the map goes on where the last scan was expected, as so many before it were lost, too.
     bool isRestart() const {
         return report_.outcome == ScanReport::Outcome::Lost && lost_ == settings.lostBeforeRestart;
@@ -131,7 +139,10 @@ public:
     const std::vector<EdgeRaw2D> &edges() const { return *edges_; }
 
     /// The sensor was put elsewhere: the next scan is matched with the map alone.
-    void forgetPrevious() { previousPoints_.clear(); }
+    void forgetPrevious() {
+        previousPoints_.clear();
+        passedOver_ = 0;
+    }
     /// Takes a map that was made anew and gives the old one; `moved` tells where in it a pose of the old one
     /// lies.
     void correct(VectorMap &other, const Transformation2D &moved) {
@@ -169,12 +180,19 @@ private:
         track.settings = settings.tracking;
         track.settings.expectedDeviationXY = settings.previousDeviationXY;
         track.settings.expectedDeviationAlpha = settings.previousDeviationAlpha;
+        byScan_ = true;
         return previousPose_ * motion.pose;
     }
     void remember(PointSpan<float> scan) {
         previousPoints_.assign(scan.begin(), scan.end());
         previousEdges_ = *edges_;
         previousPose_ = pose_;
+        passedOver_ = 0;
+    }
+    // Not where the next scan would be looked for anywhere, nor too many in a row.
+    bool passesOver() const {
+        return !followed_ && report_.outcome != ScanReport::Outcome::Matched &&
+               !matchPair.settings.searchAnywhere && passedOver_ + 1 < settings.lostBeforeRestart;
     }
     void locate(const Transformation2D &expected) {
         pose_ = expected;
@@ -225,8 +243,7 @@ private:
         }
     }
     bool mergeable(const LineSegment2D<double> &known, const LineSegment2D<double> &seen) const {
-        const double a = known.across(seen.begin()), b = known.across(seen.end());
-        return (a * a + a * b + b * b) / 3 <= settings.mergeDistance * settings.mergeDistance;
+        return known.meanSquareAcross(seen) <= settings.mergeDistance * settings.mergeDistance;
     }
 
     const std::vector<EdgeRaw2D> *edges_ = nullptr;
@@ -237,6 +254,8 @@ private:
     std::vector<Vector2D<float>> previousPoints_;
     std::vector<EdgeRaw2D> previousEdges_;
     Transformation2D previousPose_;
+    bool byScan_ = false; // expected
+    int passedOver_ = 0;  // scans since then
     Match match_;
     ScanReport report_;
     int lost_ = 0;

@@ -40,30 +40,28 @@ private:
     void collect(VectorMap &fixed, const std::vector<MapEdge> &moving, const Transformation2D &motion,
                  double gate, double turn) {
         pairs_.clear();
-        const Vector2D<double> margin(gate, gate);
         for (const MapEdge &edge : moving) {
             const LineSegment2D<double> wall = motion * edge.segment;
-            const Vector2D<double> a = wall.begin(), b = wall.end();
-            const Vector2D<double> low(std::min(a.x, b.x), std::min(a.y, b.y)),
-                high(std::max(a.x, b.x), std::max(a.y, b.y));
-            for (const int number : fixed.near(low - margin, high + margin)) {
+            const std::size_t first = pairs_.size();
+            double covered = 0;
+            for (const int number : fixed.near(wall, gate)) {
                 const LineSegment2D<double> &known = fixed.slots()[std::size_t(number)].segment;
                 const double overlap = known.overlap(wall);
                 const bool isAlike = known.direction().dot(wall.direction()) > std::cos(turn);
-                if (isAlike && overlap >= leastOverlap && apart(known, wall) <= gate * gate)
+                if (isAlike && overlap >= leastOverlap && apart(known, wall) <= gate * gate) {
                     pairs_.push_back({known, wall, overlap});
+                    covered += overlap;
+                }
             }
+            for (std::size_t i = first; i < pairs_.size(); ++i) // those that lie beside each other share it
+                pairs_[i].weight *= std::min(1.0, wall.length() / covered);
         }
     }
     // Mean square distance of the part that lies beside the other; m^2.
     static double apart(const LineSegment2D<double> &known, const LineSegment2D<double> &wall) {
-        const double slope = known.direction().cross(wall.direction()) /
-                             std::max(0.1, known.direction().dot(wall.direction()));
-        const double t0 = known.along(wall.begin()), t1 = known.along(wall.end());
-        const double from = std::max(0.0, std::min(t0, t1)), to = std::min(known.length(), std::max(t0, t1));
-        const double first = known.across(wall.begin());
-        const double a = first + slope * (from - t0), b = first + slope * (to - t0);
-        return (a * a + a * b + b * b) / 3;
+        const double t0 = wall.along(known.begin()), t1 = wall.along(known.end());
+        return known.meanSquareAcross(
+            wall.part(std::max(0.0, std::min(t0, t1)), std::min(wall.length(), std::max(t0, t1))));
     }
     // Walls are registered in a frame in their middle, where an error of the angle is none of the position.
     LineSegmentRegistration registration(Vector2D<double> middle) const {

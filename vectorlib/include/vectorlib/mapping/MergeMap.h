@@ -8,20 +8,16 @@ namespace vectorlib {
 /// added, and the others are new. Walls farther apart than `distance` (root mean square, metres) stay two.
 inline void mergeMap(VectorMap &map, const std::vector<MapEdge> &added, const Transformation2D &motion,
                      double distance = 0.10) {
-    const Vector2D<double> margin(distance, distance);
     for (const MapEdge &edge : added) {
         const EdgeRaw2D moved = motion * static_cast<const EdgeRaw2D &>(edge);
         const LineSegment2D<double> &wall = moved.segment;
-        const Vector2D<double> a = wall.begin(), b = wall.end();
-        const Vector2D<double> low(std::min(a.x, b.x), std::min(a.y, b.y)),
-            high(std::max(a.x, b.x), std::max(a.y, b.y));
         int best = -1;
         double longest = 0;
-        for (const int number : map.near(low - margin, high + margin)) {
+        for (const int number : map.near(wall, distance)) {
             const LineSegment2D<double> &known = map.slots()[std::size_t(number)].segment;
-            const double from = known.across(a), to = known.across(b), overlap = known.overlap(wall);
+            const double overlap = known.overlap(wall);
             if (known.direction().dot(wall.direction()) > 0.95 && overlap > longest &&
-                from * from + from * to + to * to <= 3 * distance * distance) {
+                known.meanSquareAcross(wall) <= distance * distance) {
                 best = number;
                 longest = overlap;
             }

@@ -95,12 +95,7 @@ private:
     }
     void pairWith(const VectorMap &map, int number) {
         const LineSegment2D<double> &wall = map.slots()[std::size_t(number)].segment;
-        const Vector2D<double> margin(settings.most, settings.most);
-        const Vector2D<double> low(std::min(wall.begin().x, wall.end().x),
-                                   std::min(wall.begin().y, wall.end().y));
-        const Vector2D<double> high(std::max(wall.begin().x, wall.end().x),
-                                    std::max(wall.begin().y, wall.end().y));
-        grid_.query(low - margin, high + margin, [&](int other) {
+        grid_.query(wall, settings.most, [&](int other) {
             const std::int64_t a = map.slots()[std::size_t(number)].observations;
             const std::int64_t b = map.slots()[std::size_t(other)].observations;
             if (b >= settings.minObservations && (b < a || (b == a && other > number)))

@@ -132,8 +132,15 @@ public:
             return TrackedBy::Placed;
         const bool isMatched = builder.report().outcome == ScanReport::Outcome::Matched;
         return isMatched && wasMatched_ && isWellExpected_ ? TrackedBy::Map
+               : isByScan()                                ? TrackedBy::Scan
                : byOdometry_                               ? TrackedBy::Odometry
                                                            : TrackedBy::Nothing;
+    }
+    /// The motion from the pose of the scan before to the last scan, as this tells it: one that the map shows
+    /// again leaps by what went wrong since it did so last.
+    Transformation2D tracked(const Transformation2D &before) const {
+        const bool isLeap = trackedBy() == TrackedBy::Scan;
+        return before.inverse() * (isLeap ? builder.expected() : Transformation2D(builder.report().pose));
     }
     /// How probable it is that the pose of the last scan is right, as of PoseTrust; 0 of a scan that was lost
     /// or skipped, or that the map had nothing to compare with.
@@ -278,6 +285,9 @@ private:
         s.expectedDeviationAlpha = std::max(s.expectedDeviationAlpha, poor.expectedDeviationAlpha);
         s.minMatchedShare = std::max(s.minMatchedShare, poor.minMatchedShare);
         return s;
+    }
+    bool isByScan() const {
+        return isWellExpected_ && (builder.isExpectedByScan() || builder.isPassedOver());
     }
     bool isMomentAgo(double before, double stamp) const {
         return stamp > before && stamp - before <= settings_.moment;

@@ -41,14 +41,11 @@ public:
                 take(e);
     }
     /// Numbers of the edges near a box; sorted by number, so that results do not depend on hashing.
-    const std::vector<int> &near(Vector2D<double> low, Vector2D<double> high) {
-        found_.clear();
-        grid_.query(low, high, [this](int number) {
-            if (edges_[static_cast<std::size_t>(number)].observations > 0)
-                found_.push_back(number);
-        });
-        std::sort(found_.begin(), found_.end());
-        return found_;
+    const std::vector<int> &near(Vector2D<double> low, Vector2D<double> high) { return find(low, high); }
+
+    /// The same of those that may lie within `margin` (metres) of a segment.
+    const std::vector<int> &near(const LineSegment2D<double> &segment, double margin) {
+        return find(segment, margin);
     }
 
     /// Adds an edge seen for the first time (or read from a file); returns its number.
@@ -74,14 +71,8 @@ public:
     int consolidate(int number) {
         int joined = 0;
         for (bool again = true; again;) {
-            const LineSegment2D<double> s = edges_[static_cast<std::size_t>(number)].segment;
-            const double g = settings.joinGap;
-            const Vector2D<double> low(std::min(s.begin().x, s.end().x) - g,
-                                       std::min(s.begin().y, s.end().y) - g);
-            const Vector2D<double> high(std::max(s.begin().x, s.end().x) + g,
-                                        std::max(s.begin().y, s.end().y) + g);
             again = false;
-            for (int other : near(low, high))
+            for (int other : near(edges_[static_cast<std::size_t>(number)].segment, settings.joinGap))
                 if (other != number && join(number, other)) {
                     again = true; // the edge grew: look around again
                     ++joined;
@@ -149,6 +140,16 @@ public:
     }
 
 private:
+    template <typename Place, typename Size>
+    const std::vector<int> &find(const Place &place, const Size &size) {
+        found_.clear();
+        grid_.query(place, size, [this](int number) {
+            if (edges_[static_cast<std::size_t>(number)].observations > 0)
+                found_.push_back(number);
+        });
+        std::sort(found_.begin(), found_.end());
+        return found_;
+    }
     bool join(int number, int other) {
         MapEdge &a = edges_[static_cast<std::size_t>(number)];
         const MapEdge &b = edges_[static_cast<std::size_t>(other)];

@@ -30,8 +30,7 @@ public:
             if (wall.direction().dot(edge.direction()) < std::cos(maxAngle) ||
                 2 * edge.overlap(wall) < edge.length())
                 return;
-            const double a = wall.across(edge.begin()), b = wall.across(edge.end());
-            const double square = (a * a + a * b + b * b) / 3;
+            const double square = wall.meanSquareAcross(edge);
             if (square < least || (square == least && id < nearest)) {
                 least = square;
                 nearest = id;

@@ -51,6 +51,8 @@ public:
         const double judged = explained_ + contradicted_;
         return judged > 0 ? contradicted_ / judged : 0;
     }
+    /// Share of all points where the other scan saw something farther away.
+    double contradictedOfAll() const { return points_ > 0 ? contradicted_ / points_ : 0; }
     /// In [-1, 1]: explained less contradicted points, and less the farther apart they are; 1 is perfect.
     double score() const { return points_ > 0 ? (explained_ - distances_ - contradicted_) / points_ : 0; }
     /// In [0, 1], of the walls' directions as that of lines (paper (28)): small along a corridor.

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "vectorlib/geometry/PointSpan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace vectorlib {
+
+/// How a scan looks from afar: how its points are distributed over ranges that grow by 30 % from step to
+/// step, from half a metre on. The same however the sensor is turned, as far as it sees the same then.
+class ScanSignature {
+public:
+    ScanSignature() = default;
+    explicit ScanSignature(PointSpan<float> points) {
+        constexpr float nearest = 0.5F, growth = 1.3F; // metres
+        const float perStep = 1 / std::log(growth);
+        for (const Vector2D<float> &p : points) {
+            const float r = std::hypot(p.x, p.y);
+            const float step = r > nearest ? std::log(r / nearest) * perStep : 0;
+            const float at = step < float(last) ? step : float(last) - 0.001F; // NaN, too
+            const auto i = static_cast<std::size_t>(at);
+            parts_[i] += float(i + 1) - at;
+            parts_[i + 1] += at - float(i);
+        }
+        const auto count = static_cast<float>(std::max<std::size_t>(1, points.size()));
+        for (float &part : parts_)
+            part = std::sqrt(part / count);
+    }
+    /// 0 where two scans look the same; about 1 where they are of different places.
+    float distance(const ScanSignature &other) const {
+        float sum = 0;
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            sum += std::abs(parts_[i] - other.parts_[i]);
+        return sum;
+    }
+
+private:
+    static constexpr std::size_t last = 19; // 73 m and more
+    std::array<float, last + 1> parts_{};
+};
+
+} // namespace vectorlib
