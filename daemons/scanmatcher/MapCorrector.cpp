@@ -285,7 +285,6 @@ void MapCorrector::remember(const Item &item) {
     journal_.finish(memory_, trust_);
     journal_.begin();
     remembered_ = item.drive;
-    isFull_ = false;
     numbers_.clear();
     if (item.remembered) {
         memory_ = std::move(item.remembered->drive);
@@ -296,6 +295,7 @@ void MapCorrector::remember(const Item &item) {
         trust_.clear();
     }
     resumed_ = memory_.loops.scans();
+    isFull_ = memory_.bytes() >= limit_;
     GraphMessage all = graph(0, 0);
     all.cleared = true;
     grown_(all);

@@ -100,7 +100,7 @@ void ScanMatcher::declareSettings() {
                    .group("Matching"));
     addSetting(Field::number("matcher.remember_mb",
                              "Memory that a drive may take to close its loops; what is driven beyond that is "
-                             "not remembered")
+                             "not remembered, also when this is raised later")
                    .unit("MB")
                    .range(0.1, 100000)
                    .byDefault(300)

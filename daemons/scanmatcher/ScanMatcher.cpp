@@ -332,8 +332,8 @@ void ScanMatcher::updateMemoryHealth() {
         QString("the drive takes %1 of %2 MB")
             .arg(state.rememberedMb, 0, 'f', 1)
             .arg(settings().number("matcher.remember_mb"), 0, 'f', 1) +
-        (state.memoryFull ? ": what is driven now is not remembered and no loop is closed; map.save and "
-                            "map.load begin another drive in this map"
+        (state.memoryFull ? ": what is driven now is not remembered and no loop is closed; "
+                            "matcher.close_loops off and on begins another drive in this map"
                           : "");
     health().set("memory", state.memoryFull ? HealthLevel::Warn : HealthLevel::Ok, message,
                  {{"remembered_mb", state.rememberedMb}});

@@ -32,12 +32,12 @@ class Attendant:
             if not set(state["latched"]) <= set(RELEASED):
                 raise error
             if state["latched"]:
-                self.release(state["latched"], deadline)
+                self.release(state["latched"], deadline, error)
             elif state["ready"]:
                 return
             self.wait(deadline, error)
 
-    def release(self, causes, deadline):
+    def release(self, causes, deadline, error):
         """Releases a robot that a fault holds, once it is seen to stand."""
         print(f"\n  held by a fault: {'; '.join(causes.values())}", flush=True)
         place, since = None, time.monotonic()
@@ -46,6 +46,8 @@ class Attendant:
             if now != place:
                 place, since = now, time.monotonic()
             self.wait(deadline, DriveError("the robot does not come to a stand"))
+        if not set(self.motors.call("motor.state")["latched"]) <= set(RELEASED):
+            raise error  # somebody stopped it meanwhile
         self.motors.call("motor.reset_estop")
         self.releases += 1
         print("  the robot stands: released with motor.reset_estop, it goes on", flush=True)

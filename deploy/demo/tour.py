@@ -149,6 +149,8 @@ class SteadyPoses(PoseTopic):
         if told is None:
             self.told = None
             return None
+        if self.told is not None and now - self.told_at > self.FADING_S:
+            self.left, self.told = (0.0, 0.0, 0.0), None  # nobody asked while the robot was held
         if self.told is not None:
             passed = now - self.told_at
             self.left = tuple(part * math.exp(-passed / self.FADING_S) for part in self.left)

@@ -52,11 +52,10 @@ private:
         std::ostream *svgFile = openIfNamed(files, options.svg);
         std::ostream &summaryFile = files.open(options.summary);
 
+        std::optional<Progress> progress("finishing");
         const MapSourceReport report = readScans("tracking, scan", [&](MapScan &scan) { run.take(scan); });
-        {
-            Progress progress("finishing");
-            run.finish([&](const char *stage) { progress.tell(stage); });
-        }
+        run.finish([&](const char *stage) { progress->tell(stage); });
+        progress.reset();
         const vectorlib::MapDrawing drawing = {title(": map of ", run.trajectory().size()), run.segments(),
                                                run.trajectory(), run.reference()};
         if (mapFile)

@@ -74,15 +74,18 @@ private:
         return found;
     }
     MapAlignment refine(vectorlib::VectorMap &map, const std::vector<vectorlib::MapEdge> &added) const {
-        MapAlignment given;
-        given.outcome = MapAlignment::Outcome::Found;
         const vectorlib::Transformation2D told(parsePose(at));
-        given.overlap = vectorlib::MapRegistration()(map, added, told);
+        MapAlignment given = vectorlib::MapAligner().confirm(map, added, told);
         const vectorlib::Transformation2D off = told.inverse() * given.overlap.motion;
         if (std::abs(off.alpha()) > farthestTurn || off.translation().norm() > farthestMove)
             throw Failure(refused("walls lie on each other " + std::to_string(off.translation().norm()) +
                                   " m and " + std::to_string(std::abs(off.alpha())) +
                                   " rad from --at, expected at most 0.5 m and 0.15 rad"));
+        if (2 * given.against > given.agree)
+            throw Failure(
+                refused("at --at, " + std::to_string(given.agree) + " of " + std::to_string(given.places) +
+                        " places of the second map agree, but " + std::to_string(given.against) +
+                        " would be looked at through walls of the first, expected at most half as many"));
         return given;
     }
     std::string refused(const std::string &why) const {
@@ -100,12 +103,12 @@ private:
         json["overlap_share"] = found.overlap.length / std::max(1e-9, length);
         json["residual_rms_m"] = found.overlap.rms;
         json["reliability"] = found.overlap.reliability;
+        json["places"] = found.places;
+        json["places_agree"] = found.agree;
+        json["places_against"] = found.against;
         if (at.empty()) {
-            json["places"] = found.places;
             json["places_found"] = found.found;
-            json["places_agree"] = found.agree;
             json["places_rival"] = found.rival;
-            json["places_against"] = found.against;
         }
         return json;
     }

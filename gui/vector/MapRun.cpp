@@ -80,6 +80,8 @@ void MapRun::rebuild(std::vector<vectorlib::Pose2D> refined, const std::function
     isRefined_ = refine_(refined, drive_.loopsOfScans());
     for (std::size_t i = 0; i < refined.size(); ++i)
         trajectory_[i].pose = refined[i];
+    for (std::size_t i = 1; i < parts_.size(); ++i)
+        trajectory_[parts_[i].begin].isApart = true;
     tell("making the map anew");
     drive_.rebuild(tracker.builder, refined);
     ids.keep(tracker.builder.map, {drive_.edges(), refined});
@@ -121,8 +123,9 @@ nlohmann::ordered_json MapRun::summary() const {
                            {"match", counts.matchMs / scans},
                            {"map", counts.mapMs / scans}};
     json["closures_seconds"] = closeSeconds_;
-    if (closesLoops) {
+    if (parts_.size() > 1)
         json["parts"] = parts();
+    if (closesLoops) {
         json["review"] = {{"merged", reviewed_.merged},   {"joined", reviewed_.joined},
                           {"removed", reviewed_.removed}, {"cut", reviewed_.cut},
                           {"corners", reviewed_.corners}, {"contradicted_m", reviewed_.contradicted},
@@ -136,11 +139,16 @@ nlohmann::ordered_json MapRun::summary() const {
 
 void MapRun::warnOfBreaks(std::ostream &out) const {
     for (std::size_t i = 1; i < parts_.size(); ++i)
-        out << "hermes-vector: the way to scan " << parts_[i].begin << " (stamp "
+        out << "hermes-vector: the way to pose " << parts_[i].begin << " (stamp "
             << vectorlib::Fixed{trajectory_[parts_[i].begin].stamp, 3}
-            << ") is not known: what was seen from there on contradicts what was seen before. "
-            << (parts_[i].isJoined && parts_[i - 1].isJoined ? "Their walls tell how both parts lie\n"
-                                                             : "One of the parts is laid beside the map\n");
+            << ") is not known: what was seen from there on contradicts what was seen before\n";
+    const auto count = std::count_if(parts_.begin(), parts_.end(), [](const auto &p) { return p.isJoined; });
+    if (parts_.size() > 1 && count > 1)
+        out << "hermes-vector: " << count << " of " << parts_.size() << " parts are joined by their walls\n";
+    for (const vectorlib::DrivePart &part : parts_)
+        if (!part.isJoined)
+            out << "hermes-vector: poses " << part.begin << " to " << part.end - 1
+                << " are laid beside the map: no walls tell where they belong (map-merge joins two maps)\n";
 }
 
 nlohmann::ordered_json MapRun::parts() const {

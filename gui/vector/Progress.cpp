@@ -37,7 +37,7 @@ void Progress::update(std::size_t done, std::size_t total) {
 }
 
 void Progress::tell(const std::string &what) {
-    if (!terminal_)
+    if (!terminal_ || std::chrono::steady_clock::now() < next_)
         return;
     shown_ = true;
     std::fprintf(stderr, "\r\033[K%s: %s", what_.c_str(), what.c_str());

@@ -16,6 +16,7 @@ class DriveBreaks {
 public:
     std::size_t around = 4; ///< key scans before and behind that are compared with each other
     double reach = 4;       ///< those that are nearer; metres
+    std::size_t least = 10; ///< key scans between two breaks: fewer are people, or scans that were lost
     /// Share of the points, as of PointAgreement: more of any pair, and the drive goes on; less of all of
     /// them together that can be judged, and there is no evidence; more of these that are contradicted, and
     /// it broke.
@@ -26,9 +27,12 @@ public:
         const std::size_t keys = loops.keys().size();
         const std::vector<bool> isSpanned = spanned(loops.graph());
         std::vector<std::size_t> breaks;
-        for (std::size_t k = 1; k < keys; ++k)
-            if (!isSpanned[k] && doesBreak(loops, k))
+        std::size_t begin = 0; // of the part
+        for (std::size_t k = least; k + least <= keys; ++k)
+            if (!isSpanned[k] && k - begin >= least && doesBreak(loops, k)) {
                 breaks.push_back(k);
+                begin = k;
+            }
         return breaks;
     }
 

@@ -26,7 +26,7 @@ public:
     double gap = 5;                 ///< to one that is laid beside; metres
 
     /// Moves the poses (of all scans, as the loops are closed) of the parts that there are; in order of time,
-    /// one where the drive never broke. The first pose stays if it is known how its part lies to the longest.
+    /// one where the drive never broke. The first pose stays.
     std::vector<DrivePart> operator()(const MappedDrive &drive, std::vector<Pose2D> &poses) {
         divide(drive.loops, poses.size());
         if (parts_.size() == 1)
@@ -40,11 +40,12 @@ public:
             part.isJoined = &part == &*longest;
         joined_.clear();
         drive.extend(joined_, poses, longest->begin, longest->end);
-        while (joinOne(drive, poses))
+        while (joinSome(drive, poses))
             ;
-        if (parts_.front().isJoined)
-            moveJoined(Transformation2D(first) * Transformation2D(poses.front()).inverse(), poses);
         layBeside(drive, poses);
+        const Transformation2D back = Transformation2D(first) * Transformation2D(poses.front()).inverse();
+        for (Pose2D &pose : poses)
+            pose = (back * Transformation2D(pose)).pose();
         return parts_;
     }
 
@@ -68,7 +69,8 @@ private:
         parts_.back().end = scans;
     }
     // False where none of the rest shows a place of those that are joined.
-    bool joinOne(const MappedDrive &drive, std::vector<Pose2D> &poses) {
+    bool joinSome(const MappedDrive &drive, std::vector<Pose2D> &poses) {
+        bool joins = false;
         for (DrivePart &part : parts_) {
             if (part.isJoined)
                 continue;
@@ -81,12 +83,11 @@ private:
                 found = align_.confirm(joined_.map, walls, {}); // crowds of people contradict each other, too
             if (!isClear(found))
                 continue;
-            part.isJoined = true;
+            joins = part.isJoined = true;
             move(part, found.overlap.motion, poses);
             drive.extend(joined_, poses, part.begin, part.end);
-            return true;
         }
-        return false;
+        return joins;
     }
     bool isClear(const MapAlignment &found) const {
         return found.outcome == MapAlignment::Outcome::Found && found.overlap.length >= leastOverlap &&
@@ -95,11 +96,6 @@ private:
     static void move(const DrivePart &part, const Transformation2D &motion, std::vector<Pose2D> &poses) {
         for (std::size_t i = part.begin; i < part.end; ++i)
             poses[i] = (motion * Transformation2D(poses[i])).pose();
-    }
-    void moveJoined(const Transformation2D &motion, std::vector<Pose2D> &poses) const {
-        for (const DrivePart &part : parts_)
-            if (part.isJoined)
-                move(part, motion, poses);
     }
     void layBeside(const MappedDrive &drive, std::vector<Pose2D> &poses) const {
         Box all;

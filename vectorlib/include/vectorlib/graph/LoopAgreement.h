@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -39,19 +38,27 @@ public:
                                     std::size_t enough) {
         const auto isOver = [&](const Waiting &w) { return to.way - w.to.way > settings.within; };
         waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isOver), waiting_.end());
-        waiting_.push_back({loop, from, to});
-        const auto others = std::stable_partition(waiting_.begin(), waiting_.end(), [&](const Waiting &w) {
-            return !agree(w, {loop, from, to});
-        });
+        const Waiting next{loop, from, to};
+        waiting_.push_back(next);
         std::size_t count = 0;
+        double first = 0, counted = 0; // way to those that agree
         std::vector<PoseConstraint> agreed;
-        for (auto w = others; w != waiting_.end(); ++w) {
-            count += w == others || w->to.way - std::prev(w)->to.way >= settings.apart;
-            agreed.push_back(w->loop);
+        for (const Waiting &w : waiting_) {
+            if (!agree(w, next))
+                continue;
+            if (count == 0)
+                first = w.to.way;
+            if (count == 0 || w.to.way - counted >= settings.apart) {
+                ++count;
+                counted = w.to.way;
+            }
+            agreed.push_back(w.loop);
         }
-        if (count < enough || to.way - others->to.way < settings.along)
+        if (count < enough || to.way - first < settings.along)
             return {};
-        waiting_.erase(others, waiting_.end());
+        waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(),
+                                      [&](const Waiting &w) { return agree(w, next); }),
+                       waiting_.end());
         return agreed;
     }
     /// The last one that waits, where the drive went on for no more than `within` since.

@@ -48,7 +48,7 @@ struct LoopCloserSettings : LoopCandidateSettings {
 struct LoopCounts {
     std::size_t tried = 0;   ///< pairs of scans compared, those that bridge a doubtful one among them
     std::size_t closed = 0;  ///< motions found that the whole drive agrees with
-    std::size_t refused = 0; ///< no motion was found or accepted, or the drive contradicts it
+    std::size_t refused = 0; ///< no motion was found or accepted, the drive contradicts it, or it waits
 };
 
 /// Brings a drive that bends into one frame: scans of places that were met again are matched with each other,
@@ -61,8 +61,8 @@ public:
     LoopAgreement agreement; ///< of loops that move a scan far
 
     /// The next scan of the drive: its points in the sensor's frame, the motion since the scan before (the
-    /// pose, for the first) as it was tracked, and by what. Unless that is the map the scan is matched with
-    /// the one before it, too. A key scan is compared with those of earlier passes.
+    /// pose, for the first) as it was tracked, and by what. Unless that is the map or the
+    /// scan before, it is matched with that scan, too. A key scan is compared with those of earlier passes.
     void add(PointSpan<float> points, const Transformation2D &tracked, TrackedBy by) {
         if (keys_.empty()) {
             graph_.poses.push_back(tracked.pose());
@@ -182,8 +182,8 @@ public:
     const SinceKey &sinceKey() const { return since_; }
     Progress progress() const { return {counts_, found_, news_, corrected_}; }
     /// Goes on with a drive as if it had seen it itself; nothing is matched. The numbers of keys and scans
-    /// must fit each other, and the graph be one that can be optimised. The next scan must not be tracked by
-    /// the scan before: the points of that one are kept with key scans only.
+    /// must fit each other, and the graph be one that can be optimised. The next scan must be tracked by
+    /// Placed, Map or Scan: the points of the one before it are kept with key scans only.
     void restore(Memory memory) {
         keys_ = std::move(memory.keys);
         scans_ = std::move(memory.scans);
@@ -211,6 +211,7 @@ private:
         Transformation2D motion = tracked;
         double xy = 0, alpha = 0, doubt = 0;
         if (by == TrackedBy::Placed) {
+            agreement.clear();
             doubt = xy = settings.guessedXY + motion.translation().norm();
             alpha = settings.placedAlpha;
         } else if (by > TrackedBy::Scan) {
@@ -294,8 +295,7 @@ private:
         if (looped_ == last)
             return;
         if (const auto far = candidates_.far(looped_, tried_, settings)) {
-            among_ = far->among;
-            tryLoop(far->scan);
+            tryLoop(far->scan, far->among);
         }
     }
     void tryNearest(const Pose2D &here, std::size_t most, std::size_t sure) {
@@ -303,7 +303,7 @@ private:
             if (std::find(tried_.begin(), tried_.end(), k) == tried_.end())
                 tryLoop(k);
     }
-    void tryLoop(std::size_t earlier) {
+    void tryLoop(std::size_t earlier, std::size_t among = 1) {
         tried_.push_back(earlier);
         const auto loop = loopWith(earlier);
         if (!loop)
@@ -313,7 +313,7 @@ private:
                             std::abs(off[2]) < settings.mostTurn;
         if (isNear)
             return believe(*loop);
-        const auto tens = static_cast<std::size_t>(std::log10(1 + double(among_)));
+        const auto tens = static_cast<std::size_t>(std::log10(double(among)));
         for (const PoseConstraint &c :
              agreement.add(*loop, end(loop->from), end(loop->to), settings.farAgreeing + tens))
             believe(c);
@@ -386,7 +386,6 @@ private:
     PoseGraph graph_;                      // a pose each key scan
     LoopCandidates candidates_;            // the key scans
     std::size_t looped_ = 0;               // the last key scan that has a loop
-    std::size_t among_ = 0;                // where the last far one was found
     std::vector<std::size_t> tried_;       // key scans, with the last one
     LoopCounts counts_;
     bool found_ = false, news_ = false; // loops since the last correction

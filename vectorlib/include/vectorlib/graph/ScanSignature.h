@@ -19,7 +19,7 @@ public:
         for (const Vector2D<float> &p : points) {
             const float r = std::hypot(p.x, p.y);
             const float step = r > nearest ? std::log(r / nearest) * perStep : 0;
-            const float at = step < float(last) ? step : float(last) - 0.001F; // NaN, too
+            const float at = step < float(last) ? step : float(last) - 0.001F;
             const auto i = static_cast<std::size_t>(at);
             parts_[i] += float(i + 1) - at;
             parts_[i + 1] += at - float(i);

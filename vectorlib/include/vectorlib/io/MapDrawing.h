@@ -16,17 +16,22 @@ struct MapDrawing {
 
 /// Draws the map as SVG.
 inline void drawMap(std::ostream &out, const MapDrawing &map) {
-    const auto pathOf = [](const std::vector<StampedPose> &poses) {
-        std::vector<Vector2D<double>> path;
-        for (const StampedPose &p : poses)
-            path.emplace_back(p.pose.x, p.pose.y);
-        return path;
-    };
     SvgPicture picture(map.title);
-    if (!map.reference.empty())
-        picture.path({colour::reference, 1.5, "reference trajectory", true}, pathOf(map.reference));
-    if (!map.trajectory.empty())
-        picture.path({colour::estimate, 1.2, "trajectory"}, pathOf(map.trajectory));
+    const auto draw = [&](SvgPicture::Style style, const std::vector<StampedPose> &poses) {
+        std::vector<Vector2D<double>> path;
+        for (const StampedPose &p : poses) {
+            if (p.isApart) {
+                picture.path(style, path);
+                style.label.clear();
+                path.clear();
+            }
+            path.emplace_back(p.pose.x, p.pose.y);
+        }
+        if (!path.empty())
+            picture.path(style, path);
+    };
+    draw({colour::reference, 1.5, "reference trajectory", true}, map.reference);
+    draw({colour::estimate, 1.2, "trajectory"}, map.trajectory);
     // What only one or two scans saw is drawn lighter: people and things that moved, or noise.
     std::vector<LineSegment2D<double>> seldom, often;
     for (const MapEdge &m : map.segments)

@@ -27,8 +27,9 @@ public:
         if (!p.frame(map, trajectory))
             return std::nullopt;
         for (std::size_t i = 0; i + 1 < trajectory.size(); ++i)
-            p.line({trajectory[i].pose.x, trajectory[i].pose.y},
-                   {trajectory[i + 1].pose.x, trajectory[i + 1].pose.y}, driven, freeCell);
+            if (!trajectory[i + 1].isApart)
+                p.line({trajectory[i].pose.x, trajectory[i].pose.y},
+                       {trajectory[i + 1].pose.x, trajectory[i + 1].pose.y}, driven, freeCell);
         for (const MapEdge &m : map)
             p.line(m.segment.begin(), m.segment.end(), 0, occupiedCell);
         return p;

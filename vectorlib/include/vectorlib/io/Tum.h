@@ -15,6 +15,7 @@ namespace vectorlib {
 struct StampedPose {
     double stamp = 0; ///< seconds
     Pose2D pose;
+    bool isApart = false; ///< nothing drove here from the pose before
 };
 
 /// What writeTum() changed so that the stamps ascend.

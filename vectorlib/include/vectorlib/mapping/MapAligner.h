@@ -60,12 +60,14 @@ public:
         return result;
     }
 
-    /// After the search: the same for a motion that is told. As it may be chosen by what a few places show,
+    /// The same for a motion that is told. As it may be chosen by what a few places show,
     /// three times as many must agree as where it is found.
     MapAlignment confirm(VectorMap &fixed, const std::vector<MapEdge> &moving, const Transformation2D &told) {
         MapAlignment result;
+        findPlaces(moving);
         result.places = places_.size();
         result.overlap = registration(fixed, moving, told);
+        inFixed_.index().follow(fixed.slots());
         forEachFit(result.overlap.motion, [&](const PlaceFit &fit) {
             result.agree += fit.explainedShare() >= leastAlike && fit.hiddenShare() <= mostHidden;
             result.against += isAgainst(fit);
