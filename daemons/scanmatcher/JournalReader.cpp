@@ -117,7 +117,8 @@ public:
         if (std::size_t(bytes.size()) % (sizeof(T) * rows.columns) != 0)
             return false;
         rows.numbers.resize(std::size_t(bytes.size()) / sizeof(T));
-        std::memcpy(rows.numbers.data(), bytes.constData(), std::size_t(bytes.size()));
+        if (!bytes.isEmpty())
+            std::memcpy(rows.numbers.data(), bytes.constData(), std::size_t(bytes.size()));
         return std::all_of(rows.numbers.begin(), rows.numbers.end(),
                            [](T v) { return std::abs(double(v)) <= most; });
     }
