@@ -2,9 +2,7 @@
 
 #include "common/files/WriteAll.h"
 #include "daemons/scanmatcher/JournalTables.h"
-#include "protocol/serial/Crc32c.h"
 
-#include <QCborStreamWriter>
 #include <QDir>
 #include <QFile>
 
@@ -49,15 +47,7 @@ public:
     /// The item of the file.
     QByteArray item(bool isFirst) {
         out_.endMap();
-        QByteArray item;
-        QCborStreamWriter out(&item);
-        if (isFirst)
-            out.append(QCborTag(journal::cbor));
-        out.startArray(2);
-        out.append(quint64(crc32c(content_.constData(), std::size_t(content_.size()))));
-        out.append(content_);
-        out.endArray();
-        return item;
+        return journal::item(content_, isFirst);
     }
 
 private:

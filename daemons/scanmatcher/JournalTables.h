@@ -1,6 +1,9 @@
 #pragma once
 
+#include "protocol/serial/Crc32c.h"
+
 #include <QByteArray>
+#include <QCborStreamWriter>
 
 #include <cstdint>
 
@@ -35,5 +38,18 @@ constexpr Table progress{"progress", 5};
 
 /// Of typed arrays with the least byte first (RFC 8746), and of CBOR itself (RFC 8949).
 constexpr std::uint64_t floats = 85, doubles = 86, cbor = 55799;
+
+/// What a journal is a row of: an array of a check sum and the content. The first one begins the file.
+inline QByteArray item(const QByteArray &content, bool isFirst = false) {
+    QByteArray bytes;
+    QCborStreamWriter out(&bytes);
+    if (isFirst)
+        out.append(QCborTag(cbor));
+    out.startArray(2);
+    out.append(quint64(crc32c(content.constData(), std::size_t(content.size()))));
+    out.append(content);
+    out.endArray();
+    return bytes;
+}
 
 } // namespace hermes::scanmatcher::journal

@@ -1,10 +1,8 @@
 // A drive is written down and read again: whole, cut, damaged, hostile; disks that are full or gone.
+#include "JournalBytes.h"
 #include "daemons/scanmatcher/DriveJournal.h"
-#include "daemons/scanmatcher/JournalTables.h"
-#include "protocol/serial/Crc32c.h"
 #include "tests/vectorlib/RingBuilding.h"
 
-#include <QCborStreamWriter>
 #include <QTemporaryDir>
 #include <QtTest>
 
@@ -15,6 +13,7 @@
 
 using namespace hermes;
 using namespace hermes::scanmatcher;
+using journal::item;
 using vectorlib::MappedDrive;
 using vectorlib::Pose2D;
 using vectorlib::TrackedBy;
@@ -25,76 +24,6 @@ namespace {
 QByteArray contentOf(const QString &path) {
     QFile file(path);
     return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-}
-
-/// One item of a journal that is whole by its sum.
-QByteArray item(const QByteArray &content, bool isFirst = false) {
-    QByteArray bytes;
-    QCborStreamWriter out(&bytes);
-    if (isFirst)
-        out.append(QCborTag(journal::cbor));
-    out.startArray(2);
-    out.append(quint64(crc32c(content.constData(), std::size_t(content.size()))));
-    out.append(content);
-    out.endArray();
-    return bytes;
-}
-
-/// The numbers of a block's tables; of a drive of one scan that saw one wall.
-struct Tables {
-    std::vector<double> scans{0, 0, 0, 0, 0, 0.5, 1}, keys{0, 1, 2, 0.5, 0, 0, 0, 1, 2, 0.5, 0, 0, 2};
-    std::vector<double> motions, poses{1, 2, 0.5}, weights, since{0, 0, 0, 0, 0, 0, 0, 0};
-    std::vector<double> progress{0, 0, 0, 0, 1};
-    std::vector<float> edges{9, 1, 1, 3, 0, 0, 0, 1, 2, 1, 0.01F}, points{0, 1, 2, 1};
-
-    /// Another scan, a key scan with no points.
-    Tables &addKey() {
-        scans.insert(scans.end(), {1, 0, 0, 0, 0, 1, 0});
-        keys.insert(keys.end(), {1, 1, 0, 0, 1, 0.1, 0.1, 2, 2, 0.5, 1, 0.1, 0});
-        poses.insert(poses.end(), {2, 2, 0.5});
-        return *this;
-    }
-    Tables &addMotion() {
-        motions = {0, 1, 1, 0, 0, 100, 0, 0, 100, 0, 100, 0, 1};
-        weights = {1};
-        return *this;
-    }
-    QByteArray content() const {
-        QByteArray bytes;
-        QCborStreamWriter out(&bytes);
-        out.startMap();
-        put(out, journal::scans, scans);
-        put(out, journal::edges, edges);
-        put(out, journal::keys, keys);
-        put(out, journal::points, points);
-        put(out, journal::motions, motions);
-        put(out, journal::poses, poses);
-        put(out, journal::weights, weights);
-        put(out, journal::since, since);
-        put(out, journal::progress, progress);
-        out.endMap();
-        return bytes;
-    }
-
-private:
-    template <typename T>
-    static void put(QCborStreamWriter &out, const journal::Table &table, const std::vector<T> &numbers) {
-        out.append(QLatin1String(table.name));
-        out.append(QCborTag(sizeof(T) == 4 ? journal::floats : journal::doubles));
-        out.appendByteString(reinterpret_cast<const char *>(numbers.data()),
-                             qsizetype(numbers.size() * sizeof(T)));
-    }
-};
-
-/// The item with which a journal begins.
-QByteArray firstItem(const char *mark = journal::mark, quint64 version = journal::version) {
-    QByteArray begin;
-    QCborStreamWriter out(&begin);
-    out.startMap();
-    out.append(QLatin1String(mark));
-    out.append(version);
-    out.endMap();
-    return item(begin, true);
 }
 
 QString difference(const MappedDrive &a, const MappedDrive &b) {
@@ -144,10 +73,6 @@ private Q_SLOTS:
     void aCutTailIsLeftOut();
     void aFlippedBitEndsIt();
     void hostileNumbersAreRefused();
-    void hostileTablesAreRefused_data();
-    void hostileTablesAreRefused();
-    void anyByteMayBeWrong();
-    void aScanLiesBetweenItsKeyScans();
     void noFileIsEverOverwritten();
     void aFullDiskIsToldAndMadeUpFor();
     void aRemovedFileBeginsAnew();
@@ -361,118 +286,6 @@ void TestDriveJournal::hostileNumbersAreRefused() {
     QVERIFY(!readDriveJournal("id,x1,y1,x2,y2\n", "a map"));
     QVERIFY(!readDriveJournal({}, "empty"));
     QVERIFY(!readDriveJournal(QByteArray::fromHex("d9d9f782005b7fffffffffffffff00"), "long"));
-}
-
-void TestDriveJournal::hostileTablesAreRefused_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<bool>("isRead");
-    const QByteArray first = firstItem();
-    QTest::newRow("one scan") << first + item(Tables().content()) << true;
-    const QByteArray two = Tables().addKey().addMotion().content();
-    QTest::newRow("two scans and a motion") << first + item(two) << true;
-    QTest::newRow("another mark") << firstItem("other-journal") + item(two) << false;
-    QTest::newRow("another version") << firstItem(journal::mark, 2) + item(two) << false;
-    QTest::newRow("no mark") << item(two, true) << false;
-    QTest::newRow("the beginning twice") << first + first + item(two) << false;
-    QTest::newRow("not tagged") << item(two) + item(two) << false;
-    const auto row = [&](const QByteArray &name, const std::function<void(Tables &)> &spoil) {
-        Tables tables = Tables().addKey().addMotion();
-        spoil(tables);
-        QTest::newRow(name.constData()) << first + item(tables.content()) << false;
-    };
-    const double nan = std::nan("");
-    row("half a row", [](Tables &t) { t.scans.pop_back(); });
-    row("no scan", [](Tables &t) { t.scans.clear(); });
-    row("no key scan", [](Tables &t) { t.keys.clear(); });
-    row("no pose", [](Tables &t) { t.poses.clear(); });
-    row("a pose too many", [](Tables &t) { t.poses.insert(t.poses.end(), {0, 0, 0}); });
-    row("a weight too many", [](Tables &t) { t.weights = {1, 1}; });
-    row("two rows of progress", [](Tables &t) { t.progress.insert(t.progress.end(), {0, 0, 0, 0, 0}); });
-    row("a scan of a key scan to come", [](Tables &t) { t.scans[0] = 1; });
-    row("a key scan of no scan", [](Tables &t) { t.keys[13] = 7; });
-    row("edges of 1e9", [](Tables &t) { t.scans[6] = 1e9; });
-    row("edges of -1", [](Tables &t) { t.scans[6] = -1; });
-    row("half an edge", [](Tables &t) { t.scans[6] = 0.5; });
-    row("an edge of no scan", [](Tables &t) { t.scans[6] = 0; });
-    row("points of 1e15", [](Tables &t) { t.keys[12] = 1e15; });
-    row("points of no key scan", [](Tables &t) { t.keys[12] = 1; });
-    row("a motion to itself", [](Tables &t) { t.motions[1] = 0; });
-    row("a motion to nowhere", [](Tables &t) { t.motions[1] = 2; });
-    row("a motion to -1", [](Tables &t) { t.motions[1] = -1; });
-    row("information below 0", [](Tables &t) { t.motions[5] = -100; });
-    row("information of none", [](Tables &t) { t.motions[5] = t.motions[8] = t.motions[10] = 0; });
-    row("a weight of 2", [](Tables &t) { t.weights[0] = 2; });
-    row("trust of 2", [](Tables &t) { t.scans[5] = 2; });
-    row("a wall without points", [](Tables &t) { t.edges[0] = 0; });
-    row("a variance below 0", [](Tables &t) { t.keys[5] = -1; });
-    row("corrected later than now", [](Tables &t) { t.progress[4] = 3; });
-    for (const double wrong : {nan, HUGE_VAL, -HUGE_VAL, 1e300}) {
-        const QByteArray name = QByteArray::number(wrong);
-        row("pose " + name, [&](Tables &t) { t.poses[0] = wrong; });
-        row("motion " + name, [&](Tables &t) { t.scans[1] = wrong; });
-        row("tracked " + name, [&](Tables &t) { t.keys[7] = wrong; });
-        row("loop " + name, [&](Tables &t) { t.motions[3] = wrong; });
-        row("information " + name, [&](Tables &t) { t.motions[6] = wrong; });
-        row("weight " + name, [&](Tables &t) { t.weights[0] = wrong; });
-        row("since " + name, [&](Tables &t) { t.since[4] = wrong; });
-        row("wall " + name, [&](Tables &t) { t.edges[6] = float(wrong); });
-        row("point " + name, [&](Tables &t) { t.points[1] = float(wrong); });
-    }
-}
-
-void TestDriveJournal::hostileTablesAreRefused() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(bool, isRead);
-    const auto read = readDriveJournal(bytes, "hostile.journal");
-    QCOMPARE(read.ok(), isRead);
-    if (!isRead) {
-        QVERIFY2(read.error().message.startsWith("hostile.journal: byte "), qPrintable(read.error().message));
-        return;
-    }
-    QCOMPARE(read->leftOut, qint64(0));
-    // Behind what is whole it is left out.
-    const auto tail = readDriveJournal(bytes + item("hostile"), "tail");
-    QVERIFY(tail.ok() && tail->leftOut > 0 && tail->drive.loops.scans() == read->drive.loops.scans());
-}
-
-// Each byte of a small journal, with a sum that is right; and each place where it may be cut.
-void TestDriveJournal::anyByteMayBeWrong() {
-    const QByteArray content = Tables().addKey().addMotion().content(), first = firstItem();
-    const QByteArray bytes = first + item(content);
-    for (int cut = 0; cut < bytes.size(); ++cut)
-        QVERIFY(!readDriveJournal(bytes.left(cut), "cut"));
-    int taken = 0;
-    for (int at = 0; at < content.size(); ++at)
-        for (const int wrong : {0x00, 0x01, 0x3f, 0x7f, 0x80, 0x9f, 0xbf, 0xff}) {
-            QByteArray hostile = content;
-            hostile[at] = char(wrong);
-            auto read = readDriveJournal(first + item(hostile), "hostile");
-            if (!read)
-                continue;
-            ++taken;
-            QVERIFY(read->drive.loops.scans() <= 2);
-            read->drive.loops.correct();
-            vectorlib::MapBuilder builder;
-            read->drive.rebuild(builder);
-            for (const Pose2D &p : read->drive.loops.poses())
-                QVERIFY(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.theta));
-        }
-    QVERIFY(taken > 100);
-}
-
-// However much of the way between them it says that it is.
-void TestDriveJournal::aScanLiesBetweenItsKeyScans() {
-    Tables tables;
-    tables.scans.insert(tables.scans.end(), {0, 0.4, 0, 0, 1e15, 1, 0});
-    tables.addKey();
-    tables.keys[13] = 2;
-    tables.keys[17] = 5e-324; // its effort
-    tables.scans[14] = 1;
-    tables.poses[3] = 3; // a metre farther than it was tracked
-    const auto read = readDriveJournal(firstItem() + item(tables.content()), "between");
-    QVERIFY2(read.ok(), qPrintable(read ? QString() : read.error().message));
-    const Pose2D p = read->drive.loops.pose(1);
-    QVERIFY(std::hypot(p.x - 2, p.y - 2) < 2);
 }
 
 void TestDriveJournal::noFileIsEverOverwritten() {

@@ -1,33 +1,18 @@
 #include "daemons/scanmatcher/DriveJournal.h"
 #include "daemons/scanmatcher/JournalTables.h"
-#include "protocol/serial/Crc32c.h"
 #include "tests/fuzz/FuzzInput.h"
-
-#include <QCborStreamWriter>
 
 using namespace hermes;
 using namespace hermes::scanmatcher;
 
 namespace {
 
-QByteArray item(const QByteArray &content, bool isFirst) {
-    QByteArray bytes;
-    QCborStreamWriter out(&bytes);
-    if (isFirst)
-        out.append(QCborTag(journal::cbor));
-    out.startArray(2);
-    out.append(quint64(crc32c(content.constData(), std::size_t(content.size()))));
-    out.append(content);
-    out.endArray();
-    return bytes;
-}
-
 /// Blocks whose sums are right, so that what is in them is looked at: each begins with its length.
 QByteArray journalOf(FuzzInput &in) {
     QByteArray bytes;
     while (in.left() > 0 || bytes.isEmpty()) {
         const std::string content = in.bytes(in.take<std::uint16_t>());
-        bytes += item(QByteArray(content.data(), int(content.size())), bytes.isEmpty());
+        bytes += journal::item(QByteArray(content.data(), int(content.size())), bytes.isEmpty());
     }
     return bytes;
 }

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "daemons/scanmatcher/JournalTables.h"
+
+#include <vector>
+
+namespace hermes::scanmatcher {
+
+/// The numbers of a block's tables; of a drive of one scan that saw one wall.
+struct Tables {
+    std::vector<double> scans{0, 0, 0, 0, 0, 0.5, 1}, keys{0, 1, 2, 0.5, 0, 0, 0, 1, 2, 0.5, 0, 0, 2};
+    std::vector<double> motions, poses{1, 2, 0.5}, weights, since{0, 0, 0, 0, 0, 0, 0, 0};
+    std::vector<double> progress{0, 0, 0, 0, 1};
+    std::vector<float> edges{9, 1, 1, 3, 0, 0, 0, 1, 2, 1, 0.01F}, points{0, 1, 2, 1};
+
+    /// Another scan, a key scan with no points.
+    Tables &addKey() {
+        scans.insert(scans.end(), {1, 0, 0, 0, 0, 1, 0});
+        keys.insert(keys.end(), {1, 1, 0, 0, 1, 0.1, 0.1, 2, 2, 0.5, 1, 0.1, 0});
+        poses.insert(poses.end(), {2, 2, 0.5});
+        return *this;
+    }
+    Tables &addMotion() {
+        motions = {0, 1, 1, 0, 0, 100, 0, 0, 100, 0, 100, 0, 1};
+        weights = {1};
+        return *this;
+    }
+    QByteArray content() const {
+        QByteArray bytes;
+        QCborStreamWriter out(&bytes);
+        out.startMap();
+        put(out, journal::scans, scans);
+        put(out, journal::edges, edges);
+        put(out, journal::keys, keys);
+        put(out, journal::points, points);
+        put(out, journal::motions, motions);
+        put(out, journal::poses, poses);
+        put(out, journal::weights, weights);
+        put(out, journal::since, since);
+        put(out, journal::progress, progress);
+        out.endMap();
+        return bytes;
+    }
+
+private:
+    template <typename T>
+    static void put(QCborStreamWriter &out, const journal::Table &table, const std::vector<T> &numbers) {
+        out.append(QLatin1String(table.name));
+        out.append(QCborTag(sizeof(T) == 4 ? journal::floats : journal::doubles));
+        out.appendByteString(reinterpret_cast<const char *>(numbers.data()),
+                             qsizetype(numbers.size() * sizeof(T)));
+    }
+};
+
+/// The item with which a journal begins.
+inline QByteArray firstItem(const char *mark = journal::mark, quint64 version = journal::version) {
+    QByteArray begin;
+    QCborStreamWriter out(&begin);
+    out.startMap();
+    out.append(QLatin1String(mark));
+    out.append(version);
+    out.endMap();
+    return journal::item(begin, true);
+}
+
+} // namespace hermes::scanmatcher
