@@ -85,6 +85,19 @@ class TestDriveParts : public QObject {
         return text;
     }
     static unsigned drawnSeed() { return unsigned(QDateTime::currentMSecsSinceEpoch()); }
+    // Those in which the place where the robot was put down looks different, and some that are drawn.
+    static void addDrives(std::initializer_list<unsigned> noticed) {
+        QTest::addColumn<unsigned>("seed");
+        QTest::addColumn<bool>("isNoticed");
+        const auto add = [](unsigned seed, bool isNoticed) {
+            QTest::newRow(qPrintable(QString::number(seed))) << seed << isNoticed;
+        };
+        for (const unsigned seed : noticed)
+            add(seed, true);
+        const unsigned drawn = drawnSeed();
+        for (unsigned i = 0; i < 4; ++i)
+            add(drawn + i, false);
+    }
     static double leastX(const Drive &d, const DrivePart &part) {
         double least = 1e9;
         for (std::size_t i = part.begin; i < part.end; ++i)
@@ -104,15 +117,7 @@ private Q_SLOTS:
         }
     }
 
-    void carriedRobotComesBack_data() {
-        QTest::addColumn<unsigned>("seed");
-        QTest::addColumn<bool>("isNoticed"); // as the place where it was put down looks different
-        for (const unsigned seed : {0U, 1U, 4U, 6U})
-            QTest::newRow(qPrintable(QString::number(seed))) << seed << true;
-        const unsigned seed = drawnSeed();
-        for (unsigned i = 0; i < 4; ++i)
-            QTest::newRow(qPrintable(QString::number(seed + i))) << seed + i << false;
-    }
+    void carriedRobotComesBack_data() { addDrives({0, 1, 4, 6}); }
     void carriedRobotComesBack() {
         QFETCH(unsigned, seed);
         QFETCH(bool, isNoticed);
@@ -127,15 +132,7 @@ private Q_SLOTS:
         QCOMPARE(d.parts.back().end, d.way.size());
     }
 
-    void whatIsFoundNowhereIsLaidBeside_data() {
-        QTest::addColumn<unsigned>("seed");
-        QTest::addColumn<bool>("isNoticed");
-        for (const unsigned seed : {5U, 6U, 9U})
-            QTest::newRow(qPrintable(QString::number(seed))) << seed << true;
-        const unsigned seed = drawnSeed();
-        for (unsigned i = 0; i < 4; ++i)
-            QTest::newRow(qPrintable(QString::number(seed + i))) << seed + i << false;
-    }
+    void whatIsFoundNowhereIsLaidBeside_data() { addDrives({5, 6, 9}); }
     void whatIsFoundNowhereIsLaidBeside() {
         QFETCH(unsigned, seed);
         QFETCH(bool, isNoticed);
