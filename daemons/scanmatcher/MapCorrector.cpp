@@ -94,8 +94,10 @@ void MapCorrector::resume(std::unique_ptr<RememberedDrive> remembered) {
 }
 
 void MapCorrector::add(const ScanTracker &tracker, const std::vector<vectorlib::Vector2D<float>> &points) {
-    if (!follows_ || isFull())
+    if (!follows_)
         return;
+    if (state().isFull)
+        return pending_.clear(); // no correction comes any more that would need them
     const Transformation2D pose(tracker.builder.report().pose);
     Seen seen;
     seen.number = tracker.counts().scans - 1;
@@ -176,14 +178,6 @@ void MapCorrector::dispose(std::shared_ptr<Correction> old) {
     Item item;
     item.old = std::move(old);
     push(std::move(item));
-}
-
-// No correction comes any more that would need the last scans.
-bool MapCorrector::isFull() {
-    const std::lock_guard lock(mutex_);
-    if (state_.isFull)
-        pending_.clear();
-    return state_.isFull;
 }
 
 bool MapCorrector::isEnding() const {
@@ -271,13 +265,10 @@ void MapCorrector::take(const Item &item) {
     numbers_.push_back(seen.number);
     trust_.push_back(seen.trust);
     journal_.write(memory_, trust_);
+    tellMemory();
     const std::lock_guard lock(mutex_);
     taken_ += item.drive == drive_;
     --state_.waiting;
-    state_.isDue = state_.isDue || memory_.loops.hasNews();
-    state_.keys = memory_.loops.graph().poses.size();
-    state_.loops = memory_.loops.counts();
-    state_.bytes = memory_.bytes();
 }
 
 // The drive that begins, or goes on.
@@ -301,10 +292,14 @@ void MapCorrector::remember(const Item &item) {
     grown_(all);
     toldKeys_ = memory_.loops.graph().poses.size();
     toldConstraints_ = memory_.loops.graph().constraints.size();
+    tellMemory();
+}
+
+void MapCorrector::tellMemory() {
     const std::lock_guard lock(mutex_);
-    state_.keys = toldKeys_;
+    state_.keys = memory_.loops.graph().poses.size();
     state_.loops = memory_.loops.counts();
-    state_.isDue = memory_.loops.hasNews();
+    state_.isDue = state_.isUnderWay || memory_.loops.hasNews();
     state_.bytes = memory_.bytes();
 }
 
@@ -315,9 +310,11 @@ void MapCorrector::tellFull() {
 }
 
 void MapCorrector::tellUnderWay(bool isUnderWay) {
-    const std::lock_guard lock(mutex_);
-    state_.isUnderWay = isUnderWay;
-    state_.isDue = isUnderWay || memory_.loops.hasNews();
+    {
+        const std::lock_guard lock(mutex_);
+        state_.isUnderWay = isUnderWay;
+    }
+    tellMemory();
 }
 
 void MapCorrector::correct() {

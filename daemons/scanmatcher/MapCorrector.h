@@ -108,7 +108,6 @@ private:
     void beginDrive(quint64 scans);
     void forget(std::vector<vectorlib::MapEdge> known);
     void forgetPending(quint64 end);
-    bool isFull();
     bool isEnding() const;
     void push(Item item);
     void run();
@@ -116,6 +115,7 @@ private:
     void take();
     void take(const Item &item);
     void remember(const Item &item);
+    void tellMemory();
     void tellUnderWay(bool isUnderWay);
     void tellFull();
     void correct();
