@@ -81,11 +81,11 @@ private:
             throw Failure(refused("walls lie on each other " + std::to_string(off.translation().norm()) +
                                   " m and " + std::to_string(std::abs(off.alpha())) +
                                   " rad from --at, expected at most 0.5 m and 0.15 rad"));
-        if (2 * given.against > given.agree)
+        if (given.outcome == MapAlignment::Outcome::Contradicted)
             throw Failure(
                 refused("at --at, " + std::to_string(given.agree) + " of " + std::to_string(given.places) +
                         " places of the second map agree, but " + std::to_string(given.against) +
-                        " would be looked at through walls of the first, expected at most half as many"));
+                        " would be looked at through walls of the first, expected less than half as many"));
         return given;
     }
     std::string refused(const std::string &why) const {

@@ -60,8 +60,8 @@ public:
         return result;
     }
 
-    /// The same for a motion that is told. As it may be chosen by what a few places show,
-    /// three times as many must agree as where it is found.
+    /// The same for a motion that is told. As it may be chosen by what a few places show, three times as many
+    /// must agree as where it is found; Nowhere means that too few do, and nothing more.
     MapAlignment confirm(VectorMap &fixed, const std::vector<MapEdge> &moving, const Transformation2D &told) {
         MapAlignment result;
         findPlaces(moving);
@@ -72,9 +72,10 @@ public:
             result.agree += fit.explainedShare() >= leastAlike && fit.hiddenShare() <= mostHidden;
             result.against += isAgainst(fit);
         });
-        if (result.agree >= 3 * leastAgree)
-            result.outcome = 2 * result.against >= result.agree ? MapAlignment::Outcome::Contradicted
-                                                                : MapAlignment::Outcome::Found;
+        if (result.against > 0 && 2 * result.against >= result.agree)
+            result.outcome = MapAlignment::Outcome::Contradicted;
+        else if (result.agree >= 3 * leastAgree)
+            result.outcome = MapAlignment::Outcome::Found;
         return result;
     }
 
