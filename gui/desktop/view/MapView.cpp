@@ -66,9 +66,12 @@ void MapView::setFitting(bool isFitting) {
         Q_EMIT fittingChanged(isFitting_ = isFitting);
 }
 
+// And not so small, as where another map was begun, that it had better be shown larger.
 bool MapView::showsAll() const {
-    const QRectF all = model_.bounds();
-    return all.isNull() || QRectF(rect()).contains(transform().mapRect(all));
+    const QRectF all = transform().mapRect(model_.bounds());
+    constexpr double least = 0.3; // of the view
+    const bool isSmall = all.width() < least * width() && all.height() < least * height();
+    return model_.bounds().isNull() || (QRectF(rect()).contains(all) && !isSmall);
 }
 
 void MapView::showAll() {
