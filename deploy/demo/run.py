@@ -228,6 +228,7 @@ def drive_world(world, course, folder, logs, with_window):
         poses, odometry, truth = demo.drive()
         state = demo.save()
         seconds = time.monotonic() - begin
+        recorded = {"trajectory": poses.messages[:], "odometry": odometry.messages[:], "truth": truth.messages[:]}
         if window:
             demo.matcher.call("matcher.start", mode="mapping")
             window.stay("  The drive is over and its map is saved. Drive on by hand; close the window to end.")
@@ -235,10 +236,10 @@ def drive_world(world, course, folder, logs, with_window):
         if window:
             window.stop()
         statuses = demo.stop()
-    for name, listener in (("trajectory", poses), ("odometry", odometry), ("truth", truth)):
-        write_tum(os.path.join(folder, name + ".tum"), listener.messages)
-    deviations = errors(poses.messages, truth.messages)
-    drift = errors(odometry.messages, truth.messages)
+    for name, messages in recorded.items():
+        write_tum(os.path.join(folder, name + ".tum"), messages)
+    deviations = errors(recorded["trajectory"], recorded["truth"])
+    drift = errors(recorded["odometry"], recorded["truth"])
     if not deviations or not drift:
         raise RuntimeError("no pose of matcher and odometry lies within the time of the simulator's truth")
     return {
@@ -247,7 +248,7 @@ def drive_world(world, course, folder, logs, with_window):
         "by_odometry": state["by_odometry"], "ms_per_scan": state["ms_per_scan"], "map_segments": state["map_segments"],
         **final_and_largest("error", deviations), **final_and_largest("drift", drift),
         **{name: state[name] for name in ("closures", "corrections") if name in state},
-        "touched": sum(message["data"]["touching"] for message in truth.messages),
+        "touched": sum(message["data"]["touching"] for message in recorded["truth"]),
         "pauses": demo.attendant.pauses, "releases": demo.attendant.releases, "recording": demo.recording,
         "exit_status": statuses, "seconds": seconds}
 
