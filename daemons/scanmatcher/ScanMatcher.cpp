@@ -106,8 +106,9 @@ void ScanMatcher::declareTopics() {
     addTopic(
         Topic("segments", "Line segments of the last scan in the map's frame: x1, y1, x2, y2 of each (m)")
             .carries<SegmentsMessage>());
-    addTopic(Topic("map", "Changes of the map. Begins with the full map. A step of more than 1 in revision "
-                          "means that changes were missed: subscribe again or call map.get")
+    addTopic(Topic("map", "Changes of the map. Begins with the full map, and again (cleared) when it is made "
+                          "anew. Else a step of more than 1 in revision means that changes were missed: "
+                          "subscribe again or call map.get")
                  .carries<MapMessage>()
                  .snapshotParts([this](qint64 &cursor) { return mirror_.part(cursor); }));
     addTopic(Topic("graph",

@@ -22,6 +22,8 @@ protected:
     /// To what the matcher tells.
     void listen();
     void drive(std::size_t from, std::size_t to);
+    /// One scan, and the odometry until a second after it.
+    void tell(std::size_t i);
     /// Until every scan is looked at and the map made anew where loops say that it has to be.
     void waitForCorrector();
     /// How far the key scan that lies worst is from the way that was driven; metres.
@@ -76,32 +78,35 @@ inline void RingDrive::listen() {
 }
 
 // The odometry is a second ahead of the scans: nothing has to wait for it.
-inline void RingDrive::drive(std::size_t from, std::size_t to) {
+inline void RingDrive::tell(std::size_t i) {
     const ScanWorld::Scanner scanner{500, 1.99 * vectorlib::pi, 0.03, 5};
     constexpr std::size_t ahead = 10;
-    const auto stampOf = [](std::size_t i) { return 1 + 0.1 * double(i); };
+    const auto stampOf = [](std::size_t number) { return 1 + 0.1 * double(number); };
+    for (; told < std::min(i + ahead, way.size()); ++told) {
+        const QJsonObject wheel{{"x", wheels[told].x}, {"y", wheels[told].y}, {"theta", wheels[told].theta}};
+        const Pose2D &next = wheels[std::min(told + 1, wheels.size() - 1)];
+        const vectorlib::Twist2D twist = vectorlib::Twist2D::between(wheels[told].inverse() * next, 0.1);
+        const QJsonObject speed{{"vx", twist.vx}, {"vy", twist.vy}, {"omega", twist.omega}};
+        const double v = 1e-4 * stampOf(told);
+        source->publish("odometry",
+                        QJsonObject{{"pose", wheel},
+                                    {"twist", speed},
+                                    {"covariance", QJsonArray{v, 0, 0, 0, v, 0, 0, 0, v}}},
+                        stampOf(told));
+    }
+    const auto points = building->world.scan(Transformation2D(way[i]), random, scanner);
+    source->publish("scan2d",
+                    QJsonObject{{"stamp", stampOf(i)},
+                                {"turn", qint64(i)},
+                                {"rays", scanner.rays},
+                                {"x", numbers(points, true)},
+                                {"y", numbers(points, false)}},
+                    stampOf(i));
+}
+
+inline void RingDrive::drive(std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
-        for (; told < std::min(i + ahead, way.size()); ++told) {
-            const QJsonObject wheel{
-                {"x", wheels[told].x}, {"y", wheels[told].y}, {"theta", wheels[told].theta}};
-            const Pose2D &next = wheels[std::min(told + 1, wheels.size() - 1)];
-            const vectorlib::Twist2D twist = vectorlib::Twist2D::between(wheels[told].inverse() * next, 0.1);
-            const QJsonObject speed{{"vx", twist.vx}, {"vy", twist.vy}, {"omega", twist.omega}};
-            const double v = 1e-4 * stampOf(told);
-            source->publish("odometry",
-                            QJsonObject{{"pose", wheel},
-                                        {"twist", speed},
-                                        {"covariance", QJsonArray{v, 0, 0, 0, v, 0, 0, 0, v}}},
-                            stampOf(told));
-        }
-        const auto points = building->world.scan(Transformation2D(way[i]), random, scanner);
-        source->publish("scan2d",
-                        QJsonObject{{"stamp", stampOf(i)},
-                                    {"turn", qint64(i)},
-                                    {"rays", scanner.rays},
-                                    {"x", numbers(points, true)},
-                                    {"y", numbers(points, false)}},
-                        stampOf(i));
+        tell(i);
         QDeadlineTimer patience(20000);
         while (poses.count(int(i)) == 0 && !patience.hasExpired())
             QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
