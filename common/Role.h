@@ -21,12 +21,13 @@ QStringList roleNames();
 
 /// Who gets which role without a certificate.
 struct Access {
-    Role plain = Role::Operator;  ///< same user of this computer, over TCP; lines; the network where insecure
+    Role plain = Role::Operator;  ///< who stands for the daemon, over TCP; lines; the network where insecure
     Role others = Role::Observer; ///< other users of this computer
 };
 
-/// Of who is at the other end. The role that a certificate says; a daemon's: Observer. Without one: of the
-/// daemon's own user and of root, over a Unix socket, Engineer.
+/// Of who is at the other end. The role that a certificate says; a daemon's: Observer. Without one: of who
+/// stands for the daemon, over a Unix socket, Engineer. That is its own user, root, and where it runs as a
+/// service the members of its group.
 Role roleOf(const Peer &peer, const Access &access);
 
 } // namespace hermes

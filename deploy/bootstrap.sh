@@ -1,10 +1,11 @@
-# Sourced by ./demo and ./check: installs the Debian packages that are missing and builds a preset.
+# Sourced by ./demo, ./check and deploy/*: installs the Debian packages that are missing, builds a preset, makes packages.
 # shellcheck shell=bash
 
 hermes_build_packages=(
     build-essential cmake ninja-build pkg-config python3
     qtbase5-dev libqt5serialport5-dev libqt5svg5-dev libqt5charts5-dev libqt5gamepad5-dev libeigen3-dev libpcap-dev nlohmann-json3-dev rapidjson-dev libcli11-dev libssl-dev libvalijson-dev zlib1g-dev
 )
+hermes_package_packages=(debhelper dpkg-dev fakeroot help2man)
 hermes_test_packages=(python3-jsonschema libbenchmark-dev clang clang-format libclang-rt-dev tshark gnuplot-nox zsh)
 
 # install_missing PACKAGE...: installs those that dpkg does not know as installed; says which; silent when none is missing.
@@ -38,4 +39,23 @@ build_preset() {
     }
     echo "Building ($preset) ..."
     cmake --build --preset "$preset" ${1:+--target "$@"}
+}
+
+# make_packages FOLDER [OPTION...]: puts the Debian packages of this tree there; the options are those of dpkg-buildpackage. Built
+# is a copy of the tree, always at the same place, so that the same tree gives the same packages.
+make_packages() {
+    local out=$1 work=build/package
+    shift
+    rm -rf "$work"
+    mkdir -p "$work/hermes" "$out"
+    tar --exclude=./build --exclude=./.git --exclude=./demo-out -c . | tar -x -C "$work/hermes"
+    cp -r deploy/debian "$work/hermes/debian"
+    echo "Building packages ..."
+    (cd "$work/hermes" && dpkg-buildpackage --build=binary --no-sign "$@") >"$work/log" 2>&1 || {
+        tail -50 "$work/log" >&2
+        echo "The whole log: $work/log" >&2
+        return 1
+    }
+    mv "$work"/*.deb "$out"
+    echo "Packages in $out:" && (cd "$out" && ls -sh ./*.deb)
 }

@@ -119,8 +119,15 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
 Result<void> Daemon::configure(const CommandLine &line) {
     if (!line.config.isEmpty()) {
         const auto loaded = configuration_.load(line.config);
-        if (!loaded)
+        const bool goesOn =
+            runsWithWrongFile_ && line.action == CommandLine::Action::Run && systemd::isService();
+        if (!loaded && !goesOn)
             return loaded;
+        if (!loaded) {
+            logError(self_.name, loaded.error().message);
+            healthItems_.set(QStringLiteral("settings file"), HealthLevel::Failed,
+                             loaded.error().message + QStringLiteral("; mend it and restart the service"));
+        }
     }
     const auto set = configuration_.set(line.settings);
     if (!set)

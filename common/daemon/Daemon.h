@@ -92,6 +92,9 @@ protected:
     }
     /// The watchdog of the service manager is fed by feedWatchdog() alone, not by the event loop.
     void feedWatchdogMyself() { watchdogByHand_ = true; }
+    /// Of who starts the others: as a service it runs with its defaults where the settings file is wrong, and
+    /// its health tells what is wrong; a service that has ended tells nobody.
+    void runWithWrongFile() { runsWithWrongFile_ = true; }
 
     // For its work.
     /// To all subscribers; stamp is when the data were true (seconds since the epoch). The data may be a
@@ -141,6 +144,7 @@ private:
     mutable QString madeHash_;
     bool launched_ = false;
     bool watchdogByHand_ = false;
+    bool runsWithWrongFile_ = false;
     QTimer watchdog_;
     QString lastStatus_;
     QTimer statusTimer_;

@@ -26,6 +26,10 @@ void notify(const QByteArray &state) {
     ::close(socket);
 }
 
+bool isService() {
+    return !qEnvironmentVariableIsEmpty("NOTIFY_SOCKET");
+}
+
 std::chrono::milliseconds watchdogInterval() {
     const QByteArray process = qgetenv("WATCHDOG_PID");
     if (!process.isEmpty() && process.toLongLong() != ::getpid())

@@ -1,5 +1,6 @@
 #include "common/interface/OwnSocket.h"
 
+#include "common/ServiceAccount.h"
 #include "common/interface/LocalAddress.h"
 
 #include <QHostAddress>
@@ -7,12 +8,15 @@
 namespace hermes {
 namespace {
 
-/// Anyone may take the name while no daemon runs.
+/// Anyone may take the name while no daemon runs. Root believes the service of this system, too.
 bool isOwn(int descriptor) {
     ucred listener{};
     socklen_t size = sizeof listener;
-    return ::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &listener, &size) == 0 &&
-           (listener.uid == 0 || listener.uid == ::geteuid());
+    if (::getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &listener, &size) != 0)
+        return false;
+    const uid_t me = ::geteuid();
+    return listener.uid == 0 || listener.uid == me ||
+           ServiceAccount::hasMember(listener.uid, me == 0 ? listener.uid : me);
 }
 
 } // namespace

@@ -145,6 +145,8 @@ void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
         status == QProcess::NormalExit ? QString("exit status %1").arg(code) : QString("killed by a signal");
     logInfo("process", QString("%1: ended, %2").arg(entry_.name, lastExit_));
     const bool wasAsked = state_ == State::Stopping;
+    if (lastExit_ == "exit status 2" && !lines_.empty())
+        lastExit_ += ": " + lines_.back(); // what is wrong with its command line or settings
     if (std::exchange(startAfterStop_, false) && wasAsked) {
         ++restarts_;
         return start();

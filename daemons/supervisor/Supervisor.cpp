@@ -52,6 +52,7 @@ std::vector<SchemaViolation> namesAreUnique(const QJsonObject &settings) {
 
 Supervisor::Supervisor()
     : Daemon({"supervisor", "Supervisor", "Starts the daemons of this host and keeps them running"}) {
+    runWithWrongFile();
     declareSettings();
     declareCommands();
     addTopic(Topic("processes", "What process.list gives, each second and at each change")

@@ -9,6 +9,7 @@ import collections
 import itertools
 import json
 import os
+import pwd
 import socket
 import struct
 
@@ -19,6 +20,18 @@ class DaemonError(Exception):
     def __init__(self, error):
         super().__init__(f"{error['message']} ({error['code']})")
         self.code, self.message, self.data = error["code"], error["message"], error.get("data")
+
+
+def is_believed(listener):
+    """Whether what listens as this user is a daemon of ours: of root, of the user, or of a service whose group the user is in."""
+    if listener in (0, os.getuid()):
+        return True
+    try:
+        group, user = pwd.getpwuid(listener).pw_gid, pwd.getpwuid(os.getuid())
+    except KeyError:
+        return False
+    return listener < 1000 and (user.pw_uid == 0 or group in os.getgrouplist(user.pw_name, user.pw_gid))
+
 
 
 def own_socket(host, port):
@@ -32,7 +45,7 @@ def own_socket(host, port):
         connection.close()
         return None
     credentials = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, struct.calcsize("3i"))
-    if struct.unpack("3i", credentials)[1] in (0, os.getuid()):
+    if is_believed(struct.unpack("3i", credentials)[1]):
         return connection
     connection.close()  # anyone may take the name while no daemon runs
     return None

@@ -6,17 +6,36 @@
 #include <QApplication>
 #include <QCommandLineParser>
 #include <QStandardPaths>
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
+#include <vector>
 
 using namespace hermes;
 using namespace hermes::desktop;
 
+namespace {
+
+/// Of a command line whose answer is text on the terminal.
+bool onlyPrints(int argc, char **argv) {
+    const std::vector<std::string_view> words(argv + 1, argv + argc);
+    return std::any_of(words.begin(), words.end(), [](std::string_view word) {
+        return word == "--help" || word == "-h" || word == "--version" || word == "-v";
+    });
+}
+
+} // namespace
+
 int main(int argc, char **argv) {
+    if (onlyPrints(argc, argv))
+        qputenv("QT_QPA_PLATFORM", "offscreen"); // needs no display
     QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
     QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
     QApplication application(argc, argv);
     QApplication::setApplicationName("hermes-gui");
     QApplication::setApplicationVersion(projectVersion());
+    QApplication::setDesktopFileName("hermes-gui");
+    QApplication::setWindowIcon(QIcon::fromTheme("hermes", QIcon(":/icons/robot.svg")));
     theme::apply();
 
     QCommandLineParser parser;

@@ -19,6 +19,7 @@ private Q_SLOTS:
     void killedProcessComesBackWithBackOff();
     void endInOrderIsNotStartedAgain();
     void wrongCommandLineIsNotTriedAgain();
+    void aServiceTellsOfAWrongSettingsFile();
     void missingProgramIsTold();
     void stubbornProcessIsKilled();
     void whatAProcessLeavesBehindIsKilled_data();
@@ -138,9 +139,37 @@ void TestSupervisor::endInOrderIsNotStartedAgain() {
     QCOMPARE(stateOf("one"), QString("stopped"));
 }
 
+/// By hand it ends; as a service it stays, starts nothing, and tells; the file is not written over.
+void TestSupervisor::aServiceTellsOfAWrongSettingsFile() {
+    const QString name = folder_->filePath("supervisor.json");
+    QFile file(name);
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write("{\n\"processes\": [}\n");
+    file.close();
+    const QStringList line{"hermes-supervisor", "--listen", "tcp://127.0.0.1:0", "--config", name};
+    QVERIFY(Supervisor().prepare(line).has_value());
+    qputenv("NOTIFY_SOCKET", folder_->filePath("nobody").toUtf8());
+    QVERIFY(Supervisor().prepare(line + QStringList{"--check"}).has_value());
+    supervisor_ = std::make_unique<Supervisor>();
+    const auto ended = supervisor_->prepare(line);
+    qunsetenv("NOTIFY_SOCKET");
+    QVERIFY(!ended);
+    QVERIFY(supervisor_->launch().ok());
+    client_ = std::make_unique<Client>();
+    client_->connectTo(asOwner(supervisor_->info().listen.front()));
+    QVERIFY(client_->waitConnected().ok());
+    const QJsonObject status = call("daemon.status")->toObject();
+    QCOMPARE(status["state"].toString(), QString("degraded"));
+    QVERIFY(QJsonDocument(status).toJson().contains("line 2"));
+    for (const QJsonValue &process : call("process.list")->toObject()["processes"].toArray())
+        QCOMPARE(process.toObject()["state"].toString(), QString("stopped"));
+    QVERIFY(!call("settings.save").ok());
+}
+
 void TestSupervisor::wrongCommandLineIsNotTriedAgain() {
-    launch({shell("one", "exit 2")});
+    launch({shell("one", "echo what is wrong; exit 2")});
     QTRY_COMPARE(stateOf("one"), QString("failed"));
+    QCOMPARE(process("one")["last_exit"].toString(), QString("exit status 2: what is wrong"));
     QTRY_COMPARE(call("daemon.status")->toObject()["state"].toString(), QString("degraded"));
 }
 
