@@ -50,7 +50,7 @@ check_units() {
     cp "$HERMES_SOURCE"/deploy/systemd/hermes-supervisor.service "$1/systemd/system/"
     sed -Ei 's,^(ExecStart=)/usr/(bin|share)/hermes\S*,\1/bin/true,; s,gpspipe,true,' "$1"/systemd/system/*.service
     SYSTEMD_UNIT_PATH="$1/systemd/system:" is_silent systemd-analyze verify --man=no --recursive-errors=no \
-        "$1"/systemd/system/*.service
+        "$1"/systemd/system/*.service "$1"/systemd/system/*.timer
 }
 
 # Nothing reads system.conf but the first process of a system: whether it knows the keys stands in its program.
@@ -131,7 +131,7 @@ needs hostapd && check hostapd hostapd/wifi.conf 's/^channel/chanel/'
 needs chronyd && check chronyd chrony/conf.d/hermes.conf 's/refid PPS/refit PPS/'
 needs sysctl && check sysctl sysctl.d/60-hermes.conf 's/rmem_max/rmem_maxx/'
 needs systemd-analyze findmnt && check findmnt fstab.hermes 's/^\(LABEL=hermes-data *\).*/\1/'
-needs systemd-analyze && check units systemd/system/hermes-gps.service 's/^RestartSec/RestrtSec/'
+needs systemd-analyze && check units systemd/system/hermes-make-room.timer 's/^OnBootSec/OnBotSec/'
 needs systemd-analyze && check manager systemd/system.conf.d/hermes.conf 's/RuntimeWatchdogSec/RuntimeWatchdogSecs/'
 if ! unshare -mn true 2>/dev/null; then
     absent+=("the right to mount, for systemd-networkd and systemd-journald")
