@@ -15,6 +15,7 @@ libexec=/lib/systemd
 check_dnsmasq() { dnsmasq --test -C "$1/dnsmasq.d/hermes.conf" 2>&1; }
 check_chronyd() { chronyd -p -f "$1/chrony/conf.d/hermes.conf" 2>&1; }
 check_sysctl() { sysctl --dry-run -p "$1/sysctl.d/60-hermes.conf" 2>&1; }
+check_nft() { unshare -rn nft -c -f "$1/nftables.conf" 2>&1; }
 check_sh() { sh -n "$1/default/gpsd" 2>&1 && sh -n "$1/overlayroot.local.conf" 2>&1; }
 
 # It has no mode for this: it reads its file, then looks for its interface, and there is none of this name.
@@ -140,8 +141,15 @@ else
     needs $libexec/systemd-journald && check journald systemd/journald.conf.d/hermes.conf 's/volatile/volatil/'
 fi
 if ! unshare -rm true 2>/dev/null; then
-    absent+=("a namespace of users, for udev")
+    absent+=("a namespace of users, for udev and nft")
 else
+    if needs nft; then
+        if unshare -rn nft list ruleset >/dev/null 2>&1; then
+            check nft nftables.conf 's/iifname/iifnam/'
+        else
+            absent+=("nf_tables in the kernel")
+        fi
+    fi
     needs udevadm && check udevd systemd/network/10-wifi.link 's/^Type=/Tipe=/'
 fi
 
