@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""hermes-make-room removes the oldest recordings, as few as needed, and never what is written, marked, young or no recording."""
+import importlib.machinery
+import importlib.util
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from unittest import mock
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "system"))
+from support import BINARIES, SOURCE, Process, free_port  # noqa: E402
+
+PROGRAM = os.path.join(SOURCE, "deploy", "board", "hermes-make-room")
+loader = importlib.machinery.SourceFileLoader("make_room", PROGRAM)
+make_room = importlib.util.module_from_spec(importlib.util.spec_from_loader("make_room", loader))
+loader.exec_module(make_room)
+DAY_S = 86400
+
+
+class MakeRoom(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+
+    def recording(self, name, age_s, **changes):
+        folder = self.root / name
+        folder.mkdir()
+        (folder / "seriallogger-gps.raw").write_bytes(b"$GPRMC")
+        sidecar = {"format": "hermes recording 1", "ended": "stopped", "end": time.time() - age_s, **changes}
+        (folder / "seriallogger.json").write_text(json.dumps(sidecar))
+        return folder
+
+    def names(self):
+        return sorted(path.name for path in self.root.iterdir())
+
+    def run_program(self, *options):
+        return subprocess.run([PROGRAM, self.root, *options], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+
+    def test_the_oldest_go_until_enough_is_free(self):
+        for name, days in (("b", 3), ("a", 2), ("c", 1)):
+            self.recording(name, days * DAY_S)
+        with mock.patch.object(make_room, "free_bytes", lambda root: 4e9 - 1e9 * len(self.names())), \
+                mock.patch.object(sys, "argv", [PROGRAM, str(self.root), "--free", "2G"]):
+            make_room.main()
+        self.assertEqual(self.names(), ["a", "c"])
+
+    def test_nothing_goes_while_enough_is_free(self):
+        self.recording("old", DAY_S)
+        self.assertEqual(self.run_program("--free", "0").returncode, 0)
+        self.assertEqual(self.names(), ["old"])
+
+    def test_what_is_kept_whatever_is_asked_for(self):
+        (self.recording("marked", DAY_S) / "KEEP").touch()
+        self.recording("young", 60)
+        self.recording("future", -DAY_S)
+        self.recording("recording", DAY_S, ended=None, end=None)
+        (self.recording("one-of-two", DAY_S) / "velodynelogger.json").write_text(
+            json.dumps({"format": "hermes recording 1", "ended": None, "end": None}))
+        (self.recording("begins", DAY_S) / ".velodynelogger.reserve").touch()
+        (self.recording("damaged", DAY_S) / "velodynelogger.json").write_text("{")
+        self.recording("other-format", DAY_S, format="something else")
+        self.recording("no-end", DAY_S, end=None)
+        (self.root / "no-recording").mkdir()
+        (self.root / "file").touch()
+        (self.root / "link").symlink_to(self.root / "marked")
+        before = self.names()
+        self.recording("old", DAY_S)
+        told = self.run_program("--free", "900T")
+        self.assertEqual(self.names(), before)
+        self.assertEqual(told.returncode, 1)
+        self.assertIn("old: removed", told.stdout)
+        self.assertIn("damaged: kept", told.stderr)
+        self.assertIn("expected", told.stderr)
+
+    def test_dry_run_tells_in_order_and_removes_nothing(self):
+        self.recording("newer", DAY_S)
+        self.recording("older", 2 * DAY_S)
+        told = self.run_program("--free", "900T", "--dry-run").stdout
+        self.assertLess(told.index("older: would be removed"), told.index("newer: would be removed"))
+        self.assertEqual(self.names(), ["newer", "older"])
+
+    def test_what_was_left_half_removed_is_removed(self):
+        self.recording(".removing-old", DAY_S)
+        self.assertEqual(self.run_program("--free", "0").returncode, 0)
+        self.assertEqual(self.names(), [])
+
+    def test_a_wrong_size_or_folder_is_told(self):
+        self.assertIn("8X", self.run_program("--free", "8X").stderr)
+        told = subprocess.run([PROGRAM, self.root / "none", "--free", "1G"], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL)
+        self.assertEqual(told.returncode, 1)
+        self.assertIn("no such folder", told.stderr)
+
+    def test_a_logger_records_on(self):
+        recordings = self.root / "recordings"
+        process = Process(BINARIES, "seriallogger", free_port(0), self.root, {"record.folder": recordings, "audit.on": "false"})
+        self.addCleanup(process.stop)
+        logger = process.connect()
+        self.root = recordings
+        logger.call("record.start", name="now")
+        self.remove_of_any_age()
+        self.assertIn("now", self.names())
+        logger.call("record.stop")
+        self.remove_of_any_age()
+        self.assertNotIn("now", self.names())
+
+    def remove_of_any_age(self):
+        with mock.patch.object(make_room, "YOUNG_S", -DAY_S), self.assertRaises(SystemExit), \
+                mock.patch.object(sys, "argv", [PROGRAM, str(self.root), "--free", "900T"]):
+            make_room.main()
+
+
+if __name__ == "__main__":
+    unittest.main()
