@@ -154,11 +154,10 @@ QStringList aboutControl(const Error &error, const Arguments &arguments) {
                            "motion command for the time that it asked for; hermesctl call %2 control.state "
                            "shows it")
                 .arg(holder.toString(), theDaemon(arguments)));
-    lines.append(
-        QStringLiteral("the control is of one connection, so hermesctl, whose connection ends with each "
-                       "call, can stop a robot (motor.stop) but not drive it: the client that drives calls "
-                       "control.acquire first, with take_over=true to take it from another one; the robot "
-                       "stops then"));
+    lines.append(QStringLiteral(
+        "the control is of one connection, and ends with it: hermesctl drive takes it and keeps "
+        "it; a client that drives calls control.acquire first, with take_over=true to take it "
+        "from another one; the robot stops then"));
     return lines;
 }
 

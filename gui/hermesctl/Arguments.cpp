@@ -65,6 +65,8 @@ Result<void> takeNumber(Arguments &arguments, const QString &option, const QStri
         arguments.rate_hz = *value;
     else if (option == QStringLiteral("--speed"))
         arguments.speed = *value;
+    else if (option == QStringLiteral("--for"))
+        arguments.for_s = std::min(*value, 1e6);
     else if (option == QStringLiteral("--timeout"))
         takeTimeout(arguments, *value);
     else
@@ -99,7 +101,7 @@ QStringList Arguments::optionsWithValue() {
     return {QStringLiteral("--rate"),  QStringLiteral("--timeout"), QStringLiteral("--count"),
             QStringLiteral("--speed"), QStringLiteral("--host"),    QStringLiteral("--daemons"),
             QStringLiteral("--out"),   QStringLiteral("--role"),    QStringLiteral("--days"),
-            QStringLiteral("--port")};
+            QStringLiteral("--port"),  QStringLiteral("--for")};
 }
 
 bool hasSecondWord(const QString &command) {

@@ -20,6 +20,7 @@ struct Arguments {
     int port = 0;       ///< 0: the usual one
     QString role;
     double speed = 1;
+    double for_s = 0;    ///< 0: without end
     QStringList daemons; ///< speak to these; empty: to those at their default ports
     QString out;         ///< file instead of stdout
     bool force = false;  ///< overwrites it

@@ -48,6 +48,12 @@ Result<void> documentAll(const Arguments &arguments);
 /// Prints a topic until the count is reached, as one JSON object a line or as CSV.
 Result<void> watch(Client &client, const Arguments &arguments);
 
+/// Drives a robot with a velocity, or by keys, while it runs; the robot stands when it is back. Error also:
+/// it has not confirmed that it stands.
+Result<void> drive(Client &client, const Arguments &arguments);
+/// Error: no velocity, and no terminal for keys.
+Result<void> checkDrive(const Arguments &arguments);
+
 /// callAndWait() with the time-out of the command line.
 Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString &method,
                        const QJsonValue &params = QJsonObject());

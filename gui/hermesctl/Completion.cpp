@@ -6,6 +6,7 @@
 #include "common/schema/SchemaText.h"
 #include "gui/hermesctl/CompletionScripts.h"
 #include "gui/hermesctl/Descriptions.h"
+#include "gui/hermesctl/DriveLine.h"
 #include "gui/hermesctl/Loggers.h"
 #include "gui/hermesctl/Subcommands.h"
 #include "gui/hermesctl/TypedLine.h"
@@ -119,6 +120,8 @@ private:
             return sessions();
         case Word::Shell:
             return plain(completionShells());
+        case Word::Velocity:
+            return velocities();
         }
         return {};
     }
@@ -199,6 +202,16 @@ private:
         for (const QString &one : settingPaths(schema, false))
             if (!line_.isGiven(one))
                 found.push_back({one + QLatin1Char('='), explanation(settingSchema(schema, one))});
+        return found;
+    }
+
+    Candidates velocities() const {
+        Candidates found;
+        for (const QString &name : velocityNames())
+            if (!line_.isGiven(name))
+                found.push_back({name + QLatin1Char('='), name.startsWith(QLatin1Char('v'))
+                                                              ? QStringLiteral("m/s")
+                                                              : QStringLiteral("rad/s")});
         return found;
     }
 

@@ -25,6 +25,7 @@ Loggers are the daemons with the command record.start that answer at their defau
   --count N      watch: end after N messages; log: the last N records (100)
   --csv          watch: CSV, a column for each value
   --speed X      replay: so many times as fast (1)
+  --for S        drive: for so many seconds
   --loop         replay: begin anew at the end
   --role ROLE    keys issue, pair: observer, operator, engineer, or daemon
   --days N       keys issue, pair: valid for so many days (730)
@@ -39,6 +40,7 @@ Examples:
   hermesctl call scanmatcher daemon.status
   hermesctl set velodynelogger limits.clients=20
   hermesctl record start run1
+  hermesctl drive motorcontrol vx=0.2 --for 2
   hermesctl watch scanmatcher pose --rate 5 --csv --out pose.csv
   source <(hermesctl completion bash)
 )";
@@ -202,6 +204,16 @@ const std::vector<Subcommand> &subcommands() {
          "--rate --count --csv",
          watch,
          nullptr},
+        {"drive",
+         1,
+         4,
+         "drive D [vx=] [vy=] [omega=]",
+         "drives with this velocity (m/s, rad/s) until --for S or Ctrl-C; without one, by keys",
+         {W::Daemon, W::Velocity},
+         "--for",
+         drive,
+         nullptr,
+         checkDrive},
         {"log",
          1,
          1,

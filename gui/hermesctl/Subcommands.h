@@ -5,7 +5,18 @@
 namespace hermes::ctl {
 
 /// What a word of a command line stands for.
-enum class Word { Nothing, Daemon, Method, Parameter, SettingPath, SettingValue, Topic, Session, Shell };
+enum class Word {
+    Nothing,
+    Daemon,
+    Method,
+    Parameter,
+    SettingPath,
+    SettingValue,
+    Topic,
+    Session,
+    Shell,
+    Velocity
+};
 
 /// A command of hermesctl: how it is called, and what runs it.
 struct Subcommand {
@@ -18,6 +29,7 @@ struct Subcommand {
     const char *options;     ///< of its own, separated by spaces
     DaemonCommand ofDaemon;  ///< one of both
     RobotCommand ofRobot;
+    RobotCommand check = nullptr; ///< of the command line, before anybody is asked
 };
 
 constexpr int anyNumber = 1000000;

@@ -53,8 +53,8 @@ int finish(const Result<void> &result, const QStringList &advice, const Argument
 
 /// The words that are to be NAME=VALUE.
 QStringList assignmentsOf(const Subcommand &command, const QStringList &words) {
-    const bool assigns =
-        command.words.back() == Word::Parameter || command.words.back() == Word::SettingValue;
+    const bool assigns = command.words.back() == Word::Parameter ||
+                         command.words.back() == Word::SettingValue || command.words.back() == Word::Velocity;
     return assigns ? words.mid(int(command.words.size()) - 1) : QStringList();
 }
 
@@ -63,6 +63,8 @@ int runDaemonCommand(const Subcommand &command, const Arguments &arguments) {
         if (word.indexOf(QLatin1Char('=')) <= 0)
             return usageError(QStringLiteral("\"%1\": expected NAME=VALUE").arg(word), arguments.json);
     }
+    if (const auto checked = command.check ? command.check(arguments) : Result<void>(); !checked)
+        return usageError(checked.error().message, arguments.json);
     const QString &daemon = arguments.words.first();
     const auto address = daemonAddress(daemon, arguments.host);
     if (!address)

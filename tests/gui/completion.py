@@ -89,6 +89,8 @@ class Completion(unittest.TestCase):
         self.assertEqual(candidates(f"watch {self.address} x --c"), ["--count", "--csv"])
         self.assertEqual(candidates("completion "), ["bash", "zsh"])
         self.assertEqual(candidates("watch --rate "), [])
+        self.assertEqual(candidates("drive motorcontrol vx=1 "), ["vy=", "omega="])
+        self.assertEqual(candidates("drive motorcontrol --f"), ["--force", "--for"])
         self.assertEqual(candidates("record list --daemons supervisor,scan"), ["supervisor,scanmatcher"])
 
     def test_silent_without_a_daemon(self):

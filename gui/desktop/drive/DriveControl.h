@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gui/desktop/drive/ClockOffset.h"
+#include "common/client/ClockOffset.h"
 #include "gui/desktop/model/TopicFeed.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Motors.h"

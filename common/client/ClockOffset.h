@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <deque>
 
-namespace hermes::desktop {
+namespace hermes {
 
 /// How far the clock of a robot is ahead of the one here, in seconds. Messages that the robot stamps come
 /// late by at least the way through the network; the least late of the last seconds tells the difference of
@@ -34,4 +34,4 @@ private:
     double latency_s_ = 0;
 };
 
-} // namespace hermes::desktop
+} // namespace hermes

@@ -1,0 +1,124 @@
+#include "gui/hermesctl/DriveKeys.h"
+
+#include <algorithm>
+#include <array>
+#include <termios.h>
+#include <unistd.h>
+#include <utility>
+
+namespace hermes::ctl {
+namespace {
+
+constexpr double slowest = 0.05, fastest = 1, factor = 1.25; // m/s
+constexpr double turnOfSpeed = 2.5;                          // rad/s for each m/s
+constexpr char escape = 0x1b, endOfInput = 0x04;
+
+} // namespace
+
+DriveKeys::Action DriveKeys::take(const QByteArray &bytes, double now) {
+    Action action = Action::None;
+    for (const char key : bytes)
+        action = std::max(action, takeOne(key, now));
+    const bool endsInEscape = sequence_.size() == 1; // the key of that name: arrows come whole
+    return endsInEscape ? std::max(action, stop()) : action;
+}
+
+DriveKeys::Action DriveKeys::takeOne(char key, double now) {
+    if (key == escape) {
+        sequence_ = QByteArray(1, key);
+        return Action::None;
+    }
+    if (sequence_.size() == 1 && (key == '[' || key == 'O')) {
+        sequence_ += key;
+        return Action::None;
+    }
+    if (std::exchange(sequence_, {}).size() == 2)
+        return takeArrow(key, now);
+    switch (key) {
+    case 'w':
+    case 'W':
+        return press(way_, 1, now);
+    case 's':
+    case 'S':
+        return press(way_, -1, now);
+    case 'a':
+    case 'A':
+        return press(turn_, 1, now);
+    case 'd':
+    case 'D':
+        return press(turn_, -1, now);
+    case '+':
+        speed_ = std::min(speed_ * factor, fastest);
+        return Action::None;
+    case '-':
+        speed_ = std::max(speed_ / factor, slowest);
+        return Action::None;
+    case 'q':
+    case 'Q':
+    case endOfInput:
+        stop();
+        return Action::Quit;
+    default:
+        return stop();
+    }
+}
+
+DriveKeys::Action DriveKeys::takeArrow(char letter, double now) {
+    switch (letter) {
+    case 'A':
+        return press(way_, 1, now);
+    case 'B':
+        return press(way_, -1, now);
+    case 'C':
+        return press(turn_, -1, now);
+    case 'D':
+        return press(turn_, 1, now);
+    default:
+        return stop();
+    }
+}
+
+DriveKeys::Action DriveKeys::press(Axis &axis, double sign, double now) {
+    axis = {sign, now + held_s};
+    return Action::None;
+}
+
+DriveKeys::Action DriveKeys::stop() {
+    way_ = turn_ = {};
+    return Action::Stop;
+}
+
+Twist2D DriveKeys::wish(double now) const {
+    const auto share = [now](const Axis &axis) { return now < axis.until ? axis.sign : 0; };
+    return {share(way_) * speed_, 0, share(turn_) * speed_ * turnOfSpeed};
+}
+
+struct KeyTerminal::State {
+    termios settings{};
+};
+
+KeyTerminal::KeyTerminal() {
+    State state;
+    if (::tcgetattr(STDIN_FILENO, &state.settings) != 0)
+        return;
+    before_ = std::make_unique<State>(state);
+    termios keys = state.settings;
+    keys.c_lflag &= ~tcflag_t(ICANON | ECHO);
+    keys.c_cc[VSUSP] = keys.c_cc[VQUIT] = _POSIX_VDISABLE;
+    keys.c_cc[VMIN] = 1;
+    keys.c_cc[VTIME] = 0;
+    ::tcsetattr(STDIN_FILENO, TCSANOW, &keys);
+}
+
+KeyTerminal::~KeyTerminal() {
+    if (before_)
+        ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_->settings);
+}
+
+QByteArray KeyTerminal::read() {
+    std::array<char, 256> bytes{};
+    const auto count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+    return count > 0 ? QByteArray(bytes.data(), int(count)) : QByteArray();
+}
+
+} // namespace hermes::ctl

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "protocol/messages/Motion.h"
+
+#include <QByteArray>
+#include <memory>
+
+namespace hermes::ctl {
+
+/// What the keys pressed at a terminal ask of a robot. A terminal tells of no key that is let go, so what a
+/// key asks for holds for a moment only; the way and the turn apart, so that two keys in turn drive a bend.
+class DriveKeys {
+public:
+    static constexpr double held_s = 0.3;
+    static constexpr const char *help = "arrows or W A S D drive while they are pressed, + and - change the "
+                                        "speed, Q ends; any other key stops";
+    enum class Action { None, Stop, Quit };
+
+    /// The bytes of a terminal; an escape sequence may come in pieces. now: seconds of a clock that never
+    /// jumps. What is no key of ours stops.
+    Action take(const QByteArray &bytes, double now);
+    /// m/s and rad/s; zero when no key came for held_s.
+    Twist2D wish(double now) const;
+
+private:
+    struct Axis {
+        double sign = 0;
+        double until = 0; ///< holds before it
+    };
+
+    Action takeOne(char key, double now);
+    Action takeArrow(char letter, double now);
+    Action press(Axis &axis, double sign, double now);
+    Action stop();
+
+    Axis way_, turn_;
+    double speed_ = 0.2;  // m/s
+    QByteArray sequence_; // an escape sequence so far
+};
+
+/// The terminal at stdin gives each key at once and shows none, until this goes. Ctrl-C still is a signal;
+/// Ctrl-Z and Ctrl-\ are keys: a program that they had stopped or killed could not tell the robot to stop.
+class KeyTerminal {
+public:
+    KeyTerminal();
+    ~KeyTerminal();
+    KeyTerminal(const KeyTerminal &) = delete;
+    KeyTerminal &operator=(const KeyTerminal &) = delete;
+
+    /// What was typed; empty: the terminal is gone.
+    static QByteArray read();
+
+private:
+    struct State;
+    std::unique_ptr<State> before_;
+};
+
+} // namespace hermes::ctl

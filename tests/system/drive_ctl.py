@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""hermesctl drive on a simulated robot: it moves while hermesctl runs, and stands whichever way that ends."""
+import json
+import math
+import os
+import pty
+import signal
+import subprocess
+import tempfile
+import termios
+import unittest
+
+from support import BINARIES, Process, free_port, simulated_hall, wait_for
+
+HERMESCTL = os.path.join(BINARIES, "hermesctl")
+TOO_LATE = -32004  # on a busy machine the simulated controllers may answer too late; the robot has halted
+
+
+class Keys:
+    """hermesctl drive at a terminal of its own."""
+
+    def __init__(self, address):
+        self.terminal, far = pty.openpty()
+        self.before = termios.tcgetattr(far)
+        self.far = far
+        self.process = subprocess.Popen([HERMESCTL, "drive", address], stdin=far, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
+
+    def press(self, keys):
+        os.write(self.terminal, keys)
+
+    def end(self):
+        shown, said = self.process.communicate(timeout=60)
+        assert termios.tcgetattr(self.far) == self.before, "the terminal is not as it was"
+        os.close(self.terminal)
+        os.close(self.far)
+        return self.process.returncode, shown, said
+
+
+class Drive(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        try:
+            os.nice(-15)  # the daemons too
+        except PermissionError:
+            pass
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.simulator, link = simulated_hall(cls.folder.name)
+        cls.sim = cls.simulator.connect()
+        url = f"serial://{link}?baud=115200"
+        cls.motorcontrol = Process(BINARIES, "motorcontrol", free_port(0), cls.folder.name,
+                                   {"controllers.1.url": url, "controllers.2.url": url})
+        cls.motors = cls.motorcontrol.connect()
+        cls.address = f"127.0.0.1:{cls.motorcontrol.port}"
+
+    @classmethod
+    def tearDownClass(cls):
+        for process in (cls.motorcontrol, cls.simulator):
+            process.stop()
+        cls.folder.cleanup()
+
+    def setUp(self):
+        wait_for("ready", lambda: self.motors.call("motor.state")["ready"])
+        self.motors.call("motor.reset_estop")
+        wait_for("free control", lambda: not self.motors.call("control.state")["held"])
+
+    def speeds(self):
+        twist = self.sim.call("sim.state")["twist"]
+        return math.hypot(twist["vx"], twist["vy"]), twist["omega"]
+
+    def stands(self):
+        return self.speeds() == (0, 0)
+
+    def run_ctl(self, *arguments, status=0):
+        for _ in range(5):
+            done = subprocess.run([HERMESCTL, "drive", self.address, *arguments], stdin=subprocess.DEVNULL,
+                                  capture_output=True, text=True, timeout=60)
+            if done.returncode != 1 or f"({TOO_LATE})" not in done.stderr:
+                break
+            self.setUp()
+        self.assertEqual(done.returncode, status, done.stderr + done.stdout)
+        return done.stdout if status == 0 else done.stderr
+
+    def begun(self, *arguments):
+        """A hermesctl that drives."""
+        process = subprocess.Popen([HERMESCTL, "drive", self.address, *arguments], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        wait_for("motion", lambda: self.speeds()[0] > 0.1 or process.poll() is not None)
+        self.assertIsNone(process.poll())
+        return process
+
+    def test_for_a_time(self):
+        before = self.sim.call("sim.state")["pose"]
+        told = json.loads(self.run_ctl("vx=0.2", "--for", "1.5", "--json"))
+        self.assertTrue(self.stands())
+        self.assertGreaterEqual(told["seconds"], 1.5)
+        after = self.sim.call("sim.state")["pose"]
+        way = math.hypot(after["x"] - before["x"], after["y"] - before["y"])
+        self.assertAlmostEqual(told["moved"]["x"], way, delta=0.01)
+        self.assertGreater(way, 0.1)
+        self.assertFalse(self.motors.call("control.state")["held"])
+        self.assertRegex(self.run_ctl("omega=0.5", "--for=0.5"), r"drove for 0\.\d s and stands; .* degrees, and is at x ")
+
+    def test_signals(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            process = self.begun("vx=0.3", "vy=-0.1")
+            process.send_signal(number)
+            shown, said = process.communicate(timeout=60)
+            self.assertEqual((process.returncode, said), (0, ""))
+            self.assertIn("and stands", shown)
+            self.assertTrue(self.stands())
+
+    def test_killed(self):
+        process = self.begun("vx=0.3")
+        process.kill()
+        process.communicate()
+        wait_for("standing", self.stands, 10)
+
+    def test_connection_lost(self):
+        process = self.begun("vx=0.3")
+        os.kill(self.motorcontrol.process.pid, signal.SIGKILL)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("stops a robot whose driver has gone", said)
+        wait_for("standing", self.stands, 10)
+        self.tearDownClass()
+        self.setUpClass()
+
+    def test_keys(self):
+        keys = Keys(self.address)
+        for key, moves in ((b"w", lambda: self.speeds()[0] > 0.1), (b"\x1b[D", lambda: self.speeds()[1] > 0.2),
+                           (b"d", lambda: self.speeds()[1] < -0.2)):
+            def pressed(key=key, moves=moves):
+                keys.press(key)
+                return moves() or keys.process.poll() is not None
+            wait_for(f"motion by {key}", pressed, 20)
+            wait_for("standing without a key", self.stands, 10)
+        keys.press(b"q")
+        status, shown, said = keys.end()
+        self.assertEqual(status, 0, said)
+        self.assertIn("and stands", shown)
+        self.assertIn("arrows or W A S D", said)
+
+    def test_terminal_that_goes(self):
+        keys = Keys(self.address)
+        wait_for("the control", lambda: self.motors.call("control.state")["held"])
+        os.close(keys.terminal)
+        shown, said = keys.process.communicate(timeout=60)
+        os.close(keys.far)
+        self.assertEqual(keys.process.returncode, 0, said)
+        self.assertIn("and stands", shown)
+
+    def test_refusals(self):
+        self.assertIn("vx is 99, expected a number from -1 to 1 m/s", self.run_ctl("vx=99", status=1))
+        self.assertIn("did you mean", self.run_ctl("omga=1", status=2))
+        self.assertIn('vx is "fast", expected a number of m/s', self.run_ctl("vx=fast", status=2))
+        self.assertIn("vx is there twice", self.run_ctl("vx=1", "vx=0", status=2))
+        self.assertIn("terminal for keys", self.run_ctl(status=2))
+        self.motors.call("control.acquire", client="another", timeout_s=10)
+        self.assertIn("another holds the control", self.run_ctl("vx=0.1", status=1))
+        self.motors.call("control.release")
+        self.motors.call("motor.estop")
+        self.assertIn("motor.reset_estop releases it", self.run_ctl("vx=0.1", status=1))
+
+
+if __name__ == "__main__":
+    unittest.main()
