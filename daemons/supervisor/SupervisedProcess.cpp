@@ -111,6 +111,8 @@ void SupervisedProcess::start() {
     used_s_ = cpu_ = 0;
     QProcessEnvironment environment = QProcessEnvironment::systemEnvironment();
     environment.insert(ProcessFamily::variable, family_);
+    for (const char *const ofService : {"NOTIFY_SOCKET", "WATCHDOG_PID", "WATCHDOG_USEC"})
+        environment.remove(ofService); // the service manager waits for the supervisor's word alone
     process_.setProcessEnvironment(environment);
     process_.start(found(entry_.program), entry_.arguments);
 }
@@ -145,8 +147,8 @@ void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
         status == QProcess::NormalExit ? QString("exit status %1").arg(code) : QString("killed by a signal");
     logInfo("process", QString("%1: ended, %2").arg(entry_.name, lastExit_));
     const bool wasAsked = state_ == State::Stopping;
-    if (lastExit_ == "exit status 2" && !lines_.empty())
-        lastExit_ += ": " + lines_.back(); // what is wrong with its command line or settings
+    if (status == QProcess::NormalExit && code != 0 && !lines_.empty())
+        lastExit_ += ": " + lines_.back(); // what is wrong, mostly
     if (std::exchange(startAfterStop_, false) && wasAsked) {
         ++restarts_;
         return start();

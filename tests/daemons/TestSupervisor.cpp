@@ -20,6 +20,7 @@ private Q_SLOTS:
     void endInOrderIsNotStartedAgain();
     void wrongCommandLineIsNotTriedAgain();
     void aServiceTellsOfAWrongSettingsFile();
+    void processesDoNotSpeakToTheServiceManager();
     void missingProgramIsTold();
     void stubbornProcessIsKilled();
     void whatAProcessLeavesBehindIsKilled_data();
@@ -164,6 +165,13 @@ void TestSupervisor::aServiceTellsOfAWrongSettingsFile() {
     for (const QJsonValue &process : call("process.list")->toObject()["processes"].toArray())
         QCOMPARE(process.toObject()["state"].toString(), QString("stopped"));
     QVERIFY(!call("settings.save").ok());
+}
+
+void TestSupervisor::processesDoNotSpeakToTheServiceManager() {
+    qputenv("NOTIFY_SOCKET", "/nowhere/notify");
+    launch({shell("one", "echo \"heard: $NOTIFY_SOCKET\"; sleep 100")});
+    qunsetenv("NOTIFY_SOCKET");
+    QTRY_COMPARE(call("process.output", {{"name", "one"}})->toArray(), QJsonArray{"heard: "});
 }
 
 void TestSupervisor::wrongCommandLineIsNotTriedAgain() {
