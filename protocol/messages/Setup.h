@@ -10,17 +10,17 @@ namespace hermes {
 
 /// A serial line of a computer, and what was found at its far end.
 struct FoundSerial {
-    QString path;   ///< that stays the same where there is such a one, as in /dev/serial/by-id
-    QString device; ///< as /dev/ttyUSB0
-    QString about;  ///< what the system knows of the adapter, or empty
-    QString kind;   ///< one of kinds()
-    QString text;   ///< the version of a controller, a sentence, or why there is nothing
-    int baud = 0;   ///< at which it was understood; 0: it was not
+    QString path;               ///< that stays the same where there is such a one, as in /dev/serial/by-id
+    QString device;             ///< as /dev/ttyUSB0
+    QString about;              ///< what the system knows of the adapter, or empty
+    QString kind;               ///< one of kinds()
+    QString text;               ///< the version of a controller, a sentence, or why there is nothing
+    int baud = 0;               ///< at which it was understood; 0: it was not
     std::vector<int> addresses; ///< at which a controller answered
     bool anyAddress = false;    ///< it answers at all of them, as one on USB does
 
-    /// "roboclaw", "nmea", "talker" (says something else by itself), "silent", "not_asked" (silent, and nothing
-    /// was sent to it), "in_use", "failed".
+    /// "roboclaw", "nmea", "talker" (says something else by itself), "silent", "not_asked" (silent, and
+    /// nothing was sent to it), "in_use", "failed".
     static QStringList kinds();
 };
 
@@ -30,7 +30,7 @@ struct FoundLidar {
     QString model;   ///< as "VLP-16"; empty: an unknown one
     QString key;     ///< as the setting decode.model of hermes-velodynelogger has it; empty: an unknown one
     int port = 0;    ///< at which they came
-    double rate_hz = 0;    ///< of data packets
+    double rate_hz = 0;     ///< of data packets
     bool positions = false; ///< it sends position packets, too
 };
 
