@@ -26,7 +26,7 @@ public:
     DeviceSearch &operator=(const DeviceSearch &) = delete;
 
     bool isRunning() const { return isRunning_; }
-    /// Seven seconds at most. Only when none is running.
+    /// Eight seconds at most. Only when none is running.
     void begin(const Options &options, const Done &done);
 
 private:

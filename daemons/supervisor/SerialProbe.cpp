@@ -12,7 +12,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/ioctl.h>
-#include <termios.h>
 #include <unistd.h>
 
 namespace hermes::supervisor {
@@ -95,14 +94,18 @@ QString SerialProbe::open() {
     }
     if (::isatty(port_) == 0 || ::ioctl(port_, TIOCEXCL) != 0)
         return "is no serial line";
+    before_.emplace();
+    ::tcgetattr(port_, &*before_);
     return {};
 }
 
 void SerialProbe::close() {
     if (port_ < 0)
         return;
-    if (found_.kind != "in_use")
+    if (before_) {
+        ::tcsetattr(port_, TCSANOW, &*before_);
         ::ioctl(port_, TIOCNXCL);
+    }
     ::close(port_);
     port_ = -1;
 }

@@ -4,6 +4,8 @@
 #include "protocol/messages/Setup.h"
 
 #include <atomic>
+#include <optional>
+#include <termios.h>
 
 namespace hermes::supervisor {
 
@@ -18,7 +20,7 @@ public:
         , mayAsk_(mayAsk)
         , isCancelled_(isCancelled) {}
 
-    /// Six seconds at most.
+    /// Eight seconds at most.
     FoundSerial run();
 
 private:
@@ -39,6 +41,7 @@ private:
     const std::atomic<bool> &isCancelled_;
     FoundSerial found_;
     int port_ = -1;
+    std::optional<termios> before_; // its settings
 };
 
 } // namespace hermes::supervisor

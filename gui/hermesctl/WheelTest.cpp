@@ -38,7 +38,8 @@ Result<double> turn(Client &motors, const Arguments &arguments, const QString &w
         driver.end();
     });
     const int wheels = motors.subscribe("wheels", {{"queue", 1}}, [&](const TopicUpdate &update) {
-        if (!turning.isValid() || !turning.hasExpired(int(settled_s * 1000)))
+        const double seconds = turning.isValid() ? double(turning.elapsed()) / 1000 : 0;
+        if (seconds < settled_s || seconds > turn_s) // it speeds up, or brakes
             return;
         sum += update.json()[wheel]["speed"].toDouble();
         ++count;

@@ -198,7 +198,9 @@ void TestMotorControl::oneWheelTurnsAndStopsByItself() {
     QCOMPARE(failure("motor.wheels", {{"front_left", 1}}).code, int(ErrorCode::ControlHeld));
     call("control.acquire");
     call("motor.wheels", {{"front_left", 1}});
-    const auto speed = [this](const char *wheel) { return state()["wheels"][wheel]["speed"].toDouble(); };
+    const auto speed = [this](const char *wheel) {
+        return valueAt(state(), QString("wheels.%1.speed").arg(wheel)).toDouble();
+    };
     QTRY_VERIFY(speed("front_left") > 0.8);
     for (const char *wheel : {"front_right", "rear_left", "rear_right"})
         QCOMPARE(speed(wheel), 0.0);

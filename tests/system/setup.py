@@ -143,9 +143,15 @@ class Setup(unittest.TestCase):
         self.assertIn(f"process {os.getpid()}", findings["problems"][0])
         port.close()
 
+    @staticmethod
+    def sleeper(name, **entry):
+        """A process of that name that is in nobody's way."""
+        return {"name": name, "program": "/bin/sleep", "arguments": ["1000"], **entry}
+
     def test_from_nothing_to_settings(self):
         self.simulator()
-        supervisor = self.supervisor([self.motors, self.gps])
+        names = ["motorcontrol", "seriallogger", "velodynelogger", "scanmatcher"]
+        supervisor = self.supervisor([self.motors, self.gps], [self.sleeper(name) for name in [*names, "softwaretrigger"]])
         text = self.ctl("--yes")
         self.assertIn("motorcontrol controllers.1.address = 128", text)
         url = f"serial://{self.motors}?baud=115200"
@@ -153,11 +159,10 @@ class Setup(unittest.TestCase):
                                                                      "2": {"url": url, "address": 129}}})
         self.assertEqual(self.file("seriallogger")["ports"][0]["view"], "nmea")
         self.assertEqual(self.file("velodynelogger"), {"decode": {"model": "hdl32e"}})
-        started = {one["name"]: one for one in supervisor.call("process.list")["processes"]}
-        self.assertEqual(set(started), {"motorcontrol", "seriallogger", "velodynelogger", "scanmatcher"})
-        for one in started.values():
-            self.assertTrue(one["autostart"])
-            self.assertIn(f"{self.etc}/{one['name']}.json", one["arguments"])
+        processes = {one["name"]: one for one in supervisor.call("process.list")["processes"]}
+        self.assertEqual([name for name, one in processes.items() if one["autostart"]], names)
+        self.assertEqual(processes["motorcontrol"]["state"], "running")
+        self.assertEqual(processes["softwaretrigger"]["state"], "stopped")
 
     def test_ends_and_starts_its_own_processes(self):
         self.simulator()
@@ -216,7 +221,7 @@ class Setup(unittest.TestCase):
         self.assertEqual(self.file("motorcontrol"), {})
         self.assertEqual(supervisor.call("settings.get", path="robot"), "")
         self.assertIn("nothing to undo", self.ctl("--undo", status=1))
-        self.assertIn('no sample "../quiet"', self.ctl("../quiet", status=1))
+        self.assertIn('no sample "../quiet"', self.ctl("../quiet", status=2))
         self.assertIn("exclude each other", self.ctl("quiet", "--list", status=2))
         self.assertIn("this is no terminal", self.ctl(status=2))
 
@@ -229,6 +234,8 @@ class Setup(unittest.TestCase):
                 daemon = os.path.join(BINARIES, "hermes-" + name.removesuffix(".json"))
                 done = subprocess.run([daemon, "--check", "--config", path], capture_output=True, text=True, timeout=30)
                 self.assertEqual(done.returncode, 0, f"{path}: {done.stderr}")
+                if sample == "simulator":  # it shows what there is to change, too
+                    continue
                 shown = subprocess.run([daemon, "--print-settings"], capture_output=True, text=True, timeout=30)
                 with open(path, encoding="utf-8") as file:
                     self.differ(path, json.load(file), json.loads(shown.stdout))
@@ -241,32 +248,51 @@ class Setup(unittest.TestCase):
             else:
                 self.assertNotEqual(value, defaults[name], f"{path}: {name} is the default")
 
-    def wheel_test(self, motors, answers):
+    def at_terminal(self, arguments, answers):
         """What hermesctl shows at a terminal that gives these answers, each when it is asked for."""
         terminal, far = pty.openpty()
         settings = termios.tcgetattr(far)
         settings[3] &= ~termios.ECHO
         termios.tcsetattr(far, termios.TCSANOW, settings)
-        process = subprocess.Popen([HERMESCTL, "setup", "--wheels", "--daemons", f"{self.address},{motors}"], stdin=far,
-                                   stdout=far, stderr=far, close_fds=True)
+        process = subprocess.Popen([HERMESCTL, "setup", *arguments], stdin=far, stdout=far, stderr=far)
         os.close(far)
-        shown = ""
-        for question, answer in answers:
-            begin = len(shown)
-            while question not in shown[begin:]:
-                try:
-                    shown += os.read(terminal, 4096).decode()
-                except OSError:
-                    self.fail(shown)
-            os.write(terminal, answer.encode() + b"\n")
-        process.wait(60)
-        try:
-            while True:
-                shown += os.read(terminal, 4096).decode()
-        except OSError:
-            pass
-        os.close(terminal)
-        return process.returncode, shown
+        shown, begin = "", 0
+        with open(terminal, "rb", buffering=0) as output:
+            for question, answer in answers:
+                while question not in shown[begin:]:
+                    try:
+                        shown += output.read(4096).decode()
+                    except OSError:
+                        self.fail(f"{question} was not asked: {shown}")
+                begin = shown.index(question, begin) + len(question)
+                os.write(terminal, answer.encode() + b"\n")
+            try:
+                while True:
+                    shown += output.read(4096).decode()
+            except OSError:  # it has ended
+                return process.wait(60), shown
+
+    def test_questions(self):
+        self.simulator()
+        samples = os.path.join(self.folder, "samples")
+        os.makedirs(os.path.join(samples, "rover"))
+        for name, settings in (("supervisor", {"processes": [self.sleeper("motorcontrol")]}),
+                               ("motorcontrol", {"motion": {"vx": 0.5}})):
+            with open(os.path.join(samples, "rover", name + ".json"), "w", encoding="utf-8") as file:
+                json.dump(settings, file)
+        supervisor = self.supervisor([self.motors], samples=samples)
+        arguments = ("--daemons", self.address)
+        status, shown = self.at_terminal(arguments, [("Which robot is it? rover;", "submarine"), ("Which robot is it?", "rover"),
+                                                     ("wheels off the ground", "y"), ("Write these settings?", "no")])
+        self.assertEqual(status, 1, shown)
+        self.assertIn("nothing was changed", shown)
+        self.assertEqual(os.listdir(self.etc), ["supervisor.json"])
+        status, shown = self.at_terminal(arguments, [("Which robot is it?", "rover"), ("wheels off the ground", "y"),
+                                                     ("Write these settings?", "y"), ("Test the wheels?", "n")])
+        self.assertEqual(status, 0, shown)
+        self.assertEqual(self.file("motorcontrol")["motion"], {"vx": 0.5})
+        self.assertEqual(self.file("motorcontrol")["controllers"]["2"]["address"], 129)
+        self.assertEqual(supervisor.call("process.list")["processes"][0]["state"], "running")
 
     def test_wheels(self):
         _, simulator = self.simulator()
@@ -274,12 +300,12 @@ class Setup(unittest.TestCase):
         url = f"serial://{self.motors}?baud=115200"
         process, motors = self.start("motorcontrol", {"controllers.1.url": url, "controllers.2.url": url})
         wait_for("ready", lambda: motors.call("motor.state")["ready"])
-        address = f"127.0.0.1:{process.port}"
-        status, shown = self.wheel_test(address, [("lifted", "no")])
+        arguments = ("--wheels", "--daemons", f"{self.address},127.0.0.1:{process.port}")
+        status, shown = self.at_terminal(arguments, [("lifted", "no")])
         self.assertEqual(status, 1, shown)
         self.assertIn("no wheel was turned", shown)
         for _ in range(3):  # on a busy machine the simulated controllers may answer too late
-            status, shown = self.wheel_test(address, [
+            status, shown = self.at_terminal(arguments, [
                 ("lifted", "lifted"), ("What turned?", "b"), ("What turned?", "what"), ("What turned?", "rl"),
                 ("What turned?", "frb"), ("What turned?", ""), ("Write these settings?", "y")])
             if status == 0:
