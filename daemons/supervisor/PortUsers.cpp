@@ -6,15 +6,34 @@
 #include <QSet>
 #include <cerrno>
 #include <csignal>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace hermes::supervisor {
 namespace {
 
-constexpr const char *terminalMaster = "/dev/ptmx"; // of pseudo-terminals; some have it in /dev/pts
+const QString farEnd = "far end of "; // of a pseudo-terminal, before its number
 
 QStringList processes() {
     return QDir("/proc").entryList({"[1-9]*"}, QDir::Dirs);
+}
+
+/// Which pseudo-terminal a descriptor is the far end of (pty(7)); empty: it is none.
+QString farEndOf(const QString &pid, const QString &descriptor) {
+    QFile info("/proc/" + pid + "/fdinfo/" + descriptor);
+    if (info.open(QIODevice::ReadOnly))
+        for (const QByteArray &line : info.readAll().split('\n'))
+            if (line.startsWith("tty-index:"))
+                return QString::fromLatin1(line.mid(line.indexOf(':') + 1).trimmed());
+    return {};
+}
+
+/// Whether a descriptor leads to the file of that name here: containers have pseudo-terminals of their own.
+bool isOurs(const QString &descriptor, const QString &file) {
+    struct stat theirs {
+    }, ours{};
+    return ::stat(QFile::encodeName(descriptor).constData(), &theirs) == 0 &&
+           ::stat(QFile::encodeName(file).constData(), &ours) == 0 && theirs.st_dev == ours.st_dev;
 }
 
 /// What the open descriptors of a process lead to; of other users' processes nothing.
@@ -25,8 +44,10 @@ QSet<QString> openFiles(const QString &pid) {
         char target[4096];
         const auto size =
             ::readlink(QFile::encodeName(folder.filePath(descriptor)).constData(), target, sizeof target);
-        if (size > 0)
-            files.insert(QFile::decodeName(QByteArray(target, int(size))));
+        const QString file = size > 0 ? QFile::decodeName(QByteArray(target, int(size))) : QString();
+        if (file.startsWith("/dev/pts/") && !isOurs(folder.filePath(descriptor), file))
+            continue;
+        files.insert(file.endsWith("/ptmx") ? farEnd + farEndOf(pid, descriptor) : file);
     }
     return files;
 }
@@ -39,8 +60,8 @@ QString nameOf(const QString &pid) {
 }
 
 bool isFarEnd(const QString &device, const QSet<QString> &files) {
-    return device.startsWith("/dev/pts/") &&
-           (files.contains(terminalMaster) || files.contains("/dev/pts/ptmx"));
+    const QString nearEnds = "/dev/pts/";
+    return device.startsWith(nearEnds) && files.contains(farEnd + device.mid(nearEnds.size()));
 }
 
 bool isConsole(const QString &device) {
