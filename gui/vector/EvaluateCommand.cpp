@@ -24,11 +24,7 @@ struct EvaluateCommand {
             valueOrFail(vectorlib::readCarmenLog(logInput.stream(), logInput.name())),
             valueOrFail(vectorlib::readTum(trajectoryInput.stream(), trajectoryInput.name())),
             trajectoryInput.name());
-        if (evaluation.comparedPoses() * 2 < evaluation.givenPoses())
-            std::cerr << "hermes-vector: "
-                      << "only " << evaluation.comparedPoses() << " of " << evaluation.givenPoses()
-                      << " poses of " << trajectory << " have a scan of their time in " << log
-                      << ": is it this log's?\n";
+        evaluation.expectSameDrive(logInput.name(), trajectoryInput.name(), std::cerr);
         out << evaluation.summary().dump(2) << '\n';
         if (svg)
             evaluation.draw(*svg, fileName(trajectory) + " beside the reference of " + fileName(log));

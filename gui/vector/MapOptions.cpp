@@ -61,7 +61,9 @@ void MapOptions::addFiles(CLI::App &command) {
         .add_option("--summary,--out", summary,
                     "The summary, or the points of --scan; standard output when not given")
         ->type_name("FILE");
-    command.add_option("--svg", svg, "Also draw a picture of map and trajectory")->type_name("FILE");
+    command.add_option("--svg", svg, "Also draw a picture of map and trajectory")
+        ->check(pictureName())
+        ->type_name("FILE");
 }
 
 void MapOptions::addWays(CLI::App &command) {

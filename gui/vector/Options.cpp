@@ -3,6 +3,7 @@
 #include "vectorlib/io/TextInput.h"
 
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 #include <sstream>
 
@@ -51,6 +52,16 @@ CLI::Validator aboveZero() {
     return numberThat("a number above 0", [](double v) { return v > 0; });
 }
 
+CLI::Validator pictureName() {
+    const auto check = [](const std::string &path) {
+        const std::string extension = std::filesystem::path(path).extension().string();
+        return extension.empty() || extension == ".svg"
+                   ? std::string()
+                   : "found " + path + ", expected a name that ends with .svg";
+    };
+    return {check, ""};
+}
+
 CLI::Validator poseText() {
     return CLI::Validator(
         [](const std::string &text) {
@@ -77,7 +88,7 @@ void OutputOptions::addTo(CLI::App &command, bool withSvg) {
     command.add_option("--out", out, "Write the result to this file instead of standard output")
         ->type_name("FILE");
     if (withSvg)
-        command.add_option("--svg", svg, "Also draw a picture")->type_name("FILE");
+        command.add_option("--svg", svg, "Also draw a picture")->check(pictureName())->type_name("FILE");
     command.add_flag("--force", force, "Overwrite files that exist");
 }
 

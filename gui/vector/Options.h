@@ -26,6 +26,8 @@ CLI::Validator between(double low, double high);
 CLI::Validator wholeNumber(double low, double high);
 /// A finite number above 0.
 CLI::Validator aboveZero();
+/// A file that a picture may go to: its name ends with .svg, or has no extension, as `-` and /dev/stdout.
+CLI::Validator pictureName();
 /// Three finite numbers `x,y,theta`.
 CLI::Validator poseText();
 /// The pose in a text that poseText() has let through; metres, radians.

@@ -181,6 +181,67 @@ private Q_SLOTS:
         QVERIFY2(r.err.contains("0 of them at the time"), r.err.constData());
     }
 
+    // At the same times, as many poses, a similar robot: only the way is another one.
+    void theTrajectoryOfAnotherDriveIsRefused() {
+        std::mt19937 random(8);
+        for (const int poses : {30, 100, 1000}) {
+            const Drive drive = wandering(random, poses);
+            writeLog(drive);
+            writeTrajectory(wandering(random, poses));
+            const Result other = evaluate({"--svg", path("a.svg")});
+            QCOMPARE(other.status, 1);
+            QVERIFY2(other.err.contains("a.tum") && other.err.contains("a.log"), other.err.constData());
+            QVERIFY2(other.err.contains("expected at most 70 %"), other.err.constData());
+            QVERIFY(other.out.isEmpty() && !QFile::exists(path("a.svg")));
+        }
+    }
+    // A drive that is bent: its turns are off by as much as 3 degrees a step, and by 15 degrees in ten
+    // places.
+    void aBadTrajectoryIsStillEvaluated() {
+        std::mt19937 random(9);
+        std::uniform_real_distribution<double> error(-0.05, 0.05);
+        const Drive drive = wandering(random, 400);
+        writeLog(drive);
+        Drive bent = drive;
+        double bend = 0;
+        for (std::size_t i = 0; i < bent.size(); ++i) {
+            bend += error(random) + (i % 40 == 0 ? 0.26 : 0);
+            bent[i].theta += bend;
+        }
+        writeTrajectory(bent);
+        const Result r = evaluate();
+        QVERIFY2(r.status == 0, r.err.constData());
+        QVERIFY(json(r.out)["revisits"].toObject()["mean_deg"].toDouble() > 3);
+    }
+    void fewPosesWithAScanMustTurnAsTheLogDoes_data() {
+        QTest::addColumn<int>("some");
+        QTest::addColumn<int>("status");
+        QTest::addColumn<QByteArray>("message");
+        QTest::newRow("too few to tell") << 10 << 1 << QByteArray("found only 10 of 299 poses");
+        QTest::newRow("a part of them") << 60 << 0 << QByteArray("only 60 of 299 poses");
+        QTest::newRow("most of them") << 200 << 0 << QByteArray();
+    }
+    // The others are between two scans, and one is missing, so that they are not taken one by one.
+    void fewPosesWithAScanMustTurnAsTheLogDoes() {
+        QFETCH(int, some);
+        QFETCH(int, status);
+        QFETCH(QByteArray, message);
+        std::mt19937 random(10);
+        const Drive drive = wandering(random, 300);
+        writeLog(drive);
+        QByteArray tum;
+        for (int i = 0; i + 1 < int(drive.size()); ++i) {
+            const Pose2D &p = drive[std::size_t(i)];
+            tum += numbers({stampOf(std::size_t(i)) + (i < some ? 0 : 0.05), p.x, p.y, 0, 0, 0,
+                            std::sin(p.theta / 2), std::cos(p.theta / 2)}) +
+                   '\n';
+        }
+        write(path("a.tum"), tum);
+        const Result r = evaluate();
+        QVERIFY2(r.status == status && r.err.contains(message), r.err.constData());
+        QCOMPARE(r.err.isEmpty(), message.isEmpty());
+    }
+
     // As in logs whose stamps were rounded: which scan a pose belongs to cannot be told.
     void tiedStampsTellNoScan() {
         std::mt19937 random(4);

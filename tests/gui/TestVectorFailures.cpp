@@ -149,6 +149,25 @@ private Q_SLOTS:
         QCOMPARE(files(), QStringList{"out"});
     }
 
+    void picturesAreNamedAsWhatTheyAre_data() {
+        QTest::addColumn<QString>("name");
+        QTest::newRow("png") << "a.png";
+        QTest::newRow("compressed") << "a.svg.gz";
+        QTest::newRow("capitals") << "a.PNG";
+    }
+    void picturesAreNamedAsWhatTheyAre() {
+        QFETCH(QString, name);
+        const QString picture = path(qPrintable(name));
+        for (const QStringList &command :
+             {QStringList{"segment", data("room.csv")}, QStringList{"map", data("corrected.log")}}) {
+            const Result r = run(command + QStringList{"--svg", picture});
+            QCOMPARE(r.status, 2);
+            QVERIFY2(
+                r.err.contains("--svg: found " + picture.toUtf8() + ", expected a name that ends with .svg"),
+                r.err.constData());
+            QVERIFY(files().isEmpty());
+        }
+    }
     void longNamesAreToldBeforeTheWork() {
         const QString name = folder_.path(QByteArray(300, 'n').constData());
         const Result r = run({"segment", path("missing.csv"), "--out", name});

@@ -155,6 +155,28 @@ private Q_SLOTS:
         QVERIFY(table->further[0] == (std::vector<std::string>{"hall", "red"}));
     }
 
+    /// What earlier versions wrote, with all digits, and what a later one may write, with columns that this
+    /// one does not know, in any order.
+    void mapsOfOtherVersionsAreRead() {
+        const char *const texts[] = {
+            "id,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy\n"
+            "7,1.0000004321,2,4,2.0000001234,31,0.0098765432109,3,2.5,2.0000004,23.25123456789,0."
+            "001234567891,0.003\n",
+            "id,kind,x1,y1,x2,y2,n,sigma,observations,mean_x,mean_y,xx,xy,yy,seen\n"
+            "7,1,1.000000,2,4,2.000000,31,0.009877,3,2.5,2.000000,23.251235,0.001235,0.003,1795500000\n"};
+        for (const char *const text : texts) {
+            std::istringstream in(text);
+            const auto map = readMapCsv(in, "f");
+            QVERIFY2(map.ok(), text);
+            QCOMPARE(map->size(), std::size_t(1));
+            const MapEdge &edge = map->front();
+            QCOMPARE(edge.id, decltype(edge.id)(7));
+            QCOMPARE(edge.observations, 3);
+            QVERIFY(std::abs(edge.segment.begin().x - 1) < 1e-6 && std::abs(edge.segment.end().y - 2) < 1e-6);
+            QVERIFY(std::abs(edge.sigma - 0.009877) < 1e-6 && std::abs(edge.sums.xx - 23.251235) < 1e-6);
+        }
+    }
+
     /// What was written is read back as exactly as it means something, and is written again as it stood.
     void mapComesBack() {
         std::mt19937 random(7);

@@ -2,10 +2,12 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/evaluation/Revisits.h"
+#include "vectorlib/geometry/Angle.h"
 #include "vectorlib/io/Svg.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 namespace hermes::vector {
@@ -90,6 +92,45 @@ Transformation2D Evaluation::motionOf(const Pair &from, const Pair &to) const {
 
 Transformation2D Evaluation::referenceOf(const Pair &from, const Pair &to) const {
     return Transformation2D(reference_[from.scan]).inverse() * Transformation2D(reference_[to.scan]);
+}
+
+// How far off the turns of a hundred stretches of the drive are, of all that it turns: 0 is right, 1 as wrong
+// as no turn at all. Nothing where there are too few stretches, or they turn too little, to tell.
+std::optional<double> Evaluation::turnsMissed() const {
+    constexpr std::size_t most = 100, fewest = 20;
+    constexpr double least = 0.05; // radians a stretch: several times what a reference is off
+    const std::size_t stride = std::max<std::size_t>(1, pairs_.size() / most);
+    double turned = 0, missed = 0;
+    std::size_t stretches = 0;
+    for (std::size_t i = stride; i < pairs_.size(); i += stride, ++stretches) {
+        const double turn = referenceOf(pairs_[i - stride], pairs_[i]).alpha();
+        turned += std::abs(vectorlib::wrapAngle(turn));
+        missed += std::abs(vectorlib::wrapAngle(motionOf(pairs_[i - stride], pairs_[i]).alpha() - turn));
+    }
+    if (stretches < fewest || turned < least * double(stretches))
+        return std::nullopt;
+    return missed / turned;
+}
+
+void Evaluation::expectSameDrive(const std::string &log, const std::string &trajectory,
+                                 std::ostream &warnings) const {
+    constexpr double most = 0.7; // docs/hermes-vector.md has what right and wrong logs have
+    const std::optional<double> missed = turnsMissed();
+    const std::string found = std::to_string(pairs_.size()) + " of " + std::to_string(poses_) +
+                              " poses at the time of one of the " + std::to_string(reference_.size()) +
+                              " scans of " + log;
+    if (missed && *missed > most)
+        throw Failure(trajectory + ": found " + found + ", but turns that are off by " +
+                      std::to_string(std::lround(*missed * 100)) + " % of the log's, expected at most " +
+                      std::to_string(std::lround(most * 100)) +
+                      " %: it is another log's, or has no headings");
+    if (pairs_.size() * 2 >= std::min(poses_, reference_.size()))
+        return;
+    if (!missed)
+        throw Failure(trajectory + ": found only " + found +
+                      ", expected half of them, or enough to see that they turn as the log does: is it "
+                      "another log's?");
+    warnings << "hermes-vector: " << trajectory << ": only " << found << '\n';
 }
 
 void Evaluation::compareConsecutive() {

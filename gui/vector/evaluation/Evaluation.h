@@ -4,6 +4,7 @@
 #include "vectorlib/io/CarmenLog.h"
 #include "vectorlib/io/Tum.h"
 
+#include <optional>
 #include <ostream>
 
 namespace hermes::vector {
@@ -25,8 +26,10 @@ public:
                const std::string &name);
 
     nlohmann::ordered_json summary() const;
-    std::size_t comparedPoses() const { return pairs_.size(); }
-    std::size_t givenPoses() const { return poses_; }
+    /// Throws Failure, which names both files, where this is the trajectory of another log: it turns where
+    /// the reference does not, or so few poses have a scan that their turns do not show that it is this
+    /// one's. Fewer than half with a scan whose turns agree are a warning.
+    void expectSameDrive(const std::string &log, const std::string &trajectory, std::ostream &warnings) const;
     /// Both trajectories, laid on each other, and how far off the motions between places met again are.
     void draw(std::ostream &svg, const std::string &title) const;
 
@@ -43,6 +46,7 @@ private:
     void pairOneByOne(const std::vector<vectorlib::StampedPose> &trajectory);
     void pairByStamps(const vectorlib::CarmenLog &log, const std::vector<vectorlib::StampedPose> &trajectory,
                       const std::string &name);
+    std::optional<double> turnsMissed() const;
     void compareConsecutive();
     void compareRevisits();
     vectorlib::Transformation2D motionOf(const Pair &from, const Pair &to) const;

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# The unit of the service as systemd sees it: nothing wrong, and little that it could do beyond its work. The settings of whole robots
+# are such as the daemons take.
+set -euo pipefail
+command -v systemd-analyze >/dev/null || { echo "skipped: needs systemd-analyze (package systemd)"; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+sed "s,@CMAKE_INSTALL_FULL_BINDIR@,$HERMES_BIN," "$HERMES_SOURCE/deploy/systemd/hermes-supervisor.service.in" >"$work/hermes-supervisor.service"
+cd "$work"
+
+said=$(SYSTEMD_UNIT_PATH="$work:" systemd-analyze verify --man=no --recursive-errors=no ./hermes-supervisor.service 2>&1) && [ -z "$said" ] ||
+    { echo "systemd-analyze verify: $said"; exit 1; }
+systemd-analyze security --no-pager --offline=true --threshold=30 ./hermes-supervisor.service >security ||
+    { cat security && echo "expected an exposure of at most 3.0"; exit 1; }
+tail -1 security
+
+count=0
+for file in "$HERMES_SOURCE"/deploy/settings/*/*.json; do
+    "$HERMES_BIN/hermes-$(basename "$file" .json)" --check --config "$file" >/dev/null
+    count=$((count + 1))
+done
+echo "$count settings files are right"
+[ "$count" -ge 6 ]
