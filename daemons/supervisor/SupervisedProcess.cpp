@@ -16,12 +16,6 @@ namespace {
 
 constexpr int longestLine = 4096;
 
-/// Beside the supervisor first: an installation that is not in PATH finds its own programs.
-QString found(const QString &program) {
-    const QString beside = QCoreApplication::applicationDirPath() + "/" + program;
-    return !program.contains('/') && QFileInfo(beside).isExecutable() ? beside : program;
-}
-
 } // namespace
 
 QString toString(SupervisedProcess::State state) {
@@ -79,6 +73,11 @@ SupervisedProcess::SupervisedProcess(const ProcessEntry &entry, QObject *parent)
                                   .arg(double(killAfter.count()) / 1000));
         process_.kill();
     });
+}
+
+QString SupervisedProcess::found(const QString &program) {
+    const QString beside = QCoreApplication::applicationDirPath() + "/" + program;
+    return !program.contains('/') && QFileInfo(beside).isExecutable() ? beside : program;
 }
 
 SupervisedProcess::~SupervisedProcess() {

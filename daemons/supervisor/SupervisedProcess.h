@@ -25,6 +25,10 @@ public:
     explicit SupervisedProcess(const ProcessEntry &entry, QObject *parent = nullptr);
     ~SupervisedProcess() override;
 
+    /// Where a program is: beside the supervisor first, so that an installation that is not in PATH finds its
+    /// own.
+    static QString found(const QString &program);
+
     const ProcessEntry &entry() const { return entry_; }
     /// A running process is started again with what is new.
     void setEntry(const ProcessEntry &entry);

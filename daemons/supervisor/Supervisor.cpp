@@ -55,6 +55,17 @@ Supervisor::Supervisor()
     runWithWrongFile();
     declareSettings();
     declareCommands();
+    setup_ = std::make_unique<Setup>(
+        settings(),
+        [this] {
+            std::vector<SupervisedProcess *> all;
+            for (const auto &process : processes_)
+                all.push_back(process.get());
+            return all;
+        },
+        nullptr);
+    for (const Command &command : setup_->commands())
+        addCommand(command);
     addTopic(Topic("processes", "What process.list gives, each second and at each change")
                  .carries<ProcessesMessage>()
                  .snapshot([this] { return Outgoing(list()); }));
@@ -81,6 +92,8 @@ void Supervisor::declareSettings() {
             .group("Processes")
             .byDefault(standard));
     settings().addRule(namesAreUnique);
+    for (const Field &field : Setup::settingFields())
+        addSetting(field);
 }
 
 void Supervisor::declareCommands() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/daemon/Daemon.h"
+#include "daemons/supervisor/Setup.h"
 #include "daemons/supervisor/SupervisedProcess.h"
 
 #include <memory>
@@ -37,6 +38,7 @@ private:
 
     std::vector<std::unique_ptr<SupervisedProcess>> processes_;
     QTimer timer_;
+    std::unique_ptr<Setup> setup_;
 };
 
 } // namespace hermes::supervisor

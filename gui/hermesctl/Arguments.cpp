@@ -22,10 +22,11 @@ struct Flag {
 };
 
 const Flag allFlags[] = {
-    {"--csv", &Arguments::csv},         {"--json", &Arguments::json}, {"--follow", &Arguments::follow},
-    {"--loop", &Arguments::loop},       {"--all", &Arguments::all},   {"--force", &Arguments::force},
-    {"--network", &Arguments::network}, {"--help", &Arguments::help}, {"-h", &Arguments::help},
-    {"--version", &Arguments::version},
+    {"--csv", &Arguments::csv},         {"--json", &Arguments::json},     {"--follow", &Arguments::follow},
+    {"--loop", &Arguments::loop},       {"--all", &Arguments::all},       {"--force", &Arguments::force},
+    {"--network", &Arguments::network}, {"--help", &Arguments::help},     {"-h", &Arguments::help},
+    {"--version", &Arguments::version}, {"--list", &Arguments::list},     {"--yes", &Arguments::yes},
+    {"--undo", &Arguments::undo},       {"--wheels", &Arguments::wheels},
 };
 
 bool *flagOf(Arguments &arguments, const QString &option) {

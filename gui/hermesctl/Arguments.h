@@ -27,6 +27,10 @@ struct Arguments {
     bool all = false;
     bool network = false;
     bool loop = false;
+    bool list = false;
+    bool yes = false;
+    bool undo = false;
+    bool wheels = false;
     bool csv = false;
     bool json = false;
     bool follow = false;

@@ -15,6 +15,9 @@ using RobotCommand = Result<void> (*)(const Arguments &arguments);
 /// The daemons that answer at their default ports on a host, one a line: name, state, version, address.
 Result<void> listDaemons(const Arguments &arguments);
 
+/// Finds what is plugged in, through the supervisor, and writes the settings for it.
+Result<void> setUp(const Arguments &arguments);
+
 /// All loggers begin one session, or none does and the error tells what was taken back.
 Result<void> recordStart(const Arguments &arguments);
 /// Error: what is missing or does not agree.

@@ -120,6 +120,8 @@ private:
             return sessions();
         case Word::Shell:
             return plain(completionShells());
+        case Word::Sample:
+            return samples();
         case Word::Velocity:
             return velocities();
         }
@@ -202,6 +204,14 @@ private:
         for (const QString &one : settingPaths(schema, false))
             if (!line_.isGiven(one))
                 found.push_back({one + QLatin1Char('='), explanation(settingSchema(schema, one))});
+        return found;
+    }
+
+    Candidates samples() {
+        line_.arguments.words = QStringList(line_.arguments.daemons.value(0, QStringLiteral("supervisor")));
+        Candidates found;
+        for (const QJsonValue &name : ask("setup.samples").toArray())
+            found.push_back({name.toString(), QString()});
         return found;
     }
 

@@ -14,7 +14,7 @@ D is the name of a daemon (at its default port), HOST:PORT, or a URL.
 
 Loggers are the daemons with the command record.start that answer at their default ports.
 
-  --daemons A,B  record, replay, doc --all: these daemons and no others
+  --daemons A,B  record, replay, doc --all: these daemons and no others; setup: the supervisor, the motor control
   --host HOST    where daemons given by name run (127.0.0.1)
   --timeout S    how long to wait for a connection and for a reply (5); keys pair: for the other (120)
   --json         one JSON value, or one a line; errors too: {"code", "message", "data", "hint"}
@@ -22,6 +22,10 @@ Loggers are the daemons with the command record.start that answer at their defau
   --force        --out: overwrites FILE
   --network      list: who has announced itself on the network (needs Avahi)
   --rate HZ      watch: at most so many messages a second
+  --list         setup: only tells what is plugged in (--yes: asks silent lines, too)
+  --yes          setup: without questions; the wheels are off the ground
+  --undo         setup: puts back what the last one has replaced
+  --wheels       setup: only tests the wheels
   --count N      watch: end after N messages; log: the last N records (100)
   --csv          watch: CSV, a column for each value
   --speed X      replay: so many times as fast (1)
@@ -37,6 +41,7 @@ Loggers are the daemons with the command record.start that answer at their defau
 Exit status: 0 success, 2 wrong usage, 1 any other failure.
 
 Examples:
+  hermesctl setup --list
   hermesctl call scanmatcher daemon.status
   hermesctl set velodynelogger limits.clients=20
   hermesctl record start run1
@@ -59,6 +64,15 @@ const std::vector<Subcommand> &subcommands() {
          "--network",
          nullptr,
          listDaemons},
+        {"setup",
+         0,
+         1,
+         "setup [SAMPLE]",
+         "finds what is plugged in and writes the settings for it; SAMPLE: those of a whole robot",
+         {W::Sample},
+         "--list --yes --undo --wheels --daemons",
+         nullptr,
+         setUp},
         {"record start",
          1,
          1,

@@ -15,7 +15,8 @@ enum class Word {
     Topic,
     Session,
     Shell,
-    Velocity
+    Velocity,
+    Sample
 };
 
 /// A command of hermesctl: how it is called, and what runs it.

@@ -27,6 +27,7 @@ private Q_SLOTS:
     void refusals();
     void numbersWithoutAValueAreRefused();
     void missingDeviceIsNamedAndFoundWhenItComes();
+    void oneWheelTurnsAndStopsByItself();
     void emergencyStopLatches();
     void stopsBrakeWithTheEmergencyDeceleration();
     void newPidIsWrittenAndReadBack();
@@ -188,6 +189,23 @@ void TestMotorControl::missingDeviceIsNamedAndFoundWhenItComes() {
     QCOMPARE(failure("motor.drive", {{"vx", 0.1}}).message, says);
     rig_->plugIn();
     QTRY_VERIFY(state()["ready"].toBool());
+}
+
+// As hermesctl setup tests the wheels, and is killed.
+void TestMotorControl::oneWheelTurnsAndStopsByItself() {
+    launch();
+    QTRY_VERIFY(state()["ready"].toBool());
+    QCOMPARE(failure("motor.wheels", {{"front_left", 1}}).code, int(ErrorCode::ControlHeld));
+    call("control.acquire");
+    call("motor.wheels", {{"front_left", 1}});
+    const auto speed = [this](const char *wheel) {
+        return valueAt(state(), QString("wheels.%1.speed").arg(wheel)).toDouble();
+    };
+    QTRY_VERIFY(speed("front_left") > 0.8);
+    for (const char *wheel : {"front_right", "rear_left", "rear_right"})
+        QCOMPARE(speed(wheel), 0.0);
+    QTRY_COMPARE(speed("front_left"), 0.0); // no other command has come
+    QTRY_VERIFY(!call("control.state")["held"].toBool());
 }
 
 void TestMotorControl::emergencyStopLatches() {

@@ -90,6 +90,7 @@ class Completion(unittest.TestCase):
         self.assertEqual(candidates("completion "), ["bash", "zsh"])
         self.assertEqual(candidates("watch --rate "), [])
         self.assertEqual(candidates("drive motorcontrol vx=1 "), ["vy=", "omega="])
+        self.assertEqual(candidates("setup --l"), ["--list"])
         self.assertEqual(candidates("drive motorcontrol --f"), ["--force", "--for"])
         self.assertEqual(candidates("record list --daemons supervisor,scan"), ["supervisor,scanmatcher"])
 

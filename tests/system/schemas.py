@@ -110,7 +110,10 @@ def start_all(folder, processes):
     start("seriallogger", {"record.folder": folder,
                            "ports": json.dumps([{"name": "gps", "url": f"serial://{gps}?baud=9600", "view": "nmea"}])})
     start("softwaretrigger", {})
-    start("supervisor", {"processes": "[]"})
+    os.mkdir(os.path.join(folder, "etc"))
+    start("supervisor", {"processes": "[]", "setup.folder": os.path.join(folder, "etc"), "setup.lidar_port": free_port(0, socket.SOCK_DGRAM),
+                         "setup.position_port": free_port(0, socket.SOCK_DGRAM),
+                         "setup.samples": os.path.join(SOURCE, "deploy", "settings"), "setup.ports": json.dumps([motors])})
     return ports
 
 
@@ -159,7 +162,8 @@ def script(ports):
     sleeper = {"name": "sleeper"}
     yield from each("supervisor", ("process.add", {**sleeper, "program": "sleep", "arguments": ["100"], "port": free_port(0)}),
                     ("process.start", sleeper), ("process.list", {}), ("process.output", sleeper), ("process.restart", sleeper),
-                    ("process.stop", sleeper), ("process.remove", sleeper))
+                    ("process.stop", sleeper), ("process.remove", sleeper), ("setup.samples", {}), ("setup.find", {}),
+                    ("setup.propose", {"sample": "simulator"}), ("setup.apply", {"settings": {"softwaretrigger": {}}}), ("setup.undo", {}))
     yield from ((name, "daemon.shutdown", {}) for name in ports)
 
 

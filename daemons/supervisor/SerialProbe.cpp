@@ -1,0 +1,206 @@
+#include "daemons/supervisor/SerialProbe.h"
+
+#include "daemons/supervisor/PortUsers.h"
+#include "protocol/nmea/SentenceParser.h"
+#include "protocol/roboclaw/ReplyParser.h"
+
+#include <QElapsedTimer>
+#include <QFile>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace hermes::supervisor {
+namespace {
+
+struct Speed {
+    int baud;
+    speed_t flag;
+};
+constexpr Speed speeds[] = {
+    {4800, B4800}, {9600, B9600}, {38400, B38400}, {115200, B115200}, {460800, B460800}};
+constexpr int talkerBauds[] = {9600, 4800, 38400, 115200}; // the usual one first
+constexpr int controllerBauds[] = {115200, 38400, 460800}; // the same
+constexpr int listen_ms = 1200;                            // a receiver says something each second
+constexpr int answer_ms = 60, patientAnswer_ms = 200; // 50 bytes, and an adapter that holds them for 16 ms
+constexpr int slice_ms = 50;                          // between two looks whether to give up
+constexpr int allAddresses = roboclaw::lastAddress - roboclaw::firstAddress + 1;
+
+/// The first whole sentence; empty: none.
+QString sentenceIn(const QByteArray &bytes) {
+    nmea::SentenceParser parser;
+    int begin = 0;
+    for (int i = 0; i < bytes.size(); ++i) {
+        if (bytes[i] == '$' || bytes[i] == '!')
+            begin = i;
+        if (parser.feed(bytes[i]) == nmea::SentenceParser::Result::Done)
+            return QString::fromLatin1(bytes.mid(begin, i - begin).trimmed());
+    }
+    return {};
+}
+
+/// The version in an answer; empty: it is none.
+QString versionIn(const roboclaw::Request &request, const QByteArray &bytes) {
+    roboclaw::ReplyParser parser;
+    parser.begin(request);
+    for (const char byte : bytes) {
+        const auto result = parser.feed(std::uint8_t(byte));
+        if (result == roboclaw::ReplyParser::Result::Done)
+            return QString::fromLatin1(parser.reply().text.data());
+        if (result != roboclaw::ReplyParser::Result::Incomplete)
+            return {};
+    }
+    return {};
+}
+
+} // namespace
+
+FoundSerial SerialProbe::run() {
+    found_.path = candidate_.path;
+    found_.device = candidate_.device;
+    found_.about = candidate_.about;
+    found_.kind = "failed";
+    found_.text = open();
+    if (port_ >= 0 && found_.text.isEmpty() && !listen()) {
+        found_.kind = mayAsk_ ? "silent" : "not_asked";
+        if (mayAsk_)
+            ask();
+    }
+    close();
+    return found_;
+}
+
+QString SerialProbe::open() {
+    const QString user = PortUsers::ofDevice(candidate_.device);
+    if (!user.isEmpty()) {
+        found_.kind = "in_use";
+        return user;
+    }
+    port_ =
+        ::open(QFile::encodeName(candidate_.device).constData(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (port_ < 0 && errno == EBUSY)
+        found_.kind = "in_use";
+    if (port_ < 0)
+        return QString("cannot be opened: ") + std::strerror(errno) +
+               (errno == EACCES ? "; who uses serial lines is in the group dialout" : "");
+    int isClaimed = 0;
+    if (::ioctl(port_, TIOCGEXCL, &isClaimed) == 0 && isClaimed != 0) {
+        found_.kind = "in_use";
+        return "a program that has claimed it for itself";
+    }
+    if (::isatty(port_) == 0 || ::ioctl(port_, TIOCEXCL) != 0)
+        return "is no serial line";
+    before_.emplace();
+    ::tcgetattr(port_, &*before_);
+    return {};
+}
+
+void SerialProbe::close() {
+    if (port_ < 0)
+        return;
+    if (before_) {
+        ::tcsetattr(port_, TCSANOW, &*before_);
+        ::ioctl(port_, TIOCNXCL);
+    }
+    ::close(port_);
+    port_ = -1;
+}
+
+void SerialProbe::setBaud(int baud) {
+    termios settings{};
+    ::tcgetattr(port_, &settings);
+    ::cfmakeraw(&settings);
+    settings.c_cflag |= CLOCAL | CREAD;
+    settings.c_cflag &= ~tcflag_t(CRTSCTS | CSTOPB);
+    for (const Speed &speed : speeds)
+        if (speed.baud == baud)
+            ::cfsetspeed(&settings, speed.flag);
+    ::tcsetattr(port_, TCSANOW, &settings);
+    ::tcflush(port_, TCIOFLUSH);
+}
+
+template <typename Enough>
+QByteArray SerialProbe::receive(int most_ms, const Enough &enough) {
+    QByteArray bytes;
+    QElapsedTimer waiting;
+    waiting.start();
+    for (qint64 left = most_ms; left > 0 && !isCancelled_; left = most_ms - waiting.elapsed()) {
+        pollfd ready{port_, POLLIN, 0};
+        if (::poll(&ready, 1, int(std::min<qint64>(left, slice_ms))) <= 0)
+            continue;
+        std::array<char, 512> some{};
+        const auto count = ::read(port_, some.data(), some.size());
+        if (count <= 0)
+            break; // it was pulled
+        bytes.append(some.data(), int(count));
+        if (enough(bytes))
+            break;
+    }
+    return bytes;
+}
+
+bool SerialProbe::listen() {
+    for (const int baud : talkerBauds) {
+        setBaud(baud);
+        QString sentence;
+        const QByteArray bytes = receive(listen_ms, [&sentence](const QByteArray &all) {
+            sentence = sentenceIn(all);
+            return !sentence.isEmpty();
+        });
+        if (!sentence.isEmpty()) {
+            found_.kind = "nmea";
+            found_.text = sentence;
+            found_.baud = baud;
+            return true;
+        }
+        if (bytes.isEmpty() && found_.kind != "talker")
+            return false; // at a wrong baud rate something would have come, too
+        found_.kind = "talker";
+        found_.text = "talks by itself, but not in NMEA sentences; it was asked nothing";
+    }
+    return true;
+}
+
+void SerialProbe::ask() {
+    for (const int baud : controllerBauds)
+        if (askAt(baud, answer_ms))
+            return;
+}
+
+/// True: there are controllers. One that answers late spoils the answer of the next: then all are asked
+/// again, more patiently.
+bool SerialProbe::askAt(int baud, int patience_ms) {
+    setBaud(baud);
+    bool isSpoilt = false;
+    for (int address = roboclaw::firstAddress; address <= roboclaw::lastAddress && !isCancelled_; ++address) {
+        const auto request = roboclaw::Request::make(std::uint8_t(address), roboclaw::Command::ReadVersion);
+        if (::write(port_, request->bytes.data(), request->bytes.size()) != ssize_t(request->bytes.size()))
+            return false;
+        QString version;
+        const QByteArray answer = receive(patience_ms, [&](const QByteArray &bytes) {
+            version = versionIn(*request, bytes);
+            return !version.isEmpty();
+        });
+        if (!version.isEmpty()) {
+            found_.text = version;
+            found_.addresses.push_back(address);
+        }
+        isSpoilt = isSpoilt || (version.isEmpty() && !answer.isEmpty());
+    }
+    if (isSpoilt && patience_ms < patientAnswer_ms) {
+        found_.addresses.clear();
+        return askAt(baud, patientAnswer_ms);
+    }
+    if (found_.addresses.empty())
+        return false;
+    found_.kind = "roboclaw";
+    found_.baud = baud;
+    found_.anyAddress = int(found_.addresses.size()) == allAddresses;
+    return true;
+}
+
+} // namespace hermes::supervisor

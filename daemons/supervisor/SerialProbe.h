@@ -1,0 +1,47 @@
+#pragma once
+
+#include "daemons/supervisor/SerialCandidates.h"
+#include "protocol/messages/Setup.h"
+
+#include <atomic>
+#include <optional>
+#include <termios.h>
+
+namespace hermes::supervisor {
+
+/// Looks what is at the far end of one serial line, in a thread that may wait. It listens first; only a line
+/// that is silent is asked, and only for the version of a RoboClaw (command 21, two bytes), which moves
+/// nothing. A line that another program has open is left alone.
+class SerialProbe {
+public:
+    /// mayAsk: without it nothing is sent. isCancelled: gives up soon when it becomes true.
+    SerialProbe(const SerialCandidate &candidate, bool mayAsk, const std::atomic<bool> &isCancelled)
+        : candidate_(candidate)
+        , mayAsk_(mayAsk)
+        , isCancelled_(isCancelled) {}
+
+    /// Eight seconds at most.
+    FoundSerial run();
+
+private:
+    /// Why it cannot be used, with the kind that tells so; an empty text: it is open.
+    QString open();
+    void close();
+    void setBaud(int baud);
+    /// What comes until something satisfies, or for so long.
+    template <typename Enough>
+    QByteArray receive(int most_ms, const Enough &enough);
+    /// True: somebody talks by themselves, and found_ says who.
+    bool listen();
+    void ask();
+    bool askAt(int baud, int patience_ms);
+
+    const SerialCandidate candidate_;
+    const bool mayAsk_;
+    const std::atomic<bool> &isCancelled_;
+    FoundSerial found_;
+    int port_ = -1;
+    std::optional<termios> before_; // its settings
+};
+
+} // namespace hermes::supervisor

@@ -1,0 +1,148 @@
+#include "daemons/supervisor/SettingsFiles.h"
+
+#include "common/Project.h"
+#include "protocol/wire/JsonText.h"
+
+#include <QDir>
+#include <QFile>
+#include <QJsonDocument>
+#include <QRegularExpression>
+#include <QSaveFile>
+
+namespace hermes::supervisor {
+namespace {
+
+constexpr const char *usualFolder = "/etc/hermes/"; // as samples name it
+constexpr const char *previous = ".previous";
+
+Error fileError(const QString &path, const QString &reason) {
+    return Error(ErrorCode::InputOutput, QString("%1: %2").arg(path, reason), QJsonObject{{"path", path}});
+}
+
+Result<QByteArray> readFile(const QString &path) {
+    QFile file(path);
+    if (!file.open(QIODevice::ReadOnly))
+        return fileError(path, file.errorString());
+    return file.readAll();
+}
+
+Result<QJsonObject> parsed(const QString &path, const QByteArray &text) {
+    WireError error;
+    const auto value = parseJson(text, &error);
+    if (!value)
+        return fileError(path, QString("line %1: %2").arg(error.line).arg(error.message));
+    if (!value->isObject())
+        return fileError(path, "line 1: expected a JSON object");
+    return value->toObject();
+}
+
+Result<void> writeFile(const QString &path, const QByteArray &text) {
+    QSaveFile file(path);
+    // commit() alone does not notice a full disk
+    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
+        !file.commit())
+        return fileError(path, file.errorString());
+    return {};
+}
+
+/// A file of settings; from stands for to in it.
+Result<QJsonObject> settingsIn(const QString &path, const QByteArray &from = {}, const QByteArray &to = {}) {
+    auto text = readFile(path);
+    if (!text)
+        return text.error();
+    return parsed(path, from.isEmpty() ? *text : text->replace(from, to));
+}
+
+/// The file of each daemon that has one in a folder.
+Result<QJsonObject> readAll(const QString &folder, const QByteArray &from = {}, const QByteArray &to = {}) {
+    QJsonObject all;
+    for (const QString &daemon : daemonNames()) {
+        const QString path = folder + '/' + daemon + ".json";
+        if (!QFile::exists(path))
+            continue;
+        const auto settings = settingsIn(path, from, to);
+        if (!settings)
+            return settings.error();
+        all.insert(daemon, *settings);
+    }
+    return all;
+}
+
+} // namespace
+
+Result<QJsonObject> SettingsFiles::current() const {
+    return readAll(folder_);
+}
+
+QJsonObject SettingsFiles::readable() const {
+    QJsonObject all;
+    for (const QString &daemon : daemonNames())
+        if (const auto settings = settingsIn(path(daemon)))
+            all.insert(daemon, *settings);
+    return all;
+}
+
+QStringList SettingsFiles::sampleNames() const {
+    return QDir(samples_).entryList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name);
+}
+
+Result<QJsonObject> SettingsFiles::sample(const QString &name) const {
+    if (!sampleNames().contains(name))
+        return Error(ErrorCode::InvalidParams, QString("there is no sample \"%1\" in %2, expected one of: %3")
+                                                   .arg(name, samples_, sampleNames().join(", ")));
+    return readAll(samples_ + '/' + name, usualFolder, QFile::encodeName(folder_) + '/');
+}
+
+Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
+    for (const QString &daemon : undoable())
+        QFile::remove(path(daemon) + previous);
+    for (const QString &daemon : settings.keys()) {
+        const bool isNew = !QFile::exists(path(daemon));
+        const auto before = isNew ? Result<QByteArray>(QByteArray("{}\n")) : readFile(path(daemon));
+        if (!before)
+            return before.error();
+        if (const auto kept = writeFile(path(daemon) + previous, *before); !kept)
+            return kept.error();
+    }
+    QStringList files;
+    for (const QString &daemon : settings.keys()) {
+        const auto written = writeFile(path(daemon), QJsonDocument(settings[daemon].toObject()).toJson());
+        if (!written)
+            return Error(ErrorCode::InputOutput,
+                         QString("%1; %2 files are new, setup.undo puts back what was there")
+                             .arg(written.error().message)
+                             .arg(files.size()),
+                         written.error().data);
+        files.append(path(daemon));
+    }
+    return files;
+}
+
+QStringList SettingsFiles::undoable() const {
+    QStringList daemons;
+    for (const QString &daemon : daemonNames())
+        if (QFile::exists(path(daemon) + previous))
+            daemons.append(daemon);
+    return daemons;
+}
+
+Result<QStringList> SettingsFiles::undo() const {
+    QStringList files;
+    for (const QString &daemon : undoable()) {
+        const auto before = readFile(path(daemon) + previous);
+        if (!before)
+            return before.error();
+        if (const auto written = writeFile(path(daemon), *before); !written)
+            return written.error();
+        files.append(path(daemon));
+    }
+    if (files.isEmpty())
+        return Error(
+            ErrorCode::NotReady,
+            QString("there is nothing to undo: no file in %1 ends in .json%2").arg(folder_, previous));
+    for (const QString &file : files)
+        QFile::remove(file + previous);
+    return files;
+}
+
+} // namespace hermes::supervisor

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <QJsonObject>
+#include <QStringList>
+
+namespace hermes::supervisor {
+
+/// The settings files of the daemons of this computer, one a daemon, and samples of those of whole robots.
+class SettingsFiles {
+public:
+    /// folder: of the files, NAME.json; samples: of folders of such files.
+    SettingsFiles(QString folder, QString samples)
+        : folder_(std::move(folder))
+        , samples_(std::move(samples)) {}
+
+    QString path(const QString &daemon) const { return folder_ + '/' + daemon + ".json"; }
+    /// The settings of each daemon that has a file. Error: one cannot be read.
+    Result<QJsonObject> current() const;
+    /// The same without those that cannot be read.
+    QJsonObject readable() const;
+    QStringList sampleNames() const;
+    /// The same of a sample, with this folder where it names the usual one. Error: there is none of that
+    /// name.
+    Result<QJsonObject> sample(const QString &name) const;
+
+    /// Replaces the files of these daemons, each at once or not at all; those that were there stay beside, as
+    /// NAME.json.previous. Gives the files. Error: what could not be written; undo() brings back what was.
+    Result<QStringList> write(const QJsonObject &settings) const;
+    /// Puts those back that the last write() has replaced; where there was none, one without settings. Error:
+    /// nothing was replaced.
+    Result<QStringList> undo() const;
+    /// The daemons whose files undo() would put back.
+    QStringList undoable() const;
+
+private:
+    QString folder_, samples_;
+};
+
+} // namespace hermes::supervisor

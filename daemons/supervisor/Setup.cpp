@@ -1,0 +1,273 @@
+#include "daemons/supervisor/Setup.h"
+
+#include "common/Log.h"
+#include "common/Project.h"
+#include "common/interface/InterfaceUrl.h"
+#include "common/settings/DottedPath.h"
+#include "daemons/supervisor/PortUsers.h"
+#include "daemons/supervisor/SettingsCheck.h"
+#include "daemons/supervisor/SetupProposal.h"
+#include "protocol/velodyne/PacketFormat.h"
+#include "protocol/wire/Fields.h"
+
+#include <QFileInfo>
+#include <QMap>
+#include <QTimer>
+#include <algorithm>
+
+namespace hermes::supervisor {
+namespace {
+
+constexpr std::chrono::milliseconds look{20}; // whether a process has ended
+
+/// Settings of any daemon that a sample does not know: how it is reached, by whom, and how much it tells.
+const QStringList kept{"listen", "insecure", "access", "audit", "limits", "log", "setup"};
+
+/// The settings of a sample with what is kept of those of now.
+QJsonObject withKept(QJsonObject sample, const QJsonObject &now) {
+    for (const QString &daemon : sample.keys()) {
+        QJsonObject settings = sample[daemon].toObject();
+        for (const QString &name : kept)
+            if (now[daemon].toObject().contains(name) && !settings.contains(name))
+                settings[name] = now[daemon].toObject()[name];
+        sample[daemon] = settings;
+    }
+    return sample;
+}
+
+Error busy(const char *what) {
+    return Error(ErrorCode::NotReady, QString("%1 is under way; try again when it has ended").arg(what));
+}
+
+Field sampleField() {
+    return Field::text("sample", "Settings of a whole robot to begin with, by name; empty: those of now")
+        .byDefault("");
+}
+
+} // namespace
+
+Setup::Setup(Settings &settings, Processes processes, QObject *parent)
+    : QObject(parent)
+    , settings_(settings)
+    , processes_(std::move(processes)) {}
+
+std::vector<Field> Setup::settingFields() {
+    const auto port = [](const char *name, const char *text, quint16 usual) {
+        return Field::integer(name, text).range(1, 65535).byDefault(usual).group("Setup");
+    };
+    return {Field::text("setup.folder", "Of the settings files of the daemons, NAME.json")
+                .byDefault("/etc/hermes")
+                .group("Setup"),
+            Field::text("setup.samples", "Of folders with settings of whole robots")
+                .byDefault("/usr/share/hermes/settings")
+                .group("Setup"),
+            Field::array("setup.ports", "Serial lines to search beside those that the system lists",
+                         {{"type", "string"}})
+                .byDefault(QJsonArray())
+                .group("Setup"),
+            port("setup.lidar_port", "UDP port at which lidars are looked for", velodyne::dataPort),
+            port("setup.position_port", "The same for their position packets", velodyne::positionPort)};
+}
+
+std::vector<Command> Setup::commands() {
+    return {findCommand(), proposeCommand(), applyCommand(), undoCommand(),
+            Command("setup.samples", "The settings of whole robots that there are")
+                .needs(Role::Observer)
+                .gives<QStringList>()
+                .handler([this](const Call &) { return asJson(files().sampleNames()); })};
+}
+
+SettingsFiles Setup::files() const {
+    return {settings_.text("setup.folder"), settings_.text("setup.samples")};
+}
+
+Command Setup::findCommand() {
+    return Command(
+               "setup.find",
+               "Looks for a few seconds what is plugged in: serial lines, and lidars that send packets. It "
+               "listens; what is silent is asked for the version of a RoboClaw, which moves nothing, where "
+               "the line is known as a motor controller's (by USB or by the settings) or ask is true. What "
+               "another program uses is left alone")
+        .needs(Role::Engineer)
+        .param(Field::boolean("ask", "Ask all silent lines: a motor controller that is no RoboClaw in packet "
+                                     "serial mode may take the two bytes for speeds; wheels off the ground")
+                   .byDefault(false))
+        .param(Field::boolean("release",
+                              "Processes of the supervisor that use serial lines or receive packets "
+                              "of lidars are ended first, and started again afterwards")
+                   .byDefault(false))
+        .gives<Findings>()
+        .asyncHandler([this](const Call &call, const Reply &reply) {
+            if (isSearching_)
+                return reply.error(busy("a search"));
+            isSearching_ = true;
+            searchWhenStopped(call.flag("release") ? release() : Stopped(), call.flag("ask"), reply);
+        });
+}
+
+DeviceSearch::Options Setup::searchOptions(bool ask) const {
+    DeviceSearch::Options options;
+    for (const QJsonValue &port : settings_.value("setup.ports").toArray())
+        options.ports.append(port.toString());
+    options.ask = ask;
+    options.lidarPort = quint16(settings_.integer("setup.lidar_port"));
+    options.positionPort = quint16(settings_.integer("setup.position_port"));
+    const auto current = files().current();
+    for (const char *controller : {"1", "2"}) {
+        const QString path = QString("motorcontrol.controllers.%1.url").arg(controller);
+        const auto url = InterfaceUrl::parse(current ? valueAt(*current, path).toString() : QString());
+        if (url && url->scheme == "serial" && QFileInfo::exists(url->path)) {
+            options.controllers.append(url->path);
+            options.ports.append(url->path); // as the simulator's, which the system does not list
+        }
+    }
+    return options;
+}
+
+Setup::Stopped Setup::release() {
+    const QList<quint16> udp{quint16(settings_.integer("setup.lidar_port")),
+                             quint16(settings_.integer("setup.position_port"))};
+    Stopped stopped;
+    for (SupervisedProcess *const process : processes_()) {
+        if (!process->isAlive() || !PortUsers::usesPorts(process->status().pid, udp))
+            continue;
+        logInfo("setup", process->entry().name + ": ended for a search of its lines");
+        process->stop();
+        stopped.emplace_back(process);
+    }
+    return stopped;
+}
+
+void Setup::searchWhenStopped(const Stopped &stopped, bool ask, const Reply &reply) {
+    const bool isWaiting = std::any_of(stopped.begin(), stopped.end(),
+                                       [](const auto &process) { return process && process->isAlive(); });
+    if (isWaiting) // SIGKILL ends it after 5 s
+        return QTimer::singleShot(look, this, [=] { searchWhenStopped(stopped, ask, reply); });
+    search_.begin(searchOptions(ask), [this, stopped, reply](const Findings &findings) {
+        QMetaObject::invokeMethod(
+            this, [=] { onFound(findings, stopped, reply); }, Qt::QueuedConnection);
+    });
+}
+
+void Setup::onFound(Findings findings, const Stopped &stopped, const Reply &reply) {
+    isSearching_ = false;
+    for (const auto &process : stopped) {
+        if (!process || process->isAlive())
+            continue;
+        process->start();
+        findings.restarted.append(process->entry().name);
+    }
+    found_ = findings;
+    reply.result(asJson(findings));
+}
+
+Command Setup::proposeCommand() {
+    return Command("setup.propose", "What the settings should be with what the last setup.find has found; "
+                                    "changes nothing")
+        .needs(Role::Engineer)
+        .param(sampleField())
+        .gives<Proposal>()
+        .handler([this](const Call &call) -> Result<QJsonValue> {
+            if (!found_)
+                return Error(ErrorCode::NotReady, "nothing was looked for yet; setup.find does");
+            const QString sample = call.text("sample");
+            const auto base = sample.isEmpty() ? files().current() : files().sample(sample);
+            if (!base)
+                return base.error();
+            return asJson(propose(*found_, *base, settings_.text("setup.folder")));
+        });
+}
+
+Result<QJsonObject> Setup::whole(const Call &call) const {
+    const QString sample = call.text("sample");
+    const QJsonObject changes = call.value("settings").toObject();
+    const auto base = sample.isEmpty() ? files().current() : files().sample(sample);
+    if (!base)
+        return base.error();
+    QJsonObject whole = sample.isEmpty() ? QJsonObject() : withKept(*base, files().readable());
+    for (const QString &daemon : changes.keys()) {
+        if (!daemonNames().contains(daemon) || !changes[daemon].isObject())
+            return Error(ErrorCode::InvalidParams,
+                         QString("settings.%1: expected an object of settings of one of: %2")
+                             .arg(daemon, daemonNames().join(", ")));
+        const QJsonObject before = (sample.isEmpty() ? *base : whole)[daemon].toObject();
+        whole[daemon] = merged(before, changes[daemon].toObject());
+    }
+    if (whole.isEmpty())
+        return Error(ErrorCode::InvalidParams, "a sample or settings are expected");
+    return whole;
+}
+
+Command Setup::applyCommand() {
+    return Command(
+               "setup.apply",
+               "Writes the settings files of a sample, or those of now, with these changes, when all daemons "
+               "would take theirs; else nothing. What was there stays beside, see setup.undo. Processes "
+               "whose settings were written are started anew if they run or start with the supervisor")
+        .needs(Role::Engineer)
+        .param(sampleField())
+        .param(Field::object("settings", "By daemons: what changes in the settings of each")
+                   .byDefault(QJsonObject()))
+        .gives<Applied>()
+        .example({{"sample", "simulator"}}, QJsonObject{{"files", QJsonArray{"/etc/hermes/simulator.json"}},
+                                                        {"restarted", QJsonArray{"simulator"}}})
+        .asyncHandler([this](const Call &call, const Reply &reply) {
+            if (isWriting_ || isSearching_)
+                return reply.error(busy(isWriting_ ? "another change" : "a search"));
+            const auto settings = whole(call);
+            if (!settings)
+                return reply.error(settings.error());
+            isWriting_ = true;
+            new SettingsCheck(
+                *settings,
+                [this, settings = *settings, reply](const Result<void> &checked) {
+                    isWriting_ = false;
+                    if (!checked)
+                        return reply.error(checked.error());
+                    const auto written = files().write(settings);
+                    written ? reply.result(asJson(take(*written))) : reply.error(written.error());
+                },
+                this);
+        });
+}
+
+Command Setup::undoCommand() {
+    return Command("setup.undo",
+                   "Puts the settings files back that the last setup.apply has replaced, and starts "
+                   "their processes anew")
+        .needs(Role::Engineer)
+        .gives<Applied>()
+        .handler([this](const Call &) -> Result<QJsonValue> {
+            if (isWriting_ || isSearching_)
+                return busy(isWriting_ ? "another change" : "a search");
+            const auto written = files().undo();
+            if (!written)
+                return written.error();
+            return asJson(take(*written));
+        });
+}
+
+Applied Setup::take(const QStringList &written) {
+    QMap<QString, ProcessEntry> ran;
+    for (const SupervisedProcess *const process : processes_())
+        if (process->isAlive())
+            ran[process->entry().name] = process->entry();
+    const SettingsFiles those = files(); // what is loaded may name others
+    if (const QString own = those.path("supervisor"); written.contains(own))
+        if (const auto loaded = settings_.load(own); !loaded)
+            logError("setup", loaded.error().message);
+    Applied applied{written, {}};
+    for (SupervisedProcess *const process : processes_()) {
+        const ProcessEntry &entry = process->entry();
+        const auto before = ran.constFind(entry.name);
+        const bool isOld =
+            before != ran.constEnd() && *before == entry; // else it was started by the new entry
+        if (!written.contains(those.path(entry.name)) || (!process->isAlive() && !entry.autostart))
+            continue;
+        isOld ? process->restart() : process->start();
+        applied.restarted.append(entry.name);
+    }
+    return applied;
+}
+
+} // namespace hermes::supervisor

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "common/daemon/Command.h"
+#include "common/settings/Settings.h"
+#include "daemons/supervisor/DeviceSearch.h"
+#include "daemons/supervisor/SettingsFiles.h"
+#include "daemons/supervisor/SupervisedProcess.h"
+
+#include <QPointer>
+#include <optional>
+
+namespace hermes::supervisor {
+
+/// The first contact with a robot: finds what is plugged in, proposes settings for it, and writes them when
+/// the daemons would take them. Its commands are `setup.*`.
+class Setup : public QObject {
+    Q_OBJECT
+public:
+    using Processes = std::function<std::vector<SupervisedProcess *>()>;
+
+    /// settings: the supervisor's own; processes: those of now.
+    Setup(Settings &settings, Processes processes, QObject *parent);
+
+    static std::vector<Field> settingFields();
+    std::vector<Command> commands();
+
+private:
+    using Stopped = std::vector<QPointer<SupervisedProcess>>;
+
+    Command findCommand();
+    Command proposeCommand();
+    Command applyCommand();
+    Command undoCommand();
+
+    SettingsFiles files() const;
+    DeviceSearch::Options searchOptions(bool ask) const;
+    /// Ends those that use serial lines or receive packets of lidars.
+    Stopped release();
+    void searchWhenStopped(const Stopped &stopped, bool ask, const Reply &reply);
+    void onFound(Findings findings, const Stopped &stopped, const Reply &reply);
+    Result<QJsonObject> whole(const Call &call) const;
+    /// Takes what was written: the supervisor its own settings; the others are started anew, if they ran or
+    /// start with it.
+    Applied take(const QStringList &written);
+
+    Settings &settings_;
+    const Processes processes_;
+    DeviceSearch search_;
+    bool isSearching_ = false; // or ends processes for it
+    bool isWriting_ = false;
+    std::optional<Findings> found_;
+};
+
+} // namespace hermes::supervisor

@@ -1,0 +1,257 @@
+// hermesctl setup: from what is plugged in to settings of the daemons.
+#include "protocol/messages/Setup.h"
+#include "common/client/DaemonAddress.h"
+#include "common/settings/DottedPath.h"
+#include "gui/hermesctl/Commands.h"
+#include "gui/hermesctl/Question.h"
+#include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/WheelTest.h"
+#include "protocol/wire/Fields.h"
+#include "protocol/wire/JsonText.h"
+
+#include <QJsonArray>
+
+namespace hermes::ctl {
+namespace {
+
+constexpr std::chrono::seconds longWork{
+    60}; // processes end, lines are searched, daemons check their settings
+
+/// The supervisor, the first of --daemons, else at its default port; the motor control is the second.
+Result<void> connectTo(Client &client, const Arguments &arguments, int place, const char *usual) {
+    const auto address = daemonAddress(arguments.daemons.value(place, QLatin1String(usual)), arguments.host);
+    if (!address)
+        return address.error();
+    return connectOnce(client, *address, arguments.timeout);
+}
+
+class SetUp {
+public:
+    SetUp(Client &supervisor, const Arguments &arguments)
+        : supervisor_(supervisor)
+        , arguments_(arguments) {}
+
+    Result<void> list() {
+        const auto found = find(arguments_.yes, arguments_.yes);
+        return found ? Result<void>() : found.error();
+    }
+
+    Result<void> undo() {
+        const auto undone = call("setup.undo", {});
+        return undone ? tell<Applied>(*undone) : undone.error();
+    }
+
+    /// Of a sample, of what was found, or of both.
+    Result<void> apply(const QString &sample, const QJsonObject &settings) {
+        const auto applied = call("setup.apply", QJsonObject{{"sample", sample}, {"settings", settings}});
+        return applied ? tell<Applied>(*applied) : applied.error();
+    }
+
+    /// Without questions; the settings of now are changed.
+    Result<void> withoutQuestions() {
+        if (const auto found = find(true, true); !found)
+            return found.error();
+        const auto proposal = propose({});
+        if (!proposal)
+            return proposal.error();
+        return proposal->settings.isEmpty() ? Result<void>() : apply({}, proposal->settings);
+    }
+
+    Result<void> withQuestions() {
+        const auto sample = chooseSample();
+        if (!sample)
+            return sample.error();
+        const bool mayAsk = isConfirmed(
+            "Processes that use serial lines are ended for the search; the robot stands then.\nMay "
+            "silent lines be asked whether they lead to a RoboClaw? Another motor controller may "
+            "take that for a speed:\nare the wheels off the ground, or the motors without power?");
+        if (const auto found = find(mayAsk, true); !found)
+            return found.error();
+        const auto proposal = propose(*sample);
+        if (!proposal)
+            return proposal.error();
+        if (sample->isEmpty() && proposal->settings.isEmpty())
+            note("nothing is to be changed");
+        else if (!isConfirmed("Write these settings?"))
+            return Error(ErrorCode::NotReady, "nothing was changed");
+        else if (const auto applied = apply(*sample, proposal->settings); !applied)
+            return applied;
+        return hasMotors(*proposal) && isConfirmed("Test the wheels?") ? wheels() : Result<void>();
+    }
+
+    Result<void> wheels() {
+        if (answerTo(
+                "Each wheel turns slowly for a second. Lift the robot: no wheel may touch the ground, and "
+                "nobody a wheel.\nType \"lifted\" when that is so:") != "lifted")
+            return Error(ErrorCode::NotReady, "no wheel was turned: the robot is not lifted");
+        Client motors;
+        if (const auto connected = connectTo(motors, arguments_, 1, "motorcontrol"); !connected)
+            return connected;
+        const auto changes = testWheels(motors, arguments_);
+        if (!changes)
+            return changes.error();
+        if (changes->isEmpty()) {
+            note("all wheels turn as they are told; nothing is to be changed");
+            return {};
+        }
+        const QJsonObject settings{{"motorcontrol", QJsonObject{{"wheels", *changes}}}};
+        show(settings);
+        if (!isConfirmed("Write these settings?"))
+            return Error(ErrorCode::NotReady, "nothing was changed");
+        return apply({}, settings);
+    }
+
+private:
+    Result<QJsonValue> call(const QString &method, const QJsonObject &params) {
+        const auto patience = std::max<std::chrono::milliseconds>(arguments_.timeout, longWork);
+        return supervisor_.callAndWait(method, params, patience);
+    }
+
+    template <typename T>
+    static Result<T> read(const QJsonValue &value, const char *method) {
+        ReadReport report;
+        auto message = readMessage<T>(WireValue(value), report);
+        if (!message)
+            return Error(ErrorCode::InternalError, QString("%1: %2").arg(method, report.text()));
+        return *std::move(message);
+    }
+
+    Result<Findings> find(bool ask, bool release) {
+        note("listening and asking; this takes some seconds");
+        const auto answer = call("setup.find", QJsonObject{{"ask", ask}, {"release", release}});
+        if (!answer)
+            return answer.error();
+        const auto found = read<Findings>(*answer, "setup.find");
+        if (!found)
+            return found.error();
+        arguments_.json ? printJson(*answer) : show(*found);
+        return found;
+    }
+
+    static void show(const Findings &found) {
+        std::vector<QStringList> rows{{"what", "where", "details"}};
+        for (const FoundSerial &line : found.serial) {
+            QStringList details{line.text};
+            if (line.baud > 0)
+                details.append(QString("%1 baud").arg(line.baud));
+            if (line.anyAddress)
+                details.append("any address");
+            else
+                for (const int address : line.addresses)
+                    details.append(QString("address %1").arg(address));
+            if (line.kind == "not_asked")
+                details.append("silent; --yes asks it whether it is a RoboClaw, wheels off the ground");
+            details.append(line.about);
+            details.removeAll(QString());
+            rows.push_back({line.kind, line.path, details.join(", ")});
+        }
+        for (const FoundLidar &lidar : found.lidars)
+            rows.push_back({"lidar", lidar.address,
+                            QString("%1, %2 packets a second at UDP port %3")
+                                .arg(lidar.model.isEmpty() ? "unknown model" : lidar.model)
+                                .arg(lidar.rate_hz)
+                                .arg(lidar.port)});
+        if (rows.size() > 1)
+            printTable(rows);
+        else
+            note("nothing was found");
+        for (const QString &problem : found.problems)
+            note(problem);
+    }
+
+    Result<Proposal> propose(const QString &sample) {
+        const auto answer = call("setup.propose", QJsonObject{{"sample", sample}});
+        if (!answer)
+            return answer.error();
+        auto proposal = read<Proposal>(*answer, "setup.propose");
+        if (!proposal)
+            return proposal.error();
+        for (const QString &text : proposal->notes)
+            note(text);
+        if (!arguments_.json)
+            show(proposal->settings);
+        return proposal;
+    }
+
+    /// A line for each setting.
+    static void show(const QJsonObject &settings) {
+        for (const QString &daemon : settings.keys())
+            for (const QString &path : leafPaths(settings[daemon].toObject()))
+                printLine(
+                    QString("%1 %2 = %3")
+                        .arg(daemon, path,
+                             QString::fromUtf8(compactJson(valueAt(settings[daemon].toObject(), path)))));
+    }
+
+    template <typename T>
+    Result<void> tell(const QJsonValue &answer) {
+        const auto applied = read<T>(answer, "setup.apply");
+        if (!applied)
+            return applied.error();
+        if (arguments_.json) {
+            printJson(answer);
+            return {};
+        }
+        for (const QString &file : applied->files)
+            printLine("written: " + file);
+        for (const QString &name : applied->restarted)
+            printLine("started: " + name);
+        return {};
+    }
+
+    Result<QString> chooseSample() {
+        const auto answer = call("setup.samples", {});
+        if (!answer)
+            return answer.error();
+        const auto names = read<QStringList>(*answer, "setup.samples");
+        if (!names)
+            return names.error();
+        while (true) {
+            const QString name =
+                answerTo(QString("Which robot is it? %1; Enter: the settings of now are changed:")
+                             .arg(names->join(", ")));
+            if (name == "q")
+                return Error(ErrorCode::NotReady, "nothing was changed");
+            if (name.isEmpty() || names->contains(name))
+                return name;
+        }
+    }
+
+    static bool hasMotors(const Proposal &proposal) { return proposal.settings.contains("motorcontrol"); }
+
+    Client &supervisor_;
+    const Arguments &arguments_;
+};
+
+} // namespace
+
+Result<void> setUp(const Arguments &arguments) {
+    const QString sample = arguments.words.value(0);
+    const int ways =
+        int(arguments.list) + int(arguments.undo) + int(arguments.wheels) + int(!sample.isEmpty());
+    if (ways > 1)
+        return Error(ErrorCode::InvalidParams, "SAMPLE, --list, --undo and --wheels exclude each other");
+    const bool asks = arguments.wheels || (ways == 0 && !arguments.yes);
+    if (asks && !canAsk())
+        return Error(ErrorCode::InvalidParams,
+                     "setup asks questions, and this is no terminal: --yes, --list, or a SAMPLE");
+    Client supervisor;
+    if (const auto connected = connectTo(supervisor, arguments, 0, "supervisor"); !connected)
+        return Error(
+            connected.error().is(ErrorCode::InvalidParams) ? ErrorCode::InvalidParams
+                                                           : ErrorCode::Disconnected,
+            connected.error().message +
+                "; the supervisor of the robot does the work (systemctl start hermes-supervisor there)");
+    SetUp setup(supervisor, arguments);
+    if (arguments.list)
+        return setup.list();
+    if (arguments.undo)
+        return setup.undo();
+    if (arguments.wheels)
+        return setup.wheels();
+    if (!sample.isEmpty())
+        return setup.apply(sample, {});
+    return arguments.yes ? setup.withoutQuestions() : setup.withQuestions();
+}
+
+} // namespace hermes::ctl

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "protocol/wire/FieldsOf.h"
+
+#include <QJsonObject>
+#include <QStringList>
+#include <vector>
+
+namespace hermes {
+
+/// A serial line of a computer, and what was found at its far end.
+struct FoundSerial {
+    QString path;               ///< that stays the same where there is such a one, as in /dev/serial/by-id
+    QString device;             ///< as /dev/ttyUSB0
+    QString about;              ///< what the system knows of the adapter, or empty
+    QString kind;               ///< one of kinds()
+    QString text;               ///< the version of a controller, a sentence, or why there is nothing
+    int baud = 0;               ///< at which it was understood; 0: it was not
+    std::vector<int> addresses; ///< at which a controller answered
+    bool anyAddress = false;    ///< it answers at all of them, as one on USB does
+
+    /// "roboclaw", "nmea", "talker" (says something else by itself), "silent", "not_asked" (silent, and
+    /// nothing was sent to it), "in_use", "failed".
+    static QStringList kinds();
+};
+
+/// A lidar whose packets came.
+struct FoundLidar {
+    QString address; ///< whence they came
+    QString model;   ///< as "VLP-16"; empty: an unknown one
+    QString key;     ///< as the setting decode.model of hermes-velodynelogger has it; empty: an unknown one
+    int port = 0;    ///< at which they came
+    double rate_hz = 0;     ///< of data packets
+    bool positions = false; ///< it sends position packets, too
+};
+
+/// What setup.find gives.
+struct Findings {
+    std::vector<FoundSerial> serial;
+    std::vector<FoundLidar> lidars;
+    QStringList problems;  ///< what could not be looked for
+    QStringList restarted; ///< processes that were stopped for the search, and started again
+};
+
+/// What setup.propose gives.
+struct Proposal {
+    QJsonObject settings; ///< by daemons: what changes in the settings of each
+    QStringList notes;    ///< what a person should know of it
+};
+
+/// What setup.apply and setup.undo give.
+struct Applied {
+    QStringList files;     ///< that were written
+    QStringList restarted; ///< processes that ran, or start with the supervisor
+};
+
+const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>);
+const Fields<FoundLidar> &fieldsOf(Of<FoundLidar>);
+const Fields<Findings> &fieldsOf(Of<Findings>);
+const Fields<Proposal> &fieldsOf(Of<Proposal>);
+const Fields<Applied> &fieldsOf(Of<Applied>);
+
+} // namespace hermes

@@ -1,0 +1,133 @@
+#include "daemons/supervisor/SettingsFiles.h"
+#include "daemons/supervisor/SetupProposal.h"
+
+#include <QJsonArray>
+#include <QTemporaryDir>
+
+using namespace hermes;
+using namespace hermes::supervisor;
+
+namespace {
+
+FoundSerial controllers(const QString &path, std::vector<int> addresses, bool anyAddress = false) {
+    return {path, path, {}, "roboclaw", "RoboClaw", 115200, std::move(addresses), anyAddress};
+}
+
+QJsonObject json(const char *text) {
+    return QJsonDocument::fromJson(text).object();
+}
+
+} // namespace
+
+/// What setup makes of what was found, and how it writes it.
+class TestSetup : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void twoControllersOnOneLine();
+    void twoControllersOnUsb();
+    void whichIsWhichStaysAsItIs();
+    void oneControllerIsNoRobot();
+    void receiversAreAddedOnce();
+    void lidarAndProcesses();
+    void writesAndPutsBack();
+    void samplesNameTheFolder();
+};
+
+void TestSetup::twoControllersOnOneLine() {
+    const auto proposal = propose({{controllers("/dev/a", {0x80, 0x81})}, {}, {}, {}}, {}, "/etc/hermes");
+    QCOMPARE(proposal.settings["motorcontrol"].toObject(),
+             json(R"({"controllers": {"1": {"url": "serial:///dev/a?baud=115200", "address": 128},
+                                      "2": {"url": "serial:///dev/a?baud=115200", "address": 129}}})"));
+}
+
+void TestSetup::twoControllersOnUsb() {
+    const std::vector<int> all{128, 129, 130, 131, 132, 133, 134, 135};
+    const auto proposal =
+        propose({{controllers("/dev/a", all, true), controllers("/dev/b", all, true)}, {}, {}, {}}, {},
+                "/etc/hermes");
+    QCOMPARE(proposal.settings["motorcontrol"].toObject(),
+             json(R"({"controllers": {"1": {"url": "serial:///dev/a?baud=115200", "address": 128},
+                                      "2": {"url": "serial:///dev/b?baud=115200", "address": 128}}})"));
+}
+
+void TestSetup::whichIsWhichStaysAsItIs() {
+    const QJsonObject base =
+        json(R"({"motorcontrol": {"controllers": {"1": {"url": "serial:///dev/b?baud=115200"}}}})");
+    const auto proposal = propose({{controllers("/dev/a", {128}), controllers("/dev/b", {128})}, {}, {}, {}},
+                                  base, "/etc/hermes");
+    QCOMPARE(proposal.settings["motorcontrol"]["controllers"]["1"]["url"].toString(),
+             QString("serial:///dev/b?baud=115200"));
+    QCOMPARE(proposal.settings["motorcontrol"]["controllers"]["2"]["url"].toString(),
+             QString("serial:///dev/a?baud=115200"));
+}
+
+void TestSetup::oneControllerIsNoRobot() {
+    const auto proposal = propose({{controllers("/dev/a", {128})}, {}, {}, {}}, {}, "/etc/hermes");
+    QVERIFY(proposal.settings.isEmpty());
+    QVERIFY2(proposal.notes.first().contains("1 RoboClaws were found, two drive a robot"),
+             qPrintable(proposal.notes.join('\n')));
+}
+
+void TestSetup::receiversAreAddedOnce() {
+    const FoundSerial receiver{"/dev/g", "/dev/g", {}, "nmea", "$GPGGA", 9600, {}, false};
+    const QJsonObject base =
+        json(R"({"seriallogger": {"ports": [{"name": "gps", "url": "tcp://10.0.0.1:4001"}]}})");
+    const auto proposal = propose({{receiver}, {}, {}, {}}, base, "/etc/hermes");
+    const QJsonArray ports = proposal.settings["seriallogger"]["ports"].toArray();
+    QCOMPARE(ports.size(), 2);
+    QCOMPARE(ports[1].toObject(),
+             json(R"({"name": "gps2", "url": "serial:///dev/g?baud=9600", "view": "nmea"})"));
+    const QJsonObject then{{"seriallogger", proposal.settings["seriallogger"]}};
+    QVERIFY(!propose({{receiver}, {}, {}, {}}, then, "/etc/hermes").settings.contains("seriallogger"));
+}
+
+void TestSetup::lidarAndProcesses() {
+    const FoundLidar lidar{"192.168.1.201", "VLP-16", "vlp16", 2368, 754, true};
+    const QJsonObject base = json(
+        R"({"supervisor": {"processes": [{"name": "scanmatcher", "arguments": ["--config", "/a.json"]}]}})");
+    const auto proposal = propose({{}, {lidar}, {}, {}}, base, "/srv/h");
+    QCOMPARE(proposal.settings["velodynelogger"].toObject(), json(R"({"decode": {"model": "vlp16"}})"));
+    QCOMPARE(
+        proposal.settings["supervisor"]["processes"].toArray(),
+        json(R"({"all": [{"name": "scanmatcher", "arguments": ["--config", "/a.json"], "autostart": true},
+                              {"name": "velodynelogger", "arguments": ["--config", "/srv/h/velodynelogger.json"],
+                               "autostart": true}]})")["all"]
+            .toArray());
+}
+
+void TestSetup::writesAndPutsBack() {
+    const QTemporaryDir folder;
+    const SettingsFiles files(folder.path(), folder.path());
+    QVERIFY(!files.undo().ok());
+    QCOMPARE(files.write({{"scanmatcher", json(R"({"a": 1})")}}).value(),
+             QStringList(files.path("scanmatcher")));
+    QVERIFY(files.write({{"scanmatcher", json(R"({"a": 2})")}, {"simulator", json(R"({"b": 1})")}}).ok());
+    QCOMPARE(files.current().value(), json(R"({"scanmatcher": {"a": 2}, "simulator": {"b": 1}})"));
+    QCOMPARE(files.undoable().size(), 2);
+    QVERIFY(files.undo().ok());
+    QCOMPARE(files.current().value(), json(R"({"scanmatcher": {"a": 1}, "simulator": {}})"));
+    QVERIFY(files.undoable().isEmpty());
+    const SettingsFiles nowhere(folder.filePath("none"), {});
+    const auto refused = nowhere.write({{"scanmatcher", QJsonObject()}});
+    QVERIFY(!refused.ok() && refused.error().message.contains("none/scanmatcher.json"));
+}
+
+void TestSetup::samplesNameTheFolder() {
+    const QTemporaryDir folder;
+    QVERIFY(QDir(folder.path()).mkpath("samples/one"));
+    QFile file(folder.filePath("samples/one/supervisor.json"));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write(
+        R"({"processes": [{"name": "simulator", "arguments": ["--config", "/etc/hermes/simulator.json"]}]})");
+    file.close();
+    const SettingsFiles files(folder.path(), folder.filePath("samples"));
+    QCOMPARE(files.sampleNames(), QStringList("one"));
+    const QJsonObject sample = *files.sample("one");
+    QCOMPARE(sample["supervisor"]["processes"][0]["arguments"][1].toString(),
+             folder.filePath("simulator.json"));
+    const auto missing = files.sample("two");
+    QVERIFY(!missing.ok() && missing.error().message.contains("expected one of: one"));
+}
+
+QTEST_GUILESS_MAIN(TestSetup)
+#include "TestSetup.moc"
