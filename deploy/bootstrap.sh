@@ -1,10 +1,11 @@
-# Sourced by ./demo and ./check: installs the Debian packages that are missing and builds a preset.
+# Sourced by ./demo, ./check and deploy/build-cross: installs the Debian packages that are missing and builds a preset.
 # shellcheck shell=bash
 
-hermes_build_packages=(
-    build-essential cmake ninja-build pkg-config python3
+hermes_tool_packages=(build-essential cmake ninja-build pkg-config python3)
+hermes_library_packages=(
     qtbase5-dev libqt5serialport5-dev libqt5svg5-dev libqt5charts5-dev libqt5gamepad5-dev libeigen3-dev libpcap-dev nlohmann-json3-dev rapidjson-dev libcli11-dev libssl-dev libvalijson-dev zlib1g-dev
 )
+hermes_build_packages=("${hermes_tool_packages[@]}" "${hermes_library_packages[@]}")
 hermes_test_packages=(python3-jsonschema libbenchmark-dev clang clang-format libclang-rt-dev tshark gnuplot-nox zsh)
 
 # install_missing PACKAGE...: installs those that dpkg does not know as installed; says which; silent when none is missing.
