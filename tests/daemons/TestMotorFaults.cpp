@@ -187,12 +187,15 @@ void TestMotorFaults::turningUncommandedIsAFault() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
     double turned = RoboClawRig::now();
-    for (int i = 0; i < 1000 && state()["latched"].toObject().isEmpty(); ++i) {
-        QTest::qWait(10);
+    QTimer turn;
+    connect(&turn, &QTimer::timeout, this, [&] { // in steps that are shorter than a cycle
         const double now = RoboClawRig::now();
         const auto counts = std::int64_t(20000 * (now - std::exchange(turned, now))); // 20000 in a second
         rig_->with([&](auto &all) { all[1].channel(0).setCount(all[1].channel(0).count() + counts); });
-    }
+    });
+    turn.setTimerType(Qt::PreciseTimer);
+    turn.start(5);
+    QTRY_VERIFY_WITH_TIMEOUT(!state()["latched"].toObject().isEmpty(), 10000);
     const QString reason = state()["latched"].toObject()["encoder"].toString();
     QVERIFY2(reason.contains("wheel rear_left turns and was told to stand"), qPrintable(reason));
 }
