@@ -1,10 +1,11 @@
 # Sourced by ./demo, ./check and deploy/*: installs the Debian packages that are missing, builds a preset, makes packages.
 # shellcheck shell=bash
 
-hermes_build_packages=(
-    build-essential cmake ninja-build pkg-config python3
+hermes_tool_packages=(build-essential cmake ninja-build pkg-config python3)
+hermes_library_packages=(
     qtbase5-dev libqt5serialport5-dev libqt5svg5-dev libqt5charts5-dev libqt5gamepad5-dev libeigen3-dev libpcap-dev nlohmann-json3-dev rapidjson-dev libcli11-dev libssl-dev libvalijson-dev zlib1g-dev
 )
+hermes_build_packages=("${hermes_tool_packages[@]}" "${hermes_library_packages[@]}")
 hermes_package_packages=(debhelper dpkg-dev fakeroot help2man)
 hermes_long_test_packages=("${hermes_package_packages[@]}" lintian debootstrap systemd-container umockdev)
 hermes_test_packages=(python3-jsonschema libbenchmark-dev clang clang-format libclang-rt-dev tshark gnuplot-nox zsh)

@@ -1,5 +1,8 @@
 #include "common/interface/SocketOwner.h"
 
+#include "common/interface/SocketTable.h"
+
+#include <QFile>
 #include <arpa/inet.h>
 #include <array>
 #include <cstring>
@@ -47,12 +50,24 @@ Question questionFor(const SocketEnd &from, const SocketEnd &to) {
     return question;
 }
 
+/// Where there is no sock_diag: in a kernel without it, and in an emulator.
+std::optional<unsigned> ownerInTables(const SocketEnd &from, const SocketEnd &to) {
+    for (const char *name : {"/proc/net/tcp", "/proc/net/tcp6"}) {
+        QFile table(QString::fromLatin1(name));
+        if (!table.open(QIODevice::ReadOnly))
+            continue;
+        if (const auto user = ownerInSocketTable(table.readAll(), from, to))
+            return user;
+    }
+    return std::nullopt;
+}
+
 } // namespace
 
 std::optional<unsigned> ownerOfSocket(const SocketEnd &from, const SocketEnd &to) {
     const int descriptor = ::socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_SOCK_DIAG);
     if (descriptor < 0)
-        return std::nullopt;
+        return ownerInTables(from, to);
     const Question question = questionFor(from, to);
     alignas(nlmsghdr) std::array<char, 4096> answer{};
     // The kernel answers within send().

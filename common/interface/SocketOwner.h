@@ -11,8 +11,9 @@ struct SocketEnd {
     quint16 port = 0;
 };
 
-/// The user whose program of this computer has the connection from one end to the other: Linux, sock_diag(7).
-/// Nothing: no such socket here, its program has closed it, or the system does not tell.
+/// The user whose program of this computer has the connection from one end to the other: Linux, sock_diag(7),
+/// or /proc/net/tcp where that is missing. /// Nothing: no such socket here, its program has closed it, or
+/// the system does not tell.
 std::optional<unsigned> ownerOfSocket(const SocketEnd &from, const SocketEnd &to);
 
 } // namespace hermes

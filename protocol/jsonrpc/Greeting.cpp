@@ -40,7 +40,8 @@ Greeting::Speaker Greeting::next(char byte) {
     switch (place_) {
     case Place::Start:
         place_ = byte == tlsHandshake ? Place::Record : isTokenCharacter(byte) ? Place::Method : Place::Rest;
-        return byte >= 0 && byte < '\t' ? Speaker::Ours : Speaker::Unknown; // the length of a frame
+        return static_cast<unsigned char>(byte) < '\t' ? Speaker::Ours
+                                                       : Speaker::Unknown; // the length of a frame
     case Place::Record:
         place_ = Place::Rest;
         return byte == tlsMajorVersion ? Speaker::Tls : Speaker::Unknown;

@@ -2,6 +2,8 @@
 #include "tests/bench/Logs.h"
 #include "tests/bench/PoseFree.h"
 
+#include <iostream>
+
 #include <vectorlib/mapping/ScanPairMatcher.h>
 
 #ifdef BENCH_MRPT

@@ -4,6 +4,7 @@
 #include "common/daemon/Daemon.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
+#include "tests/support/Patience.h"
 
 #include <QTcpSocket>
 #include <QtTest>
@@ -77,7 +78,7 @@ public:
     QByteArray line() {
         QElapsedTimer limit;
         limit.start();
-        while (!socket.canReadLine() && limit.elapsed() < 5000)
+        while (!socket.canReadLine() && limit.elapsed() < 5000 * slowness)
             QTest::qWait(1);
         return socket.readLine().trimmed();
     }

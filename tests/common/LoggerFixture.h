@@ -3,6 +3,7 @@
 #include "common/recording/Recording.h"
 #include "common/recording/Sidecar.h"
 #include "tests/support/Files.h"
+#include "tests/support/Patience.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
@@ -83,7 +84,7 @@ struct Logger {
                                     answer = std::move(result);
                                     answered = true;
                                 }));
-        if (!QTest::qWaitFor([&] { return answered; }))
+        if (!QTest::qWaitFor([&] { return answered; }, 5000 * slowness))
             qFatal("no answer came");
         return answer;
     }

@@ -2,16 +2,21 @@
 #include "common/interface/LocalAddress.h"
 #include "common/interface/LocalInterface.h"
 #include "common/interface/LocalServerInterface.h"
+#include "common/interface/SocketTable.h"
 #include "common/interface/TcpInterface.h"
 #include "common/interface/TcpServerInterface.h"
 #include "common/interface/UdpInterface.h"
 #include "tests/support/FaultyInterface.h"
 #include "tests/support/LoopbackInterface.h"
+#include "tests/support/Patience.h"
 
+#include <QTcpServer>
+#include <QTcpSocket>
 #include <QTemporaryDir>
 #include <QtTest>
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 using namespace hermes;
 
@@ -30,6 +35,9 @@ private Q_SLOTS:
     void udpKeepsDatagramsWhole();
     void localSocketsNameTheirPeer();
     void localSocketsReplaceOnlyWhatIsDead();
+    void socketsHaveAnOwner_data();
+    void socketsHaveAnOwner();
+    void socketTablesTellOwners();
     void loopbackIsAsynchronous();
     void faultsAreRepeatable();
     void faultyKeepsOrderWithDelays();
@@ -249,6 +257,58 @@ void TestInterfaces::localSocketsReplaceOnlyWhatIsDead() {
     nobody.open();
     QCOMPARE(closed.count(), 1);
     QVERIFY(closed[0][0].toString().contains("No such file"));
+}
+
+void TestInterfaces::socketsHaveAnOwner_data() {
+    QTest::addColumn<QString>("host");
+    QTest::addColumn<QString>("table");
+    QTest::newRow("IPv4") << "127.0.0.1"
+                          << "/proc/net/tcp";
+    QTest::newRow("IPv6") << "::1"
+                          << "/proc/net/tcp6";
+}
+
+void TestInterfaces::socketsHaveAnOwner() {
+    QFETCH(QString, host);
+    const QHostAddress address(host);
+    QFETCH(QString, table);
+    QTcpServer server;
+    if (!server.listen(address))
+        QSKIP(qPrintable("no address " + host + ": " + server.errorString()));
+    QTcpSocket client;
+    client.connectToHost(address, server.serverPort());
+    QVERIFY(client.waitForConnected() && server.waitForNewConnection(5000 * slowness));
+    const SocketEnd from{address, client.localPort()}, to{address, server.serverPort()};
+    const std::optional<unsigned> mine(::geteuid());
+    QVERIFY(ownerOfSocket(from, to) == mine);
+    QVERIFY(!ownerOfSocket(from, {address, quint16(to.port ^ 1)}));
+    QFile file(table);
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    const QByteArray text = file.readAll();
+    QVERIFY2(ownerInSocketTable(text, from, to) == mine, text.constData());
+    QVERIFY(!ownerInSocketTable(text, from, {address, quint16(to.port ^ 1)}));
+}
+
+// As Linux writes it on a little-endian machine.
+void TestInterfaces::socketTablesTellOwners() {
+    if (Q_BYTE_ORDER != Q_LITTLE_ENDIAN)
+        QSKIP("the table of this test is that of a little-endian machine");
+    const QByteArray table =
+        "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode\n"
+        "   0: 0100007F:A000 0100007F:1CF2 01 00000000:00000000 00:00000000 00000000  1000        0 777 1 0\n"
+        "   1: 0100007F:A001 0100007F:1CF2 06 00000000:00000000 00:00000000 00000000     0        0 0 3 0\n"
+        "   2: 0000000000000000FFFF00000100007F:A002 0000000000000000FFFF00000100007F:1CF2 01 "
+        "00000000:00000000 00:00000000 00000000  1001        0 778 1 0\n"
+        "   3: 0100007F:A003 0100007F:1CF2 01\n"
+        "nonsense\n";
+    const SocketEnd to{QHostAddress(QHostAddress::LocalHost), 0x1cf2};
+    const auto ownerAt = [&](quint16 port) { return ownerInSocketTable(table, {to.address, port}, to); };
+    QVERIFY(ownerAt(0xa000) == 1000U);
+    QVERIFY(!ownerAt(0xa001)); // closed
+    QVERIFY(ownerAt(0xa002) == 1001U);
+    QVERIFY(!ownerAt(0xa003)); // cut off
+    QVERIFY(!ownerAt(0xa004));
+    QVERIFY(!ownerInSocketTable({}, {to.address, 0xa000}, to));
 }
 
 void TestInterfaces::loopbackIsAsynchronous() {

@@ -186,10 +186,16 @@ void TestMotorFaults::damagedAnswersAreCountedAndSurvived() {
 void TestMotorFaults::turningUncommandedIsAFault() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
-    for (int i = 0; i < 1000 && state()["latched"].toObject().isEmpty(); ++i) {
-        rig_->with([](auto &all) { all[1].channel(0).setCount(all[1].channel(0).count() + 200); });
-        QTest::qWait(10); // so that it turns: some 20000 counts/s
-    }
+    double turned = RoboClawRig::now();
+    QTimer turn;
+    connect(&turn, &QTimer::timeout, this, [&] { // in steps that are shorter than a cycle
+        const double now = RoboClawRig::now();
+        const auto counts = std::int64_t(20000 * (now - std::exchange(turned, now))); // 20000 in a second
+        rig_->with([&](auto &all) { all[1].channel(0).setCount(all[1].channel(0).count() + counts); });
+    });
+    turn.setTimerType(Qt::PreciseTimer);
+    turn.start(5);
+    QTRY_VERIFY_WITH_TIMEOUT(!state()["latched"].toObject().isEmpty(), 10000);
     const QString reason = state()["latched"].toObject()["encoder"].toString();
     QVERIFY2(reason.contains("wheel rear_left turns and was told to stand"), qPrintable(reason));
 }

@@ -8,6 +8,7 @@
 #include <QTemporaryDir>
 #include <QtTest>
 
+#include <cerrno>
 #include <cmath>
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -210,9 +211,13 @@ void TestMotorLines::claimOfAKilledProgramIsDropped() {
     line.send("$GPRMC*4B\r\n");
     int exclusive = 1;
     const int again = ::open(device.constData(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    QVERIFY(again >= 0 && ::ioctl(again, TIOCGEXCL, &exclusive) == 0);
-    QCOMPARE(exclusive, 0);
+    QVERIFY(again >= 0);
+    const int told = ::ioctl(again, TIOCGEXCL, &exclusive), reason = told == 0 ? 0 : errno;
     ::close(again);
+    if (reason == ENOTTY)
+        QSKIP("whether a line is claimed is not told here (TIOCGEXCL): QEMU does not know it");
+    QCOMPARE(reason, 0);
+    QCOMPARE(exclusive, 0);
 }
 
 void TestMotorLines::wheelsDriveTheSimulation() {

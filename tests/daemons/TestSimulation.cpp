@@ -60,6 +60,8 @@ void TestSimulation::placing() {
 }
 
 void TestSimulation::packetsAreSentAtTheirRate() {
+    if (qEnvironmentVariableIsSet("HERMES_SLOWNESS"))
+        QSKIP("1808 packets a second need real time, which an emulator (HERMES_SLOWNESS) does not have");
     QUdpSocket receiver;
     QVERIFY(receiver.bind(QHostAddress(QHostAddress::LocalHost), 0));
     receiver.setSocketOption(QAbstractSocket::ReceiveBufferSizeSocketOption, 4 << 20);

@@ -136,7 +136,8 @@ void TestCborCodec::refuses_data() {
     row("number as a key", hex("a10102"), "a key that is no text");
     row("bytes", hex("4401020304"), "bytes, expected a typed array");
     row("half a float", hex("d8554501020304ff"), "multiple of 4");
-    row("typed array of 2^40 bytes", hex("d8555b0000010000000000"), "more than there are");
+    row("typed array of 2^40 bytes", hex("d8555b0000010000000000"),
+        sizeof(std::size_t) < 8 ? "too large" : "more than there are"); // the first is said by Qt
     row("floats of 16 bytes", hex("d85750000102030405060708090a0b0c0d0e0f"), "bytes, expected a typed array");
     row("floats that are not finite", hex("d855480000c03f0000c07f"), "not finite");
     row("doubles, the same", hex("d852487ff0000000000000"), "not finite");

@@ -11,7 +11,7 @@ protected:
     void connectTo(hermes::Daemon &daemon) {
         client_ = std::make_unique<hermes::Client>();
         QVERIFY(client_->connectTo(hermes::asOwner(daemon.server().addresses().value(0))).ok());
-        QVERIFY(client_->waitConnected().ok());
+        QVERIFY(client_->waitConnected(slowness * hermes::Client::defaultTimeout).ok());
     }
     /// The result; an error is printed, and is {failed: message}.
     QJsonValue call(const QString &method, const QJsonObject &params = {}) {

@@ -2,6 +2,7 @@
 # Builds simd_levels.cpp for ARM and runs it in the emulator: ARMv7 with NEON and without it, from one program, and
 # AArch64 (of Debian: g++-arm-linux-gnueabihf, g++-aarch64-linux-gnu, qemu-user-static). And without any SIMD here.
 set -euo pipefail
+unset QEMU_CPU # each emulator below is told its own
 command -v pkg-config >/dev/null || { echo "skipped: pkg-config is not installed"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

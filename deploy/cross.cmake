@@ -1,0 +1,31 @@
+# Toolchain of the presets armhf and arm64: Debian 12 of HERMES_ARCH, whose root folder deploy/build-cross makes (docs/arm.md).
+set(HERMES_ARCH "" CACHE STRING "Debian's name of the architecture: armhf (ARMv7, no NEON in the baseline) or arm64")
+if(HERMES_ARCH STREQUAL armhf)
+    set(CMAKE_SYSTEM_PROCESSOR armv7l)
+    set(CMAKE_LIBRARY_ARCHITECTURE arm-linux-gnueabihf)
+elseif(HERMES_ARCH STREQUAL arm64)
+    set(CMAKE_SYSTEM_PROCESSOR aarch64)
+    set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+else()
+    message(FATAL_ERROR "HERMES_ARCH is '${HERMES_ARCH}', expected armhf or arm64")
+endif()
+set(HERMES_SYSROOT "$ENV{HERMES_SYSROOT}" CACHE PATH "Root folder of a Debian ${HERMES_ARCH} with the packages of the build")
+if(NOT EXISTS "${HERMES_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}")
+    message(FATAL_ERROR "HERMES_SYSROOT is '${HERMES_SYSROOT}', expected the root folder of a Debian ${HERMES_ARCH}: docs/arm.md")
+endif()
+set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES HERMES_ARCH HERMES_SYSROOT)
+
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSROOT "${HERMES_SYSROOT}")
+set(CMAKE_C_COMPILER ${CMAKE_LIBRARY_ARCHITECTURE}-gcc)
+set(CMAKE_CXX_COMPILER ${CMAKE_LIBRARY_ARCHITECTURE}-g++)
+set(CMAKE_CXX_FLAGS_INIT -Wno-psabi) # notes of what GCC 7.1 changed
+# Tests run inside the root folder, where every path is as on a board.
+set(CMAKE_CROSSCOMPILING_EMULATOR "${CMAKE_CURRENT_LIST_DIR}/root-run;${HERMES_SYSROOT}")
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(ENV{PKG_CONFIG_SYSROOT_DIR} "${HERMES_SYSROOT}")
+set(ENV{PKG_CONFIG_LIBDIR}
+    "${HERMES_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/pkgconfig:${HERMES_SYSROOT}/usr/share/pkgconfig")
