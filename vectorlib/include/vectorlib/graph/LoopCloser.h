@@ -213,7 +213,8 @@ private:
         double xy = 0, alpha = 0, doubt = 0;
         if (by == TrackedBy::Placed) {
             agreement.clear();
-            doubt = xy = settings.guessedXY + motion.translation().norm();
+            doubt = settings.guessedXY;
+            xy = doubt + motion.translation().norm();
             alpha = settings.placedAlpha;
         } else if (by > TrackedBy::Scan) {
             const GlobalPairMatch &found = match(last_, points);
@@ -311,25 +312,26 @@ private:
         const auto loop = loopWith(earlier);
         if (!loop)
             return;
-        if (isNear(*loop))
+        const PoseConstraint *known = nearestAcross(*loop);
+        const bool isOpen = !known && isAcross(loop->from, loop->to), near = isNear(*loop, known);
+        if (near && !isOpen)
             return believe(*loop);
+        if (isOpen && !near)
+            return; // where the sensor was put is told, and not far off
         const auto tens = static_cast<std::size_t>(std::log10(double(among)));
         for (const PoseConstraint &c :
              agreement.add(*loop, end(loop->from), end(loop->to), settings.farAgreeing + tens))
             believe(c);
     }
-    bool isNear(const PoseConstraint &c) const {
+    // `known` leads across, too, where the sensor was put elsewhere in between.
+    bool isNear(const PoseConstraint &c, const PoseConstraint *known) const {
+        const auto doubt = [&](std::size_t a, std::size_t b) {
+            return candidates_.doubtBetween(std::min(a, b), std::max(a, b), settings);
+        };
+        const double most = known ? doubt(c.from, known->from) + doubt(c.to, known->to) - settings.reach
+                                  : doubt(c.from, c.to);
         const Eigen::Vector3d off = graph_.errorOf(c);
-        double doubt = candidates_.doubtBetween(c.from, c.to, settings);
-        if (isAcross(c.from, c.to)) {
-            const PoseConstraint *known = nearestAcross(c);
-            if (!known)
-                return false;
-            doubt =
-                std::min(doubt, settings.reach + std::abs(keys_[c.from].doubt - keys_[known->from].doubt) +
-                                    std::abs(keys_[c.to].doubt - keys_[known->to].doubt));
-        }
-        return off.head<2>().norm() < doubt && std::abs(off[2]) < settings.mostTurn;
+        return off.head<2>().norm() < most && std::abs(off[2]) < settings.mostTurn;
     }
     LoopAgreement::End end(std::size_t key) const {
         return {Transformation2D(keys_[key].tracked), keys_[key].way};
@@ -384,7 +386,7 @@ private:
         const Eigen::Matrix3d own = turned(covariance, from.theta);
         if (!isWithin(led, to, candidates_.uncertainty().between(c.from, c.to) + own))
             return false;
-        const PoseConstraint *known = isAcross(c.from, c.to) ? nearestAcross(c) : nullptr;
+        const PoseConstraint *known = nearestAcross(c);
         if (!known)
             return true;
         const Pose2D &knownFrom = keys_[known->from].tracked;
@@ -424,8 +426,11 @@ private:
         return std::upper_bound(placed_.begin(), placed_.end(), key) - placed_.begin();
     }
     bool isAcross(std::size_t from, std::size_t to) const { return part(from) != part(to); }
-    // Of the loops between the same two parts the one nearest by its ways; null where there is none.
+    // Where the sensor was put elsewhere in between: of the loops between the same two parts the one nearest
+    // by its ways; null where there is none.
     const PoseConstraint *nearestAcross(const PoseConstraint &c) const {
+        if (!isAcross(c.from, c.to))
+            return nullptr;
         const PoseConstraint *nearest = nullptr;
         double least = 0;
         for (const PoseConstraint &other : graph_.constraints) {
