@@ -266,6 +266,43 @@ private Q_SLOTS:
         }
     }
 
+    // As after a matcher was killed: it goes on in rooms that it never saw, like those that it knows, and
+    // comes back to these.
+    void wherePlacedRoomsThatAreAlikeFoldNoMap() {
+        for (const double pitch : {2.6, 3.0, 4.1}) {
+            std::mt19937 random(2);
+            const ScanWorld world = rowsOfRooms(pitch);
+            const auto visit = [&](DriveWay &way, int room) {
+                const double x = (room + 0.5) * pitch;
+                way.goTo({x, 1});
+                way.goTo({x, 3.4});
+                way.goTo({x, 1});
+            };
+            DriveWay before({0.5, 1, 0}, 0.3), after({4.5 * pitch, 1, 0}, 0.3);
+            for (int room = 0; room < 4; ++room)
+                visit(before, room);
+            for (const int room : {4, 5, 6, 7, 6, 5, 4, 3, 2, 1, 0})
+                visit(after, room);
+            std::vector<Pose2D> drive = before.poses();
+            const std::size_t placed = drive.size();
+            drive.insert(drive.end(), after.poses().begin(), after.poses().end());
+            Closing loops;
+            for (std::size_t i = 0; i < drive.size(); ++i)
+                loops.add(world.scan(Transformation2D(drive[i]), random, {361, 1.99 * pi, 0.01, 5}), drive[i],
+                          i == placed ? TrackedBy::Placed : TrackedBy::Map);
+            loops.close();
+            int across = 0;
+            for (const PoseConstraint &c : loops.graph().constraints)
+                across += c.mayBeWrong && !c.isRefused() && loops.loops.scanOf(c.from) < placed &&
+                          loops.loops.scanOf(c.to) >= placed;
+            double farthest = 0;
+            for (std::size_t i = 0; i < drive.size(); ++i)
+                farthest = std::max(farthest, between(drive[i], loops.poses()[i]).translation().norm());
+            QVERIFY2(farthest < 0.2, qPrintable(QString("%1 m, rooms of %2 m").arg(farthest).arg(pitch)));
+            QVERIFY2(across > 10, qPrintable(QString("%1 loops, rooms of %2 m").arg(across).arg(pitch)));
+        }
+    }
+
     // Against drives with noise, drawn.
     void uncertaintyOfADrive() {
         constexpr unsigned seed = 9;

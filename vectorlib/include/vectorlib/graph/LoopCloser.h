@@ -58,7 +58,7 @@ class LoopCloser {
 public:
     LoopCloserSettings settings;
     GlobalPairMatcher match;
-    LoopAgreement agreement; ///< of loops that move a scan far
+    LoopAgreement agreement; ///< of loops that move a scan far, or lead across where the sensor was put
 
     /// The next scan of the drive: its points in the sensor's frame, the motion since the scan before (the
     /// pose, for the first) as it was tracked, and by what. Unless that is the map or the
@@ -196,6 +196,7 @@ public:
         last_.clear();
         agreement.clear();
         candidates_ = LoopCandidates();
+        placed_.clear();
         pointBytes_ = 0;
         for (std::size_t k = 0; k < keys_.size(); ++k) {
             pointBytes_ += keys_[k].points.bytes();
@@ -212,7 +213,8 @@ private:
         double xy = 0, alpha = 0, doubt = 0;
         if (by == TrackedBy::Placed) {
             agreement.clear();
-            doubt = xy = settings.guessedXY + motion.translation().norm();
+            doubt = settings.guessedXY;
+            xy = doubt + motion.translation().norm();
             alpha = settings.placedAlpha;
         } else if (by > TrackedBy::Scan) {
             const GlobalPairMatch &found = match(last_, points);
@@ -269,6 +271,8 @@ private:
     }
     void enter(std::size_t k, PointSpan<float> points) {
         const Key &key = keys_[k];
+        if (key.varianceAlpha >= settings.placedAlpha * settings.placedAlpha)
+            placed_.push_back(k);
         candidates_.add(
             {key.tracked, key.varianceXY, key.varianceAlpha, key.way, key.doubt, ScanSignature(points)},
             graph_.poses[k]);
@@ -277,7 +281,7 @@ private:
     void bridge() {
         const std::size_t key = keys_.size() - 1;
         for (std::size_t back = 2; back <= settings.mostBridged && back <= key; ++back)
-            if (const auto loop = loopWith(key - back))
+            if (const auto loop = isAcross(key - back, key) ? std::nullopt : loopWith(key - back))
                 believe(*loop);
     }
     // The nearest scans of earlier passes; where no loop was found, those near the place that the last
@@ -308,15 +312,26 @@ private:
         const auto loop = loopWith(earlier);
         if (!loop)
             return;
-        const Eigen::Vector3d off = graph_.errorOf(*loop);
-        const bool isNear = off.head<2>().norm() < candidates_.doubtBetween(loop->from, loop->to, settings) &&
-                            std::abs(off[2]) < settings.mostTurn;
-        if (isNear)
+        const PoseConstraint *known = nearestAcross(*loop);
+        const bool isOpen = !known && isAcross(loop->from, loop->to), near = isNear(*loop, known);
+        if (near && !isOpen)
             return believe(*loop);
+        if (isOpen && !near)
+            return; // where the sensor was put is told, and not far off
         const auto tens = static_cast<std::size_t>(std::log10(double(among)));
         for (const PoseConstraint &c :
              agreement.add(*loop, end(loop->from), end(loop->to), settings.farAgreeing + tens))
             believe(c);
+    }
+    // `known` leads across, too, where the sensor was put elsewhere in between.
+    bool isNear(const PoseConstraint &c, const PoseConstraint *known) const {
+        const auto doubt = [&](std::size_t a, std::size_t b) {
+            return candidates_.doubtBetween(std::min(a, b), std::max(a, b), settings);
+        };
+        const double most = known ? doubt(c.from, known->from) + doubt(c.to, known->to) - settings.reach
+                                  : doubt(c.from, c.to);
+        const Eigen::Vector3d off = graph_.errorOf(c);
+        return off.head<2>().norm() < most && std::abs(off[2]) < settings.mostTurn;
     }
     LoopAgreement::End end(std::size_t key) const {
         return {Transformation2D(keys_[key].tracked), keys_[key].way};
@@ -363,18 +378,73 @@ private:
                 looped_ = std::max(looped_, c.to);
     }
     // Where rooms are alike, loops that are off by the same way agree with each other: each has to agree with
-    // the drive alone first.
+    // the drive alone first. Where the sensor was put elsewhere on the way, which tells next to nothing, it
+    // has to agree with the nearest loop that leads across, too, and with the drive from there.
     bool isCredible(const PoseConstraint &c, const Eigen::Matrix3d &covariance) const {
         const Pose2D &from = keys_[c.from].tracked, &to = keys_[c.to].tracked;
         const Transformation2D led = Transformation2D(from) * c.motion;
+        const Eigen::Matrix3d own = turned(covariance, from.theta);
+        if (!isWithin(led, to, candidates_.uncertainty().between(c.from, c.to) + own))
+            return false;
+        const PoseConstraint *known = nearestAcross(c);
+        if (!known)
+            return true;
+        const Pose2D &knownFrom = keys_[known->from].tracked;
+        const Transformation2D knownTo = Transformation2D(knownFrom) * known->motion;
+        const Pose2D told = (knownTo * between(known->to, c.to)).pose();
+        const Eigen::Matrix3d knownSpread =
+            at(turned(known->information.inverse(), knownFrom.theta), knownTo.pose(), told);
+        const Eigen::Matrix3d spread = own + knownSpread + spreadAt(told, c.from, known->from) +
+                                       turned(spreadAt(to, c.to, known->to), told.theta - to.theta);
+        return isWithin(led, told, spread);
+    }
+    bool isWithin(const Transformation2D &led, const Pose2D &to, const Eigen::Matrix3d &spread) const {
         const Eigen::Vector3d off(led.x() - to.x, led.y() - to.y,
                                   std::remainder(led.alpha() - to.theta, 2 * pi));
-        Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
-        turned.topLeftCorner<2, 2>() << std::cos(from.theta), -std::sin(from.theta), std::sin(from.theta),
-            std::cos(from.theta);
-        const Eigen::Matrix3d spread =
-            candidates_.uncertainty().between(c.from, c.to) + turned * covariance * turned.transpose();
         return off.dot(spread.ldlt().solve(off)) <= settings.gate;
+    }
+    // A covariance in a frame that is turned.
+    static Eigen::Matrix3d turned(const Eigen::Matrix3d &covariance, double angle) {
+        Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+        turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(angle).toRotationMatrix();
+        return turn * covariance * turn.transpose();
+    }
+    // The covariance of a pose, as that of `place`, which is rigid with it.
+    static Eigen::Matrix3d at(const Eigen::Matrix3d &covariance, const Pose2D &pose, const Pose2D &place) {
+        Eigen::Matrix3d arm = Eigen::Matrix3d::Identity();
+        arm(0, 2) = pose.y - place.y;
+        arm(1, 2) = place.x - pose.x;
+        return arm * covariance * arm.transpose();
+    }
+    // Of `place`, which is rigid with one of two key scans, where the other one is certain.
+    Eigen::Matrix3d spreadAt(const Pose2D &place, std::size_t a, std::size_t b) const {
+        const std::size_t late = std::max(a, b);
+        return at(candidates_.uncertainty().between(std::min(a, b), late), keys_[late].tracked, place);
+    }
+    // How often the sensor was put elsewhere up to that key scan.
+    std::ptrdiff_t part(std::size_t key) const {
+        return std::upper_bound(placed_.begin(), placed_.end(), key) - placed_.begin();
+    }
+    bool isAcross(std::size_t from, std::size_t to) const { return part(from) != part(to); }
+    // Where the sensor was put elsewhere in between: of the loops between the same two parts the one nearest
+    // by its ways; null where there is none.
+    const PoseConstraint *nearestAcross(const PoseConstraint &c) const {
+        if (!isAcross(c.from, c.to))
+            return nullptr;
+        const PoseConstraint *nearest = nullptr;
+        double least = 0;
+        for (const PoseConstraint &other : graph_.constraints) {
+            if (!other.mayBeWrong || other.isRefused() || isAcross(other.from, c.from) ||
+                isAcross(other.to, c.to))
+                continue;
+            const double way = std::abs(keys_[other.from].way - keys_[c.from].way) +
+                               std::abs(keys_[other.to].way - keys_[c.to].way);
+            if (!nearest || way < least) {
+                nearest = &other;
+                least = way;
+            }
+        }
+        return nearest;
     }
 
     std::vector<Key> keys_;
@@ -385,6 +455,7 @@ private:
     std::vector<Vector2D<float>> earlier_; // and of one that it is compared with
     PoseGraph graph_;                      // a pose each key scan
     LoopCandidates candidates_;            // the key scans
+    std::vector<std::size_t> placed_;      // key scans to which the sensor was put
     std::size_t looped_ = 0;               // the last key scan that has a loop
     std::vector<std::size_t> tried_;       // key scans, with the last one
     LoopCounts counts_;
