@@ -53,7 +53,7 @@ make_packages() {
     tar --exclude=./build --exclude=./.git --exclude=./demo-out -c . | tar -x -C "$work/hermes"
     cp -r deploy/debian "$work/hermes/debian"
     echo "Building packages ..."
-    (cd "$work/hermes" && dpkg-buildpackage --build=binary --no-sign "$@") >"$work/log" 2>&1 || {
+    (cd "$work/hermes" && dpkg-buildpackage --no-sign "$@") >"$work/log" 2>&1 || {
         tail -50 "$work/log" >&2
         echo "The whole log: $work/log" >&2
         return 1
