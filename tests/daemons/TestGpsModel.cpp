@@ -287,6 +287,8 @@ void TestGpsModel::positionPacketsKeepTheirValues() {
 }
 
 void TestGpsModel::packetsAreSentOneInFourteen() {
+    if (qEnvironmentVariableIsSet("HERMES_SLOWNESS"))
+        QSKIP("1808 packets a second need real time, which an emulator (HERMES_SLOWNESS) does not have");
     QUdpSocket data, positions;
     QVERIFY(data.bind(QHostAddress(QHostAddress::LocalHost), 0));
     QVERIFY(positions.bind(QHostAddress(QHostAddress::LocalHost), 0));

@@ -31,7 +31,9 @@ expect "plain C++" "$work/levels"
 if installed arm-linux-gnueabihf-g++ qemu-arm-static; then
     build arm-linux-gnueabihf-g++
     expect NEON qemu-arm-static -cpu cortex-a7 "$work/levels"
-    expect "plain C++" qemu-arm-static -cpu cortex-a7,neon=off "$work/levels"
+    bare=cortex-a7,neon=off
+    qemu-arm-static -cpu $bare "$work/levels" >/dev/null 2>&1 || bare+=,vfp-d32=off # as QEMU 8 and later want it
+    expect "plain C++" qemu-arm-static -cpu $bare "$work/levels"
 fi
 if installed aarch64-linux-gnu-g++ qemu-aarch64-static; then
     build aarch64-linux-gnu-g++
