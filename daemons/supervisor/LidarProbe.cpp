@@ -85,12 +85,14 @@ std::vector<FoundLidar> LidarProbe::run(QStringList &problems) {
     QMap<QString, bool> positions;
     QElapsedTimer listening;
     listening.start();
-    while (listening.elapsed() < listen_ms && !isCancelled_) {
+    // Also of who sends faster than this reads.
+    const auto goesOn = [this, &listening] { return listening.elapsed() < listen_ms && !isCancelled_; };
+    while (goesOn()) {
         pollfd ready[] = {{data.descriptor(), POLLIN, 0}, {position.descriptor(), POLLIN, 0}};
         ::poll(ready, 2, slice_ms);
         std::array<std::uint8_t, 2048> bytes{};
         QString sender;
-        while (data.failure() == 0) {
+        while (data.failure() == 0 && goesOn()) {
             const auto size = data.next(bytes, sender);
             if (size < 0)
                 break;
@@ -102,7 +104,7 @@ std::vector<FoundLidar> LidarProbe::run(QStringList &problems) {
             lidar.rate_hz += 1; // the packets, as yet
             tellModel(lidar, bytes[modelByte]);
         }
-        while (position.failure() == 0 && position.next(bytes, sender) >= 0)
+        while (position.failure() == 0 && goesOn() && position.next(bytes, sender) >= 0)
             positions[sender] = true;
     }
     std::vector<FoundLidar> found;
