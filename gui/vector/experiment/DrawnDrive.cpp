@@ -44,12 +44,14 @@ void DrawnDrive::drawWalls() {
         radii_ = {end / 2 - 1, 0.25};
         return;
     }
-    const Point half = kind_ == "halls" ? Point(between(3, 12), between(3, 8)) : Point(20, between(0.9, 1.5));
+    const double deep = kind_ == "halls" ? between(3, 8) : between(0.9, 1.5);
+    const Point half(kind_ == "halls" ? between(3, 12) : 20, deep);
     block(half * -1, half, true);
     radii_ = kind_ == "halls" ? half * 0.5 : Point(half.x - 1, 0.25);
     for (int pillars = kind_ == "halls" ? int(between(0, 8)) : 0; pillars > 0; --pillars) {
-        const Point p(between(-half.x, half.x), between(-half.y, half.y));
-        const double way = std::hypot(p.x / radii_.x, p.y / radii_.y), size = between(0.1, 0.5);
+        const double y = between(-half.y, half.y), x = between(-half.x, half.x);
+        const double way = std::hypot(x / radii_.x, y / radii_.y), size = between(0.1, 0.5);
+        const Point p(x, y);
         if (way < 0.6 || way > 1.4)
             block(p - Point(size, size), p + Point(size, size), false);
     }

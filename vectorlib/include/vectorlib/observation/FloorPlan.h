@@ -10,7 +10,7 @@
 namespace vectorlib {
 
 /// Floor plans at random: rooms on both sides of a corridor, each with a door and one to four pieces of
-/// furniture; metres. The same seed gives the same plan.
+/// furniture; metres. The same seed gives the same plan on every machine.
 class FloorPlan {
 public:
     using Wall = LineSegment2D<double>;
@@ -63,10 +63,11 @@ public:
                 low = {std::min(low.x, p.x), std::min(low.y, p.y)};
                 high = {std::max(high.x, p.x), std::max(high.y, p.y)};
             }
-        for (;;)
-            if (const Point p(between(random, low.x, high.x), between(random, low.y, high.y));
-                isFree(walls, p, isOpen))
-                return {p.x, p.y, between(random, -pi, pi)};
+        for (;;) {
+            const double y = between(random, low.y, high.y), x = between(random, low.x, high.x);
+            if (isFree(walls, {x, y}, isOpen))
+                return {x, y, between(random, -pi, pi)};
+        }
     }
 
 private:
