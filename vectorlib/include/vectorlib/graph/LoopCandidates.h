@@ -54,6 +54,11 @@ public:
     std::size_t bytes() const {
         return scans_.size() * (sizeof(Scan) + sizeof(Pose2D)) + uncertainty_.bytes();
     }
+    const Scan &scan(std::size_t k) const { return scans_[k]; }
+    /// The motion between two scans as the drive alone led.
+    Transformation2D led(std::size_t from, std::size_t to) const {
+        return Transformation2D(scans_[from].tracked).inverse() * Transformation2D(scans_[to].tracked);
+    }
     /// Of the poses, without any loop.
     const DriveUncertainty &uncertainty() const { return uncertainty_; }
     /// By how much the drive may be astray between two scans, where the nearest scans are asked for; metres.

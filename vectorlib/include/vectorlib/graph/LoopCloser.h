@@ -3,6 +3,7 @@
 #include "vectorlib/geometry/PackedPoints.h"
 #include "vectorlib/graph/LoopAgreement.h"
 #include "vectorlib/graph/LoopCandidates.h"
+#include "vectorlib/graph/LoopGate.h"
 #include "vectorlib/graph/PoseGraph.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
 #include "vectorlib/mapping/TrackedBy.h"
@@ -196,7 +197,7 @@ public:
         last_.clear();
         agreement.clear();
         candidates_ = LoopCandidates();
-        placed_.clear();
+        gate_.clear();
         pointBytes_ = 0;
         for (std::size_t k = 0; k < keys_.size(); ++k) {
             pointBytes_ += keys_[k].points.bytes();
@@ -272,7 +273,7 @@ private:
     void enter(std::size_t k, PointSpan<float> points) {
         const Key &key = keys_[k];
         if (key.varianceAlpha >= settings.placedAlpha * settings.placedAlpha)
-            placed_.push_back(k);
+            gate_.addPlaced(k);
         candidates_.add(
             {key.tracked, key.varianceXY, key.varianceAlpha, key.way, key.doubt, ScanSignature(points)},
             graph_.poses[k]);
@@ -281,7 +282,7 @@ private:
     void bridge() {
         const std::size_t key = keys_.size() - 1;
         for (std::size_t back = 2; back <= settings.mostBridged && back <= key; ++back)
-            if (const auto loop = isAcross(key - back, key) ? std::nullopt : loopWith(key - back))
+            if (const auto loop = gate_.isAcross(key - back, key) ? std::nullopt : loopWith(key - back))
                 believe(*loop);
     }
     // The nearest scans of earlier passes; where no loop was found, those near the place that the last
@@ -293,7 +294,7 @@ private:
         tryNearest(graph_.poses[last], settings.perScan, 0);
         if (waiting && looped_ != last) {
             const Transformation2D there = Transformation2D(graph_.poses[waiting->loop.from]) *
-                                           waiting->loop.motion * between(waiting->loop.to, last);
+                                           waiting->loop.motion * candidates_.led(waiting->loop.to, last);
             tryNearest(there.pose(), 1, waiting->loop.to);
         }
         if (looped_ == last)
@@ -312,8 +313,8 @@ private:
         const auto loop = loopWith(earlier);
         if (!loop)
             return;
-        const PoseConstraint *known = nearestAcross(*loop);
-        const bool isOpen = !known && isAcross(loop->from, loop->to), near = isNear(*loop, known);
+        const PoseConstraint *known = gate_.nearestAcross(*loop, graph_, candidates_);
+        const bool isOpen = !known && gate_.isAcross(loop->from, loop->to), near = isNear(*loop, known);
         if (near && !isOpen)
             return believe(*loop);
         if (isOpen && !near)
@@ -336,10 +337,6 @@ private:
     LoopAgreement::End end(std::size_t key) const {
         return {Transformation2D(keys_[key].tracked), keys_[key].way};
     }
-    // As the drive alone led.
-    Transformation2D between(std::size_t from, std::size_t to) const {
-        return Transformation2D(keys_[from].tracked).inverse() * Transformation2D(keys_[to].tracked);
-    }
     // Of an earlier key scan with the last one, where they match and the drive allows it.
     std::optional<PoseConstraint> loopWith(std::size_t earlier) {
         ++counts_.tried;
@@ -356,7 +353,8 @@ private:
         Eigen::Matrix3d covariance = match.covarianceOf(found.solutions[0]);
         covariance.diagonal() += Eigen::Vector3d(xy * xy, xy * xy, alpha * alpha);
         c.information = covariance.inverse();
-        return isCredible(c, covariance) ? std::optional(c) : std::nullopt;
+        const bool isAllowed = gate_.allows(c, covariance, graph_, candidates_, settings.gate);
+        return isAllowed ? std::optional(c) : std::nullopt;
     }
     void believe(const PoseConstraint &c) {
         const Eigen::Vector3d off = graph_.errorOf(c);
@@ -377,75 +375,6 @@ private:
             if (isLoop(c) && !c.isRefused())
                 looped_ = std::max(looped_, c.to);
     }
-    // Where rooms are alike, loops that are off by the same way agree with each other: each has to agree with
-    // the drive alone first. Where the sensor was put elsewhere on the way, which tells next to nothing, it
-    // has to agree with the nearest loop that leads across, too, and with the drive from there.
-    bool isCredible(const PoseConstraint &c, const Eigen::Matrix3d &covariance) const {
-        const Pose2D &from = keys_[c.from].tracked, &to = keys_[c.to].tracked;
-        const Transformation2D led = Transformation2D(from) * c.motion;
-        const Eigen::Matrix3d own = turned(covariance, from.theta);
-        if (!isWithin(led, to, candidates_.uncertainty().between(c.from, c.to) + own))
-            return false;
-        const PoseConstraint *known = nearestAcross(c);
-        if (!known)
-            return true;
-        const Pose2D &knownFrom = keys_[known->from].tracked;
-        const Transformation2D knownTo = Transformation2D(knownFrom) * known->motion;
-        const Pose2D told = (knownTo * between(known->to, c.to)).pose();
-        const Eigen::Matrix3d knownSpread =
-            at(turned(known->information.inverse(), knownFrom.theta), knownTo.pose(), told);
-        const Eigen::Matrix3d spread = own + knownSpread + spreadAt(told, c.from, known->from) +
-                                       turned(spreadAt(to, c.to, known->to), told.theta - to.theta);
-        return isWithin(led, told, spread);
-    }
-    bool isWithin(const Transformation2D &led, const Pose2D &to, const Eigen::Matrix3d &spread) const {
-        const Eigen::Vector3d off(led.x() - to.x, led.y() - to.y,
-                                  std::remainder(led.alpha() - to.theta, 2 * pi));
-        return off.dot(spread.ldlt().solve(off)) <= settings.gate;
-    }
-    // A covariance in a frame that is turned.
-    static Eigen::Matrix3d turned(const Eigen::Matrix3d &covariance, double angle) {
-        Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-        turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(angle).toRotationMatrix();
-        return turn * covariance * turn.transpose();
-    }
-    // The covariance of a pose, as that of `place`, which is rigid with it.
-    static Eigen::Matrix3d at(const Eigen::Matrix3d &covariance, const Pose2D &pose, const Pose2D &place) {
-        Eigen::Matrix3d arm = Eigen::Matrix3d::Identity();
-        arm(0, 2) = pose.y - place.y;
-        arm(1, 2) = place.x - pose.x;
-        return arm * covariance * arm.transpose();
-    }
-    // Of `place`, which is rigid with one of two key scans, where the other one is certain.
-    Eigen::Matrix3d spreadAt(const Pose2D &place, std::size_t a, std::size_t b) const {
-        const std::size_t late = std::max(a, b);
-        return at(candidates_.uncertainty().between(std::min(a, b), late), keys_[late].tracked, place);
-    }
-    // How often the sensor was put elsewhere up to that key scan.
-    std::ptrdiff_t part(std::size_t key) const {
-        return std::upper_bound(placed_.begin(), placed_.end(), key) - placed_.begin();
-    }
-    bool isAcross(std::size_t from, std::size_t to) const { return part(from) != part(to); }
-    // Where the sensor was put elsewhere in between: of the loops between the same two parts the one nearest
-    // by its ways; null where there is none.
-    const PoseConstraint *nearestAcross(const PoseConstraint &c) const {
-        if (!isAcross(c.from, c.to))
-            return nullptr;
-        const PoseConstraint *nearest = nullptr;
-        double least = 0;
-        for (const PoseConstraint &other : graph_.constraints) {
-            if (!other.mayBeWrong || other.isRefused() || isAcross(other.from, c.from) ||
-                isAcross(other.to, c.to))
-                continue;
-            const double way = std::abs(keys_[other.from].way - keys_[c.from].way) +
-                               std::abs(keys_[other.to].way - keys_[c.to].way);
-            if (!nearest || way < least) {
-                nearest = &other;
-                least = way;
-            }
-        }
-        return nearest;
-    }
 
     std::vector<Key> keys_;
     std::size_t pointBytes_ = 0; // of the keys
@@ -455,9 +384,9 @@ private:
     std::vector<Vector2D<float>> earlier_; // and of one that it is compared with
     PoseGraph graph_;                      // a pose each key scan
     LoopCandidates candidates_;            // the key scans
-    std::vector<std::size_t> placed_;      // key scans to which the sensor was put
-    std::size_t looped_ = 0;               // the last key scan that has a loop
-    std::vector<std::size_t> tried_;       // key scans, with the last one
+    LoopGate gate_;
+    std::size_t looped_ = 0;         // the last key scan that has a loop
+    std::vector<std::size_t> tried_; // key scans, with the last one
     LoopCounts counts_;
     bool found_ = false, news_ = false; // loops since the last correction
     std::size_t corrected_ = 0;         // key scans then
