@@ -52,7 +52,9 @@ QString choose(const InterfaceUrl &url, const char *option, const char *fallback
 SerialInterface::SerialInterface(const InterfaceUrl &address, QObject *parent)
     : Interface(parent)
     , url_(address) {
-    connect(&port_, &QSerialPort::readyRead, this, [this] { nowReceived(port_.readAll()); });
+    // Not readAll(), which for some bytes moves 32 KB: half of what the motor control would do.
+    connect(&port_, &QSerialPort::readyRead, this,
+            [this] { nowReceived(port_.read(port_.bytesAvailable())); });
     connect(&port_, &QSerialPort::bytesWritten, this, &Interface::drained);
     connect(&port_, &QSerialPort::errorOccurred, this, &SerialInterface::fail);
 }
