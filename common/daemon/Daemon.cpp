@@ -13,9 +13,11 @@
 
 #include <QCryptographicHash>
 #include <QJsonDocument>
+#include <QRegularExpression>
 #include <QSysInfo>
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace hermes {
 namespace {
@@ -279,7 +281,7 @@ void Daemon::publishStatus() {
     QMap<QString, QString> levels;
     for (const HealthItem &item : healthItems_.list()) {
         levels.insert(item.name, item.level);
-        logHealth(item, toldLevels_.value(item.name, toString(HealthLevel::Ok)));
+        logHealth(item);
     }
     const QString now = toString(state());
     if (now == toldState_ && levels == toldLevels_)
@@ -289,10 +291,12 @@ void Daemon::publishStatus() {
     publish(QStringLiteral("status"), [this] { return status(); });
 }
 
-void Daemon::logHealth(const HealthItem &item, const QString &before) {
-    if (item.level == before)
-        return;
+void Daemon::logHealth(const HealthItem &item) {
+    static const QRegularExpression numbers(QStringLiteral("[0-9.]+"));
     const bool isWell = item.level == toString(HealthLevel::Ok);
+    const QString reason = isWell ? QString() : item.level + QString(item.message).remove(numbers);
+    if (std::exchange(loggedReasons_[item.name], reason) == reason)
+        return;
     const QString text = QStringLiteral("%1 is %2: %3").arg(item.name, item.level, item.message);
     isWell ? logInfo(QStringLiteral("health"), text) : logWarning(QStringLiteral("health"), text);
 }

@@ -129,7 +129,8 @@ private:
     void waitForMended(const QString &file);
     void updateChannelHealth();
     void publishStatus();
-    void logHealth(const HealthItem &item, const QString &before);
+    /// Each change of the level or the reason; numbers in it change all the time.
+    void logHealth(const HealthItem &item);
     Result<void> configure(const CommandLine &line);
     QString helpText() const;
     void forgetDescription();
@@ -150,7 +151,7 @@ private:
     bool runsWithWrongFile_ = false;
     QTimer watchdog_, mended_;
     QString toldState_;
-    QMap<QString, QString> toldLevels_; // of the health items
+    QMap<QString, QString> toldLevels_, loggedReasons_; // of the health items
     QTimer statusTimer_;
     std::unique_ptr<Announcement> announcement_; // while others on the network can reach it
 };
