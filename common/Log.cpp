@@ -103,6 +103,12 @@ void Log::write(LogLevel level, const QString &source, const QString &text) {
             who, [take = take, record] { take(record); }, Qt::QueuedConnection);
 }
 
+void Log::pass(const QString &program, const QString &text) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (toStderr_ && hasStandardStreams)
+        writeToStderr((program + QStringLiteral(": ") + oneLine(text) + QLatin1Char('\n')).toUtf8());
+}
+
 void Log::follow(QObject *who, const std::function<void(const LogRecord &)> &take) {
     const std::lock_guard<std::mutex> lock(mutex_);
     followers_[who] = take;

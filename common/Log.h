@@ -33,6 +33,9 @@ public:
 
     void write(LogLevel level, const QString &source, const QString &text);
 
+    /// A line that another program wrote goes to stderr, too, after its name; it is no record.
+    void pass(const QString &program, const QString &text);
+
     /// The last count records, oldest first.
     std::vector<LogMessage> tail(int count) const;
 

@@ -13,9 +13,11 @@
 
 #include <QCryptographicHash>
 #include <QJsonDocument>
+#include <QRegularExpression>
 #include <QSysInfo>
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace hermes {
 namespace {
@@ -126,7 +128,9 @@ Result<void> Daemon::configure(const CommandLine &line) {
         if (!loaded) {
             logError(self_.name, loaded.error().message);
             healthItems_.set(QStringLiteral("settings file"), HealthLevel::Failed,
-                             loaded.error().message + QStringLiteral("; mend it and restart the service"));
+                             loaded.error().message +
+                                 QStringLiteral("; once it is mended the service starts anew"));
+            waitForMended(line.config);
         }
     }
     const auto set = configuration_.set(line.settings);
@@ -141,6 +145,16 @@ Result<void> Daemon::configure(const CommandLine &line) {
     }
     applyCommonSettings();
     return {};
+}
+
+void Daemon::waitForMended(const QString &file) {
+    connect(&mended_, &QTimer::timeout, this, [this, file] {
+        if (!configuration_.read(file))
+            return;
+        logInfo(self_.name, QStringLiteral("settings file %1: it is mended").arg(file));
+        shutDown();
+    });
+    mended_.start(std::chrono::seconds(1));
 }
 
 Result<void> Daemon::launch() {
@@ -264,13 +278,27 @@ DaemonStatus Daemon::status() {
 
 void Daemon::publishStatus() {
     // Only a change of a level or of the state is news; ages and counters change all the time.
-    QString now = toString(state());
-    for (const HealthItem &item : healthItems_.list())
-        now += QLatin1Char(' ') + item.name + QLatin1Char('=') + item.level;
-    if (now == lastStatus_)
+    QMap<QString, QString> levels;
+    for (const HealthItem &item : healthItems_.list()) {
+        levels.insert(item.name, item.level);
+        logHealth(item);
+    }
+    const QString now = toString(state());
+    if (now == toldState_ && levels == toldLevels_)
         return;
-    lastStatus_ = now;
+    toldState_ = now;
+    toldLevels_ = levels;
     publish(QStringLiteral("status"), [this] { return status(); });
+}
+
+void Daemon::logHealth(const HealthItem &item) {
+    static const QRegularExpression numbers(QStringLiteral("[0-9.]+"));
+    const bool isWell = item.level == toString(HealthLevel::Ok);
+    const QString reason = isWell ? QString() : item.level + QString(item.message).remove(numbers);
+    if (std::exchange(loggedReasons_[item.name], reason) == reason)
+        return;
+    const QString text = QStringLiteral("%1 is %2: %3").arg(item.name, item.level, item.message);
+    isWell ? logInfo(QStringLiteral("health"), text) : logWarning(QStringLiteral("health"), text);
 }
 
 void Daemon::updateChannelHealth() {

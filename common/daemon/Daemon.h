@@ -93,7 +93,8 @@ protected:
     /// The watchdog of the service manager is fed by feedWatchdog() alone, not by the event loop.
     void feedWatchdogMyself() { watchdogByHand_ = true; }
     /// Of who starts the others: as a service it runs with its defaults where the settings file is wrong, and
-    /// its health tells what is wrong; a service that has ended tells nobody.
+    /// its health tells what is wrong; a service that has ended tells nobody. Once the file is mended it ends
+    /// in order, and the service manager starts it anew.
     void runWithWrongFile() { runsWithWrongFile_ = true; }
 
     // For its work.
@@ -125,8 +126,11 @@ private:
     void declareCommonSettings();
     void applyCommonSettings();
     void openAudit();
+    void waitForMended(const QString &file);
     void updateChannelHealth();
     void publishStatus();
+    /// Each change of the level or the reason; numbers in it change all the time.
+    void logHealth(const HealthItem &item);
     Result<void> configure(const CommandLine &line);
     QString helpText() const;
     void forgetDescription();
@@ -145,8 +149,9 @@ private:
     bool launched_ = false;
     bool watchdogByHand_ = false;
     bool runsWithWrongFile_ = false;
-    QTimer watchdog_;
-    QString lastStatus_;
+    QTimer watchdog_, mended_;
+    QString toldState_;
+    QMap<QString, QString> toldLevels_, loggedReasons_; // of the health items
     QTimer statusTimer_;
     std::unique_ptr<Announcement> announcement_; // while others on the network can reach it
 };

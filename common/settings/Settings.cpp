@@ -105,8 +105,12 @@ Result<QStringList> Settings::apply(const QJsonObject &proposed) {
         return Error(ErrorCode::InvalidSetting, toString(violations),
                      QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
     }
-    const QStringList paths = leafPaths(difference(proposed, current_));
-    put(proposed);
+    return take(proposed);
+}
+
+QStringList Settings::take(const QJsonObject &values) {
+    const QStringList paths = leafPaths(difference(values, current_));
+    put(values);
     if (!paths.isEmpty())
         Q_EMIT changed(paths);
     return paths;
@@ -135,7 +139,7 @@ QStringList Settings::waiting() const {
     return leafPaths(difference(current_, inForce_));
 }
 
-Result<void> Settings::load(const QString &name) {
+Result<QJsonObject> Settings::read(const QString &name) const {
     QFile file(name);
     if (!file.open(QIODevice::ReadOnly))
         return fileError(name, file.errorString());
@@ -145,12 +149,20 @@ Result<void> Settings::load(const QString &name) {
         return fileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));
     if (!value->isObject())
         return fileError(name, QStringLiteral("line 1: expected a JSON object"));
-    const auto applied = apply(merged(initial_, value->toObject()));
-    if (!applied) {
+    const QJsonObject proposed = merged(initial_, value->toObject());
+    const auto violations = check(proposed);
+    if (!violations.empty())
         return Error(ErrorCode::InvalidSetting,
-                     QStringLiteral("settings file %1: %2").arg(name, applied.error().message),
-                     applied.error().data);
-    }
+                     QStringLiteral("settings file %1: %2").arg(name, toString(violations)),
+                     QJsonObject{{QStringLiteral("errors"), toJson(violations)}});
+    return proposed;
+}
+
+Result<void> Settings::load(const QString &name) {
+    const auto proposed = read(name);
+    if (!proposed)
+        return proposed.error();
+    take(*proposed);
     fileName_ = name;
     return {};
 }

@@ -48,8 +48,10 @@ public:
     /// Puts the values at or below these paths back to their defaults; without paths, all of them.
     Result<QStringList> reset(const QStringList &paths = {});
 
-    /// Reads a file of settings over the defaults. Errors name the file, the line or path, what was found and
-    /// what was expected. Remembers the file for save().
+    /// The defaults with what a file of settings changes. Errors name the file, the line or path, what was
+    /// found and what was expected.
+    Result<QJsonObject> read(const QString &file) const;
+    /// Takes what read() gives, and remembers the file for save().
     Result<void> load(const QString &file);
     /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name.
     Result<QString> save(const QString &file = QString()) const;
@@ -70,6 +72,7 @@ Q_SIGNALS:
 
 private:
     Result<QStringList> apply(const QJsonObject &proposed);
+    QStringList take(const QJsonObject &values);
     void put(const QJsonObject &values);
     std::vector<SchemaViolation> check(const QJsonObject &proposed) const;
 

@@ -66,7 +66,6 @@ private:
     };
     std::vector<WaitingStop> stops_;
     std::array<PastFaults, controllerCount> answers_;
-    std::array<QString, controllerCount> logged_; // how the controllers are
     quint64 cycles_ = 0;
 };
 

@@ -1,5 +1,4 @@
 // What the motor control tells about itself: health items, state, motor.state.
-#include "common/Log.h"
 #include "common/Time.h"
 #include "daemons/motorcontrol/MotorControl.h"
 #include "daemons/motorcontrol/MotorMessages.h"
@@ -40,9 +39,6 @@ void MotorControl::updateHealth() {
         const QString pastText =
             faults > 0 ? QString("; %1 answers were damaged or did not come").arg(faults) : QString();
         health().set(QString("controller_%1").arg(i + 1), level, text + pastText, asJson(c).toObject());
-        if (text != logged_[i])
-            c.ready ? logInfo("controllers", text) : logWarning("controllers", text);
-        logged_[i] = text;
     }
     double battery = 1e9, current = 0, temperature = -1e9;
     bool known = false;

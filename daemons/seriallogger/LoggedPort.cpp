@@ -6,6 +6,10 @@ namespace hermes::seriallogger {
 
 namespace {
 
+// What is so long without an NMEA sentence, of 82 bytes at most, is something else.
+constexpr quint64 foreignBytes = 1000;
+constexpr double foreign_s = 3;
+
 QString toText(Interface::State state) {
     return state == Interface::State::Open      ? "open"
            : state == Interface::State::Opening ? "opening"
@@ -31,6 +35,17 @@ void LoggedPort::tick(double elapsed_s) {
     const quint64 bytes = thread_.state().counters.bytesIn;
     rate_ = elapsed_s > 0 ? double(bytes - bytesAtTick_) / elapsed_s : 0;
     bytesAtTick_ = bytes;
+    if (const quint64 sentences = view_.fixes().sentences().sentences;
+        sentences != sentences_ || bytes == 0) {
+        sentences_ = sentences;
+        bytesAtSentence_ = bytes;
+        sentenceMono_ = monotonicNow();
+    }
+}
+
+bool LoggedPort::isForeign() const {
+    return settings_.view == PortSettings::View::Nmea && bytesAtTick_ - bytesAtSentence_ > foreignBytes &&
+           monotonicNow() - sentenceMono_ > foreign_s;
 }
 
 PortStatus LoggedPort::status() const {
@@ -89,6 +104,12 @@ std::pair<HealthLevel, QString> LoggedPort::health() {
     if (settings_.silence_s > 0 && silent > settings_.silence_s)
         return {HealthLevel::Stale,
                 QString("no byte on %1 for %2 s").arg(settings_.url).arg(silent, 0, 'f', 1)};
+    if (isForeign())
+        return {HealthLevel::Failed,
+                QString("%1 bytes came on %2 and no NMEA sentence in them; expected a GPS receiver that "
+                        "talks at this baud rate")
+                    .arg(bytesAtTick_ - bytesAtSentence_)
+                    .arg(settings_.url)};
     quint64 errors = 0;
     for (const quint64 count : state.systemErrors)
         errors += count;

@@ -29,6 +29,8 @@ public:
 
 private:
     NmeaCounts nmeaCounts() const;
+    /// What comes is something else than NMEA sentences.
+    bool isForeign() const;
 
     const PortSettings settings_;
     ChunkQueue recording_;
@@ -37,6 +39,8 @@ private:
     quint64 bytesAtTick_ = 0;
     double rate_ = 0; ///< bytes a second
     double startedMono_ = 0;
+    quint64 sentences_ = 0, bytesAtSentence_ = 0; ///< NMEA sentences, and the bytes up to the last one
+    double sentenceMono_ = 0;                     ///< when that came
     PastFaults faults_;
 };
 

@@ -48,17 +48,20 @@ Field PortSettings::field() {
                                                {"minimum", 0},
                                                {"maximum", 1e6},
                                                {"description", "Without a byte for so long its health is "
-                                                               "stale; 0: never"}}}}},
+                                                               "stale; 0: never. Usual: 5 in nmea"}}}}},
         {"required", QJsonArray{"name", "url"}},
         {"additionalProperties", false}};
     return Field::array(
                "ports",
-               "What to log: name and url of each port; view (lines), checksum (strict), silence_s (0)", item)
+               "What to log: name and url of each port; view (lines), checksum (strict), silence_s (0, 5)",
+               item)
         .with("maxItems", 64)
         .byDefault(QJsonArray())
         .appliesOnRestart()
         .group("Ports");
 }
+
+constexpr double receiverSilence_s = 5; // a GPS receiver talks each second
 
 std::vector<PortSettings> PortSettings::read(const QJsonObject &settings) {
     std::vector<PortSettings> ports;
@@ -71,7 +74,7 @@ std::vector<PortSettings> PortSettings::read(const QJsonObject &settings) {
         port.view = view == "none" ? View::None : view == "nmea" ? View::Nmea : View::Lines;
         port.checksum =
             object.value("checksum") == "lenient" ? nmea::ChecksumRule::Lenient : nmea::ChecksumRule::Strict;
-        port.silence_s = object.value("silence_s").toDouble();
+        port.silence_s = object.value("silence_s").toDouble(port.view == View::Nmea ? receiverSilence_s : 0);
         ports.push_back(port);
     }
     return ports;

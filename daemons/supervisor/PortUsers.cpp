@@ -81,15 +81,17 @@ QString lockedBy(const QString &device) {
 
 /// The inodes of the sockets that receive at a port.
 QSet<QString> socketsAt(quint16 port) {
-    QFile table("/proc/net/udp");
     QSet<QString> sockets;
-    if (!table.open(QIODevice::ReadOnly))
-        return sockets;
     constexpr int localAddress = 1, inode = 9;
-    for (const QByteArray &line : table.readAll().split('\n')) {
-        const QList<QByteArray> fields = line.simplified().split(' ');
-        if (fields.size() > inode && fields[localAddress].split(':').value(1).toInt(nullptr, 16) == port)
-            sockets.insert(QString("socket:[%1]").arg(QString::fromLatin1(fields[inode])));
+    for (const char *const name : {"/proc/net/udp", "/proc/net/udp6"}) { // most of IPv6 receive IPv4, too
+        QFile table(name);
+        if (!table.open(QIODevice::ReadOnly))
+            continue;
+        for (const QByteArray &line : table.readAll().split('\n')) {
+            const QList<QByteArray> fields = line.simplified().split(' ');
+            if (fields.size() > inode && fields[localAddress].split(':').value(1).toInt(nullptr, 16) == port)
+                sockets.insert(QString("socket:[%1]").arg(QString::fromLatin1(fields[inode])));
+        }
     }
     return sockets;
 }

@@ -12,7 +12,7 @@ namespace PortUsers {
 /// count.
 QString ofDevice(const QString &device);
 
-/// The same of who receives at a UDP port over IPv4.
+/// The same of who receives at a UDP port.
 QString ofUdpPort(quint16 port);
 
 /// Whether this process has a serial line open, or receives at one of these UDP ports.

@@ -8,6 +8,9 @@
 #include <QJsonDocument>
 #include <QRegularExpression>
 #include <QSaveFile>
+#include <memory>
+#include <unistd.h>
+#include <vector>
 
 namespace hermes::supervisor {
 namespace {
@@ -36,14 +39,30 @@ Result<QJsonObject> parsed(const QString &path, const QByteArray &text) {
     return value->toObject();
 }
 
-Result<void> writeFile(const QString &path, const QByteArray &text) {
-    QSaveFile file(path);
-    // commit() alone does not notice a full disk
-    if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
-        !file.commit())
-        return fileError(path, file.errorString());
-    return {};
-}
+/// Files that are replaced together: their texts lie on the disk before the first one is.
+class Replacement {
+public:
+    Result<void> add(const QString &path, const QByteArray &text) {
+        files_.push_back(std::make_unique<QSaveFile>(path));
+        QSaveFile &file = *files_.back();
+        // commit() alone does not notice a full disk
+        if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
+            ::fsync(file.handle()) != 0)
+            return fileError(path, file.error() == QFile::NoError ? qt_error_string() : file.errorString());
+        return {};
+    }
+
+    /// In the order in which they were added.
+    Result<void> commit() {
+        for (const auto &file : files_)
+            if (!file->commit())
+                return fileError(file->fileName(), file->errorString());
+        return {};
+    }
+
+private:
+    std::vector<std::unique_ptr<QSaveFile>> files_;
+};
 
 /// A file of settings; from stands for to in it.
 Result<QJsonObject> settingsIn(const QString &path, const QByteArray &from = {}, const QByteArray &to = {}) {
@@ -94,27 +113,30 @@ Result<QJsonObject> SettingsFiles::sample(const QString &name) const {
 }
 
 Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
-    for (const QString &daemon : undoable())
-        QFile::remove(path(daemon) + previous);
+    Replacement old, now;
+    QStringList files;
     for (const QString &daemon : settings.keys()) {
         const bool isNew = !QFile::exists(path(daemon));
         const auto before = isNew ? Result<QByteArray>(QByteArray("{}\n")) : readFile(path(daemon));
         if (!before)
             return before.error();
-        if (const auto kept = writeFile(path(daemon) + previous, *before); !kept)
-            return kept.error();
-    }
-    QStringList files;
-    for (const QString &daemon : settings.keys()) {
-        const auto written = writeFile(path(daemon), QJsonDocument(settings[daemon].toObject()).toJson());
-        if (!written)
-            return Error(ErrorCode::InputOutput,
-                         QString("%1; %2 files are new, setup.undo puts back what was there")
-                             .arg(written.error().message)
-                             .arg(files.size()),
-                         written.error().data);
+        auto added = old.add(path(daemon) + previous, *before);
+        if (added)
+            added = now.add(path(daemon), QJsonDocument(settings[daemon].toObject()).toJson());
+        if (!added)
+            return Error(ErrorCode::InputOutput, added.error().message + "; nothing was changed",
+                         added.error().data);
         files.append(path(daemon));
     }
+    for (const QString &daemon : undoable())
+        if (!settings.contains(daemon))
+            QFile::remove(path(daemon) + previous);
+    auto done = old.commit();
+    if (done)
+        done = now.commit();
+    if (!done)
+        return Error(ErrorCode::InputOutput, done.error().message + "; setup.undo puts back what was there",
+                     done.error().data);
     return files;
 }
 
@@ -127,19 +149,22 @@ QStringList SettingsFiles::undoable() const {
 }
 
 Result<QStringList> SettingsFiles::undo() const {
+    Replacement replacement;
     QStringList files;
     for (const QString &daemon : undoable()) {
         const auto before = readFile(path(daemon) + previous);
         if (!before)
             return before.error();
-        if (const auto written = writeFile(path(daemon), *before); !written)
-            return written.error();
+        if (const auto added = replacement.add(path(daemon), *before); !added)
+            return added.error();
         files.append(path(daemon));
     }
     if (files.isEmpty())
         return Error(
             ErrorCode::NotReady,
             QString("there is nothing to undo: no file in %1 ends in .json%2").arg(folder_, previous));
+    if (const auto done = replacement.commit(); !done)
+        return done.error();
     for (const QString &file : files)
         QFile::remove(file + previous);
     return files;

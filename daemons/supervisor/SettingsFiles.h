@@ -25,11 +25,11 @@ public:
     /// name.
     Result<QJsonObject> sample(const QString &name) const;
 
-    /// Replaces the files of these daemons, each at once or not at all; those that were there stay beside, as
-    /// NAME.json.previous. Gives the files. Error: what could not be written; undo() brings back what was.
+    /// Replaces the files of these daemons when there is room for all of them, else nothing; those that were
+    /// there stay beside, as NAME.json.previous. Gives the files. Error: what could not be written.
     Result<QStringList> write(const QJsonObject &settings) const;
-    /// Puts those back that the last write() has replaced; where there was none, one without settings. Error:
-    /// nothing was replaced.
+    /// Puts those back that the last write() has replaced, all or none; where there was none, one without
+    /// settings. Error: nothing was replaced, or cannot be.
     Result<QStringList> undo() const;
     /// The daemons whose files undo() would put back.
     QStringList undoable() const;

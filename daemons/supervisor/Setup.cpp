@@ -133,14 +133,15 @@ Setup::Stopped Setup::release() {
             continue;
         logInfo("setup", process->entry().name + ": ended for a search of its lines");
         process->stop();
-        stopped.emplace_back(process);
+        stopped.push_back({process, process->orders()});
     }
     return stopped;
 }
 
 void Setup::searchWhenStopped(const Stopped &stopped, bool ask, const Reply &reply) {
-    const bool isWaiting = std::any_of(stopped.begin(), stopped.end(),
-                                       [](const auto &process) { return process && process->isAlive(); });
+    const bool isWaiting = std::any_of(stopped.begin(), stopped.end(), [](const Released &one) {
+        return one.process && one.process->isAlive();
+    });
     if (isWaiting) // SIGKILL ends it after 5 s
         return QTimer::singleShot(look, this, [=] { searchWhenStopped(stopped, ask, reply); });
     search_.begin(searchOptions(ask), [this, stopped, reply](const Findings &findings) {
@@ -151,8 +152,8 @@ void Setup::searchWhenStopped(const Stopped &stopped, bool ask, const Reply &rep
 
 void Setup::onFound(Findings findings, const Stopped &stopped, const Reply &reply) {
     isSearching_ = false;
-    for (const auto &process : stopped) {
-        if (!process || process->isAlive())
+    for (const auto &[process, orders] : stopped) {
+        if (!process || process->isAlive() || process->orders() != orders)
             continue;
         process->start();
         findings.restarted.append(process->entry().name);

@@ -25,7 +25,11 @@ public:
     std::vector<Command> commands();
 
 private:
-    using Stopped = std::vector<QPointer<SupervisedProcess>>;
+    struct Released {
+        QPointer<SupervisedProcess> process;
+        int orders; ///< that it had then: with another one since it is somebody else's to start
+    };
+    using Stopped = std::vector<Released>;
 
     Command findCommand();
     Command proposeCommand();

@@ -101,6 +101,7 @@ void SupervisedProcess::endFamily() {
 
 void SupervisedProcess::start() {
     retry_.stop();
+    ++orders_;
     if (isAlive()) {
         startAfterStop_ = state_ == State::Stopping;
         return;
@@ -117,7 +118,9 @@ void SupervisedProcess::start() {
 }
 
 void SupervisedProcess::stop() {
+    ++orders_;
     retry_.stop();
+    backOff_ = firstBackOff; // what was in the way may be gone
     startAfterStop_ = false;
     if (!isAlive())
         return setState(State::Stopped);
@@ -160,9 +163,10 @@ void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
 }
 
 void SupervisedProcess::onFailedToStart() {
-    lastExit_ = process_.errorString();
-    logError("process", QString("%1: %2: %3").arg(entry_.name, entry_.program, lastExit_));
-    setState(State::Failed);
+    kill_.stop();
+    lastExit_ = entry_.program + ": " + process_.errorString();
+    logError("process", entry_.name + ": " + lastExit_);
+    state_ == State::Stopping ? setState(State::Stopped) : retryLater(); // its disk may not be there yet
 }
 
 void SupervisedProcess::retryLater() {
@@ -188,6 +192,7 @@ void SupervisedProcess::readOutput() {
 
 void SupervisedProcess::keepLine(const QByteArray &line) {
     lines_.push_back(QString::fromUtf8(line.constData(), line.size())); // zeros, too
+    Log::instance().pass(entry_.name, lines_.back());
     if (lines_.size() > keptLines)
         lines_.pop_front();
 }

@@ -39,6 +39,8 @@ public:
     /// SIGTERM, and SIGKILL after killAfter.
     void stop();
     void restart();
+    /// Counts what it was told: whether somebody has told it something meanwhile.
+    int orders() const { return orders_; }
 
     /// Looks how much of a core (since the last time) and how much memory it uses.
     void measure();
@@ -73,7 +75,7 @@ private:
     pid_t group_ = 0;
     QTimer retry_, kill_;
     std::chrono::milliseconds backOff_ = firstBackOff;
-    int restarts_ = 0;
+    int restarts_ = 0, orders_ = 0;
     double started_ = 0; // monotonic
     bool startAfterStop_ = false;
     QString lastExit_;

@@ -94,14 +94,31 @@ Result<void> listNetwork(const Arguments &arguments) {
     return {};
 }
 
+/// The health items that are not ok, of what daemon.status gave.
+QJsonArray wrongItems(const SessionReply &status) {
+    QJsonArray wrong;
+    if (!status.result)
+        return wrong;
+    for (const QJsonValue &item : (*status.result)[QStringLiteral("health")].toArray())
+        if (item[QStringLiteral("level")] != QStringLiteral("ok"))
+            wrong.append(QJsonObject{{QStringLiteral("name"), item[QStringLiteral("name")]},
+                                     {QStringLiteral("level"), item[QStringLiteral("level")]},
+                                     {QStringLiteral("message"), item[QStringLiteral("message")]}});
+    return wrong;
+}
+
 } // namespace
 
 Result<void> listDaemons(const Arguments &arguments) {
     if (arguments.network)
         return listNetwork(arguments);
     QStringList addresses;
-    for (const QString &name : daemonNames())
-        addresses.append(*daemonAddress(name, arguments.host));
+    for (const QString &name : arguments.daemons.isEmpty() ? daemonNames() : arguments.daemons) {
+        const auto address = daemonAddress(name, arguments.host);
+        if (!address)
+            return address.error();
+        addresses.append(*address);
+    }
     const auto all = connectAll(addresses, arguments.timeout);
     std::vector<SessionCall> calls;
     for (const auto &client : all) {
@@ -118,13 +135,21 @@ Result<void> listDaemons(const Arguments &arguments) {
     for (std::size_t i = 0; i < calls.size(); ++i) {
         const QString name = text(infos[i], "name", "?"), state = text(states[i], "state", "?");
         const QString version = text(infos[i], "version", ""), &address = calls[i].member.name;
-        if (!arguments.json)
+        const QJsonArray wrong = wrongItems(states[i]);
+        if (!arguments.json) {
             printLine(
                 QStringLiteral("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
+            for (const QJsonValue &item : wrong)
+                printLine(printable(QStringLiteral("  %1: %2: %3")
+                                        .arg(item[QStringLiteral("level")].toString(),
+                                             item[QStringLiteral("name")].toString(),
+                                             item[QStringLiteral("message")].toString())));
+        }
         found.append(QJsonObject{{QStringLiteral("name"), name},
                                  {QStringLiteral("state"), state},
                                  {QStringLiteral("version"), version},
-                                 {QStringLiteral("address"), address}});
+                                 {QStringLiteral("address"), address},
+                                 {QStringLiteral("wrong"), wrong}});
     }
     if (arguments.json && !calls.empty())
         printJson(found);

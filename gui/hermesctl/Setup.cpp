@@ -151,12 +151,12 @@ private:
                                 .arg(lidar.model.isEmpty() ? "unknown model" : lidar.model)
                                 .arg(lidar.rate_hz)
                                 .arg(lidar.port)});
+        for (const QString &problem : found.problems)
+            rows.push_back({"problem", "-", problem});
         if (rows.size() > 1)
             printTable(rows);
         else
             note("nothing was found");
-        for (const QString &problem : found.problems)
-            note(problem);
     }
 
     Result<Proposal> propose(const QString &sample) {

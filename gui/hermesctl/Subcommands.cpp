@@ -59,9 +59,10 @@ const std::vector<Subcommand> &subcommands() {
          0,
          0,
          "list",
-         "the daemons that answer at their default ports (--network: that announce themselves)",
+         "the daemons that answer at their default ports, and what is wrong with them (--network: that "
+         "announce themselves)",
          {},
-         "--network",
+         "--network --daemons",
          nullptr,
          listDaemons},
         {"setup",

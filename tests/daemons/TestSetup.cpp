@@ -1,8 +1,14 @@
+#include "daemons/supervisor/LidarProbe.h"
 #include "daemons/supervisor/SettingsFiles.h"
 #include "daemons/supervisor/SetupProposal.h"
+#include "protocol/velodyne/PacketFormat.h"
+#include "tests/support/FreePort.h"
 
+#include <QElapsedTimer>
 #include <QJsonArray>
 #include <QTemporaryDir>
+#include <QUdpSocket>
+#include <future>
 
 using namespace hermes;
 using namespace hermes::supervisor;
@@ -31,6 +37,7 @@ private Q_SLOTS:
     void lidarAndProcesses();
     void writesAndPutsBack();
     void samplesNameTheFolder();
+    void aFloodDoesNotHoldUpTheSearchForLidars();
 };
 
 void TestSetup::twoControllersOnOneLine() {
@@ -107,6 +114,17 @@ void TestSetup::writesAndPutsBack() {
     QVERIFY(files.undo().ok());
     QCOMPARE(files.current().value(), json(R"({"scanmatcher": {"a": 1}, "simulator": {}})"));
     QVERIFY(files.undoable().isEmpty());
+    // One that cannot be written: nothing changes, what can be undone neither.
+    QVERIFY(files.write({{"scanmatcher", json(R"({"a": 3})")}}).ok());
+    QVERIFY(QDir().mkdir(files.path("supervisor")));
+    const auto half =
+        files.write({{"scanmatcher", json(R"({"a": 4})")}, {"supervisor", json(R"({"b": 2})")}});
+    QVERIFY(!half.ok() && half.error().message.contains("supervisor.json"));
+    QVERIFY(QDir().rmdir(files.path("supervisor")));
+    QCOMPARE(files.current().value(), json(R"({"scanmatcher": {"a": 3}, "simulator": {}})"));
+    QCOMPARE(files.undoable(), QStringList("scanmatcher"));
+    QVERIFY(files.undo().ok());
+    QCOMPARE(files.current().value(), json(R"({"scanmatcher": {"a": 1}, "simulator": {}})"));
     const SettingsFiles nowhere(folder.filePath("none"), {});
     const auto refused = nowhere.write({{"scanmatcher", QJsonObject()}});
     QVERIFY(!refused.ok() && refused.error().message.contains("none/scanmatcher.json"));
@@ -127,6 +145,32 @@ void TestSetup::samplesNameTheFolder() {
              folder.filePath("simulator.json"));
     const auto missing = files.sample("two");
     QVERIFY(!missing.ok() && missing.error().message.contains("expected one of: one"));
+}
+
+void TestSetup::aFloodDoesNotHoldUpTheSearchForLidars() {
+    const quint16 port = reservePort();
+    std::atomic<bool> isOver{false};
+    std::vector<std::future<void>> senders;
+    for (int i = 0; i < 3; ++i)
+        senders.push_back(std::async(std::launch::async, [&isOver, port] {
+            QUdpSocket socket;
+            const QByteArray packet(velodyne::packetSize, '\xff');
+            while (!isOver)
+                socket.writeDatagram(packet, QHostAddress::LocalHost, port);
+        }));
+    const std::atomic<bool> isCancelled{false};
+    QStringList problems;
+    QElapsedTimer took;
+    took.start();
+    auto search = std::async(std::launch::async,
+                             [&] { return LidarProbe(port, reservePort(), isCancelled).run(problems); });
+    const bool hasEnded = search.wait_for(std::chrono::seconds(10)) == std::future_status::ready;
+    isOver = true;
+    const auto found = search.get();
+    QVERIFY2(hasEnded, qPrintable(QString("the search took %1 ms").arg(took.elapsed())));
+    QVERIFY2(problems.isEmpty(), qPrintable(problems.join('\n')));
+    QCOMPARE(int(found.size()), 1);
+    QVERIFY2(found[0].rate_hz > 3000, qPrintable(QString::number(found[0].rate_hz)));
 }
 
 QTEST_GUILESS_MAIN(TestSetup)

@@ -182,9 +182,15 @@ void TestSupervisor::wrongCommandLineIsNotTriedAgain() {
 }
 
 void TestSupervisor::missingProgramIsTold() {
-    launch({QJsonObject{{"name", "one"}, {"program", "/nowhere/one"}, {"autostart", true}}});
-    QTRY_COMPARE(stateOf("one"), QString("failed"));
-    QVERIFY(!process("one")["last_exit"].toString().isEmpty());
+    const QTemporaryDir folder;
+    const QString program = folder.filePath("one");
+    launch({QJsonObject{
+        {"name", "one"}, {"program", program}, {"arguments", QJsonArray{"100"}}, {"autostart", true}}});
+    QTRY_COMPARE(stateOf("one"), QString("waiting"));
+    QVERIFY2(process("one")["last_exit"].toString().startsWith(program + ": "),
+             qPrintable(process("one")["last_exit"].toString()));
+    QVERIFY(QFile::link("/bin/sleep", program));
+    QTRY_COMPARE(stateOf("one"), QString("running"));
 }
 
 void TestSupervisor::stubbornProcessIsKilled() {
