@@ -1,5 +1,6 @@
-// Counts instructions in what QEMU tells with "-d exec,nochain,in_asm": each block of them when it is translated, and a line
-// whenever it runs. Reads that from standard input and keeps the sum so far as text in a file: see turn_instructions.
+// Counts instructions in what QEMU tells with "-d exec,nochain,in_asm": each block of them when it is
+// translated, and a line whenever it runs. Reads that from standard input and keeps the sum so far as text in
+// a file: see turn_instructions.
 #include <array>
 #include <cstdint>
 #include <cstdio>

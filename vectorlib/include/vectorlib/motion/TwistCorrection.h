@@ -49,11 +49,12 @@ public:
             h_.diagonal() << 1e-6, 1e-6, 1e-6, xy, xy, alpha;
             g_ << 0, 0, 0, xy * twist.vx, xy * twist.vy, alpha * twist.omega;
             result.bend = 0;
+            const Transformation2D placed(pose.motion(1));
             for (std::size_t k = 0; k < count; k += step) {
                 const Vector2D<double> point(points[k]);
                 const double t = double(seconds[k] - reference);
                 const Vector2D<double> moved = Transformation2D(twist.motion(t)) * point;
-                if (add(Transformation2D(pose.motion(1)) * moved, t, known))
+                if (add(placed * moved, t, known))
                     result.bend = std::max(result.bend, (moved - point).norm());
             }
             const Vector6 d = h_.ldlt().solve(-g_);
