@@ -1,21 +1,17 @@
 // hermesctl setup: from what is plugged in to settings of the daemons.
 #include "protocol/messages/Setup.h"
 #include "common/client/DaemonAddress.h"
-#include "common/settings/DottedPath.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Question.h"
 #include "gui/hermesctl/Table.h"
 #include "gui/hermesctl/WheelTest.h"
+#include "gui/setup/SetupText.h"
 #include "protocol/wire/Fields.h"
-#include "protocol/wire/JsonText.h"
 
 #include <QJsonArray>
 
 namespace hermes::ctl {
 namespace {
-
-constexpr std::chrono::seconds longWork{
-    60}; // processes end, lines are searched, daemons check their settings
 
 /// The supervisor, the first of --daemons, else at its default port; the motor control is the second.
 Result<void> connectTo(Client &client, const Arguments &arguments, int place, const char *usual) {
@@ -103,7 +99,7 @@ public:
 
 private:
     Result<QJsonValue> call(const QString &method, const QJsonObject &params) {
-        const auto patience = std::max<std::chrono::milliseconds>(arguments_.timeout, longWork);
+        const auto patience = std::max<std::chrono::milliseconds>(arguments_.timeout, setupPatience);
         return supervisor_.callAndWait(method, params, patience);
     }
 
@@ -129,30 +125,8 @@ private:
     }
 
     static void show(const Findings &found) {
-        std::vector<QStringList> rows{{"what", "where", "details"}};
-        for (const FoundSerial &line : found.serial) {
-            QStringList details{line.text};
-            if (line.baud > 0)
-                details.append(QString("%1 baud").arg(line.baud));
-            if (line.anyAddress)
-                details.append("any address");
-            else
-                for (const int address : line.addresses)
-                    details.append(QString("address %1").arg(address));
-            if (line.kind == "not_asked")
-                details.append("silent; --yes asks it whether it is a RoboClaw, wheels off the ground");
-            details.append(line.about);
-            details.removeAll(QString());
-            rows.push_back({line.kind, line.path, details.join(", ")});
-        }
-        for (const FoundLidar &lidar : found.lidars)
-            rows.push_back({"lidar", lidar.address,
-                            QString("%1, %2 packets a second at UDP port %3")
-                                .arg(lidar.model.isEmpty() ? "unknown model" : lidar.model)
-                                .arg(lidar.rate_hz)
-                                .arg(lidar.port)});
-        for (const QString &problem : found.problems)
-            rows.push_back({"problem", "-", problem});
+        std::vector<QStringList> rows = rowsOf(found, "--yes");
+        rows.insert(rows.begin(), {"what", "where", "details"});
         if (rows.size() > 1)
             printTable(rows);
         else
@@ -175,12 +149,8 @@ private:
 
     /// A line for each setting.
     static void show(const QJsonObject &settings) {
-        for (const QString &daemon : settings.keys())
-            for (const QString &path : leafPaths(settings[daemon].toObject()))
-                printLine(
-                    QString("%1 %2 = %3")
-                        .arg(daemon, path,
-                             QString::fromUtf8(compactJson(valueAt(settings[daemon].toObject(), path)))));
+        for (const SettingChange &change : changesOf(settings))
+            printLine(QString("%1 %2 = %3").arg(change.daemon, change.path, change.value));
     }
 
     template <typename T>

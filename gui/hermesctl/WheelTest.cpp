@@ -1,17 +1,17 @@
 #include "gui/hermesctl/WheelTest.h"
 
 #include "common/daemon/SignalWatcher.h"
-#include "gui/hermesctl/Driver.h"
+#include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Question.h"
+#include "gui/setup/WheelTurn.h"
 
+#include <QEventLoop>
+#include <QHostInfo>
 #include <optional>
 
 namespace hermes::ctl {
 namespace {
 
-constexpr double speed = 1; // rad/s
-constexpr double turn_s = 1;
-constexpr double settled_s = 0.5; // then it has the speed that was asked for
 const QString choices =
     "Enter: it turned forward; b: backward; fl, fr, rl, rr: that one turned instead (flb: "
     "backward); n: none; q: give up";
@@ -22,43 +22,20 @@ QString initials(const QString &wheel) {
 
 /// The mean speed that the encoder of a wheel tells while it turns, in rad/s.
 Result<double> turn(Client &motors, const Arguments &arguments, const QString &wheel) {
-    double sum = 0;
-    int count = 0;
-    QElapsedTimer turning;
-    Driver driver(motors, arguments, "motor.wheels", [&] {
-        if (!turning.isValid())
-            turning.start();
-        return QJsonObject{{wheel, speed}};
-    });
-    driver.endAfter(turn_s);
+    QEventLoop loop;
+    Result<double> measured = 0.0;
+    WheelTurn turn(motors, "hermesctl on " + QHostInfo::localHostName(), arguments.timeout);
     SignalWatcher signals(nullptr);
-    bool isGivenUp = false;
-    QObject::connect(&signals, &SignalWatcher::received, &motors, [&] {
-        isGivenUp = true;
-        driver.end();
+    QObject::connect(&signals, &SignalWatcher::received, &turn, &WheelTurn::giveUp);
+    turn.begin(wheel, [&](const Result<double> &result) {
+        measured = result;
+        loop.quit();
     });
-    const int wheels = motors.subscribe("wheels", {{"queue", 1}}, [&](const TopicUpdate &update) {
-        const double seconds = turning.isValid() ? double(turning.elapsed()) / 1000 : 0;
-        if (seconds < settled_s || seconds > turn_s) // it speeds up, or brakes
-            return;
-        sum += update.json()[wheel]["speed"].toDouble();
-        ++count;
-    });
-    const auto turned = driver.run();
-    motors.unsubscribe(wheels);
-    if (!turned)
-        return turned.error();
-    if (isGivenUp)
-        return Error(ErrorCode::NotReady, "the test of the wheels was given up");
-    return count > 0 ? sum / count : 0;
+    loop.exec();
+    return measured;
 }
 
 } // namespace
-
-const QStringList &wheelNames() {
-    static const QStringList names{"front_left", "front_right", "rear_left", "rear_right"};
-    return names;
-}
 
 std::optional<SeenWheel> seenWheel(const QString &told, const QString &answer) {
     if (answer == "n")
@@ -71,46 +48,20 @@ std::optional<SeenWheel> seenWheel(const QString &told, const QString &answer) {
     return std::nullopt;
 }
 
-Result<QJsonObject> wheelSettings(const QJsonObject &now, const std::map<QString, SeenWheel> &seen) {
-    QJsonObject wheels;
-    for (const auto &[told, what] : seen) {
-        if (what.wheel.isEmpty())
-            return Error(
-                ErrorCode::DeviceFault,
-                QString("no wheel turned for %1: look at the power and the wires of that motor").arg(told));
-        if (wheels.contains(what.wheel))
-            return Error(
-                ErrorCode::DeviceFault,
-                QString("%1 turned for two of the wheels: the settings cannot be told").arg(what.wheel));
-        QJsonObject wheel = now[told].toObject();
-        wheel["reversed"] = wheel["reversed"].toBool() != what.isBackward;
-        wheels[what.wheel] = wheel;
-    }
-    QJsonObject changes;
-    for (const QString &wheel : wheels.keys())
-        if (wheels[wheel] != now[wheel])
-            changes[wheel] = wheels[wheel];
-    return changes;
-}
-
 Result<QJsonObject> testWheels(Client &motors, const Arguments &arguments) {
     const auto settings =
         motors.callAndWait("settings.get", QJsonObject{{"path", "wheels"}}, arguments.timeout);
     if (!settings)
         return settings.error();
-    if (const auto ready = waitUntilReady(motors, arguments); !ready)
-        return ready.error();
     std::map<QString, SeenWheel> seen;
     for (const QString &wheel : wheelNames()) {
-        note(QString("%1 is told to turn forward, at %2 rad/s for %3 s").arg(wheel).arg(speed).arg(turn_s));
+        note(QString("%1 is told to turn forward, at %2 rad/s for %3 s")
+                 .arg(wheel)
+                 .arg(WheelTurn::speed)
+                 .arg(WheelTurn::turn_s));
         const auto measured = turn(motors, arguments, wheel);
         if (!measured)
-            return Error(
-                measured.error().code == int(ErrorCode::NotReady) ? ErrorCode::NotReady
-                                                                  : ErrorCode::DeviceFault,
-                QString("%1: %2; where its encoder counts against its motor, or not at all, swap the "
-                        "wires A and B of the encoder, or connect it")
-                    .arg(wheel, measured.error().message));
+            return measured.error();
         note(QString("its encoder tells %1 rad/s").arg(*measured, 0, 'f', 2));
         std::optional<SeenWheel> one;
         while (!one) {

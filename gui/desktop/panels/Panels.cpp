@@ -7,6 +7,7 @@
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
+#include "gui/desktop/panels/SetupPanel.h"
 
 #include <stdexcept>
 #include <string>
@@ -28,6 +29,7 @@ std::vector<PanelKind> &known() {
         {Qt::BottomDockWidgetArea, "Plots", "plots", makePanel<PlotsPanel>, "settings"},
         {Qt::RightDockWidgetArea, "Drive", "drive", makeDrivePanel},
         {Qt::LeftDockWidgetArea, "Recordings", "recordings", makePanel<RecordPanel>, "daemons"},
+        {Qt::BottomDockWidgetArea, "Setup", "setup", makePanel<SetupPanel>, "settings"},
     };
     return all;
 }

@@ -1,0 +1,295 @@
+#include "gui/desktop/panels/SetupPanel.h"
+
+#include "common/settings/DottedPath.h"
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/WheelsTest.h"
+#include "gui/desktop/widgets/MessageLabel.h"
+#include "gui/setup/SetupText.h"
+#include "protocol/wire/Fields.h"
+#include "protocol/wire/JsonText.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSplitter>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+
+namespace hermes::desktop {
+namespace {
+
+enum ChangeColumn { SettingColumn, NowColumn, NewColumn };
+constexpr int mostRows = 500;
+
+QTreeWidget *makeTable(const QString &name, const QStringList &header) {
+    auto *const table = new QTreeWidget;
+    table->setObjectName(name);
+    table->setHeaderLabels(header);
+    table->setUniformRowHeights(true);
+    table->setRootIsDecorated(false);
+    return table;
+}
+
+QTreeWidgetItem *rowOf(const QStringList &texts) {
+    auto *const row = new QTreeWidgetItem;
+    for (int i = 0; i < texts.size(); ++i) {
+        row->setText(i, shortLine(texts[i]));
+        row->setToolTip(i, toolTipOf(shortText(texts[i])));
+    }
+    return row;
+}
+
+} // namespace
+
+SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
+    : QWidget(parent)
+    , fleet_(fleet)
+    , samples_(new QComboBox)
+    , ask_(new QCheckBox(tr("Ask silent lines: the wheels are off\nthe ground, or the motors without power")))
+    , find_(new QPushButton(tr("Searc&h")))
+    , apply_(new QPushButton(theme::icon("apply"), tr("Apply")))
+    , undo_(new QPushButton(theme::icon("revert"), tr("Undo")))
+    , progress_(new QProgressBar)
+    , found_(makeTable("found", {tr("Found"), tr("Where"), tr("Details")}))
+    , changes_(makeTable("changes", {tr("To be written"), tr("Now"), tr("New")}))
+    , message_(new MessageLabel) {
+    auto *const wheels = new WheelsTest(fleet);
+    auto *const tables = new QSplitter;
+    tables->addWidget(found_);
+    tables->addWidget(changes_);
+    auto *const row = new QHBoxLayout;
+    row->addWidget(makeSteps());
+    row->addWidget(tables, 1);
+    row->addWidget(wheels);
+    auto *const layout = new QVBoxLayout(this);
+    layout->addLayout(row, 1);
+    layout->addWidget(message_);
+
+    connect(find_, &QPushButton::clicked, this, &SetupPanel::find);
+    connect(apply_, &QPushButton::clicked, this, &SetupPanel::apply);
+    connect(undo_, &QPushButton::clicked, this, &SetupPanel::undo);
+    connect(samples_, QOverload<int>::of(&QComboBox::activated), this,
+            [this] { hasSearched_ ? propose() : showChanges(sample(), {}); });
+    connect(wheels, &WheelsTest::ended, this, [this](const QJsonObject &changed) {
+        showChanges({}, changed.isEmpty() ? QJsonObject()
+                                          : QJsonObject{{"motorcontrol", QJsonObject{{"wheels", changed}}}});
+    });
+    connect(&fleet, &Fleet::changed, this, &SetupPanel::follow);
+    connect(&fleet, &Fleet::robotChosen, this, &SetupPanel::follow);
+    follow();
+}
+
+QWidget *SetupPanel::makeSteps() {
+    samples_->setObjectName("samples");
+    samples_->setToolTip(tr("Settings of a whole robot to begin with, or those of now"));
+    ask_->setObjectName("ask");
+    ask_->setToolTip(
+        tr("Silent lines are asked whether they lead to a RoboClaw; another motor controller may "
+           "take that for a speed"));
+    find_->setObjectName("findDevices");
+    apply_->setObjectName("applySetup");
+    undo_->setObjectName("undoSetup");
+    progress_->setObjectName("setupProgress");
+    progress_->setRange(0, 0);
+    progress_->setTextVisible(false);
+    progress_->hide();
+
+    auto *const writing = new QHBoxLayout;
+    writing->addWidget(apply_);
+    writing->addWidget(undo_);
+    auto *const steps = new QWidget;
+    auto *const layout = new QVBoxLayout(steps);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(samples_);
+    layout->addWidget(ask_);
+    layout->addWidget(find_);
+    layout->addLayout(writing);
+    layout->addWidget(progress_);
+    layout->addStretch(1);
+    return steps;
+}
+
+QString SetupPanel::sample() const {
+    return samples_->currentData().toString();
+}
+
+void SetupPanel::follow() {
+    DaemonLink *const supervisor = fleet_.robot() ? fleet_.robot()->withMethod("setup.find") : nullptr;
+    if (supervisor == supervisor_)
+        return updateButtons();
+    supervisor_ = supervisor;
+    isBusy_ = hasSearched_ = false;
+    ask_->setChecked(false);
+    folder_.clear();
+    found_->clear();
+    samples_->clear();
+    samples_->addItem(tr("Change the settings of now"), QString());
+    message_->hide();
+    showChanges({}, {});
+    if (!supervisor)
+        return;
+    supervisor->call(
+        "settings.get", {{"path", "setup.folder"}}, this,
+        [this](const Result<QJsonValue> &folder) { folder_ = folder ? folder->toString() : QString(); });
+    call<QStringList>("setup.samples", {}, [this](const QStringList &names) {
+        for (const QString &name : names.mid(0, mostRows))
+            samples_->addItem(tr("Begin with the sample %1").arg(shortLine(name, 40)), name);
+    });
+}
+
+void SetupPanel::updateButtons() {
+    const QString why = supervisor_ ? supervisor_->refusal("setup.find")
+                                    : tr("Only with the supervisor of the robot (systemctl start "
+                                         "hermes-supervisor there)");
+    const bool isFree = why.isEmpty() && !isBusy_;
+    find_->setEnabled(isFree);
+    find_->setToolTip(why.isEmpty() ? tr("Daemons that use serial lines are ended for it and started again; "
+                                         "the robot stands then")
+                                    : why);
+    apply_->setEnabled(isFree && !(changedSample_.isEmpty() && changedSettings_.isEmpty()));
+    apply_->setToolTip(why.isEmpty() ? tr("Writes it, if all daemons would take theirs") : why);
+    undo_->setEnabled(isFree);
+    undo_->setToolTip(why.isEmpty() ? tr("Puts back what the last Apply has replaced") : why);
+    samples_->setEnabled(isFree);
+    ask_->setEnabled(isFree);
+    progress_->setVisible(isBusy_);
+}
+
+template <typename T>
+void SetupPanel::call(const QString &method, const QJsonObject &params, const Then<T> &then) {
+    if (!supervisor_ || isBusy_)
+        return;
+    isBusy_ = true;
+    updateButtons();
+    const auto answered = [this, method, then, guard = QPointer<SetupPanel>(this),
+                           asked = supervisor_](const Result<QJsonValue> &answer) {
+        if (!guard || asked != supervisor_)
+            return; // another robot was chosen
+        isBusy_ = false;
+        updateButtons();
+        if (!answer)
+            return message_->tell(answer.error().message, true);
+        ReadReport report;
+        const auto message = readMessage<T>(WireValue(*answer), report);
+        message ? then(*message) : message_->tell(method + ": " + report.text(), true);
+    };
+    supervisor_->client().call(method, params, answered, setupPatience);
+}
+
+void SetupPanel::find() {
+    message_->tell(tr("Listening and asking; this takes some seconds."));
+    call<Findings>("setup.find", {{"ask", ask_->isChecked()}, {"release", true}},
+                   [this](const Findings &found) {
+                       hasSearched_ = true;
+                       ask_->setChecked(false);
+                       showFound(found);
+                       propose();
+                   });
+}
+
+void SetupPanel::showFound(const Findings &found) {
+    found_->clear();
+    for (const QStringList &row : rowsOf(found, tr("the tick \"Ask silent lines\"")))
+        if (found_->topLevelItemCount() < mostRows)
+            found_->addTopLevelItem(rowOf(row));
+    for (const int column : {0, 1})
+        found_->resizeColumnToContents(column);
+    if (found_->topLevelItemCount() == 0)
+        found_->addTopLevelItem(rowOf({tr("nothing")}));
+}
+
+void SetupPanel::propose() {
+    call<Proposal>("setup.propose", {{"sample", sample()}}, [this](const Proposal &proposal) {
+        showChanges(sample(), proposal.settings);
+        QStringList notes = proposal.notes;
+        if (notes.isEmpty() && proposal.settings.isEmpty())
+            notes.append(tr("Nothing is to be changed."));
+        message_->setVisible(!notes.isEmpty());
+        if (!notes.isEmpty())
+            message_->tell(notes.join('\n'));
+    });
+}
+
+void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings) {
+    changedSample_ = sample;
+    changedSettings_ = settings;
+    changes_->clear();
+    if (!sample.isEmpty()) {
+        auto *const whole = rowOf({tr("All settings of the sample %1%2")
+                                       .arg(sample, settings.isEmpty() ? QString() : tr(", with:"))});
+        changes_->addTopLevelItem(whole);
+        whole->setFirstColumnSpanned(true);
+    }
+    QTreeWidgetItem *file = nullptr;
+    QString last;
+    int rows = 0;
+    for (const SettingChange &change : changesOf(settings)) {
+        if (++rows > mostRows)
+            break;
+        if (change.daemon != last) {
+            if (file)
+                showNow(last, *file);
+            file = rowOf({tr("%1/%2.json").arg(folder_, last = change.daemon)});
+            changes_->addTopLevelItem(file);
+            file->setFirstColumnSpanned(true);
+            file->setExpanded(true);
+        }
+        file->addChild(rowOf({change.path, QString(), change.value}));
+    }
+    if (file)
+        showNow(last, *file);
+    changes_->resizeColumnToContents(SettingColumn);
+    updateButtons();
+}
+
+/// What a daemon that runs has there.
+void SetupPanel::showNow(const QString &daemon, QTreeWidgetItem &item) {
+    DaemonLink *const link = fleet_.robot() ? fleet_.robot()->withName(daemon) : nullptr;
+    if (!link || !link->isConnected())
+        return;
+    const QStringList paths = leafPaths(changedSettings_[daemon].toObject());
+    const auto show = [this, paths, index = changes_->indexOfTopLevelItem(&item),
+                       shown = changedSettings_](const Result<QJsonValue> &now) {
+        QTreeWidgetItem *const file = changes_->topLevelItem(index);
+        if (!now || !file || shown != changedSettings_)
+            return;
+        for (int i = 0; i < file->childCount(); ++i) {
+            const QJsonValue value = valueAt(now->toObject(), paths[i]);
+            const QString text = value.isUndefined() ? QString() : QString::fromUtf8(compactJson(value));
+            file->child(i)->setText(NowColumn, shortLine(text));
+            file->child(i)->setToolTip(NowColumn, toolTipOf(shortText(text)));
+        }
+        changes_->resizeColumnToContents(NowColumn);
+        changes_->setColumnWidth(NowColumn, qMin(changes_->columnWidth(NowColumn), 160));
+    };
+    link->call("settings.get", {}, this, show);
+}
+
+void SetupPanel::apply() {
+    message_->tell(tr("The daemons check the settings."));
+    call<Applied>("setup.apply", {{"sample", changedSample_}, {"settings", changedSettings_}},
+                  [this](const Applied &applied) {
+                      showChanges({}, {});
+                      samples_->setCurrentIndex(0);
+                      tellApplied(applied);
+                  });
+}
+
+void SetupPanel::undo() {
+    call<Applied>("setup.undo", {}, [this](const Applied &applied) {
+        showChanges({}, {});
+        tellApplied(applied);
+    });
+}
+
+void SetupPanel::tellApplied(const Applied &applied) {
+    message_->tell(
+        applied.restarted.isEmpty()
+            ? tr("Written: %1").arg(applied.files.join(", "))
+            : tr("Written: %1. Started: %2").arg(applied.files.join(", "), applied.restarted.join(", ")));
+}
+
+} // namespace hermes::desktop

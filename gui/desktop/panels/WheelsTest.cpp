@@ -1,0 +1,165 @@
+#include "gui/desktop/panels/WheelsTest.h"
+
+#include "common/client/DaemonAddress.h"
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/MessageLabel.h"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QHostInfo>
+#include <QPushButton>
+#include <QVBoxLayout>
+
+namespace hermes::desktop {
+namespace {
+
+QString spoken(QString wheel) {
+    return wheel.replace('_', ' ');
+}
+
+} // namespace
+
+WheelsTest::WheelsTest(Fleet &fleet, QWidget *parent)
+    : QWidget(parent)
+    , fleet_(fleet)
+    , turn_(client_, "test of the wheels on " + QHostInfo::localHostName(), Client::defaultTimeout)
+    , lifted_(new QCheckBox(tr("The robot is lifted:\nno wheel touches the &ground, nobody a wheel")))
+    , test_(new QPushButton(theme::icon("start"), tr("Test the wheels")))
+    , next_(new QPushButton(tr("Ne&xt")))
+    , seenChoice_(new QComboBox)
+    , message_(new MessageLabel) {
+    client_.setFrameLimit(DaemonLink::usualFrame);
+    lifted_->setObjectName("lifted");
+    test_->setObjectName("testWheels");
+    next_->setObjectName("nextWheel");
+    seenChoice_->setObjectName("seen");
+    seenChoice_->setToolTip(tr("What turned?"));
+    for (const QString &wheel : wheelNames())
+        for (const bool isBackward : {false, true})
+            seenChoice_->addItem(
+                tr("%1 turned %2").arg(spoken(wheel), isBackward ? tr("backward") : tr("forward")),
+                QStringList{wheel, isBackward ? "b" : ""});
+    seenChoice_->addItem(tr("none turned"), QStringList{"", ""});
+
+    auto *const seen = new QHBoxLayout;
+    seen->addWidget(seenChoice_, 1);
+    seen->addWidget(next_);
+    auto *const layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(lifted_);
+    layout->addWidget(test_);
+    layout->addLayout(seen);
+    layout->addWidget(message_);
+    layout->addStretch(1);
+
+    connect(lifted_, &QCheckBox::toggled, this, [this](bool isLifted) {
+        if (!isLifted)
+            giveUp(tr("the robot is not lifted"));
+        updateButtons();
+    });
+    connect(test_, &QPushButton::clicked, this, [this] { isUnderWay() ? giveUp(tr("given up")) : begin(); });
+    connect(next_, &QPushButton::clicked, this, &WheelsTest::onSeen);
+    connect(&fleet, &Fleet::changed, this, &WheelsTest::updateButtons);
+    connect(&fleet, &Fleet::robotChosen, this, [this] {
+        lifted_->setChecked(false);
+        message_->hide();
+        updateButtons();
+    });
+    updateButtons();
+}
+
+DaemonLink *WheelsTest::motors() const {
+    return fleet_.robot() ? fleet_.robot()->withMethod("motor.wheels") : nullptr;
+}
+
+void WheelsTest::updateButtons() {
+    const DaemonLink *const motors = this->motors();
+    const QString why = motors ? motors->refusal("motor.wheels") : tr("No robot that can drive is connected");
+    lifted_->setEnabled(why.isEmpty() || isUnderWay());
+    test_->setEnabled((why.isEmpty() && lifted_->isChecked()) || isUnderWay());
+    test_->setText(isUnderWay() ? tr("Give up") : tr("Test the wheels"));
+    test_->setIcon(theme::icon(isUnderWay() ? "stop" : "start"));
+    test_->setToolTip(
+        !why.isEmpty()
+            ? why
+            : tr("Each wheel turns with %1 rad/s for %2 s").arg(WheelTurn::speed).arg(WheelTurn::turn_s));
+    const bool isAsked = isUnderWay() && !turn_.isBusy();
+    seenChoice_->setEnabled(isAsked);
+    next_->setEnabled(isAsked);
+}
+
+void WheelsTest::begin() {
+    DaemonLink *const motors = this->motors();
+    if (!motors || turn_.isBusy())
+        return;
+    const QString address = asOwner(motors->address());
+    motors->call("settings.get", {{"path", "wheels"}}, this, [this, address](const Result<QJsonValue> &now) {
+        if (isUnderWay() || !lifted_->isChecked())
+            return;
+        if (!now)
+            return message_->tell(now.error().message, true);
+        now_ = now->toObject();
+        seen_.clear();
+        client_.connectTo(address);
+        wheel_ = wheelNames().front();
+        turnNext();
+    });
+}
+
+void WheelsTest::turnNext() {
+    message_->tell(tr("%1 is told to turn forward").arg(spoken(wheel_)));
+    turn_.begin(wheel_, [this](const Result<double> &measured) { onTurned(measured); });
+    updateButtons();
+}
+
+void WheelsTest::onTurned(const Result<double> &measured) {
+    if (isUnderWay() && measured) {
+        message_->tell(tr("%1 was told to turn forward; its encoder tells %2 rad/s. What turned?")
+                           .arg(spoken(wheel_), shortNumber(*measured, 2)));
+        seenChoice_->setCurrentIndex(2 * wheelNames().indexOf(wheel_));
+    } else if (isUnderWay()) {
+        giveUp(measured.error().message);
+    }
+    updateButtons();
+}
+
+void WheelsTest::onSeen() {
+    if (!isUnderWay() || turn_.isBusy())
+        return;
+    const QStringList choice = seenChoice_->currentData().toStringList();
+    seen_[wheel_] = {choice[0], choice[1] == "b"};
+    const int next = wheelNames().indexOf(wheel_) + 1;
+    if (next < wheelNames().size()) {
+        wheel_ = wheelNames()[next];
+        return turnNext();
+    }
+    wheel_.clear();
+    client_.close();
+    lifted_->setChecked(false);
+    const auto changes = wheelSettings(now_, seen_);
+    if (!changes)
+        return message_->tell(changes.error().message, true);
+    message_->tell(changes->isEmpty() ? tr("All wheels turn as they are told; nothing is to be changed.")
+                                      : tr("What is to change is shown; Apply writes it."));
+    Q_EMIT ended(*changes);
+}
+
+void WheelsTest::giveUp(const QString &why) {
+    if (!isUnderWay())
+        return;
+    wheel_.clear();
+    message_->tell(tr("The test of the wheels has ended: %1").arg(why), true);
+    lifted_->setChecked(false);
+    if (turn_.isBusy())
+        turn_.giveUp(); // the connection is needed for it
+    updateButtons();
+}
+
+void WheelsTest::hideEvent(QHideEvent *event) {
+    giveUp(tr("it is not in sight"));
+    lifted_->setChecked(false);
+    QWidget::hideEvent(event);
+}
+
+} // namespace hermes::desktop

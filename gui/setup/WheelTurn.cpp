@@ -1,0 +1,177 @@
+#include "gui/setup/WheelTurn.h"
+
+#include "common/Time.h"
+
+#include <QPointer>
+#include <utility>
+
+namespace hermes {
+namespace {
+
+constexpr std::chrono::milliseconds period{50}; // of the commands
+constexpr std::chrono::milliseconds look{100};  // whether the controllers are found
+constexpr double lease_s = 1;                   // of the control, without a command
+constexpr double standing_s = 5;                // after a stop
+constexpr double settled_s = 0.5;               // then it has the speed that was asked for
+
+} // namespace
+
+WheelTurn::WheelTurn(Client &motors, QString holder, std::chrono::milliseconds patience, QObject *parent)
+    : QObject(parent)
+    , motors_(motors)
+    , holder_(std::move(holder))
+    , patience_(patience) {
+    timer_.setTimerType(Qt::PreciseTimer);
+    connect(&timer_, &QTimer::timeout, this, &WheelTurn::tick);
+    connect(&motors, &Client::disconnected, this, [this](const QString &reason) {
+        if (isHolding_)
+            fail(Error(ErrorCode::Disconnected,
+                       reason + "; the motor control stops a robot whose driver has gone"));
+    });
+}
+
+void WheelTurn::begin(const QString &wheel, const Done &done) {
+    wheel_ = wheel;
+    done_ = done;
+    phase_ = Phase::Preparing;
+    failure_ = {};
+    sum_ = count_ = 0;
+    turning_.invalidate();
+    waiting_.start();
+    awaitReady();
+}
+
+void WheelTurn::giveUp() {
+    fail(Error(ErrorCode::NotReady, "the test of the wheels was given up"));
+}
+
+void WheelTurn::call(const QString &method, const QJsonObject &params, const Client::Callback &answered,
+                     std::chrono::milliseconds timeout, Client::Repeats repeats) {
+    const auto guarded = [answered, guard = QPointer<WheelTurn>(this)](const auto &result) {
+        if (guard)
+            answered(result);
+    };
+    motors_.call(method, params, guarded, timeout, repeats);
+}
+
+void WheelTurn::awaitReady() {
+    if (phase_ != Phase::Preparing)
+        return;
+    const bool isLate = waiting_.hasExpired(patience_.count());
+    const auto again = [this] { QTimer::singleShot(look, this, &WheelTurn::awaitReady); };
+    if (!motors_.isConnected())
+        return isLate ? fail(Error(ErrorCode::Disconnected, motors_.lastError())) : again();
+    const double asked = monotonicNow();
+    call(
+        "motor.state", {},
+        [=](const Result<QJsonValue> &state) {
+            if (phase_ != Phase::Preparing)
+                return;
+            if (!state)
+                return fail(state.error());
+            latency_s_ = monotonicNow() - asked;
+            if ((*state)["ready"].toBool() || isLate)
+                acquire(); // where it is not ready the first command is refused, and the refusal says why
+            else
+                again();
+        },
+        patience_);
+}
+
+void WheelTurn::acquire() {
+    const auto acquired = [this](const Result<QJsonValue> &result) {
+        isHolding_ = result.ok();
+        if (phase_ != Phase::Preparing) // given up meanwhile
+            return;
+        if (!result)
+            return fail(result.error());
+        phase_ = Phase::Turning;
+        isClockKnown_ = false;
+        waiting_.start();
+        odometry_ = motors_.subscribe("odometry", {{"queue", 1}},
+                                      [this](const TopicUpdate &update) { onOdometry(update); });
+        wheels_ = motors_.subscribe("wheels", {{"queue", 1}},
+                                    [this](const TopicUpdate &update) { onWheels(update); });
+        timer_.start(period);
+    };
+    call("control.acquire", {{"client", holder_}, {"timeout_s", lease_s}}, acquired, patience_);
+}
+
+void WheelTurn::onOdometry(const TopicUpdate &update) {
+    clock_.add(update.stamp, stampNow(), latency_s_);
+    isClockKnown_ = true;
+}
+
+void WheelTurn::onWheels(const TopicUpdate &update) {
+    if (turning_s() < settled_s || turning_s() > turn_s) // it speeds up, or brakes
+        return;
+    sum_ += update.json()[wheel_]["speed"].toDouble();
+    ++count_;
+}
+
+void WheelTurn::tick() {
+    if (!isClockKnown_) { // a command without the robot's time is refused where the clocks differ
+        if (waiting_.hasExpired(patience_.count()))
+            fail(Error(ErrorCode::TimedOut,
+                       QString("no odometry came within %1 s").arg(double(patience_.count()) / 1000)));
+        return;
+    }
+    if (!turning_.isValid())
+        turning_.start();
+    if (turning_s() >= turn_s)
+        return stop();
+    call(
+        "motor.wheels", {{wheel_, speed}, {"stamp", stampNow() + clock_.seconds()}},
+        [this](const Result<QJsonValue> &result) {
+            const bool isLate =
+                !result && result.error().is(ErrorCode::NotReady) && result.error().data.isUndefined();
+            if (!result && !isLate && phase_ == Phase::Turning) // after a late one the next may be in time
+                fail(Error(ErrorCode::DeviceFault,
+                           QString("%1: %2; where its encoder counts against its motor, or not at all, swap "
+                                   "the wires A and B of the encoder, or connect it")
+                               .arg(wheel_, result.error().message)));
+        },
+        patience_, Client::Repeats::None); // a late one would move the robot
+}
+
+void WheelTurn::fail(const Error &error) {
+    if (phase_ == Phase::Standing)
+        return;
+    if (failure_)
+        failure_ = error;
+    if (phase_ != Phase::Stopping)
+        stop();
+}
+
+void WheelTurn::stop() {
+    const bool wasTurning = phase_ == Phase::Turning;
+    phase_ = Phase::Stopping;
+    timer_.stop();
+    if (wasTurning) {
+        motors_.unsubscribe(odometry_);
+        motors_.unsubscribe(wheels_);
+    }
+    if (!wasTurning || !motors_.isConnected())
+        return finish();
+    const auto stopped = [this](const Result<QJsonValue> &result) {
+        if (failure_ && !result)
+            failure_ = result.error();
+        else if (failure_ && !(*result)["confirmed"].toBool())
+            failure_ = Error(ErrorCode::DeviceFault,
+                             "the robot was told to stop, but does not confirm that it stands: " +
+                                 (*result)["text"].toString());
+        call(
+            "control.release", {}, [this](const auto &) { finish(); }, patience_);
+    };
+    call("motor.stop", {{"wait_s", standing_s}}, stopped, patience_ + std::chrono::seconds(int(standing_s)),
+         Client::Repeats::AtOnce);
+}
+
+void WheelTurn::finish() {
+    phase_ = Phase::Standing;
+    isHolding_ = false;
+    const Done done = std::exchange(done_, nullptr);
+    done(failure_ ? Result<double>(count_ > 0 ? sum_ / count_ : 0) : failure_.error());
+}
+
+} // namespace hermes

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "common/client/Client.h"
+#include "common/client/ClockOffset.h"
+
+#include <QElapsedTimer>
+#include <functional>
+
+namespace hermes {
+
+/// Turns one wheel of a lifted robot slowly for a second and measures what its encoder tells: takes the
+/// control, sends the speed at the rate that the watchdog of the motor control needs, stops, and gives the
+/// control back.
+class WheelTurn : public QObject {
+    Q_OBJECT
+public:
+    static constexpr double speed = 1; ///< rad/s
+    static constexpr double turn_s = 1;
+    /// Called once, when the robot stands: the mean speed in rad/s, or why the turn ended early.
+    using Done = std::function<void(const Result<double> &)>;
+
+    /// motors: the client of a motor control; holder: what others see who has the control; patience: with
+    /// the connection and with controllers that are not found yet.
+    WheelTurn(Client &motors, QString holder, std::chrono::milliseconds patience, QObject *parent = nullptr);
+
+    /// One turn at a time.
+    void begin(const QString &wheel, const Done &done);
+    bool isBusy() const { return done_ != nullptr; }
+    /// The robot stops; the turn ends with an error.
+    void giveUp();
+
+private:
+    enum class Phase { Standing, Preparing, Turning, Stopping };
+
+    void awaitReady();
+    void acquire();
+    void onOdometry(const TopicUpdate &update);
+    void onWheels(const TopicUpdate &update);
+    void tick();
+    void fail(const Error &error);
+    void stop();
+    void finish();
+    void call(const QString &method, const QJsonObject &params, const Client::Callback &answered,
+              std::chrono::milliseconds timeout, Client::Repeats repeats = Client::Repeats::Usual);
+    double turning_s() const { return turning_.isValid() ? double(turning_.elapsed()) / 1000 : 0; }
+
+    Client &motors_;
+    const QString holder_;
+    const std::chrono::milliseconds patience_;
+    QTimer timer_;
+    QElapsedTimer waiting_, turning_;
+    QString wheel_;
+    Done done_;
+    Phase phase_ = Phase::Standing;
+    ClockOffset clock_;
+    double latency_s_ = 0;
+    bool isClockKnown_ = false, isHolding_ = false;
+    int odometry_ = 0, wheels_ = 0; // subscriptions
+    double sum_ = 0;
+    int count_ = 0;
+    Result<void> failure_;
+};
+
+} // namespace hermes
