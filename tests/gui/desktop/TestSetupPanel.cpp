@@ -98,12 +98,17 @@ void TestSetupPanel::open(bool withMotors) {
         robot_->start("simulator",
                       {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json",
                        "motors.link=" + motors_});
-    robot_->start("supervisor",
-                  {"setup.folder=" + folder_,
-                   "setup.samples=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/settings",
-                   QString("setup.ports=[\"%1\"]").arg(motors_),
-                   QString("setup.lidar_port=%1").arg(reservePort()),
-                   QString("setup.position_port=%1").arg(reservePort())});
+    // From a file, which Apply keeps: what is set beside it would be lost, and the real folder written to.
+    const QJsonObject setup{{"folder", folder_},
+                            {"samples", qEnvironmentVariable("HERMES_SOURCE") + "/deploy/settings"},
+                            {"ports", QJsonArray{motors_}},
+                            {"lidar_port", reservePort()},
+                            {"position_port", reservePort()}};
+    QFile own(folder_ + "/supervisor.json");
+    QVERIFY(own.open(QIODevice::WriteOnly));
+    own.write(QJsonDocument(QJsonObject{{"setup", setup}}).toJson());
+    own.close();
+    robot_->start("supervisor", {}, {"--config", own.fileName()});
     window_ = std::make_unique<OpenWindow>(*robot_);
     QVERIFY(window_->show());
     window_->window.resize(1280, 900);
