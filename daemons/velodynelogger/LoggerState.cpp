@@ -23,7 +23,10 @@ QString otherSensors(const LidarFeed::Counts &counts) {
 QString pastText(quint64 wrong, quint64 lost, const velodyne::GpsReader::Counts &gps) {
     QString text;
     if (wrong > 0)
-        text += QString("; %1 packets were no data packets").arg(wrong);
+        text += QString("; %1 packets were no data packets, expected are %2 bytes of an %3")
+                    .arg(wrong)
+                    .arg(velodyne::packetSize)
+                    .arg(QString::fromStdString(velodyne::sensorNames()));
     if (lost > 0)
         text += QString("; %1 packets or turns were lost").arg(lost);
     if (gps.wrongValue + gps.badNmea > 0)

@@ -287,7 +287,7 @@ class BadInput(unittest.TestCase):
         other = bytearray(PACKET)
         for block in range(12):
             other[100 * block:100 * block + 2] = b"\xff\xee"
-        for what, packet, words in (("short packets", bytes(PACKET - 1), ("no data packets",)),
+        for what, packet, words in (("short packets", bytes(PACKET - 1), ("no data packets", "expected")),
                                     ("an unknown model", bytes(other[:-1]) + b"\x77", ("not decoded", "expected"))):
             with self.subTest(what), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
                 self.restart("velodynelogger")
