@@ -15,7 +15,8 @@ namespace hermes::desktop {
 class MessageLabel;
 
 /// The test of the wheels of the chosen robot: turns one after another, once somebody has said that it is
-/// lifted, and asks what was seen. It ends when the robot is stopped, another is chosen, or this is hidden.
+/// lifted, and asks what was seen. It ends when the robot is stopped, another is chosen, or the dock is
+/// closed; another tab over it is not noticed.
 class WheelsTest : public QWidget {
     Q_OBJECT
 public:
