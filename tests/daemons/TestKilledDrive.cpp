@@ -51,7 +51,7 @@ void TestKilledDrive::startMatcher() {
     QString log;
     const QRegularExpression listens("127.0.0.1:(\\d+),");
     QTRY_VERIFY((log += process.readAll()).contains(listens));
-    client_ = std::make_unique<Client>();
+    client_ = std::make_unique<PatientClient>();
     QVERIFY(client_->connectTo(asOwner("127.0.0.1:" + listens.match(log).captured(1))).ok());
     QVERIFY(client_->waitConnected().ok());
     QTRY_VERIFY(source->hasSubscribers("odometry") && source->hasSubscribers("scan2d"));

@@ -142,7 +142,7 @@ void TestMapFiles::aMatcherKilledWhileItWritesLeavesAWholeMap() {
         QString log;
         const QRegularExpression listens("127.0.0.1:(\\d+),");
         QTRY_VERIFY((log += process.readAll()).contains(listens));
-        Client other;
+        PatientClient other;
         QVERIFY(other.connectTo(asOwner("127.0.0.1:" + listens.match(log).captured(1))).ok());
         QVERIFY(other.waitConnected().ok());
         QVERIFY(other.callAndWait("map.load", QJsonObject{{"path", "new.csv"}}).ok());

@@ -26,7 +26,7 @@ private Q_SLOTS:
 void TestMotorClients::leaseIsExclusiveAndRunsOut() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
-    Client other;
+    PatientClient other;
     QVERIFY(other.connectTo(address()).ok());
     QVERIFY(other.waitConnected().ok());
     QCOMPARE(call("control.acquire", {{"client", "anna"}, {"timeout_s", 1}})["holder"].toString(),
@@ -76,7 +76,7 @@ void TestMotorClients::whatAStopOvertakesIsVoid() {
 void TestMotorClients::takingOverStopsTheRobot() {
     launch();
     QTRY_VERIFY(state()["ready"].toBool());
-    Client other;
+    PatientClient other;
     QVERIFY(other.connectTo(address()).ok());
     QVERIFY(other.waitConnected().ok());
     call("control.acquire", {{"client", "anna"}, {"timeout_s", 10}});
@@ -161,7 +161,7 @@ void TestMotorClients::clientThatGoesIsStopped() {
     call("control.acquire", {{"timeout_s", 10}});
     driveOff({{"vx", 0.5}});
     const QString where = address();
-    client_ = std::make_unique<Client>();
+    client_ = std::make_unique<PatientClient>();
     QTRY_VERIFY(rig_->zeroSince() < RoboClawRig::now());
     QVERIFY(client_->connectTo(where).ok());
     QVERIFY(client_->waitConnected().ok());

@@ -1,7 +1,7 @@
 // How fast hermes-motorcontrol stops the wheels, as processes: a client or the daemon itself is killed or
 // frozen. $HERMES_TRIALS trials of each, 3 where it is not set; the times are printed.
 #include "StopTrials.h"
-#include "common/client/Client.h"
+#include "tests/support/PatientClient.h"
 
 #include <csignal>
 
@@ -22,7 +22,7 @@ private Q_SLOTS:
 
 // From before the client writes the request to the last byte of the stop of both controllers.
 void TestMotorStops::emergencyStopReachesTheWire() {
-    Client client;
+    PatientClient client;
     QVERIFY(client.connectTo("127.0.0.1:" + port_).ok());
     QVERIFY(client.waitConnected().ok());
     std::vector<double> times;

@@ -1,7 +1,6 @@
-#include "common/client/Client.h"
 #include "common/client/DaemonAddress.h"
 #include "daemons/supervisor/Supervisor.h"
-#include "tests/support/Patience.h"
+#include "tests/support/PatientClient.h"
 
 #include <QTemporaryDir>
 #include <csignal>
@@ -57,7 +56,7 @@ private:
 
     std::unique_ptr<QTemporaryDir> folder_;
     std::unique_ptr<Supervisor> supervisor_;
-    std::unique_ptr<Client> client_;
+    std::unique_ptr<PatientClient> client_;
 };
 
 void TestSupervisor::init() {
@@ -79,7 +78,7 @@ void TestSupervisor::launch(const QJsonArray &processes) {
     QVERIFY(!ended);
     const auto launched = supervisor_->launch();
     QVERIFY2(launched.ok(), launched.ok() ? "" : qPrintable(launched.error().message));
-    client_ = std::make_unique<Client>();
+    client_ = std::make_unique<PatientClient>();
     client_->connectTo(asOwner(supervisor_->info().listen.front()));
     QVERIFY(client_->waitConnected().ok());
 }
@@ -156,7 +155,7 @@ void TestSupervisor::aServiceTellsOfAWrongSettingsFile() {
     qunsetenv("NOTIFY_SOCKET");
     QVERIFY(!ended);
     QVERIFY(supervisor_->launch().ok());
-    client_ = std::make_unique<Client>();
+    client_ = std::make_unique<PatientClient>();
     client_->connectTo(asOwner(supervisor_->info().listen.front()));
     QVERIFY(client_->waitConnected().ok());
     const QJsonObject status = call("daemon.status")->toObject();

@@ -3,9 +3,9 @@
 // more than a thread that does nothing but wait for the same period in the same time needs.
 #include "MachineStalls.h"
 #include "common/Realtime.h"
-#include "common/client/Client.h"
 #include "common/client/DaemonAddress.h"
 #include "tests/support/ChildProcess.h"
+#include "tests/support/PatientClient.h"
 
 #include <QRegularExpression>
 #include <QtTest>
@@ -69,7 +69,7 @@ private:
     }
 
     std::unique_ptr<ChildProcess> daemon_;
-    std::unique_ptr<Client> client_;
+    std::unique_ptr<PatientClient> client_;
     std::vector<QJsonValue> fired_;
 };
 
@@ -81,7 +81,7 @@ void TestTriggerTiming::init() {
     QVERIFY(daemon_->waitForStarted());
     QString log;
     QTRY_VERIFY((log += daemon_->readAll()).contains(QRegularExpression("127.0.0.1:\\d+,")));
-    client_ = std::make_unique<Client>();
+    client_ = std::make_unique<PatientClient>();
     const QString port = QRegularExpression("127.0.0.1:(\\d+),").match(log).captured(1);
     QVERIFY(client_->connectTo(asOwner("127.0.0.1:" + port)).ok());
     QVERIFY(client_->waitConnected().ok());

@@ -94,8 +94,7 @@ protected:
 
     void define(const QString &id, const QJsonObject &when, const QJsonArray &actions = {}) {
         const auto result = client_->callAndWait(
-            "trigger.define", QJsonObject{{"id", id}, {"when", when}, {"actions", actions}},
-            slowness * hermes::Client::defaultTimeout);
+            "trigger.define", QJsonObject{{"id", id}, {"when", when}, {"actions", actions}});
         QVERIFY2(result.ok(), result ? "" : qPrintable(result.error().message));
     }
     QJsonValue fire(const QString &id) { return call("trigger.fire", {{"id", id}}); }

@@ -11,7 +11,8 @@ refused() {
 refused "unknown argument 'mips'" deploy/build-cross mips
 refused "Usage:" deploy/build-cross
 refused "--test needs the tests" deploy/build-cross --no-tests --test armhf
-refused "--packages excludes" deploy/build-cross --packages --test armhf
+refused "stand alone" deploy/build-cross --packages --test armhf
+refused "stand alone" deploy/build-cross --packages --demo armhf
 refused "has no /bin/sh" deploy/root-run /nonexistent true
 refused "expected a root folder and a command" deploy/root-run /
 [ "$(id -u)" -eq 0 ] || { echo "skipped: what needs root"; exit 77; }

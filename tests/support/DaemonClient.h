@@ -1,28 +1,27 @@
 #pragma once
 
-#include "common/client/Client.h"
 #include "common/client/DaemonAddress.h"
 #include "common/daemon/Daemon.h"
-#include "tests/support/Patience.h"
+#include "tests/support/PatientClient.h"
 
 /// A client of the daemon that a test runs in its own process: base of the fixtures.
 class DaemonClient {
 protected:
     void connectTo(hermes::Daemon &daemon) {
-        client_ = std::make_unique<hermes::Client>();
+        client_ = std::make_unique<PatientClient>();
         QVERIFY(client_->connectTo(hermes::asOwner(daemon.server().addresses().value(0))).ok());
-        QVERIFY(client_->waitConnected(slowness * hermes::Client::defaultTimeout).ok());
+        QVERIFY(client_->waitConnected().ok());
     }
     /// The result; an error is printed, and is {failed: message}.
     QJsonValue call(const QString &method, const QJsonObject &params = {}) {
-        const auto result = client_->callAndWait(method, params, slowness * hermes::Client::defaultTimeout);
+        const auto result = client_->callAndWait(method, params);
         if (!result)
             qWarning("%s: %s", qPrintable(method), qPrintable(result.error().message));
         return result ? *result : QJsonObject{{"failed", result.error().message}};
     }
     /// The error.
     hermes::Error failure(const QString &method, const QJsonObject &params = {}) {
-        const auto result = client_->callAndWait(method, params, slowness * hermes::Client::defaultTimeout);
+        const auto result = client_->callAndWait(method, params);
         return result ? hermes::Error(hermes::ErrorCode::InternalError, "succeeded, though it should not")
                       : result.error();
     }
@@ -34,5 +33,5 @@ protected:
         return {};
     }
 
-    std::unique_ptr<hermes::Client> client_;
+    std::unique_ptr<PatientClient> client_;
 };

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "common/client/Client.h"
+#include "tests/support/Patience.h"
+
+/// A client whose waits are as long as this build or emulator needs.
+class PatientClient : public hermes::Client {
+public:
+    hermes::Result<QJsonValue> callAndWait(const QString &method, const QJsonValue &params = QJsonObject(),
+                                           std::chrono::milliseconds timeout = defaultTimeout) {
+        return Client::callAndWait(method, params, slowness * timeout);
+    }
+    hermes::Result<void> waitConnected() { return Client::waitConnected(slowness * defaultTimeout); }
+};
