@@ -13,7 +13,8 @@ Result<QString> RecordFolder::newFile(const QString &name, const QString &suffix
         return fine.error();
     if (const Result<void> made = makeFolder(path_); !made)
         return diskError(made.error().message, path_);
-    const QString path = QDir(path_).absoluteFilePath(name.endsWith('.' + suffix) ? name : name + '.' + suffix);
+    const QString path =
+        QDir(path_).absoluteFilePath(name.endsWith('.' + suffix) ? name : name + '.' + suffix);
     if (QFileInfo::exists(path))
         return diskError(path + ": it exists already; recordings are not overwritten", path);
     return path;
