@@ -104,7 +104,7 @@ void Client::send(const QString &method, const QJsonValue &params, const Callbac
                                 QStringLiteral("%1: not sent, the line is too slow for so many").arg(method)))
         : mayBeSent ? channel_->send(makeRequest(id, method, params), rank)
                     : Result<Sent>(Error(ErrorCode::Disconnected,
-                                         QStringLiteral("%1: not connected: %2").arg(method, failure_)));
+                                         QStringLiteral("%1: not connected: %2").arg(method, problem())));
     if (!sent) {
         QMetaObject::invokeMethod(
             this, [this, id, error = sent.error()] { finish(id, error); }, Qt::QueuedConnection);
@@ -164,8 +164,11 @@ Result<void> Client::waitConnected(std::chrono::milliseconds timeout) {
     loop.exec();
     if (isConnected())
         return {};
-    return Error(ErrorCode::Disconnected,
-                 failure_.isEmpty() ? QStringLiteral("%1: no answer").arg(address()) : failure_);
+    return Error(ErrorCode::Disconnected, problem());
+}
+
+QString Client::problem() const {
+    return failure_.isEmpty() ? QStringLiteral("%1: no answer").arg(address()) : failure_;
 }
 
 int Client::subscribe(const QString &topic, const QJsonObject &options, const TopicCallback &callback) {

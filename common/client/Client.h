@@ -74,6 +74,8 @@ public:
     void setFrameLimit(int bytes);
     /// Why the last attempt or connection ended.
     const QString &lastError() const { return failure_; }
+    /// Why there is no connection, also before the first attempt has ended.
+    QString problem() const;
 
     /// Calls a method; the callback gets the result or an error, once, and at the latest after the timeout.
     /// Not connected: fails at once (from the event loop).

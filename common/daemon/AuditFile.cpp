@@ -2,6 +2,7 @@
 
 #include "common/Result.h"
 #include "common/Time.h"
+#include "common/files/Folder.h"
 
 #include <QDir>
 #include <QFile>
@@ -70,8 +71,8 @@ struct AuditFile::Shared {
 
     // Why not; empty: it was written.
     QString write(const QByteArray &line) const {
-        if (!QDir().mkpath(folder))
-            return QStringLiteral("%1: cannot be made").arg(folder);
+        if (const Result<void> made = makeFolder(folder); !made)
+            return made.error().message;
         constexpr int rights = 0600;
         const int file = ::open(path(0).constData(),
                                 O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, rights);

@@ -133,12 +133,12 @@ Result<void> Daemon::configure(const CommandLine &line) {
             waitForMended(line.config);
         }
     }
-    const auto set = configuration_.set(line.settings);
+    const auto set = configuration_.insist(line.settings);
     if (!set)
         return Error(ErrorCode::InvalidParams, QStringLiteral("option --set: ") + set.error().message);
     if (!line.listen.isEmpty()) {
         const auto listen =
-            configuration_.set({{QStringLiteral("listen"), QJsonArray::fromStringList(line.listen)}});
+            configuration_.insist({{QStringLiteral("listen"), QJsonArray::fromStringList(line.listen)}});
         if (!listen)
             return Error(ErrorCode::InvalidParams,
                          QStringLiteral("option --listen: ") + listen.error().message);

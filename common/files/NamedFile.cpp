@@ -78,15 +78,19 @@ Result<void> checkPath(const QString &path) {
     return {};
 }
 
+/// What a name leads to, where that is another file.
+QString whereLinked(const QString &named, const QString &path) {
+    const bool isLinked = path != QDir::cleanPath(QFileInfo(named).absoluteFilePath());
+    return isLinked ? QStringLiteral("this is %1, ").arg(path) : QString();
+}
+
 /// path: without links.
 Result<void> checkFolders(const QString &named, const QString &path, const QStringList &folders) {
     if (std::any_of(folders.begin(), folders.end(),
                     [&path](const QString &folder) { return isBelow(path, folder); }))
         return {};
-    const bool isLinked = path != QDir::cleanPath(QFileInfo(named).absoluteFilePath());
     return fileError(named, QStringLiteral("%1not below %2, where files may be named")
-                                .arg(isLinked ? QStringLiteral("this is %1, ").arg(path) : QString(),
-                                     folders.join(QStringLiteral(" or "))));
+                                .arg(whereLinked(named, path), folders.join(QStringLiteral(" or "))));
 }
 
 /// The folder of the path, which has no links, for openat(); nothing: errno says why.
@@ -101,22 +105,24 @@ Descriptor openFolder(const QString &path) {
     return folder;
 }
 
-/// For reading; open() of a device or a pipe may do something, or wait, so it is looked at first.
-Result<Descriptor> openRegular(const QString &path) {
+/// For reading; open() of a device or a pipe may do something, or wait, so it is looked at first. path:
+/// without links.
+Result<Descriptor> openRegular(const QString &named, const QString &path) {
+    const auto failed = [&](const QString &why) { return fileError(named, whereLinked(named, path) + why); };
     const QFileInfo file(path);
     const Descriptor folder = openFolder(file.path());
     const QByteArray name = QFile::encodeName(file.fileName());
     struct stat status {};
     if (folder < 0 || ::fstatat(folder, name.constData(), &status, AT_SYMLINK_NOFOLLOW) != 0)
-        return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+        return failed(QStringLiteral("cannot be read: ") + qt_error_string());
     if (!S_ISREG(status.st_mode))
-        return fileError(path, QStringLiteral("not a regular file"));
+        return failed(QStringLiteral("not a regular file"));
     Descriptor opened(
         ::openat(folder, name.constData(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
     if (opened < 0 || ::fstat(opened, &status) != 0)
-        return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
+        return failed(QStringLiteral("cannot be read: ") + qt_error_string());
     if (!S_ISREG(status.st_mode))
-        return fileError(path, QStringLiteral("not a regular file"));
+        return failed(QStringLiteral("not a regular file"));
     return opened;
 }
 
@@ -134,7 +140,7 @@ Result<Opened> openNamed(const QString &path, const QStringList &folders) {
         return fileError(path, QStringLiteral("cannot be read: ") + qt_error_string());
     if (const Result<void> fine = checkFolders(path, found, folders); !fine)
         return fine.error();
-    Result<Descriptor> file = openRegular(found);
+    Result<Descriptor> file = openRegular(path, found);
     if (!file)
         return file.error();
     struct stat status {};

@@ -1,5 +1,6 @@
 #include "common/recording/SessionFolder.h"
 
+#include "common/files/Folder.h"
 #include "common/recording/DiskError.h"
 #include "common/recording/Sidecar.h"
 #include "common/schema/SchemaValidator.h"
@@ -91,8 +92,8 @@ Result<QString> enterSessionFolder(const QString &root, const SessionName &sessi
 
 Result<void> FolderLock::take(const QString &root, const QString &logger) {
     release();
-    if (!QDir().mkpath(root))
-        return diskError(root + ": the folder for recordings cannot be made", root);
+    if (const Result<void> made = makeFolder(root); !made)
+        return diskError(made.error().message, root);
     const QString path = QDir(root).absoluteFilePath('.' + logger + ".lock");
     const int file = ::open(QFile::encodeName(path).constData(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (file < 0)

@@ -1,9 +1,9 @@
 #include "common/settings/Settings.h"
 
+#include "common/files/NamedFile.h"
 #include "common/settings/DottedPath.h"
 #include "protocol/wire/JsonText.h"
 
-#include <QFile>
 #include <QJsonDocument>
 #include <QSaveFile>
 
@@ -67,6 +67,13 @@ QJsonValue Settings::value(const QString &path) const {
 
 Result<QStringList> Settings::set(const QJsonObject &partial) {
     return apply(merged(current_, partial));
+}
+
+Result<QStringList> Settings::insist(const QJsonObject &partial) {
+    const auto applied = set(partial);
+    if (applied)
+        insisted_ = merged(insisted_, partial);
+    return applied;
 }
 
 Result<QStringList> Settings::reset(const QStringList &paths) {
@@ -139,17 +146,30 @@ QStringList Settings::waiting() const {
     return leafPaths(difference(current_, inForce_));
 }
 
+Result<QByteArray> readSettingsFile(const QString &name) {
+    constexpr qint64 mostBytes = 1 << 20;
+    auto text = readNamedFile(name, {QStringLiteral("/")}, mostBytes);
+    if (!text)
+        return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + text.error().message,
+                     text.error().data);
+    if (text->startsWith("\xff\xfe") || text->startsWith("\xfe\xff"))
+        return fileError(name, QStringLiteral("line 1: found UTF-16, expected UTF-8"));
+    if (text->startsWith("\xef\xbb\xbf")) // as some editors write it
+        text->remove(0, 3);
+    return text;
+}
+
 Result<QJsonObject> Settings::read(const QString &name) const {
-    QFile file(name);
-    if (!file.open(QIODevice::ReadOnly))
-        return fileError(name, file.errorString());
+    const auto text = readSettingsFile(name);
+    if (!text)
+        return text.error();
     WireError error;
-    const auto value = parseJson(file.readAll(), &error);
+    const auto value = parseJson(*text, &error);
     if (!value)
         return fileError(name, QStringLiteral("line %1: %2").arg(error.line).arg(error.message));
     if (!value->isObject())
         return fileError(name, QStringLiteral("line 1: expected a JSON object"));
-    const QJsonObject proposed = merged(initial_, value->toObject());
+    const QJsonObject proposed = merged(merged(initial_, value->toObject()), insisted_);
     const auto violations = check(proposed);
     if (!violations.empty())
         return Error(ErrorCode::InvalidSetting,

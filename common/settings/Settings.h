@@ -12,6 +12,9 @@
 
 namespace hermes {
 
+/// The text of a settings file, of 1 MiB at most, without waiting for anybody: devices and pipes are refused.
+Result<QByteArray> readSettingsFile(const QString &name);
+
 /// The settings of a program: declared once with schema and default, always valid, changed all or nothing,
 /// kept in a JSON file. A dot in a name makes a group: "motor.radius_m" is {"motor": {"radius_m": ...}}.
 class Settings : public QObject {
@@ -45,11 +48,13 @@ public:
     /// Applies all of a partial object or nothing. InvalidSetting: data.errors has path, value, expected.
     /// Gives the dotted paths whose value changed.
     Result<QStringList> set(const QJsonObject &partial);
+    /// The same, as told on the command line: a file that is read later changes nothing of it.
+    Result<QStringList> insist(const QJsonObject &partial);
     /// Puts the values at or below these paths back to their defaults; without paths, all of them.
     Result<QStringList> reset(const QStringList &paths = {});
 
-    /// The defaults with what a file of settings changes. Errors name the file, the line or path, what was
-    /// found and what was expected.
+    /// The defaults with what a file of settings changes, and over that what was insisted on. Errors name the
+    /// file, the line or path, what was found and what was expected.
     Result<QJsonObject> read(const QString &file) const;
     /// Takes what read() gives, and remembers the file for save().
     Result<void> load(const QString &file);
@@ -80,6 +85,7 @@ private:
     QJsonObject initial_;
     QJsonObject current_;
     QJsonObject inForce_;
+    QJsonObject insisted_;
     bool begun_ = false;
     QString fileName_;
     std::vector<Rule> rules_;

@@ -1,5 +1,6 @@
 #include "daemons/scanmatcher/DriveJournal.h"
 
+#include "common/files/Folder.h"
 #include "common/files/WriteAll.h"
 #include "daemons/scanmatcher/JournalTables.h"
 
@@ -264,7 +265,11 @@ QByteArray DriveJournal::block(const MappedDrive &drive, const std::vector<doubl
 }
 
 bool DriveJournal::File::open(QString &fault) {
-    QDir().mkpath(folder); // where it cannot be made this is told next
+    if (const Result<void> made = makeFolder(folder); !made) {
+        path.clear();
+        fault = made.error().message;
+        return false;
+    }
     const int dot = name.lastIndexOf('.');
     for (int i = 1; i < mostJournals; ++i) {
         const QString numbered =

@@ -1,5 +1,6 @@
 #include "daemons/scanmatcher/MapFile.h"
 
+#include "common/files/Folder.h"
 #include "common/files/NamedFile.h"
 #include "vectorlib/io/Dxf.h"
 #include "vectorlib/io/GeoJson.h"
@@ -46,7 +47,8 @@ Result<SavedMap> writeMapFile(const MapPath &file, const QString &format, bool f
     else
         vectorlib::writeMapCsv(text, map.segments);
     const QByteArray bytes = QByteArray::fromStdString(text.str());
-    QDir().mkpath(file.folder); // where it cannot be made this is told next
+    if (const Result<void> made = makeFolder(file.folder); !made)
+        return made.error();
     if (const Result<void> written = writeNamedFile(file.path, {file.folder}, bytes, force); !written)
         return written.error();
     return SavedMap{file.path, map.segments.size(), quint64(bytes.size())};

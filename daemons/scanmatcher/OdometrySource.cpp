@@ -101,7 +101,7 @@ void OdometrySource::report(Health &health) {
         health.remove("odometry");
     else if (!client_.isConnected())
         set(HealthLevel::Warn, QString("no connection to %1: %2; poses are expected from the scans alone")
-                                   .arg(address_, fault_.isEmpty() ? client_.lastError() : fault_));
+                                   .arg(address_, fault_.isEmpty() ? client_.problem() : fault_));
     else if (!fault_.isEmpty())
         set(HealthLevel::Warn, QString("no odometry from %1: %2; poses are expected from the scans alone")
                                    .arg(address_, fault_));

@@ -305,7 +305,7 @@ void ScanMatcher::updateHealth() {
     else if (!source_.isConnected())
         health().set("source", HealthLevel::Failed,
                      QString("no connection to %1: %2")
-                         .arg(address, sourceFault_.isEmpty() ? source_.lastError() : sourceFault_));
+                         .arg(address, sourceFault_.isEmpty() ? source_.problem() : sourceFault_));
     else if (!sourceFault_.isEmpty())
         health().set("source", HealthLevel::Failed,
                      QString("no scans from %1: %2").arg(address, sourceFault_));

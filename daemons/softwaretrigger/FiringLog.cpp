@@ -1,6 +1,7 @@
 #include "daemons/softwaretrigger/FiringLog.h"
 
 #include "common/Log.h"
+#include "common/files/Folder.h"
 
 #include <QDateTime>
 #include <QDir>
@@ -81,8 +82,8 @@ bool FiringLog::isRemoved() const {
 QString FiringLog::begin() {
     file_.close();
     const QString &folder = state_.folder; // does not change
-    if (!QDir().mkpath(folder))
-        return QString("cannot make the folder %1").arg(folder);
+    if (const Result<void> made = makeFolder(folder); !made)
+        return made.error().message;
     const QString stem = QDir(folder).absoluteFilePath(
         "firings-" + QDateTime::currentDateTimeUtc().toString("yyyyMMddTHHmmsszzzZ"));
     for (int number = 0; number < 1000; ++number) {

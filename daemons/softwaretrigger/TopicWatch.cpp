@@ -32,7 +32,7 @@ TopicWatch::~TopicWatch() {
 
 QString TopicWatch::problem() const {
     if (!client_ || !client_->isConnected())
-        return client_ ? "not connected: " + client_->lastError() : QString("not connected");
+        return client_ ? "not connected: " + client_->problem() : QString("not connected");
     return problem_;
 }
 

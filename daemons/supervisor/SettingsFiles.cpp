@@ -1,10 +1,12 @@
 #include "daemons/supervisor/SettingsFiles.h"
 
 #include "common/Project.h"
+#include "common/settings/Settings.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QDir>
 #include <QFile>
+#include <QFileInfo>
 #include <QJsonDocument>
 #include <QRegularExpression>
 #include <QSaveFile>
@@ -22,13 +24,6 @@ Error fileError(const QString &path, const QString &reason) {
     return Error(ErrorCode::InputOutput, QString("%1: %2").arg(path, reason), QJsonObject{{"path", path}});
 }
 
-Result<QByteArray> readFile(const QString &path) {
-    QFile file(path);
-    if (!file.open(QIODevice::ReadOnly))
-        return fileError(path, file.errorString());
-    return file.readAll();
-}
-
 Result<QJsonObject> parsed(const QString &path, const QByteArray &text) {
     WireError error;
     const auto value = parseJson(text, &error);
@@ -38,6 +33,8 @@ Result<QJsonObject> parsed(const QString &path, const QByteArray &text) {
         return fileError(path, "line 1: expected a JSON object");
     return value->toObject();
 }
+
+} // namespace
 
 /// Files that are replaced together: their texts lie on the disk before the first one is.
 class Replacement {
@@ -64,9 +61,11 @@ private:
     std::vector<std::unique_ptr<QSaveFile>> files_;
 };
 
+namespace {
+
 /// A file of settings; from stands for to in it.
 Result<QJsonObject> settingsIn(const QString &path, const QByteArray &from = {}, const QByteArray &to = {}) {
-    auto text = readFile(path);
+    auto text = readSettingsFile(path);
     if (!text)
         return text.error();
     return parsed(path, from.isEmpty() ? *text : text->replace(from, to));
@@ -113,11 +112,14 @@ Result<QJsonObject> SettingsFiles::sample(const QString &name) const {
 }
 
 Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
+    if (const QString cutOff = problem(); !cutOff.isEmpty())
+        return Error(ErrorCode::NotReady, cutOff + "; nothing was changed");
     Replacement old, now;
     QStringList files;
     for (const QString &daemon : settings.keys()) {
-        const bool isNew = !QFile::exists(path(daemon));
-        const auto before = isNew ? Result<QByteArray>(QByteArray("{}\n")) : readFile(path(daemon));
+        const QFileInfo there(path(daemon));
+        const bool isEmpty = !there.exists() || (there.isFile() && there.size() == 0);
+        const auto before = isEmpty ? Result<QByteArray>(QByteArray("{}\n")) : readSettingsFile(path(daemon));
         if (!before)
             return before.error();
         auto added = old.add(path(daemon) + previous, *before);
@@ -128,16 +130,32 @@ Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
                          added.error().data);
         files.append(path(daemon));
     }
-    for (const QString &daemon : undoable())
-        if (!settings.contains(daemon))
-            QFile::remove(path(daemon) + previous);
+    for (const QString &daemon : undoable()) // what setup.undo finds is always of one time
+        QFile::remove(path(daemon) + previous);
     auto done = old.commit();
     if (done)
-        done = now.commit();
+        done = commit(now);
     if (!done)
         return Error(ErrorCode::InputOutput, done.error().message + "; setup.undo puts back what was there",
                      done.error().data);
     return files;
+}
+
+Result<void> SettingsFiles::commit(Replacement &files) const {
+    if (QFile file(mark()); !file.open(QIODevice::WriteOnly))
+        return fileError(mark(), file.errorString());
+    const auto done = files.commit();
+    if (done)
+        QFile::remove(mark());
+    return done;
+}
+
+QString SettingsFiles::problem() const {
+    if (!QFile::exists(mark()))
+        return {};
+    return QString("%1: setup.apply or setup.undo was cut off, and some settings files are replaced, others "
+                   "not; setup.undo puts back what was there")
+        .arg(folder_);
 }
 
 QStringList SettingsFiles::undoable() const {
@@ -152,18 +170,20 @@ Result<QStringList> SettingsFiles::undo() const {
     Replacement replacement;
     QStringList files;
     for (const QString &daemon : undoable()) {
-        const auto before = readFile(path(daemon) + previous);
+        const auto before = readSettingsFile(path(daemon) + previous);
         if (!before)
             return before.error();
         if (const auto added = replacement.add(path(daemon), *before); !added)
             return added.error();
         files.append(path(daemon));
     }
-    if (files.isEmpty())
+    if (files.isEmpty()) {
+        QFile::remove(mark()); // no undo makes the files whole
         return Error(
             ErrorCode::NotReady,
             QString("there is nothing to undo: no file in %1 ends in .json%2").arg(folder_, previous));
-    if (const auto done = replacement.commit(); !done)
+    }
+    if (const auto done = commit(replacement); !done)
         return done.error();
     for (const QString &file : files)
         QFile::remove(file + previous);

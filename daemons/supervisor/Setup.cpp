@@ -112,10 +112,10 @@ DeviceSearch::Options Setup::searchOptions(bool ask) const {
     options.ask = ask;
     options.lidarPort = quint16(settings_.integer("setup.lidar_port"));
     options.positionPort = quint16(settings_.integer("setup.position_port"));
-    const auto current = files().current();
+    const QJsonObject current = files().readable();
     for (const char *controller : {"1", "2"}) {
         const QString path = QString("motorcontrol.controllers.%1.url").arg(controller);
-        const auto url = InterfaceUrl::parse(current ? valueAt(*current, path).toString() : QString());
+        const auto url = InterfaceUrl::parse(valueAt(current, path).toString());
         if (url && url->scheme == "serial" && QFileInfo::exists(url->path)) {
             options.controllers.append(url->path);
             options.ports.append(url->path); // as the simulator's, which the system does not list

@@ -23,6 +23,8 @@ public:
 
     static std::vector<Field> settingFields();
     std::vector<Command> commands();
+    /// What is wrong with the settings files; nothing: empty.
+    QString problem() const { return files().problem(); }
 
 private:
     struct Released {

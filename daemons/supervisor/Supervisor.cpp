@@ -254,6 +254,10 @@ void Supervisor::update() {
         else
             health().set(item, HealthLevel::Ok, toString(state));
     }
+    if (const QString problem = setup_->problem(); problem.isEmpty())
+        health().remove("settings files");
+    else
+        health().set("settings files", HealthLevel::Warn, problem);
     publish("processes", [this] { return list(); });
 }
 

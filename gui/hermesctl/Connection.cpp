@@ -20,9 +20,7 @@ Result<void> connectOnce(Client &client, const QString &address, std::chrono::mi
         loop.exec();
     if (client.isConnected())
         return {};
-    const QString reason = client.lastError();
-    return Error(ErrorCode::Disconnected,
-                 reason.isEmpty() ? QStringLiteral("%1: no answer").arg(client.address()) : reason);
+    return Error(ErrorCode::Disconnected, client.problem());
 }
 
 std::vector<std::unique_ptr<Client>> connectAll(const QStringList &addresses,

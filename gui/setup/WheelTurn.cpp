@@ -8,11 +8,13 @@
 namespace hermes {
 namespace {
 
-constexpr std::chrono::milliseconds period{50}; // of the commands
-constexpr std::chrono::milliseconds look{100};  // whether the controllers are found
-constexpr double lease_s = 1;                   // of the control, without a command
-constexpr double standing_s = 5;                // after a stop
-constexpr double settled_s = 0.5;               // then it has the speed that was asked for
+constexpr std::chrono::milliseconds period{50};    // of the commands
+constexpr std::chrono::milliseconds look{100};     // whether the controllers are found
+constexpr double lease_s = 1;                      // of the control, without a command
+constexpr double standing_s = 5;                   // after a stop
+constexpr std::chrono::milliseconds longest{3000}; // of the commands, where no reading comes
+constexpr double settled_s = 0.5;                  // then it has the speed that was asked for
+constexpr double leastSpan_s = 0.1;                // of the readings
 
 } // namespace
 
@@ -35,7 +37,8 @@ void WheelTurn::begin(const QString &wheel, const Done &done) {
     done_ = done;
     phase_ = Phase::Preparing;
     failure_ = {};
-    sum_ = count_ = 0;
+    begin_.reset();
+    first_.reset();
     turning_.invalidate();
     waiting_.start();
     awaitReady();
@@ -60,7 +63,7 @@ void WheelTurn::awaitReady() {
     const bool isLate = waiting_.hasExpired(patience_.count());
     const auto again = [this] { QTimer::singleShot(look, this, &WheelTurn::awaitReady); };
     if (!motors_.isConnected())
-        return isLate ? fail(Error(ErrorCode::Disconnected, motors_.lastError())) : again();
+        return isLate ? fail(Error(ErrorCode::Disconnected, motors_.problem())) : again();
     const double asked = monotonicNow();
     call(
         "motor.state", {},
@@ -80,9 +83,10 @@ void WheelTurn::awaitReady() {
 
 void WheelTurn::acquire() {
     const auto acquired = [this](const Result<QJsonValue> &result) {
+        isAcquiring_ = false;
         isHolding_ = result.ok();
-        if (phase_ != Phase::Preparing) // given up meanwhile
-            return;
+        if (phase_ == Phase::Stopping) // given up meanwhile
+            return isHolding_ ? release() : finish();
         if (!result)
             return fail(result.error());
         phase_ = Phase::Turning;
@@ -90,10 +94,11 @@ void WheelTurn::acquire() {
         waiting_.start();
         odometry_ = motors_.subscribe("odometry", {{"queue", 1}},
                                       [this](const TopicUpdate &update) { onOdometry(update); });
-        wheels_ = motors_.subscribe("wheels", {{"queue", 1}},
+        wheels_ = motors_.subscribe("wheels", {{"queue", 100}},
                                     [this](const TopicUpdate &update) { onWheels(update); });
         timer_.start(period);
     };
+    isAcquiring_ = true;
     call("control.acquire", {{"client", holder_}, {"timeout_s", lease_s}}, acquired, patience_);
 }
 
@@ -103,10 +108,15 @@ void WheelTurn::onOdometry(const TopicUpdate &update) {
 }
 
 void WheelTurn::onWheels(const TopicUpdate &update) {
-    if (turning_s() < settled_s || turning_s() > turn_s) // it speeds up, or brakes
+    const QJsonValue wheel = update.json()[wheel_];
+    if (!begin_ && wheel["set_point"].toDouble() == 0)
         return;
-    sum_ += update.json()[wheel_]["speed"].toDouble();
-    ++count_;
+    begin_ = begin_.value_or(update.stamp);
+    if (update.stamp - *begin_ < settled_s)
+        return;
+    last_ = {update.stamp, wheel["angle"].toDouble()};
+    if (!first_)
+        first_ = last_;
 }
 
 void WheelTurn::tick() {
@@ -118,7 +128,7 @@ void WheelTurn::tick() {
     }
     if (!turning_.isValid())
         turning_.start();
-    if (turning_s() >= turn_s)
+    if (measured_s() >= turn_s - settled_s || turning_.hasExpired(longest.count()))
         return stop();
     call(
         "motor.wheels", {{wheel_, speed}, {"stamp", stampNow() + clock_.seconds()}},
@@ -151,6 +161,8 @@ void WheelTurn::stop() {
         motors_.unsubscribe(odometry_);
         motors_.unsubscribe(wheels_);
     }
+    if (isAcquiring_)
+        return; // its answer gives the control back
     if (!wasTurning || !motors_.isConnected())
         return finish();
     const auto stopped = [this](const Result<QJsonValue> &result) {
@@ -160,18 +172,31 @@ void WheelTurn::stop() {
             failure_ = Error(ErrorCode::DeviceFault,
                              "the robot was told to stop, but does not confirm that it stands: " +
                                  (*result)["text"].toString());
-        call(
-            "control.release", {}, [this](const auto &) { finish(); }, patience_);
+        release();
     };
     call("motor.stop", {{"wait_s", standing_s}}, stopped, patience_ + std::chrono::seconds(int(standing_s)),
          Client::Repeats::AtOnce);
+}
+
+void WheelTurn::release() {
+    call(
+        "control.release", {}, [this](const auto &) { finish(); }, patience_);
+}
+
+Result<double> WheelTurn::measured() const {
+    if (!failure_)
+        return failure_.error();
+    if (measured_s() < leastSpan_s)
+        return Error(ErrorCode::TimedOut,
+                     QString("%1: too few readings of its encoder came while it turned").arg(wheel_));
+    return (last_.angle - first_->angle) / measured_s();
 }
 
 void WheelTurn::finish() {
     phase_ = Phase::Standing;
     isHolding_ = false;
     const Done done = std::exchange(done_, nullptr);
-    done(failure_ ? Result<double>(count_ > 0 ? sum_ / count_ : 0) : failure_.error());
+    done(measured());
 }
 
 } // namespace hermes

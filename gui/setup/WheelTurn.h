@@ -5,12 +5,14 @@
 
 #include <QElapsedTimer>
 #include <functional>
+#include <optional>
 
 namespace hermes {
 
-/// Turns one wheel of a lifted robot slowly for a second and measures what its encoder tells: takes the
-/// control, sends the speed at the rate that the watchdog of the motor control needs, stops, and gives the
-/// control back.
+/// Turns one wheel of a lifted robot slowly for a second and measures what its encoder tells: the angle
+/// between two readings over the time between them, by the robot's clock, however late they come. It takes
+/// the control, sends the speed at the rate that the watchdog of the motor control needs, stops, and gives
+/// the control back.
 class WheelTurn : public QObject {
     Q_OBJECT
 public:
@@ -26,6 +28,8 @@ public:
     /// One turn at a time.
     void begin(const QString &wheel, const Done &done);
     bool isBusy() const { return done_ != nullptr; }
+    /// The control was asked for, and nobody knows yet whether it was given.
+    bool isAcquiring() const { return isAcquiring_; }
     /// The robot stops; the turn ends with an error.
     void giveUp();
 
@@ -39,10 +43,13 @@ private:
     void tick();
     void fail(const Error &error);
     void stop();
+    void release();
     void finish();
     void call(const QString &method, const QJsonObject &params, const Client::Callback &answered,
               std::chrono::milliseconds timeout, Client::Repeats repeats = Client::Repeats::Usual);
-    double turning_s() const { return turning_.isValid() ? double(turning_.elapsed()) / 1000 : 0; }
+    /// From the first reading to the last.
+    double measured_s() const { return first_ ? last_.stamp - first_->stamp : 0; }
+    Result<double> measured() const;
 
     Client &motors_;
     const QString holder_;
@@ -54,10 +61,15 @@ private:
     Phase phase_ = Phase::Standing;
     ClockOffset clock_;
     double latency_s_ = 0;
-    bool isClockKnown_ = false, isHolding_ = false;
+    bool isClockKnown_ = false, isAcquiring_ = false, isHolding_ = false;
     int odometry_ = 0, wheels_ = 0; // subscriptions
-    double sum_ = 0;
-    int count_ = 0;
+    std::optional<double> begin_;   // of the turn, by the robot's clock
+    /// Of the wheel while it turned with the speed that was asked for.
+    struct Reading {
+        double stamp, angle;
+    };
+    std::optional<Reading> first_;
+    Reading last_{};
     Result<void> failure_;
 };
 

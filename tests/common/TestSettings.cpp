@@ -17,6 +17,8 @@ private Q_SLOTS:
     void resetsSomeOrAll();
     void schemaTellsAll();
     void savesOnlyChangesAndReadsThemBack();
+    void readsWhatWindowsWrites();
+    void insistsOnTheCommandLine();
     void fileErrorsNameFileAndPlace_data();
     void fileErrorsNameFileAndPlace();
     void failedSaveLeavesTheOldFile();
@@ -148,6 +150,27 @@ void TestSettings::savesOnlyChangesAndReadsThemBack() {
     QCOMPARE(QJsonDocument::fromJson(saved.readAll()).object(), (QJsonObject{{"mode", "file"}}));
 }
 
+void TestSettings::readsWhatWindowsWrites() {
+    QFile file(folder.filePath("windows.json"));
+    QVERIFY(file.open(QIODevice::WriteOnly));
+    file.write("\xef\xbb\xbf{\r\n\"on\": false\r\n}\r\n");
+    file.close();
+    QVERIFY(settings->load(file.fileName()));
+    QVERIFY(!settings->flag("on"));
+}
+
+void TestSettings::insistsOnTheCommandLine() {
+    const QString file = folder.filePath("own.json");
+    QVERIFY(settings->set({{"on", false}, {"motor", QJsonObject{{"ticks", 3}}}}));
+    QVERIFY(settings->save(file));
+    settings->reset();
+    QVERIFY(settings->insist({{"motor", QJsonObject{{"ticks", 7}}}}));
+    QVERIFY(!settings->insist({{"motor", QJsonObject{{"ticks", 0}}}}));
+    QVERIFY(settings->load(file));
+    QVERIFY(!settings->flag("on"));
+    QCOMPARE(settings->integer("motor.ticks"), 7);
+}
+
 void TestSettings::fileErrorsNameFileAndPlace_data() {
     QTest::addColumn<QByteArray>("text");
     QTest::addColumn<QString>("says");
@@ -159,7 +182,9 @@ void TestSettings::fileErrorsNameFileAndPlace_data() {
     QTest::newRow("unknown key") << QByteArray("{\"motor\": {\"raduis\": 1}}") << "motor.raduis is 1";
     QTest::newRow("bad value") << QByteArray("{\"mode\": \"x\"}")
                                << "mode is \"x\", expected one of \"live\", \"file\"";
-    QTest::newRow("empty") << QByteArray("") << "line 1";
+    QTest::newRow("empty") << QByteArray("") << "it has 0 bytes";
+    QTest::newRow("UTF-16") << QByteArray("\xff\xfe{\0}\0", 6) << "line 1: found UTF-16, expected UTF-8";
+    QTest::newRow("large") << QByteArray((1 << 20) + 1, ' ') << "it has 1048577 bytes";
 }
 
 void TestSettings::fileErrorsNameFileAndPlace() {

@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import socket
+import struct
 import subprocess
 import tempfile
 import threading
@@ -16,10 +17,13 @@ import time
 import unittest
 
 from robot import NAMES, Robot, Talker
-from support import BINARIES, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
+from support import BINARIES, BUILD, SOURCE, Daemon, DaemonError, Process, free_port, wait_for
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 PACKET = 1206  # bytes of a Velodyne data packet
+SENTENCE = b"$GPGGA,120000,4916.45,N,12311.12,W,1,08,0.9,545.4,M,46.9,M,,*55\r\n"
+NOISE = bytes((37 * i * i + 11 * i) % 256 for i in range(499))
+INTERPOSED = {"LD_PRELOAD": os.path.join(BUILD, "tests", "system", "interposed.so"), "ASAN_OPTIONS": "verify_asan_link_order=0"}
 
 
 class BadInput(unittest.TestCase):
@@ -38,12 +42,12 @@ class BadInput(unittest.TestCase):
         self.simulator = simulator.connect()
         return simulator
 
-    def robot_of(self, **changes):
+    def robot_of(self, environment=None, **changes):
         """A robot that has begun to work, all well."""
         self.robot = Robot(self.folder, self.wires)
         for name, settings in changes.items():
             self.robot.write(name, **settings)
-        self.robot.start()
+        self.robot.start(**environment or {})
         self.addCleanup(self.robot.stop)
         return self.robot
 
@@ -73,7 +77,7 @@ class BadInput(unittest.TestCase):
             wait_for("list", lambda: seen.update(list=self.robot.shown()) or any(map(has, seen["list"].splitlines())), 5)
             wait_for("journal", lambda: any(map(has, self.robot.written(since).splitlines())), 5)
         except AssertionError as error:
-            raise AssertionError(f"{name} does not tell {words}: {error}\n{seen}\n{self.robot.written(since)[-3000:]}") from None
+            raise AssertionError(f"{name} does not tell {words}: {error}\n{seen}\n{self.robot.written(since)[:6000]}") from None
         for other in ("supervisor", *NAMES):
             if other != down:
                 self.assertIsNotNone(self.robot.items(other), f"{other} does not answer")
@@ -131,9 +135,7 @@ class BadInput(unittest.TestCase):
         self.simulate()
         robot = self.robot_of()
         self.until_well()
-        sentence = b"$GPGGA,120000,4916.45,N,12311.12,W,1,08,0.9,545.4,M,46.9,M,,*55\r\n"
-        noise = bytes((37 * i * i + 11 * i) % 256 for i in range(499))
-        lines = {"a receiver": sentence, "noise": noise, "nothing": b""}
+        lines = {"a receiver": SENTENCE, "noise": NOISE, "nothing": b""}
         before = {"motorcontrol": dict(robot.settings["motorcontrol"]), "seriallogger": dict(robot.settings["seriallogger"])}
         for what, says in lines.items():
             with self.subTest(what):
@@ -151,7 +153,7 @@ class BadInput(unittest.TestCase):
                     talker.close()
         robot.write("motorcontrol", **before["motorcontrol"])
         self.restart("motorcontrol")
-        for what, says in {"noise": noise, "a talker of another kind": b"login: ", "nothing": b""}.items():
+        for what, says in {"noise": NOISE, "a talker of another kind": b"login: ", "nothing": b""}.items():
             with self.subTest(what):
                 path = os.path.join(self.folder, "wrong")
                 talker = Talker(path, says)
@@ -166,6 +168,88 @@ class BadInput(unittest.TestCase):
         robot.write("seriallogger", **before["seriallogger"])
         self.restart("seriallogger")
         self.until_well("the right devices")
+
+    def test_other_devices_under_the_same_names(self):
+        """Pulled while the robot drives, then something else is plugged in and gets the name."""
+        self.simulate()
+        robot = self.robot_of()
+        self.until_well()
+        self.drive(lambda: not self.stands())
+        since, devices = robot.journal_size(), {"line1": ("motors", SENTENCE), "gps": ("gps", NOISE)}
+        for device in devices:
+            self.simulator.call("sim.fault", device=device, kind="pulled")
+        self.drive(self.stands)
+        talkers = [Talker(self.wires[name], says) for name, says in devices.values()]
+        try:
+            self.tells("motorcontrol", self.wires["motors"], "answer", since=since)
+            self.tells("seriallogger", self.wires["gps"], "no NMEA sentence", since=since)
+            with Daemon(port=robot.ports["motorcontrol"]) as motors, self.assertRaisesRegex(DaemonError, "answer"):
+                motors.call("control.acquire", timeout_s=2)
+                motors.call("motor.drive", vx=0.2)
+        finally:
+            for talker in talkers:
+                talker.close()
+        for device in devices:
+            self.simulator.call("sim.fault", device=device, kind="none")
+        self.until_well("the right devices")
+        self.assertTrue(self.stands(), "it drove on by itself")
+        self.drive(lambda: not self.stands())
+
+    def test_controllers_where_a_receiver_is_expected(self):
+        """And the line of the one in the hands of the other."""
+        self.simulate()
+        robot = self.robot_of()
+        self.until_well()
+        before, since = list(robot.settings["seriallogger"]["ports"]), robot.journal_size()
+        robot.write("seriallogger", ports=[{"name": "gps", "url": f"serial://{self.wires['motors']}?baud=115200", "view": "nmea"}])
+        self.restart("seriallogger")
+        self.tells("seriallogger", self.wires["motors"], "in use by another program", since=since)
+        since = robot.journal_size()
+        robot.call("supervisor", "process.stop", name="motorcontrol")
+        self.tells("seriallogger", self.wires["motors"], "no byte", since=since, down="motorcontrol")
+        since = robot.journal_size()
+        robot.call("supervisor", "process.start", name="motorcontrol")
+        wait_for("the motor control", lambda: robot.items("motorcontrol") is not None, 15)
+        self.tells("motorcontrol", self.wires["motors"], "in use by another program", since=since)
+        robot.write("seriallogger", ports=before)
+        self.restart("seriallogger")
+        self.until_well("each at its line")
+        self.drive(lambda: not self.stands())
+
+    def test_clock_set_back(self):
+        """By an hour while the robot drives, and forth again: it drives on, and stands when it is told nothing; what was told by
+        the other clock is refused."""
+        clock = os.path.join(self.folder, "clock")
+
+        def set_clock(ahead_s):
+            with open(clock, "wb") as file:
+                file.write(struct.pack("q", ahead_s))
+        set_clock(0)
+        self.simulate()
+        robot = self.robot_of({**INTERPOSED, "HERMES_CLOCK": clock})
+        self.until_well()
+        for ahead_s in (-3600, 0):
+            others = time.time() - 3600 - ahead_s
+            with Daemon(port=robot.ports["motorcontrol"], timeout=10) as motors:
+                motors.call("control.acquire", timeout_s=2)
+
+                def go_on(until, motors=motors):
+                    motors.call("motor.drive", vx=0.1)
+                    return until()
+                wait_for("the drive", lambda: go_on(lambda: not self.stands()), 10)
+                with Daemon(port=robot.ports["motorcontrol"], timeout=10) as other:
+                    stamps = (message["stamp"] for message in other.subscribe("odometry"))
+                    first = next(stamps)
+                    set_clock(ahead_s)
+                    wait_for("the other time", lambda: go_on(lambda: abs(next(stamps) - first) > 3000), 10)
+                begin = self.simulator.call("sim.state")["pose"]["x"]
+                wait_for("a way", lambda: go_on(lambda: abs(self.simulator.call("sim.state")["pose"]["x"] - begin) > 0.05), 10)
+                with self.assertRaisesRegex(DaemonError, "the clocks disagree"):
+                    motors.call("motor.drive", vx=0.1, stamp=others)
+                motors.call("motor.drive", vx=0.1)
+                wait_for("the watchdog", self.stands, 3)
+            self.until_well("another time")
+        self.drive(lambda: not self.stands())
 
     def test_wrong_lidars(self):
         self.simulate()
@@ -199,27 +283,31 @@ class BadInput(unittest.TestCase):
         "unknown key": (b'{"prots": []}', "prots"),
         "wrong type": (b'{"limits": {"clients": "many"}}', "limits.clients.*many"),
         "out of range": (b'{"limits": {"clients": 0}}', "limits.clients.*0.*(1|from)"),
-        "empty": (b"", "line 1"),
+        "empty": (b"", "0 bytes"),
+        "zeros": (b"{}" + bytes(100), "line 1"),
+        "Latin-1": (b'{"record": {"folder": "/tmp/M\xfcll"}}', "line 1"),
+        "UTF-16": ("{}".encode("utf-16"), "expected UTF-8"),
         "no object": (b"[1, 2]", "expected a JSON object"),
         "binary": (bytes(range(256)) * 4, "line 1"),
         "cut off": (b'{"record": {"folder": "/t', "line 1"),
-        "folder": (None, "directory"),
-        "unreadable": (b"{}", "[Pp]ermission"),
-        "absent": (None, "No such file")}
+        "folder": (os.mkdir, "regular file"),
+        "pipe": (os.mkfifo, "regular file"),
+        "device": (lambda path: os.symlink("/dev/zero", path), "regular file"),
+        "links in a circle": (lambda path: os.symlink(path, path), "[Ll]inks"),
+        "huge": (lambda path: subprocess.run(["truncate", "-s", "1G", path], check=True), "1073741824 bytes"),
+        "unreadable": (lambda path: os.close(os.open(path, os.O_CREAT, 0)), "[Pp]ermission"),
+        "absent": (lambda path: None, "No such file")}
 
     def spoil(self, name, what):
         """Puts that in the place of a settings file; False where it cannot be made."""
-        text, path = self.WRONG_SETTINGS[what][0], self.robot.path(name)
+        made, path = self.WRONG_SETTINGS[what][0], self.robot.path(name)
         if what == "unreadable" and os.geteuid() == 0:
             return False
-        if text is not None:
-            self.robot.write_text(name, text)
+        if isinstance(made, bytes):
+            self.robot.write_text(name, made)
         else:
             os.remove(path)
-        if what == "folder":
-            os.mkdir(path)
-        if what == "unreadable":
-            os.chmod(path, 0)
+            made(path)
         return True
 
     def mend(self, name):
@@ -294,13 +382,20 @@ class BadInput(unittest.TestCase):
         self.assertNotIn("motorcontrol", found["restarted"])
         self.assertEqual(state("motorcontrol"), "stopped")
 
+    def mount(self, folder, *how):
+        done = subprocess.run(["mount", *how, folder], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            self.skipTest(f"{folder} cannot be mounted here: " + done.stderr.strip())
+        self.addCleanup(subprocess.run, ["umount", "-l", folder], check=True)
+
+    @staticmethod
+    def make(folder, access):
+        subprocess.run(["mount", "-o", f"remount,bind,{access}", folder], check=True)
+
     def small_disk(self):
         disk = os.path.join(self.folder, "disk")
         os.mkdir(disk)
-        done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", disk], capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            self.skipTest("a small disk cannot be mounted here: " + done.stderr.strip())
-        self.addCleanup(subprocess.run, ["umount", "-l", disk], check=True)
+        self.mount(disk, "-t", "tmpfs", "-o", "size=2m", "tmpfs")
         return disk
 
     @staticmethod
@@ -363,6 +458,103 @@ class BadInput(unittest.TestCase):
         with open(os.path.join(etc, "seriallogger.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file), {})
         self.drive(lambda: not self.stands())
+
+    def test_state_that_is_read_only(self):
+        """From the start; when it is no longer, all goes on."""
+        state = os.path.join(self.folder, "state")
+        os.mkdir(state)
+        self.mount(state, "--bind", state)
+        self.make(state, "ro")
+        self.simulate()
+        record, maps = {"folder": os.path.join(state, "recordings")}, os.path.join(state, "maps")
+        robot = self.robot_of({"STATE_DIRECTORY": state, "XDG_STATE_HOME": state}, velodynelogger={"record": record},
+                              seriallogger={"record": record}, scanmatcher={"map": {"folder": maps, "journal": "drive.journal"}})
+        self.tells("scanmatcher", "journal", maps, "[Rr]ead-only")
+        self.drive(lambda: not self.stands())
+        self.tells("motorcontrol", "audit", os.path.join(state, "audit"), "[Rr]ead-only")
+        calls = {name: lambda name=name: robot.call(name, "record.start", name=f"run-{name}") for name in ("velodynelogger", "seriallogger")}
+        calls["scanmatcher"] = lambda: robot.call("scanmatcher", "map.save", path="first.csv")
+        for name, call in calls.items():
+            with self.subTest(name), self.assertRaisesRegex(DaemonError, f"{state}.*[Rr]ead-only"):
+                call()
+        self.make(state, "rw")
+        for call in calls.values():
+            call()
+        for name in ("velodynelogger", "seriallogger"):
+            robot.call(name, "record.stop")
+        wait_for("the audit", lambda: os.path.getsize(os.path.join(state, "audit", "seriallogger.jsonl")) > 0)
+        self.drive(lambda: not self.stands())
+        self.until_well("a folder to write to", limit_s=90)  # what was not written down is told for a minute
+
+    def test_settings_that_cannot_be_written(self):
+        """A full disk, one that is read-only: the files stay as they are."""
+        robot = self.robot_of()
+        wait_for("the start", lambda: all(robot.items(name) is not None for name in ("supervisor", *NAMES)))
+        self.mount(robot.etc, "-t", "tmpfs", "-o", "size=64k", "tmpfs")
+        for name in robot.settings:
+            robot.write(name)
+        robot.call("supervisor", "setup.apply", settings={"seriallogger": {"limits": {"clients": 20}}})
+        wait_for("it", lambda: robot.items("seriallogger") is not None)
+        before = self.files(robot.etc)
+        robot.call("seriallogger", "settings.set", values={"limits": {"clients": 30}})
+        full = os.path.join(robot.etc, "filler")
+        for what, spoil, mend in (("[Ss]pace", lambda: self.fill(robot.etc), lambda: os.remove(full)),
+                                  ("not writable", lambda: self.make(robot.etc, "ro"), lambda: self.make(robot.etc, "rw"))):
+            spoil()
+            for name, method in (("seriallogger", "settings.save"), ("supervisor", "setup.apply"), ("supervisor", "setup.undo")):
+                params = {"settings": {"seriallogger": {"limits": {"clients": 40}}}} if method == "setup.apply" else {}
+                with self.subTest(f"{what} {method}"), self.assertRaisesRegex(DaemonError, f"{robot.etc}.*{what}"):
+                    robot.call(name, method, **params)
+            mend()
+            self.assertEqual(self.files(robot.etc), before)
+        robot.call("seriallogger", "settings.save")
+        self.assertEqual(self.files(robot.etc)["seriallogger.json"]["limits"], {"clients": 30})
+
+    @staticmethod
+    def files(folder):
+        found = {}
+        for name in os.listdir(folder):
+            if not name.endswith((".json", ".previous")):
+                continue  # a draft of a program that was killed
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                found[name] = json.load(file)
+        return found
+
+    def test_killed_while_settings_are_replaced(self):
+        """At each step of setup.apply: all files are as they were, or it is told and setup.undo makes them so."""
+        robot = self.robot_of()
+        changes = {name: {"limits": {"clients": 30}} for name in ("motorcontrol", "seriallogger")}
+        before = self.files(robot.etc)
+
+        def is_up():
+            return robot.items("supervisor") is not None
+
+        def are_all_up():
+            return all(robot.items(name) is not None for name in ("supervisor", *NAMES))
+        wait_for("the service", is_up)
+        told = 0
+        for at in range(1, 100):
+            robot.environment = {**INTERPOSED, "HERMES_KILL_AT": str(at)}
+            robot.process.terminate()
+            wait_for("the end", lambda: not is_up())
+            wait_for("the service", is_up)
+            robot.environment, since = {}, robot.journal_size()
+            try:
+                robot.call("supervisor", "setup.apply", settings=changes)
+                break
+            except OSError:  # it was killed
+                wait_for("the service", are_all_up)
+            if robot.items("supervisor"):
+                told += 1
+                self.tells("supervisor", "settings files", robot.etc, "cut off", "setup.undo", since=since)
+                with self.assertRaisesRegex(DaemonError, "cut off"):
+                    robot.call("supervisor", "setup.apply", settings=changes)
+                robot.call("supervisor", "setup.undo")
+            now = self.files(robot.etc)
+            self.assertEqual({name: now[name] for name in before}, before, f"killed at step {at}")
+            wait_for("that all is well", lambda: not robot.items("supervisor"), 10)
+        self.assertGreater(told, 1)
+        self.assertEqual(self.files(robot.etc)["motorcontrol.json"]["limits"], {"clients": 30})
 
 
 if __name__ == "__main__":

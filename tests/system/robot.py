@@ -77,17 +77,19 @@ class Robot:
             file.write(text)
         os.replace(self.path(name) + ".new", self.path(name))
 
-    def start(self):
+    def start(self, **environment):
+        self.environment = environment
         self.thread = threading.Thread(target=self.keep_up)
         self.thread.start()
 
     def keep_up(self):
         command = [os.path.join(BINARIES, "hermes-supervisor"), "--config", self.path("supervisor"), "--listen",
                    f"tcp://127.0.0.1:{self.ports['supervisor']}?protocol=json"]
-        environment = {**os.environ, "NOTIFY_SOCKET": os.path.join(self.folder, "notify"), "STATE_DIRECTORY": self.folder,
-                       "XDG_STATE_HOME": self.folder}
+        usual = {**os.environ, "NOTIFY_SOCKET": os.path.join(self.folder, "notify"), "STATE_DIRECTORY": self.folder,
+                 "XDG_STATE_HOME": self.folder}
         with open(self.journal, "ab") as journal:
             while not self.is_over.is_set():
+                environment = {**usual, **self.environment}
                 self.process = subprocess.Popen(command, stdout=journal, stderr=journal, stdin=subprocess.DEVNULL, env=environment)
                 self.process.wait()
 

@@ -67,7 +67,7 @@ class Setup(unittest.TestCase):
         return self.start("simulator", {"world": WORLD, "motors.link": self.motors, "gps.link": self.gps,
                                         "lidar.port": self.lidar_port, "lidar.position_port": self.position_port, **settings})
 
-    def supervisor(self, ports, processes=(), samples=SAMPLES):
+    def supervisor(self, ports, processes=(), samples=SAMPLES, given=None):
         self.etc = os.path.join(self.folder, "etc")
         os.makedirs(self.etc, exist_ok=True)
         own = os.path.join(self.etc, "supervisor.json")
@@ -76,7 +76,7 @@ class Setup(unittest.TestCase):
                 json.dump({"processes": list(processes), "setup": {
                     "folder": self.etc, "samples": samples, "ports": list(ports), "lidar_port": self.lidar_port,
                     "position_port": self.position_port}}, file)
-        process, client = self.start("supervisor", {}, ("--config", own))
+        process, client = self.start("supervisor", given or {}, ("--config", own))
         self.address = f"127.0.0.1:{process.port}"
         return client
 
@@ -198,6 +198,8 @@ class Setup(unittest.TestCase):
         supervisor = self.supervisor([])
         with open(os.path.join(self.etc, "seriallogger.json"), "w", encoding="utf-8") as file:
             file.write('{"ports": [')  # broken: a sample mends it
+        with open(os.path.join(self.etc, "motorcontrol.json"), "w", encoding="utf-8"):
+            pass  # empty, as after a power cut
         own = self.file("supervisor")
         samples = os.path.join(self.folder, "samples")
         os.makedirs(os.path.join(samples, "quiet"))
@@ -209,7 +211,7 @@ class Setup(unittest.TestCase):
         said = self.ctl("quiet", status=1)
         self.assertIn("nothing was changed: motorcontrol", said)
         self.assertIn("log.level", said)
-        self.assertEqual(set(os.listdir(self.etc)), {"supervisor.json", "seriallogger.json"})
+        self.assertEqual(set(os.listdir(self.etc)), {"supervisor.json", "seriallogger.json", "motorcontrol.json"})
         with open(os.path.join(samples, "quiet", "motorcontrol.json"), "w", encoding="utf-8") as file:
             json.dump({"motion": {"vx": 0.5}}, file)
         self.assertIn("written: ", self.ctl("quiet"))
@@ -224,6 +226,17 @@ class Setup(unittest.TestCase):
         self.assertIn('no sample "../quiet"', self.ctl("../quiet", status=2))
         self.assertIn("exclude each other", self.ctl("quiet", "--list", status=2))
         self.assertIn("this is no terminal", self.ctl(status=2))
+
+    def test_command_line_holds(self):
+        supervisor = self.supervisor([], given={"setup.folder": self.folder, "robot": "told"})
+        with open(os.path.join(self.folder, "supervisor.json"), "w", encoding="utf-8") as file:
+            json.dump({"robot": "written"}, file)
+        written = supervisor.call("setup.apply", settings={"supervisor": {"limits": {"clients": 30}}})
+        self.assertEqual(written["files"], [os.path.join(self.folder, "supervisor.json")])
+        now = supervisor.call("settings.get")
+        self.assertEqual((now["setup"]["folder"], now["robot"], now["limits"]["clients"]), (self.folder, "told", 30))
+        written = supervisor.call("setup.apply", settings={"seriallogger": {"limits": {"clients": 30}}})
+        self.assertEqual(written["files"], [os.path.join(self.folder, "seriallogger.json")])
 
     def test_samples_are_valid(self):
         samples = sorted(os.listdir(SAMPLES))

@@ -202,7 +202,7 @@ void DriveControl::repeatStop() {
     if (++stopTries_ > stopMost) {
         stopTimer_.stop();
         return tell(tr("STOP was not answered by %1: %2")
-                        .arg(unstopped_.front()->name(), unstopped_.front()->client().lastError()));
+                        .arg(unstopped_.front()->name(), unstopped_.front()->client().problem()));
     }
     stopTimer_.start(stopRepeat);
     const auto daemons = unstopped_;

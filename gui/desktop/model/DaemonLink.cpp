@@ -94,7 +94,7 @@ QString DaemonLink::conditionWord() const {
 
 QString DaemonLink::reason() const {
     if (!isConnected())
-        return client_.lastError();
+        return client_.problem();
     QStringList lines;
     if (severity(worst_) > 0)
         lines.append(shortLine(worst_.name + ": " + worst_.message));

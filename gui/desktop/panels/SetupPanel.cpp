@@ -30,6 +30,7 @@ QTreeWidget *makeTable(const QString &name, const QStringList &header) {
     table->setHeaderLabels(header);
     table->setUniformRowHeights(true);
     table->setRootIsDecorated(false);
+    table->header()->setSectionResizeMode(0, QHeaderView::ResizeToContents);
     return table;
 }
 
@@ -195,8 +196,7 @@ void SetupPanel::showFound(const Findings &found) {
     for (const QStringList &row : rowsOf(found, tr("the tick \"Ask silent lines\"")))
         if (found_->topLevelItemCount() < mostRows)
             found_->addTopLevelItem(rowOf(row));
-    for (const int column : {0, 1})
-        found_->resizeColumnToContents(column);
+    found_->resizeColumnToContents(1);
     if (found_->topLevelItemCount() == 0)
         found_->addTopLevelItem(rowOf({tr("nothing")}));
 }
@@ -241,7 +241,6 @@ void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings)
     }
     if (file)
         showNow(last, *file);
-    changes_->resizeColumnToContents(SettingColumn);
     updateButtons();
 }
 

@@ -6,7 +6,7 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QHBoxLayout>
+#include <QDockWidget>
 #include <QHostInfo>
 #include <QPushButton>
 #include <QVBoxLayout>
@@ -42,14 +42,12 @@ WheelsTest::WheelsTest(Fleet &fleet, QWidget *parent)
                 QStringList{wheel, isBackward ? "b" : ""});
     seenChoice_->addItem(tr("none turned"), QStringList{"", ""});
 
-    auto *const seen = new QHBoxLayout;
-    seen->addWidget(seenChoice_, 1);
-    seen->addWidget(next_);
     auto *const layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->addWidget(lifted_);
     layout->addWidget(test_);
-    layout->addLayout(seen);
+    layout->addWidget(seenChoice_);
+    layout->addWidget(next_);
     layout->addWidget(message_);
     layout->addStretch(1);
 
@@ -156,9 +154,22 @@ void WheelsTest::giveUp(const QString &why) {
     updateButtons();
 }
 
-void WheelsTest::hideEvent(QHideEvent *event) {
+void WheelsTest::onSight(bool isInSight) {
+    if (isInSight)
+        return;
     giveUp(tr("it is not in sight"));
     lifted_->setChecked(false);
+}
+
+void WheelsTest::showEvent(QShowEvent *event) {
+    for (QWidget *above = parentWidget(); above; above = above->parentWidget())
+        if (const auto *const dock = qobject_cast<QDockWidget *>(above))
+            connect(dock, &QDockWidget::visibilityChanged, this, &WheelsTest::onSight, Qt::UniqueConnection);
+    QWidget::showEvent(event);
+}
+
+void WheelsTest::hideEvent(QHideEvent *event) {
+    onSight(false);
     QWidget::hideEvent(event);
 }
 

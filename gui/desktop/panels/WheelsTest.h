@@ -15,8 +15,8 @@ namespace hermes::desktop {
 class MessageLabel;
 
 /// The test of the wheels of the chosen robot: turns one after another, once somebody has said that it is
-/// lifted, and asks what was seen. It ends when the robot is stopped, another is chosen, or the dock is
-/// closed; another tab over it is not noticed.
+/// lifted, and asks what was seen. It ends when the robot is stopped, another is chosen, or it is not in
+/// sight: its dock is closed, or under another tab.
 class WheelsTest : public QWidget {
     Q_OBJECT
 public:
@@ -27,6 +27,7 @@ Q_SIGNALS:
     void ended(const QJsonObject &changes);
 
 protected:
+    void showEvent(QShowEvent *event) override;
     void hideEvent(QHideEvent *event) override;
 
 private:
@@ -37,6 +38,7 @@ private:
     void onTurned(const Result<double> &measured);
     void onSeen();
     void giveUp(const QString &why);
+    void onSight(bool isInSight);
     bool isUnderWay() const { return !wheel_.isEmpty(); }
 
     Fleet &fleet_;

@@ -4,6 +4,8 @@
 #include "tests/support/ChildProcess.h"
 #include "tests/support/FreePort.h"
 
+#include <QJsonArray>
+#include <QJsonDocument>
 #include <QTemporaryDir>
 #include <QtTest>
 #include <csignal>
@@ -67,6 +69,18 @@ public:
               {"controllers.1.url=" + url, "controllers.2.url=" + url, "safety.command_timeout_s=1"});
         daemons_.at("motorcontrol").process->goBeforeOthers();
     }
+    /// A supervisor that finds what the simulator offers at these ports and keeps settings in the folder
+    /// "etc".
+    void startSupervisor(const QJsonArray &lines, int lidarPort, const QStringList &settings = {}) {
+        QVERIFY(QDir().mkpath(path("etc")));
+        const QByteArray ports = QJsonDocument(lines).toJson(QJsonDocument::Compact);
+        start("supervisor",
+              QStringList{"setup.folder=" + path("etc"), "setup.ports=" + QString::fromUtf8(ports),
+                          "setup.samples=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/settings",
+                          QString("setup.lidar_port=%1").arg(lidarPort),
+                          QString("setup.position_port=%1").arg(reservePort())} +
+                  settings);
+    }
     void signal(const QString &name, int number) {
         ::kill(pid_t(daemons_.at(name).process->processId()), number);
     }
@@ -99,7 +113,7 @@ private:
         return true;
     }
 
-    QTemporaryDir folder_;
+    QTemporaryDir folder_{QDir::tempPath() + "/XXXXXX"}; // short, as it is seen in pictures
     std::map<QString, Daemon> daemons_;
 };
 

@@ -1,4 +1,5 @@
 #include "gui/desktop/panels/SetupPanel.h"
+#include "gui/setup/WheelTurn.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QCheckBox>
@@ -24,7 +25,9 @@ private Q_SLOTS:
     void wheelsTurnOnlyWhenLifted();
     void testOfWheelsGivesSettings();
     void stopEndsTheTestOfWheels();
+    void outOfSightNoWheelTurns_data();
     void outOfSightNoWheelTurns();
+    void givenUpEarlyLeavesTheControl();
 
 private:
     void open(bool withMotors);
@@ -88,7 +91,6 @@ void TestSetupPanel::init() {
     robot_ = std::make_unique<RobotProcesses>();
     folder_ = robot_->path("etc");
     motors_ = robot_->path("motors");
-    QVERIFY(QDir().mkpath(folder_));
 }
 
 void TestSetupPanel::open(bool withMotors) {
@@ -98,17 +100,7 @@ void TestSetupPanel::open(bool withMotors) {
         robot_->start("simulator",
                       {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json",
                        "motors.link=" + motors_});
-    // From a file, which Apply keeps: what is set beside it would be lost, and the real folder written to.
-    const QJsonObject setup{{"folder", folder_},
-                            {"samples", qEnvironmentVariable("HERMES_SOURCE") + "/deploy/settings"},
-                            {"ports", QJsonArray{motors_}},
-                            {"lidar_port", reservePort()},
-                            {"position_port", reservePort()}};
-    QFile own(folder_ + "/supervisor.json");
-    QVERIFY(own.open(QIODevice::WriteOnly));
-    own.write(QJsonDocument(QJsonObject{{"setup", setup}}).toJson());
-    own.close();
-    robot_->start("supervisor", {}, {"--config", own.fileName()});
+    robot_->startSupervisor({motors_}, reservePort());
     window_ = std::make_unique<OpenWindow>(*robot_);
     QVERIFY(window_->show());
     window_->window.resize(1280, 900);
@@ -224,15 +216,49 @@ void TestSetupPanel::stopEndsTheTestOfWheels() {
     QVERIFY(!find<QCheckBox>("lifted")->isChecked());
 }
 
+void TestSetupPanel::outOfSightNoWheelTurns_data() {
+    QTest::addColumn<bool>("isClosed");
+    QTest::newRow("its dock is closed") << true;
+    QTest::newRow("another tab is over it") << false;
+}
+
 void TestSetupPanel::outOfSightNoWheelTurns() {
+    QFETCH(bool, isClosed);
     open(true);
     lift();
     awaitTurning();
     const auto *const lifted = find<QCheckBox>("lifted");
-    window_->window.findChild<QDockWidget *>("setup")->hide();
-    QVERIFY(!lifted->isChecked());
+    if (isClosed)
+        window_->window.findChild<QDockWidget *>("setup")->hide();
+    else
+        window_->window.findChild<QDockWidget *>("settings")->raise();
+    QTRY_VERIFY(!lifted->isChecked());
     QTRY_VERIFY(areStanding());
     QVERIFY2(wheelMessage().contains("not in sight"), qPrintable(wheelMessage()));
+}
+
+/// While the control is asked for.
+void TestSetupPanel::givenUpEarlyLeavesTheControl() {
+    open(true);
+    Client motors;
+    motors.connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+    QVERIFY(motors.waitConnected());
+    WheelTurn turn(motors, "test", Client::defaultTimeout);
+    bool isOver = false;
+    Result<double> measured = 0.0;
+    turn.begin("front_left", [&](const Result<double> &result) {
+        isOver = true;
+        measured = result;
+    });
+    QTimer each; // time that the event loop turns
+    connect(&each, &QTimer::timeout, &turn, [&] {
+        if (turn.isAcquiring())
+            turn.giveUp();
+    });
+    each.start(0);
+    QTRY_VERIFY(isOver);
+    QVERIFY(!measured);
+    QVERIFY(!ask("motorcontrol", "control.state")["held"].toBool());
 }
 
 QTEST_MAIN(TestSetupPanel)

@@ -4,6 +4,7 @@
 #include "gui/desktop/Theme.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 
+#include <QAbstractButton>
 #include <QApplication>
 #include <QDir>
 #include <QDockWidget>
@@ -20,6 +21,7 @@ public:
 
 private Q_SLOTS:
     void all();
+    void setup();
 };
 
 QStringList Screenshots::arguments;
@@ -36,30 +38,70 @@ static void plot(MainWindow &window) {
     }
 }
 
+/// Whether the picture of this dock is asked for.
+static bool isWanted(const QString &dock) {
+    return Screenshots::arguments.size() <= 4 || Screenshots::arguments[4] == dock;
+}
+
+static void resize(MainWindow &window) {
+    const QStringList size = Screenshots::arguments.value(3, "1280x720").split('x');
+    window.resize(size.value(0).toInt(), size.value(1).toInt());
+    window.show();
+}
+
+static void take(MainWindow &window, QDockWidget &dock) {
+    dock.raise();
+    QTest::qWait(400);
+    const QString file =
+        QString("%1/desktop-%2%3.png")
+            .arg(Screenshots::arguments[1], dock.objectName(), Screenshots::arguments.value(2));
+    QVERIFY2(window.grab().save(file), qPrintable(file));
+}
+
 void Screenshots::all() {
+    if (arguments.value(4) == "setup")
+        return;
     RobotProcesses robot;
     robot.startAll();
     Fleet fleet;
     robot.connectTo(fleet);
     DriveControl drive(fleet);
     MainWindow window(fleet, drive, {});
-    const QStringList size = arguments.value(3, "1280x720").split('x');
-    window.resize(size.value(0).toInt(), size.value(1).toInt());
-    window.show();
+    resize(window);
     fleet.choose(fleet.robot()->withName("scanmatcher"));
     plot(window);
     drive.steer("pictures", {1, 0, 0.35}, true);
     QTest::qWait(qEnvironmentVariable("HERMES_PICTURE_S", "8").toInt() *
                  1000); // so that there is a map to see
-    for (auto *const dock : window.findChildren<QDockWidget *>()) {
-        if (arguments.size() > 4 && dock->objectName() != arguments[4])
-            continue;
-        dock->raise();
-        QTest::qWait(400);
-        const QString file =
-            QString("%1/desktop-%2%3.png").arg(arguments[1], dock->objectName(), arguments.value(2));
-        QVERIFY2(window.grab().save(file), qPrintable(file));
-    }
+    for (auto *const dock : window.findChildren<QDockWidget *>())
+        if (isWanted(dock->objectName()) && dock->objectName() != "setup")
+            take(window, *dock);
+}
+
+/// A robot that nobody has set up yet.
+void Screenshots::setup() {
+    if (!isWanted("setup"))
+        return;
+    RobotProcesses robot;
+    const int lidar = reservePort();
+    robot.start("simulator",
+                {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json",
+                 "motors.link=" + robot.path("motors"), "gps.link=" + robot.path("gps"),
+                 QString("lidar.port=%1").arg(lidar)});
+    robot.startSupervisor({robot.path("motors"), robot.path("gps")}, lidar, {"processes=[]"});
+    Fleet fleet;
+    robot.connectTo(fleet);
+    DriveControl drive(fleet);
+    MainWindow window(fleet, drive, {});
+    resize(window);
+    auto *const dock = window.findChild<QDockWidget *>("setup");
+    dock->raise();
+    const auto button = [dock](const char *name) { return dock->findChild<QAbstractButton *>(name); };
+    QTRY_VERIFY(button("findDevices")->isEnabled());
+    button("ask")->setChecked(true);
+    button("findDevices")->click();
+    QTRY_VERIFY_WITH_TIMEOUT(button("applySetup")->isEnabled(), 30000);
+    take(window, *dock);
 }
 
 int main(int argc, char **argv) {

@@ -1,0 +1,26 @@
+#include "common/files/Folder.h"
+
+#include <QDir>
+#include <QFile>
+#include <QFileInfo>
+#include <QJsonObject>
+
+#include <sys/stat.h>
+
+namespace hermes {
+
+Result<void> makeFolder(const QString &path) {
+    if (QDir().mkpath(path))
+        return {};
+    QFileInfo first(
+        QDir::cleanPath(QFileInfo(path).absoluteFilePath())); // that is missing; Qt does not say why
+    while (!QFileInfo::exists(first.path()))
+        first.setFile(first.path());
+    if (::mkdir(QFile::encodeName(first.filePath()).constData(), 0777) == 0)
+        return makeFolder(path);
+    return Error(ErrorCode::InputOutput,
+                 QStringLiteral("%1: the folder cannot be made: %2").arg(path, qt_error_string()),
+                 QJsonObject{{QStringLiteral("path"), path}});
+}
+
+} // namespace hermes
