@@ -14,6 +14,8 @@ namespace {
 // A daemon that is slow to agree changes its framing nevertheless: there is no going on without its answer.
 constexpr std::chrono::hours longestAgreement{24};
 
+constexpr int mostOfBatch = 1000; // each of its messages takes far more memory than it has bytes
+
 constexpr std::size_t mostEarly = 16; // messages that wait for the reply to their subscription
 
 constexpr std::chrono::seconds lookPeriod{5};
@@ -222,13 +224,13 @@ void Client::sendSubscription(int handle) {
 }
 
 void Client::onOpened() {
-    failure_.clear();
     refused_ = {};
     preferred_.isEmpty() || channel_->isLossy() ? begin() : agree();
 }
 
 void Client::agree() {
     agreeing_ = true;
+    failure_ = QStringLiteral("%1: no answer as yet").arg(address());
     const auto done = [this](const Result<QJsonValue> &result) {
         agreeing_ = false;
         if (!channel_ || !channel_->isOpen())
@@ -242,6 +244,7 @@ void Client::agree() {
 }
 
 void Client::begin() {
+    failure_.clear();
     if (channel_
             ->isLossy()) // whoever spoke here before may have had the first ids, and their replies are kept
         lastId_ = qint64(QRandomGenerator::system()->generate());
@@ -284,6 +287,10 @@ void Client::onClosed(const QString &reason) {
 }
 
 void Client::onMessage(const QJsonValue &message, const WireValue &topicData) {
+    if (const int size = message.toArray().size(); size > mostOfBatch)
+        return refuse(
+            {ErrorCode::OverLimit,
+             QStringLiteral("a batch of %1 messages, expected %2 at most").arg(size).arg(mostOfBatch)});
     for (const RpcMessage &one : readFrame(message).messages) {
         if (const auto *response = std::get_if<RpcResponse>(&one))
             onResponse(*response);

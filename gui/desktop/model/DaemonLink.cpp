@@ -33,6 +33,7 @@ HealthItem worstItem(const DaemonStatus &status) {
 DaemonLink::DaemonLink(const QString &address, QObject *parent)
     : QObject(parent)
     , address_(address) {
+    client_.prefer("cbor");
     client_.setFrameLimit(usualFrame);
     connect(&client_, &Client::connected, this, &DaemonLink::onConnected);
     connect(&client_, &Client::disconnected, this, [this] {
@@ -93,12 +94,12 @@ QString DaemonLink::conditionWord() const {
 }
 
 QString DaemonLink::reason() const {
-    if (!isConnected())
-        return client_.problem();
     QStringList lines;
-    if (severity(worst_) > 0)
+    if (!isConnected())
+        lines.append(client_.problem());
+    else if (severity(worst_) > 0)
         lines.append(shortLine(worst_.name + ": " + worst_.message));
-    if (!nonsense_.isEmpty())
+    if (isConnected() && !nonsense_.isEmpty())
         lines.append(nonsense_);
     const Client::Rejected &rejected = client_.rejected();
     if (rejected.unreadable > 0)
@@ -211,10 +212,9 @@ void DaemonLink::onStatus(WireView status) {
 }
 
 void DaemonLink::poll() {
-    if (const quint64 unreadable = client_.rejected().unreadable; unreadable != shownUnreadable_) {
-        shownUnreadable_ = unreadable;
-        Q_EMIT changed();
-    }
+    const quint64 unreadable = client_.rejected().unreadable;
+    if (std::exchange(shownUnreadable_, unreadable) != unreadable || !isConnected())
+        Q_EMIT changed(); // also that somebody is there who does not answer
     if (!isConnected() || isPolling_)
         return;
     isPolling_ = true;

@@ -1,6 +1,9 @@
 #pragma once
 
-#include <QJsonDocument>
+#include "protocol/jsonrpc/Codec.h"
+#include "tests/gui/desktop/JsonAsCbor.h"
+
+#include <QHash>
 #include <QJsonObject>
 #include <QMap>
 #include <QPointer>
@@ -23,8 +26,10 @@ struct Mischief {
     QByteArray noise;       ///< sent in place of replies
     bool isEndless = false; ///< the noise goes on and on
     bool closes = false;    ///< after the noise
+    bool agrees = false;    ///< on CBOR, before the noise
     bool hasTopics = true;
     bool isMotors = false; ///< has the methods of a motor control
+    bool knowsCbor = true; ///< and says the same in it when it is asked to
 };
 
 /// A daemon that says whatever a test wants, in a thread of its own, so that its work is not the window's.
@@ -52,7 +57,7 @@ public:
             [&] {
                 for (const Subscriber &one : qAsConst(subscribers_))
                     if (one.client && one.topic == topic)
-                        one.client->write(message(one.subscription, topic, 0, data));
+                        write(*one.client, message(one.subscription, topic, 0, data));
             },
             Qt::BlockingQueuedConnection);
     }
@@ -78,12 +83,37 @@ private:
         port_ = server_->serverPort();
         connect(server_, &QTcpServer::newConnection, server_, [this] {
             QTcpSocket *const client = server_->nextPendingConnection();
-            connect(client, &QTcpSocket::disconnected, client, &QObject::deleteLater);
+            connect(client, &QTcpSocket::disconnected, client, [this, client] {
+                cbor_.remove(client);
+                client->deleteLater();
+            });
             connect(client, &QTcpSocket::readyRead, client, [this, client] {
+                if (const auto codec = cbor_.value(client)) {
+                    for (const CodecItem &item : codec->feed(client->readAll()))
+                        answer(*client, item.message.toObject());
+                    return;
+                }
                 while (client->canReadLine())
                     answer(*client, QJsonDocument::fromJson(client->readLine()).object());
             });
         });
+    }
+    /// Lines of JSON, in the framing of the client.
+    void write(QTcpSocket &client, const QByteArray &lines) {
+        if (!cbor_.contains(&client)) {
+            client.write(lines);
+            return;
+        }
+        for (const QByteArray &line : lines.trimmed().split('\n'))
+            client.write(asCborFrame(line));
+    }
+    void agree(QTcpSocket &client, int id) {
+        const QByteArray reply = mischief_.knowsCbor
+                                     ? "\"result\":null}\n"
+                                     : "\"error\":{\"code\":-32601,\"message\":\"no such method\"}}\n";
+        client.write("{\"jsonrpc\":\"2.0\",\"id\":" + QByteArray::number(id) + ',' + reply);
+        if (mischief_.knowsCbor)
+            cbor_[&client] = makeCodec("cbor");
     }
     void answer(QTcpSocket &client, const QJsonObject &request) {
         const QString method = request["method"].toString();
@@ -94,6 +124,8 @@ private:
             ++calls_[method];
             ++calls_[method + ' ' + topic];
         }
+        if (method == "protocol.use" && (mischief_.noise.isEmpty() || mischief_.agrees))
+            return agree(client, request["id"].toInt());
         if (!mischief_.noise.isEmpty())
             return makeNoise(client);
         if (!request.contains("id"))
@@ -103,8 +135,8 @@ private:
                                      ? QByteArray("null")
                                      : "{\"subscription\":" + QByteArray::number(subscription) + '}';
         QByteArray reply = mischief_.reply;
-        client.write(reply.replace("%1", QByteArray::number(request["id"].toInt()))
-                         .replace("%2", mischief_.results.value(method, good(method, usual))));
+        write(client, reply.replace("%1", QByteArray::number(request["id"].toInt()))
+                          .replace("%2", mischief_.results.value(method, good(method, usual))));
         if (!topic.isEmpty())
             subscribers_.append({&client, topic.toUtf8(), subscription});
         if (mischief_.topics.contains(topic))
@@ -120,8 +152,8 @@ private:
     void publish(QTcpSocket &client, const QString &topic, int subscription) {
         const auto one = [this, &client, topic, subscription, count = 0]() mutable {
             QByteArray data = mischief_.topics.value(topic);
-            client.write(
-                message(subscription, topic.toUtf8(), count, data.replace("%1", QByteArray::number(count))));
+            write(client, message(subscription, topic.toUtf8(), count,
+                                  data.replace("%1", QByteArray::number(count))));
             ++count;
         };
         if (mischief_.messages < 0)
@@ -186,6 +218,7 @@ private:
     quint16 port_ = 0;
     int lastSubscription_ = 0;
     QVector<Subscriber> subscribers_;
+    QHash<QTcpSocket *, std::shared_ptr<Codec>> cbor_; // of those who speak it
     mutable std::mutex mutex_;
     QMap<QString, int> calls_;
 };

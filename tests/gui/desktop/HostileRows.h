@@ -51,15 +51,28 @@ inline Mischief ofNoise(const QByteArray &noise, bool isEndless = false, bool cl
     return mischief;
 }
 
-/// A row of the long version (HERMES_HOSTILE=1); the short one takes every fourth.
+/// From one that has agreed on CBOR.
+inline Mischief ofCbor(const QByteArray &noise, bool isEndless = false) {
+    Mischief mischief = ofNoise(noise, isEndless);
+    mischief.agrees = true;
+    return mischief;
+}
+
+/// A row of the long version (HERMES_HOSTILE=1), once in each framing; the short one takes every fourth in
+/// CBOR and every eighth in JSON.
 class Row {
 public:
     explicit Row(const QString &name)
         : name_(name) {}
-    void operator<<(const Mischief &mischief) const {
+    void operator<<(Mischief mischief) const {
         static int count = 0;
-        if (count++ % 4 == 0 || qEnvironmentVariableIntValue("HERMES_HOSTILE"))
+        const bool isLong = qEnvironmentVariableIntValue("HERMES_HOSTILE");
+        if (isLong || count % 4 == 0)
             QTest::newRow(qPrintable(name_)) << mischief;
+        mischief.knowsCbor = false;
+        if (isLong || count % 8 == 2)
+            QTest::newRow(qPrintable(name_ + ", in JSON")) << mischief;
+        ++count;
     }
 
 private:
@@ -81,6 +94,7 @@ inline void addNonsenseEverywhere() {
         {"lists in lists", inBrackets("1", 99)},
         {"too deep", inBrackets("1", 5000)},
         {"many numbers", listOf("%1", 50000)},
+        {"many zeros", listOf("0", 150000)},
         {"many objects", listOf("{}", 50000)},
         {"many members", objectOf("1", 20000)}};
     for (const auto &[name, json] : nonsense) {
@@ -260,6 +274,22 @@ inline void addWire() {
     row("errors without end") << ofNoise("x\n", true);
     row("requests without end") << ofNoise("{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"daemon.info\"}\n",
                                            true);
+    QTest::newRow("lines after the agreement")
+        << ofCbor("{\"jsonrpc\":\"2.0\",\"id\":1,\"result\":1}\n", true);
+    QTest::newRow("a frame of 4 GB") << ofCbor(QByteArray(4000, '\xff'), true);
+    QTest::newRow("frames of nothing") << ofCbor(QByteArray(4000, '\0'), true);
+    QTest::newRow("the largest frames, of empty lists") << ofCbor(
+        QByteArray::fromHex("00050000") + '\x9f' + QByteArray((320 << 10) - 2, '\x80') + '\xff', true);
+    QTest::newRow("lists without end")
+        << ofCbor(QByteArray::fromHex("00001000") + QByteArray(0x1000, '\x9f'), true);
+    QTest::newRow("texts, arrays and lists longer than all")
+        << ofCbor(QByteArray::fromHex("00000006 7a7fffffff61"
+                                      "0000000c d8557b7fffffffffffffff61"
+                                      "0000000b d8555b7fffffffffffffff"
+                                      "00000009 9b7fffffffffffffff"
+                                      "00000009 bbffffffffffffffff")
+                      .replace(' ', ""),
+                  true);
     row("topics that nobody asked for") << ofNoise(
         "{\"jsonrpc\":\"2.0\",\"method\":\"topic\",\"params\":{\"subscription\":0,\"data\":1}}\n", true);
 }

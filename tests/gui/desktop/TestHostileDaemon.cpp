@@ -26,6 +26,7 @@ private Q_SLOTS:
     void survives_data();
     void survives();
     void whatCannotBeReadIsNamed();
+    void whoDoesNotAnswerIsNamed();
 
 private:
     // Of the processor, in one turn of the event loop; and what Qt takes here to paint so many lines.
@@ -123,7 +124,8 @@ void TestHostileDaemon::survives() {
 
     LoopWatch watch;
     DaemonLink *const daemon = add(fleet, hostile);
-    QTRY_VERIFY(hostile.calls("daemon.info") > 0);
+    const bool agrees = mischief.noise.isEmpty() || mischief.agrees;
+    QTRY_VERIFY(hostile.calls(agrees ? "daemon.info" : "protocol.use") > 0);
     const bool isHeard = mischief.noise.isEmpty() && !mischief.results.contains("rpc.discover");
     const bool isLookedAt = !mischief.topics.isEmpty() || !mischief.results.isEmpty();
     if (isHeard && isLookedAt && !mischief.results.contains("daemon.info"))
@@ -177,6 +179,16 @@ void TestHostileDaemon::whatCannotBeReadIsNamed() {
     QTRY_VERIFY2(drive.problem().contains("member control.holder: found 7"), qPrintable(drive.problem()));
     QVERIFY(drive.holder().isEmpty());
     QTRY_VERIFY2(fleet.robot()->problem().contains("processes.0.port"), qPrintable(fleet.robot()->problem()));
+}
+
+void TestHostileDaemon::whoDoesNotAnswerIsNamed() {
+    const FakeDaemon daemon(ofNoise("HTTP/1.1 200 OK\n"));
+    Fleet fleet;
+    const DaemonLink *const link = add(fleet, daemon);
+    QSignalSpy changed(link, &DaemonLink::changed);
+    QTRY_VERIFY(changed.count() > 0 && link->reason().contains("1 messages could not be read"));
+    QVERIFY2(link->reason().contains(": no answer as yet"), qPrintable(link->reason()));
+    QCOMPARE(link->condition(), Condition::Unreachable);
 }
 
 QTEST_MAIN(TestHostileDaemon)
