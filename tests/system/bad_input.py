@@ -231,6 +231,7 @@ class BadInput(unittest.TestCase):
         for ahead_s in (-3600, 0):
             others = time.time() - 3600 - ahead_s
             with Daemon(port=robot.ports["motorcontrol"], timeout=10) as motors:
+                wait_for("the controllers", lambda: motors.call("motor.state")["ready"], 10)
                 motors.call("control.acquire", timeout_s=2)
 
                 def go_on(until, motors=motors):
