@@ -1,6 +1,7 @@
 #include "daemons/supervisor/SettingsFiles.h"
 
 #include "common/Project.h"
+#include "common/recording/FileSync.h"
 #include "common/settings/Settings.h"
 #include "protocol/wire/JsonText.h"
 
@@ -132,7 +133,7 @@ Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
     }
     for (const QString &daemon : undoable()) // what setup.undo finds is always of one time
         QFile::remove(path(daemon) + previous);
-    auto done = old.commit();
+    auto done = old.commit(); // on the disk before the mark is: commit() begins with that
     if (done)
         done = commit(now);
     if (!done)
@@ -142,11 +143,17 @@ Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
 }
 
 Result<void> SettingsFiles::commit(Replacement &files) const {
+    // In this order on the disk, too: the power may fail.
+    syncFolder(folder_);
     if (QFile file(mark()); !file.open(QIODevice::WriteOnly))
         return fileError(mark(), file.errorString());
+    syncFolder(folder_);
     const auto done = files.commit();
-    if (done)
+    syncFolder(folder_);
+    if (done) {
         QFile::remove(mark());
+        syncFolder(folder_);
+    }
     return done;
 }
 
