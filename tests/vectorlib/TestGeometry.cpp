@@ -97,6 +97,8 @@ void TestGeometry::twistAndMotionAreInverse() {
     for (double omega : {0.0, 1e-9, 0.3, -2.0}) {
         const Twist2D twist{0.8, -0.2, omega};
         const Twist2D back = Twist2D::between(twist.motion(0.7), 0.7);
+        const Transformation2D direct(twist, 0.7), byPose(twist.motion(0.7));
+        QVERIFY((direct * Vector2D<double>(3, -4) - byPose * Vector2D<double>(3, -4)).norm() < 1e-14);
         QVERIFY(std::abs(back.vx - twist.vx) < 1e-9 && std::abs(back.vy - twist.vy) < 1e-9);
         QVERIFY(std::abs(back.omega - twist.omega) < 1e-9);
     }

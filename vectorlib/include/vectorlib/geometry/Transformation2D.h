@@ -3,6 +3,7 @@
 #include "vectorlib/geometry/Angle.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/geometry/Twist2D.h"
 
 namespace vectorlib {
 
@@ -17,6 +18,14 @@ public:
         , translation_(x, y) {}
     explicit Transformation2D(const Pose2D &pose)
         : Transformation2D(pose.x, pose.y, pose.theta) {}
+    /// Transformation2D(twist.motion(seconds)) for one sine and one cosine: for points that each have a time.
+    Transformation2D(const Twist2D &twist, double seconds) {
+        const double a = twist.omega * seconds;
+        const auto [s, c] = ArcFactors(a);
+        cos_ = 1 - a * c;
+        sin_ = a * s;
+        translation_ = {(s * twist.vx - c * twist.vy) * seconds, (c * twist.vx + s * twist.vy) * seconds};
+    }
 
     double x() const { return translation_.x; }
     double y() const { return translation_.y; }

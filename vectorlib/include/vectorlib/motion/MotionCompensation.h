@@ -24,7 +24,7 @@ inline float middleTime(const std::vector<float> &seconds) {
 inline void compensateMotion(std::vector<Vector2D<float>> &points, const std::vector<float> &seconds,
                              float reference, const Twist2D &twist) {
     for (std::size_t i = 0; i < points.size() && i < seconds.size(); ++i)
-        points[i] = Transformation2D(twist.motion(seconds[i] - reference)) * points[i];
+        points[i] = Transformation2D(twist, seconds[i] - reference) * points[i];
 }
 
 } // namespace vectorlib
