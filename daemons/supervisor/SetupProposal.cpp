@@ -48,7 +48,9 @@ private:
             }
         }
         if (found.size() != 2)
-            note(QString("%1 RoboClaws were found, two drive a robot").arg(found.size()));
+            note(QString("%1 RoboClaws were found, two drive a robot (each needs an address of its own on "
+                         "its line)")
+                     .arg(found.size()));
         if (found.size() < 2)
             return;
         const QString first = valueAt(base_, "motorcontrol.controllers.1.url").toString();

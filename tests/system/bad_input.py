@@ -132,6 +132,33 @@ class BadInput(RobotCase):
         self.until_well("each at its line")
         self.drive(lambda: not self.stands())
 
+    def test_controllers_of_one_address(self):
+        """On one line both answer whatever is asked, so that all wheels would turn by what is meant for two."""
+        self.simulate(**{"motors.address2": 128})
+        self.robot_of()
+        self.tells("motorcontrol", "controller_2", self.wires["motors"], "0x81", "answer")
+        begin, end = self.simulator.call("sim.state")["pose"], time.monotonic() + 5
+        self.assertRegex(self.drive(lambda: time.monotonic() > end), "controller [12].*answer")
+        self.assertEqual(self.simulator.call("sim.state")["pose"], begin)
+
+    def test_one_line_under_two_names(self):
+        """As that of a port and that of an adapter: it would be spoken to twice."""
+        self.simulate()
+        robot, other = self.robot_of(), os.path.join(self.folder, "by-id")
+        self.until_well()
+        os.symlink(self.wires["motors"], other)
+        before, since = robot.settings["motorcontrol"]["controllers"], robot.journal_size()
+        robot.write("motorcontrol", controllers={**before, "2": {"url": f"serial://{other}?baud=115200"}})
+        self.restart("motorcontrol")
+        self.tells("motorcontrol", "controller_2", other, "in use", since=since)
+        with self.assertRaisesRegex(DaemonError, "controller 2.*in use"):
+            robot.call("motorcontrol", "motor.drive", vx=0.2)
+        self.assertTrue(self.stands())
+        robot.write("motorcontrol", controllers=before)
+        self.restart("motorcontrol")
+        self.until_well("one name")
+        self.drive(lambda: not self.stands())
+
     def test_clock_set_back(self):
         """By an hour while the robot drives, and forth again: it drives on, and stands when it is told nothing; what was told by
         the other clock is refused."""

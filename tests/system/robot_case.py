@@ -23,10 +23,10 @@ class RobotCase(unittest.TestCase):
         self.wires = {"motors": os.path.join(self.folder, "motors"), "gps": os.path.join(self.folder, "gps"),
                       "lidar": free_port(0, socket.SOCK_DGRAM)}
 
-    def simulate(self):
+    def simulate(self, **settings):
         simulator = Process(BINARIES, "simulator", free_port(0), self.folder, {
             "world": WORLD, "motors.link": self.wires["motors"], "gps.link": self.wires["gps"], "lidar.port": self.wires["lidar"],
-            "lidar.position_port": free_port(0, socket.SOCK_DGRAM)})
+            "lidar.position_port": free_port(0, socket.SOCK_DGRAM), **settings})
         self.addCleanup(simulator.stop)
         self.simulator = simulator.connect()
         return simulator
