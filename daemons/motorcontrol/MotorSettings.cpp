@@ -2,6 +2,7 @@
 
 #include "common/interface/InterfaceUrl.h"
 #include "common/settings/DottedPath.h"
+#include "protocol/roboclaw/Command.h"
 #include "vectorlib/geometry/Angle.h"
 
 #include <algorithm>
@@ -21,12 +22,12 @@ void declareControllers(const std::function<void(const Field &)> &declare) {
         declare(Field::text(group + "url",
                             "Its serial line, as serial:///dev/ttyACM0?baud=115200; controllers with "
                             "the same URL share the line")
-                    .byDefault("serial:///dev/ttyACM0?baud=115200")
+                    .byDefault(roboclaw::usualLine)
                     .appliesOnRestart()
                     .group("Controllers"));
         declare(Field::integer(group + "address", "Its address on the line")
                     .range(128, 135)
-                    .byDefault(127 + i)
+                    .byDefault(roboclaw::firstAddress + i - 1)
                     .appliesOnRestart()
                     .group("Controllers"));
     }

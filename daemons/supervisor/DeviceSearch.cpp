@@ -17,12 +17,7 @@ DeviceSearch::~DeviceSearch() {
 void DeviceSearch::begin(const Options &options, const Done &done) {
     if (thread_.joinable())
         thread_.join(); // of the search before, which has ended
-    isRunning_ = true;
-    thread_ = std::thread([this, options, done] {
-        const Findings findings = search(options);
-        isRunning_ = false;
-        done(findings);
-    });
+    thread_ = std::thread([this, options, done] { done(search(options)); });
 }
 
 Findings DeviceSearch::search(const Options &options) const {

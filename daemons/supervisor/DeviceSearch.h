@@ -25,7 +25,6 @@ public:
     DeviceSearch(const DeviceSearch &) = delete;
     DeviceSearch &operator=(const DeviceSearch &) = delete;
 
-    bool isRunning() const { return isRunning_; }
     /// Eight seconds at most. Only when none is running.
     void begin(const Options &options, const Done &done);
 
@@ -33,7 +32,7 @@ private:
     Findings search(const Options &options) const;
 
     std::thread thread_;
-    std::atomic<bool> isRunning_{false}, isCancelled_{false};
+    std::atomic<bool> isCancelled_{false};
 };
 
 } // namespace hermes::supervisor

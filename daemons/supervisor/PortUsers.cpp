@@ -119,6 +119,10 @@ QString PortUsers::ofUdpPort(quint16 port) {
     return "a program of another user";
 }
 
+bool PortUsers::holdsFarEnd(qint64 pid, const QString &device) {
+    return isFarEnd(device, openFiles(QString::number(pid)));
+}
+
 bool PortUsers::usesPorts(qint64 pid, const QList<quint16> &udpPorts) {
     const QSet<QString> files = openFiles(QString::number(pid));
     for (const quint16 port : udpPorts)

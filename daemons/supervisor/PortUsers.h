@@ -15,6 +15,9 @@ QString ofDevice(const QString &device);
 /// The same of who receives at a UDP port.
 QString ofUdpPort(quint16 port);
 
+/// Whether this process is at the far end of a pseudo-terminal, as a simulator is.
+bool holdsFarEnd(qint64 pid, const QString &device);
+
 /// Whether this process has a serial line open, or receives at one of these UDP ports.
 bool usesPorts(qint64 pid, const QList<quint16> &udpPorts);
 

@@ -18,7 +18,8 @@ bool isKnown(const std::vector<SerialCandidate> &known, const QString &device) {
 } // namespace
 
 QString stableName(const QString &device) {
-    for (const char *folder : {"/dev/hermes", "/dev/serial/by-id", "/dev/serial/by-path"})
+    // By the socket it is plugged into: two adapters may tell one serial number, and share its link.
+    for (const char *folder : {"/dev/hermes", "/dev/serial/by-path", "/dev/serial/by-id"})
         for (const QFileInfo &link : QDir(folder).entryInfoList(QDir::Files | QDir::System, QDir::Name))
             if (link.canonicalFilePath() == device)
                 return link.filePath();
@@ -27,11 +28,6 @@ QString stableName(const QString &device) {
 
 std::vector<SerialCandidate> serialCandidates(const QStringList &others) {
     std::vector<SerialCandidate> candidates;
-    for (const QString &other : others) {
-        const QString device = QFileInfo(other).canonicalFilePath();
-        if (!device.isEmpty() && !isKnown(candidates, device))
-            candidates.push_back({other, device, {}, false});
-    }
     for (const QSerialPortInfo &port : QSerialPortInfo::availablePorts()) {
         const QString device = QFileInfo(port.systemLocation()).canonicalFilePath();
         if (device.isEmpty() || isKnown(candidates, device))
@@ -40,6 +36,13 @@ std::vector<SerialCandidate> serialCandidates(const QStringList &others) {
         const bool isController =
             port.vendorIdentifier() == controllerVendor && port.productIdentifier() == controllerProduct;
         candidates.push_back({stableName(device), device, about, isController});
+    }
+    for (const QString &other : others) {
+        const QString device = QFileInfo(other).canonicalFilePath();
+        if (device.isEmpty() || isKnown(candidates, device))
+            continue;
+        const QString name = stableName(device);
+        candidates.push_back({name == device ? other : name, device, {}, false});
     }
     return candidates;
 }

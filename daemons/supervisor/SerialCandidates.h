@@ -18,8 +18,8 @@ struct SerialCandidate {
 /// devices.
 std::vector<SerialCandidate> serialCandidates(const QStringList &others);
 
-/// The name of a device that stays the same: its link in /dev/hermes, /dev/serial/by-id or
-/// /dev/serial/by-path; else the device.
+/// The name of a device that stays the same: its link in /dev/hermes, /dev/serial/by-path or
+/// /dev/serial/by-id; else the device.
 QString stableName(const QString &device);
 
 } // namespace hermes::supervisor

@@ -70,6 +70,10 @@ FoundSerial SerialProbe::run() {
         if (mayAsk_)
             ask();
     }
+    if (isGone_ && found_.kind != "nmea" && found_.kind != "roboclaw") {
+        found_.kind = "failed";
+        found_.text = "went away during the search";
+    }
     close();
     return found_;
 }
@@ -134,8 +138,10 @@ QByteArray SerialProbe::receive(int most_ms, const Enough &enough) {
             continue;
         std::array<char, 512> some{};
         const auto count = ::read(port_, some.data(), some.size());
-        if (count <= 0)
-            break; // it was pulled
+        if (count <= 0) {
+            isGone_ = true;
+            break;
+        }
         bytes.append(some.data(), int(count));
         if (enough(bytes))
             break;
@@ -179,6 +185,8 @@ bool SerialProbe::askAt(int baud, int patience_ms) {
     for (int address = roboclaw::firstAddress; address <= roboclaw::lastAddress && !isCancelled_; ++address) {
         const auto request = roboclaw::Request::make(std::uint8_t(address), roboclaw::Command::ReadVersion);
         if (::write(port_, request->bytes.data(), request->bytes.size()) != ssize_t(request->bytes.size()))
+            isGone_ = errno != EAGAIN;
+        if (isGone_)
             return false;
         QString version;
         const QByteArray answer = receive(patience_ms, [&](const QByteArray &bytes) {
@@ -193,10 +201,16 @@ bool SerialProbe::askAt(int baud, int patience_ms) {
     }
     if (isSpoilt && patience_ms < patientAnswer_ms) {
         found_.addresses.clear();
+        found_.text.clear();
         return askAt(baud, patientAnswer_ms);
     }
-    if (found_.addresses.empty())
+    if (found_.addresses.empty()) {
+        if (isSpoilt) {
+            found_.kind = "other";
+            found_.text = "answers, but not as a RoboClaw does; so it looks, too, where two have one address";
+        }
         return false;
+    }
     found_.kind = "roboclaw";
     found_.baud = baud;
     found_.anyAddress = int(found_.addresses.size()) == allAddresses;

@@ -41,6 +41,7 @@ private:
     const std::atomic<bool> &isCancelled_;
     FoundSerial found_;
     int port_ = -1;
+    bool isGone_ = false;
     std::optional<termios> before_; // its settings
 };
 

@@ -19,7 +19,7 @@ namespace hermes::supervisor {
 namespace {
 
 constexpr const char *usualFolder = "/etc/hermes/"; // as samples name it
-constexpr const char *previous = ".previous";
+constexpr const char *previous = ".previous", *undone = ".undone";
 
 Error fileError(const QString &path, const QString &reason) {
     return Error(ErrorCode::InputOutput, QString("%1: %2").arg(path, reason), QJsonObject{{"path", path}});
@@ -101,6 +101,16 @@ QJsonObject SettingsFiles::readable() const {
     return all;
 }
 
+QStringList SettingsFiles::unreadable(const QStringList &daemons) const {
+    QStringList wrong;
+    for (const QString &daemon : daemons)
+        if (QFile::exists(path(daemon)))
+            if (const auto settings = settingsIn(path(daemon)); !settings)
+                wrong.append(settings.error().message +
+                             "; what it said of access, listening and limits is not taken over");
+    return wrong;
+}
+
 QStringList SettingsFiles::sampleNames() const {
     return QDir(samples_).entryList(QDir::Dirs | QDir::NoDotAndDotDot, QDir::Name);
 }
@@ -133,10 +143,11 @@ Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
     }
     for (const QString &daemon : undoable()) // what setup.undo finds is always of one time
         QFile::remove(path(daemon) + previous);
-    auto done = old.commit(); // on the disk before the mark is: commit() begins with that
-    if (done)
-        done = commit(now);
-    if (!done)
+    // On the disk before the mark is: commit() begins with that.
+    if (const auto kept = old.commit(); !kept)
+        return Error(ErrorCode::InputOutput, kept.error().message + "; nothing was changed",
+                     kept.error().data);
+    if (const auto done = commit(now); !done)
         return Error(ErrorCode::InputOutput, done.error().message + "; setup.undo puts back what was there",
                      done.error().data);
     return files;
@@ -174,13 +185,17 @@ QStringList SettingsFiles::undoable() const {
 }
 
 Result<QStringList> SettingsFiles::undo() const {
-    Replacement replacement;
+    Replacement kept, replacement;
     QStringList files;
     for (const QString &daemon : undoable()) {
         const auto before = readSettingsFile(path(daemon) + previous);
         if (!before)
             return before.error();
-        if (const auto added = replacement.add(path(daemon), *before); !added)
+        const auto now = readSettingsFile(path(daemon));
+        auto added = now ? kept.add(path(daemon) + undone, *now) : Result<void>();
+        if (added)
+            added = replacement.add(path(daemon), *before);
+        if (!added)
             return added.error();
         files.append(path(daemon));
     }
@@ -190,7 +205,10 @@ Result<QStringList> SettingsFiles::undo() const {
             ErrorCode::NotReady,
             QString("there is nothing to undo: no file in %1 ends in .json%2").arg(folder_, previous));
     }
-    if (const auto done = commit(replacement); !done)
+    auto done = kept.commit();
+    if (done)
+        done = commit(replacement);
+    if (!done)
         return done.error();
     for (const QString &file : files)
         QFile::remove(file + previous);

@@ -22,6 +22,8 @@ public:
     Result<QJsonObject> current() const;
     /// The same without those that cannot be read.
     QJsonObject readable() const;
+    /// Of these daemons, what is wrong with each file that cannot be read.
+    QStringList unreadable(const QStringList &daemons) const;
     QStringList sampleNames() const;
     /// The same of a sample, with this folder where it names the usual one. Error: there is none of that
     /// name.
@@ -32,7 +34,7 @@ public:
     /// problem().
     Result<QStringList> write(const QJsonObject &settings) const;
     /// Puts those back that the last write() has replaced, all or none; where there was none, one without
-    /// settings. Error: nothing was replaced, or cannot be.
+    /// settings. What was there stays beside, as NAME.json.undone. Error: nothing was replaced, or cannot be.
     Result<QStringList> undo() const;
     /// The daemons whose files undo() would put back.
     QStringList undoable() const;

@@ -11,6 +11,7 @@
 #include "protocol/wire/Fields.h"
 
 #include <QFileInfo>
+#include <QHostAddress>
 #include <QMap>
 #include <QTimer>
 #include <algorithm>
@@ -18,7 +19,8 @@
 namespace hermes::supervisor {
 namespace {
 
-constexpr std::chrono::milliseconds look{20}; // whether a process has ended
+constexpr std::chrono::milliseconds look{20};  // whether a process has ended
+constexpr std::chrono::seconds endsWithin{10}; // SIGKILL comes after 5 s
 
 /// Settings of any daemon that a sample does not know: how it is reached, by whom, and how much it tells.
 const QStringList kept{"listen", "insecure", "access", "audit", "limits", "log", "setup"};
@@ -98,10 +100,11 @@ Command Setup::findCommand() {
                    .byDefault(false))
         .gives<Findings>()
         .asyncHandler([this](const Call &call, const Reply &reply) {
-            if (isSearching_)
-                return reply.error(busy("a search"));
+            if (isWriting_ || isSearching_)
+                return reply.error(busy(isWriting_ ? "a change" : "a search"));
             isSearching_ = true;
-            searchWhenStopped(call.flag("release") ? release() : Stopped(), call.flag("ask"), reply);
+            searchWhenStopped(call.flag("release") ? release() : Stopped(), QDeadlineTimer(endsWithin),
+                              call.flag("ask"), reply);
         });
 }
 
@@ -138,26 +141,54 @@ Setup::Stopped Setup::release() {
     return stopped;
 }
 
-void Setup::searchWhenStopped(const Stopped &stopped, bool ask, const Reply &reply) {
-    const bool isWaiting = std::any_of(stopped.begin(), stopped.end(), [](const Released &one) {
-        return one.process && one.process->isAlive();
+void Setup::searchWhenStopped(const Stopped &stopped, QDeadlineTimer deadline, bool ask, const Reply &reply) {
+    const auto ends = std::find_if(stopped.begin(), stopped.end(), [](const Released &one) {
+        return one.process && one.process->isAlive() && one.process->orders() == one.orders;
     });
-    if (isWaiting) // SIGKILL ends it after 5 s
-        return QTimer::singleShot(look, this, [=] { searchWhenStopped(stopped, ask, reply); });
+    if (ends != stopped.end() && deadline.hasExpired()) {
+        isSearching_ = false;
+        startAgain(stopped);
+        return reply.error(
+            Error(ErrorCode::NotReady, QString("%1 did not end within %2 s; nothing was searched")
+                                           .arg(ends->process->entry().name)
+                                           .arg(endsWithin.count())));
+    }
+    if (ends != stopped.end())
+        return QTimer::singleShot(look, this, [=] { searchWhenStopped(stopped, deadline, ask, reply); });
     search_.begin(searchOptions(ask), [this, stopped, reply](const Findings &findings) {
         QMetaObject::invokeMethod(
             this, [=] { onFound(findings, stopped, reply); }, Qt::QueuedConnection);
     });
 }
 
+QStringList Setup::startAgain(const Stopped &stopped) {
+    QStringList names;
+    for (const auto &[process, orders] : stopped) {
+        if (!process || process->orders() != orders)
+            continue;
+        names.append(process->entry().name);
+        process->start(); // one that has not ended as yet: when it has
+    }
+    return names;
+}
+
+void Setup::markSimulated(Findings &findings) const {
+    for (const SupervisedProcess *const process : processes_()) {
+        if (!process->isAlive())
+            continue;
+        for (FoundSerial &line : findings.serial)
+            line.simulated = line.simulated || PortUsers::holdsFarEnd(process->status().pid, line.device);
+        if (!process->entry().program.endsWith("hermes-simulator"))
+            continue;
+        for (FoundLidar &lidar : findings.lidars)
+            lidar.simulated = QHostAddress(lidar.address).isLoopback();
+    }
+}
+
 void Setup::onFound(Findings findings, const Stopped &stopped, const Reply &reply) {
     isSearching_ = false;
-    for (const auto &[process, orders] : stopped) {
-        if (!process || process->isAlive() || process->orders() != orders)
-            continue;
-        process->start();
-        findings.restarted.append(process->entry().name);
-    }
+    markSimulated(findings);
+    findings.restarted = startAgain(stopped);
     found_ = findings;
     reply.result(asJson(findings));
 }
@@ -196,7 +227,20 @@ Result<QJsonObject> Setup::whole(const Call &call) const {
     }
     if (whole.isEmpty())
         return Error(ErrorCode::InvalidParams, "a sample or settings are expected");
+    for (const QString &daemon : filesOf(valueAt(whole, "supervisor.processes").toArray()))
+        if (!whole.contains(daemon) && !QFileInfo::exists(files().path(daemon)))
+            whole.insert(daemon, QJsonObject());
     return whole;
+}
+
+QStringList Setup::filesOf(const QJsonArray &processes) const {
+    QStringList daemons;
+    for (const QString &daemon : daemonNames())
+        if (std::any_of(processes.begin(), processes.end(), [&](const QJsonValue &process) {
+                return process["arguments"].toArray().contains(files().path(daemon));
+            }))
+            daemons.append(daemon);
+    return daemons;
 }
 
 Command Setup::applyCommand() {
@@ -221,21 +265,34 @@ Command Setup::applyCommand() {
             isWriting_ = true;
             new SettingsCheck(
                 *settings,
-                [this, settings = *settings, reply](const Result<void> &checked) {
+                [this, call, settings = *settings, reply](const Result<void> &checked) {
                     isWriting_ = false;
-                    if (!checked)
-                        return reply.error(checked.error());
-                    const auto written = files().write(settings);
-                    written ? reply.result(asJson(take(*written))) : reply.error(written.error());
+                    const auto written = checked ? write(call, settings) : checked.error();
+                    written ? reply.result(*written) : reply.error(written.error());
                 },
                 this);
         });
 }
 
+Result<QJsonValue> Setup::write(const Call &call, const QJsonObject &checked) {
+    const auto now = whole(call);
+    if (!now || *now != checked)
+        return Error(ErrorCode::NotReady,
+                     "the settings files were changed by somebody else meanwhile; nothing was changed");
+    const QStringList lost =
+        call.text("sample").isEmpty() ? QStringList() : files().unreadable(checked.keys());
+    const auto written = files().write(checked);
+    if (!written)
+        return written.error();
+    return take(*written, lost);
+}
+
 Command Setup::undoCommand() {
-    return Command("setup.undo",
-                   "Puts the settings files back that the last setup.apply has replaced, and starts "
-                   "their processes anew")
+    return Command(
+               "setup.undo",
+               "Puts the settings files back that the last setup.apply has replaced, whatever was changed "
+               "in them since, and starts their processes anew. What it replaces stays beside, as "
+               "NAME.json.undone")
         .needs(Role::Engineer)
         .gives<Applied>()
         .handler([this](const Call &) -> Result<QJsonValue> {
@@ -244,31 +301,38 @@ Command Setup::undoCommand() {
             const auto written = files().undo();
             if (!written)
                 return written.error();
-            return asJson(take(*written));
+            return take(*written, {});
         });
 }
 
-Applied Setup::take(const QStringList &written) {
-    QMap<QString, ProcessEntry> ran;
-    for (const SupervisedProcess *const process : processes_())
+Result<QJsonValue> Setup::take(const QStringList &written, const QStringList &notes) {
+    QMap<QString, ProcessEntry> before;
+    QStringList ran;
+    for (const SupervisedProcess *const process : processes_()) {
+        before.insert(process->entry().name, process->entry());
         if (process->isAlive())
-            ran[process->entry().name] = process->entry();
-    const SettingsFiles those = files(); // what is loaded may name others
-    if (const QString own = those.path("supervisor"); written.contains(own))
-        if (const auto loaded = settings_.load(own); !loaded)
-            logError("setup", loaded.error().message);
-    Applied applied{written, {}};
+            ran.append(process->entry().name);
+    }
+    const SettingsFiles these = files(); // what is loaded may name others
+    const QString own = these.path("supervisor");
+    const auto loaded = written.contains(own) ? settings_.load(own) : Result<void>();
+    Applied applied{written, {}, notes};
     for (SupervisedProcess *const process : processes_()) {
         const ProcessEntry &entry = process->entry();
-        const auto before = ran.constFind(entry.name);
-        const bool isOld =
-            before != ran.constEnd() && *before == entry; // else it was started by the new entry
-        if (!written.contains(those.path(entry.name)) || (!process->isAlive() && !entry.autostart))
+        const auto old = before.constFind(entry.name);
+        const bool startsNow = entry.autostart && (old == before.constEnd() || !old->autostart);
+        const bool isWritten = written.contains(these.path(entry.name));
+        if (process->isAlive() ? !isWritten : !(entry.autostart && (isWritten || startsNow)))
             continue;
-        isOld ? process->restart() : process->start();
+        const bool isSame = ran.contains(entry.name) && *old == entry; // else it starts by its new entry
+        isSame ? process->restart() : process->start();
         applied.restarted.append(entry.name);
     }
-    return applied;
+    if (!loaded)
+        return Error(ErrorCode::InvalidSetting,
+                     loaded.error().message + "; the files are written, and the supervisor goes on with the "
+                                              "settings that it had");
+    return asJson(applied);
 }
 
 } // namespace hermes::supervisor

@@ -6,6 +6,7 @@
 #include "daemons/supervisor/SettingsFiles.h"
 #include "daemons/supervisor/SupervisedProcess.h"
 
+#include <QDeadlineTimer>
 #include <QPointer>
 #include <optional>
 
@@ -42,12 +43,22 @@ private:
     DeviceSearch::Options searchOptions(bool ask) const;
     /// Ends those that use serial lines or receive packets of lidars.
     Stopped release();
-    void searchWhenStopped(const Stopped &stopped, bool ask, const Reply &reply);
+    /// Waits for those that end, until a deadline.
+    void searchWhenStopped(const Stopped &stopped, QDeadlineTimer deadline, bool ask, const Reply &reply);
     void onFound(Findings findings, const Stopped &stopped, const Reply &reply);
+    /// Those that nobody else has told something meanwhile; gives their names.
+    static QStringList startAgain(const Stopped &stopped);
+    /// Tells what is the simulator's.
+    void markSimulated(Findings &findings) const;
+    /// The settings that a call means, by daemons.
     Result<QJsonObject> whole(const Call &call) const;
+    /// The daemons whose settings file is in the command line of a process.
+    QStringList filesOf(const QJsonArray &processes) const;
+    /// Writes what was checked, and takes it. Error: it is no longer what the call means.
+    Result<QJsonValue> write(const Call &call, const QJsonObject &checked);
     /// Takes what was written: the supervisor its own settings; the others are started anew, if they ran or
-    /// start with it.
-    Applied take(const QStringList &written);
+    /// start with it. What starts with the supervisor by these settings only is started, too.
+    Result<QJsonValue> take(const QStringList &written, const QStringList &notes);
 
     Settings &settings_;
     const Processes processes_;

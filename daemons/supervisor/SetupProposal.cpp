@@ -1,85 +1,158 @@
 #include "daemons/supervisor/SetupProposal.h"
 
+#include "common/interface/InterfaceUrl.h"
 #include "common/settings/DottedPath.h"
+#include "daemons/supervisor/SupervisedProcess.h"
 #include "protocol/roboclaw/Command.h"
 
-#include <QHostAddress>
+#include <QFileInfo>
 #include <QJsonArray>
 #include <algorithm>
+#include <map>
 
 namespace hermes::supervisor {
 namespace {
 
 /// A controller on a line.
 struct Controller {
-    QString url;
+    QString path; ///< that is written
+    QString device;
+    int baud;
     int address;
+    bool anyAddress;
 };
 
-QString urlOf(const FoundSerial &line) {
-    return QString("serial://%1?baud=%2").arg(line.path).arg(line.baud);
+QString urlOf(const QString &path, int baud) {
+    return QString("serial://%1?baud=%2").arg(path).arg(baud);
+}
+
+/// The device that a URL names, whatever its name is; empty: none, or no serial line.
+QString deviceOf(const QString &text) {
+    const auto url = InterfaceUrl::parse(text);
+    if (!url || url->scheme != "serial" || url->path.isEmpty())
+        return {};
+    const QString device = QFileInfo(url->path).canonicalFilePath();
+    return device.isEmpty() ? url->path : device;
+}
+
+std::vector<Controller> controllersAt(const std::vector<FoundSerial> &lines) {
+    std::vector<Controller> found;
+    for (const FoundSerial &line : lines) {
+        if (line.kind != "roboclaw")
+            continue;
+        for (const int address : line.addresses) {
+            found.push_back({line.path, line.device, line.baud, address, line.anyAddress});
+            if (line.anyAddress)
+                break;
+        }
+    }
+    return found;
+}
+
+QJsonArray processesOf(const QJsonObject &base) {
+    const QJsonValue processes = valueAt(base, "supervisor.processes");
+    return processes.isArray() ? processes.toArray() : usualProcesses();
+}
+
+bool startsSimulator(const QJsonArray &processes) {
+    return std::any_of(processes.begin(), processes.end(), [](const QJsonValue &process) {
+        return process["name"] == "simulator" && process["autostart"].toBool();
+    });
 }
 
 class Proposer {
 public:
     Proposer(const QJsonObject &base, QString folder)
         : base_(base)
-        , folder_(std::move(folder)) {}
+        , folder_(std::move(folder))
+        , before_(processesOf(base)) {}
 
-    Proposal make(const Findings &findings) {
+    Proposal make(const Findings &all) {
+        const Findings findings = withoutSimulated(all);
         motors(findings.serial);
         receivers(findings.serial);
         lidar(findings.lidars);
-        if (processes_ != base_["supervisor"].toObject()["processes"].toArray())
+        if (processes_ != before_)
             proposal_.settings["supervisor"] = QJsonObject{{"processes", processes_}};
         return proposal_;
     }
 
 private:
+    /// The simulator's devices are those of a robot only where it is to run, and nothing else is there.
+    Findings withoutSimulated(Findings findings) {
+        const auto isReal = [](const auto &one) { return !one.simulated; };
+        const auto isDevice = [](const FoundSerial &line) {
+            return !line.simulated && (line.kind == "roboclaw" || line.kind == "nmea");
+        };
+        const auto &[serial, lidars, problems, restarted] = findings;
+        const bool isRobot = std::any_of(serial.begin(), serial.end(), isDevice) ||
+                             std::any_of(lidars.begin(), lidars.end(), isReal);
+        const bool simulates = startsSimulator(processes_);
+        if (simulates && !isRobot)
+            return findings;
+        if (simulates)
+            note("the simulator starts with the supervisor; the sample of a robot ends it");
+        const auto leaveOut = [&](auto &devices) {
+            devices.erase(std::stable_partition(devices.begin(), devices.end(), isReal), devices.end());
+        };
+        leaveOut(findings.serial);
+        leaveOut(findings.lidars);
+        return findings;
+    }
+
     void motors(const std::vector<FoundSerial> &lines) {
-        std::vector<Controller> found;
-        for (const FoundSerial &line : lines) {
-            if (line.kind != "roboclaw")
-                continue;
-            for (const int address : line.addresses) {
-                found.push_back({urlOf(line), address});
-                if (line.anyAddress)
-                    break;
-            }
-        }
+        const std::vector<Controller> found = controllersAt(lines);
+        const auto numbers = numbered(found);
         if (found.size() != 2)
             note(QString("%1 RoboClaws were found, two drive a robot (each needs an address of its own on "
                          "its line)")
                      .arg(found.size()));
-        if (found.size() < 2)
+        if (numbers.size() < 2)
             return;
-        const QString first = valueAt(base_, "motorcontrol.controllers.1.url").toString();
-        if (found[1].url == first) // which is which stays as it is
-            std::swap(found[0], found[1]);
-        for (int i = 0; i < 2; ++i) {
-            const QString group = QString("motorcontrol.controllers.%1.").arg(i + 1);
-            set(group + "url", found[std::size_t(i)].url);
-            set(group + "address", found[std::size_t(i)].address);
+        for (const auto &[number, controller] : numbers) {
+            const QString group = QString("motorcontrol.controllers.%1.").arg(number);
+            set(group + "url", urlOf(controller.path, controller.baud));
+            set(group + "address", controller.address);
         }
         start("motorcontrol");
     }
 
+    /// Which is which stays as it is. Others get the numbers that are left, where it is clear which they are.
+    std::map<int, Controller> numbered(std::vector<Controller> found) const {
+        std::map<int, Controller> numbers;
+        for (const int number : {1, 2}) {
+            const QString group = QString("motorcontrol.controllers.%1.").arg(number);
+            const QString device = deviceOf(valueAt(base_, group + "url").toString(roboclaw::usualLine));
+            const int address = valueAt(base_, group + "address").toInt(roboclaw::firstAddress + number - 1);
+            const auto same = std::find_if(found.begin(), found.end(), [&](const Controller &one) {
+                return one.device == device && (one.anyAddress || one.address == address);
+            });
+            if (same == found.end())
+                continue;
+            same->address = address;
+            numbers.emplace(number, *same);
+            found.erase(same);
+        }
+        if (numbers.size() + found.size() != 2)
+            return numbers;
+        for (const Controller &other : found)
+            numbers.emplace(numbers.count(1) ? 2 : 1, other);
+        return numbers;
+    }
+
     void receivers(const std::vector<FoundSerial> &lines) {
         QJsonArray ports = valueAt(base_, "seriallogger.ports").toArray();
-        const auto has = [&ports](const char *member, const QString &value) {
-            return std::any_of(ports.begin(), ports.end(),
-                               [&](const QJsonValue &port) { return port[QLatin1String(member)] == value; });
-        };
+        const auto has = [&ports](const auto &isIt) { return std::any_of(ports.begin(), ports.end(), isIt); };
         for (const FoundSerial &line : lines) {
             if (line.kind != "nmea")
                 continue;
             start("seriallogger");
-            if (has("url", urlOf(line)))
+            if (has([&](const QJsonValue &port) { return deviceOf(port["url"].toString()) == line.device; }))
                 continue;
             QString name = "gps";
-            for (int number = 2; has("name", name); ++number)
+            for (int number = 2; has([&](const QJsonValue &port) { return port["name"] == name; }); ++number)
                 name = QString("gps%1").arg(number);
-            ports.append(QJsonObject{{"name", name}, {"url", urlOf(line)}, {"view", "nmea"}});
+            ports.append(QJsonObject{{"name", name}, {"url", urlOf(line.path, line.baud)}, {"view", "nmea"}});
         }
         if (ports != valueAt(base_, "seriallogger.ports").toArray())
             set("seriallogger.ports", ports);
@@ -126,7 +199,8 @@ private:
 
     const QJsonObject base_;
     const QString folder_;
-    QJsonArray processes_ = base_["supervisor"].toObject()["processes"].toArray();
+    const QJsonArray before_;
+    QJsonArray processes_ = before_;
     Proposal proposal_;
 };
 

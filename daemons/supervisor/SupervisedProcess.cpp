@@ -1,12 +1,14 @@
 #include "daemons/supervisor/SupervisedProcess.h"
 
 #include "common/Log.h"
+#include "common/Project.h"
 #include "common/Time.h"
 #include "daemons/supervisor/ProcessFamily.h"
 #include "daemons/supervisor/ProcessUsage.h"
 
 #include <QCoreApplication>
 #include <QFileInfo>
+#include <QJsonObject>
 #include <QUuid>
 #include <csignal>
 #include <sys/prctl.h>
@@ -32,6 +34,14 @@ QString toString(SupervisedProcess::State state) {
         break;
     }
     return "failed";
+}
+
+QJsonArray usualProcesses() {
+    QJsonArray all;
+    for (const QString &name : daemonNames())
+        if (name != "supervisor")
+            all.append(QJsonObject{{"name", name}});
+    return all;
 }
 
 void SupervisedProcess::Child::setupChildProcess() {
@@ -85,8 +95,11 @@ SupervisedProcess::~SupervisedProcess() {
     if (!isAlive())
         return;
     process_.waitForStarted(int(killAfter.count()));
+    // Of those that were told together none waits for another.
+    const int patience_ms =
+        state_ == State::Stopping ? std::max(kill_.remainingTime(), 1) : int(killAfter.count());
     process_.terminate();
-    if (!process_.waitForFinished(int(killAfter.count())))
+    if (!process_.waitForFinished(patience_ms))
         process_.kill();
     process_.waitForFinished(1000);
     endFamily();

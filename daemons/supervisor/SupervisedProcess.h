@@ -2,6 +2,7 @@
 
 #include "protocol/messages/Processes.h"
 
+#include <QJsonArray>
 #include <QObject>
 #include <QProcess>
 #include <QTimer>
@@ -86,5 +87,8 @@ private:
 };
 
 QString toString(SupervisedProcess::State state);
+
+/// What a supervisor runs unless its settings say otherwise: all daemons but itself, when they are started.
+QJsonArray usualProcesses();
 
 } // namespace hermes::supervisor

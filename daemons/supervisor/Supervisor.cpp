@@ -77,10 +77,6 @@ Supervisor::Supervisor()
 }
 
 void Supervisor::declareSettings() {
-    QJsonArray standard;
-    for (const QString &name : daemonNames())
-        if (name != identity().name)
-            standard.append(QJsonObject{{"name", name}});
     addSetting(Field::text("robot", "What people call this robot; empty: the name of the host")
                    .group("Robot")
                    .byDefault(""));
@@ -90,7 +86,7 @@ void Supervisor::declareSettings() {
             "What runs here, in the order of their start; a name will do: hermes-NAME at its usual port",
             entrySchema())
             .group("Processes")
-            .byDefault(standard));
+            .byDefault(usualProcesses()));
     settings().addRule(namesAreUnique);
     for (const Field &field : Setup::settingFields())
         addSetting(field);
@@ -263,9 +259,10 @@ void Supervisor::update() {
 
 void Supervisor::stop() {
     timer_.stop();
-    // In reverse order: first who listens to others, then the others.
-    while (!processes_.empty())
-        processes_.pop_back();
+    // All are told before one is waited for: the robot stands at once, whoever needs long to end.
+    for (const auto &process : processes_)
+        process->stop();
+    processes_.clear();
 }
 
 } // namespace hermes::supervisor

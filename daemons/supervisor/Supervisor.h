@@ -9,8 +9,8 @@
 
 namespace hermes::supervisor {
 
-/// Starts and watches the daemons of one host: those of its setting `processes`, in that order; ends them in
-/// reverse order.
+/// Starts and watches the daemons of one host: those of its setting `processes`, in that order; ends all of
+/// them at once.
 class Supervisor : public Daemon {
     Q_OBJECT
 public:

@@ -57,11 +57,14 @@ public:
         const auto sample = chooseSample();
         if (!sample)
             return sample.error();
-        const bool mayAsk = isConfirmed(
-            "Processes that use serial lines are ended for the search; the robot stands then.\nMay "
-            "silent lines be asked whether they lead to a RoboClaw? Another motor controller may "
-            "take that for a speed:\nare the wheels off the ground, or the motors without power?");
-        if (const auto found = find(mayAsk, true); !found)
+        const bool mayRelease = isConfirmed(
+            "May the daemons that use serial lines or hear lidars be ended for the search, and started "
+            "again?\n"
+            "The robot stands then, and what they record ends. Otherwise their devices are left alone.");
+        const bool mayAsk = isConfirmed("May silent lines be asked whether they lead to a RoboClaw? Another "
+                                        "motor controller may take that for a speed:\n"
+                                        "are the wheels off the ground, or the motors without power?");
+        if (const auto found = find(mayAsk, mayRelease); !found)
             return found.error();
         const auto proposal = propose(*sample);
         if (!proposal)
@@ -166,6 +169,8 @@ private:
             printLine("written: " + file);
         for (const QString &name : applied->restarted)
             printLine("started: " + name);
+        for (const QString &text : applied->notes)
+            note(text);
         return {};
     }
 

@@ -5,7 +5,7 @@
 namespace hermes {
 
 QStringList FoundSerial::kinds() {
-    return {"roboclaw", "nmea", "talker", "silent", "not_asked", "in_use", "failed"};
+    return {"roboclaw", "nmea", "talker", "other", "silent", "not_asked", "in_use", "failed"};
 }
 
 const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>) {
@@ -17,7 +17,9 @@ const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>) {
             .add("about", &S::about, "What the system knows of the adapter, or empty")
             .mayBeMissing()
             .add("kind", &S::kind,
-                 "A RoboClaw; NMEA sentences; something else that talks by itself; silent, also when asked; "
+                 "A RoboClaw; NMEA sentences; something else that talks by itself; something that answers, "
+                 "but not "
+                 "as a RoboClaw; silent, also when asked; "
                  "silent and not asked; in use by another program, and left alone; cannot be opened")
             .choices(S::kinds())
             .add("text", &S::text, "The version of a controller, a sentence, or why there is nothing")
@@ -27,6 +29,8 @@ const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>) {
             .add("addresses", &S::addresses, "At which a controller answered, 128 to 135")
             .mayBeMissing()
             .add("any_address", &S::anyAddress, "It answers at all of them, as a controller on USB does")
+            .mayBeMissing()
+            .add("simulated", &S::simulated, "A process of the supervisor is at the far end")
             .mayBeMissing();
     return fields;
 }
@@ -43,6 +47,8 @@ const Fields<FoundLidar> &fieldsOf(Of<FoundLidar>) {
             .add("rate_hz", &L::rate_hz, "Data packets a second", "Hz")
             .mayBeMissing()
             .add("positions", &L::positions, "It sends position packets, too")
+            .mayBeMissing()
+            .add("simulated", &L::simulated, "It is the simulator of the supervisor")
             .mayBeMissing();
     return fields;
 }
@@ -74,7 +80,9 @@ const Fields<Applied> &fieldsOf(Of<Applied>) {
     static const auto fields =
         Fields<A>()
             .add("files", &A::files, "That were written")
-            .add("restarted", &A::restarted, "Processes that ran, or start with the supervisor");
+            .add("restarted", &A::restarted, "Processes that ran, or start with the supervisor")
+            .add("notes", &A::notes, "What a person should know of it")
+            .mayBeMissing();
     return fields;
 }
 

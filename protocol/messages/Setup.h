@@ -10,7 +10,7 @@ namespace hermes {
 
 /// A serial line of a computer, and what was found at its far end.
 struct FoundSerial {
-    QString path;               ///< that stays the same where there is such a one, as in /dev/serial/by-id
+    QString path;               ///< that stays the same where there is such a one, as in /dev/hermes
     QString device;             ///< as /dev/ttyUSB0
     QString about;              ///< what the system knows of the adapter, or empty
     QString kind;               ///< one of kinds()
@@ -18,9 +18,10 @@ struct FoundSerial {
     int baud = 0;               ///< at which it was understood; 0: it was not
     std::vector<int> addresses; ///< at which a controller answered
     bool anyAddress = false;    ///< it answers at all of them, as one on USB does
+    bool simulated = false;     ///< a process of the supervisor is at the far end
 
-    /// "roboclaw", "nmea", "talker" (says something else by itself), "silent", "not_asked" (silent, and
-    /// nothing was sent to it), "in_use", "failed".
+    /// "roboclaw", "nmea", "talker" (says something else by itself), "other" (answers, but not as a
+    /// RoboClaw), "silent", "not_asked" (silent, and nothing was sent to it), "in_use", "failed".
     static QStringList kinds();
 };
 
@@ -32,6 +33,7 @@ struct FoundLidar {
     int port = 0;    ///< at which they came
     double rate_hz = 0;     ///< of data packets
     bool positions = false; ///< it sends position packets, too
+    bool simulated = false; ///< it is the simulator of the supervisor
 };
 
 /// What setup.find gives.
@@ -52,6 +54,7 @@ struct Proposal {
 struct Applied {
     QStringList files;     ///< that were written
     QStringList restarted; ///< processes that ran, or start with the supervisor
+    QStringList notes;     ///< what a person should know of it
 };
 
 const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>);

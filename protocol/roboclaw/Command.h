@@ -130,6 +130,8 @@ enum class Command : std::uint8_t {
 constexpr std::uint32_t writeSettingsKey = 0xE22EAB7A;
 constexpr std::uint8_t eepromWritten = 0xAA;
 constexpr std::uint8_t firstAddress = 0x80, lastAddress = 0x87;
+/// Where a robot has its controllers unless its settings say otherwise; their addresses begin with the first.
+constexpr const char *usualLine = "serial:///dev/ttyACM0?baud=115200";
 
 /// How a command looks on the wire. Fields are letters as in Python's struct: B u8, H u16, h i16, I u32,
 /// i i32, s text; all big endian.

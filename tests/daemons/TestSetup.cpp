@@ -16,7 +16,18 @@ using namespace hermes::supervisor;
 namespace {
 
 FoundSerial controllers(const QString &path, std::vector<int> addresses, bool anyAddress = false) {
-    return {path, path, {}, "roboclaw", "RoboClaw", 115200, std::move(addresses), anyAddress};
+    return {path, path, {}, "roboclaw", "RoboClaw", 115200, std::move(addresses), anyAddress, false};
+}
+
+/// "PATH ADDRESS" of both controllers in a proposal.
+QStringList numbered(const Proposal &proposal) {
+    QStringList both;
+    for (const char *number : {"1", "2"}) {
+        const QJsonValue one = proposal.settings["motorcontrol"]["controllers"][QLatin1String(number)];
+        both.append(
+            QString("%1 %2").arg(one["url"].toString().section('?', 0, 0)).arg(one["address"].toInt()));
+    }
+    return both;
 }
 
 QJsonObject json(const char *text) {
@@ -25,13 +36,18 @@ QJsonObject json(const char *text) {
 
 } // namespace
 
+Q_DECLARE_METATYPE(std::vector<hermes::FoundSerial>)
+
 /// What setup makes of what was found, and how it writes it.
 class TestSetup : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void twoControllersOnOneLine();
     void twoControllersOnUsb();
+    void whichIsWhichStaysAsItIs_data();
     void whichIsWhichStaysAsItIs();
+    void moreThanTwoControllersAreNotChosenFrom();
+    void whatIsSimulatedIsNoRobot();
     void oneControllerIsNoRobot();
     void receiversAreAddedOnce();
     void lidarAndProcesses();
@@ -57,15 +73,78 @@ void TestSetup::twoControllersOnUsb() {
                                       "2": {"url": "serial:///dev/b?baud=115200", "address": 128}}})"));
 }
 
+void TestSetup::whichIsWhichStaysAsItIs_data() {
+    QTest::addColumn<QByteArray>("settings"); // of the controllers
+    QTest::addColumn<std::vector<FoundSerial>>("lines");
+    QTest::addColumn<QStringList>("expected");
+    const std::vector<int> all{128, 129, 130, 131, 132, 133, 134, 135};
+    const std::vector<FoundSerial> two{controllers("/dev/a", {128}), controllers("/dev/b", {128})};
+    const QStringList exchanged{"serial:///dev/b 128", "serial:///dev/a 128"};
+    QTest::newRow("the first is found last")
+        << QByteArray(R"({"1": {"url": "serial:///dev/b?baud=115200"}})") << two << exchanged;
+    QTest::newRow("the second is found first")
+        << QByteArray(R"({"1": {"url": "serial:///dev/c"}, "2": {"url": "serial:///dev/a", "address": 128}})")
+        << two << exchanged;
+    QTest::newRow("one line, as it was written")
+        << QByteArray(R"({"1": {"url": "serial:///dev/a?baud=115200", "address": 128},
+                          "2": {"url": "serial:///dev/a?baud=115200", "address": 129}})")
+        << std::vector<FoundSerial>{controllers("/dev/a", {128, 129})}
+        << QStringList{"serial:///dev/a 128", "serial:///dev/a 129"};
+    QTest::newRow("one line, the other way round")
+        << QByteArray(R"({"1": {"url": "serial:///dev/a", "address": 129},
+                          "2": {"url": "serial:///dev/a", "address": 128}})")
+        << std::vector<FoundSerial>{controllers("/dev/a", {128, 129})}
+        << QStringList{"serial:///dev/a 129", "serial:///dev/a 128"};
+    QTest::newRow("the first by default") // as the sample mecanum has it
+        << QByteArray(R"({"2": {"url": "serial:///dev/ttyACM1?baud=115200", "address": 128}})")
+        << std::vector<FoundSerial>{controllers("/dev/ttyACM1", all, true),
+                                    controllers("/dev/ttyACM0", all, true)}
+        << QStringList{"serial:///dev/ttyACM0 128", "serial:///dev/ttyACM1 128"};
+    QTest::newRow("without a baud rate")
+        << QByteArray(R"({"1": {"url": "serial:///dev/b"}, "2": {"url": "serial:///dev/a", "address": 130}})")
+        << std::vector<FoundSerial>{controllers("/dev/a", all, true), controllers("/dev/b", all, true)}
+        << QStringList{"serial:///dev/b 128", "serial:///dev/a 130"};
+}
+
 void TestSetup::whichIsWhichStaysAsItIs() {
-    const QJsonObject base =
-        json(R"({"motorcontrol": {"controllers": {"1": {"url": "serial:///dev/b?baud=115200"}}}})");
-    const auto proposal = propose({{controllers("/dev/a", {128}), controllers("/dev/b", {128})}, {}, {}, {}},
-                                  base, "/etc/hermes");
-    QCOMPARE(proposal.settings["motorcontrol"]["controllers"]["1"]["url"].toString(),
-             QString("serial:///dev/b?baud=115200"));
-    QCOMPARE(proposal.settings["motorcontrol"]["controllers"]["2"]["url"].toString(),
-             QString("serial:///dev/a?baud=115200"));
+    QFETCH(const QByteArray, settings);
+    QFETCH(const std::vector<FoundSerial>, lines);
+    QFETCH(const QStringList, expected);
+    const QJsonObject base{
+        {"motorcontrol", QJsonObject{{"controllers", QJsonDocument::fromJson(settings).object()}}}};
+    const auto proposal = propose({lines, {}, {}, {}}, base, "/etc/hermes");
+    QCOMPARE(numbered(proposal), expected);
+    const QJsonObject then{{"motorcontrol", proposal.settings["motorcontrol"]}};
+    QCOMPARE(numbered(propose({lines, {}, {}, {}}, then, "/etc/hermes")), expected);
+}
+
+void TestSetup::moreThanTwoControllersAreNotChosenFrom() {
+    const std::vector<FoundSerial> three{controllers("/dev/a", {128}), controllers("/dev/b", {128}),
+                                         controllers("/dev/c", {128})};
+    const auto proposal = propose({three, {}, {}, {}}, {}, "/etc/hermes");
+    QVERIFY(proposal.settings.isEmpty());
+    QVERIFY2(proposal.notes.first().contains("3 RoboClaws"), qPrintable(proposal.notes.join('\n')));
+    const QJsonObject known = json(R"({"motorcontrol": {"controllers": {"1": {"url": "serial:///dev/c"},
+                                       "2": {"url": "serial:///dev/a", "address": 128}}}})");
+    QCOMPARE(numbered(propose({three, {}, {}, {}}, known, "/etc/hermes")),
+             (QStringList{"serial:///dev/c 128", "serial:///dev/a 128"}));
+}
+
+void TestSetup::whatIsSimulatedIsNoRobot() {
+    FoundSerial motors = controllers("/run/hermes/motors", {128, 129});
+    motors.simulated = true;
+    FoundLidar lidar{"127.0.0.1", "HDL-32E", "hdl32e", 2368, 1800, true, true};
+    const QJsonObject simulator =
+        json(R"({"supervisor": {"processes": [{"name": "simulator", "autostart": true}]}})");
+    const Findings alone{{motors}, {lidar}, {}, {}};
+    const QStringList numbers{"serial:///run/hermes/motors 128", "serial:///run/hermes/motors 129"};
+    QCOMPARE(numbered(propose(alone, simulator, "/etc/hermes")), numbers);
+    QVERIFY(propose(alone, {}, "/etc/hermes").settings.isEmpty()); // as that of another sample
+    const Findings beside{{motors, controllers("/dev/a", {128, 129})}, {lidar}, {}, {}};
+    const auto proposal = propose(beside, simulator, "/etc/hermes");
+    QCOMPARE(numbered(proposal), (QStringList{"serial:///dev/a 128", "serial:///dev/a 129"}));
+    QVERIFY(!proposal.settings.contains("velodynelogger"));
+    QVERIFY2(proposal.notes.first().contains("the simulator starts"), qPrintable(proposal.notes.join('\n')));
 }
 
 void TestSetup::oneControllerIsNoRobot() {
@@ -76,7 +155,7 @@ void TestSetup::oneControllerIsNoRobot() {
 }
 
 void TestSetup::receiversAreAddedOnce() {
-    const FoundSerial receiver{"/dev/g", "/dev/g", {}, "nmea", "$GPGGA", 9600, {}, false};
+    FoundSerial receiver{"/dev/g", "/dev/g", {}, "nmea", "$GPGGA", 9600, {}, false, false};
     const QJsonObject base =
         json(R"({"seriallogger": {"ports": [{"name": "gps", "url": "tcp://10.0.0.1:4001"}]}})");
     const auto proposal = propose({{receiver}, {}, {}, {}}, base, "/etc/hermes");
@@ -86,10 +165,20 @@ void TestSetup::receiversAreAddedOnce() {
              json(R"({"name": "gps2", "url": "serial:///dev/g?baud=9600", "view": "nmea"})"));
     const QJsonObject then{{"seriallogger", proposal.settings["seriallogger"]}};
     QVERIFY(!propose({{receiver}, {}, {}, {}}, then, "/etc/hermes").settings.contains("seriallogger"));
+    // Under another name of the same device, and at another baud rate.
+    const QTemporaryDir folder;
+    QFile device(folder.filePath("device"));
+    QVERIFY(device.open(QIODevice::WriteOnly) && device.link(folder.filePath("name")));
+    receiver.path = folder.filePath("name");
+    receiver.device = QFileInfo(folder.filePath("device")).canonicalFilePath();
+    const QJsonObject named{
+        {"seriallogger",
+         QJsonObject{{"ports", QJsonArray{QJsonObject{{"url", "serial://" + receiver.device}}}}}}};
+    QVERIFY(!propose({{receiver}, {}, {}, {}}, named, "/etc/hermes").settings.contains("seriallogger"));
 }
 
 void TestSetup::lidarAndProcesses() {
-    const FoundLidar lidar{"192.168.1.201", "VLP-16", "vlp16", 2368, 754, true};
+    const FoundLidar lidar{"192.168.1.201", "VLP-16", "vlp16", 2368, 754, true, false};
     const QJsonObject base = json(
         R"({"supervisor": {"processes": [{"name": "scanmatcher", "arguments": ["--config", "/a.json"]}]}})");
     const auto proposal = propose({{}, {lidar}, {}, {}}, base, "/srv/h");
@@ -114,6 +203,9 @@ void TestSetup::writesAndPutsBack() {
     QVERIFY(files.undo().ok());
     QCOMPARE(files.current().value(), json(R"({"scanmatcher": {"a": 1}, "simulator": {}})"));
     QVERIFY(files.undoable().isEmpty());
+    QFile undone(files.path("scanmatcher") + ".undone");
+    QVERIFY(undone.open(QIODevice::ReadOnly));
+    QCOMPARE(QJsonDocument::fromJson(undone.readAll()).object(), json(R"({"a": 2})"));
     // One that cannot be written: nothing changes, what can be undone neither.
     QVERIFY(files.write({{"scanmatcher", json(R"({"a": 3})")}}).ok());
     QVERIFY(QDir().mkdir(files.path("supervisor")));

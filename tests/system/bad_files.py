@@ -220,11 +220,11 @@ class BadFiles(RobotCase):
         robot.call("seriallogger", "settings.set", values={"limits": {"clients": 30}})
         full = os.path.join(robot.etc, "filler")
         for what, spoil, mend in (("[Ss]pace", lambda: self.fill(robot.etc), lambda: os.remove(full)),
-                                  ("not writable", lambda: self.make(robot.etc, "ro"), lambda: self.make(robot.etc, "rw"))):
+                                  ("not writable|[Rr]ead-only", lambda: self.make(robot.etc, "ro"), lambda: self.make(robot.etc, "rw"))):
             spoil()
             for name, method in (("seriallogger", "settings.save"), ("supervisor", "setup.apply"), ("supervisor", "setup.undo")):
                 params = {"settings": {"seriallogger": {"limits": {"clients": 40}}}} if method == "setup.apply" else {}
-                with self.subTest(f"{what} {method}"), self.assertRaisesRegex(DaemonError, f"{robot.etc}.*{what}"):
+                with self.subTest(f"{what} {method}"), self.assertRaisesRegex(DaemonError, f"{robot.etc}.*({what})"):
                     robot.call(name, method, **params)
             mend()
             self.assertEqual(self.files(robot.etc), before)

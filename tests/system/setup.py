@@ -13,7 +13,7 @@ import time
 import tty
 import unittest
 
-from support import BINARIES, SOURCE, Process, SerialPort, free_port, wait_for
+from support import BINARIES, SOURCE, DaemonError, Process, SerialPort, free_port, wait_for
 
 HERMESCTL = os.path.join(BINARIES, "hermesctl")
 SAMPLES = os.path.join(SOURCE, "deploy", "settings")
@@ -80,10 +80,12 @@ class Setup(unittest.TestCase):
         self.address = f"127.0.0.1:{process.port}"
         return client
 
-    def ctl(self, *arguments, status=0, daemons=None):
+    def ctl(self, *arguments, status=0, daemons=None, both=False):
         done = subprocess.run([HERMESCTL, "setup", *arguments, "--daemons", daemons or self.address], capture_output=True,
                               text=True, timeout=120, stdin=subprocess.DEVNULL)
         self.assertEqual(done.returncode, status, done.stderr + done.stdout)
+        if both:
+            return done.stdout + done.stderr
         return done.stdout if status == 0 else done.stderr
 
     def found(self, *arguments):
@@ -161,8 +163,12 @@ class Setup(unittest.TestCase):
         self.assertEqual(self.file("velodynelogger"), {"decode": {"model": "hdl32e"}})
         processes = {one["name"]: one for one in supervisor.call("process.list")["processes"]}
         self.assertEqual([name for name, one in processes.items() if one["autostart"]], names)
-        self.assertEqual(processes["motorcontrol"]["state"], "running")
+        for name in names:
+            self.assertEqual(processes[name]["state"], "running", name)
         self.assertEqual(processes["softwaretrigger"]["state"], "stopped")
+        before = {name: self.file(name) for name in names[:3]}
+        self.ctl("--yes")  # again
+        self.assertEqual({name: self.file(name) for name in before}, before)
 
     def test_ends_and_starts_its_own_processes(self):
         self.simulator()
@@ -194,6 +200,52 @@ class Setup(unittest.TestCase):
         self.assertEqual(after["idle"]["pid"], before["idle"]["pid"])
         self.assertEqual(after["seriallogger"]["state"], "stopped")
 
+    def test_a_fresh_installation(self):
+        """The simulator of the service is no robot: what it offers is not mixed with what is plugged in."""
+        listen = {name: f"tcp://127.0.0.1:{free_port(0)}?protocol=json" for name in ("simulator", "motorcontrol")}
+        simulated = os.path.join(self.folder, "simulated")
+        supervisor = self.supervisor([self.motors], [
+            {"name": "simulator", "autostart": True, "arguments": [
+                "--listen", listen["simulator"], "--set", f"world={WORLD}", "--set", f"motors.link={simulated}",
+                "--set", f"lidar.port={self.lidar_port}", "--set", f"lidar.position_port={self.position_port}"]},
+            {"name": "motorcontrol"}])
+        with open(os.path.join(self.etc, "motorcontrol.json"), "w", encoding="utf-8") as file:
+            json.dump({"controllers": {number: {"url": f"serial://{simulated}?baud=115200"} for number in "12"}}, file)
+        wait_for("the simulator", lambda: os.path.exists(simulated))
+        findings, serial = self.found("--yes")
+        self.assertTrue(serial[simulated]["simulated"] and findings["lidars"][0]["simulated"], findings)
+        self.assertEqual(set(supervisor.call("setup.propose")["settings"]), {"motorcontrol", "velodynelogger", "supervisor"})
+        self.simulator(**{"lidar.port": free_port(0, socket.SOCK_DGRAM)})  # far from the supervisor: as what is plugged in
+        findings, serial = self.found("--yes")
+        self.assertEqual((serial[simulated]["kind"], serial[self.motors]["kind"]), ("roboclaw", "roboclaw"))
+        proposal = supervisor.call("setup.propose")
+        for controller in proposal["settings"]["motorcontrol"]["controllers"].values():
+            self.assertEqual(controller["url"], f"serial://{self.motors}?baud=115200")
+        self.assertNotIn("velodynelogger", proposal["settings"])
+        self.assertIn("the simulator starts with the supervisor", proposal["notes"][0])
+
+    def test_a_process_that_does_not_end(self):
+        """Somebody starts it again while it is to end: the search goes on, and another one is possible."""
+        line, script = Line(self.folder, "line"), os.path.join(self.folder, "stubborn")
+        with open(script, "w", encoding="utf-8") as file:
+            file.write(f"#!/bin/sh\ntrap '' TERM\nexec 3<>{line.path}\nwhile :; do sleep 0.1; done\n")
+        os.chmod(script, 0o755)
+        supervisor = self.supervisor([line.path], [{"name": "stubborn", "program": script, "autostart": True}])
+
+        def state():
+            return supervisor.call("process.list")["processes"][0]["state"]
+        wait_for("its line", lambda: self.found()[1][line.path]["kind"] == "in_use", 20)
+        found = {}
+        search = threading.Thread(target=lambda: found.update(self.found("--yes")[1]))
+        search.start()
+        wait_for("the end", lambda: state() == "stopping")
+        with self.assertRaisesRegex(DaemonError, "search is under way"):
+            supervisor.call("setup.undo")
+        supervisor.call("process.start", name="stubborn")
+        search.join(60)
+        self.assertIn(line.path, found)
+        wait_for("another search", lambda: self.found()[1][line.path]["kind"] == "in_use", 20)
+
     def test_sample_and_undo(self):
         supervisor = self.supervisor([])
         with open(os.path.join(self.etc, "seriallogger.json"), "w", encoding="utf-8") as file:
@@ -214,7 +266,9 @@ class Setup(unittest.TestCase):
         self.assertEqual(set(os.listdir(self.etc)), {"supervisor.json", "seriallogger.json", "motorcontrol.json"})
         with open(os.path.join(samples, "quiet", "motorcontrol.json"), "w", encoding="utf-8") as file:
             json.dump({"motion": {"vx": 0.5}}, file)
-        self.assertIn("written: ", self.ctl("quiet"))
+        said = self.ctl("quiet", both=True)
+        self.assertIn("written: ", said)
+        self.assertRegex(said, "seriallogger.json: line 1: .* is not taken over")
         self.assertEqual(self.file("motorcontrol"), {"motion": {"vx": 0.5}})
         self.assertEqual(self.file("supervisor"), {"robot": "sampled", "setup": {**own["setup"], "samples": SAMPLES}})
         self.assertEqual(supervisor.call("settings.get", path="robot"), "sampled")
@@ -294,12 +348,14 @@ class Setup(unittest.TestCase):
         supervisor = self.supervisor([self.motors], samples=samples)
         arguments = ("--daemons", self.address)
         status, shown = self.at_terminal(arguments, [("Which robot is it? rover;", "submarine"), ("Which robot is it?", "rover"),
-                                                     ("wheels off the ground", "y"), ("Write these settings?", "no")])
+                                                     ("what they record ends", "n"), ("wheels off the ground", "y"),
+                                                     ("Write these settings?", "no")])
         self.assertEqual(status, 1, shown)
         self.assertIn("nothing was changed", shown)
         self.assertEqual(os.listdir(self.etc), ["supervisor.json"])
-        status, shown = self.at_terminal(arguments, [("Which robot is it?", "rover"), ("wheels off the ground", "y"),
-                                                     ("Write these settings?", "y"), ("Test the wheels?", "n")])
+        status, shown = self.at_terminal(arguments, [("Which robot is it?", "rover"), ("what they record ends", "y"),
+                                                     ("wheels off the ground", "y"), ("Write these settings?", "y"),
+                                                     ("Test the wheels?", "n")])
         self.assertEqual(status, 0, shown)
         self.assertEqual(self.file("motorcontrol")["motion"], {"vx": 0.5})
         self.assertEqual(self.file("motorcontrol")["controllers"]["2"]["address"], 129)

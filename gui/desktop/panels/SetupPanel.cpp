@@ -50,6 +50,7 @@ SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
     , fleet_(fleet)
     , samples_(new QComboBox)
     , ask_(new QCheckBox(tr("Ask silent lines: wheels lifted,\nor motors without power")))
+    , release_(new QCheckBox(tr("End daemons for the search:\nthe robot stands")))
     , find_(new QPushButton(tr("Searc&h")))
     , apply_(new QPushButton(theme::icon("apply"), tr("Apply")))
     , undo_(new QPushButton(theme::icon("revert"), tr("Undo")))
@@ -90,6 +91,10 @@ QWidget *SetupPanel::makeSteps() {
     ask_->setToolTip(
         tr("Silent lines are asked whether they lead to a RoboClaw; another motor controller may "
            "take that for a speed"));
+    release_->setObjectName("release");
+    release_->setToolTip(
+        tr("Daemons that use serial lines or hear lidars are ended and started again; what they "
+           "record ends. Otherwise their devices are left alone"));
     find_->setObjectName("findDevices");
     apply_->setObjectName("applySetup");
     undo_->setObjectName("undoSetup");
@@ -105,6 +110,7 @@ QWidget *SetupPanel::makeSteps() {
     auto *const layout = new QVBoxLayout(steps);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->addWidget(samples_);
+    layout->addWidget(release_);
     layout->addWidget(ask_);
     layout->addWidget(find_);
     layout->addLayout(writing);
@@ -124,6 +130,7 @@ void SetupPanel::follow() {
     supervisor_ = supervisor;
     isBusy_ = hasSearched_ = false;
     ask_->setChecked(false);
+    release_->setChecked(false);
     folder_.clear();
     found_->clear();
     samples_->clear();
@@ -147,15 +154,16 @@ void SetupPanel::updateButtons() {
                                          "hermes-supervisor there)");
     const bool isFree = why.isEmpty() && !isBusy_;
     find_->setEnabled(isFree);
-    find_->setToolTip(why.isEmpty() ? tr("Daemons that use serial lines are ended for it and started again; "
-                                         "the robot stands then")
-                                    : why);
+    find_->setToolTip(why.isEmpty() ? tr("Looks for some seconds what is plugged in") : why);
     apply_->setEnabled(isFree && !(changedSample_.isEmpty() && changedSettings_.isEmpty()));
     apply_->setToolTip(why.isEmpty() ? tr("Writes it, if all daemons would take theirs") : why);
     undo_->setEnabled(isFree);
-    undo_->setToolTip(why.isEmpty() ? tr("Puts back what the last Apply has replaced") : why);
+    undo_->setToolTip(why.isEmpty() ? tr("Puts back what the last Apply has replaced, whatever was changed "
+                                         "since; that stays beside, as NAME.json.undone")
+                                    : why);
     samples_->setEnabled(isFree);
     ask_->setEnabled(isFree);
+    release_->setEnabled(isFree);
     progress_->setVisible(isBusy_);
 }
 
@@ -182,10 +190,11 @@ void SetupPanel::call(const QString &method, const QJsonObject &params, const Th
 
 void SetupPanel::find() {
     message_->tell(tr("Listening and asking; this takes some seconds."));
-    call<Findings>("setup.find", {{"ask", ask_->isChecked()}, {"release", true}},
+    call<Findings>("setup.find", {{"ask", ask_->isChecked()}, {"release", release_->isChecked()}},
                    [this](const Findings &found) {
                        hasSearched_ = true;
                        ask_->setChecked(false);
+                       release_->setChecked(false);
                        showFound(found);
                        propose();
                    });
@@ -285,10 +294,10 @@ void SetupPanel::undo() {
 }
 
 void SetupPanel::tellApplied(const Applied &applied) {
-    message_->tell(
-        applied.restarted.isEmpty()
-            ? tr("Written: %1").arg(applied.files.join(", "))
-            : tr("Written: %1. Started: %2").arg(applied.files.join(", "), applied.restarted.join(", ")));
+    QString text = tr("Written: %1").arg(applied.files.join(", "));
+    if (!applied.restarted.isEmpty())
+        text += tr(". Started: %1").arg(applied.restarted.join(", "));
+    message_->tell(QStringList(QStringList(text) + applied.notes).join('\n'));
 }
 
 } // namespace hermes::desktop

@@ -46,7 +46,7 @@ private:
     Fleet &fleet_;
     QPointer<DaemonLink> supervisor_;
     QComboBox *samples_;
-    QCheckBox *ask_;
+    QCheckBox *ask_, *release_;
     QPushButton *find_, *apply_, *undo_;
     QProgressBar *progress_;
     QTreeWidget *found_, *changes_;
