@@ -14,6 +14,14 @@ systemd-analyze security --no-pager --offline=true --threshold=30 ./hermes-super
     { cat security && echo "expected an exposure of at most 3.0"; exit 1; }
 tail -1 security
 
+# The drivers of USB serial lines are there when the devices are let in, and a kernel without them holds up nothing.
+for module in cdc_acm usbserial; do
+    for key in Wants After; do
+        grep -q "^$key=.*\bmodprobe@$module\.service\b" hermes-supervisor.service || { echo "$key=: expected modprobe@$module.service"; exit 1; }
+    done
+done
+grep -q "^ExecStart=-" /lib/systemd/system/modprobe@.service || { echo "modprobe@.service: expected to ignore that there is no module"; exit 1; }
+
 count=0
 for file in "$HERMES_SOURCE"/deploy/settings/*/*.json; do
     "$HERMES_BIN/hermes-$(basename "$file" .json)" --check --config "$file" >/dev/null
