@@ -9,6 +9,7 @@
 #include "daemons/supervisor/SetupProposal.h"
 #include "protocol/velodyne/PacketFormat.h"
 #include "protocol/wire/Fields.h"
+#include "protocol/wire/JsonText.h"
 
 #include <QFileInfo>
 #include <QHostAddress>
@@ -35,6 +36,29 @@ QJsonObject withKept(QJsonObject sample, const QJsonObject &now) {
         sample[daemon] = settings;
     }
     return sample;
+}
+
+/// Daemons that open serial lines or receive from lidars as soon as they can.
+const QStringList deviceDaemons{"hermes-motorcontrol", "hermes-seriallogger", "hermes-velodynelogger"};
+
+QString asText(const QJsonValue &value) {
+    return value.isUndefined() ? QString() : QString::fromUtf8(compactJson(value));
+}
+
+/// Of the daemons in next.
+std::vector<SettingChange> changesBetween(const QJsonObject &now, const QJsonObject &next) {
+    std::vector<SettingChange> changes;
+    for (const QString &daemon : next.keys()) {
+        const QJsonObject before = now[daemon].toObject(), after = next[daemon].toObject();
+        QStringList paths = leafPaths(before) + leafPaths(after);
+        paths.sort();
+        paths.removeDuplicates();
+        for (const QString &path : qAsConst(paths))
+            if (const QJsonValue old = valueAt(before, path), value = valueAt(after, path);
+                old != value && !(old.isObject() && value.isObject()))
+                changes.push_back({daemon, path, asText(old), asText(value)});
+    }
+    return changes;
 }
 
 Error busy(const char *what) {
@@ -116,14 +140,19 @@ DeviceSearch::Options Setup::searchOptions(bool ask) const {
     options.lidarPort = quint16(settings_.integer("setup.lidar_port"));
     options.positionPort = quint16(settings_.integer("setup.position_port"));
     const QJsonObject current = files().readable();
-    for (const char *controller : {"1", "2"}) {
-        const QString path = QString("motorcontrol.controllers.%1.url").arg(controller);
-        const auto url = InterfaceUrl::parse(valueAt(current, path).toString());
-        if (url && url->scheme == "serial" && QFileInfo::exists(url->path)) {
-            options.controllers.append(url->path);
-            options.ports.append(url->path); // as the simulator's, which the system does not list
-        }
-    }
+    // Also what the system does not list, as lines of the simulator.
+    const auto add = [&options](const QJsonValue &text, QStringList *others) {
+        const auto url = InterfaceUrl::parse(text.toString());
+        if (!url || url->scheme != "serial" || !QFileInfo::exists(url->path))
+            return;
+        options.ports.append(url->path);
+        if (others)
+            others->append(url->path);
+    };
+    for (const char *controller : {"1", "2"})
+        add(valueAt(current, QString("motorcontrol.controllers.%1.url").arg(controller)), &options.controllers);
+    for (const QJsonValue &port : valueAt(current, "seriallogger.ports").toArray())
+        add(port["url"], nullptr);
     return options;
 }
 
@@ -132,7 +161,12 @@ Setup::Stopped Setup::release() {
                              quint16(settings_.integer("setup.position_port"))};
     Stopped stopped;
     for (SupervisedProcess *const process : processes_()) {
-        if (!process->isAlive() || !PortUsers::usesPorts(process->status().pid, udp))
+        const auto state = process->state();
+        if (state == SupervisedProcess::State::Stopped || state == SupervisedProcess::State::Failed)
+            continue;
+        const QString program = QFileInfo(process->entry().program).fileName();
+        if (!deviceDaemons.contains(program) &&
+            !(process->isAlive() && PortUsers::usesPorts(process->status().pid, udp)))
             continue;
         logInfo("setup", process->entry().name + ": ended for a search of its lines");
         process->stop();
@@ -200,19 +234,28 @@ Command Setup::proposeCommand() {
         .param(sampleField())
         .gives<Proposal>()
         .handler([this](const Call &call) -> Result<QJsonValue> {
-            if (!found_)
+            if (!found_ && call.text("sample").isEmpty())
                 return Error(ErrorCode::NotReady, "nothing was looked for yet; setup.find does");
-            const QString sample = call.text("sample");
-            const auto base = sample.isEmpty() ? files().current() : files().sample(sample);
-            if (!base)
-                return base.error();
-            return asJson(propose(*found_, *base, settings_.text("setup.folder")));
+            return proposal(call.text("sample"));
         });
 }
 
-Result<QJsonObject> Setup::whole(const Call &call) const {
-    const QString sample = call.text("sample");
-    const QJsonObject changes = call.value("settings").toObject();
+Result<QJsonValue> Setup::proposal(const QString &sample) const {
+    const auto base = sample.isEmpty() ? files().current() : files().sample(sample);
+    if (!base)
+        return base.error();
+    Proposal proposal =
+        found_ ? propose(*found_, *base, settings_.text("setup.folder")) : Proposal();
+    if (sample.isEmpty() && proposal.settings.isEmpty())
+        return asJson(proposal);
+    const auto next = whole(sample, proposal.settings);
+    if (!next)
+        return next.error();
+    proposal.changes = changesBetween(files().readable(), *next);
+    return asJson(proposal);
+}
+
+Result<QJsonObject> Setup::whole(const QString &sample, const QJsonObject &changes) const {
     const auto base = sample.isEmpty() ? files().current() : files().sample(sample);
     if (!base)
         return base.error();
@@ -259,29 +302,38 @@ Command Setup::applyCommand() {
         .asyncHandler([this](const Call &call, const Reply &reply) {
             if (isWriting_ || isSearching_)
                 return reply.error(busy(isWriting_ ? "another change" : "a search"));
-            const auto settings = whole(call);
+            const QString sample = call.text("sample");
+            const QJsonObject changes = call.value("settings").toObject();
+            const auto settings = whole(sample, changes);
             if (!settings)
                 return reply.error(settings.error());
             isWriting_ = true;
             new SettingsCheck(
                 *settings,
-                [this, call, settings = *settings, reply](const Result<void> &checked) {
+                [=, settings = *settings](const Result<void> &checked) {
                     isWriting_ = false;
-                    const auto written = checked ? write(call, settings) : checked.error();
+                    const auto written = checked ? write(sample, changes, settings) : checked.error();
                     written ? reply.result(*written) : reply.error(written.error());
                 },
                 this);
         });
 }
 
-Result<QJsonValue> Setup::write(const Call &call, const QJsonObject &checked) {
-    const auto now = whole(call);
-    if (!now || *now != checked)
+Result<QJsonValue> Setup::write(const QString &sample, const QJsonObject &changes,
+                                const QJsonObject &checked) {
+    const auto meant = whole(sample, changes);
+    if (!meant || *meant != checked)
         return Error(ErrorCode::NotReady,
                      "the settings files were changed by somebody else meanwhile; nothing was changed");
-    const QStringList lost =
-        call.text("sample").isEmpty() ? QStringList() : files().unreadable(checked.keys());
-    const auto written = files().write(checked);
+    const QStringList lost = sample.isEmpty() ? QStringList() : files().unreadable(checked.keys());
+    const QJsonObject there = files().readable();
+    QJsonObject fresh = checked;
+    for (const QString &daemon : checked.keys())
+        if (there.contains(daemon) && there[daemon] == checked[daemon])
+            fresh.remove(daemon);
+    if (fresh.isEmpty())
+        return asJson(Applied{{}, {}, {"all settings are so already; nothing was written"}});
+    const auto written = files().write(fresh);
     if (!written)
         return written.error();
     return take(*written, lost);

@@ -41,7 +41,7 @@ private:
 
     SettingsFiles files() const;
     DeviceSearch::Options searchOptions(bool ask) const;
-    /// Ends those that use serial lines or receive packets of lidars.
+    /// Ends those that use serial lines or receive packets of lidars, or are about to.
     Stopped release();
     /// Waits for those that end, until a deadline.
     void searchWhenStopped(const Stopped &stopped, QDeadlineTimer deadline, bool ask, const Reply &reply);
@@ -50,12 +50,13 @@ private:
     static QStringList startAgain(const Stopped &stopped);
     /// Tells what is the simulator's.
     void markSimulated(Findings &findings) const;
-    /// The settings that a call means, by daemons.
-    Result<QJsonObject> whole(const Call &call) const;
+    /// The settings, by daemons, of a sample or of now with these changes.
+    Result<QJsonObject> whole(const QString &sample, const QJsonObject &changes) const;
+    Result<QJsonValue> proposal(const QString &sample) const;
     /// The daemons whose settings file is in the command line of a process.
     QStringList filesOf(const QJsonArray &processes) const;
-    /// Writes what was checked, and takes it. Error: it is no longer what the call means.
-    Result<QJsonValue> write(const Call &call, const QJsonObject &checked);
+    /// Writes what of that is new, and takes it. Error: what was checked is no longer what is meant.
+    Result<QJsonValue> write(const QString &sample, const QJsonObject &changes, const QJsonObject &checked);
     /// Takes what was written: the supervisor its own settings; the others are started anew, if they ran or
     /// start with it. What starts with the supervisor by these settings only is started, too.
     Result<QJsonValue> take(const QStringList &written, const QStringList &notes);

@@ -1,5 +1,6 @@
 #include "daemons/supervisor/SetupProposal.h"
 
+#include "common/Project.h"
 #include "common/interface/InterfaceUrl.h"
 #include "common/settings/DottedPath.h"
 #include "daemons/supervisor/SupervisedProcess.h"
@@ -73,8 +74,11 @@ public:
         receivers(findings.serial);
         lidar(findings.lidars);
         if (processes_ != before_)
-            proposal_.settings["supervisor"] = QJsonObject{{"processes", processes_}};
-        return proposal_;
+            set("supervisor.processes", processes_);
+        if (const QJsonValue odometry = valueAt(base_, "scanmatcher.odometry.address");
+            drives_ && odometry.toString().isEmpty())
+            set("scanmatcher.odometry.address", QString("127.0.0.1:%1").arg(defaultPort("motorcontrol")));
+        return {changed(), {}, proposal_.notes};
     }
 
 private:
@@ -115,6 +119,7 @@ private:
             set(group + "address", controller.address);
         }
         start("motorcontrol");
+        drives_ = true;
     }
 
     /// Which is which stays as it is. Others get the numbers that are left, where it is clear which they are.
@@ -192,6 +197,15 @@ private:
         return {"--config", QString("%1/%2.json").arg(folder_, name)};
     }
 
+    /// What was set and is not so already.
+    QJsonObject changed() const {
+        QJsonObject changes;
+        for (const QString &path : leafPaths(proposal_.settings))
+            if (const QJsonValue value = valueAt(proposal_.settings, path); value != valueAt(base_, path))
+                changes = withValueAt(changes, path, value);
+        return changes;
+    }
+
     void set(const QString &path, const QJsonValue &value) {
         proposal_.settings = withValueAt(proposal_.settings, path, value);
     }
@@ -202,6 +216,7 @@ private:
     const QJsonArray before_;
     QJsonArray processes_ = before_;
     Proposal proposal_;
+    bool drives_ = false;
 };
 
 } // namespace

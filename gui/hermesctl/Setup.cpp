@@ -69,7 +69,7 @@ public:
         const auto proposal = propose(*sample);
         if (!proposal)
             return proposal.error();
-        if (sample->isEmpty() && proposal->settings.isEmpty())
+        if (proposal->changes.empty())
             note("nothing is to be changed");
         else if (!isConfirmed("Write these settings?"))
             return Error(ErrorCode::NotReady, "nothing was changed");
@@ -94,7 +94,7 @@ public:
             return {};
         }
         const QJsonObject settings{{"motorcontrol", QJsonObject{{"wheels", *changes}}}};
-        show(settings);
+        show(changesOf(settings));
         if (!isConfirmed("Write these settings?"))
             return Error(ErrorCode::NotReady, "nothing was changed");
         return apply({}, settings);
@@ -146,14 +146,16 @@ private:
         for (const QString &text : proposal->notes)
             note(text);
         if (!arguments_.json)
-            show(proposal->settings);
+            show(proposal->changes);
         return proposal;
     }
 
     /// A line for each setting.
-    static void show(const QJsonObject &settings) {
-        for (const SettingChange &change : changesOf(settings))
-            printLine(QString("%1 %2 = %3").arg(change.daemon, change.path, change.value));
+    static void show(const std::vector<SettingChange> &changes) {
+        for (const SettingChange &change : changes)
+            printLine(QString("%1 %2 = %3%4")
+                          .arg(change.daemon, change.path, change.value.isEmpty() ? "(default)" : change.value,
+                               change.now.isEmpty() ? QString() : QString("  (now %1)").arg(change.now)));
     }
 
     template <typename T>

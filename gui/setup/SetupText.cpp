@@ -19,16 +19,19 @@ std::vector<QStringList> rowsOf(const Findings &found, const QString &howToAsk) 
         if (line.kind == "not_asked")
             details.append(
                 QString("silent; %1 asks it whether it is a RoboClaw, wheels off the ground").arg(howToAsk));
+        if (line.simulated)
+            details.append("of the simulator");
         details.append(line.about);
         details.removeAll(QString());
         rows.push_back({line.kind, line.path, details.join(", ")});
     }
     for (const FoundLidar &lidar : found.lidars)
         rows.push_back({"lidar", lidar.address,
-                        QString("%1, %2 packets a second at UDP port %3")
+                        QString("%1, %2 packets a second at UDP port %3%4")
                             .arg(lidar.model.isEmpty() ? "unknown model" : lidar.model)
                             .arg(lidar.rate_hz)
-                            .arg(lidar.port)});
+                            .arg(lidar.port)
+                            .arg(lidar.simulated ? ", of the simulator" : "")});
     for (const QString &problem : found.problems)
         rows.push_back({"problem", "-", problem});
     return rows;
@@ -39,7 +42,7 @@ std::vector<SettingChange> changesOf(const QJsonObject &settings) {
     for (const QString &daemon : settings.keys())
         for (const QString &path : leafPaths(settings[daemon].toObject()))
             changes.push_back(
-                {daemon, path, QString::fromUtf8(compactJson(valueAt(settings[daemon].toObject(), path)))});
+                {daemon, path, {}, QString::fromUtf8(compactJson(valueAt(settings[daemon].toObject(), path)))});
     return changes;
 }
 

@@ -13,13 +13,7 @@ constexpr std::chrono::seconds setupPatience{60};
 /// somebody has silent lines asked.
 std::vector<QStringList> rowsOf(const Findings &found, const QString &howToAsk);
 
-/// One setting of one daemon that is to change.
-struct SettingChange {
-    QString daemon, path;
-    QString value; ///< as JSON
-};
-
-/// Of the settings by daemons.
+/// What these settings, by daemons, say; what holds now is not known here.
 std::vector<SettingChange> changesOf(const QJsonObject &settings);
 
 } // namespace hermes

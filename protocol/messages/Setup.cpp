@@ -66,11 +66,27 @@ const Fields<Findings> &fieldsOf(Of<Findings>) {
     return fields;
 }
 
+const Fields<SettingChange> &fieldsOf(Of<SettingChange>) {
+    using C = SettingChange;
+    static const auto fields =
+        Fields<C>()
+            .add("daemon", &C::daemon, "Whose settings file")
+            .add("path", &C::path, "Of the setting, as controllers.1.url")
+            .add("now", &C::now, "Its value in the file, as JSON; empty: the default holds")
+            .mayBeMissing()
+            .add("value", &C::value, "That it would have; empty: the default")
+            .mayBeMissing();
+    return fields;
+}
+
 const Fields<Proposal> &fieldsOf(Of<Proposal>) {
     using P = Proposal;
     static const auto fields =
         Fields<P>()
-            .add("settings", &P::settings, "By daemons: what changes in the settings of each")
+            .add("settings", &P::settings,
+                 "By daemons: what changes in the settings of each, or in those of the sample")
+            .add("changes", &P::changes, "All that would differ in the settings files")
+            .mayBeMissing()
             .add("notes", &P::notes, "What a person should know of it");
     return fields;
 }

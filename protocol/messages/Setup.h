@@ -44,9 +44,16 @@ struct Findings {
     QStringList restarted; ///< processes that were stopped for the search, and started again
 };
 
+/// One setting that is to change.
+struct SettingChange {
+    QString daemon, path;
+    QString now, value; ///< as JSON; empty: the settings file does not say it, so that the default holds
+};
+
 /// What setup.propose gives.
 struct Proposal {
-    QJsonObject settings; ///< by daemons: what changes in the settings of each
+    QJsonObject settings; ///< by daemons: what changes in the settings of each, or in those of the sample
+    std::vector<SettingChange> changes; ///< all that would differ in the settings files
     QStringList notes;    ///< what a person should know of it
 };
 
@@ -60,6 +67,7 @@ struct Applied {
 const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>);
 const Fields<FoundLidar> &fieldsOf(Of<FoundLidar>);
 const Fields<Findings> &fieldsOf(Of<Findings>);
+const Fields<SettingChange> &fieldsOf(Of<SettingChange>);
 const Fields<Proposal> &fieldsOf(Of<Proposal>);
 const Fields<Applied> &fieldsOf(Of<Applied>);
 

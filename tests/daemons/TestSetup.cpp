@@ -1,3 +1,4 @@
+#include "common/settings/DottedPath.h"
 #include "daemons/supervisor/LidarProbe.h"
 #include "daemons/supervisor/SettingsFiles.h"
 #include "daemons/supervisor/SetupProposal.h"
@@ -19,11 +20,11 @@ FoundSerial controllers(const QString &path, std::vector<int> addresses, bool an
     return {path, path, {}, "roboclaw", "RoboClaw", 115200, std::move(addresses), anyAddress, false};
 }
 
-/// "PATH ADDRESS" of both controllers in a proposal.
-QStringList numbered(const Proposal &proposal) {
+/// "PATH ADDRESS" of both controllers in settings.
+QStringList numbered(const QJsonObject &settings) {
     QStringList both;
     for (const char *number : {"1", "2"}) {
-        const QJsonValue one = proposal.settings["motorcontrol"]["controllers"][QLatin1String(number)];
+        const QJsonValue one = settings["motorcontrol"]["controllers"][QLatin1String(number)];
         both.append(
             QString("%1 %2").arg(one["url"].toString().section('?', 0, 0)).arg(one["address"].toInt()));
     }
@@ -112,10 +113,10 @@ void TestSetup::whichIsWhichStaysAsItIs() {
     QFETCH(const QStringList, expected);
     const QJsonObject base{
         {"motorcontrol", QJsonObject{{"controllers", QJsonDocument::fromJson(settings).object()}}}};
-    const auto proposal = propose({lines, {}, {}, {}}, base, "/etc/hermes");
-    QCOMPARE(numbered(proposal), expected);
-    const QJsonObject then{{"motorcontrol", proposal.settings["motorcontrol"]}};
-    QCOMPARE(numbered(propose({lines, {}, {}, {}}, then, "/etc/hermes")), expected);
+    const QJsonObject then = merged(base, propose({lines, {}, {}, {}}, base, "/etc/hermes").settings);
+    QCOMPARE(numbered(then), expected);
+    const QJsonObject again = propose({lines, {}, {}, {}}, then, "/etc/hermes").settings;
+    QVERIFY2(again.isEmpty(), QJsonDocument(again).toJson().constData());
 }
 
 void TestSetup::moreThanTwoControllersAreNotChosenFrom() {
@@ -126,7 +127,7 @@ void TestSetup::moreThanTwoControllersAreNotChosenFrom() {
     QVERIFY2(proposal.notes.first().contains("3 RoboClaws"), qPrintable(proposal.notes.join('\n')));
     const QJsonObject known = json(R"({"motorcontrol": {"controllers": {"1": {"url": "serial:///dev/c"},
                                        "2": {"url": "serial:///dev/a", "address": 128}}}})");
-    QCOMPARE(numbered(propose({three, {}, {}, {}}, known, "/etc/hermes")),
+    QCOMPARE(numbered(merged(known, propose({three, {}, {}, {}}, known, "/etc/hermes").settings)),
              (QStringList{"serial:///dev/c 128", "serial:///dev/a 128"}));
 }
 
@@ -138,11 +139,11 @@ void TestSetup::whatIsSimulatedIsNoRobot() {
         json(R"({"supervisor": {"processes": [{"name": "simulator", "autostart": true}]}})");
     const Findings alone{{motors}, {lidar}, {}, {}};
     const QStringList numbers{"serial:///run/hermes/motors 128", "serial:///run/hermes/motors 129"};
-    QCOMPARE(numbered(propose(alone, simulator, "/etc/hermes")), numbers);
+    QCOMPARE(numbered(propose(alone, simulator, "/etc/hermes").settings), numbers);
     QVERIFY(propose(alone, {}, "/etc/hermes").settings.isEmpty()); // as that of another sample
     const Findings beside{{motors, controllers("/dev/a", {128, 129})}, {lidar}, {}, {}};
     const auto proposal = propose(beside, simulator, "/etc/hermes");
-    QCOMPARE(numbered(proposal), (QStringList{"serial:///dev/a 128", "serial:///dev/a 129"}));
+    QCOMPARE(numbered(proposal.settings), (QStringList{"serial:///dev/a 128", "serial:///dev/a 129"}));
     QVERIFY(!proposal.settings.contains("velodynelogger"));
     QVERIFY2(proposal.notes.first().contains("the simulator starts"), qPrintable(proposal.notes.join('\n')));
 }

@@ -5,6 +5,7 @@ import importlib.util
 import json
 import os
 import pathlib
+import socket
 import subprocess
 import sys
 import tempfile
@@ -32,8 +33,10 @@ class MakeRoom(unittest.TestCase):
     def recording(self, name, age_s, **changes):
         folder = self.root / name
         folder.mkdir()
-        (folder / "seriallogger-gps.raw").write_bytes(b"$GPRMC")
-        sidecar = {"format": "hermes recording 1", "ended": "stopped", "end": time.time() - age_s, **changes}
+        for file in ("gps.raw", "gps.index", "events.jsonl"):
+            (folder / ("seriallogger-" + file)).write_bytes(b"$GPRMC")
+        sidecar = {"format": "hermes recording 1", "ended": "stopped", "end": time.time() - age_s,
+                   "files": [{"name": "seriallogger-gps.raw"}], **changes}
         (folder / "seriallogger.json").write_text(json.dumps(sidecar))
         return folder
 
@@ -79,6 +82,23 @@ class MakeRoom(unittest.TestCase):
         self.assertIn("damaged: kept", told.stderr)
         self.assertIn("expected", told.stderr)
 
+    def test_a_recording_with_something_else_in_its_folder_is_kept(self):
+        elsewhere = self.root / "elsewhere"
+        elsewhere.touch()
+        for number, name in enumerate(("notes.txt", "map.csv", "velodynelogger-0001.pcap", "seriallogger-gps-lines.csv",
+                                       "seriallogger-gps (copy).raw", ".hidden")):
+            (self.recording(f"file-{number}", DAY_S) / name).touch()
+        (self.recording("subfolder", DAY_S) / "pictures").mkdir()
+        (self.recording("folder-with-the-name-of-a-file", DAY_S, files=[{"name": "a.pcap"}]) / "a.pcap").mkdir()
+        (self.recording("link", DAY_S, files=[{"name": "a.pcap"}]) / "a.pcap").symlink_to(elsewhere)
+        self.recording("no-list-of-files", DAY_S, files=None)
+        before = self.names()
+        self.recording("old", DAY_S)
+        told = self.run_program("--free", "900T")
+        self.assertEqual(self.names(), before)
+        self.assertIn("file-0: kept", told.stderr)
+        self.assertIn("notes.txt", told.stderr)
+
     def test_dry_run_tells_in_order_and_removes_nothing(self):
         self.recording("newer", DAY_S)
         self.recording("older", 2 * DAY_S)
@@ -98,16 +118,22 @@ class MakeRoom(unittest.TestCase):
         self.assertEqual(told.returncode, 1)
         self.assertIn("no such folder", told.stderr)
 
-    def test_a_logger_records_on(self):
+    def test_loggers_record_on(self):
         recordings = self.root / "recordings"
-        process = Process(BINARIES, "seriallogger", free_port(0), self.root, {"record.folder": recordings, "audit.on": "false"})
-        self.addCleanup(process.stop)
-        logger = process.connect()
+        loggers = []
+        for name, settings in (("velodynelogger", {"source.port": free_port(0, socket.SOCK_DGRAM), "source.position_port": 0}),
+                               ("seriallogger", {"ports": '[{"name": "gps", "url": "tcp://127.0.0.1:1"}]'})):
+            process = Process(BINARIES, name, free_port(0), self.root,
+                              {"record.folder": recordings, "record.free_floor_bytes": 0, "audit.on": "false", **settings})
+            self.addCleanup(process.stop)
+            loggers.append(process.connect())
         self.root = recordings
-        logger.call("record.start", name="now")
+        for logger in loggers:
+            logger.call("record.start", name="now", session="both")
         self.remove_of_any_age()
         self.assertIn("now", self.names())
-        logger.call("record.stop")
+        for logger in loggers:
+            logger.call("record.stop")
         self.remove_of_any_age()
         self.assertNotIn("now", self.names())
 

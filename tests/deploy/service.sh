@@ -14,6 +14,19 @@ systemd-analyze security --no-pager --offline=true --threshold=30 ./hermes-super
     { cat security && echo "expected an exposure of at most 3.0"; exit 1; }
 tail -1 security
 
+# The drivers of USB serial lines are there when the devices are let in, and a kernel without them holds up nothing.
+for module in cdc_acm usbserial; do
+    for key in Wants After; do
+        grep -q "^$key=.*\bmodprobe@$module\.service\b" hermes-supervisor.service || { echo "$key=: expected modprobe@$module.service"; exit 1; }
+    done
+done
+grep -q "^ExecStart=-" /lib/systemd/system/modprobe@.service || { echo "modprobe@.service: expected to ignore that there is no module"; exit 1; }
+
+# Maps and recordings are read by the group alone: what the package says of their folder systemd says, too.
+mode=$(sed -n 's,.*install -d .* -m \(0[0-7]*\) .*/var/lib/hermes.*,\1,p' "$HERMES_SOURCE/deploy/debian/hermes-daemons.postinst")
+[ "$mode" = 0750 ] && grep -qx "StateDirectoryMode=$mode" hermes-supervisor.service ||
+    { echo "/var/lib/hermes: expected mode 0750 of package ($mode) and unit ($(grep ^StateDirectoryMode hermes-supervisor.service))"; exit 1; }
+
 count=0
 for file in "$HERMES_SOURCE"/deploy/settings/*/*.json; do
     "$HERMES_BIN/hermes-$(basename "$file" .json)" --check --config "$file" >/dev/null

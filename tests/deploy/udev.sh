@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What udev makes of a RoboClaw, an FTDI adapter and a pulse that are made up by umockdev: names, rights, latency.
+# What udev makes of a RoboClaw, an FTDI adapter, a pulse and a GPIO chip that are made up by umockdev: names, rights, latency.
 set -uo pipefail
 PATH=$PATH:/usr/sbin:/sbin
 for program in udevadm umockdev-run; do
@@ -13,6 +13,8 @@ claw=$hub/2-1.1/2-1.1:1.0/tty/ttyACM0
 adapter=$hub/2-1.2/2-1.2:1.1/ttyUSB1
 line=/devices/platform/serial/tty/ttyS1
 pulse=/devices/virtual/pps/pps0
+chip=/devices/platform/soc/1c20800.pinctrl/gpiochip0
+dialout=$(getent group dialout | cut -d: -f3)
 
 device() { # PATH, then a line each
     printf 'P: %s\n' "$1"
@@ -36,6 +38,8 @@ node() { # PATH SUBSYSTEM MAJOR:MINOR, then a line each
     node $adapter/tty/ttyUSB1 tty 188:1 "L: device=../../../ttyUSB1"
     node $line tty 4:65
     node $pulse pps 250:0
+    device ${chip%/*} "E: SUBSYSTEM=platform"
+    node $chip gpio 254:0
 } >"$work/devices"
 
 mkdir -p "$work/dev/pts"
@@ -61,7 +65,9 @@ expect $claw "60-hermes.rules:[0-9]* MODE 0660"
 expect $adapter/tty/ttyUSB1 "LINK 'hermes/serial-platform-1c14400.usb-usb-0:1.2:1.1-port0'"
 expect $adapter/tty/ttyUSB1 "latency_timer' writing '1'"
 expect $pulse "60-hermes.rules:[0-9]* MODE 0660"
-for device in $claw $adapter/tty/ttyUSB1 $line $pulse; do
+expect $chip "60-hermes.rules:[0-9]* GROUP $dialout\$"
+expect $chip "60-hermes.rules:[0-9]* MODE 0660"
+for device in $claw $adapter/tty/ttyUSB1 $line $pulse $chip; do
     says "$device" | grep "^/etc/udev/rules.d/60-hermes.rules:" && { echo "FAILED: udev does not understand the rules"; failed=1; }
 done
 says $line | grep "LINK 'hermes/" && { echo "FAILED: a line of the board has a name of USB"; failed=1; }

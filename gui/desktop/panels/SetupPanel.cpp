@@ -74,10 +74,11 @@ SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
     connect(apply_, &QPushButton::clicked, this, &SetupPanel::apply);
     connect(undo_, &QPushButton::clicked, this, &SetupPanel::undo);
     connect(samples_, QOverload<int>::of(&QComboBox::activated), this,
-            [this] { hasSearched_ ? propose() : showChanges(sample(), {}); });
+            [this] { hasSearched_ || !sample().isEmpty() ? propose() : showChanges({}, {}, {}); });
     connect(wheels, &WheelsTest::ended, this, [this](const QJsonObject &changed) {
-        showChanges({}, changed.isEmpty() ? QJsonObject()
-                                          : QJsonObject{{"motorcontrol", QJsonObject{{"wheels", changed}}}});
+        const QJsonObject settings =
+            changed.isEmpty() ? QJsonObject() : QJsonObject{{"motorcontrol", QJsonObject{{"wheels", changed}}}};
+        showChanges({}, settings, changesOf(settings));
     });
     connect(&fleet, &Fleet::changed, this, &SetupPanel::follow);
     connect(&fleet, &Fleet::robotChosen, this, &SetupPanel::follow);
@@ -136,7 +137,7 @@ void SetupPanel::follow() {
     samples_->clear();
     samples_->addItem(tr("Change the settings of now"), QString());
     message_->hide();
-    showChanges({}, {});
+    showChanges({}, {}, {});
     if (!supervisor)
         return;
     supervisor->call(
@@ -212,9 +213,9 @@ void SetupPanel::showFound(const Findings &found) {
 
 void SetupPanel::propose() {
     call<Proposal>("setup.propose", {{"sample", sample()}}, [this](const Proposal &proposal) {
-        showChanges(sample(), proposal.settings);
+        showChanges(sample(), proposal.settings, proposal.changes);
         QStringList notes = proposal.notes;
-        if (notes.isEmpty() && proposal.settings.isEmpty())
+        if (notes.isEmpty() && proposal.changes.empty())
             notes.append(tr("Nothing is to be changed."));
         message_->setVisible(!notes.isEmpty());
         if (!notes.isEmpty())
@@ -222,20 +223,15 @@ void SetupPanel::propose() {
     });
 }
 
-void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings) {
+void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings,
+                             const std::vector<SettingChange> &changes) {
     changedSample_ = sample;
     changedSettings_ = settings;
     changes_->clear();
-    if (!sample.isEmpty()) {
-        auto *const whole = rowOf({tr("All settings of the sample %1%2")
-                                       .arg(sample, settings.isEmpty() ? QString() : tr(", with:"))});
-        changes_->addTopLevelItem(whole);
-        whole->setFirstColumnSpanned(true);
-    }
     QTreeWidgetItem *file = nullptr;
     QString last;
     int rows = 0;
-    for (const SettingChange &change : changesOf(settings)) {
+    for (const SettingChange &change : changes) {
         if (++rows > mostRows)
             break;
         if (change.daemon != last) {
@@ -246,32 +242,35 @@ void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings)
             file->setFirstColumnSpanned(true);
             file->setExpanded(true);
         }
-        file->addChild(rowOf({change.path, QString(), change.value}));
+        file->addChild(
+            rowOf({change.path, change.now, change.value.isEmpty() ? tr("(default)") : change.value}));
     }
     if (file)
         showNow(last, *file);
+    changes_->resizeColumnToContents(NowColumn);
+    changes_->setColumnWidth(NowColumn, qMin(changes_->columnWidth(NowColumn), 160));
     updateButtons();
 }
 
-/// What a daemon that runs has there.
+/// Where the file says nothing, what a daemon that runs has there.
 void SetupPanel::showNow(const QString &daemon, QTreeWidgetItem &item) {
     DaemonLink *const link = fleet_.robot() ? fleet_.robot()->withName(daemon) : nullptr;
     if (!link || !link->isConnected())
         return;
-    const QStringList paths = leafPaths(changedSettings_[daemon].toObject());
-    const auto show = [this, paths, index = changes_->indexOfTopLevelItem(&item),
-                       shown = changedSettings_](const Result<QJsonValue> &now) {
+    const auto show = [this, index = changes_->indexOfTopLevelItem(&item), sample = changedSample_,
+                       settings = changedSettings_](const Result<QJsonValue> &now) {
         QTreeWidgetItem *const file = changes_->topLevelItem(index);
-        if (!now || !file || shown != changedSettings_)
+        if (!now || !file || sample != changedSample_ || settings != changedSettings_)
             return;
         for (int i = 0; i < file->childCount(); ++i) {
-            const QJsonValue value = valueAt(now->toObject(), paths[i]);
-            const QString text = value.isUndefined() ? QString() : QString::fromUtf8(compactJson(value));
-            file->child(i)->setText(NowColumn, shortLine(text));
-            file->child(i)->setToolTip(NowColumn, toolTipOf(shortText(text)));
+            QTreeWidgetItem &row = *file->child(i);
+            const QJsonValue value = valueAt(now->toObject(), row.text(SettingColumn));
+            if (!row.text(NowColumn).isEmpty() || value.isUndefined())
+                continue;
+            const QString text = QString::fromUtf8(compactJson(value));
+            row.setText(NowColumn, shortLine(text));
+            row.setToolTip(NowColumn, toolTipOf(shortText(text)));
         }
-        changes_->resizeColumnToContents(NowColumn);
-        changes_->setColumnWidth(NowColumn, qMin(changes_->columnWidth(NowColumn), 160));
     };
     link->call("settings.get", {}, this, show);
 }
@@ -280,7 +279,7 @@ void SetupPanel::apply() {
     message_->tell(tr("The daemons check the settings."));
     call<Applied>("setup.apply", {{"sample", changedSample_}, {"settings", changedSettings_}},
                   [this](const Applied &applied) {
-                      showChanges({}, {});
+                      showChanges({}, {}, {});
                       samples_->setCurrentIndex(0);
                       tellApplied(applied);
                   });
@@ -288,7 +287,7 @@ void SetupPanel::apply() {
 
 void SetupPanel::undo() {
     call<Applied>("setup.undo", {}, [this](const Applied &applied) {
-        showChanges({}, {});
+        showChanges({}, {}, {});
         tellApplied(applied);
     });
 }

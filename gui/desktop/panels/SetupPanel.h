@@ -38,7 +38,9 @@ private:
     template <typename T>
     void call(const QString &method, const QJsonObject &params, const Then<T> &then);
     void showFound(const Findings &found);
-    void showChanges(const QString &sample, const QJsonObject &settings);
+    /// changes: all that these settings, in the sample if one is named, mean for the files.
+    void showChanges(const QString &sample, const QJsonObject &settings,
+                     const std::vector<SettingChange> &changes);
     void showNow(const QString &daemon, QTreeWidgetItem &item);
     void tellApplied(const Applied &applied);
     QString sample() const;
