@@ -150,7 +150,8 @@ DeviceSearch::Options Setup::searchOptions(bool ask) const {
             others->append(url->path);
     };
     for (const char *controller : {"1", "2"})
-        add(valueAt(current, QString("motorcontrol.controllers.%1.url").arg(controller)), &options.controllers);
+        add(valueAt(current, QString("motorcontrol.controllers.%1.url").arg(controller)),
+            &options.controllers);
     for (const QJsonValue &port : valueAt(current, "seriallogger.ports").toArray())
         add(port["url"], nullptr);
     return options;
@@ -244,8 +245,7 @@ Result<QJsonValue> Setup::proposal(const QString &sample) const {
     const auto base = sample.isEmpty() ? files().current() : files().sample(sample);
     if (!base)
         return base.error();
-    Proposal proposal =
-        found_ ? propose(*found_, *base, settings_.text("setup.folder")) : Proposal();
+    Proposal proposal = found_ ? propose(*found_, *base, settings_.text("setup.folder")) : Proposal();
     if (sample.isEmpty() && proposal.settings.isEmpty())
         return asJson(proposal);
     const auto next = whole(sample, proposal.settings);

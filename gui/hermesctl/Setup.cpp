@@ -154,7 +154,8 @@ private:
     static void show(const std::vector<SettingChange> &changes) {
         for (const SettingChange &change : changes)
             printLine(QString("%1 %2 = %3%4")
-                          .arg(change.daemon, change.path, change.value.isEmpty() ? "(default)" : change.value,
+                          .arg(change.daemon, change.path,
+                               change.value.isEmpty() ? "(default)" : change.value,
                                change.now.isEmpty() ? QString() : QString("  (now %1)").arg(change.now)));
     }
 

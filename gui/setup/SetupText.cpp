@@ -41,8 +41,10 @@ std::vector<SettingChange> changesOf(const QJsonObject &settings) {
     std::vector<SettingChange> changes;
     for (const QString &daemon : settings.keys())
         for (const QString &path : leafPaths(settings[daemon].toObject()))
-            changes.push_back(
-                {daemon, path, {}, QString::fromUtf8(compactJson(valueAt(settings[daemon].toObject(), path)))});
+            changes.push_back({daemon,
+                               path,
+                               {},
+                               QString::fromUtf8(compactJson(valueAt(settings[daemon].toObject(), path)))});
     return changes;
 }
 

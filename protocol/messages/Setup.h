@@ -54,7 +54,7 @@ struct SettingChange {
 struct Proposal {
     QJsonObject settings; ///< by daemons: what changes in the settings of each, or in those of the sample
     std::vector<SettingChange> changes; ///< all that would differ in the settings files
-    QStringList notes;    ///< what a person should know of it
+    QStringList notes;                  ///< what a person should know of it
 };
 
 /// What setup.apply and setup.undo give.

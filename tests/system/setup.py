@@ -214,7 +214,8 @@ class Setup(unittest.TestCase):
         wait_for("the simulator", lambda: os.path.exists(simulated))
         findings, serial = self.found("--yes")
         self.assertTrue(serial[simulated]["simulated"] and findings["lidars"][0]["simulated"], findings)
-        self.assertEqual(set(supervisor.call("setup.propose")["settings"]), {"motorcontrol", "velodynelogger", "supervisor"})
+        self.assertEqual(set(supervisor.call("setup.propose")["settings"]),
+                         {"motorcontrol", "velodynelogger", "scanmatcher", "supervisor"})
         self.simulator(**{"lidar.port": free_port(0, socket.SOCK_DGRAM)})  # far from the supervisor: as what is plugged in
         findings, serial = self.found("--yes")
         self.assertEqual((serial[simulated]["kind"], serial[self.motors]["kind"]), ("roboclaw", "roboclaw"))

@@ -73,11 +73,11 @@ SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
     connect(find_, &QPushButton::clicked, this, &SetupPanel::find);
     connect(apply_, &QPushButton::clicked, this, &SetupPanel::apply);
     connect(undo_, &QPushButton::clicked, this, &SetupPanel::undo);
-    connect(samples_, QOverload<int>::of(&QComboBox::activated), this,
-            [this] { hasSearched_ || !sample().isEmpty() ? propose() : showChanges({}, {}, {}); });
+    connect(samples_, QOverload<int>::of(&QComboBox::activated), this, &SetupPanel::propose);
     connect(wheels, &WheelsTest::ended, this, [this](const QJsonObject &changed) {
-        const QJsonObject settings =
-            changed.isEmpty() ? QJsonObject() : QJsonObject{{"motorcontrol", QJsonObject{{"wheels", changed}}}};
+        const QJsonObject settings = changed.isEmpty()
+                                         ? QJsonObject()
+                                         : QJsonObject{{"motorcontrol", QJsonObject{{"wheels", changed}}}};
         showChanges({}, settings, changesOf(settings));
     });
     connect(&fleet, &Fleet::changed, this, &SetupPanel::follow);
@@ -156,7 +156,7 @@ void SetupPanel::updateButtons() {
     const bool isFree = why.isEmpty() && !isBusy_;
     find_->setEnabled(isFree);
     find_->setToolTip(why.isEmpty() ? tr("Looks for some seconds what is plugged in") : why);
-    apply_->setEnabled(isFree && !(changedSample_.isEmpty() && changedSettings_.isEmpty()));
+    apply_->setEnabled(isFree && changes_->topLevelItemCount() > 0);
     apply_->setToolTip(why.isEmpty() ? tr("Writes it, if all daemons would take theirs") : why);
     undo_->setEnabled(isFree);
     undo_->setToolTip(why.isEmpty() ? tr("Puts back what the last Apply has replaced, whatever was changed "
@@ -212,15 +212,26 @@ void SetupPanel::showFound(const Findings &found) {
 }
 
 void SetupPanel::propose() {
-    call<Proposal>("setup.propose", {{"sample", sample()}}, [this](const Proposal &proposal) {
-        showChanges(sample(), proposal.settings, proposal.changes);
-        QStringList notes = proposal.notes;
-        if (notes.isEmpty() && proposal.changes.empty())
+    showChanges({}, {}, {});
+    if (!supervisor_ || (sample().isEmpty() && !hasSearched_))
+        return;
+    const auto proposed = [this, asked = sample()](const Result<QJsonValue> &answer) {
+        if (asked != sample())
+            return; // another one was chosen
+        ReadReport report;
+        const auto proposal = answer ? readMessage<Proposal>(WireValue(*answer), report) : std::nullopt;
+        if (!proposal)
+            return message_->tell("setup.propose: " + (answer ? report.text() : answer.error().message),
+                                  true);
+        showChanges(asked, proposal->settings, proposal->changes);
+        QStringList notes = proposal->notes;
+        if (notes.isEmpty() && proposal->changes.empty())
             notes.append(tr("Nothing is to be changed."));
         message_->setVisible(!notes.isEmpty());
         if (!notes.isEmpty())
             message_->tell(notes.join('\n'));
-    });
+    };
+    supervisor_->call("setup.propose", {{"sample", sample()}}, this, proposed);
 }
 
 void SetupPanel::showChanges(const QString &sample, const QJsonObject &settings,
