@@ -179,6 +179,7 @@ void Channel::receive(const QByteArray &bytes) {
     QStringList jumped; // a flood of urgent ones is as ordinary as any
     for (CodecFrame &frame : framing_->split(bytes)) {
         frame.arrived = nextArrival();
+        frame.earliest = carrier_->unreadSince();
         const QString urgent = urgent_ && !frame.error ? urgent_(frame.bytes, jumped) : QString();
         if (!urgent.isEmpty()) {
             jumped.append(urgent);
@@ -285,7 +286,7 @@ void Channel::readInBackground() {
 }
 
 void Channel::give(const CodecItem &item, const CodecFrame &frame) {
-    arrival_ = frame.arrived;
+    arrival_ = {frame.arrived, frame.earliest};
     inPieces_ = frame.inPieces;
     digest_ = item.digest;
     framing_->count(item);

@@ -17,6 +17,12 @@ namespace hermes {
 
 class PacedWriter;
 
+/// When a message came, of the clock of bootNow().
+struct Arrival {
+    double time = 0; ///< when it was read. No two in a thread are the same: what came first has the smaller
+    double earliest = 0; ///< since then something of its sender has always been unread: it may be so old
+};
+
 /// What was sent, for who may have to repeat it or asks where it is.
 struct Sent {
     QByteArray frame;
@@ -71,9 +77,8 @@ public:
     void setLargeFrame(int bytes) { largeFrame_ = bytes; }
     /// Goes on in another framing until the carrier is opened anew.
     void setCodec(std::unique_ptr<Codec> codec);
-    /// When the message that is being given came, of the clock of bootNow(). No two in a thread came at the
-    /// same time: what came first has the smaller one.
-    double arrived() const { return arrival_; }
+    /// When the message that is being given came.
+    const Arrival &arrived() const { return arrival_; }
     /// Whether that came in pieces: then its sender knows that it has arrived.
     bool arrivedInPieces() const { return inPieces_; }
     /// Of its frame, where it may be a repeat.
@@ -118,7 +123,7 @@ private:
     std::deque<CodecFrame> waiting_;
     qint64 waitingBytes_ = 0;
     quint64 overruns_ = 0; // frames of a line that had no place
-    double arrival_ = 0;
+    Arrival arrival_;
     bool inPieces_ = false;
     QByteArray digest_;
     std::optional<CodecItem> readFront_; // what is in the first of them, when it was read in the background

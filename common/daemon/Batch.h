@@ -1,6 +1,6 @@
 #pragma once
 
-#include "protocol/jsonrpc/Codec.h"
+#include "common/channel/Channel.h"
 
 #include <QJsonArray>
 
@@ -13,7 +13,7 @@ public:
     /// More bytes of replies are too much for one frame.
     static constexpr qint64 mostBytes = 8 << 20;
 
-    Batch(const QJsonArray &requests, double when, const QByteArray &knownBy)
+    Batch(const QJsonArray &requests, const Arrival &when, const QByteArray &knownBy)
         : arrived(when)
         , key(knownBy)
         , messages_(requests)
@@ -21,7 +21,7 @@ public:
         , missing_(requests.size()) {}
     ~Batch();
 
-    const double arrived; ///< Channel::arrived()
+    const Arrival arrived;
     const QByteArray key; ///< of the ReplyCache
 
     bool isBegun() const { return next_ == messages_.size(); } ///< all of it

@@ -22,6 +22,7 @@ struct Call {
     Role role = Role::Engineer; ///< of who calls
     QString moreRights;         ///< how that client could get more of them
     double time = 0;            ///< when it came, before all that came later; of the clock of bootNow()
+    double earliest = 0;        ///< of the same: since then the client has always had something unread
 
     bool has(const char *name) const { return params.contains(QLatin1String(name)); }
     QJsonValue value(const char *name) const { return params.value(QLatin1String(name)); }

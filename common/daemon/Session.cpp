@@ -279,7 +279,7 @@ void Session::finish(const std::shared_ptr<Batch> &done) {
     replies_.answer(done->key, reply, Channel::Rank::Assured, monotonicNow());
 }
 
-void Session::process(const RpcMessage &message, double arrived, const Answer &answer) {
+void Session::process(const RpcMessage &message, const Arrival &arrived, const Answer &answer) {
     if (const auto *request = std::get_if<RpcRequest>(&message)) {
         run(*request, arrived, answer);
     } else if (const auto *invalid = std::get_if<RpcInvalid>(&message)) {
@@ -316,7 +316,7 @@ std::optional<Error> Session::refusal(const RpcRequest &request) const {
     return std::nullopt;
 }
 
-void Session::run(const RpcRequest &request, double arrived, const Answer &answer) {
+void Session::run(const RpcRequest &request, const Arrival &arrived, const Answer &answer) {
     ++counts_.requests;
     gaps_.look();
     Call call;
@@ -324,7 +324,8 @@ void Session::run(const RpcRequest &request, double arrived, const Answer &answe
     call.clientName = name();
     call.role = role_;
     call.moreRights = more_;
-    call.time = arrived;
+    call.time = arrived.time;
+    call.earliest = arrived.earliest;
     const bool isStop = isUrgent(RpcMessage(request));
     if (isStop && channel_->isLossy())
         noteStop(request.id);

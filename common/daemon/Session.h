@@ -91,8 +91,8 @@ private:
     bool runNextOfBatch();
     void finish(const std::shared_ptr<Batch> &done);
     void end(const QString &reason);
-    void process(const RpcMessage &message, double arrived, const Answer &answer);
-    void run(const RpcRequest &request, double arrived, const Answer &answer);
+    void process(const RpcMessage &message, const Arrival &arrived, const Answer &answer);
+    void run(const RpcRequest &request, const Arrival &arrived, const Answer &answer);
     std::optional<Error> refusal(const RpcRequest &request) const;
     void updateReceiving();
     bool isOverPending() const;

@@ -1,5 +1,7 @@
 #include "common/interface/Interface.h"
 
+#include "common/Time.h"
+
 #include <algorithm>
 #include <chrono>
 
@@ -17,6 +19,10 @@ Interface::Interface(QObject *parent)
     , longestRetry_(usualLongestRetry) {
     retry_.setSingleShot(true);
     connect(&retry_, &QTimer::timeout, this, &Interface::open);
+}
+
+double Interface::unreadSince() const {
+    return bootNow();
 }
 
 void Interface::open() {

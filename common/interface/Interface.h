@@ -62,6 +62,9 @@ public:
     }
     /// Whether bytes have arrived that received() has not told, where the carrier can know.
     virtual bool hasUnread() const { return false; }
+    /// Since when something has always been unread (bootNow()): what received() tells may have come so early.
+    /// Now, where the carrier cannot know.
+    virtual double unreadSince() const;
     /// What the system says it lost or found damaged since the opening, by kind; empty where it does not
     /// tell.
     virtual QMap<QString, quint64> systemErrors() const { return {}; }

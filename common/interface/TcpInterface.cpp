@@ -1,5 +1,6 @@
 #include "common/interface/TcpInterface.h"
 
+#include "common/Time.h"
 #include "common/interface/Farewell.h"
 #include "common/interface/OwnSocket.h"
 #include "common/interface/SocketOwner.h"
@@ -67,6 +68,7 @@ void TcpInterface::prepare() {
     connect(socket_, &QTcpSocket::errorOccurred, this, [this](QAbstractSocket::SocketError error) {
         const bool peerClosed = error == QAbstractSocket::RemoteHostClosedError;
         const QPointer<TcpInterface> alive(this);
+        noteUnread();
         if (const QByteArray rest = socket_->readAll(); !rest.isEmpty())
             nowReceived(rest); // what it said before it closed
         if (!alive)
@@ -90,12 +92,19 @@ bool TcpInterface::hasUnread() const {
            (isOpen() && ::ioctl(int(socket_->socketDescriptor()), FIONREAD, &unread) == 0 && unread > 0);
 }
 
+void TcpInterface::noteUnread() {
+    if (!std::exchange(hasLeft_, true))
+        unreadSince_ = bootNow();
+}
+
 void TcpInterface::readSome() {
+    noteUnread();
     if (readsOn_ || !receiving_ || !isOpen())
         return;
     const QByteArray bytes = socket_->read(readAtOnceBytes);
     if (socket_->bytesAvailable() > 0)
         readLater();
+    hasLeft_ = hasUnread();
     if (!bytes.isEmpty())
         nowReceived(bytes);
 }

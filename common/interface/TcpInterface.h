@@ -25,6 +25,7 @@ public:
     qint64 bytesToWrite() const override;
     bool setReceiving(bool on) override;
     bool hasUnread() const override;
+    double unreadSince() const override { return unreadSince_; }
 
 protected:
     /// A client over a socket of another kind, which begins when that says so.
@@ -43,6 +44,7 @@ private:
     void prepare();
     int connectToOwn() const;
     void readSome();
+    void noteUnread();
     void readLater();
 
     InterfaceUrl url_;
@@ -50,6 +52,8 @@ private:
     QPointer<QObject> host_; // of a peer of a server
     bool readsOn_ = false;   // the rest is read when others have had their turn
     bool receiving_ = true;
+    bool hasLeft_ = false; // something was unread at the last look
+    double unreadSince_ = 0;
 };
 
 } // namespace hermes

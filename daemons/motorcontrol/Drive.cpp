@@ -124,13 +124,14 @@ void Drive::resetEmergencyStop() {
     halt("released, waits for a new lease");
 }
 
-Result<void> Drive::acquire(quint64 client, const QString &name, double timeout_s, double now) {
-    const auto may = mayMove(0);
+Result<void> Drive::acquire(quint64 client, const QString &name, double timeout_s, double now, double age_s) {
+    const auto may = mayMove(age_s);
     return may ? lease_.acquire(client, name, timeout_s, now) : may;
 }
 
-Result<void> Drive::takeOver(quint64 client, const QString &name, double timeout_s, double now) {
-    const auto may = mayMove(0);
+Result<void> Drive::takeOver(quint64 client, const QString &name, double timeout_s, double now,
+                             double age_s) {
+    const auto may = mayMove(age_s);
     if (!may)
         return may;
     if (const auto loser = lease_.takeOver(client, name, timeout_s, now))

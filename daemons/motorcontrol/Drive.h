@@ -37,9 +37,10 @@ public:
     void resetEmergencyStop();
     /// How often that was done.
     quint64 resets() const { return resets_; }
-    Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now);
+    Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now, double age_s = 0);
     /// Takes the control from whoever holds it, and halts when that is another client.
-    Result<void> takeOver(quint64 client, const QString &name, double timeout_s, double now);
+    Result<void> takeOver(quint64 client, const QString &name, double timeout_s, double now,
+                          double age_s = 0);
     void release(quint64 client);
     /// Tells the holder that this client would like to have the control.
     void ask(quint64 client, const QString &name);

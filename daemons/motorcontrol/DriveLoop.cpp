@@ -90,6 +90,7 @@ void DriveLoop::lookForGap() {
     if (passed <= longestGap_s_ || passed == now)
         return;
     voidUntil_ = now;
+    stopper_ = 0;
     engine_.drive().stoodStill(QString("the drive loop stood still for %1 s").arg(passed, 0, 'f', 2));
     engine_.obey();
 }

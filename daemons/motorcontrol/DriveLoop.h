@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/daemon/Command.h"
 #include "daemons/motorcontrol/ControllerLine.h"
 #include "daemons/motorcontrol/CycleTimer.h"
 #include "daemons/motorcontrol/DriveEngine.h"
@@ -31,8 +32,15 @@ public:
     Odometry &odometry() { return engine_.odometry(); }
     const Telemetry &telemetry() { return engine_.report(); }
     /// What came before this is void: a stop overtook it, or the loop stood still. Of the clock of bootNow().
-    double voidUntil() const { return voidUntil_; }
-    void makeVoidUntil(double time) { voidUntil_ = std::max(voidUntil_, time); }
+    /// Whether a call came before a stop, or may have: of others than who stopped what lay unread then, too.
+    bool isVoid(const Call &call) const {
+        return (call.client == stopper_ ? call.time : call.earliest) <= voidUntil_;
+    }
+    /// What came before this stop is void.
+    void makeVoid(const Call &stop) {
+        voidUntil_ = std::max(voidUntil_, stop.time);
+        stopper_ = stop.client;
+    }
 
 private:
     Result<void> openLines();
@@ -50,6 +58,7 @@ private:
     CycleTimer timer_;
     double longestGap_s_;
     double lastLook_ = 0, voidUntil_ = 0;
+    quint64 stopper_ = 0; // a client; 0: none
     std::unique_ptr<QSocketNotifier> jobs_;
     std::function<void()> done_; // shutting down
     double doneLatest_ = 0;

@@ -12,8 +12,11 @@ Field stampField() {
         .optional();
 }
 
+/// How old it may be: by its stamp, and by how long it may have waited to be read.
 double ageOf(const Call &call) {
-    return call.has("stamp") ? stampNow() - call.number("stamp") : 0;
+    const double waited = bootNow() - call.earliest;
+    const double age = call.has("stamp") ? stampNow() - call.number("stamp") : waited;
+    return age < 0 ? age : std::max(age, waited);
 }
 
 Field clientField() {
@@ -59,7 +62,7 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
             inLoop(
                 [call, stop, standing](DriveLoop &loop) -> Result<QJsonValue> {
                     stop(call, loop.drive());
-                    loop.makeVoidUntil(call.time); // it may have overtaken what came before it
+                    loop.makeVoid(call); // it may have overtaken what came before it
                     *standing = standingOf(loop.telemetry());
                     return QJsonValue();
                 },
@@ -77,7 +80,7 @@ Command
 MotorControl::freshLoopCommand(const QString &name, const QString &summary,
                                const std::function<Result<QJsonValue>(const Call &, DriveLoop &)> &work) {
     const auto unlessVoid = [work](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
-        if (call.time <= loop.voidUntil())
+        if (loop.isVoid(call))
             return Error(ErrorCode::NotReady,
                          "this came before a stop, or before the drive loop stood still: it is void");
         return work(call, loop);
@@ -159,9 +162,10 @@ void MotorControl::declareControlCommands() {
                 const QString name = clientName(call);
                 const double now = monotonicNow();
                 const double timeout_s = call.number("timeout_s");
-                const auto acquired = call.flag("take_over")
-                                          ? loop.drive().takeOver(call.client, name, timeout_s, now)
-                                          : loop.drive().acquire(call.client, name, timeout_s, now);
+                const auto acquired =
+                    call.flag("take_over")
+                        ? loop.drive().takeOver(call.client, name, timeout_s, now, ageOf(call))
+                        : loop.drive().acquire(call.client, name, timeout_s, now, ageOf(call));
                 if (!acquired)
                     return acquired.error();
                 return asJson(loop.drive().lease().state(now));

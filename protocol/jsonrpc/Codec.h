@@ -32,6 +32,7 @@ struct CodecFrame {
     std::optional<RpcError> error;
     double arrived = 0;    ///< for who reads it later; of a clock of the reader's
     bool inPieces = false; ///< its sender knows that it has arrived
+    double earliest = 0;   ///< as arrived: before that it had not come
 };
 
 /// What encode() gave: the frame, or why the message cannot be sent (then bytes is empty).

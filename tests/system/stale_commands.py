@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""A client fills its connection with commands that have no stamp, and is killed or freezes. Nothing of what still lies in the
+connection moves the robot: not on its own, and not after a stop and its release by somebody else."""
+import itertools
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+from lateness import Lateness
+from support import BINARIES, SOURCE, Process, free_port, wait_for
+
+WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
+LIMIT_S = 0.45  # safety.command_timeout_s and the time of braking from 0.3 m/s, and 0.125 s
+
+CLIENT = r"""
+import os, socket, sys, time
+port, carrier, end = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+if carrier == "unix":
+    link = socket.socket(socket.AF_UNIX)
+    link.connect(f"\0hermes:127.0.0.1:{port}")
+else:
+    link = socket.create_connection(("127.0.0.1", port))
+drive = b'{"jsonrpc":"2.0","method":"motor.drive","params":{"vx":0.3}}\n'
+acquire = b'{"jsonrpc":"2.0","method":"control.acquire","params":{"timeout_s":60}}\n'
+link.sendall(acquire)
+for _ in range(30):
+    link.sendall(drive)
+    time.sleep(0.05)
+link.settimeout(1)
+try:
+    until = time.monotonic() + 0.2
+    while time.monotonic() < until:
+        link.sendall((acquire + drive) * 500)
+except OSError:
+    pass
+print("full", flush=True)
+if end == "kill":
+    os.kill(os.getpid(), 9)
+time.sleep(60)
+"""
+
+
+def fastest_wheel(simulator):
+    return max(abs(speed) for speed in simulator.call("sim.state")["motors"]["wheels_rps"])
+
+
+def turned_for(simulator, since):
+    """Seconds after since at which a wheel turned last; seen when all have stood for 1.5 s."""
+    last = since
+    while time.monotonic() < last + 1.5:
+        if fastest_wheel(simulator) > 0.05:
+            last = time.monotonic()
+        assert last < since + 20, "the wheels turn without end"
+        time.sleep(0.003)
+    return last - since
+
+
+def trial(simulator, motors, carrier, end, stop):
+    """How long the wheels turned after the end of the client, or after the release of the stop."""
+    simulator.call("sim.place", x=0, y=0, theta=0)
+    motors.call("motor.reset_estop")
+    wait_for("readiness", lambda: motors.call("motor.state")["ready"], 10)
+    client = subprocess.Popen([sys.executable, "-c", CLIENT, str(motors.port), carrier, end], stdout=subprocess.PIPE, text=True)
+    try:
+        wait_for("the drive", lambda: fastest_wheel(simulator) > 2, 5)
+        client.stdout.readline()
+        since = time.monotonic()
+        if stop:
+            motors.call(stop)
+            wait_for("standing", lambda: fastest_wheel(simulator) < 0.05, 5)
+            motors.call("motor.reset_estop")
+            since = time.monotonic()
+        return turned_for(simulator, since)
+    finally:
+        client.kill()
+        client.wait()
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        line = os.path.join(folder, "line")
+        processes = [Process(BINARIES, "simulator", free_port(0), folder, {
+            "world": WORLD, "motors.link": line, "lidar.port": free_port(0, socket.SOCK_DGRAM)})]
+        try:
+            simulator = processes[0].connect()
+            url = f"serial://{line}?baud=115200"
+            processes.append(Process(BINARIES, "motorcontrol", free_port(0), folder,
+                                     {"controllers.1.url": url, "controllers.2.url": url}))
+            motors = processes[1].connect()
+            motors.port = processes[1].port
+            with Lateness() as lateness:
+                for carrier, end, stop in itertools.product(["tcp", "unix"], ["kill", "freeze"], [None, "motor.stop", "motor.estop"]):
+                    for _ in range(3):
+                        lateness.take_longest()
+                        turned = trial(simulator, motors, carrier, end, stop)
+                        late = lateness.take_longest()
+                        if turned < LIMIT_S or late < 0.02:
+                            break
+                    name = f"{end} over {carrier}" + (f", {stop} and its release" if stop else "")
+                    assert turned < LIMIT_S, f"{name}: the wheels turned {turned:.3f} s on ({late:.3f} s late)"
+                    print(f"{turned:.3f} s  {name}", flush=True)
+        finally:
+            for process in reversed(processes):
+                process.stop()
+
+
+if __name__ == "__main__":
+    main()
