@@ -71,7 +71,7 @@ Result<QString> enterSessionFolder(const QString &root, const SessionName &sessi
     for (int attempt = 0; attempt < 100; ++attempt) { // others may make and remove it at the same time
         if (!QDir(root).mkdir(session.name) && QFileInfo::exists(folder)) {
             const Result<void> joined = checkFolder(folder, session, logger);
-            if (!joined)
+            if (!joined && QFileInfo::exists(folder))
                 return joined.error();
         }
         // From here on the folder is not empty, so that no other logger can remove it.

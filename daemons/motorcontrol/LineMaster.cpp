@@ -49,13 +49,15 @@ double LineMaster::busyUntil() const {
 double LineMaster::deadline() const {
     if (!bus_.isIdle())
         return bus_.deadline();
+    if (isAnyToStop())
+        return bus_.pauseUntil();
     return busyUntil() > now_ ? busyUntil() : std::numeric_limits<double>::infinity();
 }
 
 const roboclaw::Bytes *LineMaster::poll(double now) {
     now_ = now;
     bus_.poll(now); // ends what is late
-    if (bus_.isIdle() && now >= bus_.quietUntil())
+    if (bus_.isIdle() && now >= bus_.pauseUntil() && !submitStop() && now >= bus_.quietUntil())
         submitNext();
     const roboclaw::Bytes *out = bus_.poll(now);
     tellWhetherHeld(now);
@@ -73,12 +75,21 @@ void LineMaster::feed(const std::uint8_t *data, std::size_t size, double now) {
     bus_.feed(data, size, now);
 }
 
-void LineMaster::submitNext() {
-    // The first stop of each breaks the silence that another one needs: it is one packet.
+bool LineMaster::isAnyToStop() const {
+    return std::any_of(places_.begin(), places_.end(),
+                       [](const Place &place) { return place.controller->isToStop(); });
+}
+
+// The first stop of each breaks the silence that another one needs: it is one packet.
+bool LineMaster::submitStop() {
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        if (places_[i].controller->isToStop() && submit(i, Task::SetPoint))
-            return;
+        if (places_[i].controller->isToStop() && submit(i, Task::SetPoint, Bus::Urgency::First))
+            return true;
     }
+    return false;
+}
+
+void LineMaster::submitNext() {
     if (now_ < silentUntil() || submitInRound())
         return;
     for (Place &place : places_) // the next round
@@ -112,7 +123,7 @@ bool LineMaster::submitToFailing() {
     return false;
 }
 
-bool LineMaster::submit(std::size_t place, Task task) {
+bool LineMaster::submit(std::size_t place, Task task, Bus::Urgency urgency) {
     const auto asked = places_[place].controller->next(task, now_);
     if (!asked)
         return false;
@@ -122,7 +133,7 @@ bool LineMaster::submit(std::size_t place, Task task) {
         [this, place, task](const roboclaw::Request &, const Bus::Outcome &outcome) {
             finished(place, task, outcome);
         },
-        Bus::Urgency::Normal, asked->patience_s);
+        urgency, asked->patience_s);
 }
 
 void LineMaster::finished(std::size_t place, Task task, const Bus::Outcome &outcome) {

@@ -43,10 +43,13 @@ private:
     double silentUntil() const;
     /// Nothing is sent before; a line is quiet for a moment after each failure, too.
     double busyUntil() const;
+    bool isAnyToStop() const;
+    bool submitStop();
     void submitNext();
     bool submitInRound();
     bool submitToFailing();
-    bool submit(std::size_t place, Task task);
+    bool submit(std::size_t place, Task task,
+                roboclaw::Bus::Urgency urgency = roboclaw::Bus::Urgency::Normal);
     void finished(std::size_t place, Task task, const roboclaw::Bus::Outcome &outcome);
     void tellWhetherHeld(double now);
 

@@ -64,7 +64,7 @@ const Bytes *Bus::poll(double now) {
     }
     if (awaiting_ && now - sent_ >= current_.replyTimeout)
         attemptFailed(Result::TimedOut, now);
-    if (awaiting_ || queue_.empty() || now < resume_)
+    if (awaiting_ || queue_.empty() || now < earliest(queue_.front()))
         return nullptr;
     current_ = std::move(queue_.front());
     queue_.pop_front();
@@ -108,7 +108,7 @@ void Bus::attemptEnded(ReplyParser::Result result, double now) {
 
 void Bus::attemptFailed(Result result, double now) {
     awaiting_ = false;
-    resume_ = now + options_.quiet;
+    pause_ = resume_ = now + options_.quiet;
     resumeLimit_ = now + longestQuiet * options_.quiet;
     Counts &counts = countsOf(current_);
     ++(result == Result::TimedOut ? counts.timeouts
@@ -123,7 +123,7 @@ void Bus::attemptFailed(Result result, double now) {
 
 double Bus::deadline() const {
     if (!awaiting_)
-        return queue_.empty() ? never : resume_;
+        return queue_.empty() ? never : earliest(queue_.front());
     const double timeout = sent_ + current_.replyTimeout;
     return parser_.received() > 0 ? std::min(timeout, lastByte_ + options_.quiet) : timeout;
 }

@@ -48,7 +48,8 @@ public:
         : options_(options) {}
 
     /// Queues a request; handler is called once, from feed(), poll(), cancel() or setOpen(). False, and
-    /// handler is not called, when too many wait. First goes before all that are not, and their repetitions.
+    /// handler is not called, when too many wait. First goes before all that are not, and their repetitions,
+    /// and does not wait for the end of foreign bytes: a controller does not hear them.
     /// replyTimeout: seconds; that of the options when it is 0.
     bool submit(const Request &request, Handler handler = {}, Urgency urgency = Urgency::Normal,
                 double replyTimeout = 0);
@@ -64,8 +65,10 @@ public:
     double deadline() const;
 
     bool isIdle() const { return !awaiting_ && queue_.empty(); }
-    /// Nothing is sent before: the line has to be quiet after a failure.
+    /// Nothing is sent before: the line has to be quiet after a failure, and after foreign bytes.
     double quietUntil() const { return resume_; }
+    /// The same of what is First.
+    double pauseUntil() const { return pause_; }
     /// Requests to one address, 0x80 to 0x87.
     const Counts &counts(std::uint8_t address) const { return counts_[address % 8]; }
     /// Bytes that came when none was awaited.
@@ -85,6 +88,7 @@ private:
     void attemptFailed(Result result, double now);
     void endAll(Result result);
     void finish(Entry entry, const Outcome &outcome);
+    double earliest(const Entry &entry) const { return entry.urgency == Urgency::First ? pause_ : resume_; }
     Counts &countsOf(const Entry &entry) { return counts_[entry.request.address % 8]; }
 
     Options options_;
@@ -96,7 +100,8 @@ private:
     bool repeats_ = true; ///< the current one was not cancelled
     double sent_ = 0;
     double lastByte_ = 0;
-    double resume_ = 0;      ///< nothing is sent before
+    double pause_ = 0;       ///< nothing is sent before
+    double resume_ = 0;      ///< nor what is not First before that
     double resumeLimit_ = 0; ///< chatter does not put it off beyond
     std::array<Counts, 8> counts_{};
     std::uint64_t stray_ = 0;

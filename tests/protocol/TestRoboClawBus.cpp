@@ -61,6 +61,7 @@ private Q_SLOTS:
     void repeatsWhatIsDamaged();
     void waitsForSilenceAfterAFailure();
     void chatterDoesNotBlockForEver();
+    void chatterDoesNotHoldUpWhatIsUrgent();
     void urgentRequestsGoFirst();
     void cancelEndsWhatWaits();
     void closedLineEndsAll();
@@ -154,6 +155,23 @@ void TestRoboClawBus::chatterDoesNotBlockForEver() {
         line.poll();
     }
     QVERIFY2(line.now > 0.05 && line.now < 0.06, qPrintable(QString::number(line.now)));
+}
+
+void TestRoboClawBus::chatterDoesNotHoldUpWhatIsUrgent() {
+    Line line;
+    line.submit(Command::ReadMainBattery);
+    QVERIFY(line.poll());
+    line.feed("00F1D8E5"); // it fails
+    line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First);
+    line.submit(Command::SpeedAccel, {1000, 0, 0}, Bus::Urgency::First, 0x81);
+    for (int i = 0; line.sent.size() < 3 && i < 100; ++i) {
+        line.now += 0.001;
+        line.feed("55");
+        line.poll();
+    }
+    // The first repeats its request, which waits behind.
+    QCOMPARE(line.sent, (std::vector<int>{24, 40, 40}));
+    QVERIFY2(line.now < 0.025, qPrintable(QString::number(line.now)));
 }
 
 void TestRoboClawBus::urgentRequestsGoFirst() {
