@@ -19,6 +19,8 @@ QString otherSensors(const LidarFeed::Counts &counts) {
     return others.join(", ");
 }
 
+constexpr double longestBlindness_s = 3;
+
 /// What went wrong so far, after a semicolon each.
 QString pastText(quint64 wrong, quint64 lost, const velodyne::GpsReader::Counts &gps) {
     QString text;
@@ -112,6 +114,8 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     const QJsonObject values{{"packets", double(packets.packets)},
                              {"packet_rate_hz", packetRate_},
                              {"rpm", counts.rpm},
+                             {"beams", double(counts.beams)},
+                             {"beams_back", double(counts.beamsBack)},
                              {"lost", double(packets.lost)},
                              {"out_of_order", double(packets.outOfOrder)},
                              {"kernel_drops", double(counts.udp.kernelDrops)},
@@ -140,6 +144,14 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
         set(HealthLevel::Warn, QString::fromStdString(velodyne::describe(velodyne::PacketFault::Model)));
     else if (counts.otherSensors > 0 && !counts.decoded)
         set(HealthLevel::Warn, "no data packet is decoded, those that came are of " + otherSensors(counts));
+    else if (counts.blind_s > longestBlindness_s)
+        set(HealthLevel::Warn,
+            QString("packets come from %1, but only %2 of %3 beams of the last turn came back, and under 1 % "
+                    "for %4 s; expected are 1 % at least: is the lidar covered?")
+                .arg(source_.name())
+                .arg(counts.beamsBack)
+                .arg(counts.beams)
+                .arg(counts.blind_s, 0, 'f', 0));
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
             textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) + " too");

@@ -41,6 +41,13 @@ std::string describe(PacketFault fault) {
     return "unknown fault";
 }
 
+int DataPacket::filledSlots(int block) const {
+    int filled = 0;
+    for (int slot = 0; slot < slotsPerBlock; ++slot)
+        filled += distance(block, slot) > 0;
+    return filled;
+}
+
 PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size, Model expected) {
     if (size != packetSize)
         return PacketFault::Size;

@@ -33,6 +33,8 @@ public:
     /// In counts of the sensor (SensorModel.h); 0 means no return.
     std::uint16_t distance(int block, int slot) const { return word(returnOffset(block, slot)); }
     std::uint8_t intensity(int block, int slot) const { return bytes_[returnOffset(block, slot) + 2]; }
+    /// How many slots of a block have a return.
+    int filledSlots(int block) const;
     /// Microseconds since the top of the hour, when the first laser of the packet fired.
     std::uint32_t stamp_us() const { return word(1200) | std::uint32_t(word(1202)) << 16; }
     ReturnMode returnMode() const { return ReturnMode(bytes_[1204]); }

@@ -222,6 +222,22 @@ class BadInput(RobotCase):
         self.simulator.call("sim.fault", device="lidar", kind="none")
         self.until_well("the lidar")
 
+    def test_covered_lidar(self):
+        """Packets at full rate, and nothing in them: a scan shows nothing, and the pose is only guessed."""
+        self.simulate()
+        robot = self.robot_of()
+        self.until_well()
+        wait_for("a map", lambda: robot.call("scanmatcher", "matcher.state")["matched"] > 5, 10)
+        for dropouts, found in ((1, "0"), (0.999, r"[0-9]+")):
+            since = robot.journal_size()
+            self.simulator.call("sim.noise", dropouts=dropouts)
+            self.tells("velodynelogger", "lidar", str(self.wires["lidar"]), f"only {found} of [0-9]+ beams", "expected.* 1 %", since=since)
+            self.tells("scanmatcher", "tracking", "[0-9]+ scans in a row", "[01] line segments in [0-9]+ points", "expected are 2",
+                       "no odometry", since=since)
+            self.simulator.call("sim.noise", dropouts=0)
+            for name in ("lidar", "tracking"):
+                wait_for(f"{name} in the journal", lambda name=name, since=since: f"{name} is ok" in robot.written(since), 10)
+
     def test_what_is_stopped_during_a_search_stays_so(self):
         self.simulate()
         robot = self.robot_of()
