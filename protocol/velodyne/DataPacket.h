@@ -13,8 +13,11 @@ enum class PacketFault {
     Model, ///< a sensor or return mode that is not decoded here, or not the sensor that is expected
 };
 
-/// A short phrase for people: what the fault is and what was expected.
-std::string describe(PacketFault fault);
+/// A list for people of the sensors and return modes that are decoded.
+std::string decodedSensors();
+
+/// Whether packets of this return mode and sensor can be decoded.
+bool isDecoded(ReturnMode mode, Model model);
 
 /// The fields of a data packet, read from bytes that somebody else keeps. Block and slot count from 0. A slot
 /// holds the return of one laser; those of the second firing in a block of a VLP-16 follow those of the

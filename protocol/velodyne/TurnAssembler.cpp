@@ -33,6 +33,10 @@ PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std
     if (fault == PacketFault::None && !isOfModel(DataPacket(bytes), receive_ns))
         fault = PacketFault::Model;
     count(counts_, fault);
+    if (fault == PacketFault::Model) {
+        counts_.lastOther = DataPacket(bytes).model();
+        counts_.lastOtherMode = DataPacket(bytes).returnMode();
+    }
     if (fault != PacketFault::None)
         return fault;
     const DataPacket packet(bytes);
