@@ -57,7 +57,7 @@ private:
     void giveToStopping(const Result<QJsonValue> &result);
     void sync();
     void check();
-    void checked(const Result<double> &room, const Result<void> &refreshed);
+    void checked(const Result<double> &room, const Result<void> &there, const Result<void> &refreshed);
     void updateHealth();
     void updateDiskHealth();
     RecordingSession::Options options() const;
