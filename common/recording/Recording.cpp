@@ -70,6 +70,8 @@ void Recording::open() {
             for (const QString &line : completed.failed)
                 logError("recording", line);
             unrepaired_ = completed.failed;
+            if (phase_ == Phase::Idle) // else one was begun meanwhile
+                cutOff_ = completed.done;
             updateHealth();
         };
     });
@@ -124,6 +126,7 @@ void Recording::start(const Call &call, const Reply &reply) {
             start_ = stampNow();
             error_.reset();
             refreshError_.reset();
+            cutOff_.clear();
             timer_.start(activePeriod_ms);
             logInfo("recording", "recording to " + folder_);
             updateHealth();

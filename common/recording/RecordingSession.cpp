@@ -206,7 +206,11 @@ RecordingSession::Completed RecordingSession::completeAll(const Options &options
         if (result)
             result = Sidecar::write(path, content, true);
         if (result)
-            completed.done << QString("%1: was cut off; its sidecar is complete now").arg(path);
+            completed.done << QString(
+                                  "\"%1\" was cut off at %2, before it was stopped; what is written until "
+                                  "then is whole (%3)")
+                                  .arg(content.value("name").toString(entry.fileName()),
+                                       content.value("end_utc").toString(), folder);
         else
             completed.failed << result.error().message;
     }

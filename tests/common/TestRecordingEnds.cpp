@@ -189,6 +189,11 @@ void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {
              QStringList({"logger-0001.txt", "logger.json"}));
     QCOMPARE(QFileInfo(cut + "/logger-0001.txt").size(), 8);
     QCOMPARE(next.call("record.list")->toArray()[0].toObject().value("complete"), QJsonValue(false));
+    QTRY_COMPARE(next.level("recording"), "warn");
+    for (const QString &word : {QString("\"a\" was cut off"), cut, sidecar.value("end_utc").toString()})
+        QVERIFY2(next.item("recording").message.contains(word), qPrintable(next.item("recording").message));
+    QVERIFY(next.call("record.start", {{"name", "b"}}).ok());
+    QCOMPARE(next.level("recording"), "ok");
 }
 
 void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone_data() {
