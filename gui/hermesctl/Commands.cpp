@@ -222,7 +222,9 @@ Result<void> setSettings(Client &client, const Arguments &arguments) {
     const QJsonArray restart = (*result)[QStringLiteral("restart")].toArray();
     for (const QJsonValue &path : (*result)[QStringLiteral("changed")].toArray())
         printLine(path.toString() + (restart.contains(path)
-                                         ? QStringLiteral(" changed, from the next start on")
+                                         ? QStringLiteral(" changed, from the next start on once saved "
+                                                          "(hermesctl call %1 settings.save)")
+                                               .arg(arguments.words.first())
                                          : QStringLiteral(" changed")));
     return {};
 }

@@ -45,7 +45,8 @@ class Hermesctl(unittest.TestCase):
         self.assertIn("foo", shown.stderr)
 
     def test_get_and_set(self):
-        self.assertIn("changed, from the next start on", self.ok("set", self.address, "sensor.name=cellar"))
+        self.assertEqual(self.ok("set", self.address, "sensor.name=cellar", "period_s=0.1"), "period_s changed\n"
+                         f"sensor.name changed, from the next start on once saved (hermesctl call {self.address} settings.save)\n")
         self.assertEqual(json.loads(self.ok("get", self.address, "sensor")), {"name": "cellar"})
         self.assertIn("limits", json.loads(self.ok("get", self.address)))
         self.assertEqual(ctl("set", self.address, "sensor.name=attic", "period_s=0").returncode, 1)
