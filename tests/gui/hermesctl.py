@@ -88,6 +88,11 @@ class Hermesctl(unittest.TestCase):
             shown = ctl("call", f"127.0.0.1:{taken.getsockname()[1]}", "daemon.info")
         self.assertEqual(shown.returncode, 1)
         self.assertIn("refused", shown.stderr)
+        shown = ctl("--host", "127.0.0.79", "log", "seriallogger")
+        self.assertEqual(shown.returncode, 1)
+        for words in ("start hermes-seriallogger", "hermesctl list says why it does not run",
+                      "process.output name=seriallogger", "process.start name=seriallogger"):
+            self.assertIn(words, shown.stderr)
 
     def test_output_that_cannot_be_written(self):
         for arguments in (["--help"], ["doc", self.address], ["call", self.address, "daemon.info"],
