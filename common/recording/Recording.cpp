@@ -70,6 +70,8 @@ void Recording::open() {
             for (const QString &line : completed.failed)
                 logError("recording", line);
             unrepaired_ = completed.failed;
+            if (phase_ == Phase::Idle) // else one was begun meanwhile
+                cutOff_ = completed.done;
             updateHealth();
         };
     });
@@ -124,6 +126,7 @@ void Recording::start(const Call &call, const Reply &reply) {
             start_ = stampNow();
             error_.reset();
             refreshError_.reset();
+            cutOff_.clear();
             timer_.start(activePeriod_ms);
             logInfo("recording", "recording to " + folder_);
             updateHealth();
@@ -198,25 +201,31 @@ void Recording::check() {
     const bool active = phase_ == Phase::Recording;
     const bool refresh = active && ++checks_ % refreshEvery == 0;
     run(disk_, [this, refresh, active, path = active ? folder_ : options().root]() -> Done {
-        const Result<void> refreshed = refresh && session_.isOpen() ? session_.refresh() : Result<void>();
         const bool gone = active && !QDir(path).exists();
+        Result<void> there, refreshed;
+        if (gone)
+            there = diskError(path + ": the folder of the recording was removed or moved away", path);
+        else if (refresh && session_.isOpen())
+            there = session_.look();
+        if (there && refresh && session_.isOpen())
+            refreshed = session_.refresh();
         const Result<double> room = freeBytes(path);
-        return [this, gone, room, refreshed] {
+        return [this, there, room, refreshed] {
             checking_ = false;
-            if (gone && phase_ == Phase::Recording)
-                end(RecordingEnd::Failed,
-                    diskError(folder_ + ": the folder of the recording was removed or moved away", folder_));
-            checked(room, refreshed);
+            checked(room, there, refreshed);
         };
     });
 }
 
-void Recording::checked(const Result<double> &room, const Result<void> &refreshed) {
+void Recording::checked(const Result<double> &room, const Result<void> &there,
+                        const Result<void> &refreshed) {
     free_ = room ? std::optional<double>(*room) : std::nullopt;
     refreshError_ = refreshed ? std::nullopt : std::optional<Error>(refreshed.error());
     const double floor = settings_.number("record.free_floor_bytes");
     const std::optional<Error> failure = writer_.state().error;
-    if (phase_ == Phase::Recording && failure)
+    if (phase_ == Phase::Recording && !there)
+        end(RecordingEnd::Failed, there.error());
+    else if (phase_ == Phase::Recording && failure)
         end(RecordingEnd::Failed, failure);
     else if (phase_ == Phase::Recording && free_ && *free_ <= floor)
         end(RecordingEnd::FreeSpace,

@@ -57,7 +57,7 @@ private:
     void giveToStopping(const Result<QJsonValue> &result);
     void sync();
     void check();
-    void checked(const Result<double> &room, const Result<void> &refreshed);
+    void checked(const Result<double> &room, const Result<void> &there, const Result<void> &refreshed);
     void updateHealth();
     void updateDiskHealth();
     RecordingSession::Options options() const;
@@ -88,6 +88,7 @@ private:
     PastFaults losses_;
     std::vector<Reply> stopping_; ///< who waits for the end
     std::optional<double> free_;  ///< bytes
+    QStringList cutOff_;          ///< recordings that this start has completed, until another begins
     QStringList unrepaired_;      ///< why recordings that were cut off could not be completed
 };
 

@@ -158,8 +158,8 @@ void Recording::updateHealth() {
         health_.set("recording", HealthLevel::Failed, error_->message, values);
     else if (refreshError_)
         health_.set("recording", HealthLevel::Warn, refreshError_->message, values);
-    else if (!unrepaired_.isEmpty())
-        health_.set("recording", HealthLevel::Warn, unrepaired_.join("; "), values);
+    else if (!unrepaired_.isEmpty() || !cutOff_.isEmpty())
+        health_.set("recording", HealthLevel::Warn, (unrepaired_ + cutOff_).join("; "), values);
     else if (lost > 0)
         health_.set("recording", phase_ == Phase::Idle ? past : HealthLevel::Warn,
                     folder_ + ": not all that was to be recorded is there, see losses", values);

@@ -110,6 +110,9 @@ Result<void> RecordingSession::begin(const Options &options, const SessionName &
     if (!result)
         return refused(result.error());
     result = writer_.begin(plan_);
+    watch_.begin();
+    if (result)
+        result = look();
     if (result) // without a sidecar on the disk nobody could complete what the end of the power cuts off
         result = Sidecar::write(sidecarPath(), describe(), true);
     if (result)
@@ -144,11 +147,20 @@ Result<void> RecordingSession::refresh() {
     return Sidecar::write(sidecarPath(), describe(), false);
 }
 
+Result<void> RecordingSession::look() {
+    QStringList names;
+    for (const QJsonValue &file : writer_.state().files)
+        names.append(file["name"].toString());
+    return watch_.look(plan_.folder, options_.logger, names);
+}
+
 Result<void> RecordingSession::finish(RecordingEnd end, const std::optional<Error> &error) {
     writer_.end();
     const Result<void> synced = FileSync().run(plan_.folder, options_.logger);
-    const std::optional<Error> broken =
-        synced ? writer_.state().error : writer_.state().error.value_or(synced.error());
+    std::optional<Error> broken = writer_.state().error;
+    for (const Result<void> &fine : {synced, look()})
+        if (!fine && !broken)
+            broken = fine.error();
     const std::optional<Error> failure = error ? error : broken;
     const double stamp = stampNow();
     QJsonObject content = describe();
@@ -194,7 +206,11 @@ RecordingSession::Completed RecordingSession::completeAll(const Options &options
         if (result)
             result = Sidecar::write(path, content, true);
         if (result)
-            completed.done << QString("%1: was cut off; its sidecar is complete now").arg(path);
+            completed.done << QString(
+                                  "\"%1\" was cut off at %2, before it was stopped; what is written until "
+                                  "then is whole (%3)")
+                                  .arg(content.value("name").toString(entry.fileName()),
+                                       content.value("end_utc").toString(), folder);
         else
             completed.failed << result.error().message;
     }

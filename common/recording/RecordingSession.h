@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/recording/FileWatch.h"
 #include "common/recording/RecordingWriter.h"
 #include "common/recording/SessionFolder.h"
 
@@ -28,6 +29,8 @@ public:
     Result<void> begin(const Options &options, const SessionName &session);
     /// Writes the sidecar as things stand.
     Result<void> refresh();
+    /// Whether all files are where they were begun.
+    Result<void> look();
     /// Ends the writer and completes the sidecar. error: why it ended, where it was not stopped.
     Result<void> finish(RecordingEnd end, const std::optional<Error> &error);
 
@@ -54,6 +57,7 @@ private:
     QString session_;
     QJsonObject head_; ///< what of the sidecar stays as it was at the beginning
     FolderLock lock_;
+    FileWatch watch_;
 };
 
 /// Bytes that a program without privileges may still write where the path is, or an error.

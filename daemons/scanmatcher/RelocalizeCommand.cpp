@@ -1,4 +1,5 @@
 #include "common/Log.h"
+#include "common/Time.h"
 #include "daemons/scanmatcher/ScanMatcher.h"
 #include "protocol/wire/Fields.h"
 
@@ -7,6 +8,8 @@ namespace hermes::scanmatcher {
 using vectorlib::Relocalized;
 
 namespace {
+
+constexpr double longestBlindness_s = 3;
 
 QString text(const Pose2D &pose) {
     return QString("x %1 m, y %2 m, theta %3 rad")
@@ -81,14 +84,47 @@ void ScanMatcher::showRecovery(const Relocalized &recovery) {
     lastRecovery_ = recovery;
 }
 
+void ScanMatcher::noteSkipped(const Outcome &outcome) {
+    if (outcome.outcome != vectorlib::ScanReport::Outcome::Skipped) {
+        skipped_ = {};
+        return;
+    }
+    if (skipped_.count++ == 0)
+        skipped_.since = monotonicNow();
+    skipped_.segments = outcome.result.segments.size();
+    skipped_.points = outcome.points;
+}
+
+bool ScanMatcher::isBlind() const {
+    return skipped_.count > 0 && monotonicNow() - skipped_.since > longestBlindness_s;
+}
+
+QString ScanMatcher::blindText() const {
+    return QString("nothing to match for %1 s: %2 scans in a row were skipped, the last one shows %3 line "
+                   "segments in %4 points, expected are %5 at least; the pose goes by %6")
+        .arg(monotonicNow() - skipped_.since, 0, 'f', 0)
+        .arg(skipped_.count)
+        .arg(skipped_.segments)
+        .arg(skipped_.points)
+        .arg(vectorlib::MapBuilderSettings().minEdges)
+        .arg(odometry_.state().connected ? "the odometry alone"
+                                         : "the motion before that, there is no odometry");
+}
+
 void ScanMatcher::updateTrackingHealth() {
-    QString message = lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_) : QString("on track");
+    QString message = lostInARow_ > 0 ? QString("lost for %1 scans").arg(lostInARow_)
+                      : isBlind()     ? blindText()
+                                      : QString("on track");
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
     if (seeks_ != Seeks::Nothing)
         message += "; the place in the loaded drive is sought: until then nothing is mapped";
-    health().set("tracking", lostInARow_ >= 3 ? HealthLevel::Failed : HealthLevel::Ok, message,
+    const HealthLevel level = lostInARow_ >= 3 ? HealthLevel::Failed
+                              : isBlind()      ? HealthLevel::Warn
+                                               : HealthLevel::Ok;
+    health().set("tracking", level, message,
                  {{"lost_in_a_row", lostInARow_},
+                  {"skipped_in_a_row", skipped_.count},
                   {"recoveries", qint64(recoveries_)},
                   {"recovered", qint64(recovered_)}});
 }

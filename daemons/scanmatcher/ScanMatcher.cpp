@@ -188,6 +188,7 @@ void ScanMatcher::begin(bool toMap) {
 
 void ScanMatcher::pause() {
     active_ = false;
+    skipped_ = {};
     source_.close();
     odometry_.close();
     setState(DaemonState::Ready);
@@ -241,6 +242,7 @@ ScanMatcher::Outcome ScanMatcher::outcomeOf(ScanTracker &tracker, const Scan &sc
     Outcome o;
     o.result = resultOf(tracker, scan);
     o.outcome = tracker.builder.report().outcome;
+    o.points = scan.data.points.size();
     o.counts = tracker.counts();
     o.changes = takeChanges(tracker.builder.map);
     return o;
@@ -251,6 +253,7 @@ void ScanMatcher::show(const Outcome &o) {
     lostInARow_ = o.outcome == ScanReport::Outcome::Lost ? lostInARow_ + 1 : 0;
     if (lostInARow_ == 0)
         lastRecovery_.reset();
+    noteSkipped(o);
     const ScanResult &r = o.result;
     mirror_.addPose({r.stamp, {r.pose.pose.x, r.pose.pose.y, r.pose.pose.theta}});
     publish("scan", r, r.stamp);

@@ -37,7 +37,15 @@ private:
         MapChanges changes;
         vectorlib::ScanTrackerCounts counts;
         vectorlib::ScanReport::Outcome outcome = vectorlib::ScanReport::Outcome::Skipped;
+        std::size_t points = 0;                         ///< of the scan
         std::optional<vectorlib::Relocalized> recovery; ///< when the whole map was searched after this scan
+    };
+
+    /// The scans in a row that showed too little to be matched.
+    struct SkippedScans {
+        int count = 0;
+        double since = 0;                     ///< monotonic
+        std::size_t segments = 0, points = 0; ///< of the last
     };
 
     void declareSettings();
@@ -61,6 +69,9 @@ private:
     void relocalize(bool apply, const Reply &reply);
     void showRecovery(const vectorlib::Relocalized &recovery);
     void updateTrackingHealth();
+    void noteSkipped(const Outcome &outcome);
+    bool isBlind() const;
+    QString blindText() const;
     void updateMemoryHealth();
     void updateJournalHealth();
     std::optional<vectorlib::Relocalized> find(vectorlib::ScanTracker &tracker);
@@ -95,6 +106,7 @@ private:
     GraphMirror graph_;
     vectorlib::ScanTrackerCounts counts_;
     int lostInARow_ = 0;
+    SkippedScans skipped_;
     bool relocalizing_ = false; ///< for a command
     quint64 recoveries_ = 0,
             recovered_ = 0; ///< searches of the whole map after lost scans, and their successes

@@ -9,6 +9,10 @@ namespace {
 /// So long may a sensor be silent before another is decoded.
 constexpr std::int64_t patience_ns = 1000000000;
 
+/// Of the beams of a turn. The floor alone returns some of every sensor that stands upright and is not
+/// covered.
+constexpr double leastBack = 0.01;
+
 /// Every how many firings are taken so that a turn of so many has no more points than are wanted.
 std::uint32_t firingStep(const velodyne::SensorModel &model, std::int64_t firings, std::uint32_t wanted) {
     const std::int64_t taken = std::max<std::int64_t>(1, wanted / model.lasers);
@@ -140,6 +144,10 @@ void LidarFeed::decode(const Datagram &datagram) {
 
 void LidarFeed::takeOver(const velodyne::Turn &turn) {
     ++counts_.turns;
+    counts_.beams = turn.beams;
+    counts_.beamsBack = turn.beamsBack;
+    const bool isBlind = turn.beamsBack < leastBack * turn.beams;
+    counts_.blind_s = isBlind ? counts_.blind_s + double(turn.end_ns - turn.begin_ns) * 1e-9 : 0;
     const auto copy = std::make_shared<velodyne::Turn>(turn);
     {
         const std::lock_guard<std::mutex> lock(queueMutex_);

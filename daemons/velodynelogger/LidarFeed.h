@@ -38,6 +38,8 @@ public:
         std::uint64_t turns = 0;                     ///< finished
         std::uint64_t turnsDropped = 0;              ///< finished, but nobody took them in time
         std::uint64_t cloudsDropped = 0;
+        std::uint32_t beams = 0, beamsBack = 0; ///< of the last turn, all lasers; those with a return
+        double blind_s = 0; ///< for so long nearly no beam has come back; 0 when some did in the last turn
         double rpm = 0;
         const velodyne::SensorModel *model = nullptr; ///< null before the first packet
     };

@@ -19,6 +19,13 @@ QString otherSensors(const LidarFeed::Counts &counts) {
     return others.join(", ");
 }
 
+constexpr double longestBlindness_s = 3;
+constexpr qint64 lately_ms = 3000;
+
+bool isLately(const QElapsedTimer &since) {
+    return since.isValid() && since.elapsed() < lately_ms;
+}
+
 /// What went wrong so far, after a semicolon each.
 QString pastText(quint64 wrong, quint64 lost, const velodyne::GpsReader::Counts &gps) {
     QString text;
@@ -103,15 +110,44 @@ void VelodyneLogger::updateHealth() {
         health().remove("position packets");
 }
 
+/// Until none came for a while; in a replay it stays so.
+bool VelodyneLogger::isOfOtherModel(const velodyne::PacketCounts &packets) const {
+    return packets.otherModel > 0 &&
+           (source_.state() != State::Live || !sinceOther_.isValid() || isLately(sinceOther_));
+}
+
+/// What sends, what the setting says, and what was expected.
+QString VelodyneLogger::otherModelText(const LidarFeed::Counts &counts) {
+    const velodyne::PacketCounts &packets = counts.packets;
+    const auto byte = [](auto value) { return QString("%1 hex").arg(unsigned(value), 2, 16, QChar('0')); };
+    const QString wanted = settings().text("decode.model");
+    const velodyne::SensorModel *const model = velodyne::findSensorModel(packets.lastOther);
+    const QString text =
+        QString("%1 packets on %2 are not decoded: ").arg(packets.otherModel).arg(source_.name());
+    if (!model || !velodyne::isDecoded(packets.lastOtherMode, packets.lastOther))
+        return text +
+               QString("a sensor of model %1 in return mode %2 sends; expected: ")
+                   .arg(byte(packets.lastOther), byte(packets.lastOtherMode)) +
+               QString::fromStdString(velodyne::decodedSensors());
+    if (wanted != "auto" && wanted != model->key)
+        return text + QString("a sensor of model %1 sends, decode.model is %2; expected are the sensor of "
+                              "that setting, or the "
+                              "setting %3 or auto")
+                          .arg(model->name, wanted, model->key);
+    return text + QString("a sensor of model %1 sends, too; expected is one sensor on a port, decoded is %2")
+                      .arg(model->name, counts.model ? counts.model->name : "another one");
+}
+
 void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     const velodyne::PacketCounts &packets = counts.packets;
-    const std::uint64_t wrong =
-        packets.wrongSize + packets.wrongFlag + packets.wrongValue + packets.otherModel;
+    const std::uint64_t wrong = packets.wrong();
     const std::uint64_t lost = packets.lost + packets.outOfOrder + counts.udp.kernelDrops +
                                counts.udp.decoderDrops + counts.turnsDropped + counts.cloudsDropped;
     const QJsonObject values{{"packets", double(packets.packets)},
                              {"packet_rate_hz", packetRate_},
                              {"rpm", counts.rpm},
+                             {"beams", double(counts.beams)},
+                             {"beams_back", double(counts.beamsBack)},
                              {"lost", double(packets.lost)},
                              {"out_of_order", double(packets.outOfOrder)},
                              {"kernel_drops", double(counts.udp.kernelDrops)},
@@ -128,7 +164,7 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
         set(HealthLevel::Warn, "no source is open; source.open opens one");
     else if (receiveError || !source_.error().isEmpty())
         set(HealthLevel::Failed, receiveError ? QString::fromStdString(*receiveError) : source_.error());
-    else if (source_.state() == State::Ended && (counts.decoded || counts.other == 0))
+    else if (source_.state() == State::Ended && (counts.decoded || counts.other + packets.otherModel == 0))
         set(HealthLevel::Ok, source_.name() + " has been played to its end");
     else if (source_.state() == State::Live && sincePacket_.elapsed() > 3000)
         set(HealthLevel::Stale,
@@ -136,10 +172,18 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     else if (counts.other > 0 && !counts.decoded)
         set(HealthLevel::Warn,
             QString("%1 datagrams came, and no data packet of an %2").arg(counts.other).arg(sensors));
-    else if (packets.otherModel > 0)
-        set(HealthLevel::Warn, QString::fromStdString(velodyne::describe(velodyne::PacketFault::Model)));
+    else if (isOfOtherModel(packets))
+        set(isLately(sinceGood_) ? HealthLevel::Warn : HealthLevel::Failed, otherModelText(counts));
     else if (counts.otherSensors > 0 && !counts.decoded)
         set(HealthLevel::Warn, "no data packet is decoded, those that came are of " + otherSensors(counts));
+    else if (counts.blind_s > longestBlindness_s)
+        set(HealthLevel::Warn,
+            QString("packets come from %1, but only %2 of %3 beams of the last turn came back, and under 1 % "
+                    "for %4 s; expected are 1 % at least: is the lidar covered?")
+                .arg(source_.name())
+                .arg(counts.beamsBack)
+                .arg(counts.beams)
+                .arg(counts.blind_s, 0, 'f', 0));
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
             textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) + " too");

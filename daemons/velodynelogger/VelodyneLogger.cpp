@@ -139,7 +139,9 @@ Result<void> VelodyneLogger::openPcap(const QString &name, const QStringList &pa
 void VelodyneLogger::opened(State state, const QString &name) {
     replayEnd_.reset();
     sinceRoom_.start();
-    packetsAtTick_ = datagramsAtTick_ = 0;
+    packetsAtTick_ = datagramsAtTick_ = othersAtTick_ = goodAtTick_ = 0;
+    sinceOther_.invalidate();
+    sinceGood_.invalidate();
     packetRate_ = 0;
     sincePacket_.start();
     sinceTick_.start();
@@ -275,9 +277,16 @@ void VelodyneLogger::publishTurns() {
 void VelodyneLogger::tick() {
     const LidarFeed::Counts counts = feed_.counts();
     const std::uint64_t packets = counts.packets.packets, datagrams = packets + counts.other;
+    const std::uint64_t good = packets - counts.packets.wrong();
     if (datagrams != datagramsAtTick_)
         sincePacket_.start();
     datagramsAtTick_ = datagrams;
+    if (counts.packets.otherModel != othersAtTick_)
+        sinceOther_.start();
+    othersAtTick_ = counts.packets.otherModel;
+    if (good != goodAtTick_)
+        sinceGood_.start();
+    goodAtTick_ = good;
     packetRate_ =
         double(packets - packetsAtTick_) * 1e9 / double(std::max<qint64>(1, sinceTick_.nsecsElapsed()));
     sinceTick_.start();

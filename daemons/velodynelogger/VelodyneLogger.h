@@ -54,6 +54,8 @@ private:
     LidarGps gpsState() const;
     void updateHealth();
     void updateSourceHealth(const LidarFeed::Counts &counts);
+    bool isOfOtherModel(const velodyne::PacketCounts &packets) const;
+    QString otherModelText(const LidarFeed::Counts &counts);
 
     Recorder recorder_;
     Recording recording_{identity().name, settings(), health(), recorder_};
@@ -67,8 +69,10 @@ private:
     QElapsedTimer sinceCapture_;            ///< since the last capture.turn
     std::optional<Result<void>> replayEnd_; ///< the replay is at its end; what waits is yet to be published
     QElapsedTimer sincePacket_;             ///< since the last second in which one came
+    QElapsedTimer sinceOther_;              ///< one of another model did; invalid before the first
+    QElapsedTimer sinceGood_;               ///< one that is decoded did; invalid before the first
     QElapsedTimer sinceTick_;
-    std::uint64_t packetsAtTick_ = 0, datagramsAtTick_ = 0;
+    std::uint64_t packetsAtTick_ = 0, datagramsAtTick_ = 0, othersAtTick_ = 0, goodAtTick_ = 0;
     double packetRate_ = 0; ///< a second
     PastFaults faults_;
 };

@@ -54,8 +54,11 @@ QStringList nobodyThere(const Arguments &arguments) {
                           .arg(program, url->host)
                           .arg(url->port)};
     if (program != QStringLiteral("hermes-supervisor"))
-        lines.append(QStringLiteral("with a supervisor: hermesctl call supervisor process.start name=%1")
-                         .arg(program.mid(int(qstrlen("hermes-")))));
+        lines.append(
+            QStringLiteral("with a supervisor: hermesctl list says why it does not run, hermesctl call "
+                           "supervisor process.output name=%1 what it wrote last, hermesctl call "
+                           "supervisor process.start name=%1 starts it")
+                .arg(program.mid(int(qstrlen("hermes-")))));
     return lines;
 }
 

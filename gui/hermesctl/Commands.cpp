@@ -7,6 +7,7 @@
 #include "gui/hermesctl/Markdown.h"
 #include "gui/hermesctl/NetworkBrowser.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/WrongItems.h"
 #include "protocol/messages/Daemons.h"
 #include "protocol/wire/Fields.h"
 #include "protocol/wire/JsonText.h"
@@ -61,14 +62,6 @@ Result<QJsonValue> ask(Client &client, const Arguments &arguments, const QString
 
 namespace {
 
-/// Anybody on the network may announce anything: nothing that a terminal would take for more than text.
-QString printable(QString text) {
-    for (QChar &c : text)
-        if (!c.isPrint())
-            c = QLatin1Char('?');
-    return text;
-}
-
 Result<void> listNetwork(const Arguments &arguments) {
     constexpr std::chrono::seconds howLong{2};
     const auto found = NetworkBrowser().look(howLong);
@@ -92,19 +85,6 @@ Result<void> listNetwork(const Arguments &arguments) {
     }
     arguments.json ? printJson(values) : printTable(rows);
     return {};
-}
-
-/// The health items that are not ok, of what daemon.status gave.
-QJsonArray wrongItems(const SessionReply &status) {
-    QJsonArray wrong;
-    if (!status.result)
-        return wrong;
-    for (const QJsonValue &item : (*status.result)[QStringLiteral("health")].toArray())
-        if (item[QStringLiteral("level")] != QStringLiteral("ok"))
-            wrong.append(QJsonObject{{QStringLiteral("name"), item[QStringLiteral("name")]},
-                                     {QStringLiteral("level"), item[QStringLiteral("level")]},
-                                     {QStringLiteral("message"), item[QStringLiteral("message")]}});
-    return wrong;
 }
 
 } // namespace
@@ -140,10 +120,7 @@ Result<void> listDaemons(const Arguments &arguments) {
             printLine(
                 QStringLiteral("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
             for (const QJsonValue &item : wrong)
-                printLine(printable(QStringLiteral("  %1: %2: %3")
-                                        .arg(item[QStringLiteral("level")].toString(),
-                                             item[QStringLiteral("name")].toString(),
-                                             item[QStringLiteral("message")].toString())));
+                printLine(printable(QStringLiteral("  ") + wrongText(item)));
         }
         found.append(QJsonObject{{QStringLiteral("name"), name},
                                  {QStringLiteral("state"), state},
@@ -222,7 +199,9 @@ Result<void> setSettings(Client &client, const Arguments &arguments) {
     const QJsonArray restart = (*result)[QStringLiteral("restart")].toArray();
     for (const QJsonValue &path : (*result)[QStringLiteral("changed")].toArray())
         printLine(path.toString() + (restart.contains(path)
-                                         ? QStringLiteral(" changed, from the next start on")
+                                         ? QStringLiteral(" changed, from the next start on once saved "
+                                                          "(hermesctl call %1 settings.save)")
+                                               .arg(arguments.words.first())
                                          : QStringLiteral(" changed")));
     return {};
 }

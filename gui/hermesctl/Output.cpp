@@ -98,6 +98,13 @@ void setJsonNotes(bool on) {
     destination.jsonNotes = on;
 }
 
+QString printable(QString text) {
+    for (QChar &c : text)
+        if (!c.isPrint())
+            c = QLatin1Char('?');
+    return text;
+}
+
 void note(const QString &text) {
     if (destination.jsonNotes)
         std::fprintf(stderr, "%s\n", compactJson(QJsonObject{{QStringLiteral("note"), text}}).constData());

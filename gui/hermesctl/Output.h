@@ -25,6 +25,9 @@ void checkOutput();
 /// Nobody reads stdout any more: a stream ends.
 bool readerIsGone();
 
+/// Anybody on the network may announce anything: nothing that a terminal would take for more than text.
+QString printable(QString text);
+
 /// Notes are JSON objects {"note": TEXT} from now on, one a line.
 void setJsonNotes(bool on);
 

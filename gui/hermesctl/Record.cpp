@@ -4,6 +4,7 @@
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Loggers.h"
 #include "gui/hermesctl/Table.h"
+#include "gui/hermesctl/WrongItems.h"
 #include "gui/session/SessionRecorder.h"
 
 #include <QDateTime>
@@ -52,14 +53,29 @@ QJsonObject named(const QString &daemon, const QJsonObject &value) {
     return result;
 }
 
-/// What a recorder with all loggers gives, a Result; or why they are not found.
+/// What a recorder with all loggers gives, a Result.
+template <typename T, typename Begin>
+T ask(const Loggers &loggers, const Begin &begin) {
+    SessionRecorder recorder(loggers.members);
+    return await<T>([&](auto done) { begin(recorder, done); });
+}
+
+/// The same; or why they are not found.
 template <typename T, typename Begin>
 T ask(const Arguments &arguments, const Begin &begin) {
     const Result<Loggers> loggers = Loggers::find(arguments);
-    if (!loggers)
-        return loggers.error();
-    SessionRecorder recorder(loggers->members);
-    return await<T>([&](auto done) { begin(recorder, done); });
+    return loggers ? ask<T>(*loggers, begin) : T(loggers.error());
+}
+
+/// A note for whatever is not well with loggers that record: they may record nothing.
+void noteWhatIsWrong(const SessionMembers &members) {
+    for (const SessionReply &status :
+         callAllAndWait(callsOf(members.all), "daemon.status", members.timeout)) {
+        if (!status.result)
+            note(status.complaint());
+        for (const QJsonValue &item : wrongItems(status))
+            note(printable(status.member.name + ": " + wrongText(item)));
+    }
 }
 
 /// A table of a member of each reply.
@@ -93,10 +109,16 @@ Result<void> recordStart(const Arguments &arguments) {
     const QString name = arguments.words.first();
     if (const Result<void> fine = checkName("NAME", name); !fine)
         return fine;
+    const Result<Loggers> loggers = Loggers::find(arguments);
+    if (!loggers)
+        return loggers.error();
     const auto replies = ask<Result<SessionReplies>>(
-        arguments, [&](SessionRecorder &recorder, auto done) { recorder.start(name, done); });
-    return printReplies(arguments, replies, "records to",
-                        [](const QJsonValue &begun) { return begun["folder"].toString(); });
+        *loggers, [&](SessionRecorder &recorder, auto done) { recorder.start(name, done); });
+    const auto printed = printReplies(arguments, replies, "records to",
+                                      [](const QJsonValue &begun) { return begun["folder"].toString(); });
+    if (replies)
+        noteWhatIsWrong(loggers->members);
+    return printed;
 }
 
 Result<void> recordMark(const Arguments &arguments) {

@@ -7,38 +7,26 @@
 
 namespace hermes::velodyne {
 
-namespace {
-
 bool isDecoded(ReturnMode mode, Model model) {
     const bool blank = mode == ReturnMode::Blank && model == Model::Blank;
     const bool known = mode == ReturnMode::Strongest || mode == ReturnMode::Last || mode == ReturnMode::Dual;
     return blank || (known && model != Model::Blank && findSensorModel(model));
 }
 
-} // namespace
+std::string decodedSensors() {
+    const auto text = [](const SensorModel &model) {
+        char byte[16];
+        std::snprintf(byte, sizeof byte, " (%02x hex)", unsigned(model.model));
+        return model.name + std::string(byte);
+    };
+    return "an " + listSensors(text, " or ") + " in return mode 37, 38 or 39 hex";
+}
 
-std::string describe(PacketFault fault) {
-    switch (fault) {
-    case PacketFault::None:
-        return "no fault";
-    case PacketFault::Size:
-        return "not a data packet: 1206 bytes expected";
-    case PacketFault::Flag:
-        return "a block does not begin with the flag FF EE";
-    case PacketFault::Value:
-        return "an azimuth of 360 degrees or more, or a stamp beyond the hour";
-    case PacketFault::Model:
-        return "a sensor or return mode that is not decoded: an " +
-               listSensors(
-                   [](const SensorModel &model) {
-                       char byte[16];
-                       std::snprintf(byte, sizeof byte, " (%02X hex)", unsigned(model.model));
-                       return model.name + std::string(byte);
-                   },
-                   " or ") +
-               ", one of them a stream, in mode 37, 38 or 39 hex expected";
-    }
-    return "unknown fault";
+int DataPacket::filledSlots(int block) const {
+    int filled = 0;
+    for (int slot = 0; slot < slotsPerBlock; ++slot)
+        filled += distance(block, slot) > 0;
+    return filled;
 }
 
 PacketFault DataPacket::check(const std::uint8_t *bytes, std::size_t size, Model expected) {

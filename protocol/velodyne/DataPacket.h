@@ -13,8 +13,11 @@ enum class PacketFault {
     Model, ///< a sensor or return mode that is not decoded here, or not the sensor that is expected
 };
 
-/// A short phrase for people: what the fault is and what was expected.
-std::string describe(PacketFault fault);
+/// A list for people of the sensors and return modes that are decoded.
+std::string decodedSensors();
+
+/// Whether packets of this return mode and sensor can be decoded.
+bool isDecoded(ReturnMode mode, Model model);
 
 /// The fields of a data packet, read from bytes that somebody else keeps. Block and slot count from 0. A slot
 /// holds the return of one laser; those of the second firing in a block of a VLP-16 follow those of the
@@ -33,6 +36,8 @@ public:
     /// In counts of the sensor (SensorModel.h); 0 means no return.
     std::uint16_t distance(int block, int slot) const { return word(returnOffset(block, slot)); }
     std::uint8_t intensity(int block, int slot) const { return bytes_[returnOffset(block, slot) + 2]; }
+    /// How many slots of a block have a return.
+    int filledSlots(int block) const;
     /// Microseconds since the top of the hour, when the first laser of the packet fired.
     std::uint32_t stamp_us() const { return word(1200) | std::uint32_t(word(1202)) << 16; }
     ReturnMode returnMode() const { return ReturnMode(bytes_[1204]); }

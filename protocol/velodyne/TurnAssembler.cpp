@@ -33,6 +33,10 @@ PacketFault TurnAssembler::feed(const std::uint8_t *bytes, std::size_t size, std
     if (fault == PacketFault::None && !isOfModel(DataPacket(bytes), receive_ns))
         fault = PacketFault::Model;
     count(counts_, fault);
+    if (fault == PacketFault::Model) {
+        counts_.lastOther = DataPacket(bytes).model();
+        counts_.lastOtherMode = DataPacket(bytes).returnMode();
+    }
     if (fault != PacketFault::None)
         return fault;
     const DataPacket packet(bytes);
@@ -79,6 +83,8 @@ void TurnAssembler::addGroup(const DataPacket &packet, int group, std::int64_t s
         if (turn_.firings % options_.firingStep == 0)
             decoder_->decode(packet, group, firing, stamp_ns, turn_.points);
     }
+    turn_.beams += std::uint32_t(model.firingsPerBlock * model.lasers);
+    turn_.beamsBack += std::uint32_t(packet.filledSlots(group * packet.returns()));
     turn_.end_ns = stamp_ns + (group + 1) * model.blockPeriod_ns();
     lastAzimuth_ = azimuth;
 }
@@ -122,6 +128,7 @@ void TurnAssembler::noteGap(std::int64_t gap_ns, std::int64_t period_ns) {
 void TurnAssembler::beginTurn(bool partial) {
     turn_.partial = partial;
     turn_.firings = 0;
+    turn_.beams = turn_.beamsBack = 0;
     turn_.lostPackets = 0;
     turn_.points.clear();
 }

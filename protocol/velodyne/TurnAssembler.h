@@ -13,13 +13,18 @@ struct PacketCounts {
     std::uint64_t packets = 0;
     std::uint64_t wrongSize = 0;
     std::uint64_t wrongFlag = 0;
-    std::uint64_t wrongValue = 0; ///< an azimuth or stamp out of its range
-    std::uint64_t otherModel = 0; ///< a sensor or return mode that is not decoded, or a second sensor
+    std::uint64_t wrongValue = 0;   ///< an azimuth or stamp out of its range
+    std::uint64_t otherModel = 0;   ///< a sensor or return mode that is not decoded, or a second sensor
+    Model lastOther = Model::Blank; ///< of the last packet that otherModel counts, and its mode
+    ReturnMode lastOtherMode = ReturnMode::Blank;
     std::uint64_t outOfOrder = 0; ///< older than its predecessor, or the same again: not decoded
     std::uint64_t lost = 0;       ///< estimated from gaps between stamps
     std::uint64_t gaps = 0;       ///< places where packets were lost
     std::uint64_t clockJumps =
         0; ///< the sensor's clock and the receiver's parted by more than a second, or were set
+
+    /// Those that are not decoded for what stands in them.
+    std::uint64_t wrong() const { return wrongSize + wrongFlag + wrongValue + otherModel; }
 };
 
 /// The points of one turn of the head in the order of firing: clockwise seen from above.
@@ -29,6 +34,8 @@ struct Turn {
     std::int64_t begin_ns = 0;     ///< when its first firing began, since the Unix epoch
     std::int64_t end_ns = 0;       ///< when its last firing ended
     std::uint32_t firings = 0;     ///< with or without return, decoded or not
+    std::uint32_t beams = 0;       ///< of all lasers, decoded or not
+    std::uint32_t beamsBack = 0;   ///< of them: those with a return
     std::uint32_t lostPackets = 0; ///< estimated, within this turn
     const SensorModel *model = nullptr;
     int laser = PacketDecoder::allLasers; ///< the one decoded, or allLasers

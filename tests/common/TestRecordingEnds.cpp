@@ -23,6 +23,9 @@ private Q_SLOTS:
     void lowSpaceIsToldAndEndsTheRecording();
     void aFailedWriterEndsTheRecording();
     void aFolderThatIsRemovedEndsTheRecording();
+    void aFileThatIsRemovedEndsTheRecording_data();
+    void aFileThatIsRemovedEndsTheRecording();
+    void aFileThatIsRemovedJustBeforeTheStopIsMissed();
     void aStopWhileItBeginsEndsIt_data();
     void aStopWhileItBeginsEndsIt();
     void aRecordingThatWasCutOffIsCompleted();
@@ -94,6 +97,53 @@ void TestRecordingEnds::aFolderThatIsRemovedEndsTheRecording() {
     QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
 }
 
+void TestRecordingEnds::aFileThatIsRemovedEndsTheRecording_data() {
+    QTest::addColumn<bool>("isReplaced");
+    QTest::addColumn<bool>("isFolderToo");
+    QTest::newRow("removed") << false << false;
+    QTest::newRow("replaced") << true << false;
+    QTest::newRow("moved away with its folder, which has a successor") << false << true;
+}
+
+void TestRecordingEnds::aFileThatIsRemovedEndsTheRecording() {
+    QFETCH(bool, isReplaced);
+    QFETCH(bool, isFolderToo);
+    QTemporaryDir root;
+    Logger logger(root.path());
+    const QString folder = root.path() + "/a", path = folder + "/logger-0001.txt";
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    if (isFolderToo)
+        QVERIFY(QDir().rename(folder, root.path() + "/moved") && QDir().mkpath(folder));
+    else
+        QVERIFY(QFile::rename(path, root.path() + "/kept")); // so that its inode is not given again
+    if (isReplaced)
+        put(path, "one\ntwo\nthr");
+    QTRY_VERIFY(!logger.recording.isActive());
+    const Result<QJsonValue> stopped = logger.call("record.stop");
+    QCOMPARE(stopped.error().code, int(ErrorCode::InputOutput));
+    const QString named = stopped.error().data.toObject().value("path").toString();
+    QVERIFY2(named == path || (isFolderToo && named == folder),
+             qPrintable(named)); // between rename and mkpath
+    QVERIFY(stopped.error().message.contains(isReplaced ? "another file" : "removed or moved away"));
+    QCOMPARE(logger.level("recording"), "error");
+    QCOMPARE(logger.item("recording").message, stopped.error().message);
+    QCOMPARE(sidecarOf(folder).value("ended").toString(), "failed");
+    QVERIFY(!sidecarOf(folder).value("complete").toBool());
+    QVERIFY(logger.call("record.start", {{"name", "b"}}).ok());
+    QCOMPARE(logger.level("recording"), "ok");
+}
+
+void TestRecordingEnds::aFileThatIsRemovedJustBeforeTheStopIsMissed() {
+    QTemporaryDir root;
+    Logger logger(root.path());
+    QVERIFY(logger.call("record.start", {{"name", "a"}}).ok());
+    QVERIFY(QFile::remove(root.path() + "/a/logger-0001.txt"));
+    const Result<QJsonValue> stopped = logger.call("record.stop");
+    QVERIFY(!stopped.ok());
+    QCOMPARE(stopped.error().data.toObject().value("path").toString(), root.path() + "/a/logger-0001.txt");
+    QVERIFY(!sidecarOf(root.path() + "/a").value("complete").toBool());
+}
+
 void TestRecordingEnds::aStopWhileItBeginsEndsIt_data() {
     QTest::addColumn<bool>("begins");
     QTest::newRow("begins") << true;
@@ -139,6 +189,11 @@ void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {
              QStringList({"logger-0001.txt", "logger.json"}));
     QCOMPARE(QFileInfo(cut + "/logger-0001.txt").size(), 8);
     QCOMPARE(next.call("record.list")->toArray()[0].toObject().value("complete"), QJsonValue(false));
+    QTRY_COMPARE(next.level("recording"), "warn");
+    for (const QString &word : {QString("\"a\" was cut off"), cut, sidecar.value("end_utc").toString()})
+        QVERIFY2(next.item("recording").message.contains(word), qPrintable(next.item("recording").message));
+    QVERIFY(next.call("record.start", {{"name", "b"}}).ok());
+    QCOMPARE(next.level("recording"), "ok");
 }
 
 void TestRecordingEnds::foreignSidecarsAreToldAndLeftAlone_data() {

@@ -45,7 +45,8 @@ class Hermesctl(unittest.TestCase):
         self.assertIn("foo", shown.stderr)
 
     def test_get_and_set(self):
-        self.assertIn("changed, from the next start on", self.ok("set", self.address, "sensor.name=cellar"))
+        self.assertEqual(self.ok("set", self.address, "sensor.name=cellar", "period_s=0.1"), "period_s changed\n"
+                         f"sensor.name changed, from the next start on once saved (hermesctl call {self.address} settings.save)\n")
         self.assertEqual(json.loads(self.ok("get", self.address, "sensor")), {"name": "cellar"})
         self.assertIn("limits", json.loads(self.ok("get", self.address)))
         self.assertEqual(ctl("set", self.address, "sensor.name=attic", "period_s=0").returncode, 1)
@@ -87,6 +88,11 @@ class Hermesctl(unittest.TestCase):
             shown = ctl("call", f"127.0.0.1:{taken.getsockname()[1]}", "daemon.info")
         self.assertEqual(shown.returncode, 1)
         self.assertIn("refused", shown.stderr)
+        shown = ctl("--host", "127.0.0.79", "log", "seriallogger")
+        self.assertEqual(shown.returncode, 1)
+        for words in ("start hermes-seriallogger", "hermesctl list says why it does not run",
+                      "process.output name=seriallogger", "process.start name=seriallogger"):
+            self.assertIn(words, shown.stderr)
 
     def test_output_that_cannot_be_written(self):
         for arguments in (["--help"], ["doc", self.address], ["call", self.address, "daemon.info"],

@@ -15,6 +15,8 @@ private Q_SLOTS:
     void theFirstOfTwoSensorsIsDecoded();
     void aSettingNamesTheSensor();
     void everyNthFiringOnly();
+    void beamsOfAllLasersAreCounted_data();
+    void beamsOfAllLasersAreCounted();
     void turnsThatEndBeforeTheyBeginHaveNoSpeed();
     void randomBytesDoNoHarm();
 };
@@ -114,6 +116,35 @@ void TestTurnAssembler::everyNthFiringOnly() {
 
 /// Two packets 1 us apart: a turn begins with the last firing of the one and ends with the first of the
 /// other.
+void TestTurnAssembler::beamsOfAllLasersAreCounted_data() {
+    QTest::addColumn<bool>("dual");
+    QTest::newRow("single") << false;
+    QTest::newRow("dual") << true;
+}
+
+/// Whichever laser is decoded; the second return of a beam does not count.
+void TestTurnAssembler::beamsOfAllLasersAreCounted() {
+    QFETCH(bool, dual);
+    Sensor sensor;
+    sensor.dual = dual;
+    sensor.model = &vlp16;
+    sensor.azimuthStep = 40;
+    for (const std::uint32_t back : {0u, 3u, 32u}) { // of the slots of a block
+        std::vector<Turn> turns;
+        TurnAssembler assembler({}, [&](const Turn &turn) { turns.push_back(turn); });
+        for (int i = 0; i < (dual ? 200 : 100); ++i) {
+            auto bytes = sensor.packet(i);
+            for (std::size_t block = 0; block < blocksPerPacket; ++block)
+                for (std::size_t slot = back; slot < slotsPerBlock; ++slot)
+                    bytes[block * blockSize + 4 + 3 * slot] = bytes[block * blockSize + 5 + 3 * slot] = 0;
+            assembler.feed(bytes.data(), bytes.size(), sensor.stamp(i) + 200000);
+        }
+        QVERIFY(turns.size() >= 2);
+        QCOMPARE(turns[1].beams, 16 * turns[1].firings);
+        QCOMPARE(turns[1].beamsBack, turns[1].firings / 2 * back);
+    }
+}
+
 void TestTurnAssembler::turnsThatEndBeforeTheyBeginHaveNoSpeed() {
     int turns = 0;
     TurnAssembler assembler({}, [&turns](const Turn &) { ++turns; });

@@ -129,6 +129,33 @@ class BadFiles(RobotCase):
                 except OSError:
                     pass
 
+    def test_files_of_a_recording_that_are_removed(self):
+        """Or replaced, while they are recorded: their loggers go on writing to what has no name."""
+        records = os.path.join(self.folder, "recordings")
+        self.simulate()
+        robot = self.robot_of(velodynelogger={"record": {"folder": records}}, seriallogger={"record": {"folder": records}})
+        self.until_well()
+        for name, file in (("velodynelogger", "velodynelogger-0001.pcap"), ("seriallogger", "seriallogger-gps.raw"),
+                           ("seriallogger", "seriallogger-gps.index"), ("seriallogger", "seriallogger-events.jsonl")):
+            for how in ("removed", "replaced"):
+                with self.subTest(file, how=how):
+                    since, run = robot.journal_size(), f"{file}-{how}"
+                    path = os.path.join(robot.call(name, "record.start", name=run)["folder"], file)
+                    if how == "removed":
+                        os.remove(path)
+                    else:
+                        shutil.copy(path, path + ".copy")
+                        os.replace(path + ".copy", path)
+                    self.tells(name, "error", "recording", path, {"removed": "removed", "replaced": "another file"}[how], since=since)
+                    with self.assertRaisesRegex(DaemonError, file):
+                        robot.call(name, "record.stop")
+                    told = next(one for one in robot.call(name, "record.list") if one["name"] == run)
+                    self.assertEqual((told["complete"], told["ended"]), (False, "failed"), told)
+        for name in ("velodynelogger", "seriallogger"):
+            robot.call(name, "record.start", name=f"{name} again")
+            self.until_well(names=[name])
+            robot.call(name, "record.stop")
+
     def test_full_disk(self):
         """Under recordings, the audit and the settings files."""
         disk = self.small_disk()

@@ -204,7 +204,7 @@ class BadInput(RobotCase):
         for block in range(12):
             other[100 * block:100 * block + 2] = b"\xff\xee"
         for what, packet, words in (("short packets", bytes(PACKET - 1), ("no data packets", "expected")),
-                                    ("an unknown model", bytes(other[:-1]) + b"\x77", ("not decoded", "expected"))):
+                                    ("an unknown model", bytes(other[:-1]) + b"\x77", ("model 77 hex", "expected", "VLP-16 .22 hex"))):
             with self.subTest(what), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
                 self.restart("velodynelogger")
                 since, is_over = robot.journal_size(), threading.Event()
@@ -221,6 +221,36 @@ class BadInput(RobotCase):
                     thread.join()
         self.simulator.call("sim.fault", device="lidar", kind="none")
         self.until_well("the lidar")
+
+    def test_lidar_of_another_model(self):
+        """Than the setting says: nothing is decoded."""
+        self.simulate()
+        robot = self.robot_of()
+        self.until_well()
+        robot.write("velodynelogger", decode={"model": "vlp16"})
+        since = robot.journal_size()
+        self.restart("velodynelogger")
+        self.tells("velodynelogger", "error", "lidar", str(self.wires["lidar"]), "HDL-32E sends", "decode.model is vlp16", "expected",
+                   since=since)
+        robot.write("velodynelogger", decode={"model": "hdl32e"})
+        self.restart("velodynelogger")
+        self.until_well("the right model")
+
+    def test_covered_lidar(self):
+        """Packets at full rate, and nothing in them: a scan shows nothing, and the pose is only guessed."""
+        self.simulate()
+        robot = self.robot_of()
+        self.until_well()
+        wait_for("a map", lambda: robot.call("scanmatcher", "matcher.state")["matched"] > 5, 10)
+        for dropouts, found in ((1, "0"), (0.999, r"[0-9]+")):
+            since = robot.journal_size()
+            self.simulator.call("sim.noise", dropouts=dropouts)
+            self.tells("velodynelogger", "lidar", str(self.wires["lidar"]), f"only {found} of [0-9]+ beams", "expected.* 1 %", since=since)
+            self.tells("scanmatcher", "tracking", "[0-9]+ scans in a row", "[01] line segments in [0-9]+ points", "expected are 2",
+                       "no odometry", since=since)
+            self.simulator.call("sim.noise", dropouts=0)
+            for name in ("lidar", "tracking"):
+                wait_for(f"{name} in the journal", lambda name=name, since=since: f"{name} is ok" in robot.written(since), 10)
 
     def test_what_is_stopped_during_a_search_stays_so(self):
         self.simulate()

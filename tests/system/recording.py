@@ -146,6 +146,7 @@ class Recording(unittest.TestCase):
                 self.assertIsNone(sidecar_of(recorded)["ended"])
                 logger = load.Logger(self.folder)
                 wait_for("the sidecar", lambda: sidecar_of(recorded)["ended"] == "cut off")
+                self.check_told(logger, f"kill{number}")
                 written = self.check_cut_off(recorded)
                 # Of the packets that are missing; what holds up a nap here holds up the logger too.
                 cost.append(max([0] + [killed - time - 2 * late for time in times[written:]]))
@@ -153,6 +154,16 @@ class Recording(unittest.TestCase):
             logger.__exit__()
         print(f"kill -9 {KILLS} times: at most {1e3 * max(cost):.0f} ms were lost")
         self.assertLess(max(cost), 0.1)
+
+    def check_told(self, logger, name):
+        """That one was cut off; until the next begins."""
+        def told():
+            return next(one for one in logger.daemon.call("daemon.status")["health"] if one["name"] == "recording")
+        wait_for("the health item", lambda: told()["level"] == "warn", 5)
+        self.assertIn(f'"{name}" was cut off at 20', told()["message"])
+        logger.daemon.call("record.start", name=f"after {name}")
+        self.assertEqual(told()["level"], "ok")
+        logger.daemon.call("record.stop")
 
     def check_cut_off(self, folder):
         """The files are whole and agree with the sidecar; gives how many data packets they hold."""

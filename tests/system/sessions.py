@@ -268,6 +268,23 @@ class Sessions(unittest.TestCase):
         error = json.loads(self.ctl("replay", "none", "--json", status=1))
         self.assertIn('no session "none"', error["message"])
 
+    def test_a_start_tells_what_is_not_well(self):
+        """The receiver is unplugged: it would be recorded, and nothing comes."""
+        self.serial.process.stop()
+        ports = [{"name": "gps", "url": f"serial://{self.folder}/unplugged?baud=9600"}]
+        process = Process(load.BINARIES, "seriallogger", free_port(0), self.folder, {
+            "ports": json.dumps(ports), "record.folder": self.records, "record.free_floor_bytes": 0, "record.free_warn_bytes": 0})
+        self.addCleanup(process.stop)
+        process.connect().close()
+        shown = ctl("--daemons", f"127.0.0.1:{process.port}", "record", "start", "run1")
+        self.assertEqual(shown.returncode, 0, shown)
+        self.assertIn("records to", shown.stdout)
+        self.assertRegex(shown.stderr, rf"hermesctl: seriallogger: error: port gps: .*{self.folder}/unplugged")
+        ctl("--daemons", f"127.0.0.1:{process.port}", "record", "stop")
+        shown = ctl("--daemons", f"127.0.0.1:{process.port}", "record", "start", "run2", "--json")
+        notes = [json.loads(line)["note"] for line in shown.stderr.splitlines()]
+        self.assertTrue(any(one.startswith("seriallogger: error: port gps: ") for one in notes), shown)
+
     def test_mark(self):
         self.assertIn("no logger that takes marks is recording", self.ctl("record", "mark", "too early", status=1))
         self.ctl("record", "start", "run1")
