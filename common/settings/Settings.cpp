@@ -159,6 +159,14 @@ Result<QByteArray> readSettingsFile(const QString &name) {
     return text;
 }
 
+Result<void> checkSettingsFile(const QString &name) {
+    const auto replaceable = checkReplaceable(name);
+    if (replaceable)
+        return {};
+    return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + replaceable.error().message,
+                 replaceable.error().data);
+}
+
 Result<QJsonObject> Settings::read(const QString &name) const {
     const auto text = readSettingsFile(name);
     if (!text)
@@ -192,6 +200,8 @@ Result<QString> Settings::save(const QString &name) const {
     if (target.isEmpty())
         return Error(ErrorCode::InputOutput,
                      QStringLiteral("no settings file to save to: start with --config FILE"));
+    if (const auto fine = checkSettingsFile(target); !fine)
+        return fine.error();
     QSaveFile file(target);
     const QByteArray text = QJsonDocument(changes()).toJson();
     // commit() alone does not notice a full disk

@@ -2,6 +2,9 @@
 #include "common/settings/Settings.h"
 
 #include <QtTest>
+#include <cerrno>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 using namespace hermes;
 
@@ -22,6 +25,8 @@ private Q_SLOTS:
     void fileErrorsNameFileAndPlace_data();
     void fileErrorsNameFileAndPlace();
     void failedSaveLeavesTheOldFile();
+    void replacesNoDevice_data();
+    void replacesNoDevice();
     void ruleAcrossSettings();
 
 private:
@@ -207,6 +212,38 @@ void TestSettings::failedSaveLeavesTheOldFile() {
     QVERIFY(!result);
     QVERIFY(result.error().is(ErrorCode::InputOutput));
     QVERIFY(!settings->load(folder.filePath("absent.json")));
+}
+
+void TestSettings::replacesNoDevice_data() {
+    QTest::addColumn<mode_t>("kind");
+    QTest::addColumn<bool>("linked");
+    for (const bool linked : {false, true}) {
+        QTest::addRow("pipe%s", linked ? ", linked" : "") << mode_t(S_IFIFO) << linked;
+        QTest::addRow("device%s", linked ? ", linked" : "") << mode_t(S_IFCHR) << linked;
+        QTest::addRow("folder%s", linked ? ", linked" : "") << mode_t(S_IFDIR) << linked;
+    }
+}
+
+void TestSettings::replacesNoDevice() {
+    QFETCH(mode_t, kind);
+    QFETCH(bool, linked);
+    const QTemporaryDir own;
+    const QString target = own.filePath("target"), name = linked ? own.filePath("link.json") : target;
+    const QByteArray path = QFile::encodeName(target);
+    const int made = kind == S_IFDIR ? ::mkdir(path, 0700) : ::mknod(path, kind | 0600, makedev(1, 3));
+    if (made != 0 && errno == EPERM)
+        QSKIP("only root makes device nodes");
+    QCOMPARE(made, 0);
+    QVERIFY(!linked || QFile::link(target, name));
+    const auto result = settings->save(name);
+    QVERIFY(!result);
+    QCOMPARE(result.error().message,
+             QString("settings file %1: %2not a regular file")
+                 .arg(name, linked ? QString("this is %1, ").arg(target) : QString()));
+    struct stat status {};
+    QCOMPARE(::stat(path, &status), 0);
+    QCOMPARE(status.st_mode & S_IFMT, kind);
+    QCOMPARE(QFileInfo(name).isSymLink(), linked);
 }
 
 void TestSettings::ruleAcrossSettings() {
