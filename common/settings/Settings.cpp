@@ -147,8 +147,7 @@ QStringList Settings::waiting() const {
 }
 
 Result<QByteArray> readSettingsFile(const QString &name) {
-    constexpr qint64 mostBytes = 1 << 20;
-    auto text = readNamedFile(name, {QStringLiteral("/")}, mostBytes);
+    auto text = readNamedFile(name, {QStringLiteral("/")}, mostSettingsBytes);
     if (!text)
         return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + text.error().message,
                      text.error().data);
@@ -159,7 +158,11 @@ Result<QByteArray> readSettingsFile(const QString &name) {
     return text;
 }
 
-Result<void> checkSettingsFile(const QString &name) {
+Result<void> checkSettingsFile(const QString &name, const QByteArray &text) {
+    if (text.size() > mostSettingsBytes)
+        return fileError(name, QStringLiteral("it would have %1 bytes, expected at most %2")
+                                   .arg(text.size())
+                                   .arg(mostSettingsBytes));
     const auto replaceable = checkReplaceable(name);
     if (replaceable)
         return {};
@@ -200,10 +203,10 @@ Result<QString> Settings::save(const QString &name) const {
     if (target.isEmpty())
         return Error(ErrorCode::InputOutput,
                      QStringLiteral("no settings file to save to: start with --config FILE"));
-    if (const auto fine = checkSettingsFile(target); !fine)
+    const QByteArray text = QJsonDocument(changes()).toJson();
+    if (const auto fine = checkSettingsFile(target, text); !fine)
         return fine.error();
     QSaveFile file(target);
-    const QByteArray text = QJsonDocument(changes()).toJson();
     // commit() alone does not notice a full disk
     if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
         !file.commit())

@@ -12,11 +12,15 @@
 
 namespace hermes {
 
-/// The text of a settings file, of 1 MiB at most, without waiting for anybody: devices and pipes are refused.
+/// The largest settings file that is read, and written.
+constexpr qint64 mostSettingsBytes = 1 << 20;
+
+/// The text of a settings file, without waiting for anybody: devices and pipes are refused.
 Result<QByteArray> readSettingsFile(const QString &name);
 
-/// Whether a settings file may be put there: a device or a pipe is not replaced, as it would not be read.
-Result<void> checkSettingsFile(const QString &name);
+/// Whether a settings file of this text may be put there: it can be read again, and replaces no device or
+/// pipe.
+Result<void> checkSettingsFile(const QString &name, const QByteArray &text);
 
 /// The settings of a program: declared once with schema and default, always valid, changed all or nothing,
 /// kept in a JSON file. A dot in a name makes a group: "motor.radius_m" is {"motor": {"radius_m": ...}}.
@@ -62,7 +66,7 @@ public:
     /// Takes what read() gives, and remembers the file for save().
     Result<void> load(const QString &file);
     /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name. What
-    /// is no regular file is not replaced.
+    /// is no regular file is not replaced, and what load() would not read is not written.
     Result<QString> save(const QString &file = QString()) const;
 
     /// The program starts its work: from now on those that apply on restart keep in force the value they

@@ -41,7 +41,7 @@ Result<QJsonObject> parsed(const QString &path, const QByteArray &text) {
 class Replacement {
 public:
     Result<void> add(const QString &path, const QByteArray &text) {
-        if (const auto fine = checkSettingsFile(path); !fine)
+        if (const auto fine = checkSettingsFile(path, text); !fine)
             return fine.error();
         files_.push_back(std::make_unique<QSaveFile>(path));
         QSaveFile &file = *files_.back();
@@ -156,7 +156,7 @@ Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
 }
 
 Result<void> SettingsFiles::commit(Replacement &files) const {
-    if (const auto fine = checkSettingsFile(mark()); !fine) // to open a pipe would wait
+    if (const auto fine = checkSettingsFile(mark(), {}); !fine) // to open a pipe would wait
         return fine;
     // In this order on the disk, too: the power may fail.
     syncFolder(folder_);

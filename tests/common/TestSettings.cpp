@@ -25,6 +25,7 @@ private Q_SLOTS:
     void fileErrorsNameFileAndPlace_data();
     void fileErrorsNameFileAndPlace();
     void failedSaveLeavesTheOldFile();
+    void savesOnlyWhatItCanReadAgain();
     void replacesNoDevice_data();
     void replacesNoDevice();
     void ruleAcrossSettings();
@@ -212,6 +213,24 @@ void TestSettings::failedSaveLeavesTheOldFile() {
     QVERIFY(!result);
     QVERIFY(result.error().is(ErrorCode::InputOutput));
     QVERIFY(!settings->load(folder.filePath("absent.json")));
+}
+
+void TestSettings::savesOnlyWhatItCanReadAgain() {
+    const QString name = folder.filePath("growing.json");
+    const auto setBytes = [&](int characters) {
+        return settings->set({{"listen", QJsonArray{QString(characters, 'x')}}}).ok();
+    };
+    QVERIFY(setBytes(1) && settings->save(name));
+    const int around = int(QFileInfo(name).size()) - 1; // what is written beside the characters
+    QVERIFY(setBytes(int(mostSettingsBytes) - around));
+    QVERIFY(settings->save(name) && settings->load(name));
+    QCOMPARE(QFileInfo(name).size(), mostSettingsBytes);
+    QVERIFY(setBytes(int(mostSettingsBytes) - around + 1));
+    const auto result = settings->save(name);
+    QVERIFY(!result);
+    QCOMPARE(result.error().message,
+             QString("settings file %1: it would have 1048577 bytes, expected at most 1048576").arg(name));
+    QVERIFY(settings->load(name));
 }
 
 void TestSettings::replacesNoDevice_data() {

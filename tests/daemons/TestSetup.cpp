@@ -54,6 +54,7 @@ private Q_SLOTS:
     void receiversAreAddedOnce();
     void lidarAndProcesses();
     void writesAndPutsBack();
+    void writesOnlyWhatItCanReadAgain();
     void replacesNoPipe();
     void samplesNameTheFolder();
     void aFloodDoesNotHoldUpTheSearchForLidars();
@@ -223,6 +224,17 @@ void TestSetup::writesAndPutsBack() {
     const SettingsFiles nowhere(folder.filePath("none"), {});
     const auto refused = nowhere.write({{"scanmatcher", QJsonObject()}});
     QVERIFY(!refused.ok() && refused.error().message.contains("none/scanmatcher.json"));
+}
+
+void TestSetup::writesOnlyWhatItCanReadAgain() {
+    const QTemporaryDir folder;
+    const SettingsFiles files(folder.path(), folder.path());
+    const auto large = files.write(
+        {{"scanmatcher", json(R"({"a": 1})")}, {"simulator", QJsonObject{{"a", QString(1 << 20, 'x')}}}});
+    QVERIFY(!large);
+    QVERIFY2(large.error().message.contains("simulator.json: it would have 1048"),
+             qPrintable(large.error().message));
+    QCOMPARE(files.current().value(), QJsonObject());
 }
 
 void TestSetup::replacesNoPipe() {
