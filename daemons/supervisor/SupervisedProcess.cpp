@@ -249,7 +249,8 @@ void SupervisedProcess::setEntry(const ProcessEntry &entry) {
     if (entry == entry_)
         return;
     entry_ = entry;
-    if (isAlive() && state_ != State::Stopping)
+    const bool isTried = state_ == State::Failed || state_ == State::Waiting; // perhaps it is mended
+    if (isAlive() ? state_ != State::Stopping : isTried)
         restart();
 }
 

@@ -30,6 +30,8 @@ private Q_SLOTS:
     void addAndRemove();
     void changedEntryIsStartedAnew_data();
     void changedEntryIsStartedAnew();
+    void aMendedEntryIsStarted_data();
+    void aMendedEntryIsStarted();
     void refusals();
     void childrenEndWithAKilledSupervisor();
     void runsADaemon();
@@ -287,6 +289,36 @@ void TestSupervisor::changedEntryIsStartedAnew() {
     QVERIFY(call("settings.set", {{"values", QJsonObject{{"processes", changed}}}}).ok());
     QTRY_COMPARE(call("process.output", {{"name", "one"}, {"lines", 1}})->toArray(), QJsonArray{"second"});
     QCOMPARE(process("two")["pid"].toInt(), pid);
+}
+
+void TestSupervisor::aMendedEntryIsStarted_data() {
+    QTest::addColumn<QString>("script");
+    QTest::addColumn<QString>("state");
+    QTest::newRow("wrong arguments") << "exit 2"
+                                     << "failed";
+    QTest::newRow("tried again later") << "exit 1"
+                                       << "waiting";
+}
+
+/// Whatever was wrong with it; one that ended in order, or was stopped, stays as it is.
+void TestSupervisor::aMendedEntryIsStarted() {
+    QFETCH(QString, script);
+    QFETCH(QString, state);
+    launch({shell("one", script), shell("two", "exit 0"), shell("three", script)});
+    QTRY_COMPARE(process("two")["last_exit"].toString(), QString("exit status 0"));
+    QVERIFY(call("process.stop", {{"name", "three"}}).ok());
+    QTRY_COMPARE(stateOf("three"), QString("stopped"));
+    QTRY_COMPARE(stateOf("one"), state);
+    QTRY_VERIFY(state == "failed" || process("one")["next_start_s"].toDouble() > 1);
+    const int tries = process("one")["restarts"].toInt();
+    const QString mended = "exec sleep 100";
+    const QJsonArray entries{shell("one", mended), shell("two", mended), shell("three", mended)};
+    QVERIFY(call("settings.set", {{"values", QJsonObject{{"processes", entries}}}}).ok());
+    QTRY_VERIFY(process("one")["pid"].toInt() > 0);
+    QTRY_COMPARE(call("daemon.status")->toObject()["state"].toString(), QString("running"));
+    QCOMPARE(process("one")["restarts"].toInt(), tries); // by what is new, not by the next try
+    QCOMPARE(stateOf("two"), QString("stopped"));
+    QCOMPARE(stateOf("three"), QString("stopped"));
 }
 
 void TestSupervisor::refusals() {
