@@ -134,6 +134,11 @@ Result<void> Daemon::configure(const CommandLine &line) {
         }
     }
     const auto set = configuration_.insist(line.settings);
+    // What only a rule refuses may suit the file once that is mended: it is no wrong command line.
+    if (!set && !line.config.isEmpty() && configuration_.suitsSchema(line.settings))
+        return Error(
+            ErrorCode::InvalidSetting,
+            QStringLiteral("settings file %1 with option --set: %2").arg(line.config, set.error().message));
     if (!set)
         return Error(ErrorCode::InvalidParams, QStringLiteral("option --set: ") + set.error().message);
     if (!line.listen.isEmpty()) {

@@ -93,10 +93,18 @@ Result<QStringList> Settings::reset(const QStringList &paths) {
     return apply(proposed);
 }
 
-std::vector<SchemaViolation> Settings::check(const QJsonObject &proposed) const {
+bool Settings::suitsSchema(const QJsonObject &partial) const {
+    return checkSchema(merged(current_, partial)).empty();
+}
+
+std::vector<SchemaViolation> Settings::checkSchema(const QJsonObject &proposed) const {
     if (!validator_)
         validator_.emplace(fullSchema_);
-    auto violations = validator_->check(proposed);
+    return validator_->check(proposed);
+}
+
+std::vector<SchemaViolation> Settings::check(const QJsonObject &proposed) const {
+    auto violations = checkSchema(proposed);
     if (violations.empty()) {
         for (const Rule &rule : rules_) {
             for (const SchemaViolation &violation : rule(proposed))

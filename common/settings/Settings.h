@@ -57,6 +57,9 @@ public:
     Result<QStringList> set(const QJsonObject &partial);
     /// The same, as told on the command line: a file that is read later changes nothing of it.
     Result<QStringList> insist(const QJsonObject &partial);
+    /// Whether each of these values, with the others as they are, suits the schema, whatever rules say of
+    /// them.
+    bool suitsSchema(const QJsonObject &partial) const;
     /// Puts the values at or below these paths back to their defaults; without paths, all of them.
     Result<QStringList> reset(const QStringList &paths = {});
 
@@ -87,6 +90,7 @@ private:
     Result<QStringList> apply(const QJsonObject &proposed);
     QStringList take(const QJsonObject &values);
     void put(const QJsonObject &values);
+    std::vector<SchemaViolation> checkSchema(const QJsonObject &proposed) const;
     std::vector<SchemaViolation> check(const QJsonObject &proposed) const;
 
     QJsonObject fullSchema_;
