@@ -182,6 +182,8 @@ void TestSettings::fileErrorsNameFileAndPlace_data() {
     QTest::addColumn<QString>("says");
     QTest::newRow("syntax") << QByteArray("{\n  \"on\": true,\n  oops\n}\n") << "line 3";
     QTest::newRow("cut") << QByteArray("{\n\"on\": tr") << "line 2";
+    QTest::newRow("large number") << QByteArray("{\n\"motor\": {\"ticks\": 1e999}}")
+                                  << "line 2: Number too big to be stored in double";
     QTest::newRow("repeated key") << QByteArray("{\"on\": true,\n\"on\": false}")
                                   << "line 2: the key \"on\" occurs twice";
     QTest::newRow("not an object") << QByteArray("[1]") << "expected a JSON object";
@@ -204,6 +206,7 @@ void TestSettings::fileErrorsNameFileAndPlace() {
     QVERIFY(!result);
     QVERIFY2(result.error().message.contains(file.fileName()), qPrintable(result.error().message));
     QVERIFY2(result.error().message.contains(says), qPrintable(result.error().message));
+    QVERIFY2(!result.error().message.endsWith('.'), "more may follow in the sentence");
     QCOMPARE(settings->values(), settings->defaults());
 }
 
