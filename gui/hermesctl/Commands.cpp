@@ -94,11 +94,31 @@ Result<void> listNetwork(const Arguments &arguments) {
     return {};
 }
 
-/// The health items that are not ok, of what daemon.status gave.
-QJsonArray wrongItems(const SessionReply &status) {
+/// What is wrong with the reply of one that has taken the connection, where it lacks a text of that name;
+/// nothing: empty.
+QString whyUnlisted(const SessionReply &reply, const char *method, const char *member) {
+    const QString foreign = QStringLiteral("answers, but is no daemon of Hermes: ");
+    if (reply.result)
+        return (*reply.result)[QLatin1String(member)].toString().isEmpty()
+                   ? foreign + QStringLiteral("its reply to %1 has no %2")
+                                   .arg(QLatin1String(method), QLatin1String(member))
+                   : QString();
+    const Error error = reply.result.error();
+    const Client::Rejected &rejected = reply.member.client->rejected();
+    if (error.is(ErrorCode::MethodNotFound) || rejected.unreadable > 0 || rejected.unasked > 0)
+        return foreign + error.message;
+    if (error.is(ErrorCode::TimedOut) || error.is(ErrorCode::Disconnected))
+        return QStringLiteral("does not answer: ") + error.message;
+    return QStringLiteral("does not say what it is: ") + error.message;
+}
+
+/// The health items that are not ok, of what daemon.status gave; of one that is unlisted, why.
+QJsonArray wrongItems(const SessionReply &status, const QString &unlisted) {
     QJsonArray wrong;
-    if (!status.result)
-        return wrong;
+    if (!unlisted.isEmpty())
+        return {QJsonObject{{QStringLiteral("name"), QStringLiteral("daemon")},
+                            {QStringLiteral("level"), QStringLiteral("error")},
+                            {QStringLiteral("message"), unlisted}}};
     for (const QJsonValue &item : (*status.result)[QStringLiteral("health")].toArray())
         if (item[QStringLiteral("level")] != QStringLiteral("ok"))
             wrong.append(QJsonObject{{QStringLiteral("name"), item[QStringLiteral("name")]},
@@ -126,16 +146,23 @@ Result<void> listDaemons(const Arguments &arguments) {
             calls.push_back({{client->address(), client.get(), false, false}, {}});
     }
     const auto infos = callAllAndWait(calls, QStringLiteral("daemon.info"), arguments.timeout);
-    const auto states = callAllAndWait(calls, QStringLiteral("daemon.status"), arguments.timeout);
+    auto answering = calls;
+    for (std::size_t i = 0; i < calls.size(); ++i)
+        if (!infos[i].result)
+            answering[i].member.client = nullptr; // is not waited for again
+    const auto states = callAllAndWait(answering, QStringLiteral("daemon.status"), arguments.timeout);
     const auto text = [](const SessionReply &reply, const char *member, const char *unknown) {
-        return reply.result ? (*reply.result)[QLatin1String(member)].toString()
-                            : QString::fromLatin1(unknown);
+        const QString found = reply.result ? (*reply.result)[QLatin1String(member)].toString() : QString();
+        return found.isEmpty() ? QString::fromLatin1(unknown) : printable(found);
     };
     QJsonArray found;
     for (std::size_t i = 0; i < calls.size(); ++i) {
         const QString name = text(infos[i], "name", "?"), state = text(states[i], "state", "?");
         const QString version = text(infos[i], "version", ""), &address = calls[i].member.name;
-        const QJsonArray wrong = wrongItems(states[i]);
+        const QString nameless = whyUnlisted(infos[i], "daemon.info", "name");
+        const QString unlisted =
+            nameless.isEmpty() ? whyUnlisted(states[i], "daemon.status", "state") : nameless;
+        const QJsonArray wrong = wrongItems(states[i], unlisted);
         if (!arguments.json) {
             printLine(
                 QStringLiteral("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
