@@ -184,7 +184,8 @@ Result<void> listDaemons(const Arguments &arguments) {
         return Error(
             ErrorCode::Disconnected,
             QStringLiteral("no daemon answers at its default port on %1; hermes-simulator is one to begin "
-                           "with, --host HOST asks another computer, --network all of them")
+                           "with, on a robot systemctl status hermes-supervisor tells whether the service "
+                           "runs, --host HOST asks another computer, --network all of them")
                 .arg(arguments.host));
     return {};
 }

@@ -107,6 +107,7 @@ class Hermesctl(unittest.TestCase):
         host = f"127.77.{os.getpid() // 250 % 250}.{1 + os.getpid() % 250}"  # loopback too, of this process alone
         shown = ctl("list", "--host", host)
         self.assertEqual(shown.returncode, 1)
+        self.assertIn("systemctl status hermes-supervisor", shown.stderr)
         daemon = subprocess.Popen([DAEMON, "--listen", f"tcp://{host}:7490"], stderr=subprocess.PIPE, text=True)
         try:
             daemon.stderr.readline()
