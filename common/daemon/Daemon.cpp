@@ -95,7 +95,7 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
     const auto line = CommandLine::parse(arguments.mid(1));
     if (!line) {
         print(stderr,
-              QStringLiteral("%1: %2\n%1 --help tells what there is\n").arg(program, line.error().message));
+              QStringLiteral("%1: %2; %1 --help tells what there is\n").arg(program, line.error().message));
         return 2;
     }
     if (line->action == CommandLine::Action::Help) {
