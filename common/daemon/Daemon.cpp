@@ -95,7 +95,7 @@ std::optional<int> Daemon::prepare(const QStringList &arguments) {
     const auto line = CommandLine::parse(arguments.mid(1));
     if (!line) {
         print(stderr,
-              QStringLiteral("%1: %2\n%1 --help tells what there is\n").arg(program, line.error().message));
+              QStringLiteral("%1: %2; %1 --help tells what there is\n").arg(program, line.error().message));
         return 2;
     }
     if (line->action == CommandLine::Action::Help) {
@@ -134,6 +134,11 @@ Result<void> Daemon::configure(const CommandLine &line) {
         }
     }
     const auto set = configuration_.insist(line.settings);
+    // What only a rule refuses may suit the file once that is mended: it is no wrong command line.
+    if (!set && !line.config.isEmpty() && configuration_.suitsSchema(line.settings))
+        return Error(
+            ErrorCode::InvalidSetting,
+            QStringLiteral("settings file %1 with option --set: %2").arg(line.config, set.error().message));
     if (!set)
         return Error(ErrorCode::InvalidParams, QStringLiteral("option --set: ") + set.error().message);
     if (!line.listen.isEmpty()) {

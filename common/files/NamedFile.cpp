@@ -229,4 +229,11 @@ Result<void> writeNamedFile(const QString &path, const QStringList &folders, con
     return error;
 }
 
+Result<void> checkReplaceable(const QString &path) {
+    struct stat status {};
+    if (::stat(QFile::encodeName(path).constData(), &status) != 0 || S_ISREG(status.st_mode))
+        return {};
+    return fileError(path, whereLinked(path, realPath(path)) + QStringLiteral("not a regular file"));
+}
+
 } // namespace hermes

@@ -25,4 +25,8 @@ Result<QString> findNamedFile(const QString &path, const QStringList &folders, q
 Result<void> writeNamedFile(const QString &path, const QStringList &folders, const QByteArray &bytes,
                             bool replace);
 
+/// Whether a file can be put there as one of its own kind: what is there, if anything, is a regular file,
+/// whatever links lead to. For writers that follow links, and rename over what they lead to.
+Result<void> checkReplaceable(const QString &path);
+
 } // namespace hermes

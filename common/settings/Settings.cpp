@@ -93,10 +93,18 @@ Result<QStringList> Settings::reset(const QStringList &paths) {
     return apply(proposed);
 }
 
-std::vector<SchemaViolation> Settings::check(const QJsonObject &proposed) const {
+bool Settings::suitsSchema(const QJsonObject &partial) const {
+    return checkSchema(merged(current_, partial)).empty();
+}
+
+std::vector<SchemaViolation> Settings::checkSchema(const QJsonObject &proposed) const {
     if (!validator_)
         validator_.emplace(fullSchema_);
-    auto violations = validator_->check(proposed);
+    return validator_->check(proposed);
+}
+
+std::vector<SchemaViolation> Settings::check(const QJsonObject &proposed) const {
+    auto violations = checkSchema(proposed);
     if (violations.empty()) {
         for (const Rule &rule : rules_) {
             for (const SchemaViolation &violation : rule(proposed))
@@ -147,8 +155,7 @@ QStringList Settings::waiting() const {
 }
 
 Result<QByteArray> readSettingsFile(const QString &name) {
-    constexpr qint64 mostBytes = 1 << 20;
-    auto text = readNamedFile(name, {QStringLiteral("/")}, mostBytes);
+    auto text = readNamedFile(name, {QStringLiteral("/")}, mostSettingsBytes);
     if (!text)
         return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + text.error().message,
                      text.error().data);
@@ -157,6 +164,18 @@ Result<QByteArray> readSettingsFile(const QString &name) {
     if (text->startsWith("\xef\xbb\xbf")) // as some editors write it
         text->remove(0, 3);
     return text;
+}
+
+Result<void> checkSettingsFile(const QString &name, const QByteArray &text) {
+    if (text.size() > mostSettingsBytes)
+        return fileError(name, QStringLiteral("it would have %1 bytes, expected at most %2")
+                                   .arg(text.size())
+                                   .arg(mostSettingsBytes));
+    const auto replaceable = checkReplaceable(name);
+    if (replaceable)
+        return {};
+    return Error(ErrorCode::InputOutput, QStringLiteral("settings file ") + replaceable.error().message,
+                 replaceable.error().data);
 }
 
 Result<QJsonObject> Settings::read(const QString &name) const {
@@ -192,8 +211,10 @@ Result<QString> Settings::save(const QString &name) const {
     if (target.isEmpty())
         return Error(ErrorCode::InputOutput,
                      QStringLiteral("no settings file to save to: start with --config FILE"));
-    QSaveFile file(target);
     const QByteArray text = QJsonDocument(changes()).toJson();
+    if (const auto fine = checkSettingsFile(target, text); !fine)
+        return fine.error();
+    QSaveFile file(target);
     // commit() alone does not notice a full disk
     if (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size() || !file.flush() ||
         !file.commit())

@@ -12,8 +12,15 @@
 
 namespace hermes {
 
-/// The text of a settings file, of 1 MiB at most, without waiting for anybody: devices and pipes are refused.
+/// The largest settings file that is read, and written.
+constexpr qint64 mostSettingsBytes = 1 << 20;
+
+/// The text of a settings file, without waiting for anybody: devices and pipes are refused.
 Result<QByteArray> readSettingsFile(const QString &name);
+
+/// Whether a settings file of this text may be put there: it can be read again, and replaces no device or
+/// pipe.
+Result<void> checkSettingsFile(const QString &name, const QByteArray &text);
 
 /// The settings of a program: declared once with schema and default, always valid, changed all or nothing,
 /// kept in a JSON file. A dot in a name makes a group: "motor.radius_m" is {"motor": {"radius_m": ...}}.
@@ -50,6 +57,9 @@ public:
     Result<QStringList> set(const QJsonObject &partial);
     /// The same, as told on the command line: a file that is read later changes nothing of it.
     Result<QStringList> insist(const QJsonObject &partial);
+    /// Whether each of these values, with the others as they are, suits the schema, whatever rules say of
+    /// them.
+    bool suitsSchema(const QJsonObject &partial) const;
     /// Puts the values at or below these paths back to their defaults; without paths, all of them.
     Result<QStringList> reset(const QStringList &paths = {});
 
@@ -58,7 +68,8 @@ public:
     Result<QJsonObject> read(const QString &file) const;
     /// Takes what read() gives, and remembers the file for save().
     Result<void> load(const QString &file);
-    /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name.
+    /// Writes what differs from the defaults, atomically, to the file given or loaded; gives its name. What
+    /// is no regular file is not replaced, and what load() would not read is not written.
     Result<QString> save(const QString &file = QString()) const;
 
     /// The program starts its work: from now on those that apply on restart keep in force the value they
@@ -79,6 +90,7 @@ private:
     Result<QStringList> apply(const QJsonObject &proposed);
     QStringList take(const QJsonObject &values);
     void put(const QJsonObject &values);
+    std::vector<SchemaViolation> checkSchema(const QJsonObject &proposed) const;
     std::vector<SchemaViolation> check(const QJsonObject &proposed) const;
 
     QJsonObject fullSchema_;

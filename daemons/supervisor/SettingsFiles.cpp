@@ -41,6 +41,8 @@ Result<QJsonObject> parsed(const QString &path, const QByteArray &text) {
 class Replacement {
 public:
     Result<void> add(const QString &path, const QByteArray &text) {
+        if (const auto fine = checkSettingsFile(path, text); !fine)
+            return fine.error();
         files_.push_back(std::make_unique<QSaveFile>(path));
         QSaveFile &file = *files_.back();
         // commit() alone does not notice a full disk
@@ -154,6 +156,8 @@ Result<QStringList> SettingsFiles::write(const QJsonObject &settings) const {
 }
 
 Result<void> SettingsFiles::commit(Replacement &files) const {
+    if (const auto fine = checkSettingsFile(mark(), {}); !fine) // to open a pipe would wait
+        return fine;
     // In this order on the disk, too: the power may fail.
     syncFolder(folder_);
     if (QFile file(mark()); !file.open(QIODevice::WriteOnly))
@@ -196,7 +200,8 @@ Result<QStringList> SettingsFiles::undo() const {
         if (added)
             added = replacement.add(path(daemon), *before);
         if (!added)
-            return added.error();
+            return Error(ErrorCode::InputOutput, added.error().message + "; nothing was changed",
+                         added.error().data);
         files.append(path(daemon));
     }
     if (files.isEmpty()) {

@@ -358,13 +358,14 @@ Command Setup::undoCommand() {
 }
 
 Result<QJsonValue> Setup::take(const QStringList &written, const QStringList &notes) {
-    QMap<QString, ProcessEntry> before;
-    QStringList ran;
-    for (const SupervisedProcess *const process : processes_()) {
-        before.insert(process->entry().name, process->entry());
-        if (process->isAlive())
-            ran.append(process->entry().name);
-    }
+    struct Before {
+        bool autostart, ran;
+        int orders;
+    };
+    QMap<QString, Before> before;
+    for (const SupervisedProcess *const process : processes_())
+        before.insert(process->entry().name,
+                      {process->entry().autostart, process->isAlive(), process->orders()});
     const SettingsFiles these = files(); // what is loaded may name others
     const QString own = these.path("supervisor");
     const auto loaded = written.contains(own) ? settings_.load(own) : Result<void>();
@@ -372,12 +373,14 @@ Result<QJsonValue> Setup::take(const QStringList &written, const QStringList &no
     for (SupervisedProcess *const process : processes_()) {
         const ProcessEntry &entry = process->entry();
         const auto old = before.constFind(entry.name);
-        const bool startsNow = entry.autostart && (old == before.constEnd() || !old->autostart);
+        const bool isNew = old == before.constEnd();
+        const bool startsNow = entry.autostart && (isNew || !old->autostart);
+        const bool isStarted = !isNew && old->orders != process->orders(); // by its new entry
         const bool isWritten = written.contains(these.path(entry.name));
-        if (process->isAlive() ? !isWritten : !(entry.autostart && (isWritten || startsNow)))
+        if (!isStarted && (process->isAlive() ? !isWritten : !(entry.autostart && (isWritten || startsNow))))
             continue;
-        const bool isSame = ran.contains(entry.name) && *old == entry; // else it starts by its new entry
-        isSame ? process->restart() : process->start();
+        if (!isStarted)
+            !isNew && old->ran ? process->restart() : process->start();
         applied.restarted.append(entry.name);
     }
     if (!loaded)

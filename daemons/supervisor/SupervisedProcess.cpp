@@ -46,7 +46,7 @@ QJsonArray usualProcesses() {
 
 void SupervisedProcess::Child::setupChildProcess() {
     ::setpgid(0, 0); // those that it starts are of its group, and Ctrl-C in a terminal is for the supervisor,
-                     // which ends them in order
+                     // which ends them
     prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 
@@ -249,7 +249,8 @@ void SupervisedProcess::setEntry(const ProcessEntry &entry) {
     if (entry == entry_)
         return;
     entry_ = entry;
-    if (isAlive() && state_ != State::Stopping)
+    const bool isTried = state_ == State::Failed || state_ == State::Waiting; // perhaps it is mended
+    if (isAlive() ? state_ != State::Stopping : isTried)
         restart();
 }
 

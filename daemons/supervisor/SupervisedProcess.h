@@ -12,8 +12,8 @@
 namespace hermes::supervisor {
 
 /// One process that is kept running. When it ends by itself with an error it is started again, after a
-/// back-off that doubles; a wrong command line (exit status 2) is not tried again, nor is an end in order
-/// (0). It ends with the supervisor, however that ends.
+/// back-off that doubles; a wrong command line (exit status 2) is not tried again before the entry changes,
+/// nor is an end in order (0). It ends with the supervisor, however that ends.
 class SupervisedProcess : public QObject {
     Q_OBJECT
 public:
@@ -31,7 +31,7 @@ public:
     static QString found(const QString &program);
 
     const ProcessEntry &entry() const { return entry_; }
-    /// A running process is started again with what is new.
+    /// With what is new a running process is started again, and so is one that failed or waits, at once.
     void setEntry(const ProcessEntry &entry);
     State state() const { return state_; }
     bool isAlive() const { return process_.state() != QProcess::NotRunning; }

@@ -87,6 +87,24 @@ Result<void> listNetwork(const Arguments &arguments) {
     return {};
 }
 
+/// What is wrong with the reply of one that has taken the connection, where it lacks a text of that name;
+/// nothing: empty.
+QString whyUnlisted(const SessionReply &reply, const char *method, const char *member) {
+    const QString foreign = QStringLiteral("answers, but is no daemon of Hermes: ");
+    if (reply.result)
+        return (*reply.result)[QLatin1String(member)].toString().isEmpty()
+                   ? foreign + QStringLiteral("its reply to %1 has no %2")
+                                   .arg(QLatin1String(method), QLatin1String(member))
+                   : QString();
+    const Error error = reply.result.error();
+    const Client::Rejected &rejected = reply.member.client->rejected();
+    if (error.is(ErrorCode::MethodNotFound) || rejected.unreadable > 0 || rejected.unasked > 0)
+        return foreign + error.message;
+    if (error.is(ErrorCode::TimedOut) || error.is(ErrorCode::Disconnected))
+        return QStringLiteral("does not answer: ") + error.message;
+    return QStringLiteral("does not say what it is: ") + error.message;
+}
+
 } // namespace
 
 Result<void> listDaemons(const Arguments &arguments) {
@@ -106,16 +124,27 @@ Result<void> listDaemons(const Arguments &arguments) {
             calls.push_back({{client->address(), client.get(), false, false}, {}});
     }
     const auto infos = callAllAndWait(calls, QStringLiteral("daemon.info"), arguments.timeout);
-    const auto states = callAllAndWait(calls, QStringLiteral("daemon.status"), arguments.timeout);
+    auto answering = calls;
+    for (std::size_t i = 0; i < calls.size(); ++i)
+        if (!infos[i].result)
+            answering[i].member.client = nullptr; // is not waited for again
+    const auto states = callAllAndWait(answering, QStringLiteral("daemon.status"), arguments.timeout);
     const auto text = [](const SessionReply &reply, const char *member, const char *unknown) {
-        return reply.result ? (*reply.result)[QLatin1String(member)].toString()
-                            : QString::fromLatin1(unknown);
+        const QString found = reply.result ? (*reply.result)[QLatin1String(member)].toString() : QString();
+        return found.isEmpty() ? QString::fromLatin1(unknown) : printable(found);
     };
     QJsonArray found;
     for (std::size_t i = 0; i < calls.size(); ++i) {
         const QString name = text(infos[i], "name", "?"), state = text(states[i], "state", "?");
         const QString version = text(infos[i], "version", ""), &address = calls[i].member.name;
-        const QJsonArray wrong = wrongItems(states[i]);
+        const QString nameless = whyUnlisted(infos[i], "daemon.info", "name");
+        const QString unlisted =
+            nameless.isEmpty() ? whyUnlisted(states[i], "daemon.status", "state") : nameless;
+        const QJsonArray wrong =
+            unlisted.isEmpty() ? wrongItems(states[i])
+                               : QJsonArray{QJsonObject{{QStringLiteral("name"), QStringLiteral("daemon")},
+                                                        {QStringLiteral("level"), QStringLiteral("error")},
+                                                        {QStringLiteral("message"), unlisted}}};
         if (!arguments.json) {
             printLine(
                 QStringLiteral("%1 %2 %3 %4").arg(name, -16).arg(state, -10).arg(version, -8).arg(address));
@@ -134,7 +163,8 @@ Result<void> listDaemons(const Arguments &arguments) {
         return Error(
             ErrorCode::Disconnected,
             QStringLiteral("no daemon answers at its default port on %1; hermes-simulator is one to begin "
-                           "with, --host HOST asks another computer, --network all of them")
+                           "with, on a robot systemctl status hermes-supervisor tells whether the service "
+                           "runs, --host HOST asks another computer, --network all of them")
                 .arg(arguments.host));
     return {};
 }

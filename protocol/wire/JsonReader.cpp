@@ -54,7 +54,7 @@ public:
         double number = 0;
         if (std::from_chars(text, end, number).ec == std::errc::result_out_of_range &&
             !isSmall({text, length}))
-            complaint = QStringLiteral("Number too big to be stored in double.");
+            complaint = QStringLiteral("Number too big to be stored in double");
         return complaint.isEmpty() && Double(number);
     }
 
@@ -65,6 +65,14 @@ private:
                                                   : number[exponent + 1] == '-';
     }
 };
+
+/// Without the full stop at its end: it becomes part of a sentence.
+QString parserMessage(rapidjson::ParseErrorCode code) {
+    QString message = QString::fromLatin1(rapidjson::GetParseError_En(code));
+    if (message.endsWith(QLatin1Char('.')))
+        message.chop(1);
+    return message;
+}
 
 } // namespace
 
@@ -88,10 +96,9 @@ std::optional<WireValue> WireValue::parse(const QByteArray &json, WireError *err
             error->offset = result.IsError() ? std::min(int(result.Offset()), json.size())
                                              : int(static_cast<const char *>(zero) - json.constData());
             error->line = 1 + int(std::count(json.begin(), json.begin() + error->offset, '\n'));
-            error->message = !result.IsError() ? QStringLiteral("a zero byte")
-                             : builder.complaint.isEmpty()
-                                 ? QString::fromLatin1(rapidjson::GetParseError_En(result.Code()))
-                                 : builder.complaint;
+            error->message = !result.IsError()             ? QStringLiteral("a zero byte")
+                             : builder.complaint.isEmpty() ? parserMessage(result.Code())
+                                                           : builder.complaint;
         }
         return std::nullopt;
     }

@@ -13,6 +13,8 @@ private Q_SLOTS:
     void commonCommands();
     void descriptionIsComplete();
     void settingsOverTheWire();
+    void wrongFileIsNoWrongCommandLine_data();
+    void wrongFileIsNoWrongCommandLine();
     void networkNeedsInsecure();
     void healthDegradesAndGoesStale();
     void whatIsPastIsNoWarning();
@@ -74,6 +76,40 @@ void TestDaemon::settingsOverTheWire() {
     QCOMPARE(client.ask("settings.get", QJsonArray{"", true})["result"].toObject()["gain"].toDouble(), 2.0);
     QCOMPARE(client.ask("settings.get", QJsonArray{"no"})["error"].toObject()["code"].toInt(), -32003);
     QCOMPARE(client.ask("settings.save")["error"].toObject()["code"].toInt(), -32008); // no file was given
+}
+
+void TestDaemon::wrongFileIsNoWrongCommandLine_data() {
+    QTest::addColumn<QStringList>("options");
+    QTest::addColumn<bool>("withFile");
+    QTest::addColumn<int>("status");
+    const QStringList clash{"--set", "offset=4"}, type{"--set", "offset=many"}, unknown{"--set", "ofset=1"};
+    QTest::newRow("clash with the file") << clash << true << 1;
+    QTest::newRow("clash with a default") << clash << false << 2;
+    QTest::newRow("type") << type << true << 2;
+    QTest::newRow("unknown") << unknown << true << 2;
+    QTest::newRow("address") << QStringList{"--listen", "no://where"} << true << 2;
+    QTest::newRow("goes together") << QStringList{"--set", "offset=2"} << true << 0;
+}
+
+/// What may be mended in the file is tried again by the supervisor, a wrong command line not.
+void TestDaemon::wrongFileIsNoWrongCommandLine() {
+    QFETCH(QStringList, options);
+    QFETCH(bool, withFile);
+    QFETCH(int, status);
+    const QTemporaryDir folder;
+    QFile file(folder.filePath("tested.json"));
+    QVERIFY(file.open(QIODevice::WriteOnly) && file.write("{\"gain\": 3}") > 0 && file.flush());
+    TestedDaemon tested;
+    tested.settings().declare(Field::number("offset", "At most the gain").byDefault(0));
+    tested.settings().addRule([](const QJsonObject &values) -> std::vector<SchemaViolation> {
+        if (values["offset"].toDouble() > values["gain"].toDouble())
+            return {{"offset", values["offset"], "at most gain"}};
+        return {};
+    });
+    QStringList line{"tested", "--check"};
+    if (withFile)
+        line << "--config" << file.fileName();
+    QCOMPARE(tested.prepare(line + options).value_or(-1), status);
 }
 
 void TestDaemon::networkNeedsInsecure() {

@@ -2,6 +2,9 @@
 #include "common/settings/Settings.h"
 
 #include <QtTest>
+#include <cerrno>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 using namespace hermes;
 
@@ -22,6 +25,9 @@ private Q_SLOTS:
     void fileErrorsNameFileAndPlace_data();
     void fileErrorsNameFileAndPlace();
     void failedSaveLeavesTheOldFile();
+    void savesOnlyWhatItCanReadAgain();
+    void replacesNoDevice_data();
+    void replacesNoDevice();
     void ruleAcrossSettings();
 
 private:
@@ -176,6 +182,8 @@ void TestSettings::fileErrorsNameFileAndPlace_data() {
     QTest::addColumn<QString>("says");
     QTest::newRow("syntax") << QByteArray("{\n  \"on\": true,\n  oops\n}\n") << "line 3";
     QTest::newRow("cut") << QByteArray("{\n\"on\": tr") << "line 2";
+    QTest::newRow("large number") << QByteArray("{\n\"motor\": {\"ticks\": 1e999}}")
+                                  << "line 2: Number too big to be stored in double";
     QTest::newRow("repeated key") << QByteArray("{\"on\": true,\n\"on\": false}")
                                   << "line 2: the key \"on\" occurs twice";
     QTest::newRow("not an object") << QByteArray("[1]") << "expected a JSON object";
@@ -198,6 +206,7 @@ void TestSettings::fileErrorsNameFileAndPlace() {
     QVERIFY(!result);
     QVERIFY2(result.error().message.contains(file.fileName()), qPrintable(result.error().message));
     QVERIFY2(result.error().message.contains(says), qPrintable(result.error().message));
+    QVERIFY2(!result.error().message.endsWith('.'), "more may follow in the sentence");
     QCOMPARE(settings->values(), settings->defaults());
 }
 
@@ -207,6 +216,56 @@ void TestSettings::failedSaveLeavesTheOldFile() {
     QVERIFY(!result);
     QVERIFY(result.error().is(ErrorCode::InputOutput));
     QVERIFY(!settings->load(folder.filePath("absent.json")));
+}
+
+void TestSettings::savesOnlyWhatItCanReadAgain() {
+    const QString name = folder.filePath("growing.json");
+    const auto setBytes = [&](int characters) {
+        return settings->set({{"listen", QJsonArray{QString(characters, 'x')}}}).ok();
+    };
+    QVERIFY(setBytes(1) && settings->save(name));
+    const int around = int(QFileInfo(name).size()) - 1; // what is written beside the characters
+    QVERIFY(setBytes(int(mostSettingsBytes) - around));
+    QVERIFY(settings->save(name) && settings->load(name));
+    QCOMPARE(QFileInfo(name).size(), mostSettingsBytes);
+    QVERIFY(setBytes(int(mostSettingsBytes) - around + 1));
+    const auto result = settings->save(name);
+    QVERIFY(!result);
+    QCOMPARE(result.error().message,
+             QString("settings file %1: it would have 1048577 bytes, expected at most 1048576").arg(name));
+    QVERIFY(settings->load(name));
+}
+
+void TestSettings::replacesNoDevice_data() {
+    QTest::addColumn<mode_t>("kind");
+    QTest::addColumn<bool>("linked");
+    for (const bool linked : {false, true}) {
+        QTest::addRow("pipe%s", linked ? ", linked" : "") << mode_t(S_IFIFO) << linked;
+        QTest::addRow("device%s", linked ? ", linked" : "") << mode_t(S_IFCHR) << linked;
+        QTest::addRow("folder%s", linked ? ", linked" : "") << mode_t(S_IFDIR) << linked;
+    }
+}
+
+void TestSettings::replacesNoDevice() {
+    QFETCH(mode_t, kind);
+    QFETCH(bool, linked);
+    const QTemporaryDir own;
+    const QString target = own.filePath("target"), name = linked ? own.filePath("link.json") : target;
+    const QByteArray path = QFile::encodeName(target);
+    const int made = kind == S_IFDIR ? ::mkdir(path, 0700) : ::mknod(path, kind | 0600, makedev(1, 3));
+    if (made != 0 && errno == EPERM)
+        QSKIP("only root makes device nodes");
+    QCOMPARE(made, 0);
+    QVERIFY(!linked || QFile::link(target, name));
+    const auto result = settings->save(name);
+    QVERIFY(!result);
+    QCOMPARE(result.error().message,
+             QString("settings file %1: %2not a regular file")
+                 .arg(name, linked ? QString("this is %1, ").arg(target) : QString()));
+    struct stat status {};
+    QCOMPARE(::stat(path, &status), 0);
+    QCOMPARE(status.st_mode & S_IFMT, kind);
+    QCOMPARE(QFileInfo(name).isSymLink(), linked);
 }
 
 void TestSettings::ruleAcrossSettings() {

@@ -10,6 +10,7 @@
 #include <QTemporaryDir>
 #include <QUdpSocket>
 #include <future>
+#include <sys/stat.h>
 
 using namespace hermes;
 using namespace hermes::supervisor;
@@ -53,6 +54,8 @@ private Q_SLOTS:
     void receiversAreAddedOnce();
     void lidarAndProcesses();
     void writesAndPutsBack();
+    void writesOnlyWhatItCanReadAgain();
+    void replacesNoPipe();
     void samplesNameTheFolder();
     void aFloodDoesNotHoldUpTheSearchForLidars();
 };
@@ -221,6 +224,46 @@ void TestSetup::writesAndPutsBack() {
     const SettingsFiles nowhere(folder.filePath("none"), {});
     const auto refused = nowhere.write({{"scanmatcher", QJsonObject()}});
     QVERIFY(!refused.ok() && refused.error().message.contains("none/scanmatcher.json"));
+}
+
+void TestSetup::writesOnlyWhatItCanReadAgain() {
+    const QTemporaryDir folder;
+    const SettingsFiles files(folder.path(), folder.path());
+    const auto large = files.write(
+        {{"scanmatcher", json(R"({"a": 1})")}, {"simulator", QJsonObject{{"a", QString(1 << 20, 'x')}}}});
+    QVERIFY(!large);
+    QVERIFY2(large.error().message.contains("simulator.json: it would have 1048"),
+             qPrintable(large.error().message));
+    QCOMPARE(files.current().value(), QJsonObject());
+}
+
+void TestSetup::replacesNoPipe() {
+    const QTemporaryDir folder;
+    const SettingsFiles files(folder.path(), folder.path());
+    const auto makePipe = [](const QString &path) {
+        QFile::remove(path);
+        return ::mkfifo(QFile::encodeName(path), 0600) == 0;
+    };
+    const auto isRefused = [](const Result<QStringList> &result) {
+        return !result && result.error().message.contains("not a regular file");
+    };
+    const QJsonObject some{{"scanmatcher", json(R"({"a": 1})")}};
+    const QString pipe = folder.filePath("pipe"), own = files.path("scanmatcher");
+    QVERIFY(makePipe(pipe) && QFile::link(pipe, own));
+    QVERIFY(isRefused(files.write(some)));
+    QVERIFY(QFile::remove(own) && files.write(some).ok());
+    QVERIFY(QFile::remove(own) && QFile::link(pipe, own));
+    QVERIFY(isRefused(files.undo()));
+    QVERIFY(!QFileInfo(pipe).isFile() && QFileInfo::exists(pipe));
+    QCOMPARE(files.undoable(), QStringList("scanmatcher"));
+    QVERIFY(QFile::remove(own) && files.undo().ok());
+    QVERIFY(makePipe(own + ".previous"));
+    QVERIFY(isRefused(files.write(some)));
+    QVERIFY(!QFileInfo(own + ".previous").isFile());
+    // Of what tells that it was cut off
+    QVERIFY(QFile::remove(own + ".previous") && files.write(some).ok());
+    QVERIFY(makePipe(folder.filePath("setup.unfinished")));
+    QVERIFY(isRefused(files.undo()));
 }
 
 void TestSetup::samplesNameTheFolder() {

@@ -14,7 +14,7 @@ class TestSupervisor : public QObject {
 private Q_SLOTS:
     void init();
     void cleanup();
-    void startsInOrderAndEndsInReverse();
+    void startsInOrderAndEndsAtOnce();
     void killedProcessComesBackWithBackOff();
     void endInOrderIsNotStartedAgain();
     void wrongCommandLineIsNotTriedAgain();
@@ -30,6 +30,8 @@ private Q_SLOTS:
     void addAndRemove();
     void changedEntryIsStartedAnew_data();
     void changedEntryIsStartedAnew();
+    void aMendedEntryIsStarted_data();
+    void aMendedEntryIsStarted();
     void refusals();
     void childrenEndWithAKilledSupervisor();
     void runsADaemon();
@@ -92,12 +94,13 @@ QJsonObject TestSupervisor::process(const QString &name) {
     return {};
 }
 
-void TestSupervisor::startsInOrderAndEndsInReverse() {
-    const QString script = "trap 'echo end %1 >> " + folder_->filePath("log") +
+void TestSupervisor::startsInOrderAndEndsAtOnce() {
+    const QString script = "trap 'echo told %1 >> " + folder_->filePath("log") +
+                           "; sleep %2; echo end %1 >> " + folder_->filePath("log") +
                            "; exit 0' TERM; echo start %1 >> " + folder_->filePath("log") +
                            "; while :; do sleep 0.02; done";
-    launch({shell("one", script.arg("one")), shell("two", script.arg("two")),
-            shell("three", script.arg("three"), false)});
+    launch({shell("one", script.arg("one", "1")), shell("two", script.arg("two", "1")),
+            shell("three", script.arg("three", "1"), false)});
     QTRY_COMPARE(written().size(), 2);
     QCOMPARE(stateOf("one"), QString("running"));
     QCOMPARE(stateOf("three"), QString("stopped"));
@@ -105,7 +108,10 @@ void TestSupervisor::startsInOrderAndEndsInReverse() {
     QTRY_COMPARE(written().size(), 3);
     client_.reset();
     supervisor_->shutDown();
-    QCOMPARE(written().mid(3), QStringList({"end three", "end two", "end one"}));
+    QStringList told = written().mid(3, 3); // none waits for another
+    told.sort();
+    QCOMPARE(told, QStringList({"told one", "told three", "told two"}));
+    QCOMPARE(written().size(), 9);
 }
 
 void TestSupervisor::killedProcessComesBackWithBackOff() {
@@ -287,6 +293,36 @@ void TestSupervisor::changedEntryIsStartedAnew() {
     QVERIFY(call("settings.set", {{"values", QJsonObject{{"processes", changed}}}}).ok());
     QTRY_COMPARE(call("process.output", {{"name", "one"}, {"lines", 1}})->toArray(), QJsonArray{"second"});
     QCOMPARE(process("two")["pid"].toInt(), pid);
+}
+
+void TestSupervisor::aMendedEntryIsStarted_data() {
+    QTest::addColumn<QString>("script");
+    QTest::addColumn<QString>("state");
+    QTest::newRow("wrong arguments") << "exit 2"
+                                     << "failed";
+    QTest::newRow("tried again later") << "exit 1"
+                                       << "waiting";
+}
+
+/// Whatever was wrong with it; one that ended in order, or was stopped, stays as it is.
+void TestSupervisor::aMendedEntryIsStarted() {
+    QFETCH(QString, script);
+    QFETCH(QString, state);
+    launch({shell("one", script), shell("two", "exit 0"), shell("three", script)});
+    QTRY_COMPARE(process("two")["last_exit"].toString(), QString("exit status 0"));
+    QVERIFY(call("process.stop", {{"name", "three"}}).ok());
+    QTRY_COMPARE(stateOf("three"), QString("stopped"));
+    QTRY_COMPARE(stateOf("one"), state);
+    QTRY_VERIFY(state == "failed" || process("one")["next_start_s"].toDouble() > 1);
+    const int tries = process("one")["restarts"].toInt();
+    const QString mended = "exec sleep 100";
+    const QJsonArray entries{shell("one", mended), shell("two", mended), shell("three", mended)};
+    QVERIFY(call("settings.set", {{"values", QJsonObject{{"processes", entries}}}}).ok());
+    QTRY_VERIFY(process("one")["pid"].toInt() > 0);
+    QTRY_COMPARE(call("daemon.status")->toObject()["state"].toString(), QString("running"));
+    QCOMPARE(process("one")["restarts"].toInt(), tries); // by what is new, not by the next try
+    QCOMPARE(stateOf("two"), QString("stopped"));
+    QCOMPARE(stateOf("three"), QString("stopped"));
 }
 
 void TestSupervisor::refusals() {

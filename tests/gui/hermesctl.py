@@ -2,9 +2,12 @@
 """hermesctl against a small daemon."""
 import json
 import os
+import signal
 import socket
 import subprocess
 import unittest
+
+from ctl_support import MadeUpDaemon
 
 BUILD = os.environ["HERMES_BUILD"]
 PROGRAM = os.path.join(BUILD, "bin", "hermesctl")
@@ -110,14 +113,34 @@ class Hermesctl(unittest.TestCase):
         host = f"127.77.{os.getpid() // 250 % 250}.{1 + os.getpid() % 250}"  # loopback too, of this process alone
         shown = ctl("list", "--host", host)
         self.assertEqual(shown.returncode, 1)
+        self.assertIn("systemctl status hermes-supervisor", shown.stderr)
         daemon = subprocess.Popen([DAEMON, "--listen", f"tcp://{host}:7490"], stderr=subprocess.PIPE, text=True)
         try:
             daemon.stderr.readline()
             self.assertRegex(self.ok("list", "--host", host), rf"thermometer +running +\S+ +tcp://{host}:7490")
+            daemon.send_signal(signal.SIGSTOP)
+            shown = self.ok("list", "--host", host, "--timeout", "1")
+            self.assertRegex(shown, rf"\?.*tcp://{host}:7490\S*\n  error: daemon: does not answer: .*within 1 s")
         finally:
+            daemon.send_signal(signal.SIGCONT)
             daemon.terminate()
             daemon.stderr.close()
             daemon.wait(20)
+
+    def test_list_of_other_programs(self):
+        foreign = "answers, but is no daemon of Hermes: "
+        for replies, why in (({"daemon.info": {}}, "its reply to daemon.info has no name"),
+                             ({"daemon.info": {"name": "x"}, "daemon.status": {"state": {}}},
+                              "its reply to daemon.status has no state"), ({}, "not found")):
+            other = MadeUpDaemon(replies)
+            try:
+                shown = self.ok("list", "--daemons", other.address)
+                self.assertIn(other.address, shown)
+                self.assertRegex(shown, r"\?.*\n  error: daemon: " + foreign + why)
+                one = json.loads(self.ok("list", "--json", "--daemons", other.address))[0]
+                self.assertIn(why, one["wrong"][0]["message"])
+            finally:
+                other.stop()
 
 
 if __name__ == "__main__":

@@ -72,6 +72,23 @@ class BadFiles(RobotCase):
                 wait_for("a start by itself", lambda: robot.items(name) is not None, 15)
         self.until_well()
 
+    def test_settings_that_do_not_go_together(self):
+        """The file with what the command line insists on."""
+        self.simulate()
+        robot, name = self.robot_of(), "motorcontrol"
+        self.until_well()
+        entries = robot.settings["supervisor"]["processes"]
+        next(one for one in entries if one["name"] == name)["arguments"] += ["--set", "faults.battery_v=22"]
+        robot.call("supervisor", "settings.set", values={"processes": entries})
+        self.until_well("other arguments")
+        since = robot.journal_size()
+        robot.write(name, faults={"battery_warning_v": 21.8})
+        robot.call("supervisor", "process.restart", name=name)
+        self.tells("supervisor", f"process {name}", re.escape(robot.path(name)), "--set.*battery_v is 22", since=since, down=name)
+        robot.write(name, faults={"battery_warning_v": 23})
+        wait_for("a start by itself", lambda: robot.items(name) is not None, 15)
+        self.until_well()
+
     def test_wrong_settings_of_the_supervisor(self):
         self.simulate()
         robot = self.robot_of()
