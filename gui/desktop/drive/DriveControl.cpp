@@ -109,7 +109,6 @@ void DriveControl::tick() {
             halt();
         return;
     }
-    isDriving_ = true;
     if (isHolding_)
         send();
     else if (!isAsking_)
@@ -129,6 +128,8 @@ void DriveControl::acquire(bool takeOver) {
         tell(result ? QString() : result.error().message);
         if (!result)
             mustCentre_ = isAnyHeld();
+        else if (!takeOver && (!isAnyHeld() || mustCentre_))
+            giveBack(); // let go meanwhile
         if (!result && takeOver && result.error().is(ErrorCode::NotAuthorised))
             ask();
         poll();
@@ -144,6 +145,7 @@ void DriveControl::ask() {
 }
 
 void DriveControl::send() {
+    isDriving_ = true;
     commanded_ = wish();
     const QJsonObject command{{"vx", commanded_.vx},
                               {"vy", commanded_.vy},
@@ -156,13 +158,19 @@ void DriveControl::send() {
             return tell({});
         if (!isDriving_)
             return; // it was on its way when the drive ended
-        if (result.error().is(ErrorCode::ControlHeld))
-            isHolding_ = false; // ran out, or taken over: ask again, or hear who has it
+        if (!result.error().is(ErrorCode::NotReady)) // one that is late is refused alone
+            halt();
         tell(result.error().message);
     };
     motors_->client().call("motor.drive", command, done, Client::defaultTimeout,
                            Client::Repeats::None); // a late one would move the robot
     Q_EMIT changed();
+}
+
+void DriveControl::giveBack() {
+    if (motors_)
+        motors_->client().call("control.release", QJsonObject(), [](const auto &) {});
+    isHolding_ = false;
 }
 
 void DriveControl::halt() {
@@ -172,7 +180,7 @@ void DriveControl::halt() {
         motors_->client().call(
             "motor.stop", QJsonObject(), [](const auto &) {}, Client::defaultTimeout,
             Client::Repeats::AtOnce);
-        motors_->client().call("control.release", QJsonObject(), [](const auto &) {});
+        giveBack();
     }
     isDriving_ = isHolding_ = false;
     mustCentre_ = isAnyHeld();
@@ -261,6 +269,8 @@ void DriveControl::onState(const QJsonValue &state) {
         return tell(tr("State of the motors: %1").arg(report.text()));
     const bool wasStopped = isStopped();
     hold_ = std::move(*hold);
+    if (!isDriving_ && hold_.control.holder != clientName())
+        isHolding_ = false; // it ran out
     if (isStopped() && !wasStopped) {
         isDriving_ = isHolding_ = false;
         commanded_ = {};

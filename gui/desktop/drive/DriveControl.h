@@ -11,8 +11,8 @@ namespace hermes::desktop {
 
 /// Drives the chosen robot: takes what stick, keys and gamepad wish, asks for the control, sends motion
 /// commands at 20 Hz with their time, and stops. Whatever ends a drive (released, focus lost, link lost,
-/// another robot chosen, STOP) ends it with a stop; after a STOP every input has to be centred once before it
-/// counts again.
+/// a command refused, another robot chosen, STOP) ends it with a stop; then every input has to be let go once
+/// before it counts again. While another client has the control nothing is sent to the motors but STOP.
 class DriveControl : public QObject {
     Q_OBJECT
 public:
@@ -68,6 +68,7 @@ private:
     void tick();
     void acquire(bool takeOver);
     void ask();
+    void giveBack();
     void repeatStop();
     void send();
     void poll();

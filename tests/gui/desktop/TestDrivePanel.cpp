@@ -24,7 +24,10 @@ private Q_SLOTS:
     void losingTheFocusStops();
     void closingTheWindowStops();
     void heldByAnotherAndTakenOver();
+    void keysDoNotDisturbTheDriveOfAnother();
     void motorControlKilledAndRestarted();
+    void aHeldKeyDrivesOnlyOnce_data();
+    void aHeldKeyDrivesOnlyOnce();
 
 private:
     template <typename T>
@@ -190,6 +193,55 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
     QTest::mouseClick(find<QPushButton>("takeOver"), Qt::LeftButton);
     QTest::keyPress(window_.get(), Qt::Key_W);
     QTRY_VERIFY(commanded("vx") > 0.1);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+}
+
+void TestDrivePanel::keysDoNotDisturbTheDriveOfAnother() {
+    QVERIFY(
+        client_->callAndWait("control.acquire", QJsonObject{{"client", "patrol"}, {"timeout_s", 30}}).ok());
+    QVERIFY(client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.3}}).ok());
+    for (const Qt::Key key : {Qt::Key_W, Qt::Key_S, Qt::Key_W}) {
+        QTest::keyPress(window_.get(), key);
+        QTRY_VERIFY(find<QLabel>("problem")->text().contains("patrol"));
+        QTest::keyRelease(window_.get(), key);
+        for (int i = 0; i < 10; ++i) {
+            QTest::qWait(20);
+            QVERIFY(client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.3}}).ok());
+            QCOMPARE(commanded("vx"), 0.3);
+        }
+    }
+    QCOMPARE(state()["control"].toObject()["holder"].toString(), QString("patrol"));
+}
+
+void TestDrivePanel::aHeldKeyDrivesOnlyOnce_data() {
+    QTest::addColumn<bool>("isKilled");
+    QTest::newRow("killed") << true;
+    QTest::newRow("frozen") << false;
+}
+
+void TestDrivePanel::aHeldKeyDrivesOnlyOnce() {
+    QFETCH(bool, isKilled);
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    awaitMotion();
+    if (isKilled) {
+        robot_->kill("motorcontrol");
+        QTRY_VERIFY(!drive_->isPossible());
+        robot_->startMotorControl();
+    } else {
+        robot_->signal("motorcontrol", SIGSTOP);
+        QTest::qWait(2500); // longer than the control lasts, and the time in which it may be silent
+        robot_->signal("motorcontrol", SIGCONT);
+    }
+    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
+    QTRY_VERIFY_WITH_TIMEOUT(find<Stick>("stick")->isEnabled(), 10000);
+    QTRY_VERIFY(!drive_->isDriving());
+    for (int i = 0; i < 20; ++i) {
+        QTest::qWait(50);
+        QCOMPARE(commanded("vx"), 0.0);
+    }
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_VERIFY2(commanded("vx") > 0.1, qPrintable(drive_->problem()));
     QTest::keyRelease(window_.get(), Qt::Key_W);
 }
 
