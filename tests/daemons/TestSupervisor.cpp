@@ -108,10 +108,11 @@ void TestSupervisor::startsInOrderAndEndsAtOnce() {
     QTRY_COMPARE(written().size(), 3);
     client_.reset();
     supervisor_->shutDown();
-    QStringList told = written().mid(3, 3); // none waits for another
+    QStringList told = written().mid(3, 3); // before the first one has ended
     told.sort();
     QCOMPARE(told, QStringList({"told one", "told three", "told two"}));
-    QCOMPARE(written().size(), 9);
+    for (const char *name : {"one", "two", "three"})
+        QVERIFY2(written().contains(QString("end %1").arg(name)), name);
 }
 
 void TestSupervisor::killedProcessComesBackWithBackOff() {

@@ -157,7 +157,7 @@ void DriveControl::send() {
         if (result)
             return tell({});
         if (!isDriving_)
-            return; // it was on its way when the drive ended
+            return;                                  // it was on its way when the drive ended
         if (!result.error().is(ErrorCode::NotReady)) // one that is late is refused alone
             halt();
         tell(result.error().message);
