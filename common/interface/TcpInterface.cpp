@@ -129,6 +129,7 @@ qint64 TcpInterface::bytesToWrite() const {
 
 void TcpInterface::doOpen() {
     receiving_ = true;
+    hasLeft_ = false;
     if (isConnected())
         return nowOpen(); // a peer of a server
     if (const int own = connectToOwn(); own >= 0)

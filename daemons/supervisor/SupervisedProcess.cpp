@@ -94,11 +94,12 @@ SupervisedProcess::~SupervisedProcess() {
     process_.disconnect(this);
     if (!isAlive())
         return;
-    process_.waitForStarted(int(killAfter.count()));
     // Of those that were told together none waits for another.
-    const int patience_ms =
-        state_ == State::Stopping ? std::max(kill_.remainingTime(), 1) : int(killAfter.count());
-    process_.terminate();
+    const bool isTold = state_ == State::Stopping && process_.state() == QProcess::Running;
+    const int patience_ms = isTold ? std::max(kill_.remainingTime(), 1) : int(killAfter.count());
+    process_.waitForStarted(int(killAfter.count()));
+    if (!isTold)
+        process_.terminate();
     if (!process_.waitForFinished(patience_ms))
         process_.kill();
     process_.waitForFinished(1000);

@@ -18,9 +18,8 @@ const Fields<FoundSerial> &fieldsOf(Of<FoundSerial>) {
             .mayBeMissing()
             .add("kind", &S::kind,
                  "A RoboClaw; NMEA sentences; something else that talks by itself; something that answers, "
-                 "but not "
-                 "as a RoboClaw; silent, also when asked; "
-                 "silent and not asked; in use by another program, and left alone; cannot be opened")
+                 "but not as a RoboClaw; silent, also when asked; silent and not asked; in use by another "
+                 "program, and left alone; cannot be opened")
             .choices(S::kinds())
             .add("text", &S::text, "The version of a controller, a sentence, or why there is nothing")
             .mayBeMissing()
