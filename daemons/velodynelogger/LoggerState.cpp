@@ -177,13 +177,13 @@ void VelodyneLogger::updateSourceHealth(const LidarFeed::Counts &counts) {
     else if (counts.otherSensors > 0 && !counts.decoded)
         set(HealthLevel::Warn, "no data packet is decoded, those that came are of " + otherSensors(counts));
     else if (counts.blind_s > longestBlindness_s)
-        set(HealthLevel::Warn,
-            QString("packets come from %1, but only %2 of %3 beams of the last turn came back, and under 1 % "
-                    "for %4 s; expected are 1 % at least: is the lidar covered?")
-                .arg(source_.name())
-                .arg(counts.beamsBack)
-                .arg(counts.beams)
-                .arg(counts.blind_s, 0, 'f', 0));
+        set(HealthLevel::Warn, QString("packets come from %1, but only %2 of %3 beams (of an eighth of the "
+                                       "last turn) came back, and under 1 % "
+                                       "for %4 s; expected are 1 % at least: is the lidar covered?")
+                                   .arg(source_.name())
+                                   .arg(counts.beamsBack)
+                                   .arg(counts.beams)
+                                   .arg(counts.blind_s, 0, 'f', 0));
     else if (counts.otherSensors > 0)
         set(HealthLevel::Warn,
             textOf(*counts.decoded) + " is decoded, data packets come from " + otherSensors(counts) + " too");

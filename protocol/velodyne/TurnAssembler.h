@@ -34,7 +34,7 @@ struct Turn {
     std::int64_t begin_ns = 0;     ///< when its first firing began, since the Unix epoch
     std::int64_t end_ns = 0;       ///< when its last firing ended
     std::uint32_t firings = 0;     ///< with or without return, decoded or not
-    std::uint32_t beams = 0;       ///< of all lasers, decoded or not
+    std::uint32_t beams = 0;       ///< of all lasers, decoded or not, in each eighth block
     std::uint32_t beamsBack = 0;   ///< of them: those with a return
     std::uint32_t lostPackets = 0; ///< estimated, within this turn
     const SensorModel *model = nullptr;
