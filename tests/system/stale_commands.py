@@ -11,18 +11,24 @@ import time
 
 from lateness import Lateness
 from support import BINARIES, SOURCE, Process, free_port, wait_for
+from tls import issued, keys
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
 LIMIT_S = 0.45  # safety.command_timeout_s and the time of braking from 0.3 m/s, and 0.125 s
 
 CLIENT = r"""
-import os, socket, sys, time
-port, carrier, end = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+import os, socket, ssl, sys, time
+port, carrier, end, key = int(sys.argv[1]), sys.argv[2], sys.argv[3], sys.argv[4]
 if carrier == "unix":
     link = socket.socket(socket.AF_UNIX)
     link.connect(f"\0hermes:127.0.0.1:{port}")
 else:
     link = socket.create_connection(("127.0.0.1", port))
+if carrier == "tls":
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    context.load_cert_chain(os.path.join(key, "own.crt"), os.path.join(key, "own.key"))
+    link = context.wrap_socket(link)
 drive = b'{"jsonrpc":"2.0","method":"motor.drive","params":{"vx":0.3}}\n'
 acquire = b'{"jsonrpc":"2.0","method":"control.acquire","params":{"timeout_s":60}}\n'
 link.sendall(acquire)
@@ -58,12 +64,12 @@ def turned_for(simulator, since):
     return last - since
 
 
-def trial(simulator, motors, carrier, end, stop):
+def trial(simulator, motors, client_line, stop):
     """How long the wheels turned after the end of the client, or after the release of the stop."""
     simulator.call("sim.place", x=0, y=0, theta=0)
     motors.call("motor.reset_estop")
     wait_for("readiness", lambda: motors.call("motor.state")["ready"], 10)
-    client = subprocess.Popen([sys.executable, "-c", CLIENT, str(motors.port), carrier, end], stdout=subprocess.PIPE, text=True)
+    client = subprocess.Popen([sys.executable, "-c", CLIENT, *client_line], stdout=subprocess.PIPE, text=True)
     try:
         wait_for("the drive", lambda: fastest_wheel(simulator) > 2, 5)
         client.stdout.readline()
@@ -86,16 +92,19 @@ def main():
             "world": WORLD, "motors.link": line, "lidar.port": free_port(0, socket.SOCK_DGRAM)})]
         try:
             simulator = processes[0].connect()
-            url = f"serial://{line}?baud=115200"
-            processes.append(Process(BINARIES, "motorcontrol", free_port(0), folder,
-                                     {"controllers.1.url": url, "controllers.2.url": url}))
+            url, store, port, tls_port = f"serial://{line}?baud=115200", os.path.join(folder, "keys"), free_port(0), free_port(0)
+            keys(store, "init")
+            for name, role in (("robot", "daemon"), ("eva", "engineer")):
+                keys(store, "issue", name, "--role", role)
+            processes.append(Process(BINARIES, "motorcontrol", port, folder, {"controllers.1.url": url, "controllers.2.url": url},
+                                     ["--listen", f"tls://127.0.0.1:{tls_port}?keys={issued(store, 'robot')}"]))
             motors = processes[1].connect()
-            motors.port = processes[1].port
             with Lateness() as lateness:
-                for carrier, end, stop in itertools.product(["tcp", "unix"], ["kill", "freeze"], [None, "motor.stop", "motor.estop"]):
+                for carrier, end, stop in itertools.product(["tcp", "unix", "tls"], ["kill", "freeze"], [None, "motor.stop", "motor.estop"]):
+                    client_line = [str(tls_port if carrier == "tls" else port), carrier, end, issued(store, "eva")]
                     for _ in range(3):
                         lateness.take_longest()
-                        turned = trial(simulator, motors, carrier, end, stop)
+                        turned = trial(simulator, motors, client_line, stop)
                         late = lateness.take_longest()
                         if turned < LIMIT_S or late < 0.02:
                             break
