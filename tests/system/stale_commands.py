@@ -10,14 +10,15 @@ import tempfile
 import time
 
 from lateness import Lateness
-from support import BINARIES, SOURCE, Process, free_port, wait_for
+from support import BINARIES, SOURCE, DaemonError, Process, free_port, wait_for
 from tls import issued, keys
 
 WORLD = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
+NOT_READY = -32005
 LIMIT_S = 0.45  # safety.command_timeout_s and the time of braking from 0.3 m/s, and 0.125 s
 
 CLIENT = r"""
-import os, socket, ssl, sys, time
+import os, select, socket, ssl, sys, time
 port, carrier, end, key = int(sys.argv[1]), sys.argv[2], sys.argv[3], sys.argv[4]
 if carrier == "unix":
     link = socket.socket(socket.AF_UNIX)
@@ -31,10 +32,8 @@ if carrier == "tls":
     link = context.wrap_socket(link)
 drive = b'{"jsonrpc":"2.0","method":"motor.drive","params":{"vx":0.3}}\n'
 acquire = b'{"jsonrpc":"2.0","method":"control.acquire","params":{"timeout_s":60}}\n'
-link.sendall(acquire)
-for _ in range(30):
-    link.sendall(drive)
-    time.sleep(0.05)
+while not select.select([sys.stdin], [], [], 0.05)[0]:  # until it is told that the robot drives
+    link.sendall(acquire + drive)
 link.settimeout(1)
 try:
     until = time.monotonic() + 0.2
@@ -64,20 +63,34 @@ def turned_for(simulator, since):
     return last - since
 
 
+def release(motors):
+    """Where the machine has stalled the motor control refuses it, once."""
+    def is_done():
+        try:
+            motors.call("motor.reset_estop")
+        except DaemonError as error:
+            assert error.code == NOT_READY, error
+            return False
+        return True
+    wait_for("the release", is_done, 10)
+
+
 def trial(simulator, motors, client_line, stop):
     """How long the wheels turned after the end of the client, or after the release of the stop."""
     simulator.call("sim.place", x=0, y=0, theta=0)
-    motors.call("motor.reset_estop")
+    release(motors)
     wait_for("readiness", lambda: motors.call("motor.state")["ready"], 10)
-    client = subprocess.Popen([sys.executable, "-c", CLIENT, *client_line], stdout=subprocess.PIPE, text=True)
+    client = subprocess.Popen([sys.executable, "-c", CLIENT, *client_line], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     try:
-        wait_for("the drive", lambda: fastest_wheel(simulator) > 2, 5)
+        wait_for("the drive", lambda: fastest_wheel(simulator) > 2, 20)
+        client.stdin.write("\n")
+        client.stdin.flush()
         client.stdout.readline()
         since = time.monotonic()
         if stop:
             motors.call(stop)
             wait_for("standing", lambda: fastest_wheel(simulator) < 0.05, 5)
-            motors.call("motor.reset_estop")
+            release(motors)
             since = time.monotonic()
         return turned_for(simulator, since)
     finally:
