@@ -1,5 +1,6 @@
 #include "gui/desktop/TopBar.h"
 
+#include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "protocol/wire/Fields.h"
 
@@ -38,16 +39,14 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     release_->setObjectName("release");
     release_->setToolTip(tr("Ends the emergency stop and latched faults. The robot does not move by it."));
     stop_->setObjectName("stop");
-    stop_->setToolTip(tr("Emergency stop over the network (Space or Esc). It does not replace a wired one."));
+    stop_->setToolTip(
+        tr("Emergency stop over the network (Space, Esc or F12). It does not replace a wired one."));
     stop_->setFocusPolicy(Qt::NoFocus);
     QFont big = stop_->font();
     big.setBold(true);
     big.setPointSizeF(1.3 * big.pointSizeF());
     stop_->setFont(big);
-    stop_->setMinimumSize(110, 40);
-    stop_->setStyleSheet(
-        "QPushButton { background: #c4201d; color: white; border-radius: 6px; padding: 4px 16px; }"
-        "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
+    stop_->setMinimumSize(QFontMetrics(big).horizontalAdvance("STOP pressed") + 40, 40); // nothing jumps
 
     for (PlainLabel *const told : {link_, control_, power_})
         told->setMinimumWidth(1); // it is cut off where there is no room: nothing pushes STOP out of sight
@@ -111,7 +110,19 @@ void TopBar::updateDrive() {
                       : holder.isEmpty()   ? tr("control free")
                                            : tr("control: %1").arg(shortLine(holder, longestName)));
     release_->setVisible(drive_.isStopped());
-    stop_->setText(drive_.isStopped() ? tr("STOPPED") : tr("STOP"));
+    const StopControl &stopping = drive_.stopping();
+    const bool isOnItsWay = stopping.phase() == StopPhase::Pressed || stopping.phase() == StopPhase::Sent;
+    release_->setEnabled(!isOnItsWay || stopping.isLate()); // a stop that comes after its release holds
+    stop_->setText(StopBanner::wordOf(drive_));
+    const QString colours =
+        drive_.isStopped() ? StopBanner::styleOf(drive_) : QString("background: #c4201d; color: white;");
+    const QString style =
+        "QPushButton { " + colours + " border-radius: 6px; padding: 4px 16px; }" +
+        (drive_.isStopped()
+             ? ""
+             : "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
+    if (style != stop_->styleSheet())
+        stop_->setStyleSheet(style);
 }
 
 void TopBar::showPower(WireView told) {

@@ -17,6 +17,7 @@ class TopBar : public QWidget {
     Q_OBJECT
 public:
     TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent = nullptr);
+    QPushButton &stopButton() { return *stop_; }
 
 private:
     void updateRobots();
