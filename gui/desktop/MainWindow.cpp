@@ -8,6 +8,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/Panels.h"
 #include "gui/desktop/widgets/EnterKey.h"
+#include "gui/desktop/widgets/WheelGuard.h"
 
 #include <QAction>
 #include <QCloseEvent>
@@ -51,6 +52,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     new DriveKeys(drive_, *this);
     new DriveGamepad(drive_, this);
     new EnterKey(*this);
+    new WheelGuard(*this);
     new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
     restoreLayout();
     centralWidget()->setFocus(); // so that the keys drive

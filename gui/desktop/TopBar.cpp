@@ -1,7 +1,8 @@
 #include "gui/desktop/TopBar.h"
 
+#include "gui/desktop/Theme.h"
 #include "gui/desktop/drive/StopBanner.h"
-#include "gui/desktop/widgets/PlainLabel.h"
+#include "gui/desktop/widgets/AgedLabel.h"
 #include "protocol/wire/Fields.h"
 
 #include <QComboBox>
@@ -13,6 +14,11 @@ namespace {
 
 constexpr int longestName = 30;
 
+/// The supervisor says that nobody wants it to run.
+bool isMeantToRest(const ProcessStatus *process) {
+    return process && (process->state == "stopped" || process->state == "disabled");
+}
+
 } // namespace
 
 TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
@@ -23,8 +29,8 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
           fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
     , robots_(new QComboBox)
     , link_(new PlainLabel)
-    , control_(new PlainLabel)
-    , power_(new PlainLabel)
+    , control_(new AgedLabel)
+    , power_(new AgedLabel)
     , release_(new QPushButton(tr("&Release")))
     , stop_(new QPushButton(tr("STOP"))) {
     robots_->setObjectName("robots");
@@ -48,7 +54,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     stop_->setFont(big);
     stop_->setMinimumSize(QFontMetrics(big).horizontalAdvance("STOP pressed") + 40, 40); // nothing jumps
 
-    for (PlainLabel *const told : {link_, control_, power_})
+    for (PlainLabel *const told : std::initializer_list<PlainLabel *>{link_, control_, power_})
         told->setMinimumWidth(1); // it is cut off where there is no room: nothing pushes STOP out of sight
 
     auto *const layout = new QHBoxLayout(this);
@@ -74,7 +80,10 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     connect(&fleet, &Fleet::changed, this, &TopBar::updateLink);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateRobots);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateLink);
-    connect(&powerFeed_, &TopicFeed::sourceChanged, power_, &QLabel::clear);
+    connect(&powerFeed_, &TopicFeed::sourceChanged, power_, [this] {
+        powerAge_.forget();
+        power_->tell({});
+    });
     connect(&drive, &DriveControl::changed, this, &TopBar::updateDrive);
     updateRobots();
     updateLink();
@@ -98,17 +107,32 @@ void TopBar::updateRobots() {
 
 void TopBar::updateLink() {
     double worst = -1;
+    QString wrong;
     if (const Robot *const robot = fleet_.robot())
-        for (const DaemonLink *daemon : robot->daemons())
+        for (const DaemonLink *daemon : robot->daemons()) {
             worst = std::max(worst, daemon->latency_ms());
-    link_->setText(worst < 0 ? tr("no link") : tr("link %1 ms").arg(worst, 0, 'f', worst < 10 ? 1 : 0));
+            const ProcessStatus *const process = robot->process(*daemon);
+            if (daemon->isSilent() ||
+                (daemon->isKnown() && !daemon->isConnected() && !isMeantToRest(process)))
+                wrong = tr("%1: %2").arg(daemon->name(), daemon->conditionWord());
+        }
+    QPalette palette;
+    if (!wrong.isEmpty())
+        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
+    link_->setPalette(palette);
+    link_->setText(!wrong.isEmpty() ? wrong
+                   : worst < 0      ? tr("no link")
+                                    : tr("link %1 ms").arg(worst, 0, 'f', worst < 10 ? 1 : 0));
 }
 
 void TopBar::updateDrive() {
     const QString holder = drive_.holder();
-    control_->setText(!drive_.isPossible() ? tr("nothing to drive")
-                      : holder.isEmpty()   ? tr("control free")
-                                           : tr("control: %1").arg(shortLine(holder, longestName)));
+    if (!drive_.isPossible())
+        control_->tell(tr("nothing to drive"));
+    else
+        control_->tell(holder.isEmpty() ? tr("control free")
+                                        : tr("control: %1").arg(shortLine(holder, longestName)),
+                       drive_.stateAge());
     release_->setVisible(drive_.isStopped());
     const StopControl &stopping = drive_.stopping();
     const bool isOnItsWay = stopping.phase() == StopPhase::Pressed || stopping.phase() == StopPhase::Sent;
@@ -126,10 +150,11 @@ void TopBar::updateDrive() {
 }
 
 void TopBar::showPower(WireView told) {
+    powerAge_.heard();
     ReadReport report;
     const auto power = readMessage<PowerMessage>(told, report);
     if (!power)
-        return power_->setText(shortLine(tr("power: %1").arg(report.text()), 2 * longestName));
+        return power_->tell(shortLine(tr("power: %1").arg(report.text()), 2 * longestName), powerAge_);
     double volts = 0, amperes = 0, hottest = -300;
     for (const ControllerPower &controller : power->controllers) {
         if (!controller.ready)
@@ -139,10 +164,11 @@ void TopBar::showPower(WireView told) {
         for (const double current : controller.current_a)
             amperes += std::abs(current);
     }
-    power_->setText(hottest < -273
-                        ? QString()
-                        : tr("battery %1 V   %2 A   %3 °C")
-                              .arg(shortNumber(volts, 1), shortNumber(amperes, 1), shortNumber(hottest, 0)));
+    power_->tell(hottest < -273
+                     ? QString()
+                     : tr("battery %1 V   %2 A   %3 °C")
+                           .arg(shortNumber(volts, 1), shortNumber(amperes, 1), shortNumber(hottest, 0)),
+                 powerAge_);
 }
 
 } // namespace hermes::desktop

@@ -51,6 +51,9 @@ void DriveControl::follow() {
         motors_->disconnect(this);
     motors_ = found;
     hold_ = {};
+    measured_ = {};
+    measuredAge_.forget();
+    stateAge_.forget();
     isHolding_ = isAsking_ = isPolling_ = false;
     mustCentre_ = isAnyHeld();
     clock_ = {};
@@ -218,6 +221,7 @@ void DriveControl::onOdometry(const TopicUpdate &update) {
     if (!odometry)
         return tell(tr("Odometry: %1").arg(report.text()));
     measured_ = odometry->twist;
+    measuredAge_.heard();
     if (odometry_.source() == motors_) // no other clock is asked for
         clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);
     Q_EMIT changed();
@@ -228,6 +232,7 @@ void DriveControl::onState(const QJsonValue &state) {
     auto hold = readMessage<MotionHold>(WireValue(state), report);
     if (!hold)
         return tell(tr("State of the motors: %1").arg(report.text()));
+    stateAge_.heard();
     const bool wasStopped = isStopped();
     hold_ = std::move(*hold);
     if (!isDriving_ && hold_.control.holder != clientName())

@@ -2,6 +2,7 @@
 
 #include "common/client/ClockOffset.h"
 #include "gui/desktop/drive/StopControl.h"
+#include "gui/desktop/model/Freshness.h"
 #include "gui/desktop/model/TopicFeed.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Motors.h"
@@ -53,6 +54,9 @@ public:
     /// The velocity that is commanded, and the one that odometry measures.
     const Twist2D &commanded() const { return commanded_; }
     const Twist2D &measured() const { return measured_; }
+    /// How old that is, and what the motor control says of its state.
+    const Freshness &measuredAge() const { return measuredAge_; }
+    const Freshness &stateAge() const { return stateAge_; }
     /// The refusal of the last command, or what else hinders; empty while all is well.
     const QString &problem() const { return problem_; }
 
@@ -88,6 +92,7 @@ private:
     QMap<QString, Input> inputs_;
     MotionHold hold_;
     Twist2D most_{0.5, 0.5, 1}, commanded_, measured_;
+    Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
     double limit_ = 0.4;
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;
