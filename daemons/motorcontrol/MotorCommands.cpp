@@ -69,7 +69,7 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
                 Reply([this, reply, until, standing](const Result<QJsonValue> &result) {
                     if (!result)
                         return reply.give(result);
-                    if (monotonicNow() >= until || standing->confirmed)
+                    if (monotonicNow() >= until || standing->all.confirmed)
                         return reply.result(asJson(*standing));
                     stops_.push_back({reply, until});
                 }));

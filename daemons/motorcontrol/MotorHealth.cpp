@@ -84,7 +84,7 @@ void MotorControl::updateHealth() {
     QStringList texts{latched ? told_.latch.text() : QString("not latched")};
     const bool lost = !isReady() && !allStand(told_); // while it brakes it is ready
     if (lost)
-        texts.append(standingOf(told_).text);
+        texts.append(standingOf(told_).all.text);
     health().set("stop", latched || lost ? HealthLevel::Failed : HealthLevel::Ok, texts.join("; "),
                  asJson(causes).toObject());
     const bool fault = causes.size() > int(told_.latch.has(Drive::emergencyCause));

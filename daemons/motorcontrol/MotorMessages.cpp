@@ -74,8 +74,8 @@ Standing standingOf(const Telemetry &t) {
                 : c.error;
         texts.append(c.name + " is not confirmed to stand: " + reason);
     }
-    standing.confirmed = allStand(t);
-    standing.text = texts.join("; ");
+    standing.all.confirmed = allStand(t);
+    standing.all.text = texts.join("; ");
     return standing;
 }
 
@@ -108,11 +108,7 @@ const Fields<Standing::Controller> &fieldsOf(Of<Standing::Controller>) {
 
 const Fields<Standing> &fieldsOf(Of<Standing>) {
     static const auto fields =
-        Fields<Standing>()
-            .add("confirmed", &Standing::confirmed,
-                 "All have acknowledged a set-point of zero, and their encoders have not moved since")
-            .add("text", &Standing::text, "Which have not, and why; or empty")
-            .add("controllers", &Standing::controllers, "Each");
+        Fields<Standing>().include(&Standing::all).add("controllers", &Standing::controllers, "Each");
     return fields;
 }
 

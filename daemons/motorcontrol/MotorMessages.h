@@ -23,8 +23,7 @@ struct Standing {
         bool confirmed = false;
         QString reason; ///< why not
     };
-    bool confirmed = false;
-    QString text;
+    StandConfirmation all;
     std::array<Controller, controllerCount> controllers;
 };
 

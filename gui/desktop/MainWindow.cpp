@@ -3,9 +3,12 @@
 #include "gui/desktop/TopBar.h"
 #include "gui/desktop/drive/DriveGamepad.h"
 #include "gui/desktop/drive/DriveKeys.h"
+#include "gui/desktop/drive/StopBanner.h"
+#include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/Panels.h"
 #include "gui/desktop/widgets/EnterKey.h"
+#include "gui/desktop/widgets/WheelGuard.h"
 
 #include <QAction>
 #include <QCloseEvent>
@@ -30,7 +33,18 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     bar->setObjectName("topBar");
     bar->setMovable(false);
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
-    bar->addWidget(new TopBar(fleet, drive_));
+    auto *const topBar = new TopBar(fleet, drive_);
+    bar->addWidget(topBar);
+
+    addToolBarBreak();
+    auto *const second = addToolBar(tr("Stop"));
+    second->setObjectName("stopBar");
+    second->setMovable(false);
+    second->setContextMenuPolicy(Qt::PreventContextMenu);
+    auto *const banner = new StopBanner(drive_);
+    second->addWidget(banner);
+    second->hide();
+    connect(banner, &StopBanner::shown, second, &QToolBar::setVisible);
 
     setCentralWidget(map_ = new MapPanel(fleet));
     for (const PanelKind &kind : panelKinds())
@@ -38,6 +52,8 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     new DriveKeys(drive_, *this);
     new DriveGamepad(drive_, this);
     new EnterKey(*this);
+    new WheelGuard(*this);
+    new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
     restoreLayout();
     centralWidget()->setFocus(); // so that the keys drive
 }

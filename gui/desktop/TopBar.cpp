@@ -1,6 +1,8 @@
 #include "gui/desktop/TopBar.h"
 
-#include "gui/desktop/widgets/PlainLabel.h"
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/drive/StopBanner.h"
+#include "gui/desktop/widgets/AgedLabel.h"
 #include "protocol/wire/Fields.h"
 
 #include <QComboBox>
@@ -12,6 +14,11 @@ namespace {
 
 constexpr int longestName = 30;
 
+/// The supervisor says that nobody wants it to run.
+bool isMeantToRest(const ProcessStatus *process) {
+    return process && (process->state == "stopped" || process->state == "disabled");
+}
+
 } // namespace
 
 TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
@@ -22,8 +29,8 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
           fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
     , robots_(new QComboBox)
     , link_(new PlainLabel)
-    , control_(new PlainLabel)
-    , power_(new PlainLabel)
+    , control_(new AgedLabel)
+    , power_(new AgedLabel)
     , release_(new QPushButton(tr("&Release")))
     , stop_(new QPushButton(tr("STOP"))) {
     robots_->setObjectName("robots");
@@ -38,18 +45,16 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     release_->setObjectName("release");
     release_->setToolTip(tr("Ends the emergency stop and latched faults. The robot does not move by it."));
     stop_->setObjectName("stop");
-    stop_->setToolTip(tr("Emergency stop over the network (Space or Esc). It does not replace a wired one."));
+    stop_->setToolTip(
+        tr("Emergency stop over the network (Space, Esc or F12). It does not replace a wired one."));
     stop_->setFocusPolicy(Qt::NoFocus);
     QFont big = stop_->font();
     big.setBold(true);
     big.setPointSizeF(1.3 * big.pointSizeF());
     stop_->setFont(big);
-    stop_->setMinimumSize(110, 40);
-    stop_->setStyleSheet(
-        "QPushButton { background: #c4201d; color: white; border-radius: 6px; padding: 4px 16px; }"
-        "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
+    stop_->setMinimumSize(QFontMetrics(big).horizontalAdvance("STOP pressed") + 40, 40); // nothing jumps
 
-    for (PlainLabel *const told : {link_, control_, power_})
+    for (PlainLabel *const told : std::initializer_list<PlainLabel *>{link_, control_, power_})
         told->setMinimumWidth(1); // it is cut off where there is no room: nothing pushes STOP out of sight
 
     auto *const layout = new QHBoxLayout(this);
@@ -75,7 +80,10 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     connect(&fleet, &Fleet::changed, this, &TopBar::updateLink);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateRobots);
     connect(&fleet, &Fleet::robotChosen, this, &TopBar::updateLink);
-    connect(&powerFeed_, &TopicFeed::sourceChanged, power_, &QLabel::clear);
+    connect(&powerFeed_, &TopicFeed::sourceChanged, power_, [this] {
+        powerAge_.forget();
+        power_->tell({});
+    });
     connect(&drive, &DriveControl::changed, this, &TopBar::updateDrive);
     updateRobots();
     updateLink();
@@ -99,26 +107,54 @@ void TopBar::updateRobots() {
 
 void TopBar::updateLink() {
     double worst = -1;
+    QString wrong;
     if (const Robot *const robot = fleet_.robot())
-        for (const DaemonLink *daemon : robot->daemons())
+        for (const DaemonLink *daemon : robot->daemons()) {
             worst = std::max(worst, daemon->latency_ms());
-    link_->setText(worst < 0 ? tr("no link") : tr("link %1 ms").arg(worst, 0, 'f', worst < 10 ? 1 : 0));
+            const ProcessStatus *const process = robot->process(*daemon);
+            if (daemon->isSilent() ||
+                (daemon->isKnown() && !daemon->isConnected() && !isMeantToRest(process)))
+                wrong = tr("%1: %2").arg(daemon->name(), daemon->conditionWord());
+        }
+    QPalette palette;
+    if (!wrong.isEmpty())
+        palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
+    link_->setPalette(palette);
+    link_->setText(!wrong.isEmpty() ? wrong
+                   : worst < 0      ? tr("no link")
+                                    : tr("link %1 ms").arg(worst, 0, 'f', worst < 10 ? 1 : 0));
 }
 
 void TopBar::updateDrive() {
     const QString holder = drive_.holder();
-    control_->setText(!drive_.isPossible() ? tr("nothing to drive")
-                      : holder.isEmpty()   ? tr("control free")
-                                           : tr("control: %1").arg(shortLine(holder, longestName)));
+    if (!drive_.isPossible())
+        control_->tell(tr("nothing to drive"));
+    else
+        control_->tell(holder.isEmpty() ? tr("control free")
+                                        : tr("control: %1").arg(shortLine(holder, longestName)),
+                       drive_.stateAge());
     release_->setVisible(drive_.isStopped());
-    stop_->setText(drive_.isStopped() ? tr("STOPPED") : tr("STOP"));
+    const StopControl &stopping = drive_.stopping();
+    const bool isOnItsWay = stopping.phase() == StopPhase::Pressed || stopping.phase() == StopPhase::Sent;
+    release_->setEnabled(!isOnItsWay || stopping.isLate()); // a stop that comes after its release holds
+    stop_->setText(StopBanner::wordOf(drive_));
+    const QString colours =
+        drive_.isStopped() ? StopBanner::styleOf(drive_) : QString("background: #c4201d; color: white;");
+    const QString style =
+        "QPushButton { " + colours + " border-radius: 6px; padding: 4px 16px; }" +
+        (drive_.isStopped()
+             ? ""
+             : "QPushButton:hover { background: #d93a36; } QPushButton:pressed { background: #8f1412; }");
+    if (style != stop_->styleSheet())
+        stop_->setStyleSheet(style);
 }
 
 void TopBar::showPower(WireView told) {
+    powerAge_.heard();
     ReadReport report;
     const auto power = readMessage<PowerMessage>(told, report);
     if (!power)
-        return power_->setText(shortLine(tr("power: %1").arg(report.text()), 2 * longestName));
+        return power_->tell(shortLine(tr("power: %1").arg(report.text()), 2 * longestName), powerAge_);
     double volts = 0, amperes = 0, hottest = -300;
     for (const ControllerPower &controller : power->controllers) {
         if (!controller.ready)
@@ -128,10 +164,11 @@ void TopBar::showPower(WireView told) {
         for (const double current : controller.current_a)
             amperes += std::abs(current);
     }
-    power_->setText(hottest < -273
-                        ? QString()
-                        : tr("battery %1 V   %2 A   %3 °C")
-                              .arg(shortNumber(volts, 1), shortNumber(amperes, 1), shortNumber(hottest, 0)));
+    power_->tell(hottest < -273
+                     ? QString()
+                     : tr("battery %1 V   %2 A   %3 °C")
+                           .arg(shortNumber(volts, 1), shortNumber(amperes, 1), shortNumber(hottest, 0)),
+                 powerAge_);
 }
 
 } // namespace hermes::desktop

@@ -9,6 +9,7 @@ class QPushButton;
 
 namespace hermes::desktop {
 
+class AgedLabel;
 class PlainLabel;
 
 /// What is always in sight: which robot, how good its link is, who has the control, battery, currents and
@@ -17,6 +18,7 @@ class TopBar : public QWidget {
     Q_OBJECT
 public:
     TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent = nullptr);
+    QPushButton &stopButton() { return *stop_; }
 
 private:
     void updateRobots();
@@ -27,8 +29,10 @@ private:
     Fleet &fleet_;
     DriveControl &drive_;
     TopicFeed powerFeed_;
+    Freshness powerAge_;
     QComboBox *robots_;
-    PlainLabel *link_, *control_, *power_;
+    PlainLabel *link_;
+    AgedLabel *control_, *power_;
     QPushButton *release_, *stop_;
 };
 

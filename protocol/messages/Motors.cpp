@@ -27,6 +27,16 @@ const Fields<MotionHold> &fieldsOf(Of<MotionHold>) {
     return fields;
 }
 
+const Fields<StandConfirmation> &fieldsOf(Of<StandConfirmation>) {
+    using S = StandConfirmation;
+    static const auto fields =
+        Fields<S>()
+            .add("confirmed", &S::confirmed,
+                 "All have acknowledged a set-point of zero, and their encoders have not moved since")
+            .add("text", &S::text, "Which have not, and why; or empty");
+    return fields;
+}
+
 const Fields<ControllerPower> &fieldsOf(Of<ControllerPower>) {
     using C = ControllerPower;
     static const auto fields = Fields<C>()

@@ -24,6 +24,13 @@ struct MotionHold {
     LeaseState control;
 };
 
+/// Whether the robot is known to stand: a part of what motor.stop and motor.estop answer, and of
+/// motor.state.standing.
+struct StandConfirmation {
+    bool confirmed = false;
+    QString text; ///< which controllers have not, and why
+};
+
 /// What a motor controller measures of its power.
 struct ControllerPower {
     bool ready = false;
@@ -41,6 +48,7 @@ struct PowerMessage {
 
 const Fields<LeaseState> &fieldsOf(Of<LeaseState>);
 const Fields<MotionHold> &fieldsOf(Of<MotionHold>);
+const Fields<StandConfirmation> &fieldsOf(Of<StandConfirmation>);
 const Fields<ControllerPower> &fieldsOf(Of<ControllerPower>);
 const Fields<PowerMessage> &fieldsOf(Of<PowerMessage>);
 

@@ -1,7 +1,6 @@
 #include "gui/desktop/drive/DriveControl.h"
 
 #include "common/Time.h"
-#include "common/client/DaemonAddress.h"
 #include "protocol/wire/Fields.h"
 
 #include <QHostInfo>
@@ -14,22 +13,18 @@ QString clientName() {
     return "hermes-gui on " + QHostInfo::localHostName();
 }
 
-/// Until the robot has answered, STOP is repeated: more packets make a lost one known sooner.
-constexpr std::chrono::milliseconds stopRepeat{50};
-constexpr int stopMost = 60;
-
 } // namespace
 
 DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     : QObject(parent)
     , fleet_(fleet)
     , odometry_(
-          fleet, "odometry", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onOdometry(u); }, this) {
-    stopLine_.setFrameLimit(DaemonLink::usualFrame);
+          fleet, "odometry", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onOdometry(u); }, this)
+    , stop_(fleet) {
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
     connect(&pollTimer_, &QTimer::timeout, this, &DriveControl::poll);
-    connect(&stopTimer_, &QTimer::timeout, this, &DriveControl::repeatStop);
+    connect(&stop_, &StopControl::changed, this, &DriveControl::changed);
     connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
     connect(&fleet, &Fleet::robotChosen, this, &DriveControl::follow);
     timer_.start(period);
@@ -56,13 +51,15 @@ void DriveControl::follow() {
         motors_->disconnect(this);
     motors_ = found;
     hold_ = {};
+    measured_ = {};
+    measuredAge_.forget();
+    stateAge_.forget();
     isHolding_ = isAsking_ = isPolling_ = false;
     mustCentre_ = isAnyHeld();
     clock_ = {};
     if (!found)
         return tell(tr("No robot that can drive is connected."));
     tell({});
-    stopLine_.connectTo(asOwner(found->address()));
     found->call("settings.get", {{"path", "motion"}}, this, [this](const Result<QJsonValue> &motion) {
         const auto most = [&](const char *name, double usual) { // m/s or rad/s
             return qBound(0.0, motion ? (*motion)[QLatin1String(name)].toDouble(usual) : usual, 100.0);
@@ -191,53 +188,20 @@ void DriveControl::stop() {
     commanded_ = {};
     isDriving_ = isHolding_ = false;
     mustCentre_ = isAnyHeld();
-    unstopped_.clear();
-    if (fleet_.robot())
-        for (DaemonLink *daemon : fleet_.robot()->allWithMethod("motor.estop"))
-            unstopped_.push_back(daemon);
-    if (unstopped_.empty())
-        return tell(tr("STOP: no robot that can drive is connected."));
-    stopTries_ = 0;
-    repeatStop();
+    stop_.press();
     Q_EMIT changed();
-}
-
-void DriveControl::repeatStop() {
-    const auto isGone = [](const auto &daemon) { return !daemon; };
-    unstopped_.erase(std::remove_if(unstopped_.begin(), unstopped_.end(), isGone), unstopped_.end());
-    if (unstopped_.empty())
-        return stopTimer_.stop();
-    if (++stopTries_ > stopMost) {
-        stopTimer_.stop();
-        return tell(tr("STOP was not answered by %1: %2")
-                        .arg(unstopped_.front()->name(), unstopped_.front()->client().problem()));
-    }
-    stopTimer_.start(stopRepeat);
-    const auto daemons = unstopped_;
-    for (const QPointer<DaemonLink> &daemon : daemons) {
-        const auto answered = [this, daemon](const Result<QJsonValue> &result) {
-            if (!result)
-                return;
-            unstopped_.erase(std::remove(unstopped_.begin(), unstopped_.end(), daemon), unstopped_.end());
-            if (unstopped_.empty())
-                stopTimer_.stop();
-            poll();
-        };
-        daemon->call("motor.estop", {}, this, answered, Client::Repeats::AtOnce);
-        if (daemon == motors_ && stopLine_.isConnected())
-            stopLine_.call("motor.estop", QJsonObject(), answered, Client::defaultTimeout,
-                           Client::Repeats::AtOnce);
-    }
 }
 
 void DriveControl::release() {
     mustCentre_ = isAnyHeld();
-    if (!motors_)
+    stop_.release();
+    if (!fleet_.robot())
         return;
-    motors_->call("motor.reset_estop", {}, this, [this](const Result<QJsonValue> &result) {
-        tell(result ? QString() : result.error().message);
-        poll();
-    });
+    for (DaemonLink *daemon : fleet_.robot()->allWithMethod("motor.reset_estop"))
+        daemon->call("motor.reset_estop", {}, this, [this](const Result<QJsonValue> &result) {
+            tell(result ? QString() : result.error().message);
+            poll();
+        });
 }
 
 void DriveControl::poll() {
@@ -257,6 +221,7 @@ void DriveControl::onOdometry(const TopicUpdate &update) {
     if (!odometry)
         return tell(tr("Odometry: %1").arg(report.text()));
     measured_ = odometry->twist;
+    measuredAge_.heard();
     if (odometry_.source() == motors_) // no other clock is asked for
         clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);
     Q_EMIT changed();
@@ -267,6 +232,7 @@ void DriveControl::onState(const QJsonValue &state) {
     auto hold = readMessage<MotionHold>(WireValue(state), report);
     if (!hold)
         return tell(tr("State of the motors: %1").arg(report.text()));
+    stateAge_.heard();
     const bool wasStopped = isStopped();
     hold_ = std::move(*hold);
     if (!isDriving_ && hold_.control.holder != clientName())

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "common/client/ClockOffset.h"
+#include "gui/desktop/drive/StopControl.h"
+#include "gui/desktop/model/Freshness.h"
 #include "gui/desktop/model/TopicFeed.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Motors.h"
@@ -28,9 +30,9 @@ public:
     /// The share of the largest speed that the whole stick means, 0.05 to 1.
     void setLimit(double share);
     double limit() const { return limit_; }
-    /// The emergency stop of the robot: at once, without the control, latched until release(). It goes to
-    /// every daemon that has one.
+    /// The emergency stop of the robot: at once, without the control, latched until release().
     void stop();
+    const StopControl &stopping() const { return stop_; }
     /// Ends driving softly; the control is given back.
     void halt();
     /// Ends the emergency stop and latched faults.
@@ -41,7 +43,8 @@ public:
     /// Somebody who can be driven is there.
     bool isPossible() const { return motors() != nullptr; }
     bool isDriving() const { return isDriving_; }
-    bool isStopped() const { return !hold_.latched.isEmpty(); }
+    /// Or STOP is on its way.
+    bool isStopped() const { return !hold_.latched.isEmpty() || stop_.phase() != StopPhase::None; }
     /// Why the robot does not move, by cause: "estop", faults.
     const QMap<QString, QString> &latched() const { return hold_.latched; }
     /// Who holds the control: "" nobody, "you", or the name of another client.
@@ -51,6 +54,9 @@ public:
     /// The velocity that is commanded, and the one that odometry measures.
     const Twist2D &commanded() const { return commanded_; }
     const Twist2D &measured() const { return measured_; }
+    /// How old that is, and what the motor control says of its state.
+    const Freshness &measuredAge() const { return measuredAge_; }
+    const Freshness &stateAge() const { return stateAge_; }
     /// The refusal of the last command, or what else hinders; empty while all is well.
     const QString &problem() const { return problem_; }
 
@@ -69,7 +75,6 @@ private:
     void acquire(bool takeOver);
     void ask();
     void giveBack();
-    void repeatStop();
     void send();
     void poll();
     void onState(const QJsonValue &state);
@@ -82,16 +87,15 @@ private:
     Fleet &fleet_;
     TopicFeed odometry_;
     QPointer<DaemonLink> motors_;
-    Client stopLine_; ///< a second connection: a lost packet on one does not hold up the stop on the other
-    QTimer timer_, pollTimer_, stopTimer_;
+    StopControl stop_;
+    QTimer timer_, pollTimer_;
     QMap<QString, Input> inputs_;
     MotionHold hold_;
     Twist2D most_{0.5, 0.5, 1}, commanded_, measured_;
+    Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
     double limit_ = 0.4;
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;
-    int stopTries_ = 0;
-    std::vector<QPointer<DaemonLink>> unstopped_; // have not answered a STOP as yet
     QString problem_;
 };
 

@@ -1,11 +1,12 @@
 #include "gui/desktop/drive/DriveKeys.h"
 
+#include "gui/desktop/widgets/Typing.h"
+
 #include <QAbstractItemView>
 #include <QAbstractSlider>
 #include <QApplication>
 #include <QComboBox>
 #include <QKeyEvent>
-#include <QLineEdit>
 #include <QPlainTextEdit>
 
 namespace hermes::desktop {
@@ -13,16 +14,11 @@ namespace {
 
 constexpr double slow = 0.3;
 
-bool isTyping(const QWidget *focus) {
-    const auto *const text = qobject_cast<const QPlainTextEdit *>(focus);
-    return qobject_cast<const QLineEdit *>(focus) || (text && !text->isReadOnly());
-}
-
 /// Widgets that need arrows or letters themselves.
 bool usesKeys(const QWidget *focus) {
-    return isTyping(focus) || qobject_cast<const QAbstractItemView *>(focus) ||
-           qobject_cast<const QComboBox *>(focus) || qobject_cast<const QAbstractSlider *>(focus) ||
-           qobject_cast<const QPlainTextEdit *>(focus);
+    return QApplication::activePopupWidget() || isTyping(focus) ||
+           qobject_cast<const QAbstractItemView *>(focus) || qobject_cast<const QComboBox *>(focus) ||
+           qobject_cast<const QAbstractSlider *>(focus) || qobject_cast<const QPlainTextEdit *>(focus);
 }
 
 bool isDriveKey(int key) {
@@ -49,8 +45,7 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
     if (event->type() == QEvent::ShortcutOverride) {
         // Else a shortcut of the same key would come first.
         const auto *const key = static_cast<QKeyEvent *>(event);
-        if (key->key() == Qt::Key_Escape ||
-            (isDriveKey(key->key()) && !usesKeys(QApplication::focusWidget())))
+        if (isDriveKey(key->key()) && !usesKeys(QApplication::focusWidget()))
             event->accept();
         return false;
     }
@@ -68,11 +63,6 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
 
 bool DriveKeys::press(int key, Qt::KeyboardModifiers modifiers) {
     const QWidget *const focus = QApplication::focusWidget();
-    if (key == Qt::Key_Escape || (key == Qt::Key_Space && (drive_.isDriving() || !isTyping(focus)))) {
-        down_.clear();
-        drive_.stop();
-        return true;
-    }
     if (key == Qt::Key_Shift) {
         steer(modifiers | Qt::ShiftModifier);
         return false;

@@ -7,8 +7,8 @@
 namespace hermes::desktop {
 
 /// The keyboard as an input, wherever in the window the focus is: arrows or WASD drive, Q and E turn, Shift
-/// is slow, Space and Esc are STOP. Keys that somebody types into a field do not drive; Esc stops even there,
-/// and Space does while the robot is driven. When the window loses the focus the drive ends.
+/// is slow. Keys that somebody types into a field or uses in a menu do not drive. When the window loses the
+/// focus the drive ends.
 class DriveKeys : public QObject {
     Q_OBJECT
 public:

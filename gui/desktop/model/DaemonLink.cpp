@@ -6,7 +6,6 @@
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
-#include <QElapsedTimer>
 #include <QJsonArray>
 #include <QPointer>
 
@@ -38,10 +37,16 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
     connect(&client_, &Client::connected, this, &DaemonLink::onConnected);
     connect(&client_, &Client::disconnected, this, [this] {
         isPolling_ = false;
+        silence_.stop();
         Q_EMIT changed();
     });
     connect(&timer_, &QTimer::timeout, this, &DaemonLink::poll);
     timer_.start(pollPeriod);
+    silence_.setInterval(100);
+    connect(&silence_, &QTimer::timeout, this, [this] {
+        if (isSilent())
+            Q_EMIT changed();
+    });
     client_.connectTo(asOwner(address));
     subscribe("status", {{"max_rate_hz", 10}}, [this](const TopicUpdate &update) { onStatus(update.data); });
 }
@@ -69,8 +74,18 @@ QString DaemonLink::title() const {
     return title.isEmpty() ? name() : title;
 }
 
-Condition DaemonLink::condition() const {
+double DaemonLink::latency_ms() const {
     if (!isConnected())
+        return -1;
+    return isPolling_ ? std::max(latency_ms_, double(asked_.elapsed())) : latency_ms_;
+}
+
+bool DaemonLink::isSilent() const {
+    return isConnected() && isPolling_ && double(asked_.elapsed()) > std::max(500.0, 3 * latency_ms_);
+}
+
+Condition DaemonLink::condition() const {
+    if (!isConnected() || isSilent())
         return Condition::Unreachable;
     const QString &state = status_.state;
     const int worst = qMax(severity(worst_), isUnderstood() ? 0 : 1);
@@ -84,7 +99,7 @@ Condition DaemonLink::condition() const {
 QString DaemonLink::conditionWord() const {
     const Condition now = condition();
     if (now == Condition::Unreachable)
-        return tr("unreachable");
+        return isSilent() ? tr("no answer for %1 s").arg(0.001 * latency_ms(), 0, 'f', 0) : tr("unreachable");
     const QString state = shortLine(status_.state, longestName);
     if (now == Condition::Warning && state != "degraded")
         return tr("warning");
@@ -218,13 +233,20 @@ void DaemonLink::poll() {
     if (!isConnected() || isPolling_)
         return;
     isPolling_ = true;
-    QElapsedTimer time;
-    time.start();
-    call("daemon.status", {}, this, [this, time](const Result<QJsonValue> &status) {
+    asked_.start();
+    silence_.start();
+    ask();
+}
+
+void DaemonLink::ask() {
+    call("daemon.status", {}, this, [this](const Result<QJsonValue> &status) {
+        if (!status && status.error().is(ErrorCode::TimedOut) && isConnected())
+            return ask(); // the silence goes on
         isPolling_ = false;
+        silence_.stop();
         if (!status)
             return;
-        latency_ms_ = double(time.nsecsElapsed()) * 1e-6;
+        latency_ms_ = double(asked_.nsecsElapsed()) * 1e-6;
         onStatus(WireValue(*status));
     });
 }

@@ -3,6 +3,7 @@
 #include "gui/desktop/model/NewestOnly.h"
 #include "protocol/messages/Daemons.h"
 
+#include <QElapsedTimer>
 #include <QHash>
 #include <QJsonObject>
 #include <QObject>
@@ -43,8 +44,11 @@ public:
     QString conditionWord() const;
     /// The worst health item as a sentence, or why there is no connection; empty when all is well.
     QString reason() const;
-    /// The time of a request and its reply in milliseconds; negative: not measured.
-    double latency_ms() const { return isConnected() ? latency_ms_ : -1; }
+    /// The time of a request and its reply in milliseconds, or since a request that has no reply yet, when
+    /// that is longer; negative: not measured.
+    double latency_ms() const;
+    /// A request has waited for its reply for longer than half a second, and than three replies took.
+    bool isSilent() const;
 
     const DaemonStatus &status() const { return status_; }
     /// OpenRPC, with "x-topics".
@@ -85,6 +89,7 @@ private:
     void onStatus(WireView status);
     bool isUnderstood() const;
     void poll();
+    void ask();
 
     const QString address_;
     Client client_;
@@ -101,6 +106,8 @@ private:
     quint64 shownUnreadable_ = 0;
     double latency_ms_ = -1;
     bool isPolling_ = false;
+    QElapsedTimer asked_; // while it polls
+    QTimer silence_;      // shows a silence as it grows
 };
 
 } // namespace hermes::desktop

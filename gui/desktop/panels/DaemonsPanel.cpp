@@ -168,7 +168,7 @@ void DaemonsPanel::showDaemon(QTreeWidgetItem &item, const Robot &robot, const D
             toolTip.join('\n'));
 
     const std::vector<HealthItem> &health = daemon.status().health;
-    const int count = daemon.isConnected() ? int(health.size()) : 0;
+    const int count = daemon.isConnected() && !daemon.isSilent() ? int(health.size()) : 0;
     const int shown = qMin(count, mostHealthItems);
     const int rows = shown + (count > shown ? 1 : 0);
     while (item.childCount() > rows)

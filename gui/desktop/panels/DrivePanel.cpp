@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/DrivePanel.h"
 
 #include "gui/desktop/drive/Stick.h"
+#include "gui/desktop/widgets/AgedLabel.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 
@@ -17,7 +18,7 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     , stick_(new Stick)
     , limit_(new QSlider(Qt::Horizontal))
     , limitText_(new PlainLabel)
-    , control_(new PlainLabel)
+    , control_(new AgedLabel)
     , problem_(new MessageLabel)
     , takeOver_(new QPushButton(tr("Ta&ke over"))) {
     stick_->setObjectName("stick");
@@ -62,12 +63,15 @@ QWidget *DrivePanel::makeNumbers() {
     grid->setContentsMargins(0, 0, 0, 0);
     const QStringList names{tr("ahead\nm/s"), tr("left\nm/s"), tr("turn\nrad/s")};
     grid->addWidget(new PlainLabel(tr("commanded")), 1, 0);
-    grid->addWidget(new PlainLabel(tr("measured")), 2, 0);
+    auto *const measured = new PlainLabel(tr("measured"));
+    measured->setObjectName("measuredName");
+    grid->addWidget(measured, 2, 0);
     for (int i = 0; i < 3; ++i) {
         grid->addWidget(new PlainLabel(names[i]), 0, i + 1, Qt::AlignRight);
         grid->addWidget(commanded_[i] = new PlainLabel, 1, i + 1);
-        grid->addWidget(measured_[i] = new PlainLabel, 2, i + 1);
-        for (PlainLabel *const number : {commanded_[i], measured_[i]}) {
+        grid->addWidget(measured_[i] = new AgedLabel, 2, i + 1);
+        measured_[i]->setSilenceLabel(measured);
+        for (PlainLabel *const number : std::initializer_list<PlainLabel *>{commanded_[i], measured_[i]}) {
             number->setAlignment(Qt::AlignRight);
             number->setMinimumWidth(fontMetrics().horizontalAdvance("-0.00")); // nothing jumps at a minus
         }
@@ -78,24 +82,31 @@ QWidget *DrivePanel::makeNumbers() {
 }
 
 void DrivePanel::update() {
-    const auto show = [](PlainLabel *const(&labels)[3], const Twist2D &velocity) {
+    const auto numbers = [](const Twist2D &velocity) {
+        std::array<QString, 3> texts;
         const double values[]{velocity.vx, velocity.vy, velocity.omega};
-        for (int i = 0; i < 3; ++i)
-            labels[i]->setText(shortNumber(values[i], 2).replace("-0.00", "0.00"));
+        for (std::size_t i = 0; i < 3; ++i)
+            texts[i] = shortNumber(values[i], 2).replace("-0.00", "0.00");
+        return texts;
     };
-    show(commanded_, drive_.commanded());
-    show(measured_, drive_.measured());
+    const auto commanded = numbers(drive_.commanded()), measured = numbers(drive_.measured());
+    const bool isMeasured = drive_.measuredAge().state() != Freshness::State::None;
+    for (std::size_t i = 0; i < 3; ++i) {
+        commanded_[i]->setText(commanded[i]);
+        measured_[i]->tell(isMeasured ? measured[i] : QString(), drive_.measuredAge());
+    }
     stick_->setEnabled(drive_.isPossible() && !drive_.isStopped());
     limitText_->setText(tr("%1 %").arg(qRound(100 * drive_.limit())));
     const QString holder = drive_.holder();
-    control_->setText(!drive_.isPossible() ? QString()
-                      : holder.isEmpty()   ? tr("The control is free: move the stick to take it.")
-                      : drive_.wanted().isEmpty()
-                          ? tr("Control: %1").arg(holder)
-                          : tr("Control: %1; %2 asks for it").arg(holder, shortLine(drive_.wanted(), 40)));
+    control_->tell(!drive_.isPossible() ? QString()
+                   : holder.isEmpty()   ? tr("The control is free: move the stick to take it.")
+                   : drive_.wanted().isEmpty()
+                       ? tr("Control: %1").arg(holder)
+                       : tr("Control: %1; %2 asks for it").arg(holder, shortLine(drive_.wanted(), 40)),
+                   drive_.isPossible() ? drive_.stateAge() : Freshness());
     takeOver_->setVisible(!holder.isEmpty() && holder != tr("you"));
     QString problem = drive_.problem();
-    if (drive_.isStopped()) {
+    if (!drive_.latched().isEmpty()) {
         const QStringList reasons = drive_.latched().values();
         problem = tr("Stopped: %1. Release it above.").arg(reasons.join("; "));
     }

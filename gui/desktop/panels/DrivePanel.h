@@ -9,6 +9,7 @@ class QSlider;
 
 namespace hermes::desktop {
 
+class AgedLabel;
 class MessageLabel;
 class PlainLabel;
 class Stick;
@@ -27,9 +28,11 @@ private:
     DriveControl &drive_;
     Stick *stick_;
     QSlider *limit_;
-    PlainLabel *limitText_, *control_;
+    PlainLabel *limitText_;
+    AgedLabel *control_;
     MessageLabel *problem_;
-    PlainLabel *commanded_[3], *measured_[3];
+    PlainLabel *commanded_[3];
+    AgedLabel *measured_[3];
     QPushButton *takeOver_;
 };
 

@@ -115,11 +115,12 @@ void MapPanel::askFile() {
         new QFileDialog(this, tr("Export the view"), "map.svg", tr("Pictures (*.svg *.png)"));
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setAcceptMode(QFileDialog::AcceptSave);
+    dialog->setOption(QFileDialog::DontUseNativeDialog); // whose keys this program does not see
     connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
         const auto done = exportTo(file);
         message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
     });
-    dialog->open(); // not modal for the rest of the program: STOP stays in reach
+    dialog->show(); // not modal: STOP stays in reach
 }
 
 Result<void> MapPanel::exportTo(const QString &file) {

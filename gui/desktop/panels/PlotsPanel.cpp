@@ -235,11 +235,12 @@ void PlotsPanel::askFile() {
     auto *const dialog = new QFileDialog(this, tr("Write the curves"), "curves.csv", tr("Tables (*.csv)"));
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setAcceptMode(QFileDialog::AcceptSave);
+    dialog->setOption(QFileDialog::DontUseNativeDialog); // whose keys this program does not see
     connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
         const auto done = exportTo(file);
         message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
     });
-    dialog->open();
+    dialog->show(); // not modal: STOP stays in reach
 }
 
 Result<void> PlotsPanel::exportTo(const QString &file) const {

@@ -79,11 +79,11 @@ void SettingsPanel::follow(DaemonLink *daemon) {
         daemon_->disconnect(this);
         daemon_->unsubscribe(handle_);
     }
+    keepEdits();
     daemon_ = daemon;
     form_->setSchema({}, {});
-    message_->hide();
     if (daemon) {
-        connect(daemon, &DaemonLink::ready, this, &SettingsPanel::load);
+        connect(daemon, &DaemonLink::ready, this, [this] { load(); });
         connect(daemon, &DaemonLink::changed, this, &SettingsPanel::update);
         handle_ = daemon->subscribe("settings", {{"max_rate_hz", 5}}, [this](const TopicUpdate &update) {
             form_->setBaseline(update.json().toObject());
@@ -95,31 +95,49 @@ void SettingsPanel::follow(DaemonLink *daemon) {
     update();
 }
 
-void SettingsPanel::load() {
+void SettingsPanel::keepEdits() {
+    message_->hide();
+    const QJsonObject changes = form_->changes();
+    if (!daemon_ || changes.isEmpty())
+        return;
+    edits_[daemon_->address()] = changes;
+    message_->tell(tr("%1 keeps %n change(s) that are not applied", nullptr, leafPaths(changes).size())
+                       .arg(daemon_->name()));
+}
+
+void SettingsPanel::load(bool keepsEdits) {
     DaemonLink *const daemon = daemon_;
-    daemon->call("settings.schema", {}, this, [this, daemon](const Result<QJsonValue> &schema) {
+    daemon->call("settings.schema", {}, this, [=](const Result<QJsonValue> &schema) {
         if (daemon != daemon_)
             return;
         if (!schema || !schema->isObject())
             return message_->tell(schema ? tr("settings.schema is no object") : schema.error().message, true);
         const QJsonObject found = schema->toObject();
-        daemon->call("settings.get", {}, this, [this, daemon, found](const Result<QJsonValue> &values) {
+        daemon->call("settings.get", {}, this, [=](const Result<QJsonValue> &values) {
             if (daemon != daemon_)
                 return;
             if (!values || !values->isObject())
                 return message_->tell(values ? tr("settings.get is no object") : values.error().message,
                                       true);
+            const QJsonObject kept = edits_.take(daemon->address()), typed = form_->changes();
             form_->setSchema(found, values->toObject());
             form_->setFilter(filter_->text());
+            if (keepsEdits) {
+                form_->edit(kept);
+                form_->edit(typed);
+            }
             update();
         });
     });
 }
 
 void SettingsPanel::apply() {
-    const QJsonObject changes = form_->changes();
+    submit([this](const QString &told) { message_->tell(told); });
+}
+
+void SettingsPanel::submit(const std::function<void(const QString &told)> &then) {
     DaemonLink *const daemon = daemon_;
-    daemon->call("settings.set", {{"values", changes}}, this, [this, daemon](const Result<QJsonValue> &done) {
+    daemon->call("settings.set", {{"values", form_->changes()}}, this, [=](const Result<QJsonValue> &done) {
         if (daemon != daemon_)
             return;
         if (!done) {
@@ -129,21 +147,24 @@ void SettingsPanel::apply() {
         QStringList restart;
         for (const QJsonValue &path : (*done)["restart"].toArray())
             restart.append(path.toString());
-        message_->tell(restart.isEmpty()
-                           ? tr("Applied.")
-                           : tr("Applied. Needs a restart of the daemon: %1").arg(restart.join(", ")),
-                       false);
-        load();
+        load(false);
+        then(restart.isEmpty() ? tr("Applied.")
+                               : tr("Applied. Needs a restart of the daemon: %1").arg(restart.join(", ")));
     });
 }
 
 void SettingsPanel::save() {
-    daemon_->call("settings.save", {}, this, [this](const Result<QJsonValue> &done) {
-        if (done)
-            message_->tell(tr("Saved: the daemon begins with these settings the next time."), false);
-        else
-            message_->tell(done.error().message, true);
-    });
+    const auto keep = [this](const QString &told) {
+        daemon_->call("settings.save", {}, this, [this, told](const Result<QJsonValue> &done) {
+            if (done)
+                message_->tell(told + tr("Saved: the daemon begins with these settings the next time."));
+            else
+                message_->tell(told + done.error().message, true);
+        });
+    };
+    if (form_->changes().isEmpty())
+        return keep({});
+    submit([keep](const QString &told) { keep(told + ' '); });
 }
 
 void SettingsPanel::update() {
@@ -159,7 +180,8 @@ void SettingsPanel::update() {
     apply_->setEnabled(isEditable && changed > 0 && form_->isValid());
     revert_->setEnabled(changed > 0 || !form_->isValid());
     defaults_->setEnabled(isEditable);
-    save_->setEnabled(isEditable);
+    save_->setText(changed == 0 ? tr("&Save") : tr("Apply and &save"));
+    save_->setEnabled(isEditable && form_->isValid()); // what is wrong would be left out
     form_->setEnabled(isEditable);
     form_->setToolTip(why);
 }

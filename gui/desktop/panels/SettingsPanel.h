@@ -4,6 +4,7 @@
 
 #include <QPointer>
 #include <QWidget>
+#include <functional>
 
 class QLineEdit;
 class QPushButton;
@@ -14,7 +15,8 @@ class MessageLabel;
 class PlainLabel;
 class SchemaForm;
 
-/// The settings of the chosen daemon, made from its own schema: apply, revert, defaults, save.
+/// The settings of the chosen daemon, made from its own schema: apply, revert, defaults, save. What was
+/// edited and not applied is kept for each daemon, also while it is away.
 class SettingsPanel : public QWidget {
     Q_OBJECT
 public:
@@ -22,14 +24,18 @@ public:
 
 private:
     void follow(DaemonLink *daemon);
-    void load();
+    void load(bool keepsEdits = true);
     void apply();
+    /// Applies what was edited, and tells how that ended; then goes on when it was taken.
+    void submit(const std::function<void(const QString &told)> &then);
     void save();
+    void keepEdits();
     void update();
     QWidget *makeButtons();
 
     QPointer<DaemonLink> daemon_;
-    int handle_ = 0; // subscription to the topic "settings"
+    QHash<QString, QJsonObject> edits_; // not applied, by the address of a daemon that is not shown
+    int handle_ = 0;                    // subscription to the topic "settings"
     PlainLabel *title_;
     MessageLabel *message_;
     QLineEdit *filter_;

@@ -47,6 +47,7 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
     connect(&poses_, &TopicFeed::sourceChanged, this, [this] {
         endGlide();
         pose_.reset();
+        poseAge_.forget();
         trust_.reset();
         odometryFrame_.reset();
         clearPaths();
@@ -60,6 +61,14 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
         correction_m_.reset();
         Q_EMIT changed();
     });
+    ageing_.setInterval(100);
+    connect(&ageing_, &QTimer::timeout, this, [this] {
+        const auto shown = [](const Freshness &age) { return std::pair(age.state(), age.text()); };
+        const auto now = std::pair(shown(poseAge_), shown(scanAge_));
+        if (std::exchange(shownAge_, now) != now)
+            Q_EMIT changed();
+    });
+    ageing_.start();
     wait_.setSingleShot(true);
     notice_.setSingleShot(true);
 }
@@ -153,6 +162,7 @@ void MapModel::onPose(const PoseMessage &message) {
     }
     takeLeap(message);
     pose_ = message.pose;
+    poseAge_.heard();
     takeTrust(message.trust);
     outcome_ = shortLine(message.outcome, longestOutcome);
     covariance_ = message.covariance;
@@ -202,6 +212,7 @@ void MapModel::onResult(const ScanResult &result) {
 
 void MapModel::onScan(const ScanMessage &scan) {
     rawScan_ = scan;
+    scanAge_.heard();
     placeScan();
     if (!poses_.source())
         Q_EMIT changed();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/desktop/model/Freshness.h"
 #include "gui/desktop/model/TopicFeed.h"
 #include "gui/desktop/view/Glide.h"
 #include "protocol/messages/Matching.h"
@@ -44,6 +45,9 @@ public:
     const std::optional<double> &correction_m() const { return correction_m_; }
     /// Of x, y and theta, row by row; absent when the last scan was lost.
     const std::optional<std::array<double, 9>> &covariance() const { return covariance_; }
+    /// How old pose and match are, and the scan.
+    const Freshness &poseAge() const { return poseAge_; }
+    const Freshness &scanAge() const { return scanAge_; }
     /// "matched", "lost" or "skipped".
     const QString &outcome() const { return outcome_; }
     /// 0 to 1, and m^2, of the last match.
@@ -120,6 +124,9 @@ private:
     quint64 ignored_ = 0;
     double reliability_ = 0, ambiguity_ = 0;
     std::optional<double> trust_;
+    Freshness poseAge_, scanAge_;
+    QTimer ageing_; // shows that nothing comes
+    std::pair<std::pair<Freshness::State, QString>, std::pair<Freshness::State, QString>> shownAge_;
     std::array<DrivenPath, 3> paths_; // by MovingMap::Path
 
     KeyScanGraph graph_;

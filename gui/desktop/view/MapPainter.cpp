@@ -25,6 +25,11 @@ QVector<QLineF> mapped(const QVector<QLineF> &lines, const QTransform &transform
     return result;
 }
 
+/// Grey where it is old: that is not where things are now.
+QColor agedColour(const QColor &colour, const Freshness &age) {
+    return age.state() == Freshness::State::Fresh ? colour : theme::colour(Condition::Unreachable);
+}
+
 } // namespace
 
 double gridStep_m(double pixelsPerMetre) {
@@ -49,7 +54,8 @@ void MapPainter::paint(QPainter &painter) const {
     if (layers_.correspondences && !model_.isGliding())
         leftOut += paintCorrespondences(painter);
     if (layers_.segments)
-        leftOut += paintLines(painter, mapped(model_.segments(), sensorTransform()), QPen(c.accent, 2));
+        leftOut += paintLines(painter, mapped(model_.segments(), sensorTransform()),
+                              QPen(agedColour(c.accent, model_.poseAge()), 2));
     if (layers_.paths) {
         paintPath(painter, model_.truthPath(), c.truth, Qt::DotLine);
         paintPath(painter, model_.odometryPath(), c.odometry, Qt::DashLine);
@@ -126,7 +132,7 @@ QTransform MapPainter::sensorTransform() const {
 
 void MapPainter::paintScan(QPainter &painter) const {
     painter.setRenderHint(QPainter::Antialiasing, false);
-    painter.setPen(QPen(mapColours().scan, 2));
+    painter.setPen(QPen(agedColour(mapColours().scan, model_.scanAge()), 2));
     painter.drawPoints(sensorTransform().map(model_.scan()));
 }
 
@@ -187,12 +193,13 @@ void MapPainter::paintRobot(QPainter &painter) const {
     const double r = robotRadius_m;
     const auto at = [&](double x, double y) { return transform_.map(pose * QPointF(x, y)); };
     painter.setRenderHint(QPainter::Antialiasing, true);
-    QColor fill = mapColours().robot;
+    const QColor colour = agedColour(mapColours().robot, model_.poseAge());
+    QColor fill = colour;
     painter.setPen(QPen(fill, 2));
     fill.setAlpha(60);
     painter.setBrush(fill);
     painter.drawEllipse(at(0, 0), r * scale(), r * scale());
-    painter.setBrush(mapColours().robot);
+    painter.setBrush(colour);
     painter.drawPolygon(QVector<QPointF>{at(r, 0), at(0.3 * r, 0.35 * r), at(0.3 * r, -0.35 * r)});
     painter.setBrush(Qt::NoBrush);
 }
@@ -234,13 +241,18 @@ void MapPainter::paintNotice(QPainter &painter, int leftOut) const {
 void MapPainter::paintMatch(QPainter &painter) const {
     const bool isLost = model_.outcome() == "lost";
     const double reliability = qBound(0.0, model_.reliability(), 1.0);
-    const Condition condition = isLost              ? Condition::Fault
+    const Freshness &age = model_.poseAge();
+    const Condition condition = !age.isFresh()      ? Condition::Unreachable
+                                : isLost            ? Condition::Fault
                                 : reliability < 0.1 ? Condition::Warning
                                                     : Condition::Ready;
     QStringList lines{QObject::tr("%1, reliability %2").arg(model_.outcome()).arg(reliability, 0, 'f', 2),
                       QObject::tr("ambiguity %1 m²").arg(model_.ambiguity(), 0, 'g', 2)};
     if (model_.trust())
         lines.append(QObject::tr("trust of the pose %1").arg(*model_.trust(), 0, 'f', 2));
+    const int struck = age.state() == Freshness::State::Silent ? lines.size() : 0; // what held once
+    if (struck > 0)
+        lines.append(age.text());
     const QFontMetrics metrics(painter.font());
     const int height = metrics.height();
     int width = 0;
@@ -256,7 +268,10 @@ void MapPainter::paintMatch(QPainter &painter) const {
     painter.drawRect(QRectF(bar.topLeft(), QSizeF(bar.width() * reliability, bar.height())));
     painter.setBrush(Qt::NoBrush);
     for (int i = 0; i < lines.size(); ++i) {
-        painter.setPen(isLost && i == 0 ? theme::colour(condition) : mapColours().text);
+        painter.setPen(!age.isFresh() || (isLost && i == 0) ? theme::colour(condition) : mapColours().text);
+        QFont font = painter.font();
+        font.setStrikeOut(i < struck);
+        painter.setFont(font);
         painter.drawText(box.topLeft() + QPointF(8, 4 + i * height + metrics.ascent()), lines[i]);
     }
 }

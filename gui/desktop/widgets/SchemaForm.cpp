@@ -194,6 +194,14 @@ void SchemaForm::revert() {
     check();
 }
 
+void SchemaForm::edit(const QJsonObject &changes) {
+    for (auto &[path, row] : rows_)
+        if (const QJsonValue value = valueAt(changes, path); !value.isUndefined())
+            row.editor->setValue(value);
+    check();
+    Q_EMIT edited();
+}
+
 QJsonObject SchemaForm::values() const {
     QJsonObject result;
     for (const auto &[path, row] : rows_)

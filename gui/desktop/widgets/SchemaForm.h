@@ -33,6 +33,9 @@ public:
     /// Back to the unchanged values.
     void revert();
 
+    /// Rows show these values, as if somebody had typed them.
+    void edit(const QJsonObject &changes);
+
     /// What stands in the rows, as nested objects; rows left empty are absent.
     QJsonObject values() const;
     /// Only what differs from the unchanged values.

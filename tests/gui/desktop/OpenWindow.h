@@ -15,6 +15,7 @@ using namespace desktop;
 /// The operator's window on the daemons of a robot, and hands that click and type in it.
 class OpenWindow {
 public:
+    OpenWindow() = default; // on nobody
     explicit OpenWindow(RobotProcesses &robot) { robot.connectTo(fleet); }
 
     /// To be verified first: what one does in a window that is not active goes nowhere.

@@ -151,7 +151,8 @@ void TestDrivePanel::afterAReleaseTheStickMustBeCentred() {
     QTest::keyPress(window_.get(), Qt::Key_W);
     awaitMotion();
     drive_->stop();
-    QTRY_VERIFY(drive_->isStopped());
+    QVERIFY(drive_->isStopped());
+    QTRY_COMPARE(int(drive_->stopping().phase()), int(StopPhase::Confirmed));
     drive_->release();
     QTRY_VERIFY(!drive_->isStopped());
     QVERIFY(!drive_->isDriving()); // W is still down

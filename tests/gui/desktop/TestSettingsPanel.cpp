@@ -6,6 +6,10 @@
 #include <QFile>
 #include <QJsonDocument>
 #include <QLabel>
+#include <QScrollArea>
+#include <QScrollBar>
+#include <QSlider>
+#include <QWheelEvent>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -25,6 +29,10 @@ private Q_SLOTS:
     void changeOfAnotherClientArrives();
     void otherDaemonMeanwhile();
     void everyRowFitsItsSetting();
+    void editsAreKeptForEachDaemon();
+    void editsOutliveARestart();
+    void saveAppliesFirst();
+    void theWheelChangesNothing();
 
 private:
     QLineEdit *field(const QString &path) const {
@@ -182,6 +190,88 @@ void TestSettingsPanel::everyRowFitsItsSetting() {
     for (int i = 0; i < 20; ++i)
         QTest::keyClick(number, Qt::Key_Up);
     QCOMPARE(number->text(), QString("1")); // its limit
+}
+
+void TestSettingsPanel::editsAreKeptForEachDaemon() {
+    DaemonLink *const motors = window_->fleet.robot()->withName("motorcontrol");
+    DaemonLink *const matcher = window_->fleet.robot()->withName("scanmatcher");
+    OpenWindow::type(field("motion.vx"), "0.31");
+    QVERIFY(window_->choose(matcher));
+    QTRY_VERIFY(panel_->findChild<QWidget *>("source.queue"));
+    QVERIFY2(message().contains("motorcontrol keeps 1 change"), qPrintable(message()));
+    OpenWindow::type(field("source.queue"), "7");
+    QVERIFY(window_->choose(motors));
+    QTRY_VERIFY(panel_->findChild<QWidget *>("motion.vx"));
+    QTRY_COMPARE(field("motion.vx")->text(), QString("0.31"));
+    QCOMPARE(note("motion.vx"), QString("changed"));
+    QVERIFY(isEnabled("apply"));
+    QVERIFY(setting("motion.vx").toDouble() != 0.31);
+    QVERIFY(window_->choose(matcher));
+    QTRY_VERIFY(panel_->findChild<QWidget *>("source.queue"));
+    QTRY_COMPARE(field("source.queue")->text(), QString("7"));
+    OpenWindow::click(panel_, "revert");
+    QVERIFY(window_->choose(motors));
+    QTRY_VERIFY(panel_->findChild<QWidget *>("motion.vx"));
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("motion.vx"), QJsonValue(0.31));
+    QVERIFY(window_->choose(matcher));
+    QTRY_VERIFY(panel_->findChild<QWidget *>("source.queue"));
+    QVERIFY(!isEnabled("apply"));
+}
+
+void TestSettingsPanel::editsOutliveARestart() {
+    OpenWindow::type(field("motion.vx"), "0.31");
+    robot_->kill("motorcontrol");
+    QTRY_VERIFY(!isEnabled("apply"));
+    robot_->start("motorcontrol", {}, {"--config", robot_->path("motors.json")});
+    QTRY_VERIFY_WITH_TIMEOUT(isEnabled("apply"), 10000);
+    QTRY_COMPARE(field("motion.vx")->text(), QString("0.31"));
+    QVERIFY(client_->waitConnected().ok());
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("motion.vx"), QJsonValue(0.31));
+}
+
+void TestSettingsPanel::saveAppliesFirst() {
+    OpenWindow::type(field("motion.vx"), "fast");
+    QVERIFY(!isEnabled("save"));
+    OpenWindow::type(field("motion.vx"), "0.31");
+    OpenWindow::click(panel_, "save");
+    QTRY_VERIFY2(message().startsWith("Applied. Saved"), qPrintable(message()));
+    QCOMPARE(setting("motion.vx"), QJsonValue(0.31));
+    QFile file(robot_->path("motors.json"));
+    QVERIFY(file.open(QIODevice::ReadOnly));
+    QCOMPARE(QJsonDocument::fromJson(file.readAll()).object()["motion"].toObject()["vx"], QJsonValue(0.31));
+    const double warning = setting("faults.battery_warning_v").toDouble();
+    OpenWindow::type(field("faults.battery_v"), QString::number(warning + 1));
+    OpenWindow::click(panel_, "save");
+    QTRY_VERIFY2(message().contains("faults.battery_v"), qPrintable(message())); // refused, and not saved
+}
+
+void TestSettingsPanel::theWheelChangesNothing() {
+    const auto wheel = [](QWidget *over) {
+        const QPointF at(over->rect().center());
+        QWheelEvent event(at, over->mapToGlobal(at.toPoint()), {}, {0, -240}, {}, {}, {}, false);
+        QApplication::sendEvent(over, &event);
+    };
+    int lists = 0;
+    for (auto *list : window_->window.findChildren<QComboBox *>()) {
+        if (list->count() < 2)
+            continue;
+        const int before = list->currentIndex();
+        wheel(list);
+        QCOMPARE(list->currentIndex(), before);
+        ++lists;
+    }
+    QVERIFY(lists > 0);
+    for (auto *slider : window_->window.findChildren<QSlider *>()) {
+        const int before = slider->value();
+        wheel(slider);
+        QCOMPARE(slider->value(), before);
+    }
+    auto *const scroll = panel_->findChild<QScrollArea *>()->verticalScrollBar(); // which goes on scrolling
+    QVERIFY(scroll->maximum() > 0);
+    wheel(panel_->findChild<QScrollArea *>()->viewport());
+    QVERIFY(scroll->value() > 0);
 }
 
 QTEST_MAIN(TestSettingsPanel)

@@ -1,0 +1,81 @@
+#include "gui/desktop/drive/StopBanner.h"
+
+#include <QApplication>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr const char *red = "background: #d0100c; color: white;",
+                     *amber = "background: #f0a000; color: black;",
+                     *dark = "background: #6e1512; color: white;";
+
+} // namespace
+
+StopBanner::StopBanner(DriveControl &drive, QWidget *parent)
+    : PlainLabel({}, parent)
+    , drive_(drive) {
+    setObjectName("stopBanner");
+    setWordWrap(true);
+    setMargin(8);
+    setMinimumWidth(1);
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+    setBold(true);
+    sound_.setInterval(1000);
+    connect(&sound_, &QTimer::timeout, [] { QApplication::beep(); });
+    connect(&drive, &DriveControl::changed, this, &StopBanner::update);
+    update();
+}
+
+QString StopBanner::wordOf(const DriveControl &drive) {
+    if (!drive.isStopped())
+        return tr("STOP");
+    switch (drive.stopping().phase()) {
+    case StopPhase::Pressed:
+        return tr("STOP pressed");
+    case StopPhase::Sent:
+        return tr("STOP sent");
+    case StopPhase::Taken:
+        return tr("STOP taken");
+    default:
+        return tr("STOPPED");
+    }
+}
+
+QString StopBanner::styleOf(const DriveControl &drive) {
+    const StopPhase phase = drive.stopping().phase();
+    return drive.stopping().isLate()                                   ? red
+           : phase == StopPhase::None || phase == StopPhase::Confirmed ? dark
+                                                                       : amber;
+}
+
+// A tool bar asks nobody how high text of its width becomes.
+void StopBanner::fitHeight() {
+    const QRect room(0, 0, width() - 2 * margin(), 1000);
+    const int height = fontMetrics().boundingRect(room, Qt::TextWordWrap, text()).height() + 2 * margin();
+    if (height != maximumHeight() && !text().isEmpty())
+        setFixedHeight(height);
+}
+
+void StopBanner::resizeEvent(QResizeEvent *event) {
+    PlainLabel::resizeEvent(event);
+    fitHeight();
+}
+
+void StopBanner::update() {
+    QString text = drive_.stopping().text();
+    if (text.isEmpty() && drive_.isStopped())
+        text = tr("STOPPED: %1").arg(QStringList(drive_.latched().values()).join("; "));
+    setText(text);
+    fitHeight();
+    if (const QString style = styleOf(drive_); style != styleSheet())
+        setStyleSheet(style);
+    Q_EMIT shown(!text.isEmpty());
+    if (!drive_.stopping().isLate()) {
+        sound_.stop();
+    } else if (!sound_.isActive()) {
+        QApplication::beep();
+        sound_.start();
+    }
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,190 @@
+#include "gui/desktop/drive/StopLine.h"
+
+#include "common/client/DaemonAddress.h"
+#include "gui/desktop/widgets/ForeignText.h"
+#include "protocol/messages/Motors.h"
+#include "protocol/wire/Fields.h"
+
+namespace hermes::desktop {
+namespace {
+
+/// More packets make a lost one known sooner: at first each period, after three seconds each half second.
+constexpr int oftenUpTo = 60, seldom = 10;
+constexpr qint64 renewAfter_ms = 1000, lookEach_ms = 100, lookWhenConfirmed_ms = 500;
+constexpr std::chrono::milliseconds lookTimeout{500};
+
+double seconds(const QElapsedTimer &timer) {
+    return timer.isValid() ? 1e-3 * double(timer.elapsed()) : 0;
+}
+
+std::optional<StandConfirmation> confirmationIn(const QJsonValue &told) {
+    ReadReport report;
+    return told.isObject() ? readMessage<StandConfirmation>(WireValue(told), report) : std::nullopt;
+}
+
+} // namespace
+
+StopLine::StopLine(DaemonLink *daemon, QObject *parent)
+    : QObject(parent)
+    , daemon_(daemon)
+    , address_(daemon->address())
+    , name_(daemon->name()) {
+    second_.setFrameLimit(DaemonLink::usualFrame);
+    second_.connectTo(asOwner(address_));
+    connect(&timer_, &QTimer::timeout, this, &StopLine::tick);
+    connect(daemon, &DaemonLink::ready, this, &StopLine::readWatchdogs);
+    readWatchdogs();
+}
+
+void StopLine::follow(DaemonLink *daemon) {
+    if (daemon_ == daemon)
+        return;
+    daemon_ = daemon;
+    connect(daemon, &DaemonLink::ready, this, &StopLine::readWatchdogs);
+    readWatchdogs();
+}
+
+void StopLine::readWatchdogs() {
+    const auto read = [this](const QString &path, double &seconds) {
+        daemon_->call("settings.get", {{"path", path}}, this, [&seconds](const Result<QJsonValue> &value) {
+            seconds = value ? qBound(0.0, value->toDouble(), 100.0) : 0;
+        });
+    };
+    read("safety.command_timeout_s", commandTimeout_s_);
+    read("controllers.timeout_s", controllerTimeout_s_);
+}
+
+std::vector<Client *> StopLine::openClients() {
+    std::vector<Client *> open;
+    if (daemon_ && daemon_->isConnected())
+        open.push_back(&daemon_->client());
+    if (second_.isConnected())
+        open.push_back(&second_);
+    return open;
+}
+
+double StopLine::unconfirmed_s() const {
+    return phase_ == StopPhase::None ? 0 : seconds(unconfirmed_);
+}
+
+QString StopLine::reason() const {
+    if (phase_ == StopPhase::Pressed)
+        return tr("no connection: %1").arg(shortLine(second_.problem()));
+    if (!reason_.isEmpty())
+        return reason_;
+    return phase_ == StopPhase::Sent ? tr("it does not answer") : QString();
+}
+
+QString StopLine::watchdogs() const {
+    if (commandTimeout_s_ <= 0)
+        return tr("A robot with watchdogs stops by itself without commands.");
+    QString text = tr("Without commands it stops by itself after %1 s").arg(commandTimeout_s_);
+    if (controllerTimeout_s_ > 0)
+        text += tr(", its motor controllers without it after %1 s").arg(controllerTimeout_s_);
+    return text + '.';
+}
+
+void StopLine::press() {
+    ++press_;
+    tries_ = 0;
+    reason_.clear();
+    pressed_.start();
+    unconfirmed_.start();
+    renewed_.start();
+    looked_.invalidate();
+    enter(StopPhase::Pressed);
+    timer_.start(period);
+    tick();
+}
+
+void StopLine::release() {
+    ++press_;
+    timer_.stop();
+    reason_.clear();
+    enter(StopPhase::None);
+}
+
+void StopLine::enter(StopPhase phase) {
+    if (phase == StopPhase::Confirmed) {
+        if (phase_ != StopPhase::Confirmed)
+            took_s_ = seconds(pressed_);
+        unconfirmed_.start();
+    }
+    phase_ = phase;
+    Q_EMIT changed();
+}
+
+void StopLine::tick() {
+    if (phase_ == StopPhase::Taken || phase_ == StopPhase::Confirmed) {
+        if (!openClients().empty())
+            return look();
+        enter(StopPhase::Pressed); // who comes back may have forgotten it
+    }
+    if (openClients().empty() && phase_ != StopPhase::Pressed)
+        enter(StopPhase::Pressed);
+    if (renewed_.elapsed() > renewAfter_ms) {
+        renewed_.start();
+        second_.connectTo(asOwner(address_));
+    }
+    if (++tries_ <= oftenUpTo || tries_ % seldom == 0) {
+        for (Client *const client : openClients())
+            send(*client);
+    }
+    Q_EMIT changed(); // its age
+}
+
+void StopLine::send(Client &client) {
+    if (phase_ == StopPhase::Pressed)
+        enter(StopPhase::Sent);
+    const auto answered = [guard = QPointer<StopLine>(this), press = press_](const auto &answer) {
+        if (guard && guard->press_ == press)
+            guard->onAnswer(answer);
+    };
+    client.call("motor.estop", QJsonObject(), answered, Client::defaultTimeout, Client::Repeats::AtOnce);
+}
+
+void StopLine::onAnswer(const Result<QJsonValue> &answer) {
+    if (phase_ == StopPhase::Taken || phase_ == StopPhase::Confirmed)
+        return;
+    if (!answer) {
+        if (!answer.error().is(ErrorCode::Disconnected) && !answer.error().is(ErrorCode::TimedOut))
+            reason_ = shortLine(answer.error().message); // it is there, and refuses
+        return;
+    }
+    reason_.clear();
+    const auto told = confirmationIn(*answer);
+    enter(told && told->confirmed ? StopPhase::Confirmed : StopPhase::Taken);
+    look();
+}
+
+// Asked of whoever is connected: the answer to the stop itself came before the robot could stand.
+void StopLine::look() {
+    const qint64 pause = phase_ == StopPhase::Confirmed ? lookWhenConfirmed_ms : lookEach_ms;
+    if (looked_.isValid() && looked_.elapsed() < pause)
+        return;
+    looked_.start();
+    const auto seen = [guard = QPointer<StopLine>(this), press = press_](const auto &state) {
+        if (guard && guard->press_ == press)
+            guard->onState(state);
+    };
+    for (Client *const client : openClients())
+        client->call("motor.state", QJsonObject(), seen, lookTimeout);
+}
+
+void StopLine::onState(const Result<QJsonValue> &state) {
+    if (phase_ != StopPhase::Taken && phase_ != StopPhase::Confirmed)
+        return;
+    if (!state) {
+        if (seconds(unconfirmed_) > 1e-3 * double(lookTimeout.count())) // nor does the other connection tell
+            enter(StopPhase::Taken);
+        reason_ = shortLine(state.error().message);
+        return;
+    }
+    if ((*state)["latched"].isObject() && !(*state)["latched"].toObject().contains("estop"))
+        return release(); // somebody did
+    const auto told = confirmationIn((*state)["standing"]);
+    reason_ = told ? shortLine(told->text) : tr("it does not tell whether the robot stands");
+    enter(told && told->confirmed ? StopPhase::Confirmed : StopPhase::Taken);
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,120 @@
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/MapPanel.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QLabel>
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// Nothing that came from a robot looks live for longer than it is: daemons that freeze, and devices that
+/// fall silent.
+class TestAgeing : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void motorControlFrozen();
+    void sourceOfThePoseSilent_data();
+    void sourceOfThePoseSilent();
+    void periodsAreKept();
+
+private:
+    QLabel *label(const QString &name) const { return open_->window.findChild<QLabel *>(name); }
+    const MapModel &map() const { return open_->window.map().model(); }
+    DaemonLink *daemon(const QString &name) const { return open_->fleet.robot()->withName(name); }
+    QString badge(const QString &name) const { return open_->row(daemon(name))->text(1); }
+    /// Whether the map shows something in the colour of what is well.
+    bool isGreenSeen() const {
+        const QImage picture =
+            open_->window.map().view().grab().toImage().convertToFormat(QImage::Format_RGB32);
+        const QRgb green = theme::colour(Condition::Ready).rgb();
+        for (int y = 0; y < picture.height(); ++y)
+            for (int x = 0; x < picture.width(); ++x)
+                if (picture.pixel(x, y) == green)
+                    return true;
+        return false;
+    }
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> open_;
+};
+
+void TestAgeing::init() {
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startAll();
+    open_ = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(open_->show());
+    QTRY_VERIFY_WITH_TIMEOUT(map().pose() && isGreenSeen(), 20000);
+    QTRY_COMPARE(label("measured0")->text(), QString("0.00"));
+}
+
+void TestAgeing::cleanup() {
+    open_.reset();
+    robot_.reset();
+}
+
+void TestAgeing::motorControlFrozen() {
+    QTest::keyPress(&open_->window, Qt::Key_W);
+    QTRY_VERIFY(label("measured0")->text().toDouble() > 0.2);
+    QTRY_COMPARE(label("lease")->text(), QString("control: you"));
+    QVERIFY(label("measured0")->isEnabled());
+    robot_->signal("motorcontrol", SIGSTOP);
+    QElapsedTimer frozen;
+    frozen.start();
+    QTRY_VERIFY_WITH_TIMEOUT(!label("measured0")->isEnabled(), 1000);
+    QTRY_VERIFY_WITH_TIMEOUT(badge("motorcontrol").startsWith("no answer for "), 2500);
+    QCOMPARE(daemon("motorcontrol")->condition(), Condition::Unreachable);
+    QTRY_VERIFY2(label("link")->text().contains("motorcontrol: no answer for "),
+                 qPrintable(label("link")->text()));
+    QTRY_VERIFY_WITH_TIMEOUT(!label("lease")->isEnabled(), 2500);
+    QVERIFY2(frozen.elapsed() < 3000, qPrintable(QString::number(frozen.elapsed())));
+    QTRY_VERIFY_WITH_TIMEOUT(label("measured0")->font().strikeOut(), 4000);
+    QTRY_VERIFY2(label("measuredName")->text().startsWith("no data for "),
+                 qPrintable(label("measuredName")->text()));
+    QTRY_VERIFY_WITH_TIMEOUT(label("lease")->text().contains("no data for "), 5000);
+    QTRY_VERIFY_WITH_TIMEOUT(badge("motorcontrol") == "no answer for 7 s",
+                             7000); // a call has ended meanwhile
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+    robot_->signal("motorcontrol", SIGCONT);
+    QTRY_VERIFY(label("measured0")->isEnabled() && !label("measured0")->font().strikeOut());
+    QTRY_COMPARE(label("measuredName")->text(), QString("measured"));
+    QTRY_VERIFY(daemon("motorcontrol")->condition() != Condition::Unreachable);
+    QTRY_VERIFY2(label("link")->text().startsWith("link "), qPrintable(label("link")->text()));
+}
+
+void TestAgeing::sourceOfThePoseSilent_data() {
+    QTest::addColumn<QString>("who");
+    QTest::addColumn<bool>("scansGoOn");
+    QTest::newRow("the matcher is frozen") << "scanmatcher" << true;
+    QTest::newRow("the logger is frozen") << "velodynelogger" << false;
+    QTest::newRow("the lidar is silent") << "simulator" << false;
+}
+
+void TestAgeing::sourceOfThePoseSilent() {
+    QFETCH(QString, who);
+    QFETCH(bool, scansGoOn);
+    robot_->signal(who, SIGSTOP);
+    QTRY_VERIFY_WITH_TIMEOUT(!map().poseAge().isFresh(), 1500);
+    QTRY_VERIFY_WITH_TIMEOUT(!isGreenSeen(), 500);
+    QTRY_COMPARE_WITH_TIMEOUT(map().poseAge().text(), QString("no data for 4 s"), 5000);
+    QCOMPARE(map().scanAge().isFresh(), scansGoOn);
+    QVERIFY(!isGreenSeen());
+    robot_->signal(who, SIGCONT);
+    QTRY_VERIFY_WITH_TIMEOUT(map().poseAge().isFresh() && isGreenSeen(), 20000);
+}
+
+// What comes once a second is not old after half a second.
+void TestAgeing::periodsAreKept() {
+    for (const char *name : {"power", "lease"}) {
+        QTRY_VERIFY(!label(name)->text().isEmpty());
+        QTest::qWait(1500);
+        for (int i = 0; i < 30; ++i) {
+            QTest::qWait(50);
+            QVERIFY2(label(name)->isEnabled(), name);
+        }
+    }
+}
+
+QTEST_MAIN(TestAgeing)
+#include "TestAgeing.moc"

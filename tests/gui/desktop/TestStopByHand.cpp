@@ -1,0 +1,296 @@
+#include "gui/desktop/TopBar.h"
+#include "gui/desktop/widgets/Typing.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QComboBox>
+#include <QFileDialog>
+#include <QMenu>
+#include <QToolButton>
+#include <QToolTip>
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// STOP acts at once, whatever lies open in the window: with real keys and a real mouse (xdotool) on a
+/// display with a window manager (with_display), against a real motor control.
+class TestStopByHand : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void initTestCase();
+    void init();
+    void everyMenuAndList_data() { hands(); }
+    void everyMenuAndList();
+    void everyDialog_data() { hands(); }
+    void everyDialog();
+    void aToolTip_data() { hands(); }
+    void aToolTip();
+    void everyFocus();
+    void spaceIsTyped();
+    void escapeCloses();
+
+private:
+    static void hands();
+    template <typename... Words>
+    static void xdotool(const Words &...words) {
+        QProcess::startDetached("xdotool", {QString(words)...}); // the event loop goes on, also in menus
+    }
+    static void moveTo(const QPoint &global) {
+        xdotool("mousemove", QString::number(global.x()), QString::number(global.y()));
+    }
+    static void click(const QPoint &global, int button = 1) {
+        xdotool("mousemove", QString::number(global.x()), QString::number(global.y()), "click",
+                QString::number(button));
+    }
+    static QPoint middleOf(const QWidget *widget) { return widget->mapToGlobal(widget->rect().center()); }
+    void stopBy(const QString &hand);
+    /// Opens something, which may run an event loop of its own until it is closed, and stops while it is
+    /// open.
+    void stopsWhileOpen(const QString &what, const std::function<void()> &open,
+                        const std::function<bool()> &isOpen, const QString &hand);
+    void release();
+    QWidgetList visible(const std::function<bool(QWidget *)> &isWanted);
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> open_;
+    QPushButton *stop_ = nullptr;
+};
+
+void TestStopByHand::initTestCase() {
+    if (QGuiApplication::platformName() != "xcb")
+        QSKIP("needs a display: tests/gui/desktop/with_display");
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startMotors();
+    open_ = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(open_->show());
+    stop_ = open_->window.findChild<QPushButton *>("stop");
+    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+}
+
+void TestStopByHand::init() {
+    release();
+    open_->window.activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(&open_->window));
+    open_->window.centralWidget()->setFocus();
+}
+
+void TestStopByHand::hands() {
+    QTest::addColumn<QString>("hand");
+    for (const char *hand : {"mouse", "space", "F12"})
+        QTest::newRow(hand) << QString(hand);
+}
+
+void TestStopByHand::stopBy(const QString &hand) {
+    if (hand == "mouse")
+        click(middleOf(stop_));
+    else
+        xdotool("key", hand);
+}
+
+void TestStopByHand::release() {
+    QTRY_VERIFY_WITH_TIMEOUT(!QApplication::activePopupWidget(), 5000);
+    if (open_->drive.isStopped()) {
+        QTRY_COMPARE(int(open_->drive.stopping().phase()), int(StopPhase::Confirmed));
+        open_->drive.release();
+    }
+    QTRY_VERIFY_WITH_TIMEOUT(!open_->drive.isStopped(), 5000);
+    QTRY_VERIFY(!open_->window.findChild<QLabel *>("stopBanner")->isVisible());
+    QTest::qWait(50); // all is where it was before
+}
+
+void TestStopByHand::stopsWhileOpen(const QString &what, const std::function<void()> &open,
+                                    const std::function<bool()> &isOpen, const QString &hand) {
+    bool wasOpen = false;
+    QElapsedTimer sinceStop;
+    QTimer stopping, closing;
+    stopping.start(20);
+    connect(&stopping, &QTimer::timeout, this, [&] {
+        if (wasOpen || !isOpen())
+            return;
+        wasOpen = true;
+        stopping.stop();
+        sinceStop.start();
+        stopBy(hand);
+    });
+    closing.setSingleShot(true);
+    connect(&closing, &QTimer::timeout, this, [] { // a failure is not to hang
+        while (QWidget *const popup = QApplication::activePopupWidget())
+            popup->hide();
+    });
+    closing.start(5000);
+    QTimer opening; // a press that comes while the last menu closes is lost
+    connect(&opening, &QTimer::timeout, this, [&] {
+        if (!wasOpen)
+            open();
+    });
+    opening.start(1000);
+    open();
+    QTRY_VERIFY2_WITH_TIMEOUT(open_->drive.isStopped(),
+                              qPrintable(what + (wasOpen ? " is open" : " did not open")), 6000);
+    QVERIFY2(wasOpen, qPrintable(what + " did not open"));
+    QVERIFY2(sinceStop.elapsed() < 2000, qPrintable(QString("%1: %2 ms").arg(what).arg(sinceStop.elapsed())));
+    release();
+}
+
+QWidgetList TestStopByHand::visible(const std::function<bool(QWidget *)> &isWanted) {
+    QWidgetList found;
+    for (QWidget *widget : open_->window.findChildren<QWidget *>())
+        if (isWanted(widget) && widget->isEnabled() && !widget->visibleRegion().isEmpty() &&
+            !widget->visibleRegion().contains(QRect()) &&
+            widget->visibleRegion().contains(widget->rect().center()))
+            found.append(widget);
+    return found;
+}
+
+void TestStopByHand::everyMenuAndList() {
+    QFETCH(QString, hand);
+    const auto hasList = [](QWidget *widget) {
+        const auto *const list = qobject_cast<QComboBox *>(widget);
+        const auto *const menu = qobject_cast<QToolButton *>(widget);
+        return (list && list->count() > 0) || (menu && menu->menu());
+    };
+    const auto isPopupOpen = [] { return QApplication::activePopupWidget() != nullptr; };
+    int count = 0;
+    QSet<QWidget *> seen;
+    for (QDockWidget *dock : open_->window.findChildren<QDockWidget *>()) {
+        dock->show();
+        dock->raise();
+        QTest::qWait(50);
+        for (QWidget *widget : visible(hasList)) {
+            if (seen.contains(widget))
+                continue;
+            seen.insert(widget);
+            stopsWhileOpen(
+                widget->metaObject()->className() + (' ' + widget->objectName()),
+                [&] { click(middleOf(widget)); }, isPopupOpen, hand);
+            if (QTest::currentTestFailed())
+                return;
+            ++count;
+        }
+        // The menu of a field, by the right button.
+        for (QWidget *field : visible([](QWidget *widget) { return qobject_cast<QLineEdit *>(widget); })) {
+            stopsWhileOpen(
+                "menu of " + field->objectName(), [&] { click(middleOf(field), 3); }, isPopupOpen, hand);
+            if (QTest::currentTestFailed())
+                return;
+            ++count;
+            break; // they are all alike
+        }
+    }
+    qInfo("%d menus and lists", count);
+    QVERIFY(count >= 8);
+}
+
+void TestStopByHand::everyDialog() {
+    QFETCH(QString, hand);
+    const auto dialog = [] {
+        return QApplication::activeWindow() && qobject_cast<QFileDialog *>(QApplication::activeWindow());
+    };
+    for (const QString &name : {QString("export"), QString("csv")}) {
+        if (name == "csv") {
+            auto *const dock = open_->window.findChild<QDockWidget *>("plots");
+            dock->show();
+            dock->raise();
+        }
+        QWidget *button = open_->window.findChild<QAbstractButton *>(name);
+        if (!button) // an action of a tool bar
+            for (QToolButton *const candidate : open_->window.findChildren<QToolButton *>())
+                if (candidate->defaultAction() && candidate->defaultAction()->objectName() == name)
+                    button = candidate;
+        QVERIFY2(button, qPrintable(name));
+        QTRY_VERIFY(!button->visibleRegion().isEmpty());
+        stopsWhileOpen(
+            name, [&] { click(middleOf(button)); },
+            [&] {
+                if (!dialog())
+                    return false;
+                if (hand == "space") // in the list of files; in the field of the name it is text
+                    for (auto *list : QApplication::activeWindow()->findChildren<QAbstractItemView *>())
+                        if (list->isVisible())
+                            list->setFocus();
+                return true;
+            },
+            hand);
+        for (QWidget *window : QApplication::topLevelWidgets())
+            if (qobject_cast<QFileDialog *>(window))
+                window->close();
+        if (QTest::currentTestFailed())
+            return;
+        open_->window.activateWindow();
+        QVERIFY(QTest::qWaitForWindowActive(&open_->window));
+    }
+}
+
+void TestStopByHand::aToolTip() {
+    QFETCH(QString, hand);
+    moveTo(middleOf(open_->window.centralWidget()));
+    QTest::qWait(100);
+    stopsWhileOpen(
+        "tool tip", [&] { moveTo(middleOf(stop_)); }, [] { return QToolTip::isVisible(); }, hand);
+}
+
+// Each control of each panel has the focus once: Space and Esc are STOP there, but for Space where one types.
+void TestStopByHand::everyFocus() {
+    int count = 0;
+    for (QDockWidget *dock : open_->window.findChildren<QDockWidget *>()) {
+        dock->show();
+        dock->raise();
+        QTest::qWait(20);
+        for (QWidget *widget : visible([](QWidget *w) { return w->focusPolicy() & Qt::TabFocus; })) {
+            for (const char *key : {"space", "Escape"}) {
+                widget->setFocus();
+                if (QApplication::focusWidget() != widget)
+                    continue;
+                if (key == QString("space") && isTyping(widget))
+                    continue;
+                xdotool("key", key);
+                QTRY_VERIFY2_WITH_TIMEOUT(
+                    open_->drive.isStopped(),
+                    qPrintable(QString("%1 %2 %3")
+                                   .arg(key, widget->metaObject()->className(), widget->objectName())),
+                    2000);
+                release();
+                if (QTest::currentTestFailed())
+                    return;
+                ++count;
+            }
+        }
+    }
+    qInfo("%d times", count);
+    QVERIFY(count > 40);
+}
+
+void TestStopByHand::spaceIsTyped() {
+    auto *const field = open_->window.findChild<QLineEdit *>("address");
+    open_->window.findChild<QDockWidget *>("daemons")->raise();
+    QTRY_VERIFY(!field->visibleRegion().isEmpty());
+    field->clear();
+    field->setFocus();
+    xdotool("type", "a b");
+    QTRY_COMPARE(field->text(), QString("a b"));
+    QVERIFY(!open_->drive.isStopped());
+    xdotool("key", "F12");
+    QTRY_VERIFY(open_->drive.isStopped());
+    release();
+    field->clear();
+}
+
+void TestStopByHand::escapeCloses() {
+    QToolButton *layers = nullptr;
+    for (QToolButton *const button : open_->window.findChildren<QToolButton *>())
+        if (button->menu() && !button->visibleRegion().isEmpty())
+            layers = button;
+    QVERIFY(layers);
+    QTimer closing;
+    bool wasOpen = false;
+    connect(&closing, &QTimer::timeout, this, [&] {
+        if (QApplication::activePopupWidget() && !std::exchange(wasOpen, true))
+            xdotool("key", "Escape");
+    });
+    closing.start(20);
+    click(middleOf(layers));
+    QTRY_VERIFY_WITH_TIMEOUT(wasOpen && !QApplication::activePopupWidget(), 5000);
+    QVERIFY(!open_->drive.isStopped());
+}
+
+QTEST_MAIN(TestStopByHand)
+#include "TestStopByHand.moc"

@@ -1,0 +1,196 @@
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QLabel>
+#include <QTcpServer>
+#include <QTcpSocket>
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// Forwards to a port; what has been forwarded so far can be made to carry nothing any more, as behind a
+/// router that has forgotten it.
+class Router : public QTcpServer {
+public:
+    explicit Router(quint16 port)
+        : port_(port) {
+        connect(this, &QTcpServer::newConnection, this, [this] {
+            QTcpSocket *const near = nextPendingConnection();
+            auto *const far = new QTcpSocket(near);
+            far->connectToHost(QHostAddress::LocalHost, port_);
+            const int generation = generation_;
+            const auto forward = [this, generation](QTcpSocket *from, QTcpSocket *to) {
+                connect(from, &QTcpSocket::readyRead, to, [this, generation, from, to] {
+                    const QByteArray bytes = from->readAll();
+                    if (generation == generation_)
+                        to->write(bytes);
+                });
+            };
+            forward(near, far);
+            forward(far, near);
+            connect(near, &QTcpSocket::disconnected, near, &QObject::deleteLater);
+        });
+        listen(QHostAddress::LocalHost);
+    }
+    void forgetConnections() { ++generation_; }
+
+private:
+    const quint16 port_;
+    int generation_ = 0;
+};
+
+/// The operator sees how far a STOP has come, and it goes on until the robot has measured that it stands.
+class TestStopConfirmed : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void isConfirmedByAMeasurement();
+    void isSaidAloudWhileFrozen();
+    void goesOutWhenTheRobotIsBack();
+    void goesOverANewConnection();
+    void goesOutWhenARobotIsFound();
+    void isOverWhenSomebodyReleases();
+
+private:
+    void openWindow(quint16 port);
+    QString banner() const {
+        const auto *const label = open_->window.findChild<QLabel *>("stopBanner");
+        return label->isVisible() ? label->text() : QString();
+    }
+    QString button() const { return open_->window.findChild<QPushButton *>("stop")->text(); }
+    StopPhase phase() const { return open_->drive.stopping().phase(); }
+    QJsonObject state() {
+        const auto result = client_->callAndWait("motor.state");
+        return result ? result->toObject() : QJsonObject();
+    }
+    void driveOff() {
+        QTest::keyPress(&open_->window, Qt::Key_W);
+        QTRY_VERIFY(state()["twist"].toObject()["vx"].toDouble() > 0.2);
+    }
+    void press() { QTest::mousePress(open_->window.findChild<QPushButton *>("stop"), Qt::LeftButton); }
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> open_;
+    std::unique_ptr<Client> client_; // an independent eye
+};
+
+void TestStopConfirmed::init() {
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startMotors();
+    client_ = std::make_unique<Client>();
+    client_->connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+    QVERIFY(client_->waitConnected().ok());
+    QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
+}
+
+void TestStopConfirmed::openWindow(quint16 port) {
+    open_ = std::make_unique<OpenWindow>();
+    if (port)
+        QVERIFY(open_->fleet.add(QString("127.0.0.1:%1").arg(port)).ok());
+    QVERIFY(open_->show());
+    if (port)
+        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+}
+
+void TestStopConfirmed::cleanup() {
+    open_.reset();
+    client_.reset();
+    robot_.reset();
+}
+
+void TestStopConfirmed::isConfirmedByAMeasurement() {
+    openWindow(robot_->port("motorcontrol"));
+    QCOMPARE(button(), QString("STOP"));
+    QCOMPARE(banner(), QString());
+    driveOff();
+    std::vector<StopPhase> seen;
+    connect(&open_->drive.stopping(), &StopControl::changed, this, [&] {
+        if (seen.empty() || seen.back() != phase())
+            seen.push_back(phase());
+        QVERIFY(!open_->drive.stopping().isLate());
+    });
+    press();
+    QVERIFY(button() == "STOP pressed" || button() == "STOP sent");
+    QVERIFY(banner().startsWith("STOP "));
+    QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 1000);
+    open_->drive.stopping().disconnect(this);
+    QVERIFY(state()["standing"].toObject()["confirmed"].toBool());
+    QTRY_COMPARE(button(), QString("STOPPED"));
+    QVERIFY2(banner().contains("measured that the robot stands"), qPrintable(banner()));
+    const std::vector<StopPhase> all{StopPhase::Pressed, StopPhase::Sent, StopPhase::Taken,
+                                     StopPhase::Confirmed};
+    QVERIFY(seen == all);
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+    OpenWindow::click(&open_->window, "release");
+    QTRY_COMPARE(button(), QString("STOP"));
+    QTRY_COMPARE(banner(), QString());
+}
+
+void TestStopConfirmed::isSaidAloudWhileFrozen() {
+    openWindow(robot_->port("motorcontrol"));
+    driveOff();
+    robot_->signal("motorcontrol", SIGSTOP);
+    press();
+    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
+    for (const char *part : {"NOT CONFIRMED by motorcontrol", "does not answer", "stops by itself after 1 s",
+                             "its motor controllers", "switch on the robot"})
+        QTRY_VERIFY2(banner().contains(part), qPrintable(banner()));
+    QTest::qWait(4000); // it goes on for longer than a call waits
+    QVERIFY2(open_->drive.stopping().isLate(), qPrintable(banner()));
+    robot_->signal("motorcontrol", SIGCONT);
+    QTRY_VERIFY(phase() == StopPhase::Confirmed);
+    QVERIFY(state()["estop"].toBool());
+    robot_->signal("motorcontrol", SIGSTOP); // not known to stand any more
+    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 3000);
+    robot_->signal("motorcontrol", SIGCONT);
+    QTRY_VERIFY(phase() == StopPhase::Confirmed);
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+}
+
+void TestStopConfirmed::goesOutWhenTheRobotIsBack() {
+    openWindow(robot_->port("motorcontrol"));
+    robot_->kill("motorcontrol");
+    QTRY_VERIFY(!open_->drive.isPossible());
+    press();
+    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
+    QTRY_VERIFY2(banner().contains("no connection"), qPrintable(banner()));
+    QCOMPARE(button(), QString("STOP pressed"));
+    robot_->startMotorControl();
+    QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 20000);
+    QTRY_VERIFY(state()["estop"].toBool());
+}
+
+void TestStopConfirmed::goesOverANewConnection() {
+    Router router(robot_->port("motorcontrol"));
+    openWindow(router.serverPort());
+    driveOff();
+    router.forgetConnections();
+    press();
+    QTRY_VERIFY_WITH_TIMEOUT(state()["estop"].toBool(), 2500);
+    QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 2500);
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+}
+
+void TestStopConfirmed::goesOutWhenARobotIsFound() {
+    openWindow(0);
+    press();
+    QVERIFY2(banner().contains("REACHES NOBODY"), qPrintable(banner()));
+    QVERIFY(open_->fleet.add(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol"))).ok());
+    QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 10000);
+    QVERIFY(state()["estop"].toBool());
+}
+
+void TestStopConfirmed::isOverWhenSomebodyReleases() {
+    openWindow(robot_->port("motorcontrol"));
+    press();
+    QTRY_VERIFY(phase() == StopPhase::Confirmed);
+    QVERIFY(client_->callAndWait("motor.reset_estop").ok());
+    QTRY_VERIFY(phase() == StopPhase::None);
+    QTRY_COMPARE(button(), QString("STOP"));
+    QVERIFY(client_->callAndWait("motor.estop").ok()); // by somebody else
+    QTRY_COMPARE(button(), QString("STOPPED"));
+    QTRY_VERIFY2(banner().startsWith("STOPPED"), qPrintable(banner()));
+}
+
+QTEST_MAIN(TestStopConfirmed)
+#include "TestStopConfirmed.moc"
