@@ -108,6 +108,7 @@ void addSettingsCommands(Daemon &daemon, CommandRegistry &commands) {
             }));
     commands.add(
         Command(QStringLiteral("settings.reset"), QStringLiteral("Puts settings back to their defaults"))
+            .with(QStringLiteral("x-destructive"), QStringLiteral("the settings as they are"))
             .needs(Role::Engineer)
             .param(Field::array(QStringLiteral("paths"), QStringLiteral("Dotted paths; none: all settings"),
                                 schemaOf<QString>())

@@ -43,13 +43,31 @@ void ScanMatcher::declareMapCommands() {
                        "a journal")
                    .needs(Role::Engineer)
                    .param(path)
+                   .with("x-destructive", "the map; map.undo brings it back")
                    .gives<LoadedMap>()
                    .asyncHandler([this](const Call &call, const Reply &reply) { loadMap(call, reply); }));
+    addCommand(Command("map.list", "The maps and journals below map.folder, the newest first")
+                   .needs(Role::Observer)
+                   .gives<MapList>()
+                   .asyncHandler([this](const Call &, const Reply &reply) {
+                       files_.start([folder = QDir(settings().text("map.folder")).absolutePath(), reply] {
+                           reply.result(asJson(listMaps(folder)));
+                       });
+                   }));
+    addCommand(
+        Command("map.undo", "Brings back the map that the last map.clear or map.load replaced, and keeps "
+                            "the one of now for the next map.undo. The pose is sought in it; its drive is "
+                            "not remembered")
+            .gives<LoadedMap>()
+            .asyncHandler([this](const Call &, const Reply &reply) {
+                worker_->post([this, reply](vectorlib::ScanTracker &tracker) { undo(tracker, reply); });
+            }));
     addCommand(Command("map.clear", "Forgets map, pose, trajectory and counts")
+                   .with("x-destructive", "the map; map.undo brings it back")
                    .returnsNull()
                    .asyncHandler([this](const Call &, const Reply &reply) {
                        worker_->post([this, reply](vectorlib::ScanTracker &tracker) {
-                           tracker.clear();
+                           replace(tracker, {});
                            corrector_->restart(tracker);
                            seeks_ = Seeks::Nothing;
                            showNewMap(tracker, reply, QJsonValue());
@@ -90,11 +108,12 @@ void ScanMatcher::loadMap(const Call &call, const Reply &reply) {
         const auto loaded = readMapFile(file);
         if (!loaded)
             return reply.error(loaded.error());
-        tracker.clear();
+        vectorlib::VectorMap map;
         for (const vectorlib::MapEdge &edge : *loaded)
-            tracker.builder.map.add(edge, edge.observations);
+            map.add(edge, edge.observations);
+        replace(tracker, std::move(map));
         corrector_->restart(tracker);
-        seeks_ = Seeks::Nothing;
+        seeks_ = grows_ ? Seeks::Anywhere : Seeks::Nothing; // else what it maps lies anywhere in it
         showNewMap(tracker, reply, asJson(LoadedMap{loaded->size(), 0, 0, 0, 0}));
     });
 }
@@ -113,14 +132,40 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
     const std::vector<vectorlib::Pose2D> poses = drive.loops.poses();
     drive.rebuild(builder, poses);
     drive.review(builder.map, poses);
-    tracker.clear();
-    std::swap(tracker.builder.map, builder.map);
+    replace(tracker, std::move(builder.map));
     tracker.place(poses.back());
     seeks_ = Seeks::Anywhere;
     LoadedMap answer{0, drive.loops.scans(), drive.loops.keys().size(), drive.loops.counts().closed,
                      quint64(remembered->leftOut)};
     tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
     corrector_->resume(std::move(remembered));
+    showNewMap(tracker, reply, asJson(answer));
+}
+
+// The one of now is kept, unless it is empty.
+void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map) {
+    bool isEmpty = true;
+    tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { isEmpty = false; });
+    if (!isEmpty) {
+        replaced_.emplace();
+        std::swap(*replaced_, tracker.builder.map);
+    }
+    tracker.clear();
+    std::swap(tracker.builder.map, map);
+}
+
+void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
+    if (!replaced_)
+        return reply.error({ErrorCode::NotReady, "no map has been replaced since the matcher began"});
+    const vectorlib::Pose2D pose = tracker.builder.report().pose;
+    vectorlib::VectorMap back = std::move(*replaced_);
+    replaced_.reset();
+    replace(tracker, std::move(back));
+    tracker.place(pose);
+    corrector_->restart(tracker);
+    seeks_ = Seeks::Anywhere;
+    LoadedMap answer;
+    tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { ++answer.segments; });
     showNewMap(tracker, reply, asJson(answer));
 }
 

@@ -6,8 +6,11 @@
 #include "vectorlib/io/GeoJson.h"
 #include "vectorlib/io/MapCsv.h"
 
+#include <QDateTime>
 #include <QDir>
+#include <QDirIterator>
 #include <QJsonObject>
+#include <algorithm>
 #include <sstream>
 
 namespace hermes::scanmatcher {
@@ -22,6 +25,27 @@ Result<std::vector<vectorlib::MapEdge>> readMapFile(const MapPath &file) {
         return Error(ErrorCode::InputOutput, QString::fromStdString(map.error().message()),
                      QJsonObject{{"path", file.path}});
     return std::move(*map);
+}
+
+MapList listMaps(const QString &folder) {
+    constexpr int mostLookedAt = 100000; // a folder may be anything
+    MapList list;
+    QDirIterator files(folder, {"*.csv", "*.journal"}, QDir::Files | QDir::NoSymLinks,
+                       QDirIterator::Subdirectories);
+    for (int i = 0; files.hasNext() && i < mostLookedAt; ++i) {
+        files.next();
+        const QFileInfo file = files.fileInfo();
+        list.maps.push_back({QDir(folder).relativeFilePath(file.filePath()),
+                             isDriveJournal({file.filePath(), folder}), quint64(file.size()),
+                             1e-3 * double(file.lastModified().toMSecsSinceEpoch())});
+    }
+    std::sort(list.maps.begin(), list.maps.end(),
+              [](const ListedMap &a, const ListedMap &b) { return a.modified > b.modified; });
+    if (list.maps.size() > mostListedMaps) {
+        list.unlisted = list.maps.size() - mostListedMaps;
+        list.maps.resize(mostListedMaps);
+    }
+    return list;
 }
 
 bool isDriveJournal(const MapPath &file) {

@@ -21,6 +21,9 @@ struct MapPath {
 /// Reads what writeMapFile() wrote as csv. Waits for the disk. InputOutput with data.path.
 Result<std::vector<vectorlib::MapEdge>> readMapFile(const MapPath &file);
 
+/// Files below the folder that are named as maps and journals are. Waits for the disk.
+MapList listMaps(const QString &folder);
+
 /// Whether it is named as journals are.
 bool isDriveJournal(const MapPath &file);
 /// Reads what a DriveJournal wrote, as readDriveJournal() does. Waits for the disk.

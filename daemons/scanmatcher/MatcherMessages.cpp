@@ -151,6 +151,24 @@ const Fields<SavedMap> &fieldsOf(Of<SavedMap>) {
     return fields;
 }
 
+const Fields<ListedMap> &fieldsOf(Of<ListedMap>) {
+    static const auto fields =
+        Fields<ListedMap>()
+            .add("path", &ListedMap::path, "As map.load takes it")
+            .add("journal", &ListedMap::isJournal, "It is the journal of a drive, else a map")
+            .add("bytes", &ListedMap::bytes, "Size of the file", "byte")
+            .add("modified", &ListedMap::modified, "When it was written, since the epoch", "s");
+    return fields;
+}
+
+const Fields<MapList> &fieldsOf(Of<MapList>) {
+    static const auto fields = Fields<MapList>()
+                                   .add("maps", &MapList::maps, "The newest first")
+                                   .atMostElements(mostListedMaps)
+                                   .add("unlisted", &MapList::unlisted, "Older ones");
+    return fields;
+}
+
 const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>) {
     static const auto fields =
         Fields<LoadedMap>()

@@ -71,6 +71,19 @@ struct SavedMap {
     quint64 segments = 0, bytes = 0;
 };
 
+/// A file that map.load takes.
+struct ListedMap {
+    QString path; ///< below the folder of maps
+    bool isJournal = false;
+    quint64 bytes = 0;
+    double modified = 0; ///< seconds since the epoch
+};
+constexpr std::size_t mostListedMaps = 200;
+struct MapList {
+    std::vector<ListedMap> maps;
+    quint64 unlisted = 0; ///< older ones
+};
+
 /// A map that was read.
 struct LoadedMap {
     quint64 segments = 0;
@@ -88,5 +101,7 @@ const Fields<SearchAnswer> &fieldsOf(Of<SearchAnswer>);
 const Fields<RelocalizeAnswer> &fieldsOf(Of<RelocalizeAnswer>);
 const Fields<SavedMap> &fieldsOf(Of<SavedMap>);
 const Fields<LoadedMap> &fieldsOf(Of<LoadedMap>);
+const Fields<ListedMap> &fieldsOf(Of<ListedMap>);
+const Fields<MapList> &fieldsOf(Of<MapList>);
 
 } // namespace hermes::scanmatcher

@@ -118,7 +118,7 @@ void ScanMatcher::updateTrackingHealth() {
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
     if (seeks_ != Seeks::Nothing)
-        message += "; the place in the loaded drive is sought: until then nothing is mapped";
+        message += "; the place in the loaded map is sought: until then nothing is mapped";
     const HealthLevel level = lostInARow_ >= 3 ? HealthLevel::Failed
                               : isBlind()      ? HealthLevel::Warn
                                                : HealthLevel::Ok;

@@ -82,6 +82,8 @@ private:
     void loadMap(const Call &call, const Reply &reply);
     void loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply);
     /// In the worker's thread, when the map is another one: hands it over to the main thread, then answers.
+    void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map);
+    void undo(vectorlib::ScanTracker &tracker, const Reply &reply);
     void showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
     MapPath mapPath(const Call &call);
@@ -91,8 +93,9 @@ private:
     QThreadPool files_; ///< one thread, which writes maps: a disk may take its time
     std::unique_ptr<Worker> worker_;
     std::unique_ptr<MapCorrector> corrector_;
-    bool corrected_ = false; ///< since the last scan; the worker's
-    /// A drive that was loaded goes on once its place is found: with the first scan in the whole map, then
+    bool corrected_ = false;                       ///< since the last scan; the worker's
+    std::optional<vectorlib::VectorMap> replaced_; ///< by the last map that was loaded or begun; the worker's
+    /// A map that was loaded goes on once its place is found: with the first scan in the whole map, then
     /// where the sensor stood last.
     enum class Seeks { Nothing, Anywhere, Here };
     std::atomic<Seeks> seeks_{Seeks::Nothing}; ///< set by the worker

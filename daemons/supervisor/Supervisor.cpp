@@ -129,6 +129,7 @@ void Supervisor::declareCommands() {
             .example({{"name", "camera"}, {"program", "/opt/robot/camera.py"}, {"port", 7480}}, QJsonValue())
             .handler([this](const Call &call) { return add(call); }));
     addCommand(Command("process.remove", "Ends a process and takes it out of the settings")
+                   .with("x-destructive", "the entry of the process")
                    .needs(Role::Engineer)
                    .param(Field::text("name", "Of the process"))
                    .returnsNull()

@@ -27,6 +27,7 @@ A parameter without a default is marked `required` or `optional`. A setting appl
 | `x-urgent` | carried out when it arrives, before all that others have asked for |
 | `x-role` | who may call it, or give the parameter: [roles](protocol.md#who-may-do-what) |
 | `x-fresh` | refused when it was received before the daemon had stood still |
+| `x-destructive` | what it replaces or forgets: programs for people ask first |
 | `x-needs-lease` | refused unless this client holds the control (`control.acquire`) |
 | `x-open` | holds more than is described, or anything |
 

@@ -24,6 +24,9 @@ private Q_SLOTS:
     void aWrongSourceIsNamed();
     void lossOfTheSourceIsShownAndMended();
     void matchesTwoScans();
+    void undoBringsTheMapBack();
+    void mapsAreListed();
+    void aLoadedMapGrowsNoGhost();
     void mapTopicBeginsWithTheFullMap();
     void queueDropsItsOldestAndCounts();
 
@@ -177,6 +180,62 @@ void TestScanMatcher::matchesTwoScans() {
     const Error error = failure("matcher.match", {{"reference", reference}, {"current", current}});
     QVERIFY(error.is(ErrorCode::InvalidParams));
     QVERIFY2(error.message.startsWith("current:"), qPrintable(error.message));
+}
+
+void TestScanMatcher::undoBringsTheMapBack() {
+    QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+    drive(0, 10);
+    const QJsonArray before = call("map.get")["edges"].toArray();
+    QVERIFY(!before.isEmpty());
+    call("map.clear");
+    call("map.clear"); // an empty map replaces nothing
+    QCOMPARE(call("map.undo")["segments"].toInt(), before.size());
+    const QJsonArray back = call("map.get")["edges"].toArray();
+    QCOMPARE(back.size(), before.size());
+    for (int i = 0; i < back.size(); ++i)
+        for (const char *member : {"x1", "y1", "x2", "y2", "n", "observations"})
+            QCOMPARE(back[i].toObject()[member], before[i].toObject()[member]);
+    QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+    QVERIFY(failure("map.load", {{"path", "none.csv"}}).is(ErrorCode::InputOutput)); // replaces nothing
+    QVERIFY(failure("map.undo", {}).is(ErrorCode::NotReady));
+    drive(0, 10); // it is found in it, and the map stays the same room
+    QCOMPARE(call("map.get")["size"].toInt(), before.size());
+}
+
+void TestScanMatcher::mapsAreListed() {
+    QCOMPARE(call("map.list")["maps"].toArray().size(), 0);
+    drive(0, 3);
+    call("map.save", {{"path", "first.csv"}});
+    call("map.export", {{"path", "no map.svg"}, {"format", "svg"}});
+    QVERIFY(QDir(folder->path()).mkdir("below"));
+    QTest::qWait(20); // it is newer
+    call("map.save", {{"path", "below/second.csv"}});
+    QVERIFY(QFile::link("/etc/hostname", folder->filePath("elsewhere.csv")));
+    const QJsonArray maps = call("map.list")["maps"].toArray();
+    QCOMPARE(maps.size(), 2);
+    QCOMPARE(maps[0]["path"].toString(), QString("below/second.csv"));
+    QCOMPARE(maps[1]["path"].toString(), QString("first.csv"));
+    QVERIFY(maps[1]["bytes"].toInt() > 100 && maps[1]["modified"].toDouble() > 1.7e9);
+    QVERIFY(!maps[1]["journal"].toBool());
+    QVERIFY(call("map.load", {{"path", maps[0]["path"]}})["segments"].toInt() > 0);
+}
+
+// It was saved where the robot was elsewhere: what it sees now belongs on its walls, not across them.
+void TestScanMatcher::aLoadedMapGrowsNoGhost() {
+    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+    drive(0, 40);
+    call("map.save", {{"path", "room.csv"}});
+    const int walls = call("map.get")["size"].toInt();
+    QCOMPARE(walls, 6);
+    call("map.clear");
+    drive(0, 3); // from a place of its own
+    call("map.load", {{"path", "room.csv"}});
+    drive(0, 1);
+    for (int i = 1; i < 30; ++i)
+        source->publish("scan2d", roomScan(onTheWay(30 + i), 0.1 * (30 + i)), 0.1 * (30 + i));
+    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 30);
+    QCOMPARE(call("map.get")["size"].toInt(), walls);
 }
 
 void TestScanMatcher::mapTopicBeginsWithTheFullMap() {

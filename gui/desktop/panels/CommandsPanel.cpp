@@ -127,6 +127,9 @@ QWidget *CommandsPanel::makeCall() {
     call_->setObjectName("call");
     connect(form_, &SchemaForm::edited, this, &CommandsPanel::update);
     connect(call_, &QPushButton::clicked, this, &CommandsPanel::call);
+    asked_.setSingleShot(true);
+    asked_.setInterval(5000); // a second press in this time is meant
+    connect(&asked_, &QTimer::timeout, this, &CommandsPanel::update);
     return column;
 }
 
@@ -135,15 +138,19 @@ void CommandsPanel::follow(DaemonLink *daemon) {
         daemon_->disconnect(this);
     daemon_ = daemon;
     if (daemon) {
-        connect(daemon, &DaemonLink::described, this, &CommandsPanel::listMethods);
+        connect(daemon, &DaemonLink::described, this, [this] {
+            listMethods();
+            showMethod(method_);
+        });
         connect(daemon, &DaemonLink::changed, this, &CommandsPanel::update);
     }
     answer_->clear();
+    showMethod({});
     listMethods();
 }
 
 void CommandsPanel::listMethods() {
-    const QString chosen = method_;
+    const QSignalBlocker silence(methods_);
     methods_->clear();
     int unlisted = 0;
     if (daemon_)
@@ -158,32 +165,38 @@ void CommandsPanel::listMethods() {
             auto *const item = new QListWidgetItem(shortLine(name, longestName), methods_);
             item->setData(Qt::UserRole, name);
             item->setToolTip(toolTipOf(method["summary"].toString()));
-            if (name == chosen)
+            if (name == method_)
                 methods_->setCurrentItem(item);
         }
     filter_->setPlaceholderText(unlisted == 0 ? tr("Find a command")
                                               : tr("Find one of %1 more").arg(unlisted));
-    if (!methods_->currentItem() && methods_->count() > 0)
-        methods_->setCurrentRow(0);
-    if (methods_->count() == 0)
-        showMethod({});
+    if (!methods_->currentItem())
+        showMethod({}); // nobody has chosen one: a press of Run is to run nothing
     update();
 }
 
 void CommandsPanel::showMethod(const QString &name) {
-    if (name.isEmpty() && methods_->count() > 0)
-        return; // the list is being filled
     method_ = name;
+    asked_.stop();
     const QJsonObject method = daemon_ ? daemon_->method(name) : QJsonObject();
-    summary_->setText(method["x-needs-lease"].toBool()
-                          ? method["summary"].toString() + tr(" (needs the control)")
-                          : method["summary"].toString());
+    QString summary = method["summary"].toString();
+    if (method["x-needs-lease"].toBool())
+        summary += tr(" (needs the control)");
+    if (const QString lost = method["x-destructive"].toString(); !lost.isEmpty())
+        summary += tr(" (replaces or forgets %1)").arg(lost);
+    summary_->setText(summary);
     form_->setSchema(parametersOf(method), {});
     update();
 }
 
 void CommandsPanel::call() {
     const QString method = method_;
+    if (!daemon_->method(method)["x-destructive"].toString().isEmpty() && !asked_.isActive()) {
+        asked_.start();
+        return update();
+    }
+    asked_.stop();
+    update();
     QElapsedTimer time;
     time.start();
     answer_->setPlainText(tr("%1 ...").arg(shortLine(method)));
@@ -207,6 +220,9 @@ void CommandsPanel::update() {
     title_->setBold(daemon_);
     title_->setText(daemon_ ? daemon_->name() : tr("Choose a daemon to see its commands."));
     const QString why = daemon_ ? daemon_->refusal(method_) : QString();
+    const QString lost = daemon_ ? daemon_->method(method_)["x-destructive"].toString() : QString();
+    call_->setText(asked_.isActive() ? tr("Ru&n %1 now: replaces or forgets %2").arg(method_, shortLine(lost))
+                                     : tr("Ru&n"));
     call_->setToolTip(why);
     call_->setEnabled(daemon_ && daemon_->isConnected() && why.isEmpty() && !method_.isEmpty() &&
                       form_->isValid());

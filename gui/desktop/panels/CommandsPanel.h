@@ -3,6 +3,7 @@
 #include "gui/desktop/model/Fleet.h"
 
 #include <QPointer>
+#include <QTimer>
 #include <QWidget>
 
 class QLineEdit;
@@ -15,7 +16,8 @@ namespace hermes::desktop {
 class PlainLabel;
 class SchemaForm;
 
-/// Any method of the chosen daemon: a form for its parameters, a call, the answer.
+/// Any method of the chosen daemon: a form for its parameters, a call, the answer. What replaces or forgets
+/// something needs a second press.
 class CommandsPanel : public QWidget {
     Q_OBJECT
 public:
@@ -37,7 +39,8 @@ private:
     SchemaForm *form_;
     QPushButton *call_;
     QPlainTextEdit *answer_;
-    QString method_;
+    QString method_; ///< empty: none is chosen
+    QTimer asked_;   ///< while a second press of Run is waited for
 };
 
 } // namespace hermes::desktop

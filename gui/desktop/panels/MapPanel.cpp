@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/MapMenu.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QFileDialog>
@@ -18,10 +19,12 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , model_(fleet)
     , view_(new MapView(model_))
+    , map_(new MapMenu(this))
     , message_(new MessageLabel) {
     auto *const bar = new QToolBar;
     bar->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     bar->setIconSize({16, 16});
+    addMap(*bar);
     addTools(*bar);
     addLayers(*bar);
     bar->addAction(theme::icon("export"), tr("Export"), this, &MapPanel::askFile)->setObjectName("export");
@@ -51,6 +54,19 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
                 .arg(qRadiansToDegrees(pose.theta), 0, 'f', 0));
     });
     updateTools();
+}
+
+void MapPanel::addMap(QToolBar &bar) {
+    auto *const button = new QToolButton;
+    button->setObjectName("mapMenu");
+    button->setText(tr("Map"));
+    button->setIcon(theme::icon("save"));
+    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    button->setMenu(map_);
+    button->setPopupMode(QToolButton::InstantPopup);
+    bar.addWidget(button);
+    connect(map_, &MapMenu::told, this,
+            [this](const QString &text, bool isError) { message_->tell(text, isError); });
 }
 
 void MapPanel::addTools(QToolBar &bar) {
@@ -158,6 +174,7 @@ void MapPanel::ask(const QString &method, const QJsonObject &params, const QStri
 void MapPanel::updateTools() {
     const DaemonLink *const matcher = model_.matcher();
     const bool isThere = matcher && matcher->isConnected();
+    map_->setMatcher(model_.matcher());
     measure_->setChecked(view_->tool() == MapView::Tool::Measure);
     place_->setChecked(view_->tool() == MapView::Tool::Place);
     place_->setEnabled(isThere && matcher->may("pose.set"));

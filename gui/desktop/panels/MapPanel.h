@@ -7,9 +7,11 @@ class QToolBar;
 
 namespace hermes::desktop {
 
+class MapMenu;
 class MessageLabel;
 
-/// The map view with its tools: follow, fit, measure, place, relocalize, layers, export.
+/// The map view with its tools: the map, follow, fit, measure, place, relocalize,
+/// layers, export.
 class MapPanel : public QWidget {
     Q_OBJECT
 public:
@@ -22,6 +24,7 @@ public:
 
 private:
     void addTools(QToolBar &bar);
+    void addMap(QToolBar &bar);
     void addLayers(QToolBar &bar);
     void askFile();
     /// A command of the matcher; tells how it ended.
@@ -30,6 +33,7 @@ private:
 
     MapModel model_;
     MapView *view_;
+    MapMenu *map_;
     MessageLabel *message_;
     QAction *follow_, *fit_, *measure_, *place_, *relocalize_;
 };

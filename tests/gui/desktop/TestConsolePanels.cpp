@@ -26,6 +26,7 @@ private Q_SLOTS:
     void wrongParametersAreToldAtTheirRows();
     void refusedCommandShowsItsError();
     void commandsAreFound();
+    void whatForgetsAsksFirst();
     void logOfAllDaemonsFiltered();
     void plotTickedPausedAndWritten();
     void plotThatCannotBeWritten();
@@ -102,6 +103,29 @@ void TestConsolePanels::commandsAreFound() {
     QVERIFY(!commands()->findChild<QPushButton *>("call")->isEnabled());
     OpenWindow::type(filter, "");
     QCOMPARE(methods->count(), all);
+}
+
+void TestConsolePanels::whatForgetsAsksFirst() {
+    QVERIFY(window_->choose(daemon("motorcontrol")));
+    auto *const run = commands()->findChild<QPushButton *>("call");
+    QVERIFY(!commands()->findChild<QListWidget *>("methods")->currentItem()); // none is chosen by itself
+    QVERIFY(!run->isEnabled());
+    chooseMethod("settings.reset");
+    QCOMPARE(run->text(), QString("Ru&n"));
+    const QString before = answer();
+    OpenWindow::click(commands(), "call");
+    QVERIFY2(run->text().contains("settings.reset now") && run->text().contains("the settings"),
+             qPrintable(run->text()));
+    QCOMPARE(answer(), before);
+    chooseMethod("daemon.info"); // thought better of it
+    QCOMPARE(run->text(), QString("Ru&n"));
+    chooseMethod("settings.reset");
+    OpenWindow::click(commands(), "call");
+    QCOMPARE(answer(), before);
+    OpenWindow::click(commands(), "call");
+    QTRY_VERIFY2(answer().startsWith("settings.reset: "), qPrintable(answer()));
+    QCOMPARE(run->text(), QString("Ru&n"));
+    QVERIFY(window_->choose(daemon("simulator")));
 }
 
 void TestConsolePanels::logOfAllDaemonsFiltered() {

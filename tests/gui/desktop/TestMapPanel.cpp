@@ -3,6 +3,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QAction>
+#include <QDialog>
 #include <QFileInfo>
 #include <QImage>
 #include <QLabel>
@@ -31,6 +32,7 @@ private Q_SLOTS:
     void exported();
     void exportThatFails();
     void savedByCommand();
+    void mapsByTheMenu();
     void matcherGoneAndBack();
 
 private:
@@ -191,6 +193,51 @@ void TestMapPanel::savedByCommand() {
     OpenWindow::click(commands, "call");
     QTRY_VERIFY2(QFileInfo(file).size() > 1000,
                  qPrintable(commands->findChild<QPlainTextEdit *>("answer")->toPlainText()));
+}
+
+void TestMapPanel::mapsByTheMenu() {
+    const auto trigger = [this](const QString &name) {
+        auto *const action = panel()->findChild<QAction *>(name);
+        QVERIFY2(action && action->isEnabled(), qPrintable(name));
+        action->trigger();
+    };
+    const auto accept = [] { // in the dialog that has opened
+        QPushButton *button = nullptr;
+        QTRY_VERIFY([&] {
+            for (QWidget *window : QApplication::topLevelWidgets())
+                if (qobject_cast<QDialog *>(window) && window->isVisible())
+                    button = window->findChild<QPushButton *>("accept");
+            return button != nullptr;
+        }());
+        QVERIFY(!button->window()->isModal());
+        button->click();
+    };
+    const int walls = model().edges().size();
+    QVERIFY(walls > 0);
+    trigger("saveMap"); // has no name yet
+    accept();
+    QTRY_VERIFY2(message().contains("map.csv on the robot"), qPrintable(message()));
+    trigger("newMap");
+    QTest::qWait(100);
+    QVERIFY(!model().edges().isEmpty()); // it asks
+    accept();
+    QTRY_VERIFY2(message().startsWith("A new map has begun"), qPrintable(message()));
+    trigger("undoMap");
+    QTRY_VERIFY2(message().startsWith("The map before is back"), qPrintable(message()));
+    QTRY_VERIFY(model().edges().size() >= walls);
+    trigger("localization");
+    QTRY_COMPARE(message(), QString("The map stays as it is."));
+    QTRY_VERIFY(panel()->findChild<QAction *>("localization")->isChecked());
+    trigger("openMap");
+    accept(); // the newest
+    QTRY_VERIFY2(message().startsWith("Opened map.csv"), qPrintable(message()));
+    QTRY_COMPARE(model().edges().size(), walls);
+    trigger("saveMapAs");
+    accept();
+    accept(); // it exists: asks whether to replace it
+    QTRY_VERIFY2(message().contains("map.csv on the robot"), qPrintable(message()));
+    trigger("mapping");
+    QTRY_COMPARE(message(), QString("The map grows."));
 }
 
 void TestMapPanel::matcherGoneAndBack() {

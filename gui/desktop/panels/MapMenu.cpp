@@ -1,0 +1,266 @@
+#include "gui/desktop/panels/MapMenu.h"
+
+#include "gui/desktop/widgets/ForeignText.h"
+
+#include <QActionGroup>
+#include <QDialog>
+#include <QDialogButtonBox>
+#include <QHeaderView>
+#include <QJsonArray>
+#include <QLineEdit>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QTreeWidget>
+#include <QVBoxLayout>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr int longestPath = 120, mostMaps = 200;
+
+/// Not modal: STOP and all else stay in reach. Ends with its parent, or when it is closed.
+QDialog *makeDialog(QWidget *parent, const QString &title) {
+    auto *const dialog = new QDialog(parent);
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setWindowTitle(title);
+    new QVBoxLayout(dialog);
+    return dialog;
+}
+
+QPushButton *addButtons(QDialog *dialog, const QString &accept) {
+    auto *const buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
+    QPushButton *const button = buttons->addButton(accept, QDialogButtonBox::AcceptRole);
+    button->setObjectName("accept");
+    button->setDefault(true);
+    QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
+    QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
+    dialog->layout()->addWidget(buttons);
+    return button;
+}
+
+} // namespace
+
+MapMenu::MapMenu(QWidget *parent)
+    : QMenu(parent) {
+    setToolTipsVisible(true);
+    add(tr("&New map"), "newMap", "map.clear", &MapMenu::startNew);
+    add(tr("&Open..."), "openMap", "map.load", &MapMenu::open);
+    save_ = add(tr("&Save"), "saveMap", "map.save", &MapMenu::save);
+    add(tr("Save &as..."), "saveMapAs", "map.save", &MapMenu::saveAs);
+    add(tr("&Export on the robot..."), "exportMap", "map.export", &MapMenu::exportAs);
+    add(tr("&Undo: bring back the map before"), "undoMap", "map.undo", &MapMenu::bringBack);
+    addSeparator();
+    mapping_ = add(tr("&Mapping: the map grows"), "mapping", "matcher.start", nullptr);
+    localization_ =
+        add(tr("&Localization: the map stays as it is"), "localization", "matcher.start", nullptr);
+    auto *const modes = new QActionGroup(this);
+    for (QAction *const mode : {mapping_, localization_}) {
+        mode->setCheckable(true);
+        modes->addAction(mode);
+        connect(mode, &QAction::triggered, this, [this, mode] { setMode(mode->objectName()); });
+    }
+    connect(this, &QMenu::aboutToShow, this, &MapMenu::readMode);
+    update();
+}
+
+QAction *MapMenu::add(const QString &text, const char *name, const char *method, void (MapMenu::*work)()) {
+    QAction *const action = work ? addAction(text, this, work) : addAction(text);
+    action->setObjectName(name);
+    actions_.emplace_back(action, method);
+    return action;
+}
+
+void MapMenu::setMatcher(DaemonLink *matcher) {
+    if (matcher_ != matcher)
+        path_.clear();
+    matcher_ = matcher;
+    update();
+}
+
+void MapMenu::update() {
+    for (const auto &[action, method] : actions_) {
+        const bool isThere = matcher_ && matcher_->isConnected();
+        action->setEnabled(isThere && matcher_->may(method));
+        action->setToolTip(isThere ? matcher_->refusal(method) : tr("No scan matcher is connected."));
+    }
+    save_->setText(path_.isEmpty() ? tr("&Save") : tr("&Save %1").arg(shortLine(path_, longestPath)));
+}
+
+void MapMenu::call(const QString &method, const QJsonObject &params, const Then &then) {
+    if (!matcher_)
+        return Q_EMIT told(tr("No scan matcher is connected."), true);
+    Q_EMIT told(tr("%1 ...").arg(method), false);
+    matcher_->callForMuch(method, params, this, [this, then](const Result<QJsonValue> &result) {
+        if (result)
+            then(*result);
+        else
+            Q_EMIT told(result.error().message, true);
+    });
+}
+
+void MapMenu::ask(const QString &question, const QString &yes, const std::function<void()> &work) {
+    auto *const box =
+        new QMessageBox(QMessageBox::Question, tr("Map"), question, QMessageBox::Cancel, parentWidget());
+    box->setAttribute(Qt::WA_DeleteOnClose);
+    box->setWindowModality(Qt::NonModal);
+    QPushButton *const accept = box->addButton(yes, QMessageBox::AcceptRole);
+    accept->setObjectName("accept");
+    box->setDefaultButton(QMessageBox::Cancel);
+    connect(accept, &QPushButton::clicked, this, [work] { work(); });
+    box->show();
+}
+
+void MapMenu::startNew() {
+    ask(tr("Begin a new map? The one of now is kept until the next is replaced: Map, Undo."),
+        tr("Begin anew"), [this] {
+            call("map.clear", {}, [this](const QJsonValue &) {
+                path_.clear();
+                update();
+                Q_EMIT told(tr("A new map has begun. Map, Undo brings the last one back."), false);
+            });
+        });
+}
+
+void MapMenu::open() {
+    call("map.list", {}, [this](const QJsonValue &list) {
+        Q_EMIT told({}, false);
+        QDialog *const dialog = makeDialog(parentWidget(), tr("Open a map of the robot"));
+        auto *const maps = new QTreeWidget;
+        maps->setObjectName("maps");
+        maps->setHeaderLabels({tr("Map"), tr("Written"), tr("KiB")});
+        maps->setRootIsDecorated(false);
+        int count = 0;
+        for (const QJsonValue &map : list["maps"].toArray()) {
+            if (++count > mostMaps)
+                break;
+            const auto time = timeOf(map["modified"].toDouble());
+            const QString kind = map["journal"].toBool() ? tr(" (a drive, goes on)") : QString();
+            auto *const item =
+                new QTreeWidgetItem(maps, {shortLine(map["path"].toString(), longestPath) + kind,
+                                           time ? time->toString("yyyy-MM-dd HH:mm") : QString(),
+                                           shortNumber(map["bytes"].toDouble() / 1024, 0)});
+            item->setData(0, Qt::UserRole, map["path"].toString());
+        }
+        maps->header()->setSectionResizeMode(0, QHeaderView::Stretch);
+        maps->setCurrentItem(maps->topLevelItem(0));
+        dialog->layout()->addWidget(maps);
+        QPushButton *const accept = addButtons(dialog, tr("Open"));
+        accept->setEnabled(maps->topLevelItemCount() > 0);
+        connect(maps, &QTreeWidget::itemDoubleClicked, dialog, &QDialog::accept);
+        connect(dialog, &QDialog::accepted, this, [this, maps] {
+            if (const QTreeWidgetItem *const item = maps->currentItem())
+                load(item->data(0, Qt::UserRole).toString());
+        });
+        dialog->resize(560, 320);
+        dialog->show();
+    });
+}
+
+void MapMenu::load(const QString &path) {
+    call("map.load", {{"path", path}}, [this, path](const QJsonValue &loaded) {
+        path_ = path.endsWith(".csv") ? path : QString();
+        update();
+        Q_EMIT told(tr("Opened %1: %2 walls. The robot is sought in it; until it is found nothing is mapped. "
+                       "Map, Undo brings the last one back.")
+                        .arg(shortLine(path, longestPath))
+                        .arg(loaded["segments"].toDouble()),
+                    false);
+    });
+}
+
+void MapMenu::askName(const QString &title, const QString &name,
+                      const std::function<void(const QString &)> &use) {
+    QDialog *const dialog = makeDialog(parentWidget(), title);
+    auto *const field = new QLineEdit(name);
+    field->setObjectName("mapName");
+    field->setToolTip(tr("Below the folder of maps on the robot (setting map.folder)"));
+    dialog->layout()->addWidget(field);
+    QPushButton *const accept = addButtons(dialog, tr("Write"));
+    connect(field, &QLineEdit::textChanged, accept,
+            [accept](const QString &text) { accept->setEnabled(!text.trimmed().isEmpty()); });
+    connect(dialog, &QDialog::accepted, this, [field, use] { use(field->text().trimmed()); });
+    dialog->resize(420, 80);
+    dialog->show();
+}
+
+/// Asks again where the file exists.
+void MapMenu::write(const QString &method, QJsonObject params) {
+    if (!matcher_)
+        return Q_EMIT told(tr("No scan matcher is connected."), true);
+    const QString path = params["path"].toString();
+    matcher_->call(method, params, this, [=](const Result<QJsonValue> &done) {
+        if (!done && done.error().is(ErrorCode::InputOutput) && !params.contains("force") &&
+            done.error().message.contains("exists")) {
+            ask(tr("%1 exists on the robot. Replace it?").arg(shortLine(path, longestPath)), tr("Replace"),
+                [=]() mutable {
+                    params["force"] = true;
+                    write(method, params);
+                });
+            return;
+        }
+        if (!done)
+            return Q_EMIT told(done.error().message, true);
+        if (method == "map.save")
+            path_ = path;
+        update();
+        Q_EMIT told(tr("Wrote %1 walls to %2 on the robot")
+                        .arg((*done)["segments"].toDouble())
+                        .arg(shortLine((*done)["path"].toString(), longestPath)),
+                    false);
+    });
+}
+
+void MapMenu::save() {
+    if (path_.isEmpty())
+        return saveAs();
+    write("map.save", {{"path", path_}, {"force", true}}); // its own file
+}
+
+void MapMenu::saveAs() {
+    askName(tr("Save the map on the robot"), path_.isEmpty() ? "map.csv" : path_,
+            [this](const QString &name) {
+                write("map.save", {{"path", name.contains('.') ? name : name + ".csv"}});
+            });
+}
+
+void MapMenu::exportAs() {
+    askName(tr("Export the map on the robot: .svg, .dxf, .geojson or .csv"), "map.svg",
+            [this](const QString &name) {
+                const QString format = name.section('.', -1).toLower();
+                if (!QStringList{"svg", "dxf", "geojson", "csv"}.contains(format))
+                    return Q_EMIT told(tr("%1: expected .svg, .dxf, .geojson or .csv").arg(shortLine(name)),
+                                       true);
+                write("map.export", {{"path", name}, {"format", format}});
+            });
+}
+
+void MapMenu::bringBack() {
+    call("map.undo", {}, [this](const QJsonValue &back) {
+        path_.clear();
+        update();
+        Q_EMIT told(tr("The map before is back: %1 walls. The robot is sought in it.")
+                        .arg(back["segments"].toDouble()),
+                    false);
+    });
+}
+
+void MapMenu::setMode(const QString &mode) {
+    call("matcher.start", {{"mode", mode}}, [this, mode](const QJsonValue &) {
+        Q_EMIT told(mode == "mapping" ? tr("The map grows.") : tr("The map stays as it is."), false);
+        readMode();
+    });
+}
+
+void MapMenu::readMode() {
+    update();
+    if (!matcher_)
+        return;
+    matcher_->call("matcher.state", {}, this, [this](const Result<QJsonValue> &state) {
+        if (!state)
+            return;
+        mapping_->setChecked((*state)["mode"] == QJsonValue("mapping"));
+        localization_->setChecked((*state)["mode"] == QJsonValue("localization"));
+    });
+}
+
+} // namespace hermes::desktop

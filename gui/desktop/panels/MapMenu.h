@@ -1,0 +1,52 @@
+#pragma once
+
+#include "gui/desktop/model/DaemonLink.h"
+
+#include <QMenu>
+#include <QPointer>
+#include <functional>
+
+namespace hermes::desktop {
+
+/// The map of the chosen robot's matcher: begun anew, opened, saved, exported, brought back; mapping or
+/// localization. What replaces the map asks first, in a window that keeps nothing from its place, and can be
+/// undone.
+class MapMenu : public QMenu {
+    Q_OBJECT
+public:
+    explicit MapMenu(QWidget *parent = nullptr);
+
+    /// Whose map it is; null: nobody's.
+    void setMatcher(DaemonLink *matcher);
+
+Q_SIGNALS:
+    /// How a command ended, or that it goes on.
+    void told(const QString &text, bool isError);
+
+private:
+    using Then = std::function<void(const QJsonValue &)>;
+
+    QAction *add(const QString &text, const char *name, const char *method, void (MapMenu::*work)());
+    void call(const QString &method, const QJsonObject &params, const Then &then);
+    void startNew();
+    void open();
+    void load(const QString &path);
+    void save();
+    void saveAs();
+    void exportAs();
+    void bringBack();
+    void setMode(const QString &mode);
+    /// Asks for the name of a file on the robot.
+    void askName(const QString &title, const QString &name, const std::function<void(const QString &)> &use);
+    void ask(const QString &question, const QString &yes, const std::function<void()> &work);
+    void write(const QString &method, QJsonObject params);
+    void readMode();
+    void update();
+
+    QPointer<DaemonLink> matcher_;
+    std::vector<std::pair<QAction *, QString>> actions_; ///< with the method that each needs
+    QAction *save_ = nullptr, *mapping_ = nullptr, *localization_ = nullptr;
+    QString path_; ///< of the map, as it was opened or saved last
+};
+
+} // namespace hermes::desktop
