@@ -11,6 +11,12 @@ namespace {
 
 constexpr int mostFiles = 4; // that may wait to be written, each with its copy of the map
 
+bool isEmpty(const vectorlib::VectorMap &map) {
+    bool empty = true;
+    map.forEach([&](const vectorlib::MapEdge &) { empty = false; });
+    return empty;
+}
+
 } // namespace
 
 void ScanMatcher::declareMapCommands() {
@@ -144,9 +150,7 @@ void ScanMatcher::loadJournal(vectorlib::ScanTracker &tracker, const MapPath &fi
 
 // The one of now is kept, unless it is empty.
 void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map) {
-    bool isEmpty = true;
-    tracker.builder.map.forEach([&](const vectorlib::MapEdge &) { isEmpty = false; });
-    if (!isEmpty) {
+    if (!isEmpty(tracker.builder.map)) {
         replaced_.emplace();
         std::swap(*replaced_, tracker.builder.map);
     }
@@ -169,7 +173,45 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
     showNewMap(tracker, reply, asJson(answer));
 }
 
-void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer) {
+// What was recorded elsewhere or before is not to grow into the map of now. Where nothing is mapped it does
+// not, and an empty map has nothing to keep.
+void ScanMatcher::setLiveMapAside(vectorlib::ScanTracker &tracker) {
+    if (!grows_)
+        return;
+    live_.emplace();
+    live_->pose = tracker.builder.report().pose;
+    if (isEmpty(tracker.builder.map))
+        return;
+    std::swap(live_->map, tracker.builder.map);
+    keepsLiveMap_ = true;
+    tracker.clear();
+    corrector_->follow(false, tracker); // its journal is of the live drive
+    seeks_ = Seeks::Nothing;
+    showNewMap(tracker, std::nullopt, QJsonValue());
+}
+
+// The map of the replay can be brought back by map.undo.
+void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
+    if (!live_)
+        return;
+    LiveMap live = std::move(*live_);
+    live_.reset();
+    keepsLiveMap_ = false;
+    seeks_ = isEmpty(live.map) ? Seeks::Nothing : Seeks::Anywhere;
+    replace(tracker, std::move(live.map));
+    tracker.place(live.pose);
+    corrector_->restart(tracker);
+    QMetaObject::invokeMethod(this, [this] { // whether it closes loops is known there
+        if (worker_)
+            worker_->post([this, closes = closesLoops()](vectorlib::ScanTracker &now) {
+                corrector_->follow(closes, now);
+            });
+    });
+    showNewMap(tracker, std::nullopt, QJsonValue());
+}
+
+void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
+                             const QJsonValue &answer) {
     setGrowth(tracker);
     tracker.builder.map.takeChanges(); // the mirror gets it whole
     auto edges = std::make_shared<MapMirror::Edges>();
@@ -183,7 +225,8 @@ void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply
         if (worker_) // where the old map is freed, which takes its time too
             worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
         publishSnapshot("map");
-        reply.result(answer);
+        if (reply)
+            reply->result(answer);
     });
 }
 

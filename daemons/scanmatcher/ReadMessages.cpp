@@ -37,6 +37,7 @@ Result<Scan> readScan(WireView data, quint64 &unknown) {
     Scan scan;
     scan.number = message->header.turn;
     scan.partial = message->header.partial;
+    scan.replayed = message->header.replayed;
     scan.data.stamp = message->header.stamp;
     scan.data.rays = std::size_t(message->header.rays.value_or(count));
     if (message->t)

@@ -10,6 +10,7 @@ namespace hermes::scanmatcher {
 struct Scan {
     quint64 number = 0;
     bool partial = false; ///< not a whole turn: the first or last of a stream
+    bool replayed = false;
     vectorlib::TimedScan data;
 };
 

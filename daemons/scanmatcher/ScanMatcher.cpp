@@ -234,6 +234,10 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
     Scan scan = parsed.take();
     if (scan.partial)
         return;
+    if (std::exchange(replayed_, scan.replayed) != scan.replayed)
+        worker_->post([this, replayed = scan.replayed](ScanTracker &tracker) {
+            replayed ? setLiveMapAside(tracker) : bringLiveMapBack(tracker);
+        });
     scan.data.odometry = odometry_.over(scan.data.begin(), scan.data.end());
     worker_->push(std::move(scan));
 }
@@ -320,6 +324,12 @@ void ScanMatcher::updateHealth() {
                      QString("refused %1 scans, the last: %2").arg(badScans_).arg(lastBadScan_));
     else
         health().set("source", HealthLevel::Ok, "connected to " + address);
+    health().set("replay", replayed_ ? HealthLevel::Warn : HealthLevel::Ok,
+                 !replayed_ ? QString("what is matched is live")
+                 : keepsLiveMap_
+                     ? QString("a replay is matched, in a map of its own; the live map is kept until "
+                               "live scans come")
+                     : QString("a replay is matched"));
     odometry_.report(health());
     const quint64 dropped = droppedBySource_ + (worker_ ? worker_->dropped() : 0);
     health().set("queue", pastDrops_.level(double(dropped)),

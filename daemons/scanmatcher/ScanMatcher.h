@@ -84,7 +84,10 @@ private:
     /// In the worker's thread, when the map is another one: hands it over to the main thread, then answers.
     void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map);
     void undo(vectorlib::ScanTracker &tracker, const Reply &reply);
-    void showNewMap(vectorlib::ScanTracker &tracker, const Reply &reply, const QJsonValue &answer);
+    void setLiveMapAside(vectorlib::ScanTracker &tracker);
+    void bringLiveMapBack(vectorlib::ScanTracker &tracker);
+    void showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
+                    const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
     MapPath mapPath(const Call &call);
     MatcherState matcherState() const;
@@ -95,6 +98,13 @@ private:
     std::unique_ptr<MapCorrector> corrector_;
     bool corrected_ = false;                       ///< since the last scan; the worker's
     std::optional<vectorlib::VectorMap> replaced_; ///< by the last map that was loaded or begun; the worker's
+    struct LiveMap {
+        vectorlib::VectorMap map;
+        vectorlib::Pose2D pose;
+    };
+    std::optional<LiveMap> live_;           ///< while a replay is mapped; the worker's
+    std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty
+    bool replayed_ = false;                 ///< the last scan
     /// A map that was loaded goes on once its place is found: with the first scan in the whole map, then
     /// where the sensor stood last.
     enum class Seeks { Nothing, Anywhere, Here };

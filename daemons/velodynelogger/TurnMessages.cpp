@@ -11,21 +11,22 @@ float rounded(double metres) {
     return float(std::round(metres * 1e3) / 1e3);
 }
 
-TurnHeader headerOf(const velodyne::Turn &turn) {
+TurnHeader headerOf(const velodyne::Turn &turn, bool replayed) {
     return {turn.number,
             double(turn.begin_ns) * 1e-9,
             double(turn.end_ns - turn.begin_ns) * 1e-9,
             turn.partial,
             turn.firings,
             turn.lostPackets,
-            "lidar"};
+            "lidar",
+            replayed};
 }
 
 } // namespace
 
-ScanMessage toScanMessage(const velodyne::Turn &turn) {
+ScanMessage toScanMessage(const velodyne::Turn &turn, bool replayed) {
     ScanMessage message;
-    message.header = headerOf(turn);
+    message.header = headerOf(turn, replayed);
     message.laser = turn.laser;
     std::vector<float> &t = message.t.emplace();
     for (std::vector<float> *values : {&message.x, &message.y, &t})
@@ -40,9 +41,9 @@ ScanMessage toScanMessage(const velodyne::Turn &turn) {
     return message;
 }
 
-CloudMessage toCloudMessage(const velodyne::Turn &turn) {
+CloudMessage toCloudMessage(const velodyne::Turn &turn, bool replayed) {
     CloudMessage message;
-    message.header = headerOf(turn);
+    message.header = headerOf(turn, replayed);
     message.model = turn.model->name;
     for (std::vector<float> *values : {&message.x, &message.y, &message.z})
         values->reserve(turn.points.size());

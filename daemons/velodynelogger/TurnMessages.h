@@ -6,9 +6,9 @@
 namespace hermes::velodynelogger {
 
 /// Of a turn of one laser. The points come in the reverse of the order in which the sensor measured them.
-ScanMessage toScanMessage(const velodyne::Turn &turn);
+ScanMessage toScanMessage(const velodyne::Turn &turn, bool replayed = false);
 
 /// Of a turn of all lasers; coordinates are rounded to 1 mm.
-CloudMessage toCloudMessage(const velodyne::Turn &turn);
+CloudMessage toCloudMessage(const velodyne::Turn &turn, bool replayed = false);
 
 } // namespace hermes::velodynelogger

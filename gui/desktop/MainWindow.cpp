@@ -36,15 +36,15 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     auto *const topBar = new TopBar(fleet, drive_);
     bar->addWidget(topBar);
 
-    addToolBarBreak();
-    auto *const second = addToolBar(tr("Stop"));
-    second->setObjectName("stopBar");
-    second->setMovable(false);
-    second->setContextMenuPolicy(Qt::PreventContextMenu);
-    auto *const banner = new StopBanner(drive_);
-    second->addWidget(banner);
-    second->hide();
-    connect(banner, &StopBanner::shown, second, &QToolBar::setVisible);
+    addBanner(new StopBanner(drive_), "stopBar");
+    auto *const replay = new Banner;
+    replay->setObjectName("replayBanner");
+    addBanner(replay, "replayBar");
+    connect(&drive_.replay(), &ReplayWatch::changed, replay, [this, replay] {
+        const QString text = drive_.replay().text();
+        replay->tell(text.isEmpty() ? QString() : tr("REPLAY, not the robot of now: %1").arg(text),
+                     "background: #6a2fb0; color: white;");
+    });
 
     setCentralWidget(map_ = new MapPanel(fleet));
     for (const PanelKind &kind : panelKinds())
@@ -59,6 +59,18 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
 }
 
 MainWindow::~MainWindow() = default;
+
+void MainWindow::addBanner(Banner *banner, const char *name) {
+    addToolBarBreak();
+    auto *const bar = addToolBar(tr("Notice"));
+    bar->setObjectName(name);
+    bar->setMovable(false);
+    bar->setContextMenuPolicy(Qt::PreventContextMenu);
+    bar->addWidget(banner);
+    bar->hide();
+    banners_.push_back(bar);
+    connect(banner, &Banner::shown, bar, &QToolBar::setVisible);
+}
 
 void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     const QString title = tr(kind.title);
@@ -93,6 +105,8 @@ void MainWindow::restoreLayout() {
     const QSettings layout(layoutFile_, QSettings::IniFormat);
     restoreGeometry(layout.value("window/geometry").toByteArray());
     restoreState(layout.value("window/state").toByteArray());
+    for (QToolBar *banner : banners_)
+        banner->hide(); // whatever it said when the layout was kept
 }
 
 void MainWindow::saveLayout() const {

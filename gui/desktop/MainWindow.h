@@ -5,9 +5,11 @@
 #include <QMainWindow>
 
 class QDockWidget;
+class QToolBar;
 
 namespace hermes::desktop {
 
+class Banner;
 class MapPanel;
 struct PanelKind;
 
@@ -25,6 +27,7 @@ protected:
     void closeEvent(QCloseEvent *event) override;
 
 private:
+    void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
     void restoreLayout();
     void saveLayout() const;
@@ -33,6 +36,7 @@ private:
     MapPanel *map_;
     const QString layoutFile_;
     std::vector<QDockWidget *> docks_;
+    std::vector<QToolBar *> banners_;
 };
 
 } // namespace hermes::desktop

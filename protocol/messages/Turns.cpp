@@ -25,6 +25,8 @@ const Fields<TurnHeader> &fieldsOf(Of<TurnHeader>) {
             .add("lost_packets", &TurnHeader::lostPackets, "In this turn")
             .mayBeMissing()
             .add("frame", &TurnHeader::frame, "What the coordinates are relative to")
+            .mayBeMissing()
+            .add("replayed", &TurnHeader::replayed, "It was recorded, and says nothing of the robot of now")
             .mayBeMissing();
     return fields;
 }

@@ -17,6 +17,7 @@ struct TurnHeader {
     std::optional<quint64> rays; ///< a logger that does not tell: as many as there are points
     quint64 lostPackets = 0;
     QString frame;
+    bool replayed = false;
 };
 
 /// The topic `scan2d`: the points of one laser in one turn, COUNTER-CLOCKWISE, as the vector library wants

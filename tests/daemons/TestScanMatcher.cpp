@@ -27,6 +27,8 @@ private Q_SLOTS:
     void undoBringsTheMapBack();
     void mapsAreListed();
     void aLoadedMapGrowsNoGhost();
+    void aReplayLeavesTheLiveMapAlone_data();
+    void aReplayLeavesTheLiveMapAlone();
     void mapTopicBeginsWithTheFullMap();
     void queueDropsItsOldestAndCounts();
 
@@ -236,6 +238,55 @@ void TestScanMatcher::aLoadedMapGrowsNoGhost() {
         source->publish("scan2d", roomScan(onTheWay(30 + i), 0.1 * (30 + i)), 0.1 * (30 + i));
     QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 30);
     QCOMPARE(call("map.get")["size"].toInt(), walls);
+}
+
+void TestScanMatcher::aReplayLeavesTheLiveMapAlone_data() {
+    QTest::addColumn<QString>("mode");
+    QTest::newRow("mapping") << "mapping";
+    QTest::newRow("localization") << "localization";
+}
+
+void TestScanMatcher::aReplayLeavesTheLiveMapAlone() {
+    QFETCH(QString, mode);
+    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+    drive(0, 40);
+    const QJsonArray live = call("map.get")["edges"].toArray();
+    QCOMPARE(live.size(), 6);
+    call("matcher.start", {{"mode", mode}});
+    QTRY_VERIFY(source->hasSubscribers("scan2d"));
+    int scans = call("matcher.state")["scans"].toInt();
+    const bool isApart = mode == "mapping";
+    for (int i = 0; i < 20; ++i) { // of long ago
+        QJsonObject scan = roomScan(onTheWay(i), 0.1 * i);
+        scan["replayed"] = true;
+        source->publish("scan2d", scan, 0.1 * i);
+    }
+    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), isApart ? 20 : scans + 20);
+    QTRY_VERIFY2(healthItem("replay")["message"].toString().contains("live map is kept") == isApart,
+                 qPrintable(healthItem("replay")["message"].toString()));
+    QTRY_COMPARE(healthItem("replay")["level"].toString(), QString("warn"));
+    const QJsonArray replayed = call("map.get")["edges"].toArray();
+    QCOMPARE(replayed == live, !isApart);
+    QVERIFY(!replayed.isEmpty());
+
+    scans = isApart ? 0 : call("matcher.state")["scans"].toInt();
+    for (int i = 40; i < 65; ++i) // not as many as before
+        source->publish("scan2d", roomScan(onTheWay(i), 0.1 * i), 0.1 * i);
+    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), scans + 25);
+    const QJsonArray back = call("map.get")["edges"].toArray();
+    QCOMPARE(back.size(), live.size());
+    for (int i = 0; i < back.size(); ++i)
+        for (const char *end : {"x1", "y1", "x2", "y2"})
+            QVERIFY2(std::abs(back[i][end].toDouble() - live[i][end].toDouble()) < 0.02,
+                     qPrintable(QString("%1 %2: %3 and %4")
+                                    .arg(i)
+                                    .arg(end)
+                                    .arg(back[i][end].toDouble())
+                                    .arg(live[i][end].toDouble())));
+    QTRY_COMPARE(healthItem("replay")["level"].toString(), QString("ok"));
+    QTRY_VERIFY(call("matcher.state")["matched"].toInt() > 10);
+    if (isApart) // what the replay has mapped is not lost
+        QCOMPARE(call("map.undo")["segments"].toInt(), replayed.size());
 }
 
 void TestScanMatcher::mapTopicBeginsWithTheFullMap() {

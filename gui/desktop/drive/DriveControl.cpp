@@ -20,7 +20,9 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     , fleet_(fleet)
     , odometry_(
           fleet, "odometry", {{"max_rate_hz", 10}}, [this](const TopicUpdate &u) { onOdometry(u); }, this)
-    , stop_(fleet) {
+    , stop_(fleet)
+    , replay_(fleet) {
+    connect(&replay_, &ReplayWatch::changed, this, &DriveControl::onReplay);
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
     connect(&pollTimer_, &QTimer::timeout, this, &DriveControl::poll);
@@ -99,7 +101,25 @@ Twist2D DriveControl::wish() const {
     return {scaled(sum.vx, most_.vx), scaled(sum.vy, most_.vy), scaled(sum.omega, most_.omega)};
 }
 
+void DriveControl::driveBlindly() {
+    isBlindMeant_ = true;
+    mustCentre_ = isAnyHeld();
+    tell({});
+    Q_EMIT changed();
+}
+
+// A drive that is under way when a replay begins ends: what is seen from now on is not what is.
+void DriveControl::onReplay() {
+    if (!replay_.isReplaying())
+        isBlindMeant_ = false;
+    else if (refusesForReplay())
+        mustCentre_ = mustCentre_ || isAnyHeld();
+    Q_EMIT changed();
+}
+
 void DriveControl::tick() {
+    if (isAnyHeld() && refusesForReplay())
+        mustCentre_ = true;
     const bool wants = isAnyHeld() && !mustCentre_ && motors_ && motors_->isConnected() && !isStopped();
     if (!wants) {
         if (isDriving_)

@@ -3,6 +3,7 @@
 #include "common/client/ClockOffset.h"
 #include "gui/desktop/drive/StopControl.h"
 #include "gui/desktop/model/Freshness.h"
+#include "gui/desktop/model/ReplayWatch.h"
 #include "gui/desktop/model/TopicFeed.h"
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Motors.h"
@@ -39,6 +40,12 @@ public:
     void release();
     /// Takes the control from whoever holds it.
     void takeOver() { acquire(true); }
+
+    /// While a replay is shown nobody sees where the robot is: it is driven only once this was said, until
+    /// that replay ends.
+    void driveBlindly();
+    const ReplayWatch &replay() const { return replay_; }
+    bool refusesForReplay() const { return replay_.isReplaying() && !isBlindMeant_; }
 
     /// Somebody who can be driven is there.
     bool isPossible() const { return motors() != nullptr; }
@@ -78,6 +85,7 @@ private:
     void send();
     void poll();
     void onState(const QJsonValue &state);
+    void onReplay();
     void onOdometry(const TopicUpdate &update);
     /// What all inputs wish together, in m/s and rad/s.
     Twist2D wish() const;
@@ -88,6 +96,7 @@ private:
     TopicFeed odometry_;
     QPointer<DaemonLink> motors_;
     StopControl stop_;
+    ReplayWatch replay_;
     QTimer timer_, pollTimer_;
     QMap<QString, Input> inputs_;
     MotionHold hold_;
@@ -96,6 +105,7 @@ private:
     ClockOffset clock_;
     double limit_ = 0.4;
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;
+    bool isBlindMeant_ = false;
     QString problem_;
 };
 

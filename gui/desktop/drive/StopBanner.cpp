@@ -12,14 +12,9 @@ constexpr const char *red = "background: #d0100c; color: white;",
 } // namespace
 
 StopBanner::StopBanner(DriveControl &drive, QWidget *parent)
-    : PlainLabel({}, parent)
+    : Banner(parent)
     , drive_(drive) {
     setObjectName("stopBanner");
-    setWordWrap(true);
-    setMargin(8);
-    setMinimumWidth(1);
-    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
-    setBold(true);
     sound_.setInterval(1000);
     connect(&sound_, &QTimer::timeout, [] { QApplication::beep(); });
     connect(&drive, &DriveControl::changed, this, &StopBanner::update);
@@ -48,28 +43,11 @@ QString StopBanner::styleOf(const DriveControl &drive) {
                                                                        : amber;
 }
 
-// A tool bar asks nobody how high text of its width becomes.
-void StopBanner::fitHeight() {
-    const QRect room(0, 0, width() - 2 * margin(), 1000);
-    const int height = fontMetrics().boundingRect(room, Qt::TextWordWrap, text()).height() + 2 * margin();
-    if (height != maximumHeight() && !text().isEmpty())
-        setFixedHeight(height);
-}
-
-void StopBanner::resizeEvent(QResizeEvent *event) {
-    PlainLabel::resizeEvent(event);
-    fitHeight();
-}
-
 void StopBanner::update() {
     QString text = drive_.stopping().text();
     if (text.isEmpty() && drive_.isStopped())
         text = tr("STOPPED: %1").arg(QStringList(drive_.latched().values()).join("; "));
-    setText(text);
-    fitHeight();
-    if (const QString style = styleOf(drive_); style != styleSheet())
-        setStyleSheet(style);
-    Q_EMIT shown(!text.isEmpty());
+    tell(text, styleOf(drive_));
     if (!drive_.stopping().isLate()) {
         sound_.stop();
     } else if (!sound_.isActive()) {

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "gui/desktop/drive/DriveControl.h"
-#include "gui/desktop/widgets/PlainLabel.h"
+#include "gui/desktop/widgets/Banner.h"
 
 namespace hermes::desktop {
 
 /// How far a STOP has come, or why the robot is stopped, across the window; hidden while it is not. While a
 /// STOP is not confirmed it is red and sounds once a second.
-class StopBanner : public PlainLabel {
+class StopBanner : public Banner {
     Q_OBJECT
 public:
     explicit StopBanner(DriveControl &drive, QWidget *parent = nullptr);
@@ -17,14 +17,7 @@ public:
     /// Of the background and the text.
     static QString styleOf(const DriveControl &drive);
 
-Q_SIGNALS:
-    void shown(bool isShown);
-
-protected:
-    void resizeEvent(QResizeEvent *event) override;
-
 private:
-    void fitHeight();
     void update();
 
     DriveControl &drive_;

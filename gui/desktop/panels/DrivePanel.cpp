@@ -20,7 +20,8 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     , limitText_(new PlainLabel)
     , control_(new AgedLabel)
     , problem_(new MessageLabel)
-    , takeOver_(new QPushButton(tr("Ta&ke over"))) {
+    , takeOver_(new QPushButton(tr("Ta&ke over")))
+    , blind_(new QPushButton(tr("Drive all the same"))) {
     stick_->setObjectName("stick");
     limit_->setObjectName("limit");
     limit_->setRange(5, 100);
@@ -48,6 +49,11 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     layout->addWidget(makeNumbers());
     layout->addLayout(control);
     layout->addWidget(problem_);
+    layout->addWidget(blind_);
+    blind_->setObjectName("driveBlindly");
+    for (QPushButton *const passing : {takeOver_, blind_})
+        passing->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to driving: the button goes
+    connect(blind_, &QPushButton::clicked, &drive, &DriveControl::driveBlindly);
 
     connect(stick_, &Stick::moved, this,
             [this](const Twist2D &wish, bool isHeld) { drive_.steer("stick", wish, isHeld); });
@@ -110,6 +116,9 @@ void DrivePanel::update() {
         const QStringList reasons = drive_.latched().values();
         problem = tr("Stopped: %1. Release it above.").arg(reasons.join("; "));
     }
+    blind_->setVisible(drive_.refusesForReplay());
+    if (drive_.refusesForReplay())
+        problem = tr("A replay is shown, not where the robot is: driving is off.");
     problem_->tell(problem, true);
 }
 

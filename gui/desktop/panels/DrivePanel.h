@@ -33,7 +33,7 @@ private:
     MessageLabel *problem_;
     PlainLabel *commanded_[3];
     AgedLabel *measured_[3];
-    QPushButton *takeOver_;
+    QPushButton *takeOver_, *blind_;
 };
 
 } // namespace hermes::desktop

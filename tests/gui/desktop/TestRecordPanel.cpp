@@ -1,6 +1,8 @@
+#include "common/client/DaemonAddress.h"
+#include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/RecordPanel.h"
 #include "tests/gui/FakeLogger.h"
-#include "tests/gui/desktop/RobotProcesses.h"
+#include "tests/gui/desktop/OpenWindow.h"
 
 #include <QLabel>
 #include <QLineEdit>
@@ -16,6 +18,7 @@ class TestRecordPanel : public QObject {
 private Q_SLOTS:
     void recordsAsOneAndReplays();
     void aStartThatTimesOutIsTakenBack();
+    void aReplayIsShownAndDrivingAsks();
 
 private:
     template <typename T>
@@ -111,6 +114,62 @@ void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
                  qPrintable(message()));
     QVERIFY(!robot.isRecording());
     panel_.reset();
+}
+
+// Begun by somebody else: the window says so all the same.
+void TestRecordPanel::aReplayIsShownAndDrivingAsks() {
+    RobotProcesses robot;
+    robot.startAll();
+    OpenWindow open(robot);
+    QVERIFY(open.show());
+    QTRY_VERIFY(open.drive.isPossible());
+    const auto label = [&](const char *name) { return open.window.findChild<QLabel *>(name); };
+    const auto button = [&](const char *name) { return open.window.findChild<QPushButton *>(name); };
+    QVERIFY(!label("replayBanner")->isVisible());
+    Client somebody, motors;
+    somebody.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
+    motors.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
+    QVERIFY(somebody.waitConnected().ok() && motors.waitConnected().ok());
+    const auto speed = [&] {
+        return motors.callAndWait("motor.state")->toObject()["target"].toObject()["vx"].toDouble();
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(motors.callAndWait("motor.state")->toObject()["ready"].toBool(), 10000);
+    QTRY_VERIFY(open.window.map().model().pose());
+    QVERIFY(somebody.callAndWait("record.start", QJsonObject{{"name", "once"}}).ok());
+    QTest::qWait(1500);
+    QVERIFY(somebody.callAndWait("record.stop").ok());
+
+    QTest::keyPress(&open.window, Qt::Key_W);
+    QTRY_VERIFY(speed() > 0.1);
+    QVERIFY(somebody.callAndWait("source.open", QJsonObject{{"recording", "once"}, {"loop", true}}).ok());
+    QTRY_VERIFY_WITH_TIMEOUT(label("replayBanner")->isVisible(), 1000);
+    QTRY_VERIFY2(label("replayBanner")->text().contains("velodynelogger replays"),
+                 qPrintable(label("replayBanner")->text()));
+    QTRY_COMPARE(speed(), 0.0); // the drive that was under way has ended
+    QTest::keyRelease(&open.window, Qt::Key_W);
+    QTest::keyPress(&open.window, Qt::Key_W);
+    QTest::qWait(300);
+    QCOMPARE(speed(), 0.0);
+    QTRY_VERIFY2(label("problem")->text().contains("A replay is shown"),
+                 qPrintable(label("problem")->text()));
+    QTest::keyRelease(&open.window, Qt::Key_W);
+    OpenWindow::click(&open.window, "driveBlindly");
+    QTest::keyPress(&open.window, Qt::Key_W);
+    QTRY_VERIFY2(speed() > 0.1, qPrintable(open.drive.problem()));
+    QTest::keyRelease(&open.window, Qt::Key_W);
+    DaemonLink *const matcher = open.fleet.robot()->withName("scanmatcher");
+    const auto isKept = [matcher] {
+        const auto &health = matcher->status().health;
+        return std::any_of(health.begin(), health.end(), [](const HealthItem &item) {
+            return item.name == "replay" && item.message.contains("the live map is kept");
+        });
+    };
+    QTRY_VERIFY(isKept());
+
+    QVERIFY(somebody.callAndWait("source.open", QJsonObject{{"live", true}}).ok());
+    QTRY_VERIFY(!label("replayBanner")->isVisible());
+    QVERIFY(!button("driveBlindly")->isVisible());
+    QTRY_VERIFY(!isKept());
 }
 
 QTEST_MAIN(TestRecordPanel)

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "gui/desktop/model/Fleet.h"
+
+namespace hermes::desktop {
+
+/// Whether daemons of the chosen robot show what was recorded instead of what is, whoever began it: they are
+/// asked four times a second.
+class ReplayWatch : public QObject {
+    Q_OBJECT
+public:
+    explicit ReplayWatch(Fleet &fleet, QObject *parent = nullptr);
+
+    bool isReplaying() const { return !replays_.empty(); }
+    /// Who replays what, and how far it is; empty: nobody.
+    QString text() const;
+
+Q_SIGNALS:
+    void changed();
+
+private:
+    void ask();
+    void take(DaemonLink *daemon, const Result<QJsonValue> &answer);
+
+    Fleet &fleet_;
+    QTimer timer_;
+    QSet<DaemonLink *> asked_;           ///< that have not answered as yet
+    std::map<QString, QString> replays_; ///< what, by the address of a daemon of the chosen robot
+};
+
+} // namespace hermes::desktop
