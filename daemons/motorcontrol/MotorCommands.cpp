@@ -27,6 +27,11 @@ QString clientName(const Call &call) {
     return call.text("client").isEmpty() ? call.clientName : call.text("client");
 }
 
+/// Who stopped: as it calls itself, and where it is connected, which it cannot choose.
+QString stopperName(const Call &call) {
+    return call.text("client").isEmpty() ? call.clientName : call.text("client") + ", " + call.clientName;
+}
+
 Result<QJsonValue> nullOr(const Result<void> &result) {
     if (!result)
         return result.error();
@@ -53,6 +58,7 @@ Command MotorControl::stopCommand(const QString &name, const QString &summary,
                    .unit("s")
                    .range(0, 10)
                    .byDefault(0))
+        .param(clientField())
         .gives<Standing>()
         .needs(Role::Observer)
         .urgent()
@@ -119,15 +125,16 @@ void MotorControl::declareMotorCommands() {
             Field::number(name, "Positive turns drive the robot forward").unit("rad/s").byDefault(0));
     addCommand(
         wheels.param(stampField()).with("x-needs-lease", true).example({{"front_left", 1}}, QJsonValue()));
-    addCommand(stopCommand("motor.stop",
-                           "Stops with the emergency deceleration; anyone may. When another client holds the "
-                           "control it loses it",
-                           [](const Call &call, Drive &drive) { drive.stop(call.client, call.clientName); }));
+    addCommand(
+        stopCommand("motor.stop",
+                    "Stops with the emergency deceleration; anyone may. When another client holds the "
+                    "control it loses it",
+                    [](const Call &call, Drive &drive) { drive.stop(call.client, stopperName(call)); }));
     addCommand(
         stopCommand("motor.estop",
                     "Stops with the emergency deceleration, and stays stopped until motor.reset_estop; "
                     "anyone may. No substitute for a hard-wired device",
-                    [](const Call &call, Drive &drive) { drive.emergencyStop(call.clientName); }));
+                    [](const Call &call, Drive &drive) { drive.emergencyStop(stopperName(call)); }));
     addCommand(freshLoopCommand(
         "motor.reset_estop",
         "Releases the emergency stop and latched faults; the robot stays where it is until a "

@@ -1,19 +1,12 @@
 #include "gui/desktop/drive/DriveControl.h"
 
 #include "common/Time.h"
+#include "gui/desktop/drive/OwnName.h"
 #include "protocol/wire/Fields.h"
 
-#include <QHostInfo>
 #include <QPointer>
 
 namespace hermes::desktop {
-namespace {
-
-QString clientName() {
-    return "hermes-gui on " + QHostInfo::localHostName();
-}
-
-} // namespace
 
 DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     : QObject(parent)
@@ -136,7 +129,7 @@ void DriveControl::acquire(bool takeOver) {
     if (!motors_)
         return;
     isAsking_ = true;
-    QJsonObject params{{"client", clientName()}, {"timeout_s", lease_s}};
+    QJsonObject params{{"client", ownName()}, {"timeout_s", lease_s}};
     if (takeOver)
         params["take_over"] = true;
     motors_->call("control.acquire", params, this, [this, takeOver](const Result<QJsonValue> &result) {
@@ -155,7 +148,7 @@ void DriveControl::acquire(bool takeOver) {
 
 // Who may not take the control can still say that they would like it.
 void DriveControl::ask() {
-    motors_->call("control.ask", {{"client", clientName()}}, this, [this](const Result<QJsonValue> &result) {
+    motors_->call("control.ask", {{"client", ownName()}}, this, [this](const Result<QJsonValue> &result) {
         tell(result ? tr("You may not take the control over; %1 has been asked for it.").arg(holder())
                     : result.error().message);
     });
@@ -255,7 +248,7 @@ void DriveControl::onState(const QJsonValue &state) {
     stateAge_.heard();
     const bool wasStopped = isStopped();
     hold_ = std::move(*hold);
-    if (!isDriving_ && hold_.control.holder != clientName())
+    if (!isDriving_ && hold_.control.holder != ownName())
         isHolding_ = false; // it ran out
     if (isStopped() && !wasStopped) {
         isDriving_ = isHolding_ = false;
@@ -269,7 +262,7 @@ QString DriveControl::holder() const {
     if (!hold_.control.held)
         return {};
     const QString name = hold_.control.holder.value_or(QString());
-    return isHolding_ && name == clientName() ? tr("you") : name;
+    return isHolding_ && name == ownName() ? tr("you") : name;
 }
 
 QString DriveControl::wanted() const {

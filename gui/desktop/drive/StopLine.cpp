@@ -1,9 +1,13 @@
 #include "gui/desktop/drive/StopLine.h"
 
 #include "common/client/DaemonAddress.h"
+#include "gui/desktop/drive/OwnName.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/messages/Motors.h"
 #include "protocol/wire/Fields.h"
+
+#include <QJsonArray>
+#include <algorithm>
 
 namespace hermes::desktop {
 namespace {
@@ -133,6 +137,15 @@ void StopLine::tick() {
     Q_EMIT changed(); // its age
 }
 
+// Only what the daemon is known to take: it would refuse the rest, and with it the stop.
+QJsonObject StopLine::params() const {
+    const QJsonArray taken = daemon_ ? daemon_->method("motor.estop")["params"].toArray() : QJsonArray();
+    const bool takesName = std::any_of(taken.begin(), taken.end(), [](const QJsonValue &param) {
+        return param["name"] == QJsonValue("client");
+    });
+    return takesName ? QJsonObject{{"client", ownName()}} : QJsonObject();
+}
+
 void StopLine::send(Client &client) {
     if (phase_ == StopPhase::Pressed)
         enter(StopPhase::Sent);
@@ -140,7 +153,7 @@ void StopLine::send(Client &client) {
         if (guard && guard->press_ == press)
             guard->onAnswer(answer);
     };
-    client.call("motor.estop", QJsonObject(), answered, Client::defaultTimeout, Client::Repeats::AtOnce);
+    client.call("motor.estop", params(), answered, Client::defaultTimeout, Client::Repeats::AtOnce);
 }
 
 void StopLine::onAnswer(const Result<QJsonValue> &answer) {

@@ -49,6 +49,7 @@ Q_SIGNALS:
 private:
     void tick();
     void send(Client &client);
+    QJsonObject params() const;
     void onAnswer(const Result<QJsonValue> &answer);
     void look();
     void onState(const Result<QJsonValue> &state);

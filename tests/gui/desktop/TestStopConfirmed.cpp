@@ -115,6 +115,8 @@ void TestStopConfirmed::isConfirmedByAMeasurement() {
     QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 1000);
     open_->drive.stopping().disconnect(this);
     QVERIFY(state()["standing"].toObject()["confirmed"].toBool());
+    const QString who = state()["latched"].toObject()["estop"].toString();
+    QVERIFY2(who.startsWith("emergency stop by hermes-gui ") && who.contains(" on "), qPrintable(who));
     QTRY_COMPARE(button(), QString("STOPPED"));
     QVERIFY2(banner().contains("measured that the robot stands"), qPrintable(banner()));
     const std::vector<StopPhase> all{StopPhase::Pressed, StopPhase::Sent, StopPhase::Taken,
