@@ -7,6 +7,7 @@
 #include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/Panels.h"
+#include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/WheelGuard.h"
 
@@ -22,6 +23,7 @@ namespace hermes::desktop {
 
 MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent)
     : QMainWindow(parent)
+    , fleet_(fleet)
     , drive_(drive)
     , layoutFile_(layoutFile) {
     setWindowTitle(tr("Hermes"));
@@ -59,6 +61,10 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
 }
 
 MainWindow::~MainWindow() = default;
+
+QStringList MainWindow::keptAddresses(const QString &layoutFile) {
+    return QSettings(layoutFile, QSettings::IniFormat).value("robots/addresses").toStringList();
+}
 
 void MainWindow::addBanner(Banner *banner, const char *name) {
     addToolBarBreak();
@@ -105,6 +111,7 @@ void MainWindow::restoreLayout() {
     const QSettings layout(layoutFile_, QSettings::IniFormat);
     restoreGeometry(layout.value("window/geometry").toByteArray());
     restoreState(layout.value("window/state").toByteArray());
+    findChild<PlotsPanel *>()->plot(layout.value("plots/fields").toStringList());
     for (QToolBar *banner : banners_)
         banner->hide(); // whatever it said when the layout was kept
 }
@@ -116,6 +123,8 @@ void MainWindow::saveLayout() const {
     QSettings layout(layoutFile_, QSettings::IniFormat);
     layout.setValue("window/geometry", saveGeometry());
     layout.setValue("window/state", saveState());
+    layout.setValue("plots/fields", findChild<PlotsPanel *>()->plotted());
+    layout.setValue("robots/addresses", fleet_.addresses());
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {

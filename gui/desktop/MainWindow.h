@@ -18,9 +18,12 @@ struct PanelKind;
 class MainWindow : public QMainWindow {
     Q_OBJECT
 public:
-    /// layoutFile: where the layout is kept between runs; empty: nowhere.
+    /// layoutFile: where the layout, what is plotted and the addresses of robots are kept between runs;
+    /// empty: nowhere.
     MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent = nullptr);
     ~MainWindow() override;
+    /// The addresses that the last window with this layout had.
+    static QStringList keptAddresses(const QString &layoutFile);
     MapPanel &map() { return *map_; }
 
 protected:
@@ -32,6 +35,7 @@ private:
     void restoreLayout();
     void saveLayout() const;
 
+    Fleet &fleet_;
     DriveControl &drive_;
     MapPanel *map_;
     const QString layoutFile_;

@@ -43,7 +43,9 @@ int main(int argc, char **argv) {
     parser.addHelpOption();
     parser.addVersionOption();
     parser.addOption(
-        {"connect", "A robot to connect to, or one of its daemons; repeatable (127.0.0.1).", "HOST[:PORT]"});
+        {"connect",
+         "A robot to connect to, or one of its daemons; repeatable (those of last time, else 127.0.0.1).",
+         "HOST[:PORT]"});
     parser.addOption({"layout", "Where the layout of the window is kept.", "FILE",
                       QStandardPaths::writableLocation(QStandardPaths::ConfigLocation) + "/hermes/gui.ini"});
     parser.addOption(
@@ -62,6 +64,8 @@ int main(int argc, char **argv) {
 
     Fleet fleet;
     QStringList addresses = parser.values("connect");
+    if (addresses.isEmpty())
+        addresses = MainWindow::keptAddresses(parser.value("layout"));
     if (addresses.isEmpty())
         addresses.append("127.0.0.1");
     for (const QString &address : qAsConst(addresses))

@@ -25,6 +25,8 @@ Result<void> Fleet::add(const QString &address) {
         robot.add(url->port, true);
     else
         robot.search();
+    if (!addresses_.contains(address))
+        addresses_.append(address);
     if (!robot_)
         choose(&robot);
     return {};

@@ -74,6 +74,8 @@ public:
     /// "HOST": every daemon found there; "HOST:PORT": that one, and all others when it is a supervisor.
     /// Error: it is no address.
     Result<void> add(const QString &address);
+    /// All that were added.
+    const QStringList &addresses() const { return addresses_; }
     const std::vector<std::unique_ptr<Robot>> &robots() const { return robots_; }
 
     Robot *robot() const { return robot_; }
@@ -90,6 +92,7 @@ Q_SIGNALS:
 private:
     Robot &robotAt(const QString &host);
 
+    QStringList addresses_;
     QTimer changes_; // many that come together are told once
     std::vector<std::unique_ptr<Robot>> robots_;
     Robot *robot_ = nullptr;

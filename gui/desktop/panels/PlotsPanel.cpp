@@ -109,6 +109,21 @@ QWidget *PlotsPanel::makeButtons() {
     return row;
 }
 
+QStringList PlotsPanel::plotted() const {
+    QStringList fields;
+    for (const auto &[field, curve] : curves_)
+        fields.append(field.address + ' ' + field.topic + ' ' + field.path);
+    for (const FieldId &field : wanted_)
+        fields.append(field.address + ' ' + field.topic + ' ' + field.path);
+    return fields;
+}
+
+void PlotsPanel::plot(const QStringList &fields) {
+    for (const QString &field : fields)
+        wanted_.insert({field.section(' ', 0, 0), field.section(' ', 1, 1), field.section(' ', 2)});
+    listTopics();
+}
+
 // Daemons and topics that are new; what is listed once stays, so that curves do.
 void PlotsPanel::listTopics() {
     isListing_ = true;
@@ -137,6 +152,11 @@ void PlotsPanel::listTopics() {
                 child->setData(0, TopicRole, topic);
                 child->setData(0, DaemonRole, item->data(0, DaemonRole));
                 child->setChildIndicatorPolicy(QTreeWidgetItem::ShowIndicator);
+                const bool isWanted = std::any_of(wanted_.begin(), wanted_.end(), [&](const FieldId &field) {
+                    return field.address == daemon->address() && field.topic == topic;
+                });
+                if (isWanted)
+                    listFields(daemon, topic);
             }
             if (daemon->topics().size() > mostTopics)
                 item->setText(0, tr("%1 (%2 topics, of which %3 are listed)")
@@ -176,9 +196,19 @@ void PlotsPanel::listFields(DaemonLink *daemon, const QString &topic) {
                 }
             }
             isListing_ = false;
+            tickWanted();
             message_->tell(paths.isEmpty() ? tr("%1 has no number to plot.").arg(shortLine(topic))
                                            : tr("Tick a number to plot it."));
         });
+}
+
+void PlotsPanel::tickWanted() {
+    for (QTreeWidgetItemIterator i(tree_); *i; ++i)
+        if ((*i)->data(0, PathRole).isValid() && wanted_.erase(fieldOf(**i)) > 0) {
+            (*i)->parent()->parent()->setExpanded(true);
+            (*i)->parent()->setExpanded(true);
+            (*i)->setCheckState(0, Qt::Checked);
+        }
 }
 
 void PlotsPanel::onItemChanged(QTreeWidgetItem *item) {

@@ -28,12 +28,17 @@ public:
 
     explicit PlotsPanel(Fleet &fleet, QWidget *parent = nullptr);
 
+    /// What is plotted, for plot() of the next start.
+    QStringList plotted() const;
+    /// Plots these as soon as their daemons are there.
+    void plot(const QStringList &fields);
     /// Writes all curves: stamp, daemon, topic, field, value. Error: the file cannot be written.
     Result<void> exportTo(const QString &file) const;
 
 private:
     void listTopics();
     void listFields(DaemonLink *daemon, const QString &topic);
+    void tickWanted();
     void onItemChanged(QTreeWidgetItem *item);
     void redraw();
     void askFile();
@@ -49,6 +54,7 @@ private:
     QPushButton *pause_;
     QTimer timer_;
     std::map<FieldId, QtCharts::QLineSeries *> curves_;
+    std::set<FieldId> wanted_; ///< not there as yet
     bool isListing_ = false;
 };
 

@@ -27,6 +27,7 @@ private Q_SLOTS:
     void refusedCommandShowsItsError();
     void commandsAreFound();
     void whatForgetsAsksFirst();
+    void plotsAndRobotsAreKept();
     void logOfAllDaemonsFiltered();
     void plotTickedPausedAndWritten();
     void plotThatCannotBeWritten();
@@ -126,6 +127,31 @@ void TestConsolePanels::whatForgetsAsksFirst() {
     QTRY_VERIFY2(answer().startsWith("settings.reset: "), qPrintable(answer()));
     QCOMPARE(run->text(), QString("Ru&n"));
     QVERIFY(window_->choose(daemon("simulator")));
+}
+
+void TestConsolePanels::plotsAndRobotsAreKept() {
+    QTemporaryDir folder;
+    const QString file = folder.filePath("gui.ini"), address = daemon("motorcontrol")->address();
+    for (int start = 0; start < 2; ++start) {
+        Fleet fleet;
+        for (const QString &kept : start == 0 ? QStringList(address) : MainWindow::keptAddresses(file))
+            QVERIFY(fleet.add(kept).ok());
+        DriveControl drive(fleet);
+        MainWindow window(fleet, drive, file);
+        window.show();
+        auto *const topics = window.findChild<QTreeWidget *>("topics");
+        if (start == 0)
+            window.findChild<PlotsPanel *>()->plot({address + " odometry twist.vx", "127.0.0.1:1 none x"});
+        QTRY_COMPARE(topics->findItems("twist.vx", Qt::MatchExactly | Qt::MatchRecursive).size(), 1);
+        QCOMPARE(topics->findItems("twist.vx", Qt::MatchExactly | Qt::MatchRecursive)[0]->checkState(0),
+                 Qt::Checked);
+        const QStringList plotted{address + " odometry twist.vx",
+                                  "127.0.0.1:1 none x"}; // who is away is kept too
+        QCOMPARE(window.findChild<PlotsPanel *>()->plotted(), plotted);
+        window.close();
+        QCOMPARE(MainWindow::keptAddresses(file), QStringList(address));
+    }
+    QVERIFY(window_->show()); // has the focus again
 }
 
 void TestConsolePanels::logOfAllDaemonsFiltered() {
