@@ -148,7 +148,7 @@ def script(ports):
     yield from each("scanmatcher", ("matcher.state", {}), ("map.get", {}), ("map.save", {"path": "m.csv"}),
                     ("map.export", {"path": "m.svg", "format": "svg"}), ("pose.relocalize", {}),
                     ("matcher.match", {"reference": CORNER, "current": CORNER}), ("matcher.stop", {}),
-                    ("map.load", {"path": "m.csv"}), ("map.clear", {}), ("matcher.start", {}),
+                    ("map.load", {"path": "m.csv"}), ("map.list", {}), ("map.clear", {}), ("map.undo", {}), ("matcher.start", {}),
                     ("pose.set", {"x": 0, "y": 0, "theta": 0}))
     yield from each("simulator", ("sim.halt", {}), ("sim.fault", {"device": "lidar", "kind": "none"}), ("sim.load", {"world": WORLD}),
                     ("sim.place", {"x": 0, "y": 0, "theta": 0}), ("sim.state", {}))
