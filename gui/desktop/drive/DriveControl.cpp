@@ -19,7 +19,12 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
     connect(&pollTimer_, &QTimer::timeout, this, &DriveControl::poll);
-    connect(&stop_, &StopControl::changed, this, &DriveControl::changed);
+    connect(&stop_, &StopControl::changed, this, [this] {
+        const StopPhase before = std::exchange(shownPhase_, stop_.phase());
+        if (before != shownPhase_ && shownPhase_ == StopPhase::None)
+            poll(); // what else holds the robot
+        Q_EMIT changed();
+    });
     connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
     connect(&fleet, &Fleet::robotChosen, this, &DriveControl::follow);
     timer_.start(period);
@@ -208,13 +213,12 @@ void DriveControl::stop() {
 void DriveControl::release() {
     mustCentre_ = isAnyHeld();
     stop_.release();
-    if (!fleet_.robot())
-        return;
-    for (DaemonLink *daemon : fleet_.robot()->allWithMethod("motor.reset_estop"))
-        daemon->call("motor.reset_estop", {}, this, [this](const Result<QJsonValue> &result) {
-            tell(result ? QString() : result.error().message);
-            poll();
-        });
+    if (!motors_ || stop_.phase() != StopPhase::None)
+        return; // whose lines ask for it
+    motors_->call("motor.reset_estop", {}, this, [this](const Result<QJsonValue> &result) {
+        tell(result ? QString() : result.error().message);
+        poll();
+    });
 }
 
 void DriveControl::poll() {

@@ -96,6 +96,7 @@ private:
     TopicFeed odometry_;
     QPointer<DaemonLink> motors_;
     StopControl stop_;
+    StopPhase shownPhase_ = StopPhase::None;
     ReplayWatch replay_;
     QTimer timer_, pollTimer_;
     QMap<QString, Input> inputs_;

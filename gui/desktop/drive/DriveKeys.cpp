@@ -40,6 +40,21 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
     if (watched == &window_ && (event->type() == QEvent::WindowDeactivate || event->type() == QEvent::Close))
         letGo();
     const auto *const widget = qobject_cast<QWidget *>(watched);
+    if (event->type() == QEvent::Show && widget && widget->windowType() == Qt::Popup && !down_.isEmpty())
+        letGo(); // a menu or a list has the keys now
+    if (event->type() == QEvent::KeyRelease || event->type() == QEvent::KeyPress) {
+        // Wherever it is heard: what is let go drives no more, and what was held when the drive ended is no
+        // key of a menu or a dialog.
+        const auto *const key = static_cast<QKeyEvent *>(event);
+        if (key->isAutoRepeat() && stale_.contains(key->key()))
+            return true;
+        if (!key->isAutoRepeat())
+            stale_.remove(key->key());
+        if (!key->isAutoRepeat() && event->type() == QEvent::KeyRelease && down_.remove(key->key())) {
+            steer(key->modifiers());
+            return true;
+        }
+    }
     if (!widget || (widget->window() != &window_ && widget->window()->parentWidget() != &window_))
         return false;
     if (event->type() == QEvent::ShortcutOverride) {
@@ -56,9 +71,8 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
         return press(key->key(), key->modifiers());
     if (key->isAutoRepeat())
         return down_.contains(key->key());
-    const bool wasDown = down_.remove(key->key());
-    steer(key->modifiers());
-    return wasDown;
+    steer(key->modifiers()); // Shift
+    return false;
 }
 
 bool DriveKeys::press(int key, Qt::KeyboardModifiers modifiers) {
@@ -87,6 +101,7 @@ void DriveKeys::steer(Qt::KeyboardModifiers modifiers) {
 }
 
 void DriveKeys::letGo() {
+    stale_.unite(down_);
     down_.clear();
     drive_.steer("keys", {}, false);
     drive_.halt();

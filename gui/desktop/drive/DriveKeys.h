@@ -25,6 +25,7 @@ private:
     DriveControl &drive_;
     QWidget &window_;
     QSet<int> down_;
+    QSet<int> stale_; ///< held since a drive that has ended
 };
 
 } // namespace hermes::desktop

@@ -38,7 +38,9 @@ void StopControl::reach(DaemonLink *daemon) {
     for (const auto &line : lines_)
         if (line->address() == daemon->address())
             return line->follow(daemon);
-    lines_.push_back(std::make_unique<StopLine>(daemon));
+    const bool isOne = fleet_.robots().size() <= 1 || !fleet_.robot();
+    lines_.push_back(std::make_unique<StopLine>(
+        daemon, isOne ? daemon->name() : tr("%1 of %2").arg(daemon->name(), fleet_.robot()->name())));
     StopLine *const line = lines_.back().get();
     connect(line, &StopLine::changed, this, [this] {
         const auto isOver = [](const auto &other) { return other->phase() == StopPhase::None; };
@@ -60,40 +62,60 @@ void StopControl::press() {
 }
 
 void StopControl::release() {
-    isPressed_ = false;
+    if (!robot_ || robot_ == fleet_.robot())
+        isPressed_ = false;
     for (const auto &line : lines_)
-        line->release();
+        if (isOfChosen(*line))
+            line->release();
     follow();
     Q_EMIT changed();
 }
 
-const StopLine *StopControl::worst() const {
+// Who is of no robot any more belongs to whichever is chosen.
+bool StopControl::isOfChosen(const StopLine &line) const {
+    for (const auto &robot : fleet_.robots())
+        for (const DaemonLink *daemon : robot->daemons())
+            if (daemon->address() == line.address())
+                return robot.get() == fleet_.robot();
+    return true;
+}
+
+const StopLine *StopControl::worst(bool ofAny) const {
     const StopLine *worst = nullptr;
     for (const auto &line : lines_)
-        if (line->phase() != StopPhase::None && (!worst || line->phase() < worst->phase()))
+        if (line->phase() != StopPhase::None && (ofAny || isOfChosen(*line)) &&
+            (!worst || line->phase() < worst->phase()))
             worst = line.get();
     return worst;
 }
 
 StopPhase StopControl::phase() const {
-    const StopLine *const line = worst();
-    return line ? line->phase() : isPressed_ ? StopPhase::Pressed : StopPhase::None;
+    if (const StopLine *const line = worst(false))
+        return line->phase();
+    return isPressed_ && (!robot_ || robot_ == fleet_.robot()) ? StopPhase::Pressed : StopPhase::None;
 }
 
 bool StopControl::isLate() const {
-    if (const StopLine *const line = worst())
+    if (const StopLine *const line = worst(true))
         return line->phase() != StopPhase::Confirmed && line->unconfirmed_s() > late_s;
     return isPressed_;
 }
 
 QString StopControl::text() const {
-    const StopLine *const line = worst();
+    const StopLine *const line = worst(true);
     if (!line)
         return isPressed_
                    ? tr("STOP REACHES NOBODY: no robot that can drive is connected. It goes out as soon as "
                         "one is. If a robot moves, use the switch on it.")
                    : QString();
     const QString name = line->name();
+    if (isLate() && line->isWatched())
+        return tr("THE ROBOT IS NOT KNOWN TO STAND for %1 s: %2 is stopped, but %3. %4 If it moves, use the "
+                  "switch on the robot.")
+            .arg(line->unconfirmed_s(), 0, 'f', 1)
+            .arg(name, line->reason(), line->watchdogs());
+    if (line->isWatched())
+        return {}; // who stopped it is said
     if (isLate())
         return tr("STOP IS NOT CONFIRMED by %1 for %2 s: %3. It is sent again and again, over new "
                   "connections too. "

@@ -19,11 +19,12 @@ public:
     explicit StopControl(Fleet &fleet, QObject *parent = nullptr);
 
     void press();
-    /// It is released: nothing is sent any more.
+    /// Of the chosen robot.
     void release();
 
-    /// Of the line that is least far.
+    /// Of the chosen robot: of the line that is least far.
     StopPhase phase() const;
+    /// Of any robot.
     bool isLate() const;
     /// What the operator has to know now; empty: nothing.
     QString text() const;
@@ -34,7 +35,8 @@ Q_SIGNALS:
 private:
     void follow();
     void reach(DaemonLink *daemon);
-    const StopLine *worst() const;
+    bool isOfChosen(const StopLine &line) const;
+    const StopLine *worst(bool ofAny) const;
 
     Fleet &fleet_;
     std::vector<std::unique_ptr<StopLine>> lines_;

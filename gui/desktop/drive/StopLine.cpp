@@ -14,7 +14,7 @@ namespace {
 
 /// More packets make a lost one known sooner: at first each period, after three seconds each half second.
 constexpr int oftenUpTo = 60, seldom = 10;
-constexpr qint64 renewAfter_ms = 1000, lookEach_ms = 100, lookWhenConfirmed_ms = 500;
+constexpr qint64 renewAfter_ms = 1000, lookEach_ms = 100, lookWhenConfirmed_ms = 500, lookWhenFree_ms = 1000;
 constexpr std::chrono::milliseconds lookTimeout{500};
 
 double seconds(const QElapsedTimer &timer) {
@@ -28,14 +28,15 @@ std::optional<StandConfirmation> confirmationIn(const QJsonValue &told) {
 
 } // namespace
 
-StopLine::StopLine(DaemonLink *daemon, QObject *parent)
+StopLine::StopLine(DaemonLink *daemon, const QString &name, QObject *parent)
     : QObject(parent)
     , daemon_(daemon)
     , address_(daemon->address())
-    , name_(daemon->name()) {
+    , name_(name) {
     second_.setFrameLimit(DaemonLink::usualFrame);
     second_.connectTo(asOwner(address_));
     connect(&timer_, &QTimer::timeout, this, &StopLine::tick);
+    timer_.start(period);
     connect(daemon, &DaemonLink::ready, this, &StopLine::readWatchdogs);
     readWatchdogs();
 }
@@ -88,23 +89,55 @@ QString StopLine::watchdogs() const {
     return text + '.';
 }
 
+// Pressed again while it is not confirmed it is late since the first time.
 void StopLine::press() {
     ++press_;
     tries_ = 0;
-    reason_.clear();
-    pressed_.start();
-    unconfirmed_.start();
+    isWatched_ = isReleasing_ = false;
+    if (phase_ == StopPhase::None || phase_ == StopPhase::Confirmed) {
+        pressed_.start();
+        unconfirmed_.start();
+        reason_.clear();
+    }
     renewed_.start();
     looked_.invalidate();
     enter(StopPhase::Pressed);
-    timer_.start(period);
     tick();
 }
 
+void StopLine::watch() {
+    isWatched_ = true;
+    unconfirmed_.start();
+    enter(StopPhase::Taken);
+}
+
 void StopLine::release() {
+    if (phase_ == StopPhase::None)
+        return;
+    const std::vector<Client *> clients = openClients();
+    if (clients.empty())
+        return forget();
+    ++press_; // what answers to a stop counts no more
+    isReleasing_ = true;
+    const auto released = [guard = QPointer<StopLine>(this), press = press_](const Result<QJsonValue> &done) {
+        if (!guard || guard->press_ != press)
+            return;
+        if (done)
+            return guard->forget();
+        guard->reason_ = tr("its release was refused: %1").arg(shortLine(done.error().message));
+        guard->isReleasing_ = false;
+        guard->isWatched_ = true; // it is stopped, and not to be stopped again
+        guard->enter(StopPhase::Taken);
+    };
+    clients.front()->call("motor.reset_estop", QJsonObject(), released);
+    Q_EMIT changed();
+}
+
+void StopLine::forget() {
     ++press_;
-    timer_.stop();
+    isWatched_ = isReleasing_ = false;
     reason_.clear();
+    looked_.start();
     enter(StopPhase::None);
 }
 
@@ -119,12 +152,19 @@ void StopLine::enter(StopPhase phase) {
 }
 
 void StopLine::tick() {
+    const bool isOpen = !openClients().empty();
+    if (phase_ == StopPhase::None)
+        return isOpen ? look() : void();
+    if (isReleasing_)
+        return isOpen ? Q_EMIT changed() : forget();
+    if (isWatched_)
+        return isOpen ? look() : forget();
     if (phase_ == StopPhase::Taken || phase_ == StopPhase::Confirmed) {
-        if (!openClients().empty())
+        if (isOpen)
             return look();
         enter(StopPhase::Pressed); // who comes back may have forgotten it
     }
-    if (openClients().empty() && phase_ != StopPhase::Pressed)
+    if (!isOpen && phase_ != StopPhase::Pressed)
         enter(StopPhase::Pressed);
     if (renewed_.elapsed() > renewAfter_ms) {
         renewed_.start();
@@ -172,7 +212,9 @@ void StopLine::onAnswer(const Result<QJsonValue> &answer) {
 
 // Asked of whoever is connected: the answer to the stop itself came before the robot could stand.
 void StopLine::look() {
-    const qint64 pause = phase_ == StopPhase::Confirmed ? lookWhenConfirmed_ms : lookEach_ms;
+    const qint64 pause = phase_ == StopPhase::None        ? lookWhenFree_ms
+                         : phase_ == StopPhase::Confirmed ? lookWhenConfirmed_ms
+                                                          : lookEach_ms;
     if (looked_.isValid() && looked_.elapsed() < pause)
         return;
     looked_.start();
@@ -185,6 +227,10 @@ void StopLine::look() {
 }
 
 void StopLine::onState(const Result<QJsonValue> &state) {
+    const QJsonValue latched = state ? (*state)["latched"] : QJsonValue();
+    const bool isLatched = latched.toObject().contains("estop");
+    if (phase_ == StopPhase::None)
+        return isLatched ? watch() : void();
     if (phase_ != StopPhase::Taken && phase_ != StopPhase::Confirmed)
         return;
     if (!state) {
@@ -193,8 +239,8 @@ void StopLine::onState(const Result<QJsonValue> &state) {
         reason_ = shortLine(state.error().message);
         return;
     }
-    if ((*state)["latched"].isObject() && !(*state)["latched"].toObject().contains("estop"))
-        return release(); // somebody did
+    if (latched.isObject() && !isLatched)
+        return forget(); // somebody has released it
     const auto told = confirmationIn((*state)["standing"]);
     reason_ = told ? shortLine(told->text) : tr("it does not tell whether the robot stands");
     enter(told && told->confirmed ? StopPhase::Confirmed : StopPhase::Taken);

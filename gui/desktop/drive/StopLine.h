@@ -23,7 +23,8 @@ class StopLine : public QObject {
 public:
     static constexpr std::chrono::milliseconds period{50};
 
-    explicit StopLine(DaemonLink *daemon, QObject *parent = nullptr);
+    /// name: of the daemon, for people.
+    StopLine(DaemonLink *daemon, const QString &name, QObject *parent = nullptr);
 
     const QString &address() const { return address_; }
     const QString &name() const { return name_; }
@@ -38,8 +39,11 @@ public:
     QString watchdogs() const;
 
     void press();
-    /// Somebody releases the stop: it is not sent any more.
+    /// Asks for the release; until the robot has given it nothing changes but that the stop is not sent any
+    /// more. A robot without a connection gets no stop.
     void release();
+    /// It is stopped by somebody else, and watched until it is not any more.
+    bool isWatched() const { return isWatched_; }
     /// The daemon behind it was found again.
     void follow(DaemonLink *daemon);
 
@@ -54,6 +58,8 @@ private:
     void look();
     void onState(const Result<QJsonValue> &state);
     void enter(StopPhase phase);
+    void forget();
+    void watch();
     std::vector<Client *> openClients();
     void readWatchdogs();
 
@@ -64,6 +70,7 @@ private:
     StopPhase phase_ = StopPhase::None;
     QElapsedTimer pressed_, unconfirmed_, renewed_, looked_;
     int tries_ = 0;
+    bool isWatched_ = false, isReleasing_ = false;
     quint64 press_ = 0; ///< counts them: what answers to an earlier one is no answer
     double took_s_ = 0, commandTimeout_s_ = 0, controllerTimeout_s_ = 0; ///< 0: not known
     QString reason_;

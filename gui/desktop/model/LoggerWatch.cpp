@@ -67,6 +67,15 @@ std::vector<QJsonObject> LoggerWatch::recording() const {
     return found;
 }
 
+QStringList LoggerWatch::silent() const {
+    QStringList names;
+    if (fleet_.robot())
+        for (const DaemonLink *daemon : fleet_.robot()->allWithMethod("record.status"))
+            if (daemon->isSilent())
+                names.append(daemon->name());
+    return names;
+}
+
 bool LoggerWatch::marks() const {
     return std::any_of(members_.all.begin(), members_.all.end(), [this](const SessionMember &member) {
         const auto state = states_.find(member.name);

@@ -27,6 +27,9 @@ public:
     /// Seconds until the fullest disk is full at the rate of the last ten seconds; negative: not known.
     double secondsLeft() const;
 
+    /// The names of those that do not answer.
+    QStringList silent() const;
+
     void poll();
 
 Q_SIGNALS:

@@ -195,6 +195,9 @@ void CommandsPanel::call() {
         asked_.start();
         return update();
     }
+    constexpr int shortest_ms = 500; // a double click is no second thought
+    if (asked_.isActive() && asked_.remainingTime() > asked_.interval() - shortest_ms)
+        return;
     asked_.stop();
     update();
     QElapsedTimer time;

@@ -31,10 +31,11 @@ QPushButton *addButtons(QDialog *dialog, const QString &accept) {
     auto *const buttons = new QDialogButtonBox(QDialogButtonBox::Cancel);
     QPushButton *const button = buttons->addButton(accept, QDialogButtonBox::AcceptRole);
     button->setObjectName("accept");
-    button->setDefault(true);
+    buttons->button(QDialogButtonBox::Cancel)->setAutoDefault(false);
     QObject::connect(buttons, &QDialogButtonBox::accepted, dialog, &QDialog::accept);
     QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::reject);
     dialog->layout()->addWidget(buttons);
+    button->setDefault(true);
     return button;
 }
 
@@ -71,9 +72,12 @@ QAction *MapMenu::add(const QString &text, const char *name, const char *method,
 }
 
 void MapMenu::setMatcher(DaemonLink *matcher) {
-    if (matcher_ != matcher)
+    if (matcher_ != matcher) {
         path_.clear();
-    matcher_ = matcher;
+        matcher_ = matcher;
+        Q_EMIT matcherChanged();
+        Q_EMIT told({}, false);
+    }
     update();
 }
 
@@ -106,6 +110,7 @@ void MapMenu::ask(const QString &question, const QString &yes, const std::functi
     QPushButton *const accept = box->addButton(yes, QMessageBox::AcceptRole);
     accept->setObjectName("accept");
     box->setDefaultButton(QMessageBox::Cancel);
+    connect(this, &MapMenu::matcherChanged, box, &QDialog::close);
     connect(accept, &QPushButton::clicked, this, [work] { work(); });
     box->show();
 }
@@ -125,6 +130,7 @@ void MapMenu::open() {
     call("map.list", {}, [this](const QJsonValue &list) {
         Q_EMIT told({}, false);
         QDialog *const dialog = makeDialog(parentWidget(), tr("Open a map of the robot"));
+        connect(this, &MapMenu::matcherChanged, dialog, &QDialog::close);
         auto *const maps = new QTreeWidget;
         maps->setObjectName("maps");
         maps->setHeaderLabels({tr("Map"), tr("Written"), tr("KiB")});
@@ -171,6 +177,7 @@ void MapMenu::load(const QString &path) {
 void MapMenu::askName(const QString &title, const QString &name,
                       const std::function<void(const QString &)> &use) {
     QDialog *const dialog = makeDialog(parentWidget(), title);
+    connect(this, &MapMenu::matcherChanged, dialog, &QDialog::close);
     auto *const field = new QLineEdit(name);
     field->setObjectName("mapName");
     field->setToolTip(tr("Below the folder of maps on the robot (setting map.folder)"));
@@ -178,6 +185,7 @@ void MapMenu::askName(const QString &title, const QString &name,
     QPushButton *const accept = addButtons(dialog, tr("Write"));
     connect(field, &QLineEdit::textChanged, accept,
             [accept](const QString &text) { accept->setEnabled(!text.trimmed().isEmpty()); });
+    connect(field, &QLineEdit::returnPressed, accept, &QPushButton::click);
     connect(dialog, &QDialog::accepted, this, [field, use] { use(field->text().trimmed()); });
     dialog->resize(420, 80);
     dialog->show();
@@ -213,7 +221,7 @@ void MapMenu::write(const QString &method, QJsonObject params) {
 void MapMenu::save() {
     if (path_.isEmpty())
         return saveAs();
-    write("map.save", {{"path", path_}, {"force", true}}); // its own file
+    write("map.save", {{"path", path_}}); // asks: who knows what has become of the map
 }
 
 void MapMenu::saveAs() {

@@ -22,6 +22,8 @@ public:
 Q_SIGNALS:
     /// How a command ended, or that it goes on.
     void told(const QString &text, bool isError);
+    /// What is asked of the old one is asked no more.
+    void matcherChanged();
 
 private:
     using Then = std::function<void(const QJsonValue &)>;

@@ -65,8 +65,12 @@ void MapPanel::addMap(QToolBar &bar) {
     button->setMenu(map_);
     button->setPopupMode(QToolButton::InstantPopup);
     bar.addWidget(button);
-    connect(map_, &MapMenu::told, this,
-            [this](const QString &text, bool isError) { message_->tell(text, isError); });
+    connect(map_, &MapMenu::told, this, [this](const QString &text, bool isError) {
+        if (text.isEmpty())
+            message_->hide();
+        else
+            message_->tell(text, isError);
+    });
 }
 
 void MapPanel::addTools(QToolBar &bar) {

@@ -184,8 +184,16 @@ void RecordPanel::update() {
 }
 
 void RecordPanel::showAmount() {
+    const QStringList silent = watch_.silent();
+    amount_->setEnabled(silent.isEmpty()); // else it is old
+    amount_->setText(silent.isEmpty()
+                         ? amountText()
+                         : tr("%1 does not answer; last known: %2").arg(silent.join(", "), amountText()));
+}
+
+QString RecordPanel::amountText() const {
     if (watch_.members().all.empty())
-        return amount_->setText(tr("No logger is connected."));
+        return tr("No logger is connected.");
     if (!watch_.isRecording()) {
         QStringList names;
         for (const SessionMember &member : watch_.members().all)
@@ -193,7 +201,7 @@ void RecordPanel::showAmount() {
         QString text = tr("Records with %1.").arg(names.join(", "));
         if (list_.unlisted > 0)
             text += ' ' + tr("%1 older recordings are not listed.").arg(list_.unlisted);
-        return amount_->setText(text);
+        return text;
     }
     QString text = tr("%1: %2, %3")
                        .arg(shortLine(watch_.name(), longestName), timeText(watch_.seconds()),
@@ -203,10 +211,11 @@ void RecordPanel::showAmount() {
     for (const auto &[name, state] : watch_.states())
         if (const double lost = sumOf(state["losses"]); lost > 0)
             text += tr("; %1 misses %2").arg(name).arg(lost);
-    amount_->setText(text);
+    return text;
 }
 
 void RecordPanel::showSessions() {
+    const QSignalBlocker silence(sessions_); // update() is what fills it
     const int count = int(list_.sessions.size());
     while (sessions_->topLevelItemCount() > count)
         delete sessions_->takeTopLevelItem(sessions_->topLevelItemCount() - 1);

@@ -35,6 +35,7 @@ private:
     void play();
     void update();
     void showAmount();
+    QString amountText() const;
     void showSessions();
 
     LoggerWatch watch_;

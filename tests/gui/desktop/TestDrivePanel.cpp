@@ -4,7 +4,9 @@
 
 #include <QLabel>
 #include <QLineEdit>
+#include <QMenu>
 #include <QPushButton>
+#include <QToolButton>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -17,6 +19,7 @@ private Q_SLOTS:
     void cleanup();
     void stickDrivesAndLettingGoStops();
     void keysDriveTurnAndGoSlow();
+    void openingAMenuStops();
     void keysInAFieldDoNotDrive();
     void stopIsLatchedAndNeedsNoControl_data();
     void stopIsLatchedAndNeedsNoControl();
@@ -112,6 +115,29 @@ void TestDrivePanel::keysDriveTurnAndGoSlow() {
     QTRY_VERIFY(commanded("vy") > 0.1);
     QTest::keyRelease(window_.get(), Qt::Key_Left);
     QTRY_VERIFY(speed() < 0.01);
+}
+
+// A menu or a list has the keys: the release of the drive key goes there.
+void TestDrivePanel::openingAMenuStops() {
+    QMenu *const menu = find<QToolButton>("mapMenu")->menu();
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    awaitMotion();
+    menu->popup(window_->mapToGlobal(QPoint(300, 300)));
+    QTRY_COMPARE(commanded("vx"), 0.0);
+    QTest::keyRelease(menu, Qt::Key_W);
+    menu->hide();
+    for (int i = 0; i < 10; ++i) {
+        QTest::qWait(50);
+        QCOMPARE(commanded("vx"), 0.0);
+    }
+    QTest::keyPress(window_.get(), Qt::Key_W); // was let go meanwhile
+    awaitMotion();
+    menu->popup(window_->mapToGlobal(QPoint(300, 300)));
+    QTRY_COMPARE(commanded("vx"), 0.0);
+    menu->hide();
+    QTest::qWait(300); // is held all the time
+    QCOMPARE(commanded("vx"), 0.0);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
 }
 
 void TestDrivePanel::keysInAFieldDoNotDrive() {

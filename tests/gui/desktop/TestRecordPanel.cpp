@@ -90,6 +90,13 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_COMPARE(state(), QString("replay"));
     QTRY_COMPARE_WITH_TIMEOUT(state(), QString("live"), 15000); // played to its end
     QTRY_VERIFY(!find<QPushButton>("live")->isEnabled());
+    sessions->setCurrentItem(sessions->topLevelItem(0)); // the chosen one goes with its loggers
+    robot.signal("velodynelogger", SIGSTOP);
+    QTRY_VERIFY(find<QLabel>("amount")->text().startsWith("velodynelogger does not answer"));
+    robot.kill("velodynelogger");
+    robot.kill("seriallogger");
+    QTRY_COMPARE(sessions->topLevelItemCount(), 0);
+    QVERIFY(!find<QPushButton>("replay")->isEnabled());
     panel_.reset();
 }
 

@@ -50,6 +50,10 @@ private Q_SLOTS:
     void goesOverANewConnection();
     void goesOutWhenARobotIsFound();
     void isOverWhenSomebodyReleases();
+    void theStopOfAnotherIsWatched();
+    void pressedAgainItStaysLate();
+    void aReleaseIsOfTheChosenRobot();
+    void aReleaseIsToldWhenItIsNotTaken();
 
 private:
     void openWindow(quint16 port);
@@ -192,6 +196,80 @@ void TestStopConfirmed::isOverWhenSomebodyReleases() {
     QVERIFY(client_->callAndWait("motor.estop").ok()); // by somebody else
     QTRY_COMPARE(button(), QString("STOPPED"));
     QTRY_VERIFY2(banner().startsWith("STOPPED"), qPrintable(banner()));
+}
+
+void TestStopConfirmed::theStopOfAnotherIsWatched() {
+    openWindow(robot_->port("motorcontrol"));
+    driveOff();
+    robot_->signal("simulator", SIGSTOP); // the controllers answer no more
+    QVERIFY(client_->callAndWait("motor.estop").ok());
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 4000);
+    QTRY_VERIFY2(banner().contains("NOT KNOWN TO STAND"), qPrintable(banner()));
+    robot_->signal("simulator", SIGCONT);
+    QTRY_VERIFY_WITH_TIMEOUT(phase() == StopPhase::Confirmed, 10000);
+    QTRY_VERIFY2(banner().startsWith("STOPPED: emergency stop by"), qPrintable(banner()));
+    OpenWindow::click(&open_->window, "release");
+    QTRY_COMPARE(button(), QString("STOP"));
+    QVERIFY(!state()["estop"].toBool());
+}
+
+void TestStopConfirmed::pressedAgainItStaysLate() {
+    openWindow(robot_->port("motorcontrol"));
+    robot_->signal("motorcontrol", SIGSTOP);
+    press();
+    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.stopping().isLate(), 1000);
+    for (int i = 0; i < 10; ++i) {
+        QTest::mouseRelease(open_->window.findChild<QPushButton *>("stop"), Qt::LeftButton);
+        press();
+        QTest::qWait(50);
+        QVERIFY(open_->drive.stopping().isLate());
+    }
+    robot_->signal("motorcontrol", SIGCONT);
+    QTRY_VERIFY(phase() == StopPhase::Confirmed);
+}
+
+void TestStopConfirmed::aReleaseIsOfTheChosenRobot() {
+    openWindow(robot_->port("motorcontrol"));
+    RobotProcesses other;
+    other.startMotors();
+    QVERIFY(open_->fleet.add(QString("localhost:%1").arg(other.port("motorcontrol"))).ok());
+    QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robots()[1]->allWithMethod("motor.estop").size()), 1, 10000);
+    robot_->kill("motorcontrol");
+    QTRY_VERIFY(!open_->drive.isPossible());
+    press();
+    QTRY_VERIFY(open_->drive.stopping().isLate());
+    open_->fleet.choose(open_->fleet.robots()[1].get());
+    QTRY_VERIFY(open_->drive.isPossible());
+    QCOMPARE(phase(), StopPhase::None); // of this one
+    QVERIFY(open_->drive.stopping().isLate());
+    press();
+    QTRY_VERIFY(phase() == StopPhase::Confirmed);
+    OpenWindow::click(&open_->window, "release");
+    QTRY_VERIFY(phase() == StopPhase::None);
+    QTRY_VERIFY2(banner().contains("NOT CONFIRMED"), qPrintable(banner())); // the first one still is not
+    robot_->startMotorControl();
+    QVERIFY(client_->waitConnected(std::chrono::milliseconds(10000)).ok());
+    QTRY_VERIFY_WITH_TIMEOUT(state()["estop"].toBool(), 10000);
+}
+
+void TestStopConfirmed::aReleaseIsToldWhenItIsNotTaken() {
+    openWindow(robot_->port("motorcontrol"));
+    press();
+    QTRY_VERIFY(phase() == StopPhase::Confirmed);
+    robot_->signal("motorcontrol", SIGSTOP);
+    OpenWindow::click(&open_->window, "release");
+    QTest::qWait(700);
+    QVERIFY(phase() != StopPhase::None); // it has not answered
+    QVERIFY(!banner().isEmpty());
+    robot_->signal("motorcontrol", SIGCONT);
+    QTRY_VERIFY(state().contains("estop"));
+    QTest::qWait(1500);
+    QCOMPARE(state()["estop"].toBool(), phase() != StopPhase::None); // the window tells what is
+    if (state()["estop"].toBool())
+        OpenWindow::click(&open_->window, "release");
+    QTRY_VERIFY(!state()["estop"].toBool());
+    QTRY_COMPARE(button(), QString("STOP"));
 }
 
 QTEST_MAIN(TestStopConfirmed)
