@@ -160,7 +160,8 @@ void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap 
 
 void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
     if (!replaced_)
-        return reply.error({ErrorCode::NotReady, "no map has been replaced since the matcher began"});
+        return reply.error(
+            {ErrorCode::NotReady, "there is no map to bring back: none was replaced, or it is back already"});
     const vectorlib::Pose2D pose = tracker.builder.report().pose;
     vectorlib::VectorMap back = std::move(*replaced_);
     replaced_.reset();
