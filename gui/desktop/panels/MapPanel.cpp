@@ -27,7 +27,6 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     addMap(*bar);
     addTools(*bar);
     addLayers(*bar);
-    bar->addAction(theme::icon("export"), tr("Export"), this, &MapPanel::askFile)->setObjectName("export");
     for (auto *const button : bar->findChildren<QToolButton *>())
         button->setFocusPolicy(Qt::TabFocus); // within reach of the keyboard
     view_->setObjectName("map");
@@ -57,6 +56,8 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
 }
 
 void MapPanel::addMap(QToolBar &bar) {
+    map_->addAction(theme::icon("export"), tr("Export the &view..."), this, &MapPanel::askFile)
+        ->setObjectName("export");
     auto *const button = new QToolButton;
     button->setObjectName("mapMenu");
     button->setText(tr("Map"));

@@ -191,15 +191,12 @@ void TestStopByHand::everyDialog() {
             dock->show();
             dock->raise();
         }
-        QWidget *button = open_->window.findChild<QAbstractButton *>(name);
-        if (!button) // an action of a tool bar
-            for (QToolButton *const candidate : open_->window.findChildren<QToolButton *>())
-                if (candidate->defaultAction() && candidate->defaultAction()->objectName() == name)
-                    button = candidate;
-        QVERIFY2(button, qPrintable(name));
-        QTRY_VERIFY(!button->visibleRegion().isEmpty());
+        auto *const button = open_->window.findChild<QAbstractButton *>(name);
+        auto *const action = open_->window.findChild<QAction *>(name); // of a menu
+        QVERIFY2(button || action, qPrintable(name));
+        QTRY_VERIFY(!button || !button->visibleRegion().isEmpty());
         stopsWhileOpen(
-            name, [&] { click(middleOf(button)); },
+            name, [&] { button ? click(middleOf(button)) : action->trigger(); },
             [&] {
                 if (!dialog())
                     return false;
