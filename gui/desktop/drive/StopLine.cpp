@@ -15,6 +15,7 @@ namespace {
 /// More packets make a lost one known sooner: at first each period, after three seconds each half second.
 constexpr int oftenUpTo = 60, seldom = 10;
 constexpr qint64 renewAfter_ms = 1000, lookEach_ms = 100, lookWhenConfirmed_ms = 500, lookWhenFree_ms = 1000;
+constexpr qint64 overtaken_ms = 1000;
 constexpr std::chrono::milliseconds lookTimeout{500};
 
 double seconds(const QElapsedTimer &timer) {
@@ -99,6 +100,7 @@ void StopLine::press() {
         unconfirmed_.start();
         reason_.clear();
     }
+    lastPress_.start();
     renewed_.start();
     looked_.invalidate();
     enter(StopPhase::Pressed);
@@ -217,6 +219,8 @@ void StopLine::look() {
                                                           : lookEach_ms;
     if (looked_.isValid() && looked_.elapsed() < pause)
         return;
+    if (phase_ == StopPhase::None && daemon_ && !daemon_->hasMethod("motor.state"))
+        return; // it has nothing to tell
     looked_.start();
     const auto seen = [guard = QPointer<StopLine>(this), press = press_](const auto &state) {
         if (guard && guard->press_ == press)
@@ -239,8 +243,12 @@ void StopLine::onState(const Result<QJsonValue> &state) {
         reason_ = shortLine(state.error().message);
         return;
     }
-    if (latched.isObject() && !isLatched)
-        return forget(); // somebody has released it
+    if (latched.isObject() && !isLatched) {
+        if (isWatched_ || lastPress_.elapsed() > overtaken_ms)
+            return forget(); // somebody has released it
+        tries_ = 0;          // a release that was on its way may have come behind the stop
+        return enter(StopPhase::Sent);
+    }
     const auto told = confirmationIn((*state)["standing"]);
     reason_ = told ? shortLine(told->text) : tr("it does not tell whether the robot stands");
     enter(told && told->confirmed ? StopPhase::Confirmed : StopPhase::Taken);

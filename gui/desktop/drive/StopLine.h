@@ -68,7 +68,7 @@ private:
     Client second_;
     QTimer timer_;
     StopPhase phase_ = StopPhase::None;
-    QElapsedTimer pressed_, unconfirmed_, renewed_, looked_;
+    QElapsedTimer pressed_, lastPress_, unconfirmed_, renewed_, looked_;
     int tries_ = 0;
     bool isWatched_ = false, isReleasing_ = false;
     quint64 press_ = 0; ///< counts them: what answers to an earlier one is no answer

@@ -189,6 +189,10 @@ void TestStopConfirmed::isOverWhenSomebodyReleases() {
     openWindow(robot_->port("motorcontrol"));
     press();
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
+    QVERIFY(
+        client_->callAndWait("motor.reset_estop").ok()); // as one that was on its way when STOP was pressed
+    QTRY_VERIFY(phase() == StopPhase::Confirmed && state()["estop"].toBool()); // STOP holds
+    QTest::qWait(1200);
     QVERIFY(client_->callAndWait("motor.reset_estop").ok());
     QTRY_VERIFY(phase() == StopPhase::None);
     QTRY_COMPARE(button(), QString("STOP"));
