@@ -177,7 +177,7 @@ void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
 // What was recorded elsewhere or before is not to grow into the map of now. Where nothing is mapped it does
 // not, and an empty map has nothing to keep.
 void ScanMatcher::setLiveMapAside(vectorlib::ScanTracker &tracker) {
-    if (!grows_)
+    if (!grows_ || live_)
         return;
     live_.emplace();
     live_->pose = tracker.builder.report().pose;

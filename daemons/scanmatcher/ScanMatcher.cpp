@@ -164,7 +164,7 @@ void ScanMatcher::settingsChanged(const QStringList &paths) {
     worker_->post([this, s = trackerSettings(), sigma = settings().number("matcher.sigma_m"),
                    closes = closesLoops()](ScanTracker &tracker) {
         tracker.apply(s);
-        corrector_->follow(closes, tracker);
+        corrector_->follow(closes && !keepsLiveMap_, tracker); // of the live drive
         tracker.builder.extract.vectorize.settings.sigma = sigma;
     });
     if (active_ && !paths.filter("source.").isEmpty())
@@ -177,8 +177,10 @@ void ScanMatcher::begin(bool toMap) {
     mapping_ = toMap;
     worker_->post([this, toMap, closes = closesLoops()](ScanTracker &tracker) {
         grows_ = toMap;
+        if (matchesReplay_)
+            setLiveMapAside(tracker);
         setGrowth(tracker);
-        corrector_->follow(closes, tracker);
+        corrector_->follow(closes && !keepsLiveMap_, tracker); // of the live drive
     });
     active_ = true;
     connectToSource();
@@ -236,6 +238,7 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
         return;
     if (std::exchange(replayed_, scan.replayed) != scan.replayed)
         worker_->post([this, replayed = scan.replayed](ScanTracker &tracker) {
+            matchesReplay_ = replayed;
             replayed ? setLiveMapAside(tracker) : bringLiveMapBack(tracker);
         });
     scan.data.odometry = odometry_.over(scan.data.begin(), scan.data.end());

@@ -81,11 +81,12 @@ private:
     void saveMap(const QString &format, const Call &call, const Reply &reply);
     void loadMap(const Call &call, const Reply &reply);
     void loadJournal(vectorlib::ScanTracker &tracker, const MapPath &file, const Reply &reply);
-    /// In the worker's thread, when the map is another one: hands it over to the main thread, then answers.
+    // In the worker's thread:
     void replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap map);
     void undo(vectorlib::ScanTracker &tracker, const Reply &reply);
     void setLiveMapAside(vectorlib::ScanTracker &tracker);
     void bringLiveMapBack(vectorlib::ScanTracker &tracker);
+    /// When the map is another one: hands it over to the main thread, then answers.
     void showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
                     const QJsonValue &answer);
     void matchTwo(const Call &call, const Reply &reply);
@@ -102,6 +103,7 @@ private:
         vectorlib::VectorMap map;
         vectorlib::Pose2D pose;
     };
+    bool matchesReplay_ = false;            ///< the worker's
     std::optional<LiveMap> live_;           ///< while a replay is mapped; the worker's
     std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty
     bool replayed_ = false;                 ///< the last scan

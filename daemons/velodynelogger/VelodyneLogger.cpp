@@ -260,7 +260,7 @@ void VelodyneLogger::publishTurns() {
         retry_.start(retry_ms);
         return;
     }
-    const bool replayed = source_.state() != State::Live;
+    const bool replayed = source_.state() == State::Replay || source_.state() == State::Ended;
     const LidarFeed::Turn turn = feed_.takeTurn(), cloud = feed_.takeCloud();
     if (turn || cloud) {
         if (turn)

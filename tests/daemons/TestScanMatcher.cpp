@@ -29,6 +29,7 @@ private Q_SLOTS:
     void aLoadedMapGrowsNoGhost();
     void aReplayLeavesTheLiveMapAlone_data();
     void aReplayLeavesTheLiveMapAlone();
+    void mappingBegunDuringAReplay();
     void mapTopicBeginsWithTheFullMap();
     void queueDropsItsOldestAndCounts();
 
@@ -287,6 +288,33 @@ void TestScanMatcher::aReplayLeavesTheLiveMapAlone() {
     QTRY_VERIFY(call("matcher.state")["matched"].toInt() > 10);
     if (isApart) // what the replay has mapped is not lost
         QCOMPARE(call("map.undo")["segments"].toInt(), replayed.size());
+}
+
+void TestScanMatcher::mappingBegunDuringAReplay() {
+    call("pose.set", {{"x", -1.5}, {"y", -0.5}, {"theta", 0.0}});
+    drive(0, 40);
+    const QJsonArray live = call("map.get")["edges"].toArray();
+    const auto replay = [this] {
+        for (int i = 0; i < 20; ++i) {
+            QJsonObject scan = roomScan(onTheWay(i), 0.1 * i);
+            scan["replayed"] = true;
+            source->publish("scan2d", scan, 0.1 * i);
+        }
+    };
+    for (const char *mode : {"localization", "mapping"}) {
+        call("matcher.start", {{"mode", mode}});
+        QTRY_VERIFY(source->hasSubscribers("scan2d"));
+        replay();
+        QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("warn"));
+    }
+    QTRY_VERIFY(healthItem("replay")["message"].toString().contains("live map is kept"));
+    call("settings.set", {{"values", QJsonObject{{"matcher", QJsonObject{{"sigma_m", 0.02}}}}}});
+    replay();
+    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 40);
+    QCOMPARE(call("matcher.state")["key_scans"].toInt(), 0); // no drive of it is remembered
+    source->publish("scan2d", roomScan(onTheWay(40), 4), 4);
+    QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("ok"));
+    QTRY_COMPARE(call("map.get")["size"].toInt(), live.size());
 }
 
 void TestScanMatcher::mapTopicBeginsWithTheFullMap() {

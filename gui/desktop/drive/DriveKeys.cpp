@@ -37,9 +37,11 @@ DriveKeys::DriveKeys(DriveControl &drive, QWidget &window)
 }
 
 bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
-    if (watched == &window_ && (event->type() == QEvent::WindowDeactivate || event->type() == QEvent::Close))
-        letGo();
     const auto *const widget = qobject_cast<QWidget *>(watched);
+    const bool isOurs =
+        widget && (widget == &window_ || (widget->isWindow() && widget->parentWidget() == &window_));
+    if (isOurs && (event->type() == QEvent::WindowDeactivate || event->type() == QEvent::Close))
+        letGo(); // floating panels drive, too
     if (event->type() == QEvent::Show && widget && widget->windowType() == Qt::Popup && !down_.isEmpty())
         letGo(); // a menu or a list has the keys now
     if (event->type() == QEvent::KeyRelease || event->type() == QEvent::KeyPress) {

@@ -25,9 +25,11 @@ void StopControl::follow() {
         for (DaemonLink *daemon : robot->daemons())
             if (daemon->hasMethod(method))
                 found.push_back(daemon);
-    const auto isOver = [&](const std::unique_ptr<StopLine> &line) {
-        const auto isIts = [&](const DaemonLink *daemon) { return daemon->address() == line->address(); };
-        return line->phase() == StopPhase::None && std::none_of(found.begin(), found.end(), isIts);
+    const auto isOver = [&](const Line &line) {
+        const auto isIts = [&](const DaemonLink *daemon) {
+            return daemon->address() == line.stop->address();
+        };
+        return line.stop->phase() == StopPhase::None && std::none_of(found.begin(), found.end(), isIts);
     };
     lines_.erase(std::remove_if(lines_.begin(), lines_.end(), isOver), lines_.end());
     for (DaemonLink *daemon : found)
@@ -35,79 +37,84 @@ void StopControl::follow() {
 }
 
 void StopControl::reach(DaemonLink *daemon) {
-    for (const auto &line : lines_)
-        if (line->address() == daemon->address())
-            return line->follow(daemon);
-    const bool isOne = fleet_.robots().size() <= 1 || !fleet_.robot();
-    lines_.push_back(std::make_unique<StopLine>(
-        daemon, isOne ? daemon->name() : tr("%1 of %2").arg(daemon->name(), fleet_.robot()->name())));
-    StopLine *const line = lines_.back().get();
-    connect(line, &StopLine::changed, this, [this] {
-        const auto isOver = [](const auto &other) { return other->phase() == StopPhase::None; };
-        if (std::all_of(lines_.begin(), lines_.end(), isOver))
-            isPressed_ = false; // somebody has released it
+    for (const Line &line : lines_)
+        if (line.stop->address() == daemon->address())
+            return line.stop->follow(daemon);
+    const Robot *const robot = fleet_.robot();
+    const QString name =
+        fleet_.robots().size() > 1 ? tr("%1 of %2").arg(daemon->name(), robot->name()) : daemon->name();
+    lines_.push_back({robot, std::make_unique<StopLine>(daemon, name)});
+    StopLine *const stop = lines_.back().stop.get();
+    connect(stop, &StopLine::changed, this, [this, robot] {
+        const auto isBusy = [robot](const Line &line) {
+            return line.robot == robot && line.stop->phase() != StopPhase::None;
+        };
+        if (std::none_of(lines_.begin(), lines_.end(), isBusy))
+            pressed_.remove(robot); // somebody has released it
         Q_EMIT changed();
     });
-    if (isPressed_ && (!robot_ || fleet_.robot() == robot_))
-        line->press();
+    if (pressed_.remove(nullptr))
+        pressed_.insert(robot);
+    if (pressed_.contains(robot))
+        stop->press();
 }
 
 void StopControl::press() {
-    isPressed_ = true;
-    robot_ = fleet_.robot();
+    pressed_.insert(fleet_.robot());
     follow();
-    for (const auto &line : lines_)
-        line->press();
+    for (const Line &line : lines_)
+        if (line.robot == fleet_.robot())
+            line.stop->press();
     Q_EMIT changed();
 }
 
 void StopControl::release() {
-    if (!robot_ || robot_ == fleet_.robot())
-        isPressed_ = false;
-    for (const auto &line : lines_)
-        if (isOfChosen(*line))
-            line->release();
+    pressed_.remove(fleet_.robot());
+    pressed_.remove(nullptr);
+    for (const Line &line : lines_)
+        if (line.robot == fleet_.robot())
+            line.stop->release();
     follow();
     Q_EMIT changed();
 }
 
-// Who is of no robot any more belongs to whichever is chosen.
-bool StopControl::isOfChosen(const StopLine &line) const {
-    for (const auto &robot : fleet_.robots())
-        for (const DaemonLink *daemon : robot->daemons())
-            if (daemon->address() == line.address())
-                return robot.get() == fleet_.robot();
-    return true;
+bool StopControl::reachesNobody() const {
+    return std::any_of(pressed_.begin(), pressed_.end(), [this](const Robot *robot) {
+        return std::none_of(lines_.begin(), lines_.end(),
+                            [robot](const Line &line) { return line.robot == robot; });
+    });
 }
 
 const StopLine *StopControl::worst(bool ofAny) const {
     const StopLine *worst = nullptr;
-    for (const auto &line : lines_)
-        if (line->phase() != StopPhase::None && (ofAny || isOfChosen(*line)) &&
-            (!worst || line->phase() < worst->phase()))
-            worst = line.get();
+    for (const Line &line : lines_)
+        if (line.stop->phase() != StopPhase::None && (ofAny || line.robot == fleet_.robot()) &&
+            (!worst || line.stop->phase() < worst->phase()))
+            worst = line.stop.get();
     return worst;
 }
 
 StopPhase StopControl::phase() const {
     if (const StopLine *const line = worst(false))
         return line->phase();
-    return isPressed_ && (!robot_ || robot_ == fleet_.robot()) ? StopPhase::Pressed : StopPhase::None;
+    return pressed_.contains(fleet_.robot()) || pressed_.contains(nullptr) ? StopPhase::Pressed
+                                                                           : StopPhase::None;
 }
 
 bool StopControl::isLate() const {
-    if (const StopLine *const line = worst(true))
-        return line->phase() != StopPhase::Confirmed && line->unconfirmed_s() > late_s;
-    return isPressed_;
+    const StopLine *const line = worst(true);
+    return reachesNobody() ||
+           (line && line->phase() != StopPhase::Confirmed && line->unconfirmed_s() > late_s);
 }
 
 QString StopControl::text() const {
+    if (reachesNobody())
+        return tr(
+            "STOP REACHES NOBODY: no robot that can drive is connected. It goes out as soon as one is, while "
+            "its robot is chosen. If a robot moves, use the switch on it.");
     const StopLine *const line = worst(true);
     if (!line)
-        return isPressed_
-                   ? tr("STOP REACHES NOBODY: no robot that can drive is connected. It goes out as soon as "
-                        "one is. If a robot moves, use the switch on it.")
-                   : QString();
+        return {};
     const QString name = line->name();
     if (isLate() && line->isWatched())
         return tr("THE ROBOT IS NOT KNOWN TO STAND for %1 s: %2 is stopped, but %3. %4 If it moves, use the "

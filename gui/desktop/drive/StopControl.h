@@ -35,13 +35,20 @@ Q_SIGNALS:
 private:
     void follow();
     void reach(DaemonLink *daemon);
-    bool isOfChosen(const StopLine &line) const;
+    /// With the robot that it is of.
+    struct Line {
+        const Robot *robot;
+        std::unique_ptr<StopLine> stop;
+    };
+
+    /// It was pressed for a robot of which nobody can be stopped.
+    bool reachesNobody() const;
     const StopLine *worst(bool ofAny) const;
 
     Fleet &fleet_;
-    std::vector<std::unique_ptr<StopLine>> lines_;
-    bool isPressed_ = false; ///< for whoever comes later, too
-    QPointer<Robot> robot_;  ///< for which it was pressed; null: for any
+    std::vector<Line> lines_;
+    QSet<const Robot *>
+        pressed_; ///< for whoever of them comes later, too; null: of the robot that is found first
 };
 
 } // namespace hermes::desktop

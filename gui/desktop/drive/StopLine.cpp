@@ -8,13 +8,15 @@
 
 #include <QJsonArray>
 #include <algorithm>
+#include <memory>
 
 namespace hermes::desktop {
 namespace {
 
 /// More packets make a lost one known sooner: at first each period, after three seconds each half second.
 constexpr int oftenUpTo = 60, seldom = 10;
-constexpr qint64 renewAfter_ms = 1000, lookEach_ms = 100, lookWhenConfirmed_ms = 500, lookWhenFree_ms = 1000;
+constexpr qint64 firstRenewal_ms = 1000, lastRenewal_ms = 8000, deaf_ms = 1000, lookEach_ms = 100,
+                 lookWhenConfirmed_ms = 500, lookWhenFree_ms = 1000;
 constexpr qint64 overtaken_ms = 1000;
 constexpr std::chrono::milliseconds lookTimeout{500};
 
@@ -38,6 +40,9 @@ StopLine::StopLine(DaemonLink *daemon, const QString &name, QObject *parent)
     second_.connectTo(asOwner(address_));
     connect(&timer_, &QTimer::timeout, this, &StopLine::tick);
     timer_.start(period);
+    const auto noteLoss = [this] { mayHaveForgotten_ = true; };
+    connect(&second_, &Client::disconnected, this, noteLoss);
+    connect(&daemon->client(), &Client::disconnected, this, noteLoss);
     connect(daemon, &DaemonLink::ready, this, &StopLine::readWatchdogs);
     readWatchdogs();
 }
@@ -47,6 +52,7 @@ void StopLine::follow(DaemonLink *daemon) {
         return;
     daemon_ = daemon;
     connect(daemon, &DaemonLink::ready, this, &StopLine::readWatchdogs);
+    connect(&daemon->client(), &Client::disconnected, this, [this] { mayHaveForgotten_ = true; });
     readWatchdogs();
 }
 
@@ -94,14 +100,16 @@ QString StopLine::watchdogs() const {
 void StopLine::press() {
     ++press_;
     tries_ = 0;
-    isWatched_ = isReleasing_ = false;
-    if (phase_ == StopPhase::None || phase_ == StopPhase::Confirmed) {
+    if (phase_ == StopPhase::None || phase_ == StopPhase::Confirmed || isWatched_) {
         pressed_.start();
         unconfirmed_.start();
+        took_s_ = -1;
         reason_.clear();
     }
+    isWatched_ = isReleasing_ = mayHaveForgotten_ = false;
     lastPress_.start();
     renewed_.start();
+    renewAfter_ms_ = firstRenewal_ms;
     looked_.invalidate();
     enter(StopPhase::Pressed);
     tick();
@@ -110,9 +118,11 @@ void StopLine::press() {
 void StopLine::watch() {
     isWatched_ = true;
     unconfirmed_.start();
+    heard_.start();
     enter(StopPhase::Taken);
 }
 
+// Over all connections: one of them may be dead, and not known to be.
 void StopLine::release() {
     if (phase_ == StopPhase::None)
         return;
@@ -121,18 +131,27 @@ void StopLine::release() {
         return forget();
     ++press_; // what answers to a stop counts no more
     isReleasing_ = true;
-    const auto released = [guard = QPointer<StopLine>(this), press = press_](const Result<QJsonValue> &done) {
+    const auto waiting = std::make_shared<std::size_t>(clients.size());
+    const auto released = [guard = QPointer<StopLine>(this), press = press_, waiting](const auto &done) {
         if (!guard || guard->press_ != press)
             return;
         if (done)
-            return guard->forget();
-        guard->reason_ = tr("its release was refused: %1").arg(shortLine(done.error().message));
-        guard->isReleasing_ = false;
-        guard->isWatched_ = true; // it is stopped, and not to be stopped again
-        guard->enter(StopPhase::Taken);
+            guard->forget();
+        else if (--*waiting == 0)
+            guard->notReleased(tr("its release was refused: %1").arg(shortLine(done.error().message)));
     };
-    clients.front()->call("motor.reset_estop", QJsonObject(), released);
+    for (Client *const client : clients)
+        client->call("motor.reset_estop", QJsonObject(), released);
     Q_EMIT changed();
+}
+
+// It is stopped, and not to be stopped again.
+void StopLine::notReleased(const QString &why) {
+    ++press_;
+    isReleasing_ = false;
+    isWatched_ = true;
+    reason_ = why;
+    enter(StopPhase::Taken);
 }
 
 void StopLine::forget() {
@@ -145,7 +164,7 @@ void StopLine::forget() {
 
 void StopLine::enter(StopPhase phase) {
     if (phase == StopPhase::Confirmed) {
-        if (phase_ != StopPhase::Confirmed)
+        if (took_s_ < 0)
             took_s_ = seconds(pressed_);
         unconfirmed_.start();
     }
@@ -158,18 +177,23 @@ void StopLine::tick() {
     if (phase_ == StopPhase::None)
         return isOpen ? look() : void();
     if (isReleasing_)
-        return isOpen ? Q_EMIT changed() : forget();
-    if (isWatched_)
-        return isOpen ? look() : forget();
-    if (phase_ == StopPhase::Taken || phase_ == StopPhase::Confirmed) {
-        if (isOpen)
-            return look();
-        enter(StopPhase::Pressed); // who comes back may have forgotten it
+        return isOpen ? Q_EMIT changed() : notReleased(tr("its release was not answered"));
+    if (isWatched_ || phase_ == StopPhase::Taken || phase_ == StopPhase::Confirmed) {
+        look();
+        if (isOpen && heard_.elapsed() < deaf_ms)
+            return;
+        if (isWatched_) {
+            reason_ = isOpen ? tr("it does not answer") : tr("there is no connection");
+            return enter(StopPhase::Taken);
+        }
+        tries_ = 0;
+        enter(isOpen ? StopPhase::Sent : StopPhase::Pressed); // who comes back may have forgotten it
     }
     if (!isOpen && phase_ != StopPhase::Pressed)
         enter(StopPhase::Pressed);
-    if (renewed_.elapsed() > renewAfter_ms) {
+    if (renewed_.elapsed() > renewAfter_ms_) {
         renewed_.start();
+        renewAfter_ms_ = std::min(2 * renewAfter_ms_, lastRenewal_ms); // on a slow link it needs its time
         second_.connectTo(asOwner(address_));
     }
     if (++tries_ <= oftenUpTo || tries_ % seldom == 0) {
@@ -207,6 +231,7 @@ void StopLine::onAnswer(const Result<QJsonValue> &answer) {
         return;
     }
     reason_.clear();
+    heard_.start();
     const auto told = confirmationIn(*answer);
     enter(told && told->confirmed ? StopPhase::Confirmed : StopPhase::Taken);
     look();
@@ -237,12 +262,9 @@ void StopLine::onState(const Result<QJsonValue> &state) {
         return isLatched ? watch() : void();
     if (phase_ != StopPhase::Taken && phase_ != StopPhase::Confirmed)
         return;
-    if (!state) {
-        if (seconds(unconfirmed_) > 1e-3 * double(lookTimeout.count())) // nor does the other connection tell
-            enter(StopPhase::Taken);
-        reason_ = shortLine(state.error().message);
-        return;
-    }
+    if (!state)
+        return; // the other connection may tell
+    heard_.start();
     if (latched.isObject() && !isLatched) {
         if (isWatched_ || lastPress_.elapsed() > overtaken_ms)
             return forget(); // somebody has released it

@@ -60,6 +60,7 @@ private:
     void enter(StopPhase phase);
     void forget();
     void watch();
+    void notReleased(const QString &why);
     std::vector<Client *> openClients();
     void readWatchdogs();
 
@@ -68,10 +69,12 @@ private:
     Client second_;
     QTimer timer_;
     StopPhase phase_ = StopPhase::None;
-    QElapsedTimer pressed_, lastPress_, unconfirmed_, renewed_, looked_;
+    QElapsedTimer pressed_, lastPress_, heard_, unconfirmed_, renewed_, looked_;
     int tries_ = 0;
+    qint64 renewAfter_ms_ = 0;
     bool isWatched_ = false, isReleasing_ = false;
-    quint64 press_ = 0; ///< counts them: what answers to an earlier one is no answer
+    bool mayHaveForgotten_ = false; ///< a connection has ended since it was pressed
+    quint64 press_ = 0;             ///< counts them: what answers to an earlier one is no answer
     double took_s_ = 0, commandTimeout_s_ = 0, controllerTimeout_s_ = 0; ///< 0: not known
     QString reason_;
 };

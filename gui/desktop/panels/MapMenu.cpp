@@ -94,12 +94,15 @@ void MapMenu::call(const QString &method, const QJsonObject &params, const Then 
     if (!matcher_)
         return Q_EMIT told(tr("No scan matcher is connected."), true);
     Q_EMIT told(tr("%1 ...").arg(method), false);
-    matcher_->callForMuch(method, params, this, [this, then](const Result<QJsonValue> &result) {
-        if (result)
-            then(*result);
-        else
-            Q_EMIT told(result.error().message, true);
-    });
+    matcher_->callForMuch(method, params, this,
+                          [this, then, asked = matcher_](const Result<QJsonValue> &result) {
+                              if (asked != matcher_)
+                                  return; // another robot's answer
+                              if (result)
+                                  then(*result);
+                              else
+                                  Q_EMIT told(result.error().message, true);
+                          });
 }
 
 void MapMenu::ask(const QString &question, const QString &yes, const std::function<void()> &work) {
@@ -196,7 +199,9 @@ void MapMenu::write(const QString &method, QJsonObject params) {
     if (!matcher_)
         return Q_EMIT told(tr("No scan matcher is connected."), true);
     const QString path = params["path"].toString();
-    matcher_->call(method, params, this, [=](const Result<QJsonValue> &done) {
+    matcher_->call(method, params, this, [=, asked = matcher_](const Result<QJsonValue> &done) {
+        if (asked != matcher_)
+            return;
         if (!done && done.error().is(ErrorCode::InputOutput) && !params.contains("force") &&
             done.error().message.contains("exists")) {
             ask(tr("%1 exists on the robot. Replace it?").arg(shortLine(path, longestPath)), tr("Replace"),

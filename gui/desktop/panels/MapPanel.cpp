@@ -101,6 +101,7 @@ void MapPanel::addTools(QToolBar &bar) {
 
 void MapPanel::addLayers(QToolBar &bar) {
     auto *const menu = new QMenu(this);
+    menu->setObjectName("layers");
     const auto add = [&](const QString &name, bool MapLayers::*layer) {
         QAction *const action = menu->addAction(name);
         action->setCheckable(true);

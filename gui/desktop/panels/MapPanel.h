@@ -10,8 +10,7 @@ namespace hermes::desktop {
 class MapMenu;
 class MessageLabel;
 
-/// The map view with its tools: the map, follow, fit, measure, place, relocalize,
-/// layers, export.
+/// The map view with its tools: menu of the map, follow, fit, measure, place, relocalize, layers, export.
 class MapPanel : public QWidget {
     Q_OBJECT
 public:

@@ -73,8 +73,8 @@ void TestAgeing::motorControlFrozen() {
     QTRY_VERIFY2(label("measuredName")->text().startsWith("no data for "),
                  qPrintable(label("measuredName")->text()));
     QTRY_VERIFY_WITH_TIMEOUT(label("lease")->text().contains("no data for "), 5000);
-    QTRY_VERIFY_WITH_TIMEOUT(badge("motorcontrol") == "no answer for 7 s",
-                             7000); // a call has ended meanwhile
+    const auto silence_s = [this] { return badge("motorcontrol").section(' ', 3, 3).toInt(); };
+    QTRY_VERIFY_WITH_TIMEOUT(silence_s() >= 7, 8000); // a call has ended meanwhile
     QTest::keyRelease(&open_->window, Qt::Key_W);
     robot_->signal("motorcontrol", SIGCONT);
     QTRY_VERIFY(label("measured0")->isEnabled() && !label("measured0")->font().strikeOut());
@@ -97,7 +97,8 @@ void TestAgeing::sourceOfThePoseSilent() {
     robot_->signal(who, SIGSTOP);
     QTRY_VERIFY_WITH_TIMEOUT(!map().poseAge().isFresh(), 1500);
     QTRY_VERIFY_WITH_TIMEOUT(!isGreenSeen(), 500);
-    QTRY_COMPARE_WITH_TIMEOUT(map().poseAge().text(), QString("no data for 4 s"), 5000);
+    QTRY_VERIFY_WITH_TIMEOUT(map().poseAge().age_s() > 4 && map().poseAge().text().startsWith("no data for "),
+                             6000);
     QCOMPARE(map().scanAge().isFresh(), scansGoOn);
     QVERIFY(!isGreenSeen());
     robot_->signal(who, SIGCONT);

@@ -87,7 +87,7 @@ void TestHostileDaemon::lookAround(MainWindow &window, Fleet &fleet, DaemonLink 
         dock->raise();
         QTest::qWait(10);
     }
-    for (QAction *const layer : window.findChild<MapPanel *>()->findChild<QMenu *>()->actions())
+    for (QAction *const layer : window.findChild<MapPanel *>()->findChild<QMenu *>("layers")->actions())
         layer->setChecked(true);
     auto *const topics = window.findChild<QTreeWidget *>("topics");
     for (QTreeWidgetItem *item : topics->findItems("free", Qt::MatchExactly | Qt::MatchRecursive)) {

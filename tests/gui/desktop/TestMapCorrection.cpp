@@ -345,7 +345,7 @@ void TestMapCorrection::layersAreSwitched() {
     s.view.fit();
     for (const char *const name : {"Loops", "Graph", "Trust"}) {
         QAction *layer = nullptr;
-        for (QAction *const action : s.panel.findChild<QMenu *>()->actions())
+        for (QAction *const action : s.panel.findChild<QMenu *>("layers")->actions())
             if (action->text().startsWith(name))
                 layer = action;
         QVERIFY2(layer, name);

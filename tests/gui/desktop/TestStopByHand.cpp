@@ -135,7 +135,6 @@ QWidgetList TestStopByHand::visible(const std::function<bool(QWidget *)> &isWant
     QWidgetList found;
     for (QWidget *widget : open_->window.findChildren<QWidget *>())
         if (isWanted(widget) && widget->isEnabled() && !widget->visibleRegion().isEmpty() &&
-            !widget->visibleRegion().contains(QRect()) &&
             widget->visibleRegion().contains(widget->rect().center()))
             found.append(widget);
     return found;
