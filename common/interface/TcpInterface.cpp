@@ -97,6 +97,10 @@ void TcpInterface::noteUnread() {
         unreadSince_ = bootNow();
 }
 
+void TcpInterface::noteRead() {
+    hasLeft_ = hasUnread();
+}
+
 void TcpInterface::readSome() {
     noteUnread();
     if (readsOn_ || !receiving_ || !isOpen())
@@ -104,7 +108,7 @@ void TcpInterface::readSome() {
     const QByteArray bytes = socket_->read(readAtOnceBytes);
     if (socket_->bytesAvailable() > 0)
         readLater();
-    hasLeft_ = hasUnread();
+    noteRead();
     if (!bytes.isEmpty())
         nowReceived(bytes);
 }

@@ -39,6 +39,8 @@ protected:
 
     /// The socket is connected, and may carry messages.
     void begin();
+    /// After a read: whether something is left.
+    virtual void noteRead();
 
 private:
     void prepare();

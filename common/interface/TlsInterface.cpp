@@ -44,6 +44,14 @@ QString TlsInterface::folder() const {
     return url_.option(QStringLiteral("keys"), KeyFolder::usual());
 }
 
+void TlsInterface::noteRead() {
+    const auto look = [this, read = ++reads_] { // behind the decryption, which the read has queued
+        if (reads_ == read)
+            TcpInterface::noteRead();
+    };
+    QMetaObject::invokeMethod(this, look, Qt::QueuedConnection);
+}
+
 QString TlsInterface::name() const {
     if (!url_.scheme.isEmpty())
         return url_.toString();

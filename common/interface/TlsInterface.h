@@ -29,6 +29,8 @@ public:
 
 protected:
     void doOpen() override;
+    /// OpenSSL may have more that nobody can ask it for: it is decrypted in the next turn of the event loop.
+    void noteRead() override;
 
 private:
     TlsInterface(const InterfaceUrl &address, QSslSocket *socket, QObject *parent);
@@ -37,6 +39,7 @@ private:
 
     const InterfaceUrl url_;
     QSslSocket *const socket_;
+    quint64 reads_ = 0;
 };
 
 /// What is wrong, for people.
