@@ -67,8 +67,6 @@ void LidarFeed::begin(const Options &options) {
         makeCloudAssembler();
     counts_ = Counts();
     const std::lock_guard<std::mutex> queueLock(queueMutex_);
-    turns_.clear(); // what still waits is of the source before, and would be taken for one of this
-    clouds_.clear();
     turns_.resetCount();
     clouds_.resetCount();
     closing_ = false;
