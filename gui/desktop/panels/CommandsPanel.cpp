@@ -128,7 +128,8 @@ QWidget *CommandsPanel::makeCall() {
     connect(form_, &SchemaForm::edited, this, &CommandsPanel::update);
     connect(call_, &QPushButton::clicked, this, &CommandsPanel::call);
     asked_.setSingleShot(true);
-    asked_.setInterval(5000); // a second press in this time is meant
+    asked_.setTimerType(Qt::PreciseTimer); // as its remaining time is looked at
+    asked_.setInterval(5000);              // a second press in this time is meant
     connect(&asked_, &QTimer::timeout, this, &CommandsPanel::update);
     return column;
 }
