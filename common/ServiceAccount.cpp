@@ -37,6 +37,11 @@ std::vector<gid_t> groupsOf(const Account &account) {
 
 } // namespace
 
+QString ServiceAccount::nameOf(uid_t user) {
+    const auto account = accountOf(user);
+    return account ? QString::fromStdString(account->name) : QString::number(user);
+}
+
 bool ServiceAccount::hasMember(uid_t account, uid_t user) {
     constexpr uid_t lastOfSystem = 999; // Debian policy 9.2.2
     if (account == 0 || account > lastOfSystem)

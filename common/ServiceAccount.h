@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QString>
 #include <sys/types.h>
 
 namespace hermes {
@@ -10,6 +11,8 @@ namespace ServiceAccount {
 
 /// That `account` is one and `user` is a member of its group. What the system does not know is none.
 bool hasMember(uid_t account, uid_t user);
+/// "anna"; the number where the system knows no name.
+QString nameOf(uid_t user);
 
 } // namespace ServiceAccount
 

@@ -303,7 +303,8 @@ void Daemon::logHealth(const HealthItem &item) {
     if (std::exchange(loggedReasons_[item.name], reason) == reason)
         return;
     const QString text = QStringLiteral("%1 is %2: %3").arg(item.name, item.level, item.message);
-    isWell ? logInfo(QStringLiteral("health"), text) : logWarning(QStringLiteral("health"), text);
+    const bool isError = item.level == toString(HealthLevel::Failed);
+    (isWell ? logInfo : isError ? logError : logWarning)(QStringLiteral("health"), text);
 }
 
 void Daemon::updateChannelHealth() {

@@ -1,4 +1,5 @@
 #include "common/daemon/Session.h"
+#include "common/ServiceAccount.h"
 
 #include "common/Log.h"
 #include "common/Time.h"
@@ -32,6 +33,14 @@ void countValues(const QJsonValue &value, int &left) {
     }
 }
 
+/// Of a client on this computer.
+QString userText(const Peer &peer) {
+    if (peer.place != Peer::Place::Computer)
+        return {};
+    return QStringLiteral(" (user %1)")
+        .arg(peer.user ? ServiceAccount::nameOf(*peer.user) : QStringLiteral("unknown"));
+}
+
 } // namespace
 
 Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registry,
@@ -45,7 +54,8 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
     , audit_(audit)
     , queue_(*channel_, limits_.topicBytes, this)
     , lastSign_(monotonicNow())
-    , who_(channel_->interface().peer()) {
+    , who_(channel_->interface().peer())
+    , user_(userText(who_)) {
     channel_->setParent(this);
     channel_->codec().setFrameLimit(limits_.frameBytes);
     channel_->setLargeFrame(largeFrameBytes);
@@ -65,11 +75,7 @@ Session::Session(quint64 id, Channel *theChannel, const CommandRegistry &registr
 }
 
 QString Session::name() const {
-    const QString name = channel_->interface().name();
-    if (who_.place != Peer::Place::Computer)
-        return name;
-    return name +
-           (who_.user ? QStringLiteral(" (user %1)").arg(*who_.user) : QStringLiteral(" (user unknown)"));
+    return channel_->interface().name() + user_;
 }
 
 void Session::checkIdle() {

@@ -118,6 +118,7 @@ private:
     std::optional<QString> ended_;   // closed, with a batch that is still to be run
     QString restrictedFor_;
     const Peer who_;
+    const QString user_; // of the same, for people
     Role role_ = Role::Observer;
     QString more_;
     quint64 freshFor_; // the count of gaps up to which it is

@@ -117,11 +117,11 @@ void Drive::emergencyStop(const QString &who) {
     halt(latch_.reason(emergencyCause));
 }
 
-void Drive::resetEmergencyStop() {
+void Drive::resetEmergencyStop(const QString &who) {
     latch_.release();
     ++resets_;
     lease_.revoke();
-    halt("released, waits for a new lease");
+    halt((who.isEmpty() ? QString("released") : "released by " + who) + ", waits for a new lease");
 }
 
 Result<void> Drive::acquire(quint64 client, const QString &name, double timeout_s, double now, double age_s) {

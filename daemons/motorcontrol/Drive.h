@@ -34,7 +34,8 @@ public:
     void stop(quint64 client, const QString &who);
     void emergencyStop(const QString &who);
     /// Releases the emergency stop and the faults. What still is wrong latches again.
-    void resetEmergencyStop();
+    /// who: as others are to know it; empty: nobody says.
+    void resetEmergencyStop(const QString &who = {});
     /// How often that was done.
     quint64 resets() const { return resets_; }
     Result<void> acquire(quint64 client, const QString &name, double timeout_s, double now, double age_s = 0);

@@ -27,8 +27,8 @@ QString clientName(const Call &call) {
     return call.text("client").isEmpty() ? call.clientName : call.text("client");
 }
 
-/// Who stopped: as it calls itself, and where it is connected, which it cannot choose.
-QString stopperName(const Call &call) {
+/// Who stops or releases: as it calls itself, and where it is connected, which it cannot choose.
+QString callerName(const Call &call) {
     return call.text("client").isEmpty() ? call.clientName : call.text("client") + ", " + call.clientName;
 }
 
@@ -129,20 +129,21 @@ void MotorControl::declareMotorCommands() {
         stopCommand("motor.stop",
                     "Stops with the emergency deceleration; anyone may. When another client holds the "
                     "control it loses it",
-                    [](const Call &call, Drive &drive) { drive.stop(call.client, stopperName(call)); }));
+                    [](const Call &call, Drive &drive) { drive.stop(call.client, callerName(call)); }));
     addCommand(
         stopCommand("motor.estop",
                     "Stops with the emergency deceleration, and stays stopped until motor.reset_estop; "
                     "anyone may. No substitute for a hard-wired device",
-                    [](const Call &call, Drive &drive) { drive.emergencyStop(stopperName(call)); }));
+                    [](const Call &call, Drive &drive) { drive.emergencyStop(callerName(call)); }));
     addCommand(freshLoopCommand(
-        "motor.reset_estop",
-        "Releases the emergency stop and latched faults; the robot stays where it is until a "
-        "client acquires the control and drives",
-        [](const Call &, DriveLoop &loop) -> Result<QJsonValue> {
-            loop.drive().resetEmergencyStop();
-            return QJsonValue();
-        }));
+                   "motor.reset_estop",
+                   "Releases the emergency stop and latched faults; the robot stays where it is until a "
+                   "client acquires the control and drives",
+                   [](const Call &call, DriveLoop &loop) -> Result<QJsonValue> {
+                       loop.drive().resetEmergencyStop(callerName(call));
+                       return QJsonValue();
+                   })
+                   .param(clientField()));
     addCommand(Command("motor.state",
                        "Everything: stops, control, pose, speeds, controllers, punctuality of the cycle")
                    .needs(Role::Observer)

@@ -176,6 +176,10 @@ void MotorControl::answerStops() {
 void MotorControl::show(const Telemetry &telemetry) {
     if (telemetry.counterJumps != told_.counterJumps)
         logWarning("drive", "a controller has lost its counts; the odometry goes on from where it was");
+    const QString &reason = telemetry.haltReason;
+    if (!reason.isEmpty() && !telemetry.latch.isSet() &&
+        loggedHalt_ != reason) // a latched one is told as health
+        logInfo("stop", loggedHalt_ = reason);
     told_ = telemetry;
     answerStops();
     if (!telemetry.moved && cycles_ == telemetry.cycle.cycles)

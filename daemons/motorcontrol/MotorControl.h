@@ -60,6 +60,7 @@ private:
     DriveLoop *loop_ = nullptr; // lives in thread_
     MotorSettings active_;      // what the loop works with
     Telemetry told_;
+    QString loggedHalt_; ///< the last that is in the log
     struct WaitingStop {
         Reply reply;
         double until; // monotonic

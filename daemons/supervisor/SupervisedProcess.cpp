@@ -11,12 +11,19 @@
 #include <QJsonObject>
 #include <QUuid>
 #include <csignal>
+#include <cstring>
 #include <sys/prctl.h>
 
 namespace hermes::supervisor {
 namespace {
 
 constexpr int longestLine = 4096;
+
+/// "signal 9 (SIGKILL)".
+QString signalName(int number) {
+    const char *const name = sigabbrev_np(number);
+    return QString("signal %1").arg(number) + (name ? QString(" (SIG%1)").arg(name) : QString());
+}
 
 } // namespace
 
@@ -159,17 +166,18 @@ void SupervisedProcess::onEnded(int code, QProcess::ExitStatus status) {
     readOutput();
     if (!partialLine_.isEmpty())
         keepLine(std::exchange(partialLine_, {}));
-    lastExit_ =
-        status == QProcess::NormalExit ? QString("exit status %1").arg(code) : QString("killed by a signal");
-    logInfo("process", QString("%1: ended, %2").arg(entry_.name, lastExit_));
+    const bool wasKilled = status == QProcess::CrashExit; // then the code is the signal's number
+    lastExit_ = wasKilled ? "killed by " + signalName(code) : QString("exit status %1").arg(code);
     const bool wasAsked = state_ == State::Stopping;
+    const bool isWell = wasAsked || (!wasKilled && code == 0);
+    (isWell ? logInfo : logError)("process", QString("%1: ended, %2").arg(entry_.name, lastExit_));
     if (status == QProcess::NormalExit && code != 0 && !lines_.empty())
         lastExit_ += ": " + lines_.back(); // what is wrong, mostly
     if (std::exchange(startAfterStop_, false) && wasAsked) {
         ++restarts_;
         return start();
     }
-    if (wasAsked || (status == QProcess::NormalExit && code == 0))
+    if (isWell)
         return setState(State::Stopped);
     if (status == QProcess::NormalExit && code == 2)
         return setState(State::Failed); // a wrong command line or setting does not mend itself

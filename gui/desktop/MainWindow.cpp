@@ -1,12 +1,12 @@
 #include "gui/desktop/MainWindow.h"
 
+#include "gui/desktop/EventBar.h"
 #include "gui/desktop/TopBar.h"
 #include "gui/desktop/drive/DriveGamepad.h"
 #include "gui/desktop/drive/DriveKeys.h"
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/MapPanel.h"
-#include "gui/desktop/panels/Panels.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/WheelGuard.h"
@@ -25,7 +25,11 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     : QMainWindow(parent)
     , fleet_(fleet)
     , drive_(drive)
+    , log_(fleet)
+    , eventWatch_(fleet, log_, events_)
     , layoutFile_(layoutFile) {
+    if (!layoutFile_.isEmpty())
+        sounds_.switchTo(QSettings(layoutFile_, QSettings::IniFormat).value("sounds/on", true).toBool());
     setWindowTitle(tr("Hermes"));
     setDockNestingEnabled(true);
     setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
@@ -38,7 +42,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     auto *const topBar = new TopBar(fleet, drive_);
     bar->addWidget(topBar);
 
-    addBanner(new StopBanner(drive_), "stopBar");
+    addBanner(new StopBanner(drive_, sounds_), "stopBar");
     auto *const replay = new Banner;
     replay->setObjectName("replayBanner");
     addBanner(replay, "replayBar");
@@ -50,7 +54,8 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
 
     setCentralWidget(map_ = new MapPanel(fleet));
     for (const PanelKind &kind : panelKinds())
-        addPanel(kind, kind.make(fleet, drive_));
+        addPanel(kind, kind.make({fleet, drive_, log_, events_, sounds_}));
+    addEventBar();
     new DriveKeys(drive_, *this);
     new DriveGamepad(drive_, this);
     new EnterKey(*this);
@@ -91,13 +96,27 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     auto *const show = new QAction(title, this);
     if (docks_.size() <= 9)
         show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size())));
-    connect(show, &QAction::triggered, dock, [dock] {
-        dock->show();
-        dock->raise();
-        dock->widget()->setFocus();
-    });
+    connect(show, &QAction::triggered, this, [this, name = kind.name] { showPanel(name); });
     addAction(show);
     dock->toggleViewAction()->setToolTip(tr("%1 (%2)").arg(title, show->shortcut().toString()));
+}
+
+void MainWindow::addEventBar() {
+    auto *const events = new EventBar(events_, sounds_);
+    auto *const bar = new QToolBar(tr("Last event"));
+    bar->setObjectName("eventBar");
+    bar->setMovable(false);
+    bar->setContextMenuPolicy(Qt::PreventContextMenu);
+    bar->addWidget(events);
+    addToolBar(Qt::BottomToolBarArea, bar);
+    connect(events, &EventBar::listWanted, this, [this] { showPanel("events"); });
+}
+
+void MainWindow::showPanel(const QString &name) {
+    auto *const dock = findChild<QDockWidget *>(name);
+    dock->show();
+    dock->raise();
+    dock->widget()->setFocus();
 }
 
 void MainWindow::restoreLayout() {
@@ -124,6 +143,7 @@ void MainWindow::saveLayout() const {
     layout.setValue("window/geometry", saveGeometry());
     layout.setValue("window/state", saveState());
     layout.setValue("plots/fields", findChild<PlotsPanel *>()->plotted());
+    layout.setValue("sounds/on", sounds_.areOn());
     layout.setValue("robots/addresses", fleet_.addresses());
 }
 

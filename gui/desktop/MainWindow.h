@@ -1,6 +1,7 @@
 #pragma once
 
-#include "gui/desktop/drive/DriveControl.h"
+#include "gui/desktop/model/EventWatch.h"
+#include "gui/desktop/panels/Panels.h"
 
 #include <QMainWindow>
 
@@ -11,7 +12,6 @@ namespace hermes::desktop {
 
 class Banner;
 class MapPanel;
-struct PanelKind;
 
 /// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
 /// bring the docks to the front.
@@ -32,11 +32,17 @@ protected:
 private:
     void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
+    void addEventBar();
+    void showPanel(const QString &name);
     void restoreLayout();
     void saveLayout() const;
 
     Fleet &fleet_;
     DriveControl &drive_;
+    Sounds sounds_;
+    LogFeed log_;
+    Events events_;
+    EventWatch eventWatch_;
     MapPanel *map_;
     const QString layoutFile_;
     std::vector<QDockWidget *> docks_;

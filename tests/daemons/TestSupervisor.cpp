@@ -130,7 +130,7 @@ void TestSupervisor::killedProcessComesBackWithBackOff() {
         QCOMPARE(before["restarts"].toInt(), restarts);
         QCOMPARE(::kill(before["pid"].toInt(), SIGKILL), 0);
         QTRY_VERIFY(waits.count(restarts) == 1);
-        QCOMPARE(waits[restarts]["last_exit"].toString(), QString("killed by a signal"));
+        QCOMPARE(waits[restarts]["last_exit"].toString(), QString("killed by signal 9 (SIGKILL)"));
     }
     QTRY_COMPARE(stateOf("one"), QString("running"));
     QCOMPARE(process("one")["restarts"].toInt(), 2);

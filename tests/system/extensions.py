@@ -32,7 +32,7 @@ PROBE = """
 #include <stdexcept>
 
 static const hermes::desktop::PanelKind probe = {Qt::LeftDockWidgetArea, "Probe", "probe",
-    [](hermes::desktop::Fleet &, hermes::desktop::DriveControl &) -> QWidget * {
+    [](const hermes::desktop::PanelContext &) -> QWidget * {
         QTimer::singleShot(0, [] {
             for (QWidget *widget : QApplication::allWidgets())
                 if (qobject_cast<QDockWidget *>(widget))

@@ -193,13 +193,18 @@ void DriveControl::halt() {
     if (isDriving_ && motors_) {
         // Calls, which are repeated where frames are lost.
         motors_->client().call(
-            "motor.stop", QJsonObject(), [](const auto &) {}, Client::defaultTimeout,
+            "motor.stop", named("motor.stop"), [](const auto &) {}, Client::defaultTimeout,
             Client::Repeats::AtOnce);
         giveBack();
     }
     isDriving_ = isHolding_ = false;
     mustCentre_ = isAnyHeld();
     Q_EMIT changed();
+}
+
+// With the name of this program, where the method takes one.
+QJsonObject DriveControl::named(const QString &method) const {
+    return motors_->takes(method, "client") ? QJsonObject{{"client", ownName()}} : QJsonObject();
 }
 
 void DriveControl::stop() {
@@ -215,10 +220,11 @@ void DriveControl::release() {
     stop_.release();
     if (!motors_ || stop_.phase() != StopPhase::None)
         return; // whose lines ask for it
-    motors_->call("motor.reset_estop", {}, this, [this](const Result<QJsonValue> &result) {
-        tell(result ? QString() : result.error().message);
-        poll();
-    });
+    motors_->call("motor.reset_estop", named("motor.reset_estop"), this,
+                  [this](const Result<QJsonValue> &result) {
+                      tell(result ? QString() : result.error().message);
+                      poll();
+                  });
 }
 
 void DriveControl::poll() {

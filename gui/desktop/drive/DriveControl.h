@@ -81,6 +81,7 @@ private:
     void tick();
     void acquire(bool takeOver);
     void ask();
+    QJsonObject named(const QString &method) const;
     void giveBack();
     void send();
     void poll();

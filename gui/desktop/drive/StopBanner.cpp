@@ -1,7 +1,5 @@
 #include "gui/desktop/drive/StopBanner.h"
 
-#include <QApplication>
-
 namespace hermes::desktop {
 namespace {
 
@@ -11,12 +9,13 @@ constexpr const char *red = "background: #d0100c; color: white;",
 
 } // namespace
 
-StopBanner::StopBanner(DriveControl &drive, QWidget *parent)
+StopBanner::StopBanner(DriveControl &drive, const Sounds &sounds, QWidget *parent)
     : Banner(parent)
-    , drive_(drive) {
+    , drive_(drive)
+    , sounds_(sounds) {
     setObjectName("stopBanner");
     sound_.setInterval(1000);
-    connect(&sound_, &QTimer::timeout, [] { QApplication::beep(); });
+    connect(&sound_, &QTimer::timeout, [this] { sounds_.beep(); });
     connect(&drive, &DriveControl::changed, this, &StopBanner::update);
     update();
 }
@@ -51,7 +50,7 @@ void StopBanner::update() {
     if (!drive_.stopping().isLate()) {
         sound_.stop();
     } else if (!sound_.isActive()) {
-        QApplication::beep();
+        sounds_.beep();
         sound_.start();
     }
 }

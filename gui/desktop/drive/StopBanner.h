@@ -2,6 +2,7 @@
 
 #include "gui/desktop/drive/DriveControl.h"
 #include "gui/desktop/widgets/Banner.h"
+#include "gui/desktop/widgets/Sounds.h"
 
 namespace hermes::desktop {
 
@@ -10,7 +11,7 @@ namespace hermes::desktop {
 class StopBanner : public Banner {
     Q_OBJECT
 public:
-    explicit StopBanner(DriveControl &drive, QWidget *parent = nullptr);
+    StopBanner(DriveControl &drive, const Sounds &sounds, QWidget *parent = nullptr);
 
     /// The short form, for the button.
     static QString wordOf(const DriveControl &drive);
@@ -21,6 +22,7 @@ private:
     void update();
 
     DriveControl &drive_;
+    const Sounds &sounds_;
     QTimer sound_;
 };
 

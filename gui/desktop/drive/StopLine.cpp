@@ -141,7 +141,7 @@ void StopLine::release() {
             guard->notReleased(tr("its release was refused: %1").arg(shortLine(done.error().message)));
     };
     for (Client *const client : clients)
-        client->call("motor.reset_estop", QJsonObject(), released);
+        client->call("motor.reset_estop", params("motor.reset_estop"), released);
     Q_EMIT changed();
 }
 
@@ -204,12 +204,8 @@ void StopLine::tick() {
 }
 
 // Only what the daemon is known to take: it would refuse the rest, and with it the stop.
-QJsonObject StopLine::params() const {
-    const QJsonArray taken = daemon_ ? daemon_->method("motor.estop")["params"].toArray() : QJsonArray();
-    const bool takesName = std::any_of(taken.begin(), taken.end(), [](const QJsonValue &param) {
-        return param["name"] == QJsonValue("client");
-    });
-    return takesName ? QJsonObject{{"client", ownName()}} : QJsonObject();
+QJsonObject StopLine::params(const QString &method) const {
+    return daemon_ && daemon_->takes(method, "client") ? QJsonObject{{"client", ownName()}} : QJsonObject();
 }
 
 void StopLine::send(Client &client) {
@@ -219,7 +215,8 @@ void StopLine::send(Client &client) {
         if (guard && guard->press_ == press)
             guard->onAnswer(answer);
     };
-    client.call("motor.estop", params(), answered, Client::defaultTimeout, Client::Repeats::AtOnce);
+    client.call("motor.estop", params("motor.estop"), answered, Client::defaultTimeout,
+                Client::Repeats::AtOnce);
 }
 
 void StopLine::onAnswer(const Result<QJsonValue> &answer) {

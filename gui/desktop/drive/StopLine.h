@@ -53,7 +53,7 @@ Q_SIGNALS:
 private:
     void tick();
     void send(Client &client);
-    QJsonObject params() const;
+    QJsonObject params(const QString &method) const;
     void onAnswer(const Result<QJsonValue> &answer);
     void look();
     void onState(const Result<QJsonValue> &state);

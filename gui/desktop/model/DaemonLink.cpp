@@ -69,6 +69,12 @@ QString DaemonLink::refusal(const QString &name) const {
     return tr("This is for the role %1, you have %2").arg(toString(*needed), info_.role);
 }
 
+bool DaemonLink::takes(const QString &name, const QString &param) const {
+    const QJsonArray params = method(name)["params"].toArray();
+    return std::any_of(params.begin(), params.end(),
+                       [&](const QJsonValue &one) { return one["name"] == QJsonValue(param); });
+}
+
 QString DaemonLink::title() const {
     const QString title = shortLine(info_.title);
     return title.isEmpty() ? name() : title;

@@ -56,6 +56,8 @@ public:
     /// The description of a method; empty when the daemon does not have it.
     QJsonObject method(const QString &name) const { return methods_.value(name); }
     bool hasMethod(const QString &name) const { return methods_.contains(name); }
+    /// The method has a parameter of that name.
+    bool takes(const QString &method, const QString &param) const;
     bool hasTopic(const QString &name) const { return topics_.contains(name); }
     /// The names of the topics, in the order of the description.
     const QStringList &topics() const { return topicNames_; }

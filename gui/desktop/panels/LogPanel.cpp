@@ -3,7 +3,6 @@
 #include "common/Time.h"
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/PlainLabel.h"
-#include "protocol/wire/Fields.h"
 
 #include <QComboBox>
 #include <QDateTime>
@@ -21,7 +20,6 @@ namespace {
 
 const QStringList levels{"debug", "info", "warning", "error"};
 constexpr int usualLevel = 1;
-constexpr int lastRecords = 100; // of a daemon's, before the panel follows it
 constexpr int longestText = 500;
 
 QBrush colourOf(int level) {
@@ -32,9 +30,8 @@ QBrush colourOf(int level) {
 
 } // namespace
 
-LogPanel::LogPanel(Fleet &fleet, QWidget *parent)
+LogPanel::LogPanel(LogFeed &log, QWidget *parent)
     : QWidget(parent)
-    , fleet_(fleet)
     , level_(new QComboBox)
     , filter_(new QLineEdit)
     , view_(new QPlainTextEdit) {
@@ -64,43 +61,18 @@ LogPanel::LogPanel(Fleet &fleet, QWidget *parent)
 
     connect(level_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &LogPanel::refill);
     connect(filter_, &QLineEdit::textChanged, this, &LogPanel::refill);
-    connect(&fleet, &Fleet::changed, this, &LogPanel::followAll);
+    connect(&log, &LogFeed::recorded, this, &LogPanel::add);
     connect(&timer_, &QTimer::timeout, this, &LogPanel::refresh);
     timer_.setSingleShot(true);
-    followAll();
 }
 
-void LogPanel::followAll() {
-    for (const auto &robot : fleet_.robots())
-        for (DaemonLink *daemon : robot->daemons())
-            if (!followed_.contains(daemon) && daemon->hasTopic("log"))
-                follow(daemon);
-}
-
-void LogPanel::follow(DaemonLink *daemon) {
-    followed_.insert(daemon);
-    connect(daemon, &QObject::destroyed, this, [this, daemon] { followed_.remove(daemon); });
-    daemon->subscribe("log", {{"queue", lastRecords}},
-                      [this, daemon](const TopicUpdate &update) { add(daemon->name(), update.data); });
-    daemon->call("log.tail", {{"count", lastRecords}}, this, [this, name = daemon->name()](const auto &tail) {
-        if (!tail || !tail->isArray())
-            return;
-        const WireValue records(*tail);
-        for (std::size_t i = records.size() - qMin(records.size(), std::size_t(lastRecords));
-             i < records.size(); ++i)
-            add(name, records[i]);
-    });
-}
-
-void LogPanel::add(const QString &daemon, WireView record) {
-    ReadReport report;
-    const auto message = readMessage<LogMessage>(record, report);
-    const LogMessage read = message ? *message : LogMessage{-1, "warning", "log", report.text()};
+void LogPanel::add(const DaemonLink *daemon, const LogMessage &record) {
     // Sorted by the time at which it came, and with a level that is shown, where it has none that makes
     // sense.
-    const int level = levels.indexOf(read.level);
-    const Record made{timeOf(read.stamp) ? read.stamp : stampNow(), daemon, level < 0 ? usualLevel : level,
-                      shortLine(read.source + ": " + read.text, longestText)};
+    const int level = levels.indexOf(record.level);
+    const Record made{timeOf(record.stamp) ? record.stamp : stampNow(), daemon->name(),
+                      level < 0 ? usualLevel : level,
+                      shortLine(record.source + ": " + record.text, longestText)};
     isUnsorted_ = isUnsorted_ || (!records_.empty() && made.stamp < records_.back().stamp);
     records_.push_back(made);
     ++newRecords_;

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "gui/desktop/model/Fleet.h"
+#include "gui/desktop/model/LogFeed.h"
 
-#include <QSet>
 #include <QTimer>
 #include <QWidget>
 #include <chrono>
@@ -24,7 +23,7 @@ public:
     static constexpr std::size_t maxLines = 500;
     static constexpr std::chrono::milliseconds refreshPeriod{100};
 
-    explicit LogPanel(Fleet &fleet, QWidget *parent = nullptr);
+    explicit LogPanel(LogFeed &log, QWidget *parent = nullptr);
 
 private:
     struct Record {
@@ -34,15 +33,12 @@ private:
         QString text;
     };
 
-    void followAll();
-    void follow(DaemonLink *daemon);
-    void add(const QString &daemon, WireView record);
+    void add(const DaemonLink *daemon, const LogMessage &record);
     bool passes(const Record &record) const;
     void append(const std::vector<const Record *> &records);
     void refresh();
     void refill();
 
-    Fleet &fleet_;
     QComboBox *level_;
     QLineEdit *filter_;
     QPlainTextEdit *view_;
@@ -50,7 +46,6 @@ private:
     std::size_t newRecords_ = 0; // not shown yet
     bool isUnsorted_ = false;
     QTimer timer_;
-    QSet<const DaemonLink *> followed_;
 };
 
 } // namespace hermes::desktop

@@ -3,6 +3,7 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/DaemonsPanel.h"
 #include "gui/desktop/panels/DrivePanel.h"
+#include "gui/desktop/panels/EventsPanel.h"
 #include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/panels/RecordPanel.h"
@@ -15,8 +16,16 @@
 namespace hermes::desktop {
 namespace {
 
-QWidget *makeDrivePanel(Fleet &, DriveControl &drive) {
-    return new DrivePanel(drive);
+QWidget *makeDrivePanel(const PanelContext &context) {
+    return new DrivePanel(context.drive);
+}
+
+QWidget *makeLogPanel(const PanelContext &context) {
+    return new LogPanel(context.log);
+}
+
+QWidget *makeEventsPanel(const PanelContext &context) {
+    return new EventsPanel(context.events, context.sounds);
 }
 
 std::vector<PanelKind> &known() {
@@ -25,11 +34,12 @@ std::vector<PanelKind> &known() {
         {Qt::LeftDockWidgetArea, "Daemons", "daemons", makePanel<DaemonsPanel>},
         {Qt::BottomDockWidgetArea, "Settings", "settings", makePanel<SettingsPanel>},
         {Qt::BottomDockWidgetArea, "Commands", "commands", makePanel<CommandsPanel>, "settings"},
-        {Qt::BottomDockWidgetArea, "Log", "log", makePanel<LogPanel>, "settings"},
+        {Qt::BottomDockWidgetArea, "Log", "log", makeLogPanel, "settings"},
         {Qt::BottomDockWidgetArea, "Plots", "plots", makePanel<PlotsPanel>, "settings"},
         {Qt::RightDockWidgetArea, "Drive", "drive", makeDrivePanel},
         {Qt::LeftDockWidgetArea, "Recordings", "recordings", makePanel<RecordPanel>, "daemons"},
         {Qt::BottomDockWidgetArea, "Setup", "setup", makePanel<SetupPanel>, "settings"},
+        {Qt::BottomDockWidgetArea, "Events", "events", makeEventsPanel, "settings"},
     };
     return all;
 }

@@ -1,18 +1,30 @@
 #pragma once
 
 #include "gui/desktop/drive/DriveControl.h"
+#include "gui/desktop/model/Events.h"
+#include "gui/desktop/model/LogFeed.h"
+#include "gui/desktop/widgets/Sounds.h"
 
 #include <QWidget>
 #include <vector>
 
 namespace hermes::desktop {
 
+/// What panels can be made of.
+struct PanelContext {
+    Fleet &fleet;
+    DriveControl &drive;
+    LogFeed &log;
+    Events &events;
+    Sounds &sounds;
+};
+
 /// A panel of the operator's window: what is in a dock, and where that lies at first.
 struct PanelKind {
     Qt::DockWidgetArea area;
     const char *title;
     const char *name; ///< by which layouts are kept
-    QWidget *(*make)(Fleet &fleet, DriveControl &drive);
+    QWidget *(*make)(const PanelContext &context);
     const char *tabbedWith = nullptr; ///< the name of one before it, with which it shares its place
 };
 
@@ -24,8 +36,8 @@ bool addPanelKind(const PanelKind &kind);
 
 /// Makes a panel that is made of a Fleet alone.
 template <typename Panel>
-QWidget *makePanel(Fleet &fleet, DriveControl &) {
-    return new Panel(fleet);
+QWidget *makePanel(const PanelContext &context) {
+    return new Panel(context.fleet);
 }
 
 } // namespace hermes::desktop

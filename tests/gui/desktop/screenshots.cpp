@@ -58,6 +58,20 @@ static void take(MainWindow &window, QDockWidget &dock) {
     QVERIFY2(window.grab().save(file), qPrintable(file));
 }
 
+/// Somebody stops the robot and releases it, then a daemon is killed.
+static void letSomethingHappen(RobotProcesses &robot) {
+    Client anna;
+    anna.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
+    QTRY_VERIFY(anna.isConnected());
+    const QJsonObject name{{"client", "anna on laptop7"}};
+    QVERIFY(anna.callAndWait("motor.estop", name).ok());
+    QTest::qWait(1200);
+    QVERIFY(anna.callAndWait("motor.reset_estop", name).ok());
+    QTest::qWait(1200);
+    robot.kill("velodynelogger");
+    QTest::qWait(2000);
+}
+
 void Screenshots::all() {
     if (arguments.value(4) == "setup")
         return;
@@ -74,8 +88,12 @@ void Screenshots::all() {
     QTest::qWait(qEnvironmentVariable("HERMES_PICTURE_S", "8").toInt() *
                  1000); // so that there is a map to see
     for (auto *const dock : window.findChildren<QDockWidget *>())
-        if (isWanted(dock->objectName()) && dock->objectName() != "setup")
+        if (isWanted(dock->objectName()) && dock->objectName() != "setup" && dock->objectName() != "events")
             take(window, *dock);
+    if (!isWanted("events"))
+        return;
+    letSomethingHappen(robot);
+    take(window, *window.findChild<QDockWidget *>("events"));
 }
 
 /// A robot that nobody has set up yet.

@@ -1,0 +1,109 @@
+#include "gui/desktop/model/EventWatch.h"
+
+#include "gui/desktop/drive/OwnName.h"
+#include "gui/desktop/widgets/ForeignText.h"
+
+namespace hermes::desktop {
+namespace {
+
+constexpr int longestText = 300, longestName = 30;
+
+Event::Level levelOf(const QString &word) {
+    return word == "error" ? Event::Level::Error : Event::Level::Warning;
+}
+
+/// Of a record that tells who stopped a robot, and who released it.
+bool isOfStop(const LogMessage &record) {
+    return record.level == "info" && record.source == "stop";
+}
+
+QString keyOf(const DaemonLink &daemon, const QString &what) {
+    return daemon.address() + '\n' + what;
+}
+
+/// The supervisor says that nobody wants it to run, or tells itself what is wrong with it.
+bool isAccountedFor(const ProcessStatus *process) {
+    return process && process->state != "running";
+}
+
+} // namespace
+
+EventWatch::EventWatch(Fleet &fleet, LogFeed &log, Events &events, QObject *parent)
+    : QObject(parent)
+    , fleet_(fleet)
+    , events_(events) {
+    connect(&log, &LogFeed::recorded, this, &EventWatch::onRecord);
+    connect(&fleet, &Fleet::changed, this, &EventWatch::watchAll);
+    watchAll();
+}
+
+void EventWatch::watchAll() {
+    for (const auto &robot : fleet_.robots())
+        for (DaemonLink *daemon : robot->daemons())
+            watch(*robot, *daemon);
+}
+
+void EventWatch::watch(const Robot &robot, DaemonLink &daemon) {
+    if (!ailing_.contains(&daemon)) {
+        ailing_.insert(&daemon, QStringList());
+        connect(&daemon, &QObject::destroyed, this, [this, link = &daemon, begin = keyOf(daemon, {})] {
+            ailing_.remove(link);
+            events_.endAll(begin);
+        });
+    }
+    lookAtLink(robot, daemon);
+    lookAtHealth(robot, daemon);
+}
+
+void EventWatch::lookAtLink(const Robot &robot, const DaemonLink &daemon) {
+    const bool isMissed = daemon.isKnown() && (!daemon.isConnected() || daemon.isSilent());
+    const QString key = keyOf(daemon, "link");
+    if (!isMissed || isAccountedFor(robot.process(daemon)))
+        return events_.ends(key);
+    events_.goesOn(key, Event::Level::Error, nameOf(daemon),
+                   daemon.isSilent() ? tr("It is connected, but does not answer")
+                                     : tr("No connection: %1").arg(shortLine(daemon.reason(), longestText)));
+}
+
+void EventWatch::lookAtHealth(const Robot &, const DaemonLink &daemon) {
+    if (!daemon.isConnected())
+        return; // what was wrong may still be
+    QStringList now;
+    for (const HealthItem &item : daemon.status().health) {
+        if (item.level == "ok" || now.size() == mostItems)
+            continue;
+        const QString key = keyOf(daemon, "health " + shortLine(item.name, longestName));
+        const QString text = shortLine(item.name + ": " + item.message, longestText);
+        events_.goesOn(key, levelOf(item.level), nameOf(daemon), text, text.contains(ownName()));
+        now.append(key);
+    }
+    QStringList &before = ailing_[&daemon];
+    for (const QString &key : qAsConst(before))
+        if (!now.contains(key))
+            events_.ends(key);
+    before = now;
+}
+
+void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, bool isPast) {
+    if (record.source == "health")
+        return; // known from the status
+    const bool isAlarming = record.level == "warning" || record.level == "error";
+    if (!isAlarming && (!isOfStop(record) || record.text.contains(ownName())))
+        return; // what was done from this window needs no note
+    const auto level = isAlarming ? levelOf(record.level) : Event::Level::Info;
+    const QString text = shortLine(record.source + ": " + record.text, longestText);
+    if (isPast)
+        events_.happenedBefore(level, nameOf(*daemon), text, record.stamp);
+    else
+        events_.happened(level, nameOf(*daemon), text);
+}
+
+QString EventWatch::nameOf(const DaemonLink &daemon) const {
+    for (const auto &robot : fleet_.robots())
+        for (const DaemonLink *link : robot->daemons())
+            if (link == &daemon)
+                return fleet_.robots().size() > 1 ? robot->name() + ", " + daemon.name() : daemon.name();
+    return daemon.name();
+}
+
+} // namespace hermes::desktop
