@@ -9,6 +9,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
+#include "gui/desktop/widgets/ScrolledPanel.h"
 #include "gui/desktop/widgets/WheelGuard.h"
 
 #include <QAction>
@@ -87,7 +88,7 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     const QString title = tr(kind.title);
     auto *const dock = new QDockWidget(title, this);
     dock->setObjectName(kind.name);
-    dock->setWidget(panel);
+    dock->setWidget(new ScrolledPanel(panel));
     addDockWidget(kind.area, dock);
     if (auto *const other = kind.tabbedWith ? findChild<QDockWidget *>(kind.tabbedWith) : nullptr)
         tabifyDockWidget(other, dock);
@@ -116,7 +117,7 @@ void MainWindow::showPanel(const QString &name) {
     auto *const dock = findChild<QDockWidget *>(name);
     dock->show();
     dock->raise();
-    dock->widget()->setFocus();
+    static_cast<ScrolledPanel *>(dock->widget())->widget()->setFocus();
 }
 
 void MainWindow::restoreLayout() {

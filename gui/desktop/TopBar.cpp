@@ -58,6 +58,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
         told->setMinimumWidth(1); // it is cut off where there is no room: nothing pushes STOP out of sight
 
     auto *const layout = new QHBoxLayout(this);
+    layout->setContentsMargins(8, 4, 8, 4);
     auto *const label = new PlainLabel(tr("Ro&bot"));
     label->setBuddy(robots_);
     layout->addWidget(label);

@@ -44,15 +44,17 @@ void EventWatch::watchAll() {
 }
 
 void EventWatch::watch(const Robot &robot, DaemonLink &daemon) {
-    if (!ailing_.contains(&daemon)) {
-        ailing_.insert(&daemon, QStringList());
+    if (!watched_.contains(&daemon)) {
+        watched_[&daemon].connected.start();
+        connect(&daemon, &DaemonLink::ready, this,
+                [this, link = &daemon] { watched_[link].connected.start(); });
         connect(&daemon, &QObject::destroyed, this, [this, link = &daemon, begin = keyOf(daemon, {})] {
-            ailing_.remove(link);
+            watched_.remove(link);
             events_.endAll(begin);
         });
     }
     lookAtLink(robot, daemon);
-    lookAtHealth(robot, daemon);
+    lookAtHealth(daemon);
 }
 
 void EventWatch::lookAtLink(const Robot &robot, const DaemonLink &daemon) {
@@ -65,8 +67,9 @@ void EventWatch::lookAtLink(const Robot &robot, const DaemonLink &daemon) {
                                      : tr("No connection: %1").arg(shortLine(daemon.reason(), longestText)));
 }
 
-void EventWatch::lookAtHealth(const Robot &, const DaemonLink &daemon) {
-    if (!daemon.isConnected())
+void EventWatch::lookAtHealth(const DaemonLink &daemon) {
+    Watched &watched = watched_[&daemon];
+    if (!daemon.isConnected() || !watched.connected.hasExpired(std::chrono::milliseconds(settling).count()))
         return; // what was wrong may still be
     QStringList now;
     for (const HealthItem &item : daemon.status().health) {
@@ -77,11 +80,10 @@ void EventWatch::lookAtHealth(const Robot &, const DaemonLink &daemon) {
         events_.goesOn(key, levelOf(item.level), nameOf(daemon), text, text.contains(ownName()));
         now.append(key);
     }
-    QStringList &before = ailing_[&daemon];
-    for (const QString &key : qAsConst(before))
+    for (const QString &key : qAsConst(watched.ailing))
         if (!now.contains(key))
             events_.ends(key);
-    before = now;
+    watched.ailing = now;
 }
 
 void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, bool isPast) {

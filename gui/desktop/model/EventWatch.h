@@ -12,20 +12,27 @@ class EventWatch : public QObject {
 public:
     /// Of a daemon, so many items of its health.
     static constexpr int mostItems = 50;
+    /// A daemon that has just begun is not well yet: until then its health makes no events.
+    static constexpr std::chrono::seconds settling{3};
 
     EventWatch(Fleet &fleet, LogFeed &log, Events &events, QObject *parent = nullptr);
 
 private:
+    struct Watched {
+        QStringList ailing;      ///< the keys of what is not well
+        QElapsedTimer connected; ///< since the connection was made
+    };
+
     void watchAll();
     void watch(const Robot &robot, DaemonLink &daemon);
     void lookAtLink(const Robot &robot, const DaemonLink &daemon);
-    void lookAtHealth(const Robot &robot, const DaemonLink &daemon);
+    void lookAtHealth(const DaemonLink &daemon);
     void onRecord(DaemonLink *daemon, const LogMessage &record, bool isPast);
     QString nameOf(const DaemonLink &daemon) const;
 
     Fleet &fleet_;
     Events &events_;
-    QHash<const DaemonLink *, QStringList> ailing_; ///< the items of each that are not well
+    QHash<const DaemonLink *, Watched> watched_;
 };
 
 } // namespace hermes::desktop
