@@ -54,11 +54,11 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     });
 
     setCentralWidget(map_ = new MapPanel(fleet));
+    auto *const gamepad = new DriveGamepad(drive_, layoutFile_, this);
     for (const PanelKind &kind : panelKinds())
-        addPanel(kind, kind.make({fleet, drive_, log_, events_, sounds_}));
+        addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_}));
     addEventBar();
     new DriveKeys(drive_, *this);
-    new DriveGamepad(drive_, this);
     new EnterKey(*this);
     new WheelGuard(*this);
     new StopKeys(drive_, topBar->stopButton()); // sees keys before the others

@@ -1,55 +1,103 @@
 #include "gui/desktop/drive/DriveGamepad.h"
 
-#include <QGamepad>
-#include <QGamepadManager>
-#include <cmath>
+#include <QSettings>
 
 namespace hermes::desktop {
 namespace {
 
-/// Sticks do not come back to the very middle.
-double withoutPlay(double axis) {
-    constexpr double play = 0.12;
-    return std::abs(axis) < play ? 0 : (axis - std::copysign(play, axis)) / (1 - play);
+constexpr std::size_t mostSamples = 60000; // of a calibration: twenty minutes
+
+QString keyOf(const QString &kind) {
+    return "gamepads/" + kind;
 }
 
 } // namespace
 
-DriveGamepad::DriveGamepad(DriveControl &drive, QObject *parent)
+DriveGamepad::DriveGamepad(DriveControl &drive, const QString &file, QObject *parent)
     : QObject(parent)
-    , drive_(drive) {
-    QGamepadManager *const manager = QGamepadManager::instance();
-    connect(manager, &QGamepadManager::gamepadConnected, this, &DriveGamepad::plug);
-    connect(manager, &QGamepadManager::gamepadDisconnected, this, [this](int device) {
-        if (!pad_ || pad_->deviceId() != device)
-            return;
-        pad_->deleteLater();
-        pad_ = nullptr;
-        drive_.steer("gamepad", {}, false);
+    , drive_(drive)
+    , file_(file)
+    , pad_(this) {
+    connect(&pad_, &Gamepad::changed, this, [this] {
+        if (pad_.kind() != kind_)
+            load();
+        steer();
+        Q_EMIT changed();
     });
-    const QList<int> devices = manager->connectedGamepads();
-    if (!devices.isEmpty())
-        plug(devices.front());
+    connect(&pad_, &Gamepad::stopPressed, &drive, &DriveControl::stop);
+    resting_.setSingleShot(true);
+    connect(&resting_, &QTimer::timeout, this, [this] { enter(Step::Move); });
+    sampling_.setInterval(Gamepad::period);
+    connect(&sampling_, &QTimer::timeout, this, &DriveGamepad::sample);
 }
 
-void DriveGamepad::plug(int device) {
-    if (pad_)
+void DriveGamepad::steer() {
+    const auto [leftX, leftY, rightX] = sticks();
+    const bool isHeld = pad_.isDeadManHeld() && step_ == Step::None;
+    drive_.steer("gamepad", isHeld ? Twist2D{-leftY, -leftX, -rightX} : Twist2D(), isHeld);
+}
+
+void DriveGamepad::beginCalibration() {
+    if (!pad_.isPlugged())
         return;
-    pad_ = new QGamepad(device, this);
-    const auto steer = [this] {
-        drive_.steer("gamepad",
-                     {-withoutPlay(pad_->axisLeftY()), -withoutPlay(pad_->axisLeftX()),
-                      -withoutPlay(pad_->axisRightX())},
-                     pad_->buttonL1());
-    };
-    connect(pad_, &QGamepad::axisLeftXChanged, this, steer);
-    connect(pad_, &QGamepad::axisLeftYChanged, this, steer);
-    connect(pad_, &QGamepad::axisRightXChanged, this, steer);
-    connect(pad_, &QGamepad::buttonL1Changed, this, steer);
-    connect(pad_, &QGamepad::buttonBChanged, this, [this](bool isDown) {
-        if (isDown)
-            drive_.stop();
-    });
+    atRest_.clear();
+    moved_.clear();
+    enter(Step::Rest);
+    resting_.start(restFor);
+    sampling_.start();
+}
+
+void DriveGamepad::sample() {
+    auto &samples = step_ == Step::Rest ? atRest_ : moved_;
+    if (samples.size() < mostSamples)
+        samples.push_back(pad_.sticks());
+}
+
+Result<void> DriveGamepad::endCalibration() {
+    if (step_ != Step::Move)
+        return Error(ErrorCode::NotReady, tr("no calibration is under way"));
+    const auto made = GamepadCalibration::of(atRest_, moved_);
+    enter(Step::None);
+    if (!made)
+        return made.error();
+    keep(*made);
+    return {};
+}
+
+void DriveGamepad::cancelCalibration() {
+    enter(Step::None);
+}
+
+void DriveGamepad::useDefaults() {
+    enter(Step::None);
+    keep({});
+}
+
+void DriveGamepad::enter(Step step) {
+    step_ = step;
+    if (step == Step::None) {
+        resting_.stop();
+        sampling_.stop();
+    }
+    steer();
+    Q_EMIT changed();
+}
+
+void DriveGamepad::load() {
+    kind_ = pad_.kind();
+    calibration_ = {};
+    if (step_ != Step::None)
+        enter(Step::None); // it was of another one
+    if (!file_.isEmpty() && !kind_.isEmpty())
+        calibration_ =
+            GamepadCalibration::fromList(QSettings(file_, QSettings::IniFormat).value(keyOf(kind_)).toList());
+}
+
+void DriveGamepad::keep(const GamepadCalibration &calibration) {
+    calibration_ = calibration;
+    if (!file_.isEmpty() && !kind_.isEmpty())
+        QSettings(file_, QSettings::IniFormat).setValue(keyOf(kind_), calibration.toList());
+    Q_EMIT changed();
 }
 
 } // namespace hermes::desktop

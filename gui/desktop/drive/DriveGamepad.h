@@ -1,23 +1,53 @@
 #pragma once
 
 #include "gui/desktop/drive/DriveControl.h"
-
-class QGamepad;
+#include "gui/desktop/drive/GamepadCalibration.h"
 
 namespace hermes::desktop {
 
-/// The first gamepad that is plugged in: the left stick drives, the right one turns, as long as the left
-/// shoulder button (the dead-man key) is held; the red button (B) is STOP.
+/// Drives by a gamepad: the left stick drives, the right one turns, as long as the left shoulder button (the
+/// dead-man button) is held; B is STOP, always.
 class DriveGamepad : public QObject {
     Q_OBJECT
 public:
-    DriveGamepad(DriveControl &drive, QObject *parent);
+    /// How a calibration stands.
+    enum class Step { None, Rest, Move };
+    static constexpr std::chrono::milliseconds restFor{1000};
+
+    /// file: where calibrations are kept, each for its kind of gamepad; empty: nowhere.
+    DriveGamepad(DriveControl &drive, const QString &file, QObject *parent);
+
+    const Gamepad &pad() const { return pad_; }
+    /// As they drive: calibrated, 0 where they rest.
+    GamepadSticks sticks() const { return calibration_.apply(pad_.sticks()); }
+
+    Step step() const { return step_; }
+    /// Measures the sticks at rest for a second, then as they are moved; nothing drives meanwhile.
+    void beginCalibration();
+    /// With what was measured since. Error: the calibration of before holds.
+    Result<void> endCalibration();
+    void cancelCalibration();
+    /// Forgets the calibration.
+    void useDefaults();
+
+Q_SIGNALS:
+    void changed();
 
 private:
-    void plug(int device);
+    void steer();
+    void enter(Step step);
+    void sample();
+    void load();
+    void keep(const GamepadCalibration &calibration);
 
     DriveControl &drive_;
-    QGamepad *pad_ = nullptr;
+    const QString file_;
+    Gamepad pad_;
+    QString kind_; ///< whose calibration it is
+    GamepadCalibration calibration_;
+    Step step_ = Step::None;
+    QTimer resting_, sampling_;
+    std::vector<GamepadSticks> atRest_, moved_;
 };
 
 } // namespace hermes::desktop

@@ -16,7 +16,7 @@ constexpr double fullTurn = vectorlib::pi / 3; // of the ring is the whole rate 
 
 Stick::Stick(QWidget *parent)
     : QWidget(parent) {
-    setMinimumSize(130, 130);
+    setMinimumSize(110, 110);
     setToolTip(tr("Drag the knob to drive, the ring to turn. The arrow keys or WASD, Q and E do the same."));
 }
 

@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/DrivePanel.h"
 
 #include "gui/desktop/drive/Stick.h"
+#include "gui/desktop/panels/GamepadRow.h"
 #include "gui/desktop/widgets/AgedLabel.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/MessageLabel.h"
@@ -12,7 +13,7 @@
 
 namespace hermes::desktop {
 
-DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
+DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *parent)
     : QWidget(parent)
     , drive_(drive)
     , stick_(new Stick)
@@ -45,6 +46,7 @@ DrivePanel::DrivePanel(DriveControl &drive, QWidget *parent)
     control->addWidget(takeOver_);
     auto *const layout = new QVBoxLayout(this);
     layout->addWidget(stick_, 1);
+    layout->addWidget(new GamepadRow(gamepad));
     layout->addLayout(speed);
     layout->addWidget(makeNumbers());
     layout->addLayout(control);

@@ -9,6 +9,8 @@ class QSlider;
 
 namespace hermes::desktop {
 
+class DriveGamepad;
+
 class AgedLabel;
 class MessageLabel;
 class PlainLabel;
@@ -19,7 +21,7 @@ class Stick;
 class DrivePanel : public QWidget {
     Q_OBJECT
 public:
-    explicit DrivePanel(DriveControl &drive, QWidget *parent = nullptr);
+    DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *parent = nullptr);
 
 private:
     void update();

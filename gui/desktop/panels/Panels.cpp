@@ -17,7 +17,7 @@ namespace hermes::desktop {
 namespace {
 
 QWidget *makeDrivePanel(const PanelContext &context) {
-    return new DrivePanel(context.drive);
+    return new DrivePanel(context.drive, context.gamepad);
 }
 
 QWidget *makeLogPanel(const PanelContext &context) {

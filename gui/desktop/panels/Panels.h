@@ -10,10 +10,13 @@
 
 namespace hermes::desktop {
 
+class DriveGamepad;
+
 /// What panels can be made of.
 struct PanelContext {
     Fleet &fleet;
     DriveControl &drive;
+    DriveGamepad &gamepad;
     LogFeed &log;
     Events &events;
     Sounds &sounds;
