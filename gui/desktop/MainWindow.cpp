@@ -1,6 +1,8 @@
 #include "gui/desktop/MainWindow.h"
 
 #include "gui/desktop/EventBar.h"
+#include "gui/desktop/HelpWindow.h"
+#include "gui/desktop/MenuBar.h"
 #include "gui/desktop/TopBar.h"
 #include "gui/desktop/drive/DriveGamepad.h"
 #include "gui/desktop/drive/DriveKeys.h"
@@ -13,6 +15,7 @@
 #include "gui/desktop/widgets/WheelGuard.h"
 
 #include <QAction>
+#include <QApplication>
 #include <QCloseEvent>
 #include <QDir>
 #include <QDockWidget>
@@ -61,7 +64,8 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     new DriveKeys(drive_, *this);
     new EnterKey(*this);
     new WheelGuard(*this);
-    new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
+    auto *const stopKeys = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
+    addMenus(*stopKeys);
     restoreLayout();
     centralWidget()->setFocus(); // so that the keys drive
 }
@@ -99,7 +103,38 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
         show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size())));
     connect(show, &QAction::triggered, this, [this, name = kind.name] { showPanel(name); });
     addAction(show);
+    showPanels_.append(show);
     dock->toggleViewAction()->setToolTip(tr("%1 (%2)").arg(title, show->shortcut().toString()));
+}
+
+void MainWindow::addMenus(StopKeys &keys) {
+    auto *const menus = new MenuBar(this);
+    menus->addRobot(drive_, keys);
+    menus->addMap(*map_);
+    menus->addPanels(showPanels_);
+    menus->addEvents(events_);
+    menus->addHelp();
+    connect(menus, &MenuBar::closeWanted, this, &QWidget::close);
+    connect(menus, &MenuBar::helpWanted, this, &MainWindow::showHelp);
+    connect(menus, &MenuBar::keysWanted, this, [this] { help().showAt(tr("Keys")); });
+    setMenuBar(menus);
+}
+
+HelpWindow &MainWindow::help() {
+    if (!help_)
+        help_ = new HelpWindow(this);
+    return *help_;
+}
+
+/// At what the manual says of the panel that has the focus.
+void MainWindow::showHelp() {
+    const QWidget *const focus = QApplication::focusWidget();
+    for (std::size_t i = 0; i < docks_.size(); ++i)
+        if (focus && docks_[i]->isAncestorOf(focus)) {
+            const QString key = showPanels_[int(i)]->shortcut().toString();
+            return help().showAt(docks_[i]->windowTitle() + (key.isEmpty() ? key : " (" + key + ')'));
+        }
+    help().showAt(focus && map_->isAncestorOf(focus) ? tr("The map") : QString());
 }
 
 void MainWindow::addEventBar() {

@@ -11,7 +11,9 @@ class QToolBar;
 namespace hermes::desktop {
 
 class Banner;
+class HelpWindow;
 class MapPanel;
+class StopKeys;
 
 /// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
 /// bring the docks to the front.
@@ -33,6 +35,9 @@ private:
     void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
     void addEventBar();
+    void addMenus(StopKeys &keys);
+    void showHelp();
+    HelpWindow &help();
     void showPanel(const QString &name);
     void restoreLayout();
     void saveLayout() const;
@@ -46,6 +51,8 @@ private:
     MapPanel *map_;
     const QString layoutFile_;
     std::vector<QDockWidget *> docks_;
+    QList<QAction *> showPanels_;
+    HelpWindow *help_ = nullptr;
     std::vector<QToolBar *> banners_;
 };
 

@@ -45,8 +45,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     release_->setObjectName("release");
     release_->setToolTip(tr("Ends the emergency stop and latched faults. The robot does not move by it."));
     stop_->setObjectName("stop");
-    stop_->setToolTip(
-        tr("Emergency stop over the network (Space, Esc or F12). It does not replace a wired one."));
+    stop_->setToolTip(tr("Emergency stop over the network (Space or F12). It does not replace a wired one."));
     stop_->setFocusPolicy(Qt::NoFocus);
     QFont big = stop_->font();
     big.setBold(true);

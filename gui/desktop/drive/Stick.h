@@ -12,7 +12,7 @@ class Stick : public QWidget {
     Q_OBJECT
 public:
     explicit Stick(QWidget *parent = nullptr);
-    QSize sizeHint() const override { return {170, 170}; }
+    QSize sizeHint() const override { return {120, 120}; }
 
 Q_SIGNALS:
     /// Each from -1 to 1; isHeld: the mouse button is down.

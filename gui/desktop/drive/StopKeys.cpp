@@ -54,7 +54,7 @@ bool StopKeys::isStop(int key) const {
     if (key == Qt::Key_Space)
         return drive_.isDriving() || isPopupOpen || !isTyping(QApplication::focusWidget());
     const bool closes = isPopupOpen || qobject_cast<QDialog *>(QApplication::activeWindow());
-    return key == Qt::Key_Escape && (drive_.isDriving() || !closes);
+    return key == Qt::Key_Escape && (drive_.isDriving() || (doesEscapeStop_ && !closes));
 }
 
 bool StopKeys::isOnButton(const QPoint &global) const {

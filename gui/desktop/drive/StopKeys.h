@@ -8,11 +8,15 @@ namespace hermes::desktop {
 
 /// STOP by hand, whatever of this program has the focus or lies open: menus, lists and dialogs see neither
 /// these keys nor a press on the STOP button first. F12 is STOP always; Space unless somebody types while
-/// nobody drives here; Esc while the robot is driven from here, or where it has nothing to close.
+/// nobody drives here; Esc while the robot is driven
+/// from here, and, when it is told to, where it has nothing to close.
 class StopKeys : public QObject {
     Q_OBJECT
 public:
     StopKeys(DriveControl &drive, QAbstractButton &button);
+
+    bool doesEscapeStop() const { return doesEscapeStop_; }
+    void letEscapeStop(bool stops) { doesEscapeStop_ = stops; }
 
 protected:
     bool eventFilter(QObject *watched, QEvent *event) override;
@@ -24,6 +28,7 @@ private:
 
     DriveControl &drive_;
     QAbstractButton &button_;
+    bool doesEscapeStop_ = false;
 };
 
 } // namespace hermes::desktop

@@ -99,6 +99,7 @@ QWidget *CommandsPanel::makeMethods() {
     filter_->setPlaceholderText(tr("Find a command"));
     filter_->setClearButtonEnabled(true);
     methods_->setObjectName("methods");
+    methods_->setAccessibleName(tr("The commands of the daemon"));
     connect(filter_, &QLineEdit::textChanged, this, &CommandsPanel::listMethods);
     connect(methods_, &QListWidget::currentItemChanged, this, [this](const QListWidgetItem *item) {
         showMethod(item ? item->data(Qt::UserRole).toString() : QString());

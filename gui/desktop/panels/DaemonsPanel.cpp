@@ -56,6 +56,7 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
                               "127.0.0.1:7450, or start the simulator with ./demo.")))
     , message_(new MessageLabel) {
     tree_->setObjectName("tree");
+    tree_->setAccessibleName(tr("Robots and their daemons"));
     tree_->setColumnCount(2);
     tree_->setHeaderLabels({tr("Daemon"), tr("State")});
     tree_->header()->setSectionResizeMode(NameColumn, QHeaderView::Stretch);

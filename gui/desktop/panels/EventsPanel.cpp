@@ -31,6 +31,7 @@ EventsPanel::EventsPanel(Events &events, Sounds &sounds, QWidget *parent)
     auto *const all = new QPushButton(tr("Acknowledge all"));
     all->setObjectName("acknowledgeAll");
     view_->setObjectName("events");
+    view_->setAccessibleName(tr("Events"));
     view_->setModel(&table_);
     view_->setRootIsDecorated(false);
     view_->setUniformRowHeights(true);

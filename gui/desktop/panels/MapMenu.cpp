@@ -42,7 +42,8 @@ QPushButton *addButtons(QDialog *dialog, const QString &accept) {
 } // namespace
 
 MapMenu::MapMenu(QWidget *parent)
-    : QMenu(parent) {
+    : QMenu(tr("Map"), parent) {
+    setObjectName("map");
     setToolTipsVisible(true);
     add(tr("&New map"), "newMap", "map.clear", &MapMenu::startNew);
     add(tr("&Open..."), "openMap", "map.load", &MapMenu::open);

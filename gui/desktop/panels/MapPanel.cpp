@@ -74,18 +74,24 @@ void MapPanel::addMap(QToolBar &bar) {
     });
 }
 
+QMenu &MapPanel::mapMenu() {
+    return *map_;
+}
+
 void MapPanel::addTools(QToolBar &bar) {
+    // "Follow\tF" is "Follow" on its button, and has its key beside it in a menu.
     const auto add = [&](const char *icon, const QString &text, const QString &toolTip, bool isCheckable) {
         QAction *const action = bar.addAction(theme::icon(QString(icon)), text);
+        action->setIconText(text.section('\t', 0, 0));
         action->setObjectName(icon);
         action->setToolTip(toolTip);
         action->setCheckable(isCheckable);
         return action;
     };
-    follow_ = add("follow", tr("Follow"), tr("Keeps the robot in the middle (F)"), true);
+    follow_ = add("follow", tr("Follow") + "\tF", tr("Keeps the robot in the middle (F)"), true);
     follow_->setChecked(view_->isFollowing());
     connect(follow_, &QAction::toggled, view_, &MapView::setFollowing);
-    fit_ = add("fit", tr("Fit"), tr("Shows the whole map, also while it grows (0)"), true);
+    fit_ = add("fit", tr("Fit") + "\t0", tr("Shows the whole map, also while it grows (0)"), true);
     connect(fit_, &QAction::toggled, view_, &MapView::setFitting);
     measure_ = add("measure", tr("Measure"), tr("Drag from one point to another"), true);
     place_ = add("place", tr("Place"), tr("Press where the robot is and drag to where it looks"), true);
@@ -100,7 +106,7 @@ void MapPanel::addTools(QToolBar &bar) {
 }
 
 void MapPanel::addLayers(QToolBar &bar) {
-    auto *const menu = new QMenu(this);
+    auto *const menu = layers_ = new QMenu(tr("Layers"), this);
     menu->setObjectName("layers");
     const auto add = [&](const QString &name, bool MapLayers::*layer) {
         QAction *const action = menu->addAction(name);

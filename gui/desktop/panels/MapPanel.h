@@ -3,6 +3,7 @@
 #include "gui/desktop/view/MapView.h"
 
 class QAction;
+class QMenu;
 class QToolBar;
 
 namespace hermes::desktop {
@@ -18,6 +19,10 @@ public:
 
     MapView &view() { return *view_; }
     const MapModel &model() const { return model_; }
+    QMenu &mapMenu();
+    QMenu &layersMenu() { return *layers_; }
+    /// Follow, fit, measure, place, relocalize.
+    QList<QAction *> tools() const { return {follow_, fit_, measure_, place_, relocalize_}; }
     /// Writes what the view shows; .svg by its name, else a picture. Error: the file cannot be written.
     Result<void> exportTo(const QString &file);
 
@@ -33,6 +38,7 @@ private:
     MapModel model_;
     MapView *view_;
     MapMenu *map_;
+    QMenu *layers_ = nullptr;
     MessageLabel *message_;
     QAction *follow_, *fit_, *measure_, *place_, *relocalize_;
 };

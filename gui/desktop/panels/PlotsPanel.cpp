@@ -49,6 +49,7 @@ PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
     , value_(new QValueAxis)
     , message_(new MessageLabel) {
     tree_->setObjectName("topics");
+    tree_->setAccessibleName(tr("Topics and their numbers"));
     tree_->setHeaderHidden(true);
     tree_->setUniformRowHeights(true);
     chart_->setTheme(theme::isDark() ? QChart::ChartThemeDark : QChart::ChartThemeLight);

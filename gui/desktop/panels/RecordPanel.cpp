@@ -68,6 +68,7 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     amount_->setWordWrap(true);
     amount_->setMinimumWidth(1);
     sessions_->setObjectName("sessions");
+    sessions_->setAccessibleName(tr("What was recorded"));
     sessions_->setHeaderLabels({tr("Recording"), tr("Size")});
     sessions_->header()->setStretchLastSection(false);
     sessions_->header()->setSectionResizeMode(0, QHeaderView::Stretch);

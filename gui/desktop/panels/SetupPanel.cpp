@@ -27,6 +27,7 @@ constexpr int mostRows = 500;
 QTreeWidget *makeTable(const QString &name, const QStringList &header) {
     auto *const table = new QTreeWidget;
     table->setObjectName(name);
+    table->setAccessibleName(header.front());
     table->setHeaderLabels(header);
     table->setUniformRowHeights(true);
     table->setRootIsDecorated(false);

@@ -132,7 +132,7 @@ void MapView::paintTool(QPainter &painter) const {
 }
 
 void MapView::wheelEvent(QWheelEvent *event) {
-    zoomAt(event->position(), std::pow(1.2, event->angleDelta().y() / 120.0));
+    zoomAt(event->position(), std::pow(step, event->angleDelta().y() / 120.0));
 }
 
 void MapView::mousePressEvent(QMouseEvent *event) {
@@ -191,9 +191,9 @@ void MapView::keyPressEvent(QKeyEvent *event) {
         return fit();
     case Qt::Key_Plus:
     case Qt::Key_Equal:
-        return zoom(1.2);
+        return zoom(step);
     case Qt::Key_Minus:
-        return zoom(1 / 1.2);
+        return zoom(1 / step);
     default:
         QWidget::keyPressEvent(event);
     }

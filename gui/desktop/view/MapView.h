@@ -29,6 +29,7 @@ public:
     bool isFitting() const { return isFitting_; }
     void setFitting(bool isFitting);
     void fit() { setFitting(true); }
+    static constexpr double step = 1.2;
     void zoom(double factor);
     /// World to screen: metres to pixels, y up.
     QTransform transform() const;

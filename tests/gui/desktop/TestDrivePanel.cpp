@@ -153,7 +153,7 @@ void TestDrivePanel::stopIsLatchedAndNeedsNoControl_data() {
     QTest::addColumn<int>("key");
     QTest::newRow("button") << 0;
     QTest::newRow("space") << int(Qt::Key_Space);
-    QTest::newRow("escape") << int(Qt::Key_Escape);
+    QTest::newRow("escape, which was told to") << int(Qt::Key_Escape);
 }
 
 void TestDrivePanel::stopIsLatchedAndNeedsNoControl() {
@@ -162,8 +162,10 @@ void TestDrivePanel::stopIsLatchedAndNeedsNoControl() {
     QVERIFY(client_->callAndWait("motor.drive", QJsonObject{{"vx", 0.3}}).ok());
     if (key == 0)
         QTest::mousePress(find<QPushButton>("stop"), Qt::LeftButton);
-    else
+    else {
+        find<QAction>("escapeStops")->setChecked(key == Qt::Key_Escape);
         QTest::keyClick(window_.get(), Qt::Key(key));
+    }
     QTRY_VERIFY(state()["estop"].toBool());
     QTRY_COMPARE(find<QPushButton>("stop")->text(), QString("STOPPED"));
     QTRY_VERIFY(!find<Stick>("stick")->isEnabled());

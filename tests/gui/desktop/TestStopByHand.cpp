@@ -5,6 +5,7 @@
 #include <QComboBox>
 #include <QFileDialog>
 #include <QMenu>
+#include <QMenuBar>
 #include <QToolButton>
 #include <QToolTip>
 
@@ -175,16 +176,25 @@ void TestStopByHand::everyMenuAndList() {
             break; // they are all alike
         }
     }
+    auto *const menus = open_->window.menuBar();
+    for (QAction *menu : menus->actions()) {
+        const QPoint middle = menus->mapToGlobal(menus->actionGeometry(menu).center());
+        stopsWhileOpen(
+            menu->text(), [middle] { click(middle); }, isPopupOpen, hand);
+        if (QTest::currentTestFailed())
+            return;
+        ++count;
+    }
     qInfo("%d menus and lists", count);
-    QVERIFY(count >= 8);
+    QVERIFY(count >= 14);
 }
 
 void TestStopByHand::everyDialog() {
     QFETCH(QString, hand);
     const auto dialog = [] {
-        return QApplication::activeWindow() && qobject_cast<QFileDialog *>(QApplication::activeWindow());
+        return QApplication::activeWindow() && qobject_cast<QDialog *>(QApplication::activeWindow());
     };
-    for (const QString &name : {QString("export"), QString("csv")}) {
+    for (const QString &name : {QString("export"), QString("csv"), QString("helpHere"), QString("about")}) {
         if (name == "csv") {
             auto *const dock = open_->window.findChild<QDockWidget *>("plots");
             dock->show();
@@ -207,7 +217,7 @@ void TestStopByHand::everyDialog() {
             },
             hand);
         for (QWidget *window : QApplication::topLevelWidgets())
-            if (qobject_cast<QFileDialog *>(window))
+            if (qobject_cast<QDialog *>(window))
                 window->close();
         if (QTest::currentTestFailed())
             return;
@@ -226,6 +236,7 @@ void TestStopByHand::aToolTip() {
 
 // Each control of each panel has the focus once: Space and Esc are STOP there, but for Space where one types.
 void TestStopByHand::everyFocus() {
+    open_->window.findChild<QAction *>("escapeStops")->setChecked(true);
     int count = 0;
     for (QDockWidget *dock : open_->window.findChildren<QDockWidget *>()) {
         dock->show();
