@@ -3,6 +3,7 @@
 #include "gui/desktop/widgets/ForeignText.h"
 
 #include <QActionGroup>
+#include <QDateTime>
 #include <QDialog>
 #include <QDialogButtonBox>
 #include <QHeaderView>
@@ -225,9 +226,8 @@ void MapMenu::write(const QString &method, QJsonObject params) {
 }
 
 void MapMenu::save() {
-    if (path_.isEmpty())
-        return saveAs();
-    write("map.save", {{"path", path_}}); // asks: who knows what has become of the map
+    const QString time = QDateTime::currentDateTime().toString("yyyy-MM-dd-HHmmss");
+    write("map.save", {{"path", path_.isEmpty() ? "map-" + time + ".csv" : path_}}); // asks where it exists
 }
 
 void MapMenu::saveAs() {

@@ -8,6 +8,7 @@
 #include <QImage>
 #include <QLabel>
 #include <QListWidget>
+#include <QMenu>
 #include <QPlainTextEdit>
 #include <QToolBar>
 #include <QToolButton>
@@ -32,6 +33,7 @@ private Q_SLOTS:
     void exported();
     void exportThatFails();
     void savedByCommand();
+    void twoClicksSaveIt();
     void mapsByTheMenu();
     void matcherGoneAndBack();
 
@@ -195,6 +197,23 @@ void TestMapPanel::savedByCommand() {
                  qPrintable(commands->findChild<QPlainTextEdit *>("answer")->toPlainText()));
 }
 
+void TestMapPanel::twoClicksSaveIt() {
+    auto *const button = panel()->findChild<QToolButton *>("mapMenu");
+    auto *const save = panel()->findChild<QAction *>("saveMap");
+    QTimer second;
+    connect(&second, &QTimer::timeout, this, [&] {
+        QMenu *const menu = button->menu();
+        if (!menu->isVisible())
+            return;
+        second.stop();
+        QTest::mouseClick(menu, Qt::LeftButton, {}, menu->actionGeometry(save).center());
+    });
+    second.start(50);
+    QTest::mouseClick(button, Qt::LeftButton); // returns when the menu is closed
+    QTRY_VERIFY2(message().contains(QRegularExpression("walls to .*/map-20[0-9-]*\\.csv on the robot")),
+                 qPrintable(message()));
+}
+
 void TestMapPanel::mapsByTheMenu() {
     const auto trigger = [this](const QString &name) {
         auto *const action = panel()->findChild<QAction *>(name);
@@ -214,9 +233,10 @@ void TestMapPanel::mapsByTheMenu() {
     };
     const int walls = model().edges().size();
     QVERIFY(walls > 0);
-    trigger("saveMap"); // has no name yet
+    panel()->findChild<QLabel *>("message")->clear();
+    trigger("saveMap"); // of the last case: asks whether to replace it
     accept();
-    QTRY_VERIFY2(message().contains("map.csv on the robot"), qPrintable(message()));
+    QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
     trigger("newMap");
     QTest::qWait(100);
     QVERIFY(!model().edges().isEmpty()); // it asks
@@ -230,12 +250,12 @@ void TestMapPanel::mapsByTheMenu() {
     QTRY_VERIFY(panel()->findChild<QAction *>("localization")->isChecked());
     trigger("openMap");
     accept(); // the newest
-    QTRY_VERIFY2(message().startsWith("Opened map.csv"), qPrintable(message()));
+    QTRY_VERIFY2(message().startsWith("Opened map-20"), qPrintable(message()));
     QTRY_COMPARE(model().edges().size(), walls);
     trigger("saveMapAs");
     accept();
     accept(); // it exists: asks whether to replace it
-    QTRY_VERIFY2(message().contains("map.csv on the robot"), qPrintable(message()));
+    QTRY_VERIFY2(message().contains(".csv on the robot"), qPrintable(message()));
     trigger("mapping");
     QTRY_COMPARE(message(), QString("The map grows."));
 }
