@@ -185,7 +185,15 @@ void DriveControl::send() {
 void DriveControl::giveBack() {
     if (motors_)
         motors_->client().call("control.release", QJsonObject(), [](const auto &) {});
+    lose();
+}
+
+/// The control, as the next state will tell; one that was asked for before tells nothing of it.
+void DriveControl::lose() {
+    if (isHolding_)
+        hold_.control.held = false;
     isHolding_ = false;
+    ++losses_;
 }
 
 void DriveControl::halt() {
@@ -208,8 +216,9 @@ QJsonObject DriveControl::named(const QString &method) const {
 }
 
 void DriveControl::stop() {
+    lose();
     commanded_ = {};
-    isDriving_ = isHolding_ = false;
+    isDriving_ = false;
     mustCentre_ = isAnyHeld();
     stop_.press();
     Q_EMIT changed();
@@ -231,9 +240,11 @@ void DriveControl::poll() {
     if (!motors_ || !motors_->isConnected() || isPolling_)
         return;
     isPolling_ = true;
-    motors_->call("motor.state", {}, this, [this](const Result<QJsonValue> &state) {
+    motors_->call("motor.state", {}, this, [this, losses = losses_](const Result<QJsonValue> &state) {
         isPolling_ = false;
-        if (state)
+        if (losses != losses_)
+            poll();
+        else if (state)
             onState(*state);
     });
 }

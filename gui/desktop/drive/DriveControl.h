@@ -83,6 +83,7 @@ private:
     void ask();
     QJsonObject named(const QString &method) const;
     void giveBack();
+    void lose();
     void send();
     void poll();
     void onState(const QJsonValue &state);
@@ -103,6 +104,7 @@ private:
     QMap<QString, Input> inputs_;
     MotionHold hold_;
     Twist2D most_{0.5, 0.5, 1}, commanded_, measured_;
+    int losses_ = 0; ///< of the control
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
     double limit_ = 0.4;

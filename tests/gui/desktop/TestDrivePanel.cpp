@@ -95,8 +95,12 @@ void TestDrivePanel::stickDrivesAndLettingGoStops() {
     QTRY_COMPARE(find<QLabel>("lease")->text(), QString("control: you"));
     QTRY_VERIFY(find<QLabel>("commanded0")->text().toDouble() > 0.3);
     letGo();
+    QTimer eye; // it is no other client that has the control
+    connect(&eye, &QTimer::timeout, this, [this] { QVERIFY(!find<QPushButton>("takeOver")->isVisible()); });
+    eye.start(10);
     QTRY_COMPARE(commanded("vx"), 0.0);
     QTRY_VERIFY(speed() < 0.01);
+    QTest::qWait(600); // its state was told meanwhile
     QTRY_COMPARE(find<QLabel>("lease")->text(), QString("control free"));
 }
 
