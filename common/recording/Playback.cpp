@@ -44,6 +44,15 @@ void Playback::seek(double time_s) {
     change([&] { seek_ns_ = position_ns_ = std::int64_t(time_s * 1e9); });
 }
 
+void Playback::setSpeed(double speed) {
+    change([&] {
+        hold();
+        if (options_.speed <= 0) // nothing was waited for
+            begin_ns_ = position_ns_;
+        options_.speed = speed;
+    });
+}
+
 void Playback::change(const std::function<void()> &what) {
     const std::lock_guard<std::mutex> lock(mutex_);
     what();

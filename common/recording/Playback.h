@@ -35,7 +35,10 @@ public:
     void stop();
     void setPaused(bool paused);
     void seek(double time_s);
+    /// The time of the replay goes on from where it is.
+    void setSpeed(double speed);
     Status status() const;
+    /// Of the thread that calls setSpeed().
     const Options &options() const { return options_; }
 
     /// Until this time of the replay has come. The playing thread's, as what follows.

@@ -8,6 +8,10 @@ namespace {
 
 constexpr const char *stateNames[]{"none", "live", "replay", "ended"};
 
+Field speedField() {
+    return Field::number("speed", "Of the replay: 1 real time, 0 as fast as possible").range(0, 1000);
+}
+
 } // namespace
 
 ReplaySource::ReplaySource(const QString &what, const QString &logger, const Settings &settings,
@@ -108,6 +112,7 @@ Command ReplaySource::openCommand(const QString &summary) {
     return Command("source.open", summary)
         .param(Field::boolean("live", "Show what is received").optional())
         .param(Field::text("recording", "Recording of this logger to replay, by its name").optional())
+        .param(speedField().byDefault(1))
         .param(Field::boolean("paused", "The replay waits for source.pause").byDefault(false))
         .param(Field::number("delay_s", "Time of the replay at which the recording begins")
                    .unit("s")
@@ -135,6 +140,13 @@ Command ReplaySource::seekCommand() {
             .example({{"t_s", 60}},
                      QJsonObject{{"state", "replay"}, {"position_s", 60}, {"duration_s", 600}}),
         [this](const Call &call) { playback_.seek(call.number("t_s")); });
+}
+
+Command ReplaySource::speedCommand() {
+    return whileReplaying(Command("source.speed", "The replay goes on faster or slower")
+                              .param(speedField())
+                              .example({{"speed", 2}}, QJsonObject{{"state", "replay"}, {"speed", 2}}),
+                          [this](const Call &call) { playback_.setSpeed(call.number("speed")); });
 }
 
 Command ReplaySource::whileReplaying(Command command, const std::function<void(const Call &)> &action) {

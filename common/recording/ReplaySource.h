@@ -48,10 +48,11 @@ public:
     /// All that was played is shown; or why it ended before.
     void end(const Result<void> &result);
 
-    /// source.open {live, recording, paused, delay_s}; a logger adds what else it takes.
+    /// source.open {live, recording, speed, paused, delay_s}; a logger adds what else it takes.
     Command openCommand(const QString &summary);
     Command pauseCommand();
     Command seekCommand();
+    Command speedCommand();
 
 private:
     Result<QJsonValue> open(const Call &call);

@@ -22,6 +22,7 @@ void ChunkQueue::open() {
     waiting_.clear();
     lostNow_ = 0;
     lost_ = 0;
+    jumps_ = false;
 }
 
 void ChunkQueue::close() {
@@ -39,9 +40,14 @@ bool ChunkQueue::push(const char *bytes, std::size_t size, const Arrival &arriva
         return false;
     }
     const bool wasEmpty = waiting_.chunks.empty();
-    waiting_.chunks.push_back({arrival, size, std::exchange(lostNow_, 0)});
+    waiting_.chunks.push_back({arrival, size, std::exchange(lostNow_, 0), std::exchange(jumps_, false)});
     waiting_.bytes.insert(waiting_.bytes.end(), bytes, bytes + size);
     return wasEmpty;
+}
+
+void ChunkQueue::jump() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    jumps_ = true;
 }
 
 bool ChunkQueue::fits(std::size_t size) const {

@@ -14,6 +14,7 @@ struct ChunkBatch {
         Arrival arrival;
         std::size_t size = 0;         ///< bytes
         std::uint64_t lostBefore = 0; ///< bytes dropped just before it
+        bool isJump = false;          ///< it does not follow the chunk before: a replay was sought
     };
     std::vector<Chunk> chunks;
     std::vector<char> bytes;     ///< of all chunks
@@ -36,6 +37,8 @@ public:
 
     /// True when the queue was empty before.
     bool push(const char *bytes, std::size_t size, const Arrival &arrival);
+    /// The next chunk does not follow the last one.
+    void jump();
     /// Whether a chunk of this size would be taken.
     bool hasRoom(std::size_t size) const;
     /// Gives what waits; batch keeps its memory for the next time.
@@ -52,6 +55,7 @@ private:
     ChunkBatch waiting_;
     std::uint64_t lostNow_ = 0; ///< since the last chunk
     std::uint64_t lost_ = 0;
+    bool jumps_ = false; ///< since the last chunk
 };
 
 } // namespace hermes::seriallogger

@@ -29,11 +29,10 @@ void SerialLogger::declareTopics() {
 }
 
 void SerialLogger::declareSourceCommands() {
-    addCommand(
-        source_
-            .openCommand("Shows lines and fixes of the ports, or of a recording; the ports are "
-                         "received and recorded all the same")
-            .param(Field::number("speed", "Of the replay: 1 real time").range(0.001, 1000).byDefault(1)));
+    addCommand(source_.openCommand("Shows lines and fixes of the ports, or of a recording; the ports are "
+                                   "received and recorded all the same"));
+    addCommand(source_.seekCommand());
+    addCommand(source_.speedCommand());
     addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic serial says, now")
                    .needs(Role::Observer)
@@ -67,6 +66,13 @@ void SerialLogger::declareCommands() {
                    .gives<MarkAnswer>()
                    .example({{"text", "at the door"}}, QJsonObject{{"stamp", 1.7e9}, {"mono", 4711.5}})
                    .handler([this](const Call &call) { return mark(call); }));
+    addCommand(Command("record.marks", "The marks of a recording that has ended, the first 1000 of them")
+                   .needs(Role::Observer)
+                   .param(Field::text("name", "Of the recording"))
+                   .gives<std::vector<RecordedMark>>()
+                   .example({{"name", "drive"}},
+                            QJsonArray{QJsonObject{{"t_s", 12.5}, {"stamp", 1.7e9}, {"text", "at the door"}}})
+                   .asyncHandler([this](const Call &call, const Reply &reply) { listMarks(call, reply); }));
     addCommand(
         Command("send", "Sends bytes to the device of a port")
             .param(Field::text("port", "Which"))

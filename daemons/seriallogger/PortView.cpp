@@ -41,6 +41,11 @@ void PortView::process(const Sinks &sinks) {
             lines_.skip(chunk.lostBefore, sinks.line);
             fixes_.skip();
         }
+        if (chunk.isJump) {
+            lines_.skip(0, sinks.line);
+            fixes_.pause(fixSink(sinks));
+            fixes_.skip();
+        }
         const std::string_view bytes(next, chunk.size);
         lines_.feed(bytes, chunk.arrival, sinks.line);
         if (kind_ == PortSettings::View::Nmea)

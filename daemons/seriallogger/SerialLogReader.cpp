@@ -52,6 +52,28 @@ Result<SerialLogReader::Piece> SerialLogReader::next() {
     return piece;
 }
 
+Result<void> SerialLogReader::seek(std::int64_t mono_ns) {
+    const auto goTo = [this](qint64 number) {
+        return index_.seek(qint64(headerSize) + number * qint64(recordSize));
+    };
+    qint64 first = 0, last = (index_.size() - qint64(headerSize)) / qint64(recordSize);
+    while (first < last) {
+        const qint64 middle = (first + last) / 2;
+        const std::optional<Record> record = goTo(middle) ? readRecord() : std::nullopt;
+        if (!record)
+            return wrong("cannot be read: " + index_.errorString());
+        if (record->arrival.mono_ns < mono_ns)
+            first = middle + 1;
+        else
+            last = middle;
+    }
+    following_ = goTo(first) ? readRecord() : std::nullopt;
+    offset_ = end_ = following_ ? std::min<quint64>(following_->offset, size_) : size_;
+    if (!raw_.seek(qint64(offset_)))
+        return diskError(raw_.fileName() + ": cannot be read: " + raw_.errorString(), raw_.fileName());
+    return {};
+}
+
 std::optional<Record> SerialLogReader::readRecord() {
     unsigned char bytes[recordSize];
     if (index_.read(reinterpret_cast<char *>(bytes), recordSize) != qint64(recordSize))

@@ -24,6 +24,9 @@ public:
     /// The next bytes that came in together, or an empty piece at the end. What is wrong with the index is an
     /// error.
     Result<Piece> next();
+    /// Goes on with the first bytes that came in at this time or later; stamps that go back are not told
+    /// apart.
+    Result<void> seek(std::int64_t mono_ns);
 
 private:
     std::optional<serialindex::Record> readRecord();

@@ -4,6 +4,7 @@
 #include "common/recording/DiskError.h"
 #include "common/recording/SessionFolder.h"
 #include "daemons/seriallogger/SerialExport.h"
+#include "daemons/seriallogger/SerialMarks.h"
 #include "protocol/wire/Fields.h"
 
 #include <QDir>
@@ -32,6 +33,7 @@ SerialLogger::SerialLogger()
     declareTopics();
     declareCommands();
     exports_.setMaxThreadCount(1);
+    reads_.setMaxThreadCount(1);
     connect(&second_, &QTimer::timeout, this, &SerialLogger::tick);
     viewTimer_.setSingleShot(true);
     connect(&viewTimer_, &QTimer::timeout, this, &SerialLogger::processViews);
@@ -82,6 +84,7 @@ void SerialLogger::stop() {
         port->thread().end();
     recording_.close();
     exports_.waitForDone();
+    reads_.waitForDone();
 }
 
 LoggedPort *SerialLogger::findPort(const QString &name) const {
@@ -144,6 +147,17 @@ void SerialLogger::exportRecording(const Call &call, const Reply &reply) {
         const Result<quint64> count = job.run(cancelExports_);
         reply.give(count ? Result<QJsonValue>(asJson(ExportAnswer{job.target, *count}))
                          : Result<QJsonValue>(count.error()));
+    }));
+}
+
+void SerialLogger::listMarks(const Call &call, const Reply &reply) {
+    const Result<StoredRecording> stored =
+        StoredRecording::find(settings().text("record.folder"), call.text("name"), identity().name);
+    if (!stored)
+        return reply.error(stored.error());
+    reads_.start(QRunnable::create([recording = *stored, reply] {
+        const Result<std::vector<RecordedMark>> marks = readMarks(recording);
+        reply.give(marks ? Result<QJsonValue>(asJson(*marks)) : Result<QJsonValue>(marks.error()));
     }));
 }
 

@@ -36,6 +36,7 @@ private:
     Result<QJsonValue> mark(const Call &call);
     void send(const Call &call, const Reply &reply);
     void exportRecording(const Call &call, const Reply &reply);
+    void listMarks(const Call &call, const Reply &reply);
 
     ReplaySource::Actions sourceActions();
     void openLive();
@@ -63,6 +64,7 @@ private:
     QTimer settleTimer_; ///< for fixes that nothing more comes for
     QElapsedTimer sinceTick_;
     QThreadPool exports_; ///< one after the other
+    QThreadPool reads_;   ///< of marks, which wait for no export
     std::atomic<bool> cancelExports_{false};
 };
 

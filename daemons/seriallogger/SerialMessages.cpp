@@ -119,6 +119,16 @@ const Fields<MarkAnswer> &fieldsOf(Of<MarkAnswer>) {
     return fields;
 }
 
+const Fields<RecordedMark> &fieldsOf(Of<RecordedMark>) {
+    using M = RecordedMark;
+    static const auto fields =
+        Fields<M>()
+            .add("t_s", &M::t_s, "After the beginning, by a clock that never jumps", "s")
+            .add("stamp", &M::stamp, "Since the Unix epoch", "s")
+            .add("text", &M::text, "What mark was given");
+    return fields;
+}
+
 const Fields<SendAnswer> &fieldsOf(Of<SendAnswer>) {
     static const auto fields = Fields<SendAnswer>().add("sent", &SendAnswer::sent, "Bytes", "byte");
     return fields;

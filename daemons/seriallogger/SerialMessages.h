@@ -60,6 +60,12 @@ struct MarkAnswer {
     double stamp = 0, mono = 0;
 };
 
+/// Of what record.marks gives a list.
+struct RecordedMark {
+    double t_s = 0, stamp = 0;
+    QString text;
+};
+
 /// What send gives.
 struct SendAnswer {
     qint64 sent = 0;
@@ -80,6 +86,7 @@ const Fields<NmeaCounts> &fieldsOf(Of<NmeaCounts>);
 const Fields<PortStatus> &fieldsOf(Of<PortStatus>);
 const Fields<SerialMessage> &fieldsOf(Of<SerialMessage>);
 const Fields<MarkAnswer> &fieldsOf(Of<MarkAnswer>);
+const Fields<RecordedMark> &fieldsOf(Of<RecordedMark>);
 const Fields<SendAnswer> &fieldsOf(Of<SendAnswer>);
 const Fields<ExportAnswer> &fieldsOf(Of<ExportAnswer>);
 

@@ -13,6 +13,7 @@ namespace hermes::seriallogger {
 namespace {
 
 constexpr double slack_s = 60;
+constexpr double latest_s = 4e9; // of a clock
 constexpr std::chrono::milliseconds roomPeriod{5};
 
 /// Those of the recording, or what is usual where its sidecar does not tell.
@@ -101,26 +102,48 @@ SerialPlayer::Track *SerialPlayer::nextTrack() const {
 
 void SerialPlayer::run() {
     while (Track *const track = nextTrack()) {
-        if (!wait(*track))
+        const Playback::Turn turn = wait(*track);
+        if (turn == Playback::Turn::End)
             return;
-        const QByteArray &bytes = track->piece.bytes;
-        track->view->queue().push(bytes.constData(), std::size_t(bytes.size()), track->piece.arrival);
-        filled_();
-        if (const Result<void> advanced = advance(*track); !advanced)
-            return end_(advanced);
+        const Result<void> done = turn == Playback::Turn::Seek ? goTo(playback_.takeSeek()) : play(*track);
+        if (!done)
+            return end_(done);
     }
     end_(missing_);
 }
 
-/// Until the piece is due and there is room for it; false when the replay is stopped.
-bool SerialPlayer::wait(const Track &track) {
-    while (playback_.waitFor(track.time_ns) == Playback::Turn::Due) {
-        if (track.view->queue().hasRoom(std::size_t(track.piece.bytes.size())))
-            return true;
+/// Until the piece is due and there is room for it.
+Playback::Turn SerialPlayer::wait(const Track &track) {
+    for (;;) {
+        const Playback::Turn turn = playback_.waitFor(track.time_ns);
+        if (turn != Playback::Turn::Due || track.view->queue().hasRoom(std::size_t(track.piece.bytes.size())))
+            return turn;
         if (!playback_.rest(roomPeriod))
-            break;
+            return Playback::Turn::End;
     }
-    return false;
+}
+
+Result<void> SerialPlayer::play(Track &track) {
+    const QByteArray &bytes = track.piece.bytes;
+    track.view->queue().push(bytes.constData(), std::size_t(bytes.size()), track.piece.arrival);
+    filled_();
+    return advance(track);
+}
+
+Result<void> SerialPlayer::goTo(std::int64_t time_ns) {
+    const double begin_s =
+        std::clamp(startMono_s_ - delay_s_, -latest_s, latest_s); // whatever the sidecar says
+    playback_.jump(time_ns);
+    for (const auto &track : tracks_) {
+        track->view->queue().jump();
+        track->time_ns = 0;
+        Result<void> found = track->reader.seek(time_ns + std::int64_t(begin_s * 1e9));
+        if (found)
+            found = advance(*track);
+        if (!found)
+            return found;
+    }
+    return {};
 }
 
 } // namespace hermes::seriallogger

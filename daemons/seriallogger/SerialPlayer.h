@@ -43,7 +43,9 @@ private:
     Result<void> advance(Track &track);
     Track *nextTrack() const;
     void run();
-    bool wait(const Track &track);
+    Playback::Turn wait(const Track &track);
+    Result<void> play(Track &track);
+    Result<void> goTo(std::int64_t time_ns);
 
     double delay_s_ = 0;
     double startMono_s_ = 0;

@@ -113,9 +113,6 @@ void VelodyneLogger::declareSourceCommands() {
             .param(Field::integer("port", "Of the replay only the sensor that sends to this port is decoded")
                        .range(1, 65535)
                        .optional())
-            .param(Field::number("speed", "Of the replay: 1 real time, 0 as fast as possible without loss")
-                       .range(0, 1000)
-                       .byDefault(1))
             .param(Field::boolean("loop", "The replay begins anew at its end").byDefault(false)));
     addCommand(Command("source.close", "Stops receiving or replaying")
                    .returnsNull()
@@ -126,6 +123,7 @@ void VelodyneLogger::declareSourceCommands() {
                        return QJsonValue();
                    }));
     addCommand(source_.seekCommand());
+    addCommand(source_.speedCommand());
     addCommand(source_.pauseCommand());
     addCommand(Command("source.status", "What the topic lidar says, now")
                    .needs(Role::Observer)

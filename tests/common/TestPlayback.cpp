@@ -13,6 +13,7 @@ private Q_SLOTS:
     void beginsWhenItGoesOn_data();
     void beginsWhenItGoesOn();
     void stopsWhileItWaits();
+    void goesOnAtAnotherSpeed();
 };
 
 void TestPlayback::beginsWhenItGoesOn_data() {
@@ -40,6 +41,28 @@ void TestPlayback::stopsWhileItWaits() {
     playback.start({1, false, true}, [&playback] { playback.waitFor(1000000000); });
     playback.stop();
     QVERIFY(playback.status().paused);
+}
+
+/// From where it is, also after it waited for nothing.
+void TestPlayback::goesOnAtAnotherSpeed() {
+    constexpr std::int64_t second_ns = 1000000000, hour_ns = 3600 * second_ns;
+    std::atomic<int> played{0};
+    Playback playback;
+    playback.start({0, false, false}, [&] {
+        for (const std::int64_t time_ns : {hour_ns, hour_ns, hour_ns + second_ns / 10, 3 * hour_ns})
+            if (playback.waitFor(time_ns) == Playback::Turn::Due && ++played == 2)
+                playback.setPaused(true);
+    });
+    QTRY_COMPARE(played.load(), 2);
+    playback.setSpeed(1);
+    playback.setPaused(false);
+    QElapsedTimer timer;
+    timer.start();
+    QTRY_COMPARE(played.load(), 3);
+    QVERIFY(timer.elapsed() >= 50);
+    QVERIFY(!QTest::qWaitFor([&] { return played == 4; }, 200)); // two hours away
+    playback.setSpeed(1e9);
+    QTRY_COMPARE(played.load(), 4);
 }
 
 QTEST_GUILESS_MAIN(TestPlayback)

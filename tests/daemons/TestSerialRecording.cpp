@@ -21,6 +21,8 @@ private Q_SLOTS:
     void marksNeedARecording();
     void exportsToCsv();
     void replaysARecording();
+    void seeksInAReplay();
+    void listsMarks();
 };
 
 void TestSerialRecording::recordsASerialLine() {
@@ -177,6 +179,90 @@ void TestSerialRecording::replaysARecording() {
     QVERIFY(QFile::remove(folder_->filePath("recordings/run/seriallogger-gps.index")));
     QVERIFY(failure("source.open", {{"recording", "run"}}).is(ErrorCode::InputOutput));
     QCOMPARE(call("source.status")["source"]["state"].toString(), "live");
+}
+
+/// Lines that came 0.3 s apart; sought while it waits, forth, back, and beyond its end.
+void TestSerialRecording::seeksInAReplay() {
+    launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}}});
+    QTRY_VERIFY(isOpen("gps"));
+    QStringList lines;
+    int fixes = 0;
+    client_->subscribe("lines", {{"queue", 100}},
+                       [&](const TopicUpdate &update) { lines << update.json()["text"].toString(); });
+    client_->subscribe("fix", {{"queue", 100}}, [&](const TopicUpdate &) { ++fixes; });
+    QTRY_VERIFY(daemon_->hasSubscribers("lines") && daemon_->hasSubscribers("fix"));
+    QVERIFY(failure("source.seek", {{"t_s", 1}}).is(ErrorCode::NotReady)); // it is live
+    call("record.start", {{"name", "run"}});
+    const auto recordLine = [&](const QByteArray &line) {
+        const int before = lines.size();
+        QTest::qWait(300);
+        device_->write(line);
+        QTRY_COMPARE(lines.size(), before + 1);
+    };
+    recordLine("one\r\n");
+    recordLine("two\r\n");
+    recordLine(rmc);
+    recordLine(gga);
+    QTRY_COMPARE(fixes, 1);
+    const QJsonValue status = call("record.stop");
+    const double length_s = stampNow() - status["start"].toDouble();
+    const double delay_s = 5;
+    const auto source = [&] { return call("source.status")["source"]; };
+    const auto seek = [&](double t_s) {
+        lines.clear();
+        fixes = 0;
+        return call("source.seek", {{"t_s", t_s}});
+    };
+    call("source.open", {{"recording", "run"}, {"paused", true}, {"delay_s", delay_s}});
+    QCOMPARE(seek(delay_s + 0.45)["position_s"].toDouble(), delay_s + 0.45);
+    QVERIFY(source()["paused"].toBool());
+    QVERIFY(lines.isEmpty());
+    call("source.pause", {{"paused", false}});
+    QTRY_COMPARE(lines.value(0), QString("two"));
+    seek(delay_s + 0.15);
+    QTRY_COMPARE(lines.value(0), QString("one"));
+    QCOMPARE(call("source.speed", {{"speed", 0.001}})["speed"].toDouble(), 0.001);
+    seek(0); // before it begins
+    QTest::qWait(300);
+    QCOMPARE(lines.size(), 0);
+    call("source.speed", {{"speed", 0}}); // nothing is waited for
+    QTRY_COMPARE(lines.size(), 4);
+    QTRY_COMPARE(fixes, 1);
+    QTRY_COMPARE(source()["state"].toString(), QString("ended"));
+    QVERIFY(failure("source.seek", {{"t_s", 0}}).is(ErrorCode::NotReady));
+    call("source.open", {{"recording", "run"}, {"paused", true}});
+    seek(length_s + 100);
+    QTRY_COMPARE(source()["state"].toString(), QString("ended"));
+    QCOMPARE(source()["error"], QJsonValue(QJsonValue::Undefined));
+    QVERIFY(lines.isEmpty());
+    QVERIFY(failure("source.seek", {{"t_s", -1}}).is(ErrorCode::InvalidParams));
+    QVERIFY(failure("source.speed", {{"speed", -1}}).is(ErrorCode::InvalidParams));
+}
+
+void TestSerialRecording::listsMarks() {
+    launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}}});
+    const QJsonValue begun = call("record.start", {{"name", "run"}});
+    QVERIFY(failure("record.marks", {{"name", "run"}}).is(ErrorCode::NotReady)); // it has not ended
+    QTest::qWait(200);
+    const QJsonValue first = call("mark", {{"text", "at the door"}});
+    call("mark", {{"text", QString("\u00fc \"event\":\"mark\"")}});
+    call("record.stop");
+    QFile events(folder_->filePath("recordings/run/seriallogger-events.jsonl"));
+    QVERIFY(events.open(QIODevice::Append));
+    events.write("no JSON\n{\"event\":\"mark\",\"text\":7}\n[1]\n" + QByteArray(100000, 'x'));
+    events.close();
+    const QJsonArray marks = call("record.marks", {{"name", "run"}}).toArray();
+    QCOMPARE(marks.size(), 2);
+    QCOMPARE(marks[0]["text"].toString(), QString("at the door"));
+    QCOMPARE(marks[0]["stamp"], first["stamp"]);
+    QVERIFY(std::abs(marks[0]["t_s"].toDouble() - (first["stamp"].toDouble() - begun["start"].toDouble())) <
+            0.1);
+    QVERIFY(marks[1]["t_s"].toDouble() >= marks[0]["t_s"].toDouble());
+    QCOMPARE(marks[1]["text"].toString(), QString("\u00fc \"event\":\"mark\""));
+    QVERIFY(events.remove());
+    QCOMPARE(call("record.marks", {{"name", "run"}}).toArray().size(), 0);
+    QVERIFY(failure("record.marks", {{"name", "../run"}}).is(ErrorCode::InvalidParams));
+    QVERIFY(failure("record.marks", {{"name", "none"}}).is(ErrorCode::InputOutput));
 }
 
 QTEST_GUILESS_MAIN(TestSerialRecording)

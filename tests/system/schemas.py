@@ -155,8 +155,10 @@ def script(ports):
     yield from each("motorcontrol", ("motor.estop", {}), ("motor.reset_estop", {}), ("odometry.reset", {}), ("control.release", {}))
     for name in ("velodynelogger", "seriallogger"):
         yield from each(name, ("record.stop", {}), ("record.list", {}), ("source.open", {"recording": "drive", "paused": True}),
-                        ("source.status", {}), ("source.pause", {"paused": False}))
-    yield from each("velodynelogger", ("source.seek", {"t_s": 1}), ("source.close", {}))
+                        ("source.status", {}), ("source.seek", {"t_s": 1}), ("source.speed", {"speed": 0.5}),
+                        ("source.pause", {"paused": False}))
+    yield from each("seriallogger", ("record.marks", {"name": "drive"}))
+    yield from each("velodynelogger", ("source.close", {}))
     yield "seriallogger", "record.export", {"name": "drive", "port": "gps"}
     yield from each("softwaretrigger", *((method, {"id": "tick"}) for method in ("trigger.disarm", "trigger.arm", "trigger.remove")))
     sleeper = {"name": "sleeper"}
