@@ -28,7 +28,8 @@ bool SessionMembers::add(const QString &name, Client &client,
     const bool isKnown =
         std::any_of(all.begin(), all.end(), [&](const SessionMember &one) { return one.name == name; });
     const QString fullName = isKnown ? name + '@' + client.address().section("//", -1) : name;
-    all.push_back({fullName, &client, has("mark"), has("source.open")});
+    all.push_back({fullName, &client, has("mark"), has("source.open"), has("source.seek"),
+                   has("source.speed"), has("record.marks")});
     return true;
 }
 
@@ -43,7 +44,7 @@ void callAll(const std::vector<SessionCall> &calls, const QString &method, std::
     for (std::size_t i = 0; i < calls.size(); ++i) {
         const auto take = [round, i](const Result<QJsonValue> &result) { round->replies[i].result = result; };
         Client *const client = calls[i].member.client;
-        if (client && method == "record.list")
+        if (client && (method == "record.list" || method == "record.marks"))
             client->callForMuch(method, calls[i].params, take, timeout);
         else if (client)
             client->call(method, calls[i].params, take, timeout);

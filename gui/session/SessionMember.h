@@ -13,8 +13,10 @@ namespace hermes {
 struct SessionMember {
     QString name; ///< "seriallogger"; with "@HOST:PORT" where several have it
     QPointer<Client> client;
-    bool marks = false;   ///< it has the command mark
-    bool replays = false; ///< and source.open
+    bool marks = false;                    ///< it has the command mark
+    bool replays = false;                  ///< and source.open
+    bool seeks = false, setsSpeed = false; ///< source.seek and source.speed
+    bool listsMarks = false;               ///< and record.marks
 };
 
 /// All loggers of a robot.

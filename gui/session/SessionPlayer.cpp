@@ -6,12 +6,29 @@ namespace hermes {
 namespace {
 
 constexpr std::chrono::milliseconds statusPeriod{200};
+constexpr double longest_s = 1e7; // as source.seek takes it
 
 Result<void> firstError(const SessionReplies &replies) {
     for (const SessionReply &reply : replies)
         if (!reply.result)
             return Error(ErrorCode(reply.result.error().code), reply.complaint());
     return {};
+}
+
+bool isNotReady(const SessionReply &reply) {
+    return !reply.result && reply.result.error().is(ErrorCode::NotReady);
+}
+
+/// One that has come to its end takes no orders; if it is not that, source.status will tell.
+Result<void> firstRefusal(SessionReplies replies) {
+    replies.erase(std::remove_if(replies.begin(), replies.end(), isNotReady), replies.end());
+    return firstError(replies);
+}
+
+/// Seconds as they can be; 0: not known.
+double secondsOf(const QJsonValue &value) {
+    const double seconds = value.toDouble();
+    return seconds >= 0 && seconds <= longest_s ? seconds : 0;
 }
 
 } // namespace
@@ -37,6 +54,10 @@ void SessionPlayer::play(const RecordedSession &session, const Options &options)
     options_ = options;
     isPlaying_ = true;
     isEnding_ = false;
+    isPaused_ = reopens_ = false;
+    seekWanted_ = speedWanted_ = std::nullopt;
+    pauseWanted_.reset();
+    begin_s_ = 0;
     playing_.clear();
     std::vector<SessionMember> players;
     auto &parts = session_.parts;
@@ -51,8 +72,44 @@ void SessionPlayer::play(const RecordedSession &session, const Options &options)
 void SessionPlayer::end() {
     next_.reset();
     isEnding_ = isPlaying_;
-    if (timer_.isActive())
+    obeySoon();
+}
+
+void SessionPlayer::obeySoon() {
+    if (timer_.isActive()) // else a reply is waited for
         timer_.start(std::chrono::milliseconds(0));
+}
+
+bool SessionPlayer::canSeek() const {
+    return std::all_of(session_.parts.begin(), session_.parts.end(),
+                       [](const SessionPart &part) { return part.member.seeks; });
+}
+
+bool SessionPlayer::canSetSpeed() const {
+    return std::all_of(session_.parts.begin(), session_.parts.end(),
+                       [](const SessionPart &part) { return part.member.setsSpeed; });
+}
+
+void SessionPlayer::seek(double t_s) {
+    if (!isPlaying_ || !canSeek() || !(t_s >= 0))
+        return;
+    seekWanted_ = std::min(t_s, longest_s);
+    obeySoon();
+}
+
+void SessionPlayer::setPaused(bool isPaused) {
+    if (!isPlaying_)
+        return;
+    pauseWanted_ = isPaused;
+    obeySoon();
+}
+
+void SessionPlayer::setSpeed(double speed) {
+    if (!isPlaying_ || !canSetSpeed())
+        return;
+    options_.speed = speed; // of those that are opened anew, too
+    speedWanted_ = speed;
+    obeySoon();
 }
 
 /// False: all go live, because of an error or because somebody said so.
@@ -94,29 +151,80 @@ void SessionPlayer::onOpened(const SessionReplies &replies) {
     for (const SessionReply &reply : replies)
         if ((reply.result || reply.result.error().is(ErrorCode::TimedOut)) && !isPlayed(reply.member))
             playing_.push_back(reply.member);
-    if (goesOn(firstError(replies)))
-        call(callsOf(playing_, {{"paused", false}}), "source.pause", &SessionPlayer::onReleased);
+    if (!goesOn(firstError(replies)))
+        return;
+    if (begin_s_ > 0)
+        order("source.seek", {{"t_s", begin_s_}}, &SessionPlayer::onPlaced);
+    else
+        onPlaced({});
+}
+
+void SessionPlayer::onPlaced(const SessionReplies &replies) {
+    if (!goesOn(firstRefusal(replies)))
+        return;
+    if (isPaused_)
+        poll();
+    else
+        order("source.pause", {{"paused", false}}, &SessionPlayer::onReleased);
 }
 
 void SessionPlayer::onReleased(const SessionReplies &replies) {
-    if (goesOn(firstError(replies)))
+    if (goesOn(firstRefusal(replies)))
         poll();
 }
 
+void SessionPlayer::order(const QString &method, const QJsonObject &params, Next next) {
+    call(callsOf(playing_, params), method, next);
+}
+
+void SessionPlayer::orderPause() {
+    isPaused_ = *std::exchange(pauseWanted_, std::nullopt);
+    order("source.pause", {{"paused", isPaused_}}, &SessionPlayer::onObeyed);
+}
+
+void SessionPlayer::onObeyed(const SessionReplies &replies) {
+    if (goesOn(firstRefusal(replies)))
+        poll();
+}
+
+void SessionPlayer::onSought(const SessionReplies &replies) {
+    reopens_ = std::any_of(replies.begin(), replies.end(), isNotReady);
+    onObeyed(replies);
+}
+
+/// What was ordered meanwhile is done, then they are asked where they are. They wait before they are sought
+/// and go on after it.
 void SessionPlayer::poll() {
-    call(callsOf(playing_), "source.status", &SessionPlayer::onPositions);
+    if (const auto speed = std::exchange(speedWanted_, std::nullopt))
+        return order("source.speed", {{"speed", *speed}}, &SessionPlayer::onObeyed);
+    if (pauseWanted_ == true)
+        return orderPause();
+    if (const auto t_s = std::exchange(seekWanted_, std::nullopt)) {
+        begin_s_ = *t_s;
+        return order("source.seek", {{"t_s", *t_s}}, &SessionPlayer::onSought);
+    }
+    if (pauseWanted_ && !reopens_)
+        return orderPause();
+    order("source.status", {}, &SessionPlayer::onPositions);
 }
 
 void SessionPlayer::onPositions(const SessionReplies &replies) {
     const Result<bool> atEnd = isAtEnd(replies);
     if (!goesOn(atEnd ? Result<void>() : atEnd.error()))
         return;
-    if (!*atEnd)
-        timer_.start(statusPeriod);
+    if (std::exchange(reopens_, false))
+        return open();
+    begin_s_ = 0;
+    if (!*atEnd || isPaused())
+        timer_.start(hasOrders() ? std::chrono::milliseconds(0) : statusPeriod);
     else if (options_.loop)
         open();
     else
         goLive({});
+}
+
+bool SessionPlayer::hasOrders() const {
+    return seekWanted_ || speedWanted_ || pauseWanted_;
 }
 
 /// Where the logger keeps its part.
@@ -131,6 +239,7 @@ Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
     if (const Result<void> fine = firstError(replies); !fine)
         return fine.error();
     bool end = true;
+    std::optional<bool> isPaused;
     double position_s = 0, duration_s = 0;
     for (const SessionReply &reply : replies) {
         const QString &name = reply.member.name;
@@ -149,10 +258,14 @@ Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
                 QString("%1: its source was changed to \"%2\" meanwhile").arg(name, isOurs ? state : shown));
         }
         end = end && state == "ended";
-        position_s = std::max(position_s, source["position_s"].toDouble());
-        duration_s = std::max(duration_s, source["duration_s"].toDouble());
+        if (state == "replay" && source["paused"].isBool())
+            isPaused = isPaused.value_or(true) && source["paused"].toBool();
+        position_s = std::max(position_s, secondsOf(source["position_s"]));
+        duration_s = std::max(duration_s, secondsOf(source["duration_s"]));
     }
-    Q_EMIT progress(position_s, duration_s);
+    isPaused_ = isPaused.value_or(isPaused_); // others may let them wait, too
+    if (!seekWanted_ && !reopens_)
+        Q_EMIT progress(position_s, duration_s);
     return end;
 }
 

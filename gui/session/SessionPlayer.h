@@ -7,7 +7,8 @@
 namespace hermes {
 
 /// Has each logger of a session that can replay its part: all open it and wait, are released together, and
-/// receive live again at the end, when one fails, or when they are told to. Nothing waits.
+/// receive live again at the end, when one fails, or when they are told to. What is ordered while it plays
+/// goes to all of them, one order after the other, the newest of each kind. Nothing waits.
 class SessionPlayer : public QObject {
     Q_OBJECT
 public:
@@ -25,7 +26,20 @@ public:
     void end();
     bool isPlaying() const { return isPlaying_; }
 
+    /// Whether all of them have what it takes.
+    bool canSeek() const;
+    bool canSetSpeed() const;
+    /// To a time of the session; those that have come to their end begin anew.
+    void seek(double t_s);
+    /// While they wait, the end of the recording does not end the replay.
+    void setPaused(bool isPaused);
+    bool isPaused() const { return pauseWanted_.value_or(isPaused_); }
+    void setSpeed(double speed);
+    /// At the end all begin anew.
+    void setLoop(bool isLoop) { options_.loop = isLoop; }
+
 Q_SIGNALS:
+    /// Of the session; not while it is sought. 0: not known.
     void progress(double position_s, double duration_s);
     /// All are live again, after the end of the session or end(); or why it ended before.
     void ended(const hermes::Result<void> &result);
@@ -38,7 +52,14 @@ private:
     void onStates(const SessionReplies &states);
     void open();
     void onOpened(const SessionReplies &replies);
+    void onPlaced(const SessionReplies &replies);
     void onReleased(const SessionReplies &replies);
+    void obeySoon();
+    void order(const QString &method, const QJsonObject &params, Next next);
+    void orderPause();
+    void onObeyed(const SessionReplies &replies);
+    void onSought(const SessionReplies &replies);
+    bool hasOrders() const;
     void poll();
     void onPositions(const SessionReplies &replies);
     QString folderOf(const QString &logger) const;
@@ -50,6 +71,11 @@ private:
     QTimer timer_;
     std::vector<SessionMember> playing_; ///< who shows what is recorded, or may
     std::optional<std::pair<RecordedSession, Options>> next_;
+    std::optional<double> seekWanted_, speedWanted_;
+    std::optional<bool> pauseWanted_;
+    double begin_s_ = 0;   ///< where those that are opened begin
+    bool reopens_ = false; ///< one had come to its end and could not be sought
+    bool isPaused_ = false;
     bool isPlaying_ = false;
     bool isEnding_ = false;
 };

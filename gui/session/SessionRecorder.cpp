@@ -1,15 +1,12 @@
 #include "gui/session/SessionRecorder.h"
 
 #include <QJsonArray>
-#include <QSet>
 #include <QUuid>
 #include <algorithm>
 #include <map>
 
 namespace hermes {
 namespace {
-
-constexpr std::chrono::minutes stopLimit{2}; // everything is to get to the disk
 
 bool isRecording(const SessionReply &state) {
     return state.result && (*state.result)["recording"].toBool();
@@ -42,8 +39,8 @@ QStringList differences(const SessionPart &part, const QJsonValue &end) {
 }
 
 /// Completes what is known of sessions with these ids by how their loggers ended and the sidecars.
-void check(SessionRecorder::Stopped &stopped, const QSet<QString> &ids, const SessionReplies &replies,
-           const SessionList &list) {
+void complete(SessionRecorder::Stopped &stopped, const QSet<QString> &ids, const SessionReplies &replies,
+              const SessionList &list) {
     stopped.problems += complaints(replies);
     std::map<QString, QJsonValue> ends;
     for (const SessionReply &reply : replies)
@@ -132,12 +129,11 @@ void SessionRecorder::takeBack(const QString &name, const SessionReplies &replie
 }
 
 void SessionRecorder::stop(const Done<Result<Stopped>> &done) {
-    status([=, members = members_](const States &states) { end(members, states, done); });
+    status([=](const States &states) { end(states, done); });
 }
 
 /// Those that record; and where none does, the sessions that were ended by an error are told.
-void SessionRecorder::end(const SessionMembers &members, const States &states,
-                          const Done<Result<Stopped>> &done) {
+void SessionRecorder::end(const States &states, const Done<Result<Stopped>> &done) {
     std::vector<SessionMember> active;
     QSet<QString> ids, failed;
     for (const SessionReply &state : states.replies) {
@@ -156,11 +152,18 @@ void SessionRecorder::end(const SessionMembers &members, const States &states,
     if (ids.isEmpty() && stopped.problems.isEmpty())
         return done(Error(ErrorCode::NotReady, "nothing is being recorded"));
     callAll(callsOf(active), "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
-        callAll(callsOf(members.all), "record.list", members.timeout, this, [=](const SessionReplies &lists) {
-            Stopped checked = stopped;
-            check(checked, ids, ends, SessionList::of(lists));
+        check(ids, ends, [stopped, done](Stopped checked) {
+            checked.problems = stopped.problems + checked.problems;
             done(checked);
         });
+    });
+}
+
+void SessionRecorder::check(const QSet<QString> &ids, const SessionReplies &ends, const Done<Stopped> &done) {
+    list(0, [=](const SessionList &found) {
+        Stopped checked;
+        complete(checked, ids, ends, found);
+        done(checked);
     });
 }
 

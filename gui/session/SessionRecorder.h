@@ -2,6 +2,8 @@
 
 #include "gui/session/SessionList.h"
 
+#include <QSet>
+
 namespace hermes {
 
 /// Records with all loggers of a robot as one session. What it does ends from the event loop, by the function
@@ -34,6 +36,11 @@ public:
     /// Ends the recording of all, and compares what each told at its end with its sidecar. NotReady when
     /// nothing is being recorded, and nothing has ended by an error.
     void stop(const Done<Result<Stopped>> &done);
+    /// Of a logger the reply to record.stop is waited for so long: everything is to get to the disk.
+    static constexpr std::chrono::minutes stopLimit{2};
+    /// Sessions that have ended, as the sidecars have them, and what does not agree with the replies to
+    /// record.stop.
+    void check(const QSet<QString> &ids, const SessionReplies &ends, const Done<Stopped> &done);
     /// Puts a text into the recordings of all that record and have marks. NotReady: there is none, or not all
     /// of them took it.
     void mark(const QString &text, const Done<Result<SessionReplies>> &done);
@@ -45,7 +52,7 @@ private:
     void begin(const SessionMembers &members, const QString &name, const Done<Result<SessionReplies>> &done);
     void takeBack(const QString &name, const SessionReplies &replies,
                   const Done<Result<SessionReplies>> &done);
-    void end(const SessionMembers &members, const States &states, const Done<Result<Stopped>> &done);
+    void end(const States &states, const Done<Result<Stopped>> &done);
 
     SessionMembers members_;
 };

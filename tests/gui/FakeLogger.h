@@ -26,6 +26,10 @@ public:
         for (const Command &command : recording.commands())
             addCommand(command);
         if (options.marks)
+            addCommand(Command("record.marks", "Marks")
+                           .param(Field::text("name", "Of what"))
+                           .handler([this](const Call &) { return QJsonValue(toldMarks); }));
+        if (options.marks)
             addCommand(
                 Command("mark", "Marks").param(Field::text("text", "What")).handler([this](const Call &call) {
                     return mark(call.text("text"));
@@ -43,11 +47,14 @@ public:
 
     bool refusesMarks = false;
     QStringList marks;
+    QJsonArray toldMarks; ///< of each recording
     int openDelay_ms = 0;
     QString openError;       ///< of the next replays
     int positionsToEnd = 3;  ///< that are told before a replay ends
     QString source = "live"; ///< its state
     double delay_s = -1;     ///< of the last replay
+    double speed = -1;       ///< that it goes at
+    QJsonObject told;        ///< of its source, in place of what is so
 
 protected:
     Result<void> start() override {
@@ -74,14 +81,32 @@ private:
         addCommand(Command("source.pause", "Waits")
                        .param(Field::boolean("paused", "Waits"))
                        .handler([this](const Call &call) {
-                           asked_.append(name_ + (call.flag("paused") ? ": waits" : ": is released"));
-                           return state();
+                           paused_ = call.flag("paused");
+                           return obey(paused_ ? ": waits" : ": is released");
+                       }));
+        addCommand(Command("source.seek", "Seeks")
+                       .param(Field::number("t_s", "Where").range(0, 1e7))
+                       .handler([this](const Call &call) {
+                           return obey(QString(": sought to %1").arg(call.number("t_s")));
+                       }));
+        addCommand(Command("source.speed", "Speed")
+                       .param(Field::number("speed", "Speed"))
+                       .handler([this](const Call &call) {
+                           speed = call.number("speed");
+                           return obey(QString(": goes at %1").arg(speed));
                        }));
         addCommand(Command("source.status", "Where it is").handler([this](const Call &) {
-            if (source == "replay" && --positionsLeft_ <= 0)
+            if (source == "replay" && !paused_ && --positionsLeft_ <= 0)
                 source = "ended";
             return QJsonObject{{"source", state()}};
         }));
+    }
+    /// As a replay does; NotReady at its end.
+    Result<QJsonValue> obey(const QString &what) {
+        if (source != "replay")
+            return Error(ErrorCode::NotReady, "no replay is under way");
+        asked_.append(name_ + what);
+        return state();
     }
     void open(const Call &call, const Reply &reply) {
         if (call.flag("live")) {
@@ -95,16 +120,24 @@ private:
                 return reply.error(Error(ErrorCode::InputOutput, openError));
             source = "replay";
             delay_s = call.number("delay_s");
+            speed = call.number("speed");
+            paused_ = call.flag("paused");
             positionsLeft_ = positionsToEnd;
             reply.result(state());
         };
         QTimer::singleShot(openDelay_ms, this, opened);
     }
-    QJsonObject state() const { return {{"state", source}, {"position_s", 1}, {"duration_s", 2}}; }
+    QJsonObject state() const {
+        QJsonObject state{{"state", source}, {"position_s", 1}, {"duration_s", 2}, {"paused", paused_}};
+        for (auto one = told.begin(); one != told.end(); ++one)
+            state[one.key()] = one.value();
+        return state;
+    }
 
     const QString name_;
     QStringList &asked_;
     int positionsLeft_ = 0;
+    bool paused_ = false;
 
 public:
     TextWriter writer;

@@ -2,9 +2,14 @@
 #include "FakeLogger.h"
 
 #include "gui/hermesctl/Connection.h"
+#include "gui/session/SessionMarks.h"
 #include "gui/session/SessionPlayer.h"
 #include "gui/session/SessionRecorder.h"
 #include "tests/support/Patience.h"
+
+#include <QRegularExpression>
+
+#include <cmath>
 
 using namespace hermes;
 using namespace hermes::ctl;
@@ -26,6 +31,11 @@ private Q_SLOTS:
     void aReplayFollowsAnother();
     void anEndIsForTheNextReplayToo();
     void allGoLiveWhenALaterPassFails();
+    void ordersGoToAll();
+    void whoHasEndedBeginsAnew();
+    void theNewestSeekCounts();
+    void whatIsImpossibleIsNotKnown();
+    void marksAreOfTheSession();
 
 private:
     SessionMembers members() const;
@@ -332,6 +342,130 @@ void TestSessions::allGoLiveWhenALaterPassFails() {
     QTRY_VERIFY(ended);
     QVERIFY(!ended->ok());
     QVERIFY2(a_->source == "live" && b_->source == "live", qPrintable(a_->source + ' ' + b_->source));
+}
+
+void TestSessions::ordersGoToAll() {
+    const RecordedSession session = record("run1");
+    SessionPlayer player;
+    player.seek(1); // nothing is played
+    player.setPaused(true);
+    a_->positionsToEnd = b_->positionsToEnd = 1000;
+    player.play(session, {1, false, timeout_});
+    QVERIFY(player.canSeek() && player.canSetSpeed() && !player.isPaused());
+    QTRY_VERIFY(robot_->asked.contains("a: is released") && robot_->asked.contains("b: is released"));
+    robot_->asked.clear();
+    player.setPaused(true);
+    player.seek(0.5);
+    player.setSpeed(4);
+    QVERIFY(player.isPaused());
+    const auto areIn = [this](const QStringList &expected) {
+        QStringList of;
+        for (const QString &line : qAsConst(robot_->asked))
+            if (line.startsWith("b: "))
+                of.append(line);
+        return of == expected && robot_->asked.size() == 2 * expected.size();
+    };
+    QTRY_VERIFY2(areIn({"b: goes at 4", "b: waits", "b: sought to 0.5"}),
+                 qPrintable(robot_->asked.join(", ")));
+    a_->source = b_->source = "ended"; // it waits there
+    QTest::qWait(500);
+    QVERIFY(player.isPlaying() && player.isPaused());
+    player.setPaused(false);
+    QTRY_VERIFY(!player.isPlaying());
+    QVERIFY(a_->source == "live" && b_->source == "live");
+}
+
+/// All are opened again, so that they go on together from there.
+void TestSessions::whoHasEndedBeginsAnew() {
+    const RecordedSession session = record("run1");
+    SessionPlayer player;
+    a_->positionsToEnd = 1000;
+    b_->positionsToEnd = 1;
+    player.play(session, {1, false, timeout_});
+    QTRY_COMPARE(b_->source, QString("ended"));
+    player.setSpeed(2);
+    QTRY_COMPARE(a_->speed, 2.0);
+    robot_->asked.clear();
+    b_->positionsToEnd = 1000;
+    player.seek(0.25);
+    QTRY_VERIFY(robot_->asked.contains("b: is released"));
+    QCOMPARE(b_->source, QString("replay"));
+    QCOMPARE(b_->speed, 2.0);
+    for (const char *name : {"a", "b"}) {
+        const QStringList of = robot_->asked.filter(QRegularExpression(QString("^%1: ").arg(name)));
+        QCOMPARE(of.mid(of.size() - 3),
+                 QStringList({QString("%1: opened, waits").arg(name), QString("%1: sought to 0.25").arg(name),
+                              QString("%1: is released").arg(name)}));
+    }
+    b_->source = "live"; // somebody else's
+    player.seek(0.5);
+    QTRY_VERIFY(!player.isPlaying());
+    QCOMPARE(robot_->asked.count("b: opened, waits"), 1);
+}
+
+void TestSessions::theNewestSeekCounts() {
+    const RecordedSession session = record("run1");
+    SessionPlayer player;
+    bool hasGoneBack = false, isDragged = false;
+    connect(&player, &SessionPlayer::progress, [&] { hasGoneBack = hasGoneBack || isDragged; });
+    a_->positionsToEnd = b_->positionsToEnd = 1000;
+    player.play(session, {1, false, timeout_});
+    QTRY_VERIFY(robot_->asked.contains("a: is released"));
+    robot_->asked.clear();
+    isDragged = true;
+    for (int i = 1; i <= 500; ++i)
+        player.seek(i);
+    QVERIFY(!hasGoneBack);
+    QTRY_VERIFY(robot_->asked.contains("a: sought to 500"));
+    QVERIFY2(robot_->asked.size() <= 6, qPrintable(robot_->asked.join(", ")));
+    player.seek(-1);
+    player.seek(std::nan(""));
+    player.seek(1e300);
+    QTRY_VERIFY(robot_->asked.contains("a: sought to 1e+07"));
+    player.end();
+    QTRY_VERIFY(!player.isPlaying());
+}
+
+void TestSessions::whatIsImpossibleIsNotKnown() {
+    const RecordedSession session = record("run1");
+    SessionPlayer player;
+    std::vector<std::pair<double, double>> told;
+    connect(&player, &SessionPlayer::progress,
+            [&](double position_s, double duration_s) { told.emplace_back(position_s, duration_s); });
+    a_->told = {{"position_s", 1e300}, {"duration_s", -1e300}, {"paused", "no"}};
+    b_->told = {{"position_s", "far"}, {"duration_s", QJsonValue()}};
+    player.play(session, {1, false, timeout_});
+    QTRY_VERIFY(!told.empty() && !player.isPlaying());
+    for (const auto &one : told)
+        QCOMPARE(one, std::pair(0.0, 0.0));
+}
+
+void TestSessions::marksAreOfTheSession() {
+    a_->toldMarks =
+        QJsonArray{QJsonObject{{"t_s", 2}, {"text", "second"}}, QJsonObject{{"t_s", 1e300}, {"text", "far"}},
+                   QJsonObject{{"t_s", -9}, {"text", "before"}}, QJsonObject{{"text", "never"}}, 7};
+    b_->toldMarks = QJsonArray{QJsonObject{{"t_s", 1}, {"text", "first"}}};
+    RecordedSession session = record("run1");
+    const double a_s = session.parts[0].entry["start"].toDouble();
+    session.start = a_s - 5;
+    session.parts[1].entry["start"] = a_s;
+    std::optional<std::vector<SessionMark>> marks;
+    listMarks(session, timeout_, this, [&](const auto &found, const QStringList &problems) {
+        marks = found;
+        QCOMPARE(problems, QStringList());
+    });
+    QTRY_VERIFY(marks);
+    QCOMPARE(marks->size(), std::size_t(2));
+    QCOMPARE(marks->at(0).text, QString("first"));
+    QVERIFY(std::abs(marks->at(0).t_s - 6) < 1e-3 && std::abs(marks->at(1).t_s - 7) < 1e-3);
+    robot_->clients[1]->close();
+    QStringList told;
+    listMarks(session, timeout_, this, [&](const auto &found, const QStringList &problems) {
+        told = problems;
+        marks = found;
+    });
+    QTRY_VERIFY(!told.isEmpty());
+    QCOMPARE(marks->size(), std::size_t(1));
 }
 
 QTEST_GUILESS_MAIN(TestSessions)
