@@ -97,6 +97,8 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     if (auto *const other = kind.tabbedWith ? findChild<QDockWidget *>(kind.tabbedWith) : nullptr)
         tabifyDockWidget(other, dock);
     docks_.push_back(dock);
+    addActions(panel->actions()); // their keys act while the panel is out of sight, too
+    panelActions_ += panel->actions();
 
     auto *const show = new QAction(title, this);
     if (docks_.size() <= 9)
@@ -111,6 +113,7 @@ void MainWindow::addMenus(StopKeys &keys) {
     auto *const menus = new MenuBar(this);
     menus->addRobot(drive_, keys);
     menus->addMap(*map_);
+    menus->addRecording(panelActions_);
     menus->addPanels(showPanels_);
     menus->addEvents(events_);
     menus->addHelp();

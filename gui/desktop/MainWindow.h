@@ -52,6 +52,7 @@ private:
     const QString layoutFile_;
     std::vector<QDockWidget *> docks_;
     QList<QAction *> showPanels_;
+    QList<QAction *> panelActions_; ///< with keys of their own
     HelpWindow *help_ = nullptr;
     std::vector<QToolBar *> banners_;
 };

@@ -58,6 +58,10 @@ void MenuBar::addMap(MapPanel &map) {
     view->addAction(withKey(tr("Farther"), "-"), &map.view(), [&map] { map.view().zoom(1 / MapView::step); });
 }
 
+void MenuBar::addRecording(const QList<QAction *> &actions) {
+    addNamed(tr("Recording"), "recordingMenu")->addActions(actions);
+}
+
 void MenuBar::addPanels(const QList<QAction *> &show) {
     addNamed(tr("Panels"), "panelsMenu")->addActions(show);
 }

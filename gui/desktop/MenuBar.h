@@ -21,6 +21,7 @@ public:
 
     void addRobot(DriveControl &drive, StopKeys &keys);
     void addMap(MapPanel &map);
+    void addRecording(const QList<QAction *> &actions);
     /// show: each brings a dock to the front.
     void addPanels(const QList<QAction *> &show);
     void addEvents(Events &events);

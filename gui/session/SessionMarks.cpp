@@ -27,7 +27,8 @@ void listMarks(
         for (const SessionReply &reply : replies) {
             const QJsonArray told = reply.result ? reply.result->toArray() : QJsonArray();
             for (int i = 0; i < std::min(told.size(), mostMarks); ++i) {
-                const double own_s = told[i]["t_s"].toDouble(-1), t_s = own_s + delays_s.at(reply.member.name);
+                const double own_s = told[i]["t_s"].toDouble(-1),
+                             t_s = own_s + delays_s.at(reply.member.name);
                 if (own_s >= 0 && t_s <= latest_s)
                     marks.push_back({t_s, told[i]["text"].toString()});
             }

@@ -22,6 +22,7 @@ LoggerWatch::LoggerWatch(Fleet &fleet, QObject *parent)
 }
 
 void LoggerWatch::follow() {
+    const bool isOther = std::exchange(robot_, fleet_.robot()) != fleet_.robot();
     const auto before = std::exchange(members_, {}).all;
     for (DaemonLink *daemon : fleet_.robot() ? fleet_.robot()->daemons() : std::vector<DaemonLink *>())
         if (daemon->isConnected() && daemon->description().isEmpty())
@@ -32,31 +33,66 @@ void LoggerWatch::follow() {
     const bool isSame =
         std::equal(before.begin(), before.end(), members_.all.begin(), members_.all.end(),
                    [](const SessionMember &a, const SessionMember &b) { return a.client == b.client; });
-    if (isSame)
+    if (isSame && !isOther)
         return;
-    states_.clear();
+    if (isOther) {
+        states_.clear();
+        lost_.clear();
+    }
+    drop(before);
     progress_.clear();
     poll();
     Q_EMIT membersChanged();
     Q_EMIT changed();
 }
 
+/// What is known of those that went.
+void LoggerWatch::drop(const std::vector<SessionMember> &before) {
+    for (const SessionMember &member : before) {
+        const bool isHere =
+            std::any_of(members_.all.begin(), members_.all.end(), [&](const SessionMember &one) {
+                return one.client == member.client && one.name == member.name;
+            });
+        const auto state = states_.find(member.name);
+        if (isHere || state == states_.end())
+            continue;
+        if (state->second["recording"].toBool())
+            lost_[member.name] = {state->second["name"].toString(), false};
+        states_.erase(state);
+    }
+}
+
 void LoggerWatch::poll() {
     for (const SessionMember &member : members_.all) // one by one: none is to wait for another
         callAll({{member, {}}}, "record.status", members_.timeout, this,
-                [this](const SessionReplies &replies) {
-                    const SessionReply &reply = replies.front();
-                    for (const SessionMember &known : members_.all)
-                        if (known.client == reply.member.client && reply.result)
-                            states_[known.name] = reply.result->toObject();
-                    Q_EMIT changed();
-                });
+                [this](const SessionReplies &replies) { take(replies.front()); });
     const double now = monotonicNow();
     if (!isRecording())
         return progress_.clear();
     progress_.emplace_back(now, bytes());
     while (progress_.front().first < now - rateOver_s)
         progress_.pop_front();
+}
+
+void LoggerWatch::take(const SessionReply &reply) {
+    for (const SessionMember &known : members_.all) {
+        if (known.client != reply.member.client || !reply.result)
+            continue;
+        const QJsonObject state = reply.result->toObject();
+        states_[known.name] = state;
+        const auto lost = lost_.find(known.name);
+        if (lost == lost_.end())
+            continue;
+        lost->second.isBack = true;
+        if (state["recording"].toBool() && state["name"].toString() == lost->second.recording)
+            lost_.erase(lost); // the link was away, not the logger
+    }
+    Q_EMIT changed();
+}
+
+void LoggerWatch::forgetLost() {
+    lost_.clear();
+    Q_EMIT changed();
 }
 
 std::vector<QJsonObject> LoggerWatch::recording() const {
@@ -76,11 +112,29 @@ QStringList LoggerWatch::silent() const {
     return names;
 }
 
-bool LoggerWatch::marks() const {
-    return std::any_of(members_.all.begin(), members_.all.end(), [this](const SessionMember &member) {
+SessionMembers LoggerWatch::recordingMembers(bool onlyMarkers) const {
+    SessionMembers found;
+    found.timeout = members_.timeout;
+    for (const SessionMember &member : members_.all) {
         const auto state = states_.find(member.name);
-        return member.marks && state != states_.end() && state->second["recording"].toBool();
-    });
+        if (state != states_.end() && state->second["recording"].toBool() && (member.marks || !onlyMarkers))
+            found.all.push_back(member);
+    }
+    return found;
+}
+
+QSet<QString> LoggerWatch::sessions() const {
+    QSet<QString> ids;
+    for (const QJsonObject &state : recording())
+        ids.insert(state["session"].toString());
+    return ids;
+}
+
+int LoggerWatch::markCount() const {
+    double most = 0;
+    for (const QJsonObject &state : recording())
+        most = std::max(most, state["counts"].toObject()["marks"].toDouble());
+    return int(std::min(most, 1e6));
 }
 
 QString LoggerWatch::name() const {

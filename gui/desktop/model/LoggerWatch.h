@@ -7,7 +7,8 @@
 
 namespace hermes::desktop {
 
-/// The loggers of the chosen robot, and what record.status says of each, asked once a second.
+/// The loggers of the chosen robot, and what record.status says of each, asked once a second. One that goes
+/// while it records is remembered.
 class LoggerWatch : public QObject {
     Q_OBJECT
 public:
@@ -19,8 +20,9 @@ public:
     const std::map<QString, QJsonObject> &states() const { return states_; }
 
     bool isRecording() const { return !recording().empty(); }
-    /// One of those that record has marks.
-    bool marks() const;
+    bool marks() const { return !markers().all.empty(); }
+    /// Of all recordings under way; as the loggers have them.
+    QSet<QString> sessions() const;
     QString name() const;
     double bytes() const;
     double seconds() const;
@@ -29,6 +31,19 @@ public:
 
     /// The names of those that do not answer.
     QStringList silent() const;
+    /// A logger that was gone while it recorded.
+    struct Lost {
+        QString recording;
+        bool isBack = false;
+    };
+    /// By the name of the logger, until forgetLost() or another robot.
+    const std::map<QString, Lost> &lost() const { return lost_; }
+    void forgetLost();
+    /// So many marks are in the recording under way.
+    int markCount() const;
+    /// Those that record, and those of them that take marks.
+    SessionMembers recordingMembers() const { return recordingMembers(false); }
+    SessionMembers markers() const { return recordingMembers(true); }
 
     void poll();
 
@@ -39,12 +54,17 @@ Q_SIGNALS:
 
 private:
     void follow();
+    void drop(const std::vector<SessionMember> &before);
+    void take(const SessionReply &reply);
+    SessionMembers recordingMembers(bool onlyMarkers) const;
     std::vector<QJsonObject> recording() const;
 
     Fleet &fleet_;
+    Robot *robot_ = nullptr; ///< that was chosen last; only to compare
     QTimer timer_;
     SessionMembers members_;
     std::map<QString, QJsonObject> states_;
+    std::map<QString, Lost> lost_;
     std::deque<std::pair<double, double>> progress_; // monotonic seconds, bytes
 };
 

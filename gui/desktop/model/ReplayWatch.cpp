@@ -1,11 +1,24 @@
 #include "gui/desktop/model/ReplayWatch.h"
 
 #include "gui/desktop/widgets/ForeignText.h"
+#include "gui/desktop/widgets/Quantities.h"
 
 namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 60;
+
+QString textOf(const QString &daemon, const QJsonValue &source) {
+    QString text = ReplayWatch::tr("%1 replays %2")
+                       .arg(daemon, shortLine(source["name"].toString().section('/', -1), longestName));
+    if (source["paused"].toBool())
+        text += ReplayWatch::tr(", paused");
+    if (source["position_s"].isDouble())
+        text += ReplayWatch::tr(" at %1").arg(durationText(source["position_s"].toDouble()));
+    if (source["duration_s"].isDouble())
+        text += ReplayWatch::tr(" of %1").arg(durationText(source["duration_s"].toDouble()));
+    return text;
+}
 
 } // namespace
 
@@ -15,6 +28,7 @@ ReplayWatch::ReplayWatch(Fleet &fleet, QObject *parent)
     connect(&timer_, &QTimer::timeout, this, &ReplayWatch::ask);
     connect(&fleet, &Fleet::robotChosen, this, [this] {
         replays_.clear();
+        asked_.clear();
         Q_EMIT changed();
     });
     timer_.start(std::chrono::milliseconds(250));
@@ -24,40 +38,32 @@ void ReplayWatch::ask() {
     if (!fleet_.robot())
         return;
     std::map<QString, QString> there;
+    QSet<QString> asked;
     for (DaemonLink *daemon : fleet_.robot()->allWithMethod("source.status")) {
-        if (const auto known = replays_.find(daemon->address()); known != replays_.end())
+        const QString address = daemon->address();
+        if (const auto known = replays_.find(address); known != replays_.end())
             there.insert(*known);
-        if (asked_.contains(daemon))
+        asked.insert(address);
+        if (asked_.contains(address))
             continue;
-        asked_.insert(daemon);
-        daemon->call("source.status", {}, this, [this, daemon](const auto &answer) { take(daemon, answer); });
+        daemon->call("source.status", {}, this, [this, address, name = daemon->name()](const auto &answer) {
+            take(address, name, answer);
+        });
     }
+    asked_ = asked;
     if (std::exchange(replays_, there) != there) // who is gone replays no more
         Q_EMIT changed();
 }
 
-void ReplayWatch::take(DaemonLink *daemon, const Result<QJsonValue> &answer) {
-    asked_.remove(daemon);
-    if (!fleet_.robot() || fleet_.robot()->withName(daemon->name()) != daemon || !answer)
+void ReplayWatch::take(const QString &address, const QString &name, const Result<QJsonValue> &answer) {
+    if (!asked_.remove(address) || !answer) // another robot was chosen meanwhile, or it went
         return;
     const QJsonValue source = answer->toObject().contains("source") ? (*answer)["source"] : *answer;
     const auto before = replays_;
-    if (source["state"] == QJsonValue("replay")) {
-        QString text =
-            tr("%1 replays %2")
-                .arg(daemon->name(), shortLine(source["name"].toString().section('/', -1), longestName));
-        if (source["paused"].toBool())
-            text += tr(", paused");
-        if (source["position_s"].isDouble())
-            text += tr(" at %1").arg(shortNumber(source["position_s"].toDouble(), 0));
-        if (source["duration_s"].isDouble())
-            text += tr(" of %1 s").arg(shortNumber(source["duration_s"].toDouble(), 0));
-        else if (source["position_s"].isDouble())
-            text += tr(" s");
-        replays_[daemon->address()] = text;
-    } else {
-        replays_.erase(daemon->address());
-    }
+    if (source["state"] == QJsonValue("replay"))
+        replays_[address] = textOf(name, source);
+    else
+        replays_.erase(address);
     if (replays_ != before)
         Q_EMIT changed();
 }

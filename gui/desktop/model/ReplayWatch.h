@@ -20,11 +20,11 @@ Q_SIGNALS:
 
 private:
     void ask();
-    void take(DaemonLink *daemon, const Result<QJsonValue> &answer);
+    void take(const QString &address, const QString &name, const Result<QJsonValue> &answer);
 
     Fleet &fleet_;
     QTimer timer_;
-    QSet<DaemonLink *> asked_;           ///< that have not answered as yet
+    QSet<QString> asked_;                ///< the addresses of those that have not answered as yet
     std::map<QString, QString> replays_; ///< what, by the address of a daemon of the chosen robot
 };
 

@@ -1,47 +1,24 @@
 #include "gui/desktop/panels/RecordPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/ReplayBar.h"
+#include "gui/desktop/panels/SessionTable.h"
 #include "gui/desktop/widgets/MessageLabel.h"
+#include "gui/desktop/widgets/Quantities.h"
 
-#include <QDateTime>
+#include <QAction>
 #include <QHBoxLayout>
-#include <QHeaderView>
 #include <QLineEdit>
-#include <QLocale>
 #include <QPushButton>
-#include <QTreeWidget>
+#include <QRegularExpression>
 #include <QVBoxLayout>
+
+#include <algorithm>
 
 namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 60;
-
-QString bytesText(double bytes) {
-    const char *const units[]{"B", "kB", "MB", "GB", "TB"};
-    int unit = 0;
-    while (bytes >= 1000 && unit < 4) {
-        bytes /= 1000;
-        ++unit;
-    }
-    return shortNumber(bytes, unit == 0 ? 0 : 1) + ' ' + units[unit];
-}
-
-QString timeText(double seconds) {
-    constexpr double century_s = 3.2e9;
-    if (!(seconds >= 0 && seconds < century_s))
-        return RecordPanel::tr("%1 s").arg(shortNumber(seconds, 0));
-    const qint64 s = qint64(seconds);
-    if (s >= 3600)
-        return RecordPanel::tr("%1 h %2 min").arg(s / 3600).arg(s / 60 % 60);
-    return s >= 60 ? RecordPanel::tr("%1 min %2 s").arg(s / 60).arg(s % 60) : RecordPanel::tr("%1 s").arg(s);
-}
-
-QString startText(double stamp) {
-    const auto start = timeOf(stamp);
-    return start ? QLocale().toString(*start, QLocale::ShortFormat)
-                 : RecordPanel::tr("at an impossible time: %1").arg(stamp);
-}
 
 } // namespace
 
@@ -54,48 +31,41 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     , addMark_(new QPushButton(tr("Mark")))
     , replay_(new QPushButton(theme::icon("start"), tr("Repla&y")))
     , live_(new QPushButton(tr("&Live")))
+    , takeMark_(new QAction(tr("Mark this moment of the recording"), this))
     , amount_(new PlainLabel)
+    , lost_(new MessageLabel)
     , message_(new MessageLabel)
-    , sessions_(new QTreeWidget) {
+    , sessions_(new SessionTable)
+    , bar_(new ReplayBar(player_)) {
+    nameAll();
+    layOut();
+    connectAll();
+    list();
+    update();
+}
+
+void RecordPanel::nameAll() {
     name_->setObjectName("name");
     name_->setToolTip(tr("Of the folder in which all loggers record"));
     record_->setObjectName("record");
     replay_->setObjectName("replay");
-    replay_->setToolTip(tr("Plays the chosen recording through the same topics"));
+    replay_->setToolTip(tr("Plays the chosen recording through the same topics (double click)"));
     live_->setObjectName("live");
     live_->setToolTip(tr("Ends the replay"));
     amount_->setObjectName("amount");
     amount_->setWordWrap(true);
     amount_->setMinimumWidth(1);
-    sessions_->setObjectName("sessions");
-    sessions_->setAccessibleName(tr("What was recorded"));
-    sessions_->setHeaderLabels({tr("Recording"), tr("Size")});
-    sessions_->header()->setStretchLastSection(false);
-    sessions_->header()->setSectionResizeMode(0, QHeaderView::Stretch);
-    sessions_->header()->setSectionResizeMode(1, QHeaderView::ResizeToContents);
-    sessions_->setRootIsDecorated(false);
-
+    lost_->setObjectName("lost");
     mark_->setObjectName("markText");
     mark_->setPlaceholderText(tr("What to remember of this moment"));
+    mark_->setToolTip(tr("Without a text the mark gets a number"));
+    mark_->setMaxLength(1000);
     addMark_->setObjectName("mark");
-    layOut();
-
-    connect(record_, &QPushButton::clicked, this, [this] { watch_.isRecording() ? stop() : start(); });
-    connect(name_, &QLineEdit::returnPressed, record_, &QPushButton::click);
-    connect(addMark_, &QPushButton::clicked, this, &RecordPanel::mark);
-    connect(mark_, &QLineEdit::returnPressed, addMark_, &QPushButton::click);
-    connect(replay_, &QPushButton::clicked, this, &RecordPanel::play);
-    connect(live_, &QPushButton::clicked, &player_, &SessionPlayer::end);
-    connect(sessions_, &QTreeWidget::currentItemChanged, this, &RecordPanel::update);
-    connect(&watch_, &LoggerWatch::changed, this, &RecordPanel::update);
-    connect(&watch_, &LoggerWatch::membersChanged, this, &RecordPanel::list);
-    connect(&player_, &SessionPlayer::ended, this, [this](const Result<void> &result) {
-        message_->tell(result ? tr("The replay has ended; everything is live.") : result.error().message,
-                       !result);
-        update();
-    });
-    list();
-    update();
+    takeMark_->setObjectName("takeMark");
+    takeMark_->setShortcut(Qt::CTRL + Qt::Key_M);
+    takeMark_->setShortcutContext(Qt::ApplicationShortcut); // floating panels, too
+    addMark_->setToolTip(tr("Puts a mark into the recording (%1)").arg(takeMark_->shortcut().toString()));
+    addAction(takeMark_);
 }
 
 void RecordPanel::layOut() {
@@ -112,9 +82,32 @@ void RecordPanel::layOut() {
     layout->addLayout(top);
     layout->addLayout(middle);
     layout->addWidget(amount_);
+    layout->addWidget(lost_);
     layout->addWidget(sessions_, 1);
+    layout->addWidget(bar_);
     layout->addLayout(bottom);
     layout->addWidget(message_);
+}
+
+void RecordPanel::connectAll() {
+    connect(record_, &QPushButton::clicked, this, [this] { watch_.isRecording() ? stop() : start(); });
+    connect(name_, &QLineEdit::returnPressed, record_, &QPushButton::click);
+    connect(name_, &QLineEdit::textChanged, this, &RecordPanel::update);
+    connect(addMark_, &QPushButton::clicked, this, &RecordPanel::mark);
+    connect(mark_, &QLineEdit::returnPressed, addMark_, &QPushButton::click);
+    connect(takeMark_, &QAction::triggered, this, &RecordPanel::mark);
+    connect(replay_, &QPushButton::clicked, this, &RecordPanel::play);
+    connect(live_, &QPushButton::clicked, &player_, &SessionPlayer::end);
+    connect(sessions_, &SessionTable::currentItemChanged, this, &RecordPanel::update);
+    connect(sessions_, &SessionTable::itemActivated, this, &RecordPanel::play);
+    connect(&watch_, &LoggerWatch::changed, this, &RecordPanel::update);
+    connect(&watch_, &LoggerWatch::membersChanged, this, &RecordPanel::list);
+    connect(&stop_, &RecordingStop::ended, this, &RecordPanel::showEnd);
+    connect(&player_, &SessionPlayer::ended, this, [this](const Result<void> &result) {
+        message_->tell(result ? tr("The replay has ended; everything is live.") : result.error().message,
+                       !result);
+        update();
+    });
 }
 
 /// With the loggers of this moment.
@@ -125,48 +118,107 @@ SessionRecorder &RecordPanel::recorder() {
 
 void RecordPanel::start() {
     const QString name = name_->text().trimmed();
+    watch_.forgetLost();
+    stop_.forget();
     recorder().start(name, [this, name](const Result<SessionReplies> &replies) {
         message_->tell(replies ? tr("Recording %1.").arg(name) : replies.error().message, !replies);
+        if (replies)
+            name_->setModified(false); // the next one is proposed
         watch_.poll();
         list();
     });
 }
 
 void RecordPanel::stop() {
-    recorder().stop([this](const Result<SessionRecorder::Stopped> &stopped) {
-        const QStringList problems = stopped ? stopped->problems : QStringList(stopped.error().message);
-        message_->tell(problems.isEmpty() ? tr("Stopped, nothing missing.") : problems.join('\n'),
-                       !problems.isEmpty());
-        watch_.poll();
-        list();
-    });
+    stop_.begin();
+    update();
+}
+
+void RecordPanel::showEnd(const QStringList &problems) {
+    message_->tell(problems.isEmpty() ? tr("Stopped, nothing missing.") : problems.join('\n'),
+                   !problems.isEmpty());
+    sessions_->setCurrentItem(nullptr); // the latest is chosen
+    watch_.poll();
+    list();
 }
 
 void RecordPanel::mark() {
-    const QString text = mark_->text().trimmed();
-    recorder().mark(text, [this, text](const Result<SessionReplies> &replies) {
+    if (!watch_.marks())
+        return message_->tell(
+            watch_.isRecording()
+                ? tr("No mark was taken: none of the loggers that record takes marks, as the "
+                     "serial logger does.")
+                : tr("No mark was taken: nothing is recorded."),
+            true);
+    const QString typed = mark_->text(), text = markText();
+    recorder_.setMembers(watch_.markers()); // it waits for no others
+    recorder_.mark(text, [this, typed, text](const Result<SessionReplies> &replies) {
         message_->tell(replies ? tr("Marked: %1").arg(text) : replies.error().message, !replies);
-        if (replies)
+        if (replies && mark_->text() == typed)
             mark_->clear();
     });
+}
+
+/// As typed, or a number.
+QString RecordPanel::markText() {
+    if (markedIn_ != watch_.sessions())
+        markNumber_ = 0;
+    markedIn_ = watch_.sessions();
+    markNumber_ = std::max(markNumber_, watch_.markCount()) + 1;
+    const QString typed = mark_->text().trimmed();
+    return typed.isEmpty() ? tr("mark %1").arg(markNumber_) : typed;
 }
 
 void RecordPanel::list() {
     recorder().list(mostRecordings, [this](const SessionList &found) {
         list_ = found;
+        sessions_->tell(found);
+        proposeName();
         update();
     });
 }
 
-void RecordPanel::play() {
-    const int row = sessions_->indexOfTopLevelItem(sessions_->currentItem());
-    if (row < 0 || row >= int(list_.sessions.size()))
+QString RecordPanel::nextFreeName(const QString &name, const QStringList &taken) {
+    static const QRegularExpression numbered("^(.*?)([0-9]{0,6})$",
+                                             QRegularExpression::DotMatchesEverythingOption);
+    const QRegularExpressionMatch match = numbered.match(name);
+    const QString digits = match.captured(2);
+    QString next = name;
+    for (int number = digits.isEmpty() ? 2 : digits.toInt() + 1; taken.contains(next); ++number)
+        next = match.captured(1) + QString("%1").arg(number, digits.size(), 10, QChar('0'));
+    return next;
+}
+
+/// Unless somebody has typed one.
+void RecordPanel::proposeName() {
+    if (name_->isModified() || watch_.isRecording())
         return;
-    const RecordedSession &session = list_.sessions[std::size_t(row)];
-    QStringList lines = session.absent();
-    lines.prepend(tr("Replaying %1.").arg(session.name));
+    QStringList taken;
+    for (const RecordedSession &session : list_.sessions)
+        taken.append(session.name);
+    const QString next = nextFreeName(name_->text().trimmed(), taken);
+    if (next != name_->text())
+        name_->setText(next);
+}
+
+void RecordPanel::play() {
+    const RecordedSession *const session = sessions_->chosen();
+    if (!session || watch_.isRecording())
+        return;
+    QStringList lines = session->absent();
+    lines.prepend(tr("Replaying %1.").arg(shortLine(session->name, longestName)));
     message_->tell(lines.join('\n'), lines.size() > 1);
-    player_.play(session, {});
+    played_ = session->id;
+    bar_->begin(*session);
+    player_.play(*session, {});
+    listMarks(*session, watch_.members().timeout, this,
+              [this, id = session->id](const std::vector<SessionMark> &marks, const QStringList &problems) {
+                  if (id != played_)
+                      return;
+                  bar_->setMarks(marks);
+                  if (!problems.isEmpty())
+                      message_->tell(tr("Its marks cannot be shown: %1").arg(problems.join('\n')), true);
+              });
     update();
 }
 
@@ -179,9 +231,25 @@ void RecordPanel::update() {
     mark_->setVisible(watch_.marks());
     addMark_->setVisible(watch_.marks());
     showAmount();
-    showSessions();
-    replay_->setEnabled(sessions_->currentItem() && !isRecording);
+    showLost();
+    showStop();
+    replay_->setEnabled(sessions_->chosen() && !isRecording);
     live_->setEnabled(player_.isPlaying());
+}
+
+void RecordPanel::showStop() {
+    if (!stop_.isUnderWay())
+        return;
+    QStringList silent;
+    for (const QString &name : stop_.waitingFor())
+        if (watch_.silent().contains(name.section('@', 0, 0)))
+            silent.append(name);
+    message_->tell(silent.isEmpty()
+                       ? tr("Stopping.")
+                       : tr("%1 does not answer, and may go on recording. Stop is sent again until it "
+                            "answers.")
+                             .arg(silent.join(", ")),
+                   !silent.isEmpty());
 }
 
 void RecordPanel::showAmount() {
@@ -190,6 +258,19 @@ void RecordPanel::showAmount() {
     amount_->setText(silent.isEmpty()
                          ? amountText()
                          : tr("%1 does not answer; last known: %2").arg(silent.join(", "), amountText()));
+}
+
+void RecordPanel::showLost() {
+    QStringList lines;
+    for (const auto &[name, lost] : watch_.lost())
+        lines.append(
+            lost.isBack
+                ? tr("%1 was gone while it recorded %2: what it has of it ends there.")
+                      .arg(name, shortLine(lost.recording, longestName))
+                : tr("%1 was recording %2 and is gone.").arg(name, shortLine(lost.recording, longestName)));
+    if (lines.isEmpty())
+        return lost_->hide();
+    lost_->tell(lines.join('\n'), true);
 }
 
 QString RecordPanel::amountText() const {
@@ -205,39 +286,15 @@ QString RecordPanel::amountText() const {
         return text;
     }
     QString text = tr("%1: %2, %3")
-                       .arg(shortLine(watch_.name(), longestName), timeText(watch_.seconds()),
-                            bytesText(watch_.bytes()));
+                       .arg(shortLine(watch_.name(), longestName), durationText(watch_.seconds()),
+                            sizeText(watch_.bytes()));
     if (watch_.secondsLeft() > 0)
-        text += tr(", the disk will do for %1").arg(timeText(watch_.secondsLeft()));
+        text += tr(", the disk will do for %1").arg(durationText(watch_.secondsLeft()));
     for (const auto &[name, state] : watch_.states())
-        if (const double lost = sumOf(state["losses"]); lost > 0)
-            text += tr("; %1 misses %2").arg(name).arg(lost);
+        if (state["recording"].toBool() && sumOf(state["losses"]) > 0) // one packet may count as several
+            text +=
+                tr("; %1 lost: %2").arg(name, shortLine(countsText(state["losses"]).replace('_', ' '), 100));
     return text;
-}
-
-void RecordPanel::showSessions() {
-    const QSignalBlocker silence(sessions_); // update() is what fills it
-    const int count = int(list_.sessions.size());
-    while (sessions_->topLevelItemCount() > count)
-        delete sessions_->takeTopLevelItem(sessions_->topLevelItemCount() - 1);
-    while (sessions_->topLevelItemCount() < count)
-        sessions_->addTopLevelItem(new QTreeWidgetItem);
-    for (int i = 0; i < count; ++i) {
-        const RecordedSession &session = list_.sessions[std::size_t(i)];
-        QStringList lines{startText(session.start)};
-        for (const SessionPart &part : session.parts)
-            lines.append(tr("%1: %2, %3")
-                             .arg(part.member.name, countsText(part.entry["counts"]),
-                                  part.fault().isEmpty() ? tr("complete") : part.fault()));
-        const bool isComplete = session.faults().isEmpty();
-        QTreeWidgetItem *const item = sessions_->topLevelItem(i);
-        item->setText(0, shortLine(session.name, longestName));
-        item->setText(1, bytesText(session.bytes()));
-        item->setIcon(0, theme::icon(isComplete         ? Condition::Ready
-                                     : session.goesOn() ? Condition::Busy
-                                                        : Condition::Warning));
-        item->setToolTip(0, toolTipOf(lines.join('\n')));
-    }
 }
 
 } // namespace hermes::desktop

@@ -1,19 +1,20 @@
 #pragma once
 
-#include "gui/desktop/model/LoggerWatch.h"
+#include "gui/desktop/model/RecordingStop.h"
 #include "gui/session/SessionPlayer.h"
-#include "gui/session/SessionRecorder.h"
 
 #include <QWidget>
 
+class QAction;
 class QLineEdit;
 class QPushButton;
-class QTreeWidget;
 
 namespace hermes::desktop {
 
 class MessageLabel;
 class PlainLabel;
+class ReplayBar;
+class SessionTable;
 
 /// Records with all loggers of the robot as one session, puts marks into it, shows how much and how long the
 /// disk will do, lists what was recorded and plays it.
@@ -25,28 +26,43 @@ public:
 
     explicit RecordPanel(Fleet &fleet, QWidget *parent = nullptr);
 
+    /// The name with the next number that none of these has: run1, run2.
+    static QString nextFreeName(const QString &name, const QStringList &taken);
+
 private:
     void layOut();
+    void nameAll();
+    void connectAll();
     SessionRecorder &recorder();
     void start();
     void stop();
+    void showEnd(const QStringList &problems);
     void mark();
+    QString markText();
     void list();
+    void proposeName();
     void play();
     void update();
+    void showStop();
     void showAmount();
+    void showLost();
     QString amountText() const;
-    void showSessions();
 
     LoggerWatch watch_;
     SessionRecorder recorder_;
+    RecordingStop stop_{watch_};
     SessionPlayer player_;
     SessionList list_;
+    QString played_;         ///< the id of the session
+    QSet<QString> markedIn_; ///< the sessions that the number is of
+    int markNumber_ = 0;     ///< of the last mark
     QLineEdit *name_, *mark_;
     QPushButton *record_, *addMark_, *replay_, *live_;
+    QAction *takeMark_;
     PlainLabel *amount_;
-    MessageLabel *message_;
-    QTreeWidget *sessions_;
+    MessageLabel *lost_, *message_;
+    SessionTable *sessions_;
+    ReplayBar *bar_;
 };
 
 } // namespace hermes::desktop

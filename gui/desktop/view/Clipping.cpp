@@ -25,4 +25,16 @@ QPolygonF recent(const QPolygonF &path, const QRectF &rect, double longest) {
     return first > 0 ? QPolygonF(path.mid(first)) : path;
 }
 
+std::vector<QPolygonF> unbroken(const QPolygonF &path, double longestStep) {
+    std::vector<QPolygonF> pieces;
+    int begin = 0;
+    for (int i = 1; i < path.size(); ++i)
+        if (QLineF(path[i - 1], path[i]).length() > longestStep) {
+            pieces.push_back(path.mid(begin, i - begin));
+            begin = i;
+        }
+    pieces.push_back(begin == 0 ? path : QPolygonF(path.mid(begin)));
+    return pieces;
+}
+
 } // namespace hermes::desktop

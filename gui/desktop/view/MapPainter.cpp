@@ -16,6 +16,7 @@ constexpr double robotRadius_m = 0.3; // as large as it is drawn
 constexpr int smoothUpTo = 2000;
 /// Pixels of lines that are drawn smoothly, and at all: a picture is not to take longer than 50 ms.
 constexpr double longestSmooth = 2e5, longestDrawn = 1e6, longestDashed = 4e4;
+constexpr double longestStep_m = 1; // of a path: farther on a replay was sought, or the robot was placed
 
 QVector<QLineF> mapped(const QVector<QLineF> &lines, const QTransform &transform) {
     QVector<QLineF> result;
@@ -157,7 +158,8 @@ void MapPainter::paintPath(QPainter &painter, const QPolygonF &path, const QColo
                            Qt::PenStyle style) const {
     painter.setRenderHint(QPainter::Antialiasing, path.size() <= smoothUpTo);
     painter.setPen(QPen(colour, 1.5, style));
-    painter.drawPolyline(recent(transform_.map(path), QRectF(QPointF(), size_), longestSmooth));
+    for (const QPolygonF &piece : unbroken(path, longestStep_m))
+        painter.drawPolyline(recent(transform_.map(piece), QRectF(QPointF(), size_), longestSmooth));
 }
 
 // The ellipse and the pie hold the pose with 95 %, and are drawn ten times their size: on a good day

@@ -46,14 +46,22 @@ public:
         return daemon.port;
     }
     /// Simulator, motor control, lidar logger and scan matcher in a world of deploy/worlds, wired as on a
-    /// robot.
-    void startAll() {
+    /// robot. simulator: more settings of it.
+    void startAll(const QStringList &simulator = {}) {
         const quint16 lidar = reservePort();
         const quint16 logger = start("velodynelogger", {QString("source.port=%1").arg(lidar),
                                                         "record.folder=" + folder_.filePath("recordings")});
         start("scanmatcher",
               {QString("source.address=127.0.0.1:%1").arg(logger), "map.folder=" + folder_.filePath("maps")});
-        startMotors({QString("lidar.port=%1").arg(lidar)});
+        startMotors(QStringList{QString("lidar.port=%1").arg(lidar)} + simulator);
+    }
+    /// The same with a serial logger that receives the simulated satellites.
+    void startAllWithGps() {
+        startAll({"gps.link=" + path("gps")});
+        start("seriallogger",
+              {"record.folder=" + path("recordings"),
+               QString(R"(ports=[{"name":"gps","url":"serial://%1?baud=9600","view":"nmea"}])")
+                   .arg(path("gps"))});
     }
     /// Simulator and motor control.
     void startMotors(const QStringList &simulator = {}) {

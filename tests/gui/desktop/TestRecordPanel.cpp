@@ -1,13 +1,16 @@
 #include "common/client/DaemonAddress.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/RecordPanel.h"
+#include "gui/desktop/panels/SessionTable.h"
 #include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
+#include <QHeaderView>
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
 #include <QTreeWidget>
+#include <cmath>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -19,6 +22,12 @@ private Q_SLOTS:
     void recordsAsOneAndReplays();
     void aStartThatTimesOutIsTakenBack();
     void aReplayIsShownAndDrivingAsks();
+    void aStopIsSentUntilItIsAnswered();
+    void aLoggerThatDiesIsTold();
+    void theNextFreeNameIsProposed_data();
+    void theNextFreeNameIsProposed();
+    void recordingsAreSortedByTheHeader();
+    void lossesAreToldByTheirNames();
 
 private:
     template <typename T>
@@ -42,7 +51,7 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
                 find<QLabel>("amount")->text().contains("seriallogger"));
 
-    find<QLineEdit>("name")->setText("first");
+    OpenWindow::type(find<QLineEdit>("name"), "first");
     click("record");
     QTRY_COMPARE(message(), QString("Recording first."));
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
@@ -67,7 +76,9 @@ void TestRecordPanel::recordsAsOneAndReplays() {
                      toolTip().contains("velodynelogger: data "),
                  qPrintable(toolTip()));
 
-    click("record"); // the same name once more
+    QTRY_COMPARE(find<QLineEdit>("name")->text(), QString("first2")); // the next one
+    OpenWindow::type(find<QLineEdit>("name"), "first");               // the same name once more
+    click("record");
     QTRY_VERIFY(message().startsWith("nothing was begun; "));
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
 
@@ -177,6 +188,171 @@ void TestRecordPanel::aReplayIsShownAndDrivingAsks() {
     QTRY_VERIFY(!label("replayBanner")->isVisible());
     QVERIFY(!button("driveBlindly")->isVisible());
     QTRY_VERIFY(!isKept());
+}
+
+/// One logger is frozen: the other ends at once, this one when it can be spoken to again.
+void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
+    RobotProcesses robot;
+    robot.start("velodynelogger", {QString("source.port=%1").arg(reservePort()), "source.position_port=0",
+                                   "record.folder=" + robot.path("recordings")});
+    robot.start("seriallogger", {"record.folder=" + robot.path("recordings")});
+    Fleet fleet;
+    robot.connectTo(fleet);
+    panel_ = std::make_unique<RecordPanel>(fleet);
+    panel_->show();
+    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
+                find<QLabel>("amount")->text().contains("seriallogger"));
+    Client lidar, serial;
+    lidar.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("velodynelogger"))));
+    serial.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot.port("seriallogger"))));
+    QVERIFY(lidar.waitConnected().ok() && serial.waitConnected().ok());
+    const auto records = [](Client &client) {
+        return client.callAndWait("record.status")->toObject()["recording"].toBool();
+    };
+    click("record");
+    QTRY_COMPARE(message(), QString("Recording run1."));
+    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
+    QVERIFY(records(lidar) && records(serial));
+    robot.signal("seriallogger", SIGSTOP);
+    click("record"); // before anybody knows that it is frozen
+    QTRY_VERIFY_WITH_TIMEOUT(!records(lidar), 2000);
+    QTRY_VERIFY2(message().startsWith("seriallogger does not answer, and may go on recording."),
+                 qPrintable(message()));
+    QTest::qWait(6000); // longer than calls are usually waited for
+    QVERIFY2(message().startsWith("seriallogger does not answer, and may go on recording."),
+             qPrintable(message()));
+    robot.signal("seriallogger", SIGCONT);
+    QTRY_VERIFY_WITH_TIMEOUT(!records(serial), 10000);
+    QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
+    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("Re&cord"));
+    QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
+    panel_.reset();
+}
+
+void TestRecordPanel::aLoggerThatDiesIsTold() {
+    RobotProcesses robot;
+    const QStringList settings{"record.folder=" + robot.path("recordings")};
+    robot.start("velodynelogger", settings + QStringList{QString("source.port=%1").arg(reservePort()),
+                                                         "source.position_port=0"});
+    robot.start("seriallogger", settings);
+    Fleet fleet;
+    robot.connectTo(fleet);
+    panel_ = std::make_unique<RecordPanel>(fleet);
+    panel_->show();
+    QTRY_VERIFY(find<QLabel>("amount")->text().contains("velodynelogger") &&
+                find<QLabel>("amount")->text().contains("seriallogger"));
+    auto *const lost = find<QLabel>("lost");
+    click("record");
+    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
+    QVERIFY(!lost->isVisible());
+    robot.kill("seriallogger");
+    QTRY_VERIFY(lost->isVisible());
+    QCOMPARE(lost->text(), QString("seriallogger was recording run1 and is gone."));
+    QVERIFY(lost->palette().color(QPalette::WindowText) != panel_->palette().color(QPalette::WindowText));
+    QCOMPARE(find<QPushButton>("record")->text(), QString("S&top")); // the other goes on
+    robot.kill("velodynelogger");
+    QTRY_VERIFY2(lost->text().contains("velodynelogger was recording run1 and is gone."),
+                 qPrintable(lost->text()));
+    QCOMPARE(find<QLabel>("amount")->text(), QString("No logger is connected."));
+    robot.start("seriallogger", settings);
+    QTRY_VERIFY_WITH_TIMEOUT(lost->text().contains("seriallogger was gone while it recorded run1"), 20000);
+    QTRY_VERIFY(find<QPushButton>("record")->isEnabled() &&
+                !find<QPushButton>("record")->text().contains("top"));
+    QTRY_COMPARE(find<QLineEdit>("name")->text(), QString("run2"));
+    click("record"); // who begins anew has seen it
+    QTRY_VERIFY(!lost->isVisible());
+    panel_.reset();
+}
+
+void TestRecordPanel::theNextFreeNameIsProposed_data() {
+    QTest::addColumn<QString>("name");
+    QTest::addColumn<QStringList>("taken");
+    QTest::addColumn<QString>("next");
+    QTest::newRow("free") << "run1" << QStringList{"run2"} << "run1";
+    QTest::newRow("next") << "run1" << QStringList{"run1"} << "run2";
+    QTest::newRow("gap") << "run1" << QStringList{"run1", "run2", "run4"} << "run3";
+    QTest::newRow("ten") << "run9" << QStringList{"run9"} << "run10";
+    QTest::newRow("zeros") << "run007" << QStringList{"run007"} << "run008";
+    QTest::newRow("no number") << "hall" << QStringList{"hall", "hall2"} << "hall3";
+    QTest::newRow("a number") << "1" << QStringList{"1"} << "2";
+    QTest::newRow("none") << "" << QStringList{"run1"} << "";
+    QTest::newRow("long number") << "run99999999999999999999" << QStringList{"run99999999999999999999"}
+                                 << "run999999999999991000000";
+}
+
+void TestRecordPanel::theNextFreeNameIsProposed() {
+    QFETCH(QString, name);
+    QFETCH(QStringList, taken);
+    QTEST(RecordPanel::nextFreeName(name, taken), "next");
+}
+
+/// By what they are, not by their text; whatever a logger says.
+void TestRecordPanel::recordingsAreSortedByTheHeader() {
+    SessionList list;
+    const auto add = [&list](const QString &name, double start, double end, double bytes) {
+        list.sessions.push_back({name, name, start, end, {}});
+        list.sessions.back().parts.push_back(
+            {SessionMember(), {{"bytes", bytes}, {"ended", "stopped"}, {"complete", true}}});
+    };
+    const double today = QDateTime::currentMSecsSinceEpoch() * 1e-3;
+    add("run10", today, today + 100, 900);
+    add("run2", today - 90000, today - 89000, 6.3 * 1024 * 1024 * 1024);
+    add("run1", 1e300, -1e300, std::nan(""));
+    add("run3", std::nan(""), std::nan(""), 2048);
+    SessionTable table;
+    table.tell(list);
+    table.resize(500, 200);
+    table.show();
+    const auto names = [&table] {
+        QStringList shown;
+        for (int i = 0; i < table.topLevelItemCount(); ++i)
+            shown.append(table.topLevelItem(i)->text(0));
+        return shown;
+    };
+    QCOMPARE(table.chosen()->name, QString("run10")); // the first of the list is the latest
+    QCOMPARE(names().mid(0, 3), QStringList({"run1", "run10", "run2"}));
+    const auto clickHeader = [&table](int column) {
+        QHeaderView *const header = table.header();
+        QTest::mouseClick(header->viewport(), Qt::LeftButton, {},
+                          {header->sectionViewportPosition(column) + 20, header->height() / 2});
+    };
+    clickHeader(0);
+    if (names().first() != "run1")
+        clickHeader(0);
+    QCOMPARE(names(), QStringList({"run1", "run2", "run3", "run10"}));
+    clickHeader(3);
+    clickHeader(3);
+    const QTreeWidgetItem *const largest =
+        table.topLevelItem(table.topLevelItemCount() - 1)->text(0) == "run2"
+            ? table.topLevelItem(table.topLevelItemCount() - 1)
+            : table.topLevelItem(0);
+    QCOMPARE(largest->text(0), QString("run2"));
+    QCOMPARE(largest->text(2), QString("16 min 40 s"));
+    QCOMPARE(largest->text(3), QString("6.3 GiB"));
+    QCOMPARE(table.chosen()->name, QString("run10"));
+    list.sessions.erase(list.sessions.begin());
+    table.tell(list);
+    QCOMPARE(table.chosen()->name, QString("run2"));
+}
+
+/// A packet that the computer dropped is also missing: the counts are of several kinds and have no sum.
+void TestRecordPanel::lossesAreToldByTheirNames() {
+    FakeRobot robot;
+    FakeLogger &logger = robot.add("lidar");
+    Fleet fleet;
+    QVERIFY(fleet.add(logger.address().section("//", -1)).ok());
+    panel_ = std::make_unique<RecordPanel>(fleet);
+    panel_->show();
+    QTRY_VERIFY(find<QPushButton>("record")->isEnabled());
+    click("record");
+    RecordingState state;
+    state.losses = {{"missing", 3}, {"kernel", 3}, {"too_long", 0}, {"disk_bytes", 7}};
+    logger.writer.setState(state);
+    QTRY_VERIFY2(find<QLabel>("amount")->text().contains("; lidar lost: disk bytes 7, kernel 3, missing 3"),
+                 qPrintable(find<QLabel>("amount")->text()));
+    click("record");
+    QTRY_VERIFY(!logger.recording.isActive());
+    panel_.reset();
 }
 
 QTEST_MAIN(TestRecordPanel)
