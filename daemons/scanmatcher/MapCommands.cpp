@@ -9,7 +9,8 @@ namespace hermes::scanmatcher {
 
 namespace {
 
-constexpr int mostFiles = 4; // that may wait to be written, each with its copy of the map
+constexpr double longestGap_s = 1; // between scans that follow each other
+constexpr int mostFiles = 4;       // that may wait to be written, each with its copy of the map
 
 bool isEmpty(const vectorlib::VectorMap &map) {
     bool empty = true;
@@ -208,6 +209,32 @@ void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
                 corrector_->follow(closes, now);
             });
     });
+    showNewMap(tracker, std::nullopt, QJsonValue());
+}
+
+// One that was sought goes on elsewhere in its map, or where nobody was as yet: to expect it where the last
+// scan was would map the same walls twice.
+void ScanMatcher::followReplay(const Scan &scan) {
+    const double before = std::exchange(replayStamp_, scan.replayed ? scan.data.stamp : -1);
+    const bool isJump =
+        scan.replayed && before >= 0 && (scan.data.stamp < before || scan.data.stamp > before + longestGap_s);
+    if (!isJump)
+        return;
+    worker_->post([this](vectorlib::ScanTracker &tracker) {
+        if (isEmpty(tracker.builder.map))
+            return;
+        tracker.place(tracker.builder.report().pose);            // it stands still
+        seeks_ = live_ ? Seeks::AnywhereOrNew : Seeks::Anywhere; // with live_ the map is the replay's own
+        setGrowth(tracker);
+    });
+}
+
+void ScanMatcher::beginReplayAnew(vectorlib::ScanTracker &tracker) {
+    if (seeks_ != Seeks::Nowhere)
+        return; // another map was loaded meanwhile
+    replace(tracker, {});
+    corrector_->restart(tracker);
+    seeks_ = Seeks::Nothing;
     showNewMap(tracker, std::nullopt, QJsonValue());
 }
 

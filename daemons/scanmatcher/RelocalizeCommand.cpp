@@ -54,9 +54,13 @@ void ScanMatcher::relocalize(bool apply, const Reply &reply) {
 
 // After a scan; searches the whole map when it is time to.
 std::optional<Relocalized> ScanMatcher::find(vectorlib::ScanTracker &tracker) {
-    if (seeks_ == Seeks::Anywhere) {
-        seeks_ = Seeks::Here;
-        return tracker.relocalize(true);
+    if (seeks_ == Seeks::Anywhere || seeks_ == Seeks::AnywhereOrNew) {
+        const Relocalized found = tracker.relocalize(true);
+        const bool isElsewhere = seeks_ == Seeks::AnywhereOrNew && !found.isFound();
+        seeks_ = isElsewhere ? Seeks::Nowhere : Seeks::Here;
+        if (isElsewhere) // not now: what the scan gave is to be told
+            worker_->post([this](vectorlib::ScanTracker &now) { beginReplayAnew(now); });
+        return found;
     }
     if (seeks_ == Seeks::Here &&
         tracker.builder.report().outcome == vectorlib::ScanReport::Outcome::Matched) {
@@ -118,7 +122,7 @@ void ScanMatcher::updateTrackingHealth() {
     if (lastRecovery_)
         message += "; the whole map was searched: " + QString::fromStdString(lastRecovery_->text());
     if (seeks_ != Seeks::Nothing)
-        message += "; the place in the loaded map is sought: until then nothing is mapped";
+        message += "; the place in the map is sought: until then nothing is mapped";
     const HealthLevel level = lostInARow_ >= 3 ? HealthLevel::Failed
                               : isBlind()      ? HealthLevel::Warn
                                                : HealthLevel::Ok;

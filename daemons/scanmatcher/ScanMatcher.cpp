@@ -241,6 +241,7 @@ void ScanMatcher::takeScan(const TopicUpdate &update) {
             matchesReplay_ = replayed;
             replayed ? setLiveMapAside(tracker) : bringLiveMapBack(tracker);
         });
+    followReplay(scan);
     scan.data.odometry = odometry_.over(scan.data.begin(), scan.data.end());
     worker_->push(std::move(scan));
 }

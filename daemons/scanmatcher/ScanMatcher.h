@@ -86,6 +86,8 @@ private:
     void undo(vectorlib::ScanTracker &tracker, const Reply &reply);
     void setLiveMapAside(vectorlib::ScanTracker &tracker);
     void bringLiveMapBack(vectorlib::ScanTracker &tracker);
+    void followReplay(const Scan &scan);
+    void beginReplayAnew(vectorlib::ScanTracker &tracker);
     /// When the map is another one: hands it over to the main thread, then answers.
     void showNewMap(vectorlib::ScanTracker &tracker, const std::optional<Reply> &reply,
                     const QJsonValue &answer);
@@ -107,9 +109,11 @@ private:
     std::optional<LiveMap> live_;           ///< while a replay is mapped; the worker's
     std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty
     bool replayed_ = false;                 ///< the last scan
+    double replayStamp_ = -1;               ///< of the last scan that was replayed
     /// A map that was loaded goes on once its place is found: with the first scan in the whole map, then
-    /// where the sensor stood last.
-    enum class Seeks { Nothing, Anywhere, Here };
+    /// where the sensor stood last. A replay that was sought to a place that its map does not have (Nowhere)
+    /// gets a new map.
+    enum class Seeks { Nothing, Anywhere, AnywhereOrNew, Here, Nowhere };
     std::atomic<Seeks> seeks_{Seeks::Nothing}; ///< set by the worker
     bool grows_ = true;                        ///< the map, while no place is sought; the worker's
     Client source_;

@@ -30,6 +30,7 @@ private Q_SLOTS:
     void aReplayLeavesTheLiveMapAlone_data();
     void aReplayLeavesTheLiveMapAlone();
     void mappingBegunDuringAReplay();
+    void aReplayThatIsSoughtGrowsNoGhost();
     void mapTopicBeginsWithTheFullMap();
     void queueDropsItsOldestAndCounts();
 
@@ -315,6 +316,52 @@ void TestScanMatcher::mappingBegunDuringAReplay() {
     source->publish("scan2d", roomScan(onTheWay(40), 4), 4);
     QTRY_VERIFY(healthItem("replay")["level"] == QJsonValue("ok"));
     QTRY_COMPARE(call("map.get")["size"].toInt(), live.size());
+}
+
+// Back to where it was, it is found in its map; where the map has nothing, another one begins.
+void TestScanMatcher::aReplayThatIsSoughtGrowsNoGhost() {
+    drive(0, 10);
+    const auto replay = [this](int i, const vectorlib::Pose2D &pose) {
+        QJsonObject scan = roomScan(pose, 0.1 * i);
+        scan["replayed"] = true;
+        source->publish("scan2d", scan, 0.1 * i);
+    };
+    const auto edges = [this] { return call("map.get")["size"].toInt(); };
+    double gone_m = 0; // from where the replay began
+    client_->subscribe("pose", {{"queue", 100}}, [&](const TopicUpdate &update) {
+        gone_m = std::hypot(update.json()["x"].toDouble(), update.json()["y"].toDouble());
+    });
+    QTRY_VERIFY(matcher->hasSubscribers("pose"));
+    for (int i = 0; i < 60; ++i) {
+        replay(i, onTheWay(i));
+        if (i % 20 == 19) // more would not wait
+            QTRY_COMPARE(call("matcher.state")["scans"].toInt(), i + 1);
+    }
+    QCOMPARE(edges(), 6);
+    QTRY_VERIFY2(std::abs(gone_m - std::hypot(0.05 * 59, 0.02 * 59)) < 0.1,
+                 qPrintable(QString::number(gone_m)));
+    for (int i = 5; i < 15; ++i) // 2.7 m and 1.6 rad from there
+        replay(i, onTheWay(i));
+    QTRY_COMPARE(call("matcher.state")["scans"].toInt(), 70);
+    QTRY_VERIFY2(std::abs(gone_m - std::hypot(0.05 * 14, 0.02 * 14)) < 0.1,
+                 qPrintable(QString::number(gone_m)));
+    QCOMPARE(edges(), 6);
+    // A corner that was never seen: as if the recording had gone on to another room.
+    const auto corner = [this](int i) {
+        QJsonArray x, y;
+        for (int k = 0; k < 400; ++k) {
+            x << (k < 200 ? 1.0 : 1.0 - 0.015 * (k - 200));
+            y << (k < 200 ? -1.5 + 0.015 * k : 1.5);
+        }
+        source->publish("scan2d",
+                        QJsonObject{{"stamp", 0.1 * i}, {"turn", i}, {"x", x}, {"y", y}, {"replayed", true}},
+                        0.1 * i);
+    };
+    for (int i = 300; i < 320; ++i)
+        corner(i);
+    QTRY_COMPARE(edges(), 2);
+    QVERIFY(call("matcher.state")["scans"].toInt() <= 20);
+    QVERIFY(healthItem("replay")["message"].toString().contains("live map is kept"));
 }
 
 void TestScanMatcher::mapTopicBeginsWithTheFullMap() {
