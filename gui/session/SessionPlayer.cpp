@@ -6,7 +6,8 @@ namespace hermes {
 namespace {
 
 constexpr std::chrono::milliseconds statusPeriod{200};
-constexpr double longest_s = 1e7; // as source.seek takes it
+constexpr double longest_s = 1e7;  // as source.seek takes it
+constexpr double lastPart_s = 0.3; // of a recording: who was sought to it may be at its end
 
 Result<void> firstError(const SessionReplies &replies) {
     for (const SessionReply &reply : replies)
@@ -58,6 +59,7 @@ void SessionPlayer::play(const RecordedSession &session, const Options &options)
     seekWanted_ = speedWanted_ = std::nullopt;
     pauseWanted_.reset();
     begin_s_ = 0;
+    sought_s_.reset();
     playing_.clear();
     std::vector<SessionMember> players;
     auto &parts = session_.parts;
@@ -189,6 +191,8 @@ void SessionPlayer::onObeyed(const SessionReplies &replies) {
 
 void SessionPlayer::onSought(const SessionReplies &replies) {
     reopens_ = std::any_of(replies.begin(), replies.end(), isNotReady);
+    if (!reopens_)
+        sought_s_ = begin_s_;
     onObeyed(replies);
 }
 
@@ -212,6 +216,7 @@ void SessionPlayer::onPositions(const SessionReplies &replies) {
     const Result<bool> atEnd = isAtEnd(replies);
     if (!goesOn(atEnd ? Result<void>() : atEnd.error()))
         return;
+    sought_s_.reset(); // once
     if (std::exchange(reopens_, false))
         return open();
     begin_s_ = 0;
@@ -258,6 +263,9 @@ Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
                 QString("%1: its source was changed to \"%2\" meanwhile").arg(name, isOurs ? state : shown));
         }
         end = end && state == "ended";
+        // It was about to end as it was sought.
+        reopens_ = reopens_ || (state == "ended" && sought_s_ &&
+                                *sought_s_ < secondsOf(source["duration_s"]) - lastPart_s);
         if (state == "replay" && source["paused"].isBool())
             isPaused = isPaused.value_or(true) && source["paused"].toBool();
         position_s = std::max(position_s, secondsOf(source["position_s"]));

@@ -73,8 +73,9 @@ private:
     std::optional<std::pair<RecordedSession, Options>> next_;
     std::optional<double> seekWanted_, speedWanted_;
     std::optional<bool> pauseWanted_;
-    double begin_s_ = 0;   ///< where those that are opened begin
-    bool reopens_ = false; ///< one had come to its end and could not be sought
+    double begin_s_ = 0;             ///< where those that are opened begin
+    std::optional<double> sought_s_; ///< since the last positions
+    bool reopens_ = false;           ///< one had come to its end and could not be sought
     bool isPaused_ = false;
     bool isPlaying_ = false;
     bool isEnding_ = false;

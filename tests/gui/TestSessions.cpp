@@ -367,6 +367,9 @@ void TestSessions::ordersGoToAll() {
     };
     QTRY_VERIFY2(areIn({"b: goes at 4", "b: waits", "b: sought to 0.5"}),
                  qPrintable(robot_->asked.join(", ")));
+    bool isPlaced = false; // they have told where they are since
+    connect(&player, &SessionPlayer::progress, [&] { isPlaced = true; });
+    QTRY_VERIFY(isPlaced);
     a_->source = b_->source = "ended"; // it waits there
     QTest::qWait(500);
     QVERIFY(player.isPlaying() && player.isPaused());
@@ -397,8 +400,16 @@ void TestSessions::whoHasEndedBeginsAnew() {
                  QStringList({QString("%1: opened, waits").arg(name), QString("%1: sought to 0.25").arg(name),
                               QString("%1: is released").arg(name)}));
     }
-    b_->source = "live"; // somebody else's
+    robot_->asked.clear();
+    b_->told = {{"state", "ended"}}; // it took the seek as it came to its end
     player.seek(0.5);
+    QTRY_COMPARE(robot_->asked.count("b: sought to 0.5"), 2);
+    QTRY_VERIFY(robot_->asked.contains("b: is released"));
+    b_->told = {};
+    QTest::qWait(300);
+    QCOMPARE(robot_->asked.count("b: opened, waits"), 1); // once
+    b_->source = "live";                                  // somebody else's
+    player.seek(0.75);
     QTRY_VERIFY(!player.isPlaying());
     QCOMPARE(robot_->asked.count("b: opened, waits"), 1);
 }

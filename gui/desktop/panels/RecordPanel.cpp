@@ -10,7 +10,6 @@
 #include <QHBoxLayout>
 #include <QLineEdit>
 #include <QPushButton>
-#include <QRegularExpression>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -178,25 +177,11 @@ void RecordPanel::list() {
     });
 }
 
-QString RecordPanel::nextFreeName(const QString &name, const QStringList &taken) {
-    static const QRegularExpression numbered("^(.*?)([0-9]{0,6})$",
-                                             QRegularExpression::DotMatchesEverythingOption);
-    const QRegularExpressionMatch match = numbered.match(name);
-    const QString digits = match.captured(2);
-    QString next = name;
-    for (int number = digits.isEmpty() ? 2 : digits.toInt() + 1; taken.contains(next); ++number)
-        next = match.captured(1) + QString("%1").arg(number, digits.size(), 10, QChar('0'));
-    return next;
-}
-
 /// Unless somebody has typed one.
 void RecordPanel::proposeName() {
     if (name_->isModified() || watch_.isRecording())
         return;
-    QStringList taken;
-    for (const RecordedSession &session : list_.sessions)
-        taken.append(session.name);
-    const QString next = nextFreeName(name_->text().trimmed(), taken);
+    const QString next = nextFreeName(name_->text().trimmed(), list_);
     if (next != name_->text())
         name_->setText(next);
 }

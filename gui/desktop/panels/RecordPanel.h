@@ -26,9 +26,6 @@ public:
 
     explicit RecordPanel(Fleet &fleet, QWidget *parent = nullptr);
 
-    /// The name with the next number that none of these has: run1, run2.
-    static QString nextFreeName(const QString &name, const QStringList &taken);
-
 private:
     void layOut();
     void nameAll();

@@ -7,6 +7,7 @@
 #include <QCollator>
 #include <QHeaderView>
 #include <QLocale>
+#include <QRegularExpression>
 #include <cmath>
 
 namespace hermes::desktop {
@@ -82,6 +83,20 @@ QString toolTipOf(const RecordedSession &session) {
 }
 
 } // namespace
+
+QString nextFreeName(const QString &name, const SessionList &list) {
+    QStringList taken;
+    for (const RecordedSession &session : list.sessions)
+        taken.append(session.name);
+    static const QRegularExpression numbered("^(.*?)([0-9]{0,6})$",
+                                             QRegularExpression::DotMatchesEverythingOption);
+    const QRegularExpressionMatch match = numbered.match(name);
+    const QString digits = match.captured(2);
+    QString next = name;
+    for (int number = digits.isEmpty() ? 2 : digits.toInt() + 1; taken.contains(next); ++number)
+        next = match.captured(1) + QString("%1").arg(number, digits.size(), 10, QChar('0'));
+    return next;
+}
 
 SessionTable::SessionTable(QWidget *parent)
     : QTreeWidget(parent) {

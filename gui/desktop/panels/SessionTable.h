@@ -6,6 +6,9 @@
 
 namespace hermes::desktop {
 
+/// The name with the next number that no recording has: run1, run2.
+QString nextFreeName(const QString &name, const SessionList &list);
+
 /// The recordings of a robot with date, duration and size, in the order that its header is clicked for.
 class SessionTable : public QTreeWidget {
     Q_OBJECT

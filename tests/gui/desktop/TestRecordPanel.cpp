@@ -23,6 +23,7 @@ private Q_SLOTS:
     void aStartThatTimesOutIsTakenBack();
     void aReplayIsShownAndDrivingAsks();
     void aStopIsSentUntilItIsAnswered();
+    void aLoggerThatWasAwayIsStoppedToo();
     void aLoggerThatDiesIsTold();
     void theNextFreeNameIsProposed_data();
     void theNextFreeNameIsProposed();
@@ -229,6 +230,34 @@ void TestRecordPanel::aStopIsSentUntilItIsAnswered() {
     panel_.reset();
 }
 
+/// Its link was gone as Stop was pressed.
+void TestRecordPanel::aLoggerThatWasAwayIsStoppedToo() {
+    FakeRobot robot;
+    FakeLogger &here = robot.add("here"), &away = robot.add("away");
+    Fleet fleet;
+    for (const auto &logger : robot.loggers)
+        QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
+    panel_ = std::make_unique<RecordPanel>(fleet);
+    panel_->show();
+    QTRY_VERIFY(find<QLabel>("amount")->text().contains("here") &&
+                find<QLabel>("amount")->text().contains("away"));
+    click("record");
+    QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
+    QVERIFY(here.recording.isActive() && away.recording.isActive());
+    DaemonLink *const link = fleet.robot()->withName("away");
+    link->client().close();
+    QTRY_COMPARE(find<QLabel>("lost")->text(), QString("away was recording run1 and is gone."));
+    click("record");
+    QTRY_VERIFY(!here.recording.isActive());
+    QTRY_VERIFY2(message().contains("away: it took part, but does not answer"), qPrintable(message()));
+    QVERIFY(away.recording.isActive());
+    QVERIFY(link->client().connectTo(away.address()).ok());
+    QTRY_VERIFY_WITH_TIMEOUT(!away.recording.isActive(), 15000);
+    QTRY_COMPARE(message(), QString("Stopped, nothing missing."));
+    QVERIFY(!find<QLabel>("lost")->isVisible()); // it had gone on
+    panel_.reset();
+}
+
 void TestRecordPanel::aLoggerThatDiesIsTold() {
     RobotProcesses robot;
     const QStringList settings{"record.folder=" + robot.path("recordings")};
@@ -283,7 +312,10 @@ void TestRecordPanel::theNextFreeNameIsProposed_data() {
 void TestRecordPanel::theNextFreeNameIsProposed() {
     QFETCH(QString, name);
     QFETCH(QStringList, taken);
-    QTEST(RecordPanel::nextFreeName(name, taken), "next");
+    SessionList list;
+    for (const QString &one : taken)
+        list.sessions.push_back({one, one, 0, 0, {}});
+    QTEST(nextFreeName(name, list), "next");
 }
 
 /// By what they are, not by their text; whatever a logger says.
