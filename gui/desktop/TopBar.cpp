@@ -73,7 +73,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     layout->addWidget(stop_);
 
     connect(robots_, QOverload<int>::of(&QComboBox::activated), this,
-            [this](int index) { fleet_.choose(fleet_.robots().at(size_t(index)).get()); });
+            [this](int index) { fleet_.choose(fleet_.robotAt(robots_->itemData(index).toString())); });
     connect(stop_, &QPushButton::pressed, &drive, &DriveControl::stop); // at once, not when it is let go
     connect(release_, &QPushButton::clicked, &drive, &DriveControl::release);
     connect(&fleet, &Fleet::changed, this, &TopBar::updateRobots);
@@ -91,18 +91,19 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
 }
 
 void TopBar::updateRobots() {
-    QStringList names, shown;
+    std::vector<std::pair<QString, QString>> all, shown; // name and address
     for (const auto &robot : fleet_.robots())
-        names.append(robot->name());
+        all.emplace_back(fleet_.titleOf(*robot), robot->address());
     for (int i = 0; i < robots_->count(); ++i)
-        shown.append(robots_->itemText(i));
-    if (names != shown) {
+        shown.emplace_back(robots_->itemText(i), robots_->itemData(i).toString());
+    if (all != shown) {
         robots_->clear();
-        robots_->addItems(names);
+        for (const auto &[name, address] : all)
+            robots_->addItem(name, address);
     }
-    for (size_t i = 0; i < fleet_.robots().size(); ++i)
-        if (fleet_.robots()[i].get() == fleet_.robot())
-            robots_->setCurrentIndex(int(i));
+    robots_->setCurrentIndex(fleet_.robot() ? robots_->findData(fleet_.robot()->address()) : -1);
+    window()->setWindowTitle(fleet_.robot() ? tr("%1 - Hermes").arg(fleet_.titleOf(*fleet_.robot()))
+                                            : tr("Hermes"));
 }
 
 void TopBar::updateLink() {

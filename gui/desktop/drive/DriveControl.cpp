@@ -7,6 +7,11 @@
 #include <QPointer>
 
 namespace hermes::desktop {
+namespace {
+
+const QString driveMethod = "motor.drive";
+
+} // namespace
 
 DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     : QObject(parent)
@@ -27,19 +32,24 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     });
     connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
     connect(&fleet, &Fleet::robotChosen, this, &DriveControl::follow);
+    connect(&fleet, &Fleet::moved, this,
+            [this](const DaemonLink *daemon, const Robot *, const Robot *to) { onMoved(daemon, to); });
+    fleet.setObjection([guard = QPointer<DriveControl>(this)](const Robot &robot) {
+        return guard ? guard->objection(robot) : QString();
+    });
     timer_.start(period);
     pollTimer_.start(std::chrono::milliseconds(500));
     follow();
 }
 
 DaemonLink *DriveControl::motors() const {
-    if (!fleet_.robot())
+    const Robot *const robot = fleet_.robot();
+    if (!robot)
         return nullptr;
-    const auto found = fleet_.robot()->allWithMethod("motor.drive");
-    if (found.empty())
-        return nullptr;
-    // Who is driven stays so, whoever else appears.
-    return std::find(found.begin(), found.end(), motors_) == found.end() ? found.front() : motors_.data();
+    // Who is driven stays so, whoever else appears, and is waited for while it is away.
+    if (driven_ && robot->has(driven_) && driven_->hasMethod(driveMethod))
+        return driven_->isConnected() ? driven_.data() : nullptr;
+    return robot->withMethod(driveMethod);
 }
 
 void DriveControl::follow() {
@@ -50,6 +60,8 @@ void DriveControl::follow() {
     if (motors_)
         motors_->disconnect(this);
     motors_ = found;
+    if (found)
+        driven_ = found;
     hold_ = {};
     measured_ = {};
     measuredAge_.forget();
@@ -69,8 +81,29 @@ void DriveControl::follow() {
     poll();
 }
 
+// It is another robot's now: nobody has said that this one is to be driven.
+void DriveControl::onMoved(const DaemonLink *daemon, const Robot *to) {
+    if (daemon != motors_)
+        return;
+    const bool wasDriving = isDriving_;
+    halt();
+    if (wasDriving)
+        tell(tr("The drive has ended: %1 belongs to the robot %2 now.")
+                 .arg(daemon->name(), fleet_.titleOf(*to)));
+}
+
+QString DriveControl::objection(const Robot &robot) const {
+    if (isDriving_ && robot.has(motors_))
+        return tr("%1 is driven: let go first.").arg(robot.name());
+    if (stop_.isPressedFor(robot))
+        return tr("STOP was pressed for %1: release it first.").arg(robot.name());
+    return {};
+}
+
 void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld) {
     inputs_[input] = {wish, isHeld};
+    if (isHeld)
+        fleet_.keepChoice();
     if (mustCentre_ && !isAnyHeld())
         mustCentre_ = false;
 }
@@ -177,7 +210,7 @@ void DriveControl::send() {
             halt();
         tell(result.error().message);
     };
-    motors_->client().call("motor.drive", command, done, Client::defaultTimeout,
+    motors_->client().call(driveMethod, command, done, Client::defaultTimeout,
                            Client::Repeats::None); // a late one would move the robot
     Q_EMIT changed();
 }

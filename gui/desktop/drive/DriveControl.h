@@ -78,6 +78,9 @@ private:
 
     DaemonLink *motors() const;
     void follow();
+    void onMoved(const DaemonLink *daemon, const Robot *to);
+    /// Why the robot may not be removed now; empty: it may.
+    QString objection(const Robot &robot) const;
     void tick();
     void acquire(bool takeOver);
     void ask();
@@ -96,7 +99,7 @@ private:
 
     Fleet &fleet_;
     TopicFeed odometry_;
-    QPointer<DaemonLink> motors_;
+    QPointer<DaemonLink> motors_, driven_; ///< the second is away, as may be
     StopControl stop_;
     StopPhase shownPhase_ = StopPhase::None;
     ReplayWatch replay_;

@@ -14,6 +14,8 @@ StopControl::StopControl(Fleet &fleet, QObject *parent)
     , fleet_(fleet) {
     connect(&fleet, &Fleet::changed, this, &StopControl::follow);
     connect(&fleet, &Fleet::robotChosen, this, &StopControl::follow);
+    connect(&fleet, &Fleet::moved, this, &StopControl::onMoved);
+    connect(&fleet, &Fleet::robotGone, this, &StopControl::onRobotGone);
     follow();
 }
 
@@ -21,10 +23,11 @@ StopControl::StopControl(Fleet &fleet, QObject *parent)
 // be.
 void StopControl::follow() {
     std::vector<DaemonLink *> found;
-    if (const Robot *const robot = fleet_.robot())
-        for (DaemonLink *daemon : robot->daemons())
-            if (daemon->hasMethod(method))
-                found.push_back(daemon);
+    for (const auto &robot : fleet_.robots())
+        if (robot.get() == fleet_.robot() || pressed_.contains(robot.get()))
+            for (DaemonLink *daemon : robot->daemons())
+                if (daemon->hasMethod(method))
+                    found.push_back(daemon);
     const auto isOver = [&](const Line &line) {
         const auto isIts = [&](const DaemonLink *daemon) {
             return daemon->address() == line.stop->address();
@@ -37,29 +40,63 @@ void StopControl::follow() {
 }
 
 void StopControl::reach(DaemonLink *daemon) {
-    for (const Line &line : lines_)
-        if (line.stop->address() == daemon->address())
+    const Robot *const robot = fleet_.robotOf(daemon);
+    const QString name = fleet_.titleOf(*daemon);
+    for (Line &line : lines_)
+        if (line.stop->address() == daemon->address()) {
+            line.robot = robot;
+            line.stop->setName(name);
             return line.stop->follow(daemon);
-    const Robot *const robot = fleet_.robot();
-    const QString name =
-        fleet_.robots().size() > 1 ? tr("%1 of %2").arg(daemon->name(), robot->name()) : daemon->name();
+        }
     lines_.push_back({robot, std::make_unique<StopLine>(daemon, name)});
     StopLine *const stop = lines_.back().stop.get();
-    connect(stop, &StopLine::changed, this, [this, robot] {
-        const auto isBusy = [robot](const Line &line) {
-            return line.robot == robot && line.stop->phase() != StopPhase::None;
-        };
-        if (std::none_of(lines_.begin(), lines_.end(), isBusy))
-            pressed_.remove(robot); // somebody has released it
-        Q_EMIT changed();
-    });
+    connect(stop, &StopLine::changed, this, [this, stop] { onChanged(stop); });
     if (pressed_.remove(nullptr))
         pressed_.insert(robot);
     if (pressed_.contains(robot))
         stop->press();
 }
 
+void StopControl::onChanged(const StopLine *stop) {
+    const auto own = std::find_if(lines_.begin(), lines_.end(),
+                                  [stop](const Line &line) { return line.stop.get() == stop; });
+    const auto isBusy = [own](const Line &line) {
+        return line.robot == own->robot && line.stop->phase() != StopPhase::None;
+    };
+    if (own != lines_.end() && std::none_of(lines_.begin(), lines_.end(), isBusy))
+        pressed_.remove(own->robot); // somebody has released it
+    Q_EMIT changed();
+}
+
+// A STOP goes with the daemon, and is one of the robot that has it now.
+void StopControl::onMoved(const DaemonLink *daemon, const Robot *from, const Robot *to) {
+    bool hadLine = false, hasMore = false;
+    for (Line &line : lines_) {
+        if (line.stop->address() == daemon->address()) {
+            line.robot = to;
+            line.stop->setName(fleet_.titleOf(*daemon));
+            hadLine = true;
+        }
+        hasMore = hasMore || line.robot == from;
+    }
+    if (!pressed_.contains(from))
+        return;
+    pressed_.insert(to);
+    if (hadLine && !hasMore)
+        pressed_.remove(from);
+}
+
+void StopControl::onRobotGone(const Robot *robot, const Robot *heir) {
+    if (pressed_.remove(robot) && heir)
+        pressed_.insert(heir);
+    const auto isIts = [robot](const Line &line) { return line.robot == robot; };
+    lines_.erase(std::remove_if(lines_.begin(), lines_.end(), isIts), lines_.end());
+    follow();
+    Q_EMIT changed();
+}
+
 void StopControl::press() {
+    fleet_.keepChoice();
     pressed_.insert(fleet_.robot());
     follow();
     for (const Line &line : lines_)
@@ -109,9 +146,8 @@ bool StopControl::isLate() const {
 
 QString StopControl::text() const {
     if (reachesNobody())
-        return tr(
-            "STOP REACHES NOBODY: no robot that can drive is connected. It goes out as soon as one is, while "
-            "its robot is chosen. If a robot moves, use the switch on it.");
+        return tr("STOP REACHES NOBODY: no robot that can drive is connected. It goes out as soon as one is. "
+                  "If a robot moves, use the switch on it.");
     const StopLine *const line = worst(true);
     if (!line)
         return {};

@@ -26,6 +26,8 @@ public:
     StopPhase phase() const;
     /// Of any robot.
     bool isLate() const;
+    /// A STOP for this robot was pressed here, and is not released as yet.
+    bool isPressedFor(const Robot &robot) const { return pressed_.contains(&robot); }
     /// What the operator has to know now; empty: nothing.
     QString text() const;
 
@@ -35,6 +37,9 @@ Q_SIGNALS:
 private:
     void follow();
     void reach(DaemonLink *daemon);
+    void onMoved(const DaemonLink *daemon, const Robot *from, const Robot *to);
+    void onRobotGone(const Robot *robot, const Robot *heir);
+    void onChanged(const StopLine *stop);
     /// With the robot that it is of.
     struct Line {
         const Robot *robot;

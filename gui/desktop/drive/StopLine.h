@@ -28,6 +28,7 @@ public:
 
     const QString &address() const { return address_; }
     const QString &name() const { return name_; }
+    void setName(const QString &name) { name_ = name; }
     StopPhase phase() const { return phase_; }
     /// Since it was pressed, or since the robot was known to stand last; seconds.
     double unconfirmed_s() const;
@@ -65,7 +66,8 @@ private:
     void readWatchdogs();
 
     QPointer<DaemonLink> daemon_;
-    const QString address_, name_;
+    const QString address_;
+    QString name_;
     Client second_;
     QTimer timer_;
     StopPhase phase_ = StopPhase::None;

@@ -55,11 +55,18 @@ QString DaemonLink::name() const {
     const QString name = shortLine(info_.name, longestName);
     if (!name.isEmpty())
         return name;
-    const quint16 port = address_.section(':', -1).toUShort();
     for (const QString &known : daemonNames())
-        if (defaultPort(known) == port)
+        if (defaultPort(known) == port())
             return known;
     return address_;
+}
+
+QString DaemonLink::identity() const {
+    return info_.pid > 0 ? QString("%1 %2 %3 %4")
+                               .arg(info_.pid)
+                               .arg(info_.started, 0, 'f', 3)
+                               .arg(name(), shortLine(info_.host))
+                         : QString();
 }
 
 QString DaemonLink::refusal(const QString &name) const {

@@ -38,9 +38,18 @@ EventWatch::EventWatch(Fleet &fleet, LogFeed &log, Events &events, QObject *pare
 }
 
 void EventWatch::watchAll() {
+    QSet<const DaemonLink *> gone;
+    for (auto one = watched_.begin(); one != watched_.end(); ++one)
+        gone.insert(one.key());
     for (const auto &robot : fleet_.robots())
-        for (DaemonLink *daemon : robot->daemons())
+        for (DaemonLink *daemon : robot->daemons()) {
+            gone.remove(daemon);
             watch(*robot, *daemon);
+        }
+    for (const DaemonLink *daemon : qAsConst(gone)) { // of no robot: nobody misses it
+        events_.endAll(keyOf(*daemon, {}));
+        watched_[daemon].ailing.clear();
+    }
 }
 
 void EventWatch::watch(const Robot &robot, DaemonLink &daemon) {
@@ -101,11 +110,9 @@ void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, bool isP
 }
 
 QString EventWatch::nameOf(const DaemonLink &daemon) const {
-    for (const auto &robot : fleet_.robots())
-        for (const DaemonLink *link : robot->daemons())
-            if (link == &daemon)
-                return fleet_.robots().size() > 1 ? robot->name() + ", " + daemon.name() : daemon.name();
-    return daemon.name();
+    const Robot *const robot = fleet_.robotOf(&daemon);
+    return robot && fleet_.robots().size() > 1 ? fleet_.titleOf(*robot) + ", " + daemon.name()
+                                               : daemon.name();
 }
 
 } // namespace hermes::desktop

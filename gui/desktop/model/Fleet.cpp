@@ -1,8 +1,17 @@
 #include "gui/desktop/model/Fleet.h"
 
+#include "common/Project.h"
 #include "common/interface/InterfaceUrl.h"
+#include "gui/desktop/widgets/ForeignText.h"
+
+#include <algorithm>
 
 namespace hermes::desktop {
+namespace {
+
+constexpr int longestName = 30;
+
+} // namespace
 
 Fleet::Fleet(QObject *parent)
     : QObject(parent) {
@@ -10,6 +19,8 @@ Fleet::Fleet(QObject *parent)
     changes_.setInterval(10);
     connect(&changes_, &QTimer::timeout, this, &Fleet::changed);
 }
+
+Fleet::~Fleet() = default;
 
 Result<void> Fleet::add(const QString &address) {
     const bool hasPort = address.contains(':') && !address.endsWith(']');
@@ -20,48 +31,133 @@ Result<void> Fleet::add(const QString &address) {
         return Error(
             ErrorCode::InvalidParams,
             tr("address \"%1\": expected HOST or HOST:PORT, with a port from 1 to 65535").arg(address));
-    Robot &robot = robotAt(url->host);
-    if (hasPort)
-        robot.add(url->port, true);
-    else
-        robot.search();
-    if (!addresses_.contains(address))
-        addresses_.append(address);
-    if (!robot_)
-        choose(&robot);
+    const QString name = url->host == "localhost" ? QString("127.0.0.1") : url->host;
+    const QString host = name.contains(':') ? '[' + name + ']' : name;
+    const QString known = hasPort ? QString("%1:%2").arg(host).arg(url->port) : host;
+    if (addresses_.contains(known))
+        return {};
+    addresses_.append(known);
+    if (!robot_ && wish_.isEmpty())
+        wish_ = known;
+    if (hasPort) {
+        entryAt({host, url->port}).isAdded = true;
+    } else {
+        setOf(host);
+        for (const QString &daemon : daemonNames())
+            entryAt({host, defaultPort(daemon)}).isSought = true;
+    }
+    distribute();
     return {};
 }
 
-Robot &Fleet::robotAt(const QString &host) {
-    for (const auto &robot : robots_)
-        if (robot->host() == host)
-            return *robot;
-    robots_.push_back(std::make_unique<Robot>(host));
+Fleet::Entry &Fleet::entryAt(const Place &place) {
+    Entry &entry = entries_[place];
+    if (entry.link)
+        return entry;
+    entry.link = std::make_unique<DaemonLink>(QString("%1:%2").arg(place.first).arg(place.second));
+    connect(entry.link.get(), &DaemonLink::ready, this, [this, place] { onReady(place); });
+    connect(entry.link.get(), &DaemonLink::changed, this, [this, place] { onChanged(place); });
+    return entry;
+}
+
+void Fleet::onReady(const Place &place) {
+    Entry &entry = entries_.at(place);
+    if (entry.led || !entry.link->hasMethod("process.list"))
+        return tellConflicts();
+    entry.led = makeRobot(place.first, entry.link.get());
+    connect(entry.led, &Robot::namedChanged, this, [this] { distribute(); });
+    distribute();
+}
+
+void Fleet::onChanged(const Place &place) {
+    const Entry &entry = entries_.at(place);
+    if (!namerOf(place, entry) && entry.isOfHost() != bool(entry.robot))
+        distribute();
+}
+
+Robot *Fleet::makeRobot(const QString &host, DaemonLink *supervisor) {
+    robots_.push_back(std::make_unique<Robot>(host, supervisor));
     Robot *const robot = robots_.back().get();
-    connect(robot, &Robot::changed, &changes_, [this] {
-        if (!changes_.isActive())
-            changes_.start();
-    });
-    Q_EMIT changed();
-    return *robot;
+    robot->setGivenName(names_.value(robot->address()));
+    connect(robot, &Robot::changed, this, &Fleet::touch);
+    return robot;
+}
+
+Robot *Fleet::robotOf(const DaemonLink *daemon) const {
+    for (const auto &robot : robots_)
+        if (daemon && robot->has(daemon))
+            return robot.get();
+    return nullptr;
+}
+
+Robot *Fleet::robotAt(const QString &address) const {
+    for (const auto &robot : robots_)
+        if (robot->address() == address)
+            return robot.get();
+    return nullptr;
+}
+
+QString Fleet::titleOf(const Robot &robot) const {
+    const auto isTwin = [&](const auto &other) {
+        return other.get() != &robot && other->name() == robot.name();
+    };
+    return std::any_of(robots_.begin(), robots_.end(), isTwin)
+               ? tr("%1 (%2)").arg(robot.name(), robot.address())
+               : robot.name();
+}
+
+QString Fleet::titleOf(const DaemonLink &daemon) const {
+    const Robot *const robot = robotOf(&daemon);
+    return robots_.size() > 1 && robot ? tr("%1 of %2").arg(daemon.name(), titleOf(*robot)) : daemon.name();
+}
+
+void Fleet::setNames(const QMap<QString, QString> &names) {
+    names_ = names;
+    for (const auto &robot : robots_)
+        robot->setGivenName(names_.value(robot->address()));
+}
+
+void Fleet::rename(Robot &robot, const QString &name) {
+    const QString given = shortLine(name.trimmed(), longestName);
+    if (given.isEmpty())
+        names_.remove(robot.address());
+    else
+        names_[robot.address()] = given;
+    robot.setGivenName(given);
 }
 
 void Fleet::choose(Robot *robot) {
-    if (robot_ == robot)
-        return;
-    robot_ = robot;
-    Q_EMIT robotChosen(robot);
+    keepChoice();
+    if (robot_ != robot)
+        setChosen(robot, lastDaemon_[robot]);
 }
 
 void Fleet::choose(DaemonLink *daemon) {
-    if (daemon_ == daemon)
-        return;
+    keepChoice();
+    Robot *const robot = robotOf(daemon);
+    setChosen(robot ? robot : robot_, daemon);
+}
+
+void Fleet::keepChoice() {
+    isMeant_ = isMeant_ || robot_;
+    if (isMeant_)
+        wish_.clear();
+}
+
+void Fleet::setChosen(Robot *robot, DaemonLink *daemon) {
+    const bool isOther = std::exchange(robot_, robot) != robot;
+    const bool isOtherDaemon = daemon_ != daemon;
     daemon_ = daemon;
-    for (const auto &robot : robots_)
-        for (const DaemonLink *link : robot->daemons())
-            if (link == daemon)
-                choose(robot.get());
-    Q_EMIT daemonChosen(daemon);
+    lastDaemon_[robot] = daemon;
+    if (isOther)
+        Q_EMIT robotChosen(robot);
+    if (isOtherDaemon)
+        Q_EMIT daemonChosen(daemon);
+}
+
+void Fleet::touch() {
+    if (!changes_.isActive())
+        changes_.start();
 }
 
 } // namespace hermes::desktop

@@ -1,102 +1,121 @@
 #pragma once
 
 #include "common/Result.h"
-#include "gui/desktop/model/DaemonLink.h"
-#include "protocol/messages/Processes.h"
+#include "gui/desktop/model/Robot.h"
 
-#include <QPointer>
+#include <QMap>
 #include <memory>
-#include <vector>
 
 namespace hermes::desktop {
 
-/// One robot: the daemons of one host. They are found through its supervisor, at their usual ports, or by
-/// address.
-class Robot : public QObject {
-    Q_OBJECT
-public:
-    explicit Robot(const QString &host, QObject *parent = nullptr);
-
-    const QString &host() const { return host_; }
-    /// What the supervisor calls it, or the host.
-    QString name() const;
-
-    /// All daemons that have answered, were added by address or are named by the supervisor, in the order of
-    /// their ports.
-    std::vector<DaemonLink *> daemons() const;
-    /// The first connected daemon that has the method or the topic; null: none.
-    DaemonLink *withMethod(const QString &method) const;
-    /// All connected daemons that have the method.
-    std::vector<DaemonLink *> allWithMethod(const QString &method) const;
-    DaemonLink *withTopic(const QString &topic) const;
-    DaemonLink *withName(const QString &name) const;
-    /// What the supervisor tells of a daemon; null: nothing.
-    const ProcessStatus *process(const DaemonLink &daemon) const;
-    DaemonLink *supervisor() const;
-    /// What of the supervisor's list cannot be shown; empty: all is.
-    const QString &problem() const { return problem_; }
-
-    /// Looks for daemons at all usual ports.
-    void search();
-    /// A daemon at a port of this host; `isExpected`: show it although it does not answer yet.
-    DaemonLink *add(quint16 port, bool isExpected);
-    void remove(DaemonLink *daemon);
-
-Q_SIGNALS:
-    /// A daemon came or went, or its condition changed.
-    void changed();
-    /// A daemon can be looked up by what it can do: it was described, came back, or went.
-    void capabilitiesChanged();
-
-private:
-    struct Entry {
-        std::unique_ptr<DaemonLink> link;
-        bool isExpected;
-    };
-
-    DaemonLink *found(quint16 port, bool isExpected);
-    void followSupervisor(DaemonLink *link);
-    void takeProcesses(WireView data);
-
-    const QString host_;
-    QString name_, problem_;
-    std::map<quint16, Entry> entries_;
-    std::vector<ProcessStatus> processes_;
-    QPointer<DaemonLink> followed_;
-};
-
-/// All robots, and which robot and daemon the operator has chosen.
+/// All robots, which daemon belongs to which of them, and which robot and daemon the operator has chosen. A
+/// daemon is of the supervisor that named it first, else of its host. What the operator has chosen stays
+/// chosen while it is there.
 class Fleet : public QObject {
     Q_OBJECT
 public:
-    explicit Fleet(QObject *parent = nullptr);
+    /// Why a robot may not be removed now; empty: it may.
+    using Objection = std::function<QString(const Robot &)>;
 
-    /// "HOST": every daemon found there; "HOST:PORT": that one, and all others when it is a supervisor.
-    /// Error: it is no address.
+    explicit Fleet(QObject *parent = nullptr);
+    ~Fleet() override;
+
+    /// "HOST": every daemon found there; "HOST:PORT": that one, and all others that it names when it is a
+    /// supervisor. Error: it is no address.
     Result<void> add(const QString &address);
-    /// All that were added.
+    /// All that were added, as add() takes them.
     const QStringList &addresses() const { return addresses_; }
+    /// Forgets a robot and its daemons; gives what add() brings them back with. Error: why not now.
+    Result<QStringList> remove(Robot *robot);
+    void setObjection(const Objection &objection) { objection_ = objection; }
+
     const std::vector<std::unique_ptr<Robot>> &robots() const { return robots_; }
+    /// Whose daemon it is; null: nobody's.
+    Robot *robotOf(const DaemonLink *daemon) const;
+    /// Null: none has that address.
+    Robot *robotAt(const QString &address) const;
+    /// Its name, and where another has the same its address too.
+    QString titleOf(const Robot &robot) const;
+    /// The name of a daemon, and where there are several robots that of its robot too.
+    QString titleOf(const DaemonLink &daemon) const;
+
+    /// What the operator calls the robots, by their addresses, those too that are not here now.
+    const QMap<QString, QString> &names() const { return names_; }
+    void setNames(const QMap<QString, QString> &names);
+    /// An empty name: what it calls itself.
+    void rename(Robot &robot, const QString &name);
 
     Robot *robot() const { return robot_; }
     DaemonLink *daemon() const { return daemon_; }
     void choose(Robot *robot);
     void choose(DaemonLink *daemon);
+    /// Chooses the robot of this address as soon as it is there, unless the operator has chosen before.
+    void wish(const QString &address) { wish_ = address; }
+    /// Whatever is chosen is meant from now on, even if nobody has chosen it.
+    void keepChoice();
 
 Q_SIGNALS:
     /// Robots or daemons came or went, or the condition of one changed.
     void changed();
+    /// Null: there is none any more.
     void robotChosen(hermes::desktop::Robot *robot);
+    /// Null: none of the chosen robot.
     void daemonChosen(hermes::desktop::DaemonLink *daemon);
+    /// A supervisor has named it, or does so no more.
+    void moved(hermes::desktop::DaemonLink *daemon, hermes::desktop::Robot *from, hermes::desktop::Robot *to);
+    /// It is not one of the robots any more; heir: who stands for it now, or null.
+    void robotGone(hermes::desktop::Robot *robot, hermes::desktop::Robot *heir);
 
 private:
-    Robot &robotAt(const QString &host);
+    using Place = std::pair<QString, quint16>; // host and port
+    struct Entry {
+        std::unique_ptr<DaemonLink> link;
+        bool isAdded = false;  ///< by its address: shown although it has never answered
+        bool isSought = false; ///< at its usual port: shown once it has answered
+        Robot *robot = nullptr;
+        Robot *led = nullptr; ///< whose supervisor it is
+
+        /// Shown there while no supervisor names it; one that was named before until it ends.
+        bool isOfHost() const { return isAdded || (isSought ? link->isKnown() : link->isConnected()); }
+    };
+    struct Move {
+        DaemonLink *daemon;
+        Robot *from, *to;
+    };
+
+    using Robots = std::vector<std::unique_ptr<Robot>>;
+
+    Entry &entryAt(const Place &place);
+    void onReady(const Place &place);
+    void onChanged(const Place &place);
+    Robot *makeRobot(const QString &host, DaemonLink *supervisor);
+
+    void makeNamed();
+    Robot *namerOf(const Place &place, const Entry &entry) const;
+    Robot *setOf(const QString &host);
+    std::vector<Move> reassign();
+    Robots takeEmpty();
+    /// Puts all daemons to their robots, and tells who has moved; removed: by the operator, or null.
+    void distribute(std::unique_ptr<Robot> removed = nullptr);
+    void tellConflicts();
+    void forgetHost(const QString &host);
+
+    Robot *heirOf(const Robot &gone, const std::vector<Move> &moves) const;
+    void followChoice(const std::vector<Move> &moves, const Robots &gone);
+    void setChosen(Robot *robot, DaemonLink *daemon);
+    void touch();
 
     QStringList addresses_;
     QTimer changes_; // many that come together are told once
-    std::vector<std::unique_ptr<Robot>> robots_;
+    std::map<Place, Entry> entries_;
+    Robots robots_;
+    QMap<QString, QString> names_;
+    Objection objection_;
     Robot *robot_ = nullptr;
     QPointer<DaemonLink> daemon_;
+    std::map<const Robot *, QPointer<DaemonLink>> lastDaemon_; ///< chosen of each robot
+    QString wish_;
+    bool isMeant_ = false;
 };
 
 } // namespace hermes::desktop

@@ -15,6 +15,9 @@ public:
 
     explicit LogFeed(Fleet &fleet, QObject *parent = nullptr);
 
+    /// With that of its robot, where there are several.
+    QString nameOf(const DaemonLink &daemon) const { return fleet_.titleOf(daemon); }
+
 Q_SIGNALS:
     /// record: one that cannot be read comes as a warning that says why, with a negative stamp. isPast: it
     /// was logged before the daemon was followed.

@@ -1,30 +1,53 @@
-#include "common/Project.h"
-#include "gui/desktop/model/Fleet.h"
+#include "gui/desktop/model/Robot.h"
+
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
+
+#include <algorithm>
 
 namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 30;
-constexpr std::size_t mostDaemons = 100; // of one robot, as far as its supervisor names them
+constexpr std::size_t mostProcesses = 100; // of one supervisor
 
 } // namespace
 
-Robot::Robot(const QString &host, QObject *parent)
+Robot::Robot(const QString &host, DaemonLink *supervisor, QObject *parent)
     : QObject(parent)
-    , host_(host) {}
+    , host_(host)
+    , address_(supervisor ? supervisor->address() : host)
+    , isSupervised_(supervisor)
+    , supervisor_(supervisor) {
+    if (supervisor)
+        handle_ = supervisor->subscribe("processes", {{"max_rate_hz", 10}},
+                                        [this](const TopicUpdate &update) { takeProcesses(update.data); });
+}
+
+Robot::~Robot() {
+    if (supervisor_)
+        supervisor_->unsubscribe(handle_);
+}
 
 QString Robot::name() const {
-    return name_.isEmpty() ? host_ : name_;
+    return !givenName_.isEmpty() ? givenName_ : !toldName_.isEmpty() ? toldName_ : host_;
+}
+
+void Robot::setGivenName(const QString &name) {
+    givenName_ = name;
+    Q_EMIT changed();
 }
 
 std::vector<DaemonLink *> Robot::daemons() const {
-    std::vector<DaemonLink *> shown;
-    for (const auto &[port, entry] : entries_)
-        if (entry.isExpected || entry.link->isKnown())
-            shown.push_back(entry.link.get());
-    return shown;
+    std::vector<DaemonLink *> all;
+    for (const auto &[port, daemon] : daemons_)
+        all.push_back(daemon);
+    return all;
+}
+
+bool Robot::has(const DaemonLink *daemon) const {
+    return std::any_of(daemons_.begin(), daemons_.end(),
+                       [daemon](const auto &one) { return one.second == daemon; });
 }
 
 DaemonLink *Robot::withMethod(const QString &method) const {
@@ -34,111 +57,93 @@ DaemonLink *Robot::withMethod(const QString &method) const {
 
 std::vector<DaemonLink *> Robot::allWithMethod(const QString &method) const {
     std::vector<DaemonLink *> found;
-    for (const auto &[port, entry] : entries_)
-        if (entry.link->isConnected() && entry.link->hasMethod(method))
-            found.push_back(entry.link.get());
+    for (const auto &[port, daemon] : daemons_)
+        if (daemon->isConnected() && daemon->hasMethod(method))
+            found.push_back(daemon);
     return found;
 }
 
 DaemonLink *Robot::withTopic(const QString &topic) const {
-    for (const auto &[port, entry] : entries_)
-        if (entry.link->isConnected() && entry.link->hasTopic(topic))
-            return entry.link.get();
+    for (const auto &[port, daemon] : daemons_)
+        if (daemon->isConnected() && daemon->hasTopic(topic))
+            return daemon;
     return nullptr;
 }
 
 DaemonLink *Robot::withName(const QString &name) const {
-    for (const auto &[port, entry] : entries_)
-        if (entry.link->isKnown() && entry.link->name() == name)
-            return entry.link.get();
+    for (const auto &[port, daemon] : daemons_)
+        if (daemon->isKnown() && daemon->name() == name)
+            return daemon;
     return nullptr;
 }
 
 DaemonLink *Robot::supervisor() const {
-    return withMethod("process.list");
+    return supervisor_ && supervisor_->isConnected() && supervisor_->hasMethod("process.list")
+               ? supervisor_.data()
+               : nullptr;
 }
 
 const ProcessStatus *Robot::process(const DaemonLink &daemon) const {
-    for (const ProcessStatus &process : processes_)
-        if (process.entry.port == daemon.address().section(':', -1).toInt())
-            return &process;
+    if (has(&daemon))
+        for (const ProcessStatus &process : processes_)
+            if (process.entry.port == daemon.port())
+                return &process;
     return nullptr;
 }
 
-void Robot::search() {
-    for (const QString &name : daemonNames())
-        add(defaultPort(name), false);
+QString Robot::problem() const {
+    QStringList lines = conflicts_;
+    if (!problem_.isEmpty())
+        lines.prepend(problem_);
+    return lines.join('\n');
 }
 
-DaemonLink *Robot::add(quint16 port, bool isExpected) {
-    const std::size_t before = entries_.size();
-    DaemonLink *const link = found(port, isExpected);
-    if (entries_.size() > before)
-        Q_EMIT changed();
-    return link;
-}
-
-DaemonLink *Robot::found(quint16 port, bool isExpected) {
-    const auto known = entries_.find(port);
-    if (known != entries_.end()) {
-        known->second.isExpected = known->second.isExpected || isExpected;
-        return known->second.link.get();
-    }
-    const QString address = (host_.contains(':') ? "[%1]:%2" : QString("%1:%2")).arg(host_).arg(port);
-    Entry &entry = entries_[port];
-    entry = {std::make_unique<DaemonLink>(address), isExpected};
-    DaemonLink *const link = entry.link.get();
-    connect(link, &DaemonLink::changed, this, &Robot::changed);
-    connect(link, &DaemonLink::ready, this, [this, link] {
-        followSupervisor(link);
+void Robot::take(DaemonLink *daemon) {
+    daemons_[daemon->port()] = daemon;
+    connect(daemon, &DaemonLink::changed, this, &Robot::changed);
+    connect(daemon, &DaemonLink::ready, this, [this] {
         Q_EMIT changed();
         Q_EMIT capabilitiesChanged();
     });
-    connect(&link->client(), &Client::disconnected, this, [this, link] {
-        if (link->isKnown())
+    connect(&daemon->client(), &Client::disconnected, this, [this, daemon] {
+        if (daemon->isKnown())
             Q_EMIT capabilitiesChanged();
     });
-    return link;
 }
 
-void Robot::remove(DaemonLink *daemon) {
-    for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
-        if (entry->second.link.get() != daemon)
-            continue;
-        entry->second.link.release()->deleteLater();
-        entries_.erase(entry);
-        Q_EMIT changed();
-        Q_EMIT capabilitiesChanged();
-        return;
-    }
+void Robot::release(DaemonLink *daemon) {
+    daemons_.erase(daemon->port());
+    daemon->disconnect(this);
+    daemon->client().disconnect(this);
 }
 
-void Robot::followSupervisor(DaemonLink *link) {
-    if (followed_ == link || !link->hasMethod("process.list"))
+void Robot::setConflicts(const QStringList &conflicts) {
+    if (conflicts_ == conflicts)
         return;
-    followed_ = link;
-    search();
-    link->subscribe("processes", {{"max_rate_hz", 10}},
-                    [this](const TopicUpdate &update) { takeProcesses(update.data); });
+    conflicts_ = conflicts;
+    Q_EMIT changed();
 }
 
 void Robot::takeProcesses(WireView data) {
     ReadReport report;
     auto told = readMessage<ProcessesMessage>(data, report);
-    if (told) {
-        name_ = shortLine(told->robot, longestName);
-        processes_ = std::move(told->processes);
-        const std::size_t all = processes_.size();
-        processes_.resize(std::min(all, mostDaemons));
-        for (const ProcessStatus &process : processes_)
-            if (process.entry.port > 0 && entries_.size() < mostDaemons)
-                found(process.entry.port, true);
-        problem_ = all > mostDaemons
-                       ? tr("%1 more processes of the supervisor are not shown").arg(all - mostDaemons)
-                       : QString();
-    } else {
+    if (!told) {
         problem_ = tr("The supervisor's processes: %1").arg(report.text());
+        return Q_EMIT changed();
     }
+    const QString before = std::exchange(toldName_, shortLine(told->robot, longestName));
+    processes_ = std::move(told->processes);
+    const std::size_t all = processes_.size();
+    processes_.resize(std::min(all, mostProcesses));
+    problem_ = all > mostProcesses
+                   ? tr("%1 more processes of the supervisor are not shown").arg(all - mostProcesses)
+                   : QString();
+    std::set<quint16> named;
+    for (const ProcessStatus &process : processes_)
+        if (process.entry.port > 0 && process.entry.port != supervisor_->port())
+            named.insert(process.entry.port);
+    if (std::exchange(named_, named) != named || before != toldName_)
+        Q_EMIT namedChanged();
     Q_EMIT changed();
 }
 

@@ -49,11 +49,13 @@ void TopicFeed::follow(Robot *robot) {
 }
 
 void TopicFeed::update() {
-    DaemonLink *const found = robot_ && isEnabled_ ? robot_->withTopic(topic_) : nullptr;
-    // A source that is away for a moment is kept: its client subscribes again by itself.
-    const bool isAway =
-        isEnabled_ && !found && source_ && robot_ && robot_->withName(source_->name()) == source_;
-    if (found == source_ || isAway)
+    // A source that is away is kept, whoever else has the topic: its client subscribes again by itself.
+    const bool stays = isEnabled_ && source_ && robot_ && robot_->has(source_) &&
+                       (!source_->isConnected() || source_->hasTopic(topic_));
+    DaemonLink *const found = stays                  ? source_.data()
+                              : robot_ && isEnabled_ ? robot_->withTopic(topic_)
+                                                     : nullptr;
+    if (found == source_)
         return;
     if (source_)
         source_->unsubscribe(handle_);

@@ -67,7 +67,8 @@ QString readable(const QJsonValue &value) {
 } // namespace
 
 CommandsPanel::CommandsPanel(Fleet &fleet, QWidget *parent)
-    : QWidget(parent) {
+    : QWidget(parent)
+    , fleet_(fleet) {
     auto *const splitter = new QSplitter;
     splitter->addWidget(makeMethods());
     splitter->addWidget(makeCall());
@@ -83,6 +84,7 @@ CommandsPanel::CommandsPanel(Fleet &fleet, QWidget *parent)
     layout->addWidget(splitter);
 
     connect(&fleet, &Fleet::daemonChosen, this, &CommandsPanel::follow);
+    connect(&fleet, &Fleet::changed, this, &CommandsPanel::update);
     follow(fleet.daemon());
 }
 
@@ -205,7 +207,9 @@ void CommandsPanel::call() {
     QElapsedTimer time;
     time.start();
     answer_->setPlainText(tr("%1 ...").arg(shortLine(method)));
-    daemon_->callForMuch(method, form_->values(), this, [=](const Result<QJsonValue> &result) {
+    daemon_->callForMuch(method, form_->values(), this, [=, asked = daemon_](const auto &result) {
+        if (asked != daemon_)
+            return; // another's answers are shown now
         const QString took =
             tr("%1: %2 ms").arg(shortLine(method)).arg(double(time.nsecsElapsed()) * 1e-6, 0, 'f', 1);
         if (result)
@@ -223,7 +227,7 @@ void CommandsPanel::call() {
 
 void CommandsPanel::update() {
     title_->setBold(daemon_);
-    title_->setText(daemon_ ? daemon_->name() : tr("Choose a daemon to see its commands."));
+    title_->setText(daemon_ ? fleet_.titleOf(*daemon_) : tr("Choose a daemon to see its commands."));
     const QString why = daemon_ ? daemon_->refusal(method_) : QString();
     const QString lost = daemon_ ? daemon_->method(method_)["x-destructive"].toString() : QString();
     call_->setText(asked_.isActive() ? tr("Ru&n %1 now: replaces or forgets %2").arg(method_, shortLine(lost))

@@ -32,6 +32,7 @@ private:
     QWidget *makeMethods();
     QWidget *makeCall();
 
+    Fleet &fleet_;
     QPointer<DaemonLink> daemon_;
     PlainLabel *title_, *summary_;
     QLineEdit *filter_;

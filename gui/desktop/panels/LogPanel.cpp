@@ -32,6 +32,7 @@ QBrush colourOf(int level) {
 
 LogPanel::LogPanel(LogFeed &log, QWidget *parent)
     : QWidget(parent)
+    , log_(log)
     , level_(new QComboBox)
     , filter_(new QLineEdit)
     , view_(new QPlainTextEdit) {
@@ -70,7 +71,7 @@ void LogPanel::add(const DaemonLink *daemon, const LogMessage &record) {
     // Sorted by the time at which it came, and with a level that is shown, where it has none that makes
     // sense.
     const int level = levels.indexOf(record.level);
-    const Record made{timeOf(record.stamp) ? record.stamp : stampNow(), daemon->name(),
+    const Record made{timeOf(record.stamp) ? record.stamp : stampNow(), log_.nameOf(*daemon),
                       level < 0 ? usualLevel : level,
                       shortLine(record.source + ": " + record.text, longestText)};
     isUnsorted_ = isUnsorted_ || (!records_.empty() && made.stamp < records_.back().stamp);

@@ -39,6 +39,7 @@ private:
     void refresh();
     void refill();
 
+    const LogFeed &log_;
     QComboBox *level_;
     QLineEdit *filter_;
     QPlainTextEdit *view_;

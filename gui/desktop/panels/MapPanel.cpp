@@ -40,6 +40,11 @@ MapPanel::MapPanel(Fleet &fleet, QWidget *parent)
     setFocusProxy(view_);
 
     connect(&fleet, &Fleet::changed, this, &MapPanel::updateTools);
+    connect(&fleet, &Fleet::robotChosen, this, [this] { // what was begun there is not to go on here
+        view_->setTool(MapView::Tool::Pan);
+        message_->hide();
+        updateTools();
+    });
     connect(view_, &MapView::followingChanged, follow_, &QAction::setChecked);
     connect(view_, &MapView::fittingChanged, fit_, &QAction::setChecked);
     connect(view_, &MapView::toolChanged, this, &MapPanel::updateTools);
@@ -178,8 +183,9 @@ void MapPanel::ask(const QString &method, const QJsonObject &params, const QStri
     if (!matcher)
         return message_->tell(tr("No scan matcher is connected."), true);
     message_->tell(tr("%1 ...").arg(method));
-    matcher->call(method, params, this, [this, done](const Result<QJsonValue> &result) {
-        message_->tell(result ? done : result.error().message, !result);
+    matcher->call(method, params, this, [this, matcher, done](const Result<QJsonValue> &result) {
+        if (matcher == model_.matcher())
+            message_->tell(result ? done : result.error().message, !result);
     });
 }
 

@@ -39,6 +39,13 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     nameAll();
     layOut();
     connectAll();
+    connect(&fleet, &Fleet::robotChosen, this, [this] { // what was recorded there is not here
+        list_ = {};
+        sessions_->tell(list_);
+        message_->hide();
+        list();
+        update();
+    });
     list();
     update();
 }
@@ -169,7 +176,9 @@ QString RecordPanel::markText() {
 }
 
 void RecordPanel::list() {
-    recorder().list(mostRecordings, [this](const SessionList &found) {
+    recorder().list(mostRecordings, [this, listing = ++listing_](const SessionList &found) {
+        if (listing != listing_)
+            return; // asked for anew, maybe of another robot
         list_ = found;
         sessions_->tell(found);
         proposeName();

@@ -16,6 +16,7 @@ namespace hermes::desktop {
 
 SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
+    , fleet_(fleet)
     , title_(new PlainLabel)
     , message_(new MessageLabel)
     , filter_(new QLineEdit)
@@ -44,6 +45,7 @@ SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
         update();
     });
     connect(&fleet, &Fleet::daemonChosen, this, &SettingsPanel::follow);
+    connect(&fleet, &Fleet::changed, this, &SettingsPanel::update);
     follow(fleet.daemon());
 }
 
@@ -155,7 +157,9 @@ void SettingsPanel::submit(const std::function<void(const QString &told)> &then)
 
 void SettingsPanel::save() {
     const auto keep = [this](const QString &told) {
-        daemon_->call("settings.save", {}, this, [this, told](const Result<QJsonValue> &done) {
+        daemon_->call("settings.save", {}, this, [this, told, asked = daemon_](const auto &done) {
+            if (asked != daemon_)
+                return;
             if (done)
                 message_->tell(told + tr("Saved: the daemon begins with these settings the next time."));
             else
@@ -170,7 +174,7 @@ void SettingsPanel::save() {
 void SettingsPanel::update() {
     const bool isThere = daemon_ && daemon_->isConnected();
     title_->setBold(daemon_);
-    title_->setText(daemon_ ? daemon_->name() : tr("Choose a daemon to see its settings."));
+    title_->setText(daemon_ ? fleet_.titleOf(*daemon_) : tr("Choose a daemon to see its settings."));
     const int changed = leafPaths(form_->changes()).size();
     apply_->setText(changed == 0 ? tr("A&pply") : tr("A&pply %n change(s)", nullptr, changed));
     const QString why = isThere ? daemon_->refusal("settings.set") : QString();

@@ -33,6 +33,7 @@ private:
     void update();
     QWidget *makeButtons();
 
+    Fleet &fleet_;
     QPointer<DaemonLink> daemon_;
     QHash<QString, QJsonObject> edits_; // not applied, by the address of a daemon that is not shown
     int handle_ = 0;                    // subscription to the topic "settings"

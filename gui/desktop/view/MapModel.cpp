@@ -52,6 +52,15 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
         odometryFrame_.reset();
         clearPaths();
     });
+    connect(&results_, &TopicFeed::sourceChanged, this, [this] { onResult({}); });
+    connect(&scans_, &TopicFeed::sourceChanged, this, [this] {
+        rawScan_ = {};
+        scanAge_.forget();
+        scan_.clear();
+        Q_EMIT changed();
+    });
+    connect(&odometryFeed_, &TopicFeed::sourceChanged, this, [this] { forgetPath(MovingMap::Odometry); });
+    connect(&truthFeed_, &TopicFeed::sourceChanged, this, [this] { forgetPath(MovingMap::Truth); });
     frames_.setInterval(framePeriod);
     connect(&frames_, &QTimer::timeout, this, &MapModel::showGlide);
     wait_.setInterval(signWait);
@@ -75,6 +84,12 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
 
 void MapModel::clearPaths() {
     paths_ = {};
+    Q_EMIT changed();
+}
+
+void MapModel::forgetPath(MovingMap::Path path) {
+    endGlide();
+    paths_[path] = {};
     Q_EMIT changed();
 }
 

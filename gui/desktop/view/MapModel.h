@@ -96,6 +96,7 @@ private:
     void placeScan();
 
     const QPolygonF &way(MovingMap::Path path) const;
+    void forgetPath(MovingMap::Path path);
     int newestKeyScan() const;
     void expectCorrection(Sign sign);
     void takeLeap(const PoseMessage &message);

@@ -28,8 +28,9 @@ struct Mischief {
     bool closes = false;    ///< after the noise
     bool agrees = false;    ///< on CBOR, before the noise
     bool hasTopics = true;
-    bool isMotors = false; ///< has the methods of a motor control
-    bool knowsCbor = true; ///< and says the same in it when it is asked to
+    bool isMotors = false;     ///< has the methods of a motor control
+    bool isSupervisor = false; ///< so it is where it has something to say as `processes`, too
+    bool knowsCbor = true;     ///< and says the same in it when it is asked to
 };
 
 /// A daemon that says whatever a test wants, in a thread of its own, so that its work is not the window's.
@@ -192,8 +193,11 @@ private:
     }
     /// The methods and topics of all daemons in one.
     QByteArray description() const {
-        QStringList methods{"fake.call",    "daemon.info",   "settings.schema", "record.start", "record.list",
-                            "process.list", "process.start", "source.open",     "pose.set"};
+        QStringList methods{"fake.call",   "daemon.info", "settings.schema", "record.start",
+                            "record.list", "source.open", "pose.set"};
+        if (mischief_.isSupervisor || mischief_.topics.contains("processes"))
+            methods << "process.list"
+                    << "process.start";
         if (mischief_.isMotors)
             methods << "motor.drive"
                     << "motor.estop"

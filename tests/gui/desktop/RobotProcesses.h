@@ -77,17 +77,27 @@ public:
               {"controllers.1.url=" + url, "controllers.2.url=" + url, "safety.command_timeout_s=1"});
         daemons_.at("motorcontrol").process->goBeforeOthers();
     }
-    /// A supervisor that finds what the simulator offers at these ports and keeps settings in the folder
+    /// A supervisor that names all daemons that were started so far, as those of one robot.
+    quint16 supervise(const QString &robot, const QStringList &settings = {}) {
+        QJsonArray processes;
+        for (const auto &[name, daemon] : daemons_)
+            if (name != "supervisor")
+                processes.append(QJsonObject{{"name", name}, {"port", daemon.port}});
+        const QByteArray named = QJsonDocument(processes).toJson(QJsonDocument::Compact);
+        return start("supervisor",
+                     QStringList{"robot=" + robot, "processes=" + QString::fromUtf8(named)} + settings);
+    }
+    /// Such a supervisor that finds what the simulator offers at these ports and keeps settings in the folder
     /// "etc".
     void startSupervisor(const QJsonArray &lines, int lidarPort, const QStringList &settings = {}) {
         QVERIFY(QDir().mkpath(path("etc")));
         const QByteArray ports = QJsonDocument(lines).toJson(QJsonDocument::Compact);
-        start("supervisor",
-              QStringList{"setup.folder=" + path("etc"), "setup.ports=" + QString::fromUtf8(ports),
-                          "setup.samples=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/settings",
-                          QString("setup.lidar_port=%1").arg(lidarPort),
-                          QString("setup.position_port=%1").arg(reservePort())} +
-                  settings);
+        supervise("robot",
+                  QStringList{"setup.folder=" + path("etc"), "setup.ports=" + QString::fromUtf8(ports),
+                              "setup.samples=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/settings",
+                              QString("setup.lidar_port=%1").arg(lidarPort),
+                              QString("setup.position_port=%1").arg(reservePort())} +
+                      settings);
     }
     void signal(const QString &name, int number) {
         ::kill(pid_t(daemons_.at(name).process->processId()), number);
@@ -98,11 +108,11 @@ public:
         daemons_.at(name).process->waitForFinished();
     }
 
-    /// Adds all of them to the fleet, chooses their robot and waits until each can be spoken to.
+    /// Adds all of them to the fleet and waits until each can be spoken to as one of the chosen robot.
     void connectTo(Fleet &fleet) {
         for (const auto &[name, daemon] : daemons_)
             QVERIFY(fleet.add(QString("127.0.0.1:%1").arg(daemon.port)).ok());
-        QTRY_VERIFY_WITH_TIMEOUT(areAllReady(*fleet.robots().front()), 20000);
+        QTRY_VERIFY_WITH_TIMEOUT(fleet.robot() && areAllReady(*fleet.robot()), 20000);
     }
     quint16 port(const QString &name) const { return daemons_.at(name).port; }
     QString path(const QString &name) const { return folder_.filePath(name); }

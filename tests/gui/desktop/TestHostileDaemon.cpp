@@ -64,9 +64,10 @@ void TestHostileDaemon::initTestCase() {
 static DaemonLink *add(Fleet &fleet, const FakeDaemon &daemon) {
     const QString address = QString("127.0.0.1:%1").arg(daemon.port());
     fleet.add(address);
-    for (DaemonLink *const link : fleet.robot()->daemons())
-        if (link->address() == address)
-            return link;
+    for (const auto &robot : fleet.robots())
+        for (DaemonLink *const link : robot->daemons())
+            if (link->address() == address)
+                return link;
     return nullptr;
 }
 
@@ -147,6 +148,7 @@ void TestHostileDaemon::survives() {
     const QRect place(stop->mapTo(&window, QPoint()), stop->size());
     QVERIFY2(window.width() == 1280 && window.rect().contains(place),
              qPrintable(QString::number(window.width())));
+    fleet.choose(fleet.robotOf(add(fleet, good))); // those that name processes are robots of their own
     const int stopsBefore = good.calls("motor.estop");
     QTest::mouseClick(stop, Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(good.calls("motor.estop") > stopsBefore, 1000);

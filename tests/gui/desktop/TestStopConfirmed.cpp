@@ -236,13 +236,16 @@ void TestStopConfirmed::aReleaseIsOfTheChosenRobot() {
     openWindow(robot_->port("motorcontrol"));
     RobotProcesses other;
     other.startMotors();
-    QVERIFY(open_->fleet.add(QString("localhost:%1").arg(other.port("motorcontrol"))).ok());
-    QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robots()[1]->allWithMethod("motor.estop").size()), 1, 10000);
+    const QString supervisor = QString("127.0.0.1:%1").arg(other.supervise("other"));
+    QVERIFY(open_->fleet.add(supervisor).ok());
+    QTRY_VERIFY_WITH_TIMEOUT(open_->fleet.robotAt(supervisor), 10000);
+    Robot *const second = open_->fleet.robotAt(supervisor);
+    QTRY_COMPARE_WITH_TIMEOUT(int(second->allWithMethod("motor.estop").size()), 1, 10000);
     robot_->kill("motorcontrol");
     QTRY_VERIFY(!open_->drive.isPossible());
     press();
     QTRY_VERIFY(open_->drive.stopping().isLate());
-    open_->fleet.choose(open_->fleet.robots()[1].get());
+    open_->fleet.choose(second);
     QTRY_VERIFY(open_->drive.isPossible());
     QCOMPARE(phase(), StopPhase::None); // of this one
     QVERIFY(open_->drive.stopping().isLate());

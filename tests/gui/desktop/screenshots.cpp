@@ -106,7 +106,7 @@ void Screenshots::setup() {
                 {"world=" + qEnvironmentVariable("HERMES_SOURCE") + "/deploy/worlds/pillars.json",
                  "motors.link=" + robot.path("motors"), "gps.link=" + robot.path("gps"),
                  QString("lidar.port=%1").arg(lidar)});
-    robot.startSupervisor({robot.path("motors"), robot.path("gps")}, lidar, {"processes=[]"});
+    robot.startSupervisor({robot.path("motors"), robot.path("gps")}, lidar);
     Fleet fleet;
     robot.connectTo(fleet);
     DriveControl drive(fleet);

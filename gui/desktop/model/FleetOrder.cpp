@@ -1,0 +1,225 @@
+// Which daemon belongs to which robot.
+#include "gui/desktop/model/Fleet.h"
+
+#include <QHash>
+#include <algorithm>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr std::ptrdiff_t mostAtHost = 300; // daemons, as far as supervisors name them
+constexpr int mostConflicts = 5;           // that are told one by one
+
+} // namespace
+
+Robot *Fleet::setOf(const QString &host) {
+    for (const auto &robot : robots_)
+        if (!robot->isSupervised() && robot->host() == host)
+            return robot.get();
+    return makeRobot(host, nullptr);
+}
+
+// Who has it keeps it for as long as it is named. Null: nobody names it.
+Robot *Fleet::namerOf(const Place &place, const Entry &entry) const {
+    const auto &[host, port] = place;
+    if (entry.led)
+        return entry.led;
+    if (entry.robot && entry.robot->named().count(port))
+        return entry.robot;
+    for (const auto &robot : robots_)
+        if (robot->host() == host && robot->named().count(port))
+            return robot.get();
+    return nullptr;
+}
+
+// As far as there are not too many: a supervisor may name what it likes.
+void Fleet::makeNamed() {
+    std::vector<Place> missing;
+    for (const auto &robot : robots_)
+        for (const quint16 port : robot->named())
+            if (!entries_.count({robot->host(), port}))
+                missing.push_back({robot->host(), port});
+    for (const Place &place : missing) {
+        const auto isThere = [&](const auto &entry) { return entry.first.first == place.first; };
+        if (std::count_if(entries_.begin(), entries_.end(), isThere) < mostAtHost)
+            entryAt(place);
+    }
+}
+
+std::vector<Fleet::Move> Fleet::reassign() {
+    std::vector<Move> moves;
+    for (auto &[place, entry] : entries_) {
+        Robot *to = namerOf(place, entry);
+        if (!to && entry.isOfHost())
+            to = setOf(place.first);
+        Robot *const from = std::exchange(entry.robot, to);
+        if (from == to)
+            continue;
+        DaemonLink *const daemon = entry.link.get();
+        if (from)
+            from->release(daemon);
+        if (to)
+            to->take(daemon);
+        moves.push_back({daemon, from, to});
+    }
+    return moves;
+}
+
+// A host on which nothing was found is shown, unless a supervisor there stands for it.
+std::vector<std::unique_ptr<Robot>> Fleet::takeEmpty() {
+    std::vector<std::unique_ptr<Robot>> gone;
+    const auto isOver = [this](const std::unique_ptr<Robot> &robot) {
+        const auto standsForIt = [&robot](const std::unique_ptr<Robot> &other) {
+            return other && other->isSupervised() && other->host() == robot->host();
+        };
+        return !robot->isSupervised() && robot->daemons().empty() &&
+               (!addresses_.contains(robot->host()) ||
+                std::any_of(robots_.begin(), robots_.end(), standsForIt));
+    };
+    for (auto &robot : robots_)
+        if (isOver(robot))
+            gone.push_back(std::move(robot));
+    robots_.erase(std::remove(robots_.begin(), robots_.end(), nullptr), robots_.end());
+    return gone;
+}
+
+void Fleet::distribute(std::unique_ptr<Robot> removed) {
+    makeNamed();
+    const std::vector<Move> moves = reassign();
+    Robots gone = takeEmpty();
+    for (const auto &[daemon, from, to] : moves)
+        if (from && to)
+            Q_EMIT moved(daemon, from, to);
+    const std::size_t empty = gone.size();
+    if (removed)
+        gone.push_back(std::move(removed));
+    followChoice(moves, gone);
+    for (std::size_t i = 0; i < gone.size(); ++i)
+        Q_EMIT robotGone(gone[i].get(), i < empty ? heirOf(*gone[i], moves) : nullptr);
+    tellConflicts();
+    for (const auto &robot : robots_)
+        for (const Move &move : moves)
+            if (robot.get() == move.from || robot.get() == move.to) {
+                Q_EMIT robot->capabilitiesChanged();
+                break;
+            }
+    if (gone.empty())
+        return moves.empty() ? void() : touch();
+    Q_EMIT changed(); // at once: nobody is to look at them any more
+    for (auto &robot : gone)
+        robot.release()->deleteLater();
+}
+
+void Fleet::tellConflicts() {
+    std::map<const Robot *, QStringList> conflicts;
+    for (const auto &robot : robots_)
+        for (const quint16 port : robot->named()) {
+            const auto entry = entries_.find({robot->host(), port});
+            const Robot *const owner = entry == entries_.end() ? nullptr : entry->second.robot;
+            if (owner && owner != robot.get())
+                conflicts[robot.get()].append((entry->second.led
+                                                   ? tr("Port %1 is that of the robot %2")
+                                                   : tr("Port %1 stays with the robot %2, which "
+                                                        "names it too"))
+                                                  .arg(port)
+                                                  .arg(titleOf(*owner)));
+            else if (!owner)
+                conflicts[robot.get()].append(tr("Port %1 is one too many of this host").arg(port));
+        }
+    QHash<QString, const Robot *> known;
+    for (const auto &[place, entry] : entries_) {
+        const QString identity = entry.link->identity();
+        const Robot *const first = known.value(identity, entry.robot);
+        if (identity.isEmpty() || !entry.robot)
+            continue;
+        known.insert(identity, first);
+        const QString twin = tr("The same as the robot %1, by another address").arg(titleOf(*first));
+        if (first != entry.robot && !conflicts[entry.robot].contains(twin))
+            conflicts[entry.robot].append(twin);
+    }
+    for (const auto &robot : robots_) {
+        QStringList &lines = conflicts[robot.get()];
+        const int more = lines.size() - mostConflicts;
+        lines = lines.mid(0, mostConflicts);
+        if (more > 0)
+            lines.append(tr("and %1 more").arg(more));
+        robot->setConflicts(lines);
+    }
+}
+
+Result<QStringList> Fleet::remove(Robot *robot) {
+    if (const QString why = objection_ ? objection_(*robot) : QString(); !why.isEmpty())
+        return Error(ErrorCode::NotReady, why);
+    const QStringList before = addresses_;
+    forgetHost(robot->host());
+    std::vector<std::unique_ptr<DaemonLink>> links;
+    for (auto entry = entries_.begin(); entry != entries_.end();) {
+        if (entry->second.robot != robot) {
+            ++entry;
+            continue;
+        }
+        addresses_.removeAll(entry->second.link->address());
+        entry->second.link->disconnect(this);
+        links.push_back(std::move(entry->second.link));
+        entry = entries_.erase(entry);
+    }
+    QStringList back;
+    if (robot->isSupervised())
+        back.append(robot->address());
+    for (const QString &address : before)
+        if (!addresses_.contains(address) && !back.contains(address))
+            back.append(address);
+    const auto place =
+        std::find_if(robots_.begin(), robots_.end(), [robot](const auto &one) { return one.get() == robot; });
+    std::unique_ptr<Robot> removed = std::move(*place);
+    robots_.erase(place);
+    distribute(std::move(removed));
+    for (auto &link : links)
+        link.release()->deleteLater();
+    return back;
+}
+
+// What was found there and stays is known by its own address from now on.
+void Fleet::forgetHost(const QString &host) {
+    if (addresses_.removeAll(host) == 0)
+        return;
+    for (auto &[place, entry] : entries_) {
+        if (place.first != host || !std::exchange(entry.isSought, false) || !entry.robot || entry.isAdded)
+            continue;
+        entry.isAdded = true;
+        addresses_.append(entry.link->address());
+    }
+}
+
+Robot *Fleet::heirOf(const Robot &gone, const std::vector<Move> &moves) const {
+    for (const Move &move : moves)
+        if (move.from == &gone && move.to)
+            return move.to;
+    for (const auto &robot : robots_)
+        if (robot->host() == gone.host())
+            return robot.get();
+    return nullptr;
+}
+
+void Fleet::followChoice(const std::vector<Move> &moves, const Robots &gone) {
+    Robot *next = robot_;
+    for (const auto &robot : gone) {
+        lastDaemon_.erase(robot.get());
+        if (robot.get() == robot_)
+            next = heirOf(*robot, moves);
+    }
+    if (Robot *const wished = robotAt(wish_)) {
+        next = wished;
+        wish_.clear();
+    } else if (!isMeant_ && wish_.isEmpty()) {
+        for (const Move &move : moves)
+            if (move.to && move.from == robot_)
+                next = move.to;
+    }
+    if (!next && !robots_.empty())
+        next = robots_.front().get();
+    DaemonLink *const daemon = robotOf(daemon_) == next ? daemon_.data() : lastDaemon_[next].data();
+    setChosen(next, robotOf(daemon) == next ? daemon : nullptr);
+}
+
+} // namespace hermes::desktop

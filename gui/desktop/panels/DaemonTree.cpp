@@ -1,0 +1,236 @@
+#include "gui/desktop/panels/DaemonTree.h"
+
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/ForeignText.h"
+
+#include <QHeaderView>
+#include <QMenu>
+
+namespace hermes::desktop {
+namespace {
+
+enum Column { NameColumn, StateColumn };
+
+constexpr int longestName = 60, longestWord = 20, mostHealthItems = 50;
+
+Condition conditionOf(const QString &level) {
+    return level == "ok" ? Condition::Ready : level == "error" ? Condition::Fault : Condition::Warning;
+}
+
+void setText(QTreeWidgetItem &item, const QString &name, const QString &state, Condition condition,
+             const QString &toolTip) {
+    item.setText(NameColumn, name);
+    item.setText(StateColumn, state);
+    item.setIcon(StateColumn, theme::icon(condition));
+    item.setForeground(StateColumn, theme::colour(condition));
+    for (const Column column : {NameColumn, StateColumn})
+        item.setToolTip(column, toolTipOf(toolTip));
+}
+
+/// What the supervisor says of a process: share of a core, memory, restarts.
+QString usage(const ProcessStatus *process) {
+    if (!process || process->pid == 0)
+        return {};
+    return DaemonTree::tr("%1 % of a core, %2 MB, %3 restarts")
+        .arg(shortNumber(100 * process->cpu.value_or(0), 1),
+             shortNumber(double(process->memory_bytes.value_or(0)) / 1e6, 1))
+        .arg(process->restarts);
+}
+
+} // namespace
+
+DaemonTree::DaemonTree(Fleet &fleet, QWidget *parent)
+    : QTreeWidget(parent)
+    , fleet_(fleet) {
+    setColumnCount(2);
+    setHeaderLabels({tr("Daemon"), tr("State")});
+    header()->setSectionResizeMode(NameColumn, QHeaderView::Stretch);
+    header()->setSectionResizeMode(StateColumn, QHeaderView::ResizeToContents);
+    header()->setStretchLastSection(false);
+    setUniformRowHeights(true);
+    setEditTriggers(QAbstractItemView::NoEditTriggers); // but from the menu
+    setContextMenuPolicy(Qt::CustomContextMenu);
+    connect(this, &QWidget::customContextMenuRequested, this, &DaemonTree::showMenu);
+    connect(this, &QTreeWidget::currentItemChanged, this, &DaemonTree::choose);
+    connect(this, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem *item) {
+        if (Robot *const robot = isUpdating_ ? nullptr : robotOf(item))
+            fleet_.rename(*robot, item->text(NameColumn));
+    });
+    connect(&fleet, &Fleet::changed, this, &DaemonTree::update);
+    connect(&fleet, &Fleet::robotChosen, this, &DaemonTree::showChoice);
+    connect(&fleet, &Fleet::daemonChosen, this, &DaemonTree::showChoice);
+    update();
+}
+
+/// The row that it has, at its place, or a new one.
+QTreeWidgetItem *DaemonTree::rowOf(const void *shown, QTreeWidgetItem *parent, int row) {
+    QTreeWidgetItem *item = items_.value(shown);
+    if (item && item->parent() != parent) { // of another robot now
+        delete item->parent()->takeChild(item->parent()->indexOfChild(item));
+        item = nullptr;
+    }
+    if (!item) {
+        item = new QTreeWidgetItem;
+        if (parent)
+            parent->insertChild(row, item);
+        else
+            insertTopLevelItem(row, item);
+    }
+    items_.remove(shown);
+    shown_.insert(shown, item);
+    return item;
+}
+
+void DaemonTree::update() {
+    isUpdating_ = true;
+    int robotRow = 0;
+    for (const auto &robot : fleet_.robots()) {
+        const bool isNew = !items_.contains(robot.get());
+        QTreeWidgetItem *const item = rowOf(robot.get(), nullptr, robotRow++);
+        if (isNew) {
+            item->setExpanded(true);
+            item->setFirstColumnSpanned(true);
+        }
+        showRobot(*item, *robot);
+        int row = 0;
+        for (DaemonLink *daemon : robot->daemons()) {
+            QTreeWidgetItem *const child = rowOf(daemon, item, row++);
+            child->setData(NameColumn, Qt::UserRole, QVariant::fromValue<QObject *>(daemon));
+            showDaemon(*child, *robot, *daemon);
+        }
+    }
+    dropRows();
+    isUpdating_ = false;
+    showChoice();
+}
+
+/// Of what is not there any more; the daemons before their robots, whose rows hold theirs.
+void DaemonTree::dropRows() {
+    for (const bool isDaemon : {true, false})
+        for (auto gone = items_.begin(); gone != items_.end();) {
+            if (isDaemon != bool(gone.value()->parent())) {
+                ++gone;
+                continue;
+            }
+            delete gone.value();
+            gone = items_.erase(gone);
+        }
+    items_ = std::exchange(shown_, {});
+}
+
+void DaemonTree::showRobot(QTreeWidgetItem &item, const Robot &robot) {
+    if (state() == QAbstractItemView::EditingState)
+        return; // what is typed would be lost
+    item.setText(NameColumn, fleet_.titleOf(robot));
+    QStringList toolTip{robot.isSupervised()
+                            ? tr("A supervisor at %1 and the daemons that it names").arg(robot.address())
+                            : tr("Daemons at %1 that no supervisor names").arg(robot.host()),
+                        robot.problem()};
+    toolTip.removeAll(QString());
+    item.setToolTip(NameColumn, toolTipOf(toolTip.join('\n')));
+    item.setIcon(NameColumn,
+                 robot.problem().isEmpty() ? theme::icon("robot") : theme::icon(Condition::Warning));
+}
+
+void DaemonTree::showDaemon(QTreeWidgetItem &item, const Robot &robot, const DaemonLink &daemon) {
+    const ProcessStatus *const process = robot.process(daemon);
+    const QString processState = process ? shortLine(process->state, longestWord) : QString();
+    const bool isStopped = !daemon.isConnected() && !processState.isEmpty() && processState != "running";
+    QStringList toolTip{daemon.title() + ", " + daemon.address(), daemon.reason(), usage(process)};
+    toolTip.removeAll(QString());
+    setText(item, daemon.name(), isStopped ? processState : daemon.conditionWord(), daemon.condition(),
+            toolTip.join('\n'));
+    showHealth(item, daemon);
+}
+
+void DaemonTree::showHealth(QTreeWidgetItem &item, const DaemonLink &daemon) {
+    const std::vector<HealthItem> &health = daemon.status().health;
+    const int count = daemon.isConnected() && !daemon.isSilent() ? int(health.size()) : 0;
+    const int shown = qMin(count, mostHealthItems);
+    const int rows = shown + (count > shown ? 1 : 0);
+    while (item.childCount() > rows)
+        delete item.takeChild(item.childCount() - 1);
+    while (item.childCount() < rows)
+        item.addChild(new QTreeWidgetItem);
+    for (int i = 0; i < shown; ++i) {
+        const HealthItem &one = health[std::size_t(i)];
+        setText(*item.child(i), shortLine(one.name, longestName), shortLine(one.level, longestWord),
+                conditionOf(one.level), one.message);
+    }
+    if (rows > shown)
+        setText(*item.child(shown), tr("%1 more").arg(count - shown), {}, Condition::Warning, {});
+}
+
+/// Where another panel has chosen.
+void DaemonTree::showChoice() {
+    const void *const chosen = fleet_.daemon() ? static_cast<const void *>(fleet_.daemon()) : fleet_.robot();
+    QTreeWidgetItem *const item = items_.value(chosen);
+    QTreeWidgetItem *const current = currentItem();
+    if (isUpdating_ || !item || item == current || (current && current->parent() == item && fleet_.daemon()))
+        return;
+    isUpdating_ = true;
+    setCurrentItem(item);
+    isUpdating_ = false;
+}
+
+void DaemonTree::choose() {
+    if (isUpdating_)
+        return;
+    QTreeWidgetItem *item = currentItem();
+    while (item && item->parent() && item->parent()->parent())
+        item = item->parent(); // a health item stands for its daemon
+    if (!item)
+        return;
+    Q_EMIT clickedAt();
+    if (item->parent())
+        fleet_.choose(qobject_cast<DaemonLink *>(item->data(NameColumn, Qt::UserRole).value<QObject *>()));
+    else if (Robot *const robot = robotOf(item))
+        fleet_.choose(robot);
+}
+
+Robot *DaemonTree::robotOf(const QTreeWidgetItem *item) const {
+    for (const auto &robot : fleet_.robots())
+        if (item && items_.value(robot.get()) == item)
+            return robot.get();
+    return nullptr;
+}
+
+void DaemonTree::showMenu(const QPoint &place) {
+    QTreeWidgetItem *item = itemAt(place);
+    while (item && item->parent())
+        item = item->parent();
+    Robot *const robot = robotOf(item);
+    if (!robot)
+        return;
+    auto *const menu = new QMenu(this);
+    menu->setObjectName("robotMenu");
+    menu->setAttribute(Qt::WA_DeleteOnClose);
+    const auto add = [&](const QString &text, const char *name, const auto &work) {
+        QAction *const action = menu->addAction(text);
+        action->setObjectName(name);
+        connect(action, &QAction::triggered, this, [this, item, robot, work] {
+            if (robotOf(item) == robot)
+                work();
+        });
+    };
+    const QString title = fleet_.titleOf(*robot).replace('&', "&&");
+    add(tr("Re&name %1").arg(title), "renameRobot", [this, menu, item, robot] {
+        connect(menu, &QObject::destroyed, this, [this, item, robot] { // the focus is back then
+            if (robotOf(item) == robot)
+                rename(item);
+        });
+    });
+    add(tr("&Remove %1 from this window").arg(title), "removeRobot",
+        [this, robot] { Q_EMIT removalAsked(robot); });
+    menu->popup(viewport()->mapToGlobal(place));
+}
+
+void DaemonTree::rename(QTreeWidgetItem *item) {
+    isUpdating_ = true; // what is changed is no new name
+    item->setText(NameColumn, robotOf(item)->name());
+    item->setFlags(item->flags() | Qt::ItemIsEditable);
+    isUpdating_ = false;
+    editItem(item, NameColumn);
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "gui/desktop/model/Fleet.h"
+
+#include <QHash>
+#include <QTreeWidget>
+
+namespace hermes::desktop {
+
+/// The robots, their daemons and what these say of their health. What the operator clicks at is chosen; a
+/// robot is named and removed by its context menu.
+class DaemonTree : public QTreeWidget {
+    Q_OBJECT
+public:
+    explicit DaemonTree(Fleet &fleet, QWidget *parent = nullptr);
+
+Q_SIGNALS:
+    /// Another row was clicked at.
+    void clickedAt();
+    /// The operator wants to be rid of it.
+    void removalAsked(hermes::desktop::Robot *robot);
+
+private:
+    QTreeWidgetItem *rowOf(const void *shown, QTreeWidgetItem *parent, int row);
+    void update();
+    void dropRows();
+    void showRobot(QTreeWidgetItem &item, const Robot &robot);
+    void showDaemon(QTreeWidgetItem &item, const Robot &robot, const DaemonLink &daemon);
+    void showHealth(QTreeWidgetItem &item, const DaemonLink &daemon);
+    void showChoice();
+    void choose();
+    void showMenu(const QPoint &place);
+    void rename(QTreeWidgetItem *item);
+    Robot *robotOf(const QTreeWidgetItem *item) const;
+
+    Fleet &fleet_;
+    QHash<const void *, QTreeWidgetItem *> items_, shown_; // by Robot or DaemonLink
+    bool isUpdating_ = false;
+};
+
+} // namespace hermes::desktop
