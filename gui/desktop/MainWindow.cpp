@@ -2,6 +2,7 @@
 
 #include "gui/desktop/EventBar.h"
 #include "gui/desktop/HelpWindow.h"
+#include "gui/desktop/LayoutMenu.h"
 #include "gui/desktop/MenuBar.h"
 #include "gui/desktop/TopBar.h"
 #include "gui/desktop/drive/DriveGamepad.h"
@@ -17,13 +18,17 @@
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
-#include <QDir>
 #include <QDockWidget>
-#include <QFileInfo>
-#include <QSettings>
+#include <QJsonArray>
 #include <QToolBar>
+#include <cstdio>
 
 namespace hermes::desktop {
+namespace {
+
+constexpr std::chrono::seconds noticeTime{20};
+
+} // namespace
 
 MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent)
     : QMainWindow(parent)
@@ -31,9 +36,9 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , drive_(drive)
     , log_(fleet)
     , eventWatch_(fleet, log_, events_)
-    , layoutFile_(layoutFile) {
-    if (!layoutFile_.isEmpty())
-        sounds_.switchTo(QSettings(layoutFile_, QSettings::IniFormat).value("sounds/on", true).toBool());
+    , layouts_(layoutFile)
+    , keeping_(new Banner) {
+    sounds_.switchTo(layouts_.value("sounds") != "off");
     setWindowTitle(tr("Hermes"));
     setDockNestingEnabled(true);
     setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
@@ -56,24 +61,35 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
                      "background: #6a2fb0; color: white;");
     });
 
+    keeping_->setObjectName("keepingBanner");
+    addBanner(keeping_, "keepingBar");
+    notice_.setSingleShot(true);
+    connect(&notice_, &QTimer::timeout, keeping_, [this] { keeping_->tell({}, {}); });
+
     setCentralWidget(map_ = new MapPanel(fleet));
-    auto *const gamepad = new DriveGamepad(drive_, layoutFile_, this);
+    auto *const gamepad = new DriveGamepad(drive_, layouts_, this);
     for (const PanelKind &kind : panelKinds())
         addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_}));
     addEventBar();
     new DriveKeys(drive_, *this);
     new EnterKey(*this);
     new WheelGuard(*this);
-    auto *const stopKeys = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
-    addMenus(*stopKeys);
-    restoreLayout();
-    centralWidget()->setFocus(); // so that the keys drive
+    stopKeys_ = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
+    stopKeys_->letEscapeStop(layouts_.value("escape") == "on");
+    addMenus();
+    arrange();
+    showLayout();
+    tellOfKeeping(layouts_.problem() + layouts_.damage());
+    fleet.setNames(layouts_.robots().names);
+    fleet.wish(layouts_.robots().chosen);
+    connect(&fleet, &Fleet::changed, this, &MainWindow::keepRobots);
+    connect(&fleet, &Fleet::robotChosen, this, &MainWindow::keepRobots);
 }
 
 MainWindow::~MainWindow() = default;
 
 QStringList MainWindow::keptAddresses(const QString &layoutFile) {
-    return QSettings(layoutFile, QSettings::IniFormat).value("robots/addresses").toStringList();
+    return Layouts(layoutFile).robots().addresses;
 }
 
 void MainWindow::addBanner(Banner *banner, const char *name) {
@@ -84,7 +100,7 @@ void MainWindow::addBanner(Banner *banner, const char *name) {
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
     bar->addWidget(banner);
     bar->hide();
-    banners_.push_back(bar);
+    banners_.emplace_back(banner, bar);
     connect(banner, &Banner::shown, bar, &QToolBar::setVisible);
 }
 
@@ -109,12 +125,13 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     dock->toggleViewAction()->setToolTip(tr("%1 (%2)").arg(title, show->shortcut().toString()));
 }
 
-void MainWindow::addMenus(StopKeys &keys) {
+void MainWindow::addMenus() {
     auto *const menus = new MenuBar(this);
-    menus->addRobot(drive_, keys);
+    menus->addRobot(drive_, *stopKeys_);
     menus->addMap(*map_);
     menus->addRecording(panelActions_);
     menus->addPanels(showPanels_);
+    menus->addMenu(makeLayoutMenu());
     menus->addEvents(events_);
     menus->addHelp();
     connect(menus, &MenuBar::closeWanted, this, &QWidget::close);
@@ -158,37 +175,101 @@ void MainWindow::showPanel(const QString &name) {
     static_cast<ScrolledPanel *>(dock->widget())->widget()->setFocus();
 }
 
-void MainWindow::restoreLayout() {
+void MainWindow::arrange() {
     resize(1280, 720);
     resizeDocks({docks_.front(), findChild<QDockWidget *>("drive")}, {300, 240}, Qt::Horizontal);
     resizeDocks({docks_[1]}, {220}, Qt::Vertical);
     docks_[0]->raise();
     docks_[1]->raise();
-    if (layoutFile_.isEmpty())
-        return;
-    const QSettings layout(layoutFile_, QSettings::IniFormat);
-    restoreGeometry(layout.value("window/geometry").toByteArray());
-    restoreState(layout.value("window/state").toByteArray());
-    findChild<PlotsPanel *>()->plot(layout.value("plots/fields").toStringList());
-    for (QToolBar *banner : banners_)
-        banner->hide(); // whatever it said when the layout was kept
+    usual_ = saveState();
 }
 
-void MainWindow::saveLayout() const {
-    if (layoutFile_.isEmpty())
+QMenu *MainWindow::makeLayoutMenu() {
+    auto *const menu = new LayoutMenu(layouts_, this);
+    const auto change = [this](const Result<void> &changed) {
+        if (!changed)
+            return tellOfKeeping(changed.error().message);
+        showLayout();
+        save();
+    };
+    connect(menu, &LayoutMenu::chosen, this, [this, change](const QString &name) {
+        keepLayout();
+        change(layouts_.choose(name));
+    });
+    connect(menu, &LayoutMenu::savedAs, this, [this, change](const QString &name) {
+        keepLayout();
+        change(layouts_.saveAs(name));
+    });
+    connect(menu, &LayoutMenu::removalWanted, this, [this, change] { change(layouts_.remove()); });
+    connect(menu, &LayoutMenu::resetWanted, this, &MainWindow::resetLayout);
+    return menu;
+}
+
+void MainWindow::showLayout() {
+    const Layouts::Layout layout = layouts_.layout();
+    if (!layout.geometry.isEmpty())
+        restoreGeometry(layout.geometry);
+    if (!restoreState(layout.state))
+        restoreState(usual_);
+    showBars();
+    QStringList plotted;
+    for (const QJsonValue &field : layout.plots["fields"].toArray())
+        plotted.append(field.toString());
+    findChild<PlotsPanel *>()->plot(plotted);
+    centralWidget()->setFocus(); // so that the keys drive
+}
+
+/// Whatever was in sight when the layout was kept, STOP is always, and a banner while it has something to
+/// say.
+void MainWindow::showBars() {
+    for (const char *const always : {"topBar", "eventBar"})
+        findChild<QToolBar *>(always)->show();
+    for (const auto &[banner, bar] : banners_)
+        bar->setVisible(!banner->text().isEmpty());
+}
+
+void MainWindow::resetLayout() {
+    restoreState(usual_);
+    showBars();
+    centralWidget()->setFocus();
+}
+
+void MainWindow::keepLayout() {
+    const QJsonObject plots{{"fields", QJsonArray::fromStringList(findChild<PlotsPanel *>()->plotted())}};
+    layouts_.setLayout({saveGeometry(), saveState(), plots});
+    layouts_.setValue("sounds", sounds_.areOn() ? "on" : "off");
+    layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
+}
+
+/// As soon as they change: the window may not be closed in order.
+void MainWindow::keepRobots() {
+    const Layouts::Robots robots{fleet_.addresses(), fleet_.names(), fleet_.chosenAddress()};
+    if (robots == layouts_.robots())
         return;
-    QDir().mkpath(QFileInfo(layoutFile_).path());
-    QSettings layout(layoutFile_, QSettings::IniFormat);
-    layout.setValue("window/geometry", saveGeometry());
-    layout.setValue("window/state", saveState());
-    layout.setValue("plots/fields", findChild<PlotsPanel *>()->plotted());
-    layout.setValue("sounds/on", sounds_.areOn());
-    layout.setValue("robots/addresses", fleet_.addresses());
+    layouts_.setRobots(robots);
+    save();
+}
+
+void MainWindow::save() {
+    if (!layouts_.problem().isEmpty())
+        return; // which was said
+    if (const auto saved = layouts_.save(); !saved)
+        tellOfKeeping(saved.error().message);
+}
+
+void MainWindow::tellOfKeeping(const QString &problem) {
+    if (problem.isEmpty())
+        return;
+    std::fprintf(stderr, "hermes-gui: %s\n", qPrintable(problem));
+    keeping_->tell(problem, "background: #8a6100; color: white;");
+    notice_.start(noticeTime);
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
-    saveLayout();
+    keepLayout();
+    keepRobots();
+    save();
     event->accept();
 }
 

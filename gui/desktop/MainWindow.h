@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/desktop/Layouts.h"
 #include "gui/desktop/model/EventWatch.h"
 #include "gui/desktop/panels/Panels.h"
 
@@ -20,12 +21,12 @@ class StopKeys;
 class MainWindow : public QMainWindow {
     Q_OBJECT
 public:
-    /// layoutFile: where the layout, what is plotted and the addresses of robots are kept between runs;
-    /// empty: nowhere.
+    /// layoutFile: where layouts and robots are kept between runs (Layouts); empty: nowhere.
     MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent = nullptr);
     ~MainWindow() override;
-    /// The addresses that the last window with this layout had.
+    /// The addresses of robots that are kept there.
     static QStringList keptAddresses(const QString &layoutFile);
+    const Layouts &layouts() const { return layouts_; }
     MapPanel &map() { return *map_; }
 
 protected:
@@ -35,12 +36,20 @@ private:
     void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
     void addEventBar();
-    void addMenus(StopKeys &keys);
+    void addMenus();
     void showHelp();
     HelpWindow &help();
     void showPanel(const QString &name);
-    void restoreLayout();
-    void saveLayout() const;
+    void arrange();
+    QMenu *makeLayoutMenu();
+    /// Shows what is kept of the current layout; what is not is as at the first start.
+    void showLayout();
+    void showBars();
+    void keepLayout();
+    void resetLayout();
+    void keepRobots();
+    void save();
+    void tellOfKeeping(const QString &problem);
 
     Fleet &fleet_;
     DriveControl &drive_;
@@ -49,12 +58,16 @@ private:
     Events events_;
     EventWatch eventWatch_;
     MapPanel *map_;
-    const QString layoutFile_;
+    Layouts layouts_;
+    QByteArray usual_; ///< how the panels are arranged at the first start
     std::vector<QDockWidget *> docks_;
     QList<QAction *> showPanels_;
     QList<QAction *> panelActions_; ///< with keys of their own
     HelpWindow *help_ = nullptr;
-    std::vector<QToolBar *> banners_;
+    StopKeys *stopKeys_;
+    std::vector<std::pair<Banner *, QToolBar *>> banners_;
+    Banner *keeping_;
+    QTimer notice_;
 };
 
 } // namespace hermes::desktop

@@ -63,16 +63,16 @@ int main(int argc, char **argv) {
         parser.showVersion();
 
     Fleet fleet;
-    QStringList addresses = parser.values("connect");
-    if (addresses.isEmpty())
-        addresses = MainWindow::keptAddresses(parser.value("layout"));
-    if (addresses.isEmpty())
-        addresses.append("127.0.0.1");
-    for (const QString &address : qAsConst(addresses))
+    for (const QString &address : parser.values("connect"))
         if (const auto added = fleet.add(address); !added) {
             std::fprintf(stderr, "hermes-gui: --connect: %s\n", qPrintable(added.error().message));
             return 2;
         }
+    if (fleet.robots().empty())
+        for (const QString &address : MainWindow::keptAddresses(parser.value("layout")))
+            fleet.add(address); // what is no address is passed over
+    if (fleet.robots().empty())
+        fleet.add("127.0.0.1");
     DriveControl drive(fleet);
     MainWindow window(fleet, drive, parser.value("layout"));
     if (parser.isSet("whole-map"))

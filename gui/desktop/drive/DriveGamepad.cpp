@@ -1,6 +1,7 @@
 #include "gui/desktop/drive/DriveGamepad.h"
 
-#include <QSettings>
+#include <QJsonArray>
+#include <QJsonDocument>
 
 namespace hermes::desktop {
 namespace {
@@ -13,10 +14,10 @@ QString keyOf(const QString &kind) {
 
 } // namespace
 
-DriveGamepad::DriveGamepad(DriveControl &drive, const QString &file, QObject *parent)
+DriveGamepad::DriveGamepad(DriveControl &drive, Layouts &kept, QObject *parent)
     : QObject(parent)
     , drive_(drive)
-    , file_(file)
+    , kept_(kept)
     , pad_(this) {
     connect(&pad_, &Gamepad::changed, this, [this] {
         if (pad_.kind() != kind_)
@@ -60,8 +61,7 @@ Result<void> DriveGamepad::endCalibration() {
     enter(Step::None);
     if (!made)
         return made.error();
-    keep(*made);
-    return {};
+    return keep(*made);
 }
 
 void DriveGamepad::cancelCalibration() {
@@ -88,16 +88,19 @@ void DriveGamepad::load() {
     calibration_ = {};
     if (step_ != Step::None)
         enter(Step::None); // it was of another one
-    if (!file_.isEmpty() && !kind_.isEmpty())
-        calibration_ =
-            GamepadCalibration::fromList(QSettings(file_, QSettings::IniFormat).value(keyOf(kind_)).toList());
+    if (!kind_.isEmpty())
+        calibration_ = GamepadCalibration::fromList(
+            QJsonDocument::fromJson(kept_.value(keyOf(kind_)).toUtf8()).array().toVariantList());
 }
 
-void DriveGamepad::keep(const GamepadCalibration &calibration) {
+Result<void> DriveGamepad::keep(const GamepadCalibration &calibration) {
     calibration_ = calibration;
-    if (!file_.isEmpty() && !kind_.isEmpty())
-        QSettings(file_, QSettings::IniFormat).setValue(keyOf(kind_), calibration.toList());
+    if (!kind_.isEmpty())
+        kept_.setValue(keyOf(kind_),
+                       QString::fromUtf8(QJsonDocument(QJsonArray::fromVariantList(calibration.toList()))
+                                             .toJson(QJsonDocument::Compact)));
     Q_EMIT changed();
+    return kept_.save();
 }
 
 } // namespace hermes::desktop

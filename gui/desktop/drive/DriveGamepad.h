@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/desktop/Layouts.h"
 #include "gui/desktop/drive/DriveControl.h"
 #include "gui/desktop/drive/GamepadCalibration.h"
 
@@ -14,8 +15,8 @@ public:
     enum class Step { None, Rest, Move };
     static constexpr std::chrono::milliseconds restFor{1000};
 
-    /// file: where calibrations are kept, each for its kind of gamepad; empty: nowhere.
-    DriveGamepad(DriveControl &drive, const QString &file, QObject *parent);
+    /// kept: where calibrations are, each for its kind of gamepad.
+    DriveGamepad(DriveControl &drive, Layouts &kept, QObject *parent);
 
     const Gamepad &pad() const { return pad_; }
     /// As they drive: calibrated, 0 where they rest.
@@ -24,7 +25,7 @@ public:
     Step step() const { return step_; }
     /// Measures the sticks at rest for a second, then as they are moved; nothing drives meanwhile.
     void beginCalibration();
-    /// With what was measured since. Error: the calibration of before holds.
+    /// With what was measured since. Error: the calibration of before holds, or it could not be kept.
     Result<void> endCalibration();
     void cancelCalibration();
     /// Forgets the calibration.
@@ -38,10 +39,10 @@ private:
     void enter(Step step);
     void sample();
     void load();
-    void keep(const GamepadCalibration &calibration);
+    Result<void> keep(const GamepadCalibration &calibration);
 
     DriveControl &drive_;
-    const QString file_;
+    Layouts &kept_;
     Gamepad pad_;
     QString kind_; ///< whose calibration it is
     GamepadCalibration calibration_;

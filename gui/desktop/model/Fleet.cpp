@@ -78,8 +78,8 @@ void Fleet::onChanged(const Place &place) {
 Robot *Fleet::makeRobot(const QString &host, DaemonLink *supervisor) {
     robots_.push_back(std::make_unique<Robot>(host, supervisor));
     Robot *const robot = robots_.back().get();
-    robot->setGivenName(names_.value(robot->address()));
     connect(robot, &Robot::changed, this, &Fleet::touch);
+    robot->setGivenName(names_.value(robot->address()));
     return robot;
 }
 
@@ -98,12 +98,11 @@ Robot *Fleet::robotAt(const QString &address) const {
 }
 
 QString Fleet::titleOf(const Robot &robot) const {
-    const auto isTwin = [&](const auto &other) {
-        return other.get() != &robot && other->name() == robot.name();
-    };
-    return std::any_of(robots_.begin(), robots_.end(), isTwin)
-               ? tr("%1 (%2)").arg(robot.name(), robot.address())
-               : robot.name();
+    if (namesakes_.isEmpty())
+        for (const auto &other : robots_)
+            ++namesakes_[other->name()];
+    return namesakes_.value(robot.name()) > 1 ? tr("%1 (%2)").arg(robot.name(), robot.address())
+                                              : robot.name();
 }
 
 QString Fleet::titleOf(const DaemonLink &daemon) const {
@@ -124,6 +123,20 @@ void Fleet::rename(Robot &robot, const QString &name) {
     else
         names_[robot.address()] = given;
     robot.setGivenName(given);
+}
+
+void Fleet::wish(const QString &address) {
+    const auto leadsThere = [&address](const QString &added) {
+        return address == added || address.startsWith(added + ':');
+    };
+    if (isMeant_ || (!addresses_.isEmpty() && std::none_of(addresses_.begin(), addresses_.end(), leadsThere)))
+        return;
+    wish_ = address;
+    distribute();
+}
+
+QString Fleet::chosenAddress() const {
+    return !wish_.isEmpty() ? wish_ : robot_ ? robot_->address() : QString();
 }
 
 void Fleet::choose(Robot *robot) {
@@ -156,6 +169,7 @@ void Fleet::setChosen(Robot *robot, DaemonLink *daemon) {
 }
 
 void Fleet::touch() {
+    namesakes_.clear();
     if (!changes_.isActive())
         changes_.start();
 }

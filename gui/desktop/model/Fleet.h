@@ -3,6 +3,7 @@
 #include "common/Result.h"
 #include "gui/desktop/model/Robot.h"
 
+#include <QHash>
 #include <QMap>
 #include <memory>
 
@@ -49,8 +50,11 @@ public:
     DaemonLink *daemon() const { return daemon_; }
     void choose(Robot *robot);
     void choose(DaemonLink *daemon);
-    /// Chooses the robot of this address as soon as it is there, unless the operator has chosen before.
-    void wish(const QString &address) { wish_ = address; }
+    /// Chooses the robot of this address as soon as it is there, unless the operator has chosen before, or
+    /// nothing was added that may lead to it.
+    void wish(const QString &address);
+    /// What will be chosen, or is.
+    QString chosenAddress() const;
     /// Whatever is chosen is meant from now on, even if nobody has chosen it.
     void keepChoice();
 
@@ -110,6 +114,7 @@ private:
     std::map<Place, Entry> entries_;
     Robots robots_;
     QMap<QString, QString> names_;
+    mutable QHash<QString, int> namesakes_; ///< how many robots have a name; empty: to be counted anew
     Objection objection_;
     Robot *robot_ = nullptr;
     QPointer<DaemonLink> daemon_;

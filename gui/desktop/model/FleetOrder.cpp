@@ -87,6 +87,7 @@ void Fleet::distribute(std::unique_ptr<Robot> removed) {
     makeNamed();
     const std::vector<Move> moves = reassign();
     Robots gone = takeEmpty();
+    namesakes_.clear();
     for (const auto &[daemon, from, to] : moves)
         if (from && to)
             Q_EMIT moved(daemon, from, to);

@@ -46,8 +46,8 @@ std::vector<DaemonLink *> Robot::daemons() const {
 }
 
 bool Robot::has(const DaemonLink *daemon) const {
-    return std::any_of(daemons_.begin(), daemons_.end(),
-                       [daemon](const auto &one) { return one.second == daemon; });
+    const auto found = daemon ? daemons_.find(daemon->port()) : daemons_.end();
+    return found != daemons_.end() && found->second == daemon;
 }
 
 DaemonLink *Robot::withMethod(const QString &method) const {

@@ -1,0 +1,60 @@
+#include "gui/desktop/LayoutMenu.h"
+
+#include "gui/desktop/Layouts.h"
+
+#include <QActionGroup>
+#include <QInputDialog>
+#include <QLineEdit>
+
+namespace hermes::desktop {
+namespace {
+
+QString asText(QString name) {
+    return name.replace('&', "&&");
+}
+
+} // namespace
+
+LayoutMenu::LayoutMenu(const Layouts &layouts, QWidget *parent)
+    : QMenu(tr("Layout"), parent)
+    , layouts_(layouts)
+    , removal_(new QMenu(this)) {
+    setObjectName("layoutMenu");
+    removal_->addAction(tr("Delete &now"), this, &LayoutMenu::removalWanted)->setObjectName("removeLayout");
+    connect(this, &QMenu::aboutToShow, this, &LayoutMenu::fill);
+    fill();
+}
+
+void LayoutMenu::fill() {
+    clear();
+    auto *const group = new QActionGroup(this);
+    connect(this, &QMenu::aboutToShow, group, &QObject::deleteLater);
+    for (const QString &name : layouts_.names()) {
+        QAction *const action = addAction(asText(name), this, [this, name] { Q_EMIT chosen(name); });
+        action->setObjectName("layout " + name);
+        action->setActionGroup(group);
+        action->setCheckable(true);
+        action->setChecked(name == layouts_.current());
+    }
+    addSeparator();
+    addAction(tr("&Save as..."), this, &LayoutMenu::askName)->setObjectName("saveLayoutAs");
+    addAction(tr("&Default arrangement"), this, &LayoutMenu::resetWanted)->setObjectName("resetLayout");
+    addMenu(removal_);
+    removal_->setTitle(tr("D&elete %1").arg(asText(layouts_.current())));
+    removal_->menuAction()->setEnabled(layouts_.names().size() > 1);
+}
+
+// Not modal: STOP stays in reach.
+void LayoutMenu::askName() {
+    auto *const dialog = new QInputDialog(parentWidget());
+    dialog->setObjectName("layoutName");
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    dialog->setWindowTitle(tr("Save the layout as"));
+    dialog->setLabelText(tr("Panels and plots as they are now, by this name:"));
+    connect(dialog, &QInputDialog::textValueSelected, this, &LayoutMenu::savedAs);
+    dialog->show();
+    if (auto *const field = dialog->findChild<QLineEdit *>())
+        field->setMaxLength(Layouts::longestName);
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <QMenu>
+
+namespace hermes::desktop {
+
+class Layouts;
+
+/// The layouts of the window by name, and what can be done with them. Who makes the window does it.
+class LayoutMenu : public QMenu {
+    Q_OBJECT
+public:
+    explicit LayoutMenu(const Layouts &layouts, QWidget *parent = nullptr);
+
+Q_SIGNALS:
+    void chosen(const QString &name);
+    void savedAs(const QString &name);
+    /// The current one.
+    void resetWanted();
+    void removalWanted();
+
+private:
+    void fill();
+    void askName();
+
+    const Layouts &layouts_;
+    QMenu *removal_;
+};
+
+} // namespace hermes::desktop

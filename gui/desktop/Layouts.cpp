@@ -1,0 +1,205 @@
+#include "gui/desktop/Layouts.h"
+
+#include "gui/desktop/widgets/ForeignText.h"
+
+#include <QCryptographicHash>
+#include <QDir>
+#include <QFileInfo>
+#include <QJsonDocument>
+#include <QObject>
+#include <QSettings>
+#include <algorithm>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr qint64 largest = 1 << 20; // bytes; a window with all panels and a hundred plots has 20,000
+constexpr int mostRobots = 200;
+
+QString tr(const char *text) {
+    return QObject::tr(text);
+}
+
+/// Lines of an ini file that this program may have written. What QSettings would build from "@Variant" is
+/// never what was kept.
+bool isOurs(const QByteArray &text) {
+    if (text.contains('\0') || text.contains("@Variant(") || text.contains("@DateTime("))
+        return false;
+    bool hasGroup = false, hasLine = false;
+    for (const QByteArray &line : text.split('\n')) {
+        const QByteArray one = line.trimmed();
+        if (one.isEmpty() || one.startsWith(';'))
+            continue;
+        hasLine = true;
+        hasGroup = hasGroup || one == "[window]" || one == "[layouts]" || one == "[robots]";
+        if (!one.startsWith('[') && !one.contains('='))
+            return false;
+    }
+    return hasGroup || !hasLine;
+}
+
+QString textOf(const QJsonObject &object) {
+    return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
+}
+
+QJsonObject objectOf(const QVariant &text) {
+    return QJsonDocument::fromJson(text.toString().toUtf8()).object();
+}
+
+QByteArray checkOf(const Layouts::Layout &layout) {
+    QCryptographicHash hash(QCryptographicHash::Sha256);
+    hash.addData(layout.geometry);
+    hash.addData(layout.state);
+    return hash.result().toHex();
+}
+
+QString nameOf(const QVariant &text) {
+    return shortLine(text.toString().trimmed(), Layouts::longestName);
+}
+
+} // namespace
+
+Layouts::Layouts(const QString &file)
+    : file_(file) {
+    read();
+    if (layouts_.empty())
+        layouts_.push_back({tr("Usual"), {}});
+    if (find(current_) == layouts_.end())
+        current_ = layouts_.front().name;
+}
+
+void Layouts::read() {
+    const QFileInfo info(file_);
+    if (file_.isEmpty() || !info.exists())
+        return;
+    const auto refuse = [this](const QString &why) {
+        problem_ = tr("The layout of the window and the robots are not kept: %1 %2").arg(file_, why);
+    };
+    if (!info.isFile())
+        return refuse(tr("is no file"));
+    QFile content(file_);
+    if (!content.open(QIODevice::ReadOnly))
+        return refuse(tr("cannot be read: %1").arg(content.errorString()));
+    if (content.size() > largest || !isOurs(content.readAll()))
+        return refuse(tr("is damaged, or was not written by this program. It is left as it is"));
+    QSettings file(file_, QSettings::IniFormat);
+    if (file.status() != QSettings::NoError)
+        return refuse(tr("is damaged. It is left as it is"));
+    readLayouts(file);
+    robots_.addresses = file.value("robots/addresses").toStringList().mid(0, mostRobots);
+    const QStringList names = file.value("robots/names").toStringList().mid(0, 2 * mostRobots);
+    for (int i = 0; i + 1 < names.size(); i += 2)
+        robots_.names[names[i]] = nameOf(names[i + 1]);
+    robots_.chosen = file.value("robots/chosen").toString();
+    file.beginGroup("kept");
+    for (const QString &key : file.allKeys())
+        values_[key] = file.value(key).toString();
+}
+
+// Qt may crash at a state that is not as it wrote it.
+void Layouts::readLayouts(QSettings &file) {
+    const int count = qBound(0, file.beginReadArray("layouts"), most);
+    for (int i = 0; i < count; ++i) {
+        file.setArrayIndex(i);
+        const QString name = nameOf(file.value("name"));
+        if (name.isEmpty() || find(name) != layouts_.end())
+            continue;
+        Layout layout{file.value("geometry").toByteArray(), file.value("state").toByteArray(),
+                      objectOf(file.value("plots"))};
+        if (file.value("check").toByteArray() != checkOf(layout)) {
+            layout.geometry = layout.state = {};
+            damage_ = tr("The layout %1 is damaged: its panels are arranged as usual.").arg(name);
+        }
+        layouts_.push_back({name, layout});
+    }
+    file.endArray();
+    current_ = nameOf(file.value("window/layout"));
+}
+
+std::vector<Layouts::Named>::iterator Layouts::find(const QString &name) {
+    return std::find_if(layouts_.begin(), layouts_.end(),
+                        [&name](const Named &one) { return one.name == name; });
+}
+
+QStringList Layouts::names() const {
+    QStringList names;
+    for (const Named &one : layouts_)
+        names.append(one.name);
+    return names;
+}
+
+Layouts::Layout Layouts::layout() const {
+    for (const Named &one : layouts_)
+        if (one.name == current_)
+            return one.layout;
+    return {};
+}
+
+void Layouts::setLayout(const Layout &layout) {
+    find(current_)->layout = layout;
+}
+
+Result<void> Layouts::choose(const QString &name) {
+    if (find(name) == layouts_.end())
+        return Error(ErrorCode::InvalidParams, tr("There is no layout %1.").arg(shortLine(name)));
+    current_ = name;
+    return {};
+}
+
+Result<void> Layouts::saveAs(const QString &name) {
+    const QString wanted = nameOf(name.left(longestName));
+    if (wanted.isEmpty())
+        return Error(ErrorCode::InvalidParams, tr("A layout needs a name."));
+    if (find(wanted) != layouts_.end())
+        return Error(ErrorCode::InvalidParams, tr("There is a layout %1 already.").arg(wanted));
+    if (int(layouts_.size()) >= most)
+        return Error(ErrorCode::InvalidParams, tr("There are %1 layouts: delete one first.").arg(most));
+    layouts_.push_back({wanted, layout()});
+    current_ = wanted;
+    return {};
+}
+
+Result<void> Layouts::remove() {
+    if (layouts_.size() < 2)
+        return Error(ErrorCode::InvalidParams, tr("The last layout stays."));
+    layouts_.erase(find(current_));
+    current_ = layouts_.front().name;
+    return {};
+}
+
+Result<void> Layouts::save() const {
+    if (file_.isEmpty())
+        return {};
+    if (!problem_.isEmpty())
+        return Error(ErrorCode::InputOutput, problem_);
+    QDir().mkpath(QFileInfo(file_).absolutePath());
+    QSettings file(file_, QSettings::IniFormat);
+    for (const char *const before : {"window", "plots", "layouts", "kept"})
+        file.remove(before);
+    file.beginWriteArray("layouts", int(layouts_.size()));
+    for (std::size_t i = 0; i < layouts_.size(); ++i) {
+        file.setArrayIndex(int(i));
+        file.setValue("name", layouts_[i].name);
+        file.setValue("geometry", layouts_[i].layout.geometry);
+        file.setValue("state", layouts_[i].layout.state);
+        file.setValue("check", checkOf(layouts_[i].layout));
+        file.setValue("plots", textOf(layouts_[i].layout.plots));
+    }
+    file.endArray();
+    file.setValue("window/layout", current_);
+    QStringList names;
+    for (auto one = robots_.names.begin(); one != robots_.names.end(); ++one)
+        names << one.key() << one.value();
+    file.setValue("robots/addresses", robots_.addresses);
+    file.setValue("robots/names", names);
+    file.setValue("robots/chosen", robots_.chosen);
+    for (auto one = values_.begin(); one != values_.end(); ++one)
+        file.setValue("kept/" + one.key(), one.value());
+    file.sync();
+    if (file.status() != QSettings::NoError)
+        return Error(ErrorCode::InputOutput,
+                     tr("The layout of the window and the robots could not be written to %1").arg(file_));
+    return {};
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "common/Result.h"
+
+#include <QByteArray>
+#include <QJsonObject>
+#include <QMap>
+#include <QStringList>
+#include <vector>
+
+class QSettings;
+
+namespace hermes::desktop {
+
+/// What of the window is kept between runs, in an ini file: layouts by name, and the robots apart from them.
+/// A file that is no such one, or damaged, is left as it is: the window has its default then, and nothing is
+/// kept.
+class Layouts {
+public:
+    static constexpr int longestName = 40, most = 50;
+
+    struct Layout {
+        QByteArray geometry, state; ///< as QMainWindow saves them; empty: the default
+        QJsonObject plots;
+    };
+    struct Robots {
+        QStringList addresses;
+        QMap<QString, QString> names; ///< given ones, by address
+        QString chosen;               ///< address
+
+        bool operator==(const Robots &other) const {
+            return addresses == other.addresses && names == other.names && chosen == other.chosen;
+        }
+    };
+
+    /// file: empty: nothing is kept, and that is no problem.
+    explicit Layouts(const QString &file);
+
+    /// Why nothing is kept; empty: it is.
+    const QString &problem() const { return problem_; }
+    /// What of the file is not as it was written, and was passed over; empty: nothing.
+    const QString &damage() const { return damage_; }
+    /// At least one.
+    QStringList names() const;
+    const QString &current() const { return current_; }
+    /// Of the current one.
+    Layout layout() const;
+    void setLayout(const Layout &layout);
+
+    /// Error: there is none of that name.
+    Result<void> choose(const QString &name);
+    /// A copy of the current one, which is the current one then. Error: what is wrong with the name.
+    Result<void> saveAs(const QString &name);
+    /// The current one; the first of the others is the current one then. Error: it is the last.
+    Result<void> remove();
+
+    const Robots &robots() const { return robots_; }
+    void setRobots(const Robots &robots) { robots_ = robots; }
+    /// What else is kept, of all layouts.
+    QString value(const QString &key) const { return values_.value(key); }
+    void setValue(const QString &key, const QString &text) { values_[key] = text; }
+
+    /// Error: why it could not be written.
+    Result<void> save() const;
+
+private:
+    struct Named {
+        QString name;
+        Layout layout;
+    };
+
+    void read();
+    void readLayouts(QSettings &file);
+    std::vector<Named>::iterator find(const QString &name);
+
+    const QString file_;
+    QString problem_, damage_, current_;
+    std::vector<Named> layouts_;
+    Robots robots_;
+    QMap<QString, QString> values_;
+};
+
+} // namespace hermes::desktop
