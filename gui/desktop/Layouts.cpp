@@ -46,6 +46,22 @@ QJsonObject objectOf(const QVariant &text) {
     return QJsonDocument::fromJson(text.toString().toUtf8()).object();
 }
 
+/// Keys and values in turn: a key of the file could not have all characters.
+QStringList listOf(const QMap<QString, QString> &pairs) {
+    QStringList list;
+    for (auto one = pairs.begin(); one != pairs.end(); ++one)
+        list << one.key() << one.value();
+    return list;
+}
+
+QMap<QString, QString> pairsIn(const QVariant &value) {
+    const QStringList list = value.toStringList().mid(0, 2 * mostRobots);
+    QMap<QString, QString> pairs;
+    for (int i = 0; i + 1 < list.size(); i += 2)
+        pairs[list[i]] = list[i + 1];
+    return pairs;
+}
+
 QByteArray checkOf(const Layouts::Layout &layout) {
     QCryptographicHash hash(QCryptographicHash::Sha256);
     hash.addData(layout.geometry);
@@ -87,9 +103,10 @@ void Layouts::read() {
         return refuse(tr("is damaged. It is left as it is"));
     readLayouts(file);
     robots_.addresses = file.value("robots/addresses").toStringList().mid(0, mostRobots);
-    const QStringList names = file.value("robots/names").toStringList().mid(0, 2 * mostRobots);
-    for (int i = 0; i + 1 < names.size(); i += 2)
-        robots_.names[names[i]] = nameOf(names[i + 1]);
+    robots_.names = pairsIn(file.value("robots/names"));
+    for (QString &name : robots_.names)
+        name = nameOf(name);
+    robots_.places = pairsIn(file.value("robots/places"));
     robots_.chosen = file.value("robots/chosen").toString();
     file.beginGroup("kept");
     for (const QString &key : file.allKeys())
@@ -187,11 +204,9 @@ Result<void> Layouts::save() const {
     }
     file.endArray();
     file.setValue("window/layout", current_);
-    QStringList names;
-    for (auto one = robots_.names.begin(); one != robots_.names.end(); ++one)
-        names << one.key() << one.value();
     file.setValue("robots/addresses", robots_.addresses);
-    file.setValue("robots/names", names);
+    file.setValue("robots/names", listOf(robots_.names));
+    file.setValue("robots/places", listOf(robots_.places));
     file.setValue("robots/chosen", robots_.chosen);
     for (auto one = values_.begin(); one != values_.end(); ++one)
         file.setValue("kept/" + one.key(), one.value());

@@ -81,6 +81,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     showLayout();
     tellOfKeeping(layouts_.problem() + layouts_.damage());
     fleet.setNames(layouts_.robots().names);
+    fleet.setPlaces(layouts_.robots().places);
     fleet.wish(layouts_.robots().chosen);
     connect(&fleet, &Fleet::changed, this, &MainWindow::keepRobots);
     connect(&fleet, &Fleet::robotChosen, this, &MainWindow::keepRobots);
@@ -243,7 +244,7 @@ void MainWindow::keepLayout() {
 
 /// As soon as they change: the window may not be closed in order.
 void MainWindow::keepRobots() {
-    const Layouts::Robots robots{fleet_.addresses(), fleet_.names(), fleet_.chosenAddress()};
+    const Layouts::Robots robots{fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()};
     if (robots == layouts_.robots())
         return;
     layouts_.setRobots(robots);

@@ -31,6 +31,7 @@ public:
     explicit DaemonLink(const QString &address, QObject *parent = nullptr);
 
     const QString &address() const { return address_; }
+    QString host() const { return address_.section(':', 0, -2); }
     quint16 port() const { return address_.section(':', -1).toUShort(); }
     /// The same for two links that lead to one process; empty: not known.
     QString identity() const;

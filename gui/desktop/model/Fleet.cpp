@@ -4,6 +4,7 @@
 #include "common/interface/InterfaceUrl.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
+#include <QRegularExpression>
 #include <algorithm>
 
 namespace hermes::desktop {
@@ -42,7 +43,7 @@ Result<void> Fleet::add(const QString &address) {
     if (hasPort) {
         entryAt({host, url->port}).isAdded = true;
     } else {
-        setOf(host);
+        setAt(host, host);
         for (const QString &daemon : daemonNames())
             entryAt({host, defaultPort(daemon)}).isSought = true;
     }
@@ -64,7 +65,7 @@ void Fleet::onReady(const Place &place) {
     Entry &entry = entries_.at(place);
     if (entry.led || !entry.link->hasMethod("process.list"))
         return tellConflicts();
-    entry.led = makeRobot(place.first, entry.link.get());
+    entry.led = makeRobot(place.first, entry.link->address(), entry.link.get());
     connect(entry.led, &Robot::namedChanged, this, [this] { distribute(); });
     distribute();
 }
@@ -75,8 +76,8 @@ void Fleet::onChanged(const Place &place) {
         distribute();
 }
 
-Robot *Fleet::makeRobot(const QString &host, DaemonLink *supervisor) {
-    robots_.push_back(std::make_unique<Robot>(host, supervisor));
+Robot *Fleet::makeRobot(const QString &host, const QString &address, DaemonLink *supervisor) {
+    robots_.push_back(std::make_unique<Robot>(host, address, supervisor));
     Robot *const robot = robots_.back().get();
     connect(robot, &Robot::changed, this, &Fleet::touch);
     robot->setGivenName(names_.value(robot->address()));
@@ -126,10 +127,12 @@ void Fleet::rename(Robot &robot, const QString &name) {
 }
 
 void Fleet::wish(const QString &address) {
-    const auto leadsThere = [&address](const QString &added) {
-        return address == added || address.startsWith(added + ':');
+    const auto hostIn = [](const QString &one) {
+        return one.section('#', 0, 0).section(QRegularExpression(":\\d+$"), 0, 0);
     };
-    if (isMeant_ || (!addresses_.isEmpty() && std::none_of(addresses_.begin(), addresses_.end(), leadsThere)))
+    const auto leadsThere = [&](const QString &added) { return hostIn(added) == hostIn(address); };
+    if (isMeant_ || address.isEmpty() ||
+        (!addresses_.isEmpty() && std::none_of(addresses_.begin(), addresses_.end(), leadsThere)))
         return;
     wish_ = address;
     distribute();

@@ -33,6 +33,12 @@ public:
     const std::vector<std::unique_ptr<Robot>> &robots() const { return robots_; }
     /// Whose daemon it is; null: nobody's.
     Robot *robotOf(const DaemonLink *daemon) const;
+    /// Puts a daemon that no supervisor names to another robot of its host that has none; null: to one of its
+    /// own. It stays there.
+    void place(DaemonLink *daemon, Robot *robot);
+    /// Addresses of daemons, and of the robots that they were put to.
+    const QMap<QString, QString> &places() const { return places_; }
+    void setPlaces(const QMap<QString, QString> &places);
     /// Null: none has that address.
     Robot *robotAt(const QString &address) const;
     /// Its name, and where another has the same its address too.
@@ -51,7 +57,7 @@ public:
     void choose(Robot *robot);
     void choose(DaemonLink *daemon);
     /// Chooses the robot of this address as soon as it is there, unless the operator has chosen before, or
-    /// nothing was added that may lead to it.
+    /// nothing of its host was added.
     void wish(const QString &address);
     /// What will be chosen, or is.
     QString chosenAddress() const;
@@ -92,11 +98,11 @@ private:
     Entry &entryAt(const Place &place);
     void onReady(const Place &place);
     void onChanged(const Place &place);
-    Robot *makeRobot(const QString &host, DaemonLink *supervisor);
+    Robot *makeRobot(const QString &host, const QString &address, DaemonLink *supervisor);
 
     void makeNamed();
     Robot *namerOf(const Place &place, const Entry &entry) const;
-    Robot *setOf(const QString &host);
+    Robot *setAt(const QString &host, const QString &address);
     std::vector<Move> reassign();
     Robots takeEmpty();
     /// Puts all daemons to their robots, and tells who has moved; removed: by the operator, or null.
@@ -113,7 +119,7 @@ private:
     QTimer changes_; // many that come together are told once
     std::map<Place, Entry> entries_;
     Robots robots_;
-    QMap<QString, QString> names_;
+    QMap<QString, QString> names_, places_;
     mutable QHash<QString, int> namesakes_; ///< how many robots have a name; empty: to be counted anew
     Objection objection_;
     Robot *robot_ = nullptr;

@@ -12,11 +12,31 @@ constexpr int mostConflicts = 5;           // that are told one by one
 
 } // namespace
 
-Robot *Fleet::setOf(const QString &host) {
-    for (const auto &robot : robots_)
-        if (!robot->isSupervised() && robot->host() == host)
-            return robot.get();
-    return makeRobot(host, nullptr);
+Robot *Fleet::setAt(const QString &host, const QString &address) {
+    Robot *const robot = robotAt(address);
+    return robot ? robot : makeRobot(host, address, nullptr);
+}
+
+void Fleet::place(DaemonLink *daemon, Robot *robot) {
+    const QString host = daemon->host();
+    QString address = robot ? robot->address() : QString();
+    for (int number = 2; address.isEmpty(); ++number)
+        if (const QString free = QString("%1#%2").arg(host).arg(number); !robotAt(free))
+            address = free;
+    if (address == host)
+        places_.remove(daemon->address());
+    else
+        places_[daemon->address()] = address;
+    distribute();
+}
+
+void Fleet::setPlaces(const QMap<QString, QString> &places) {
+    for (auto one = places.begin(); one != places.end(); ++one) {
+        const QString host = one.key().section(':', 0, -2), number = one.value().section('#', 1);
+        if (number.toInt() > 1 && one.value() == QString("%1#%2").arg(host).arg(number.toInt()))
+            places_[one.key()] = one.value();
+    }
+    distribute();
 }
 
 // Who has it keeps it for as long as it is named. Null: nobody names it.
@@ -51,7 +71,7 @@ std::vector<Fleet::Move> Fleet::reassign() {
     for (auto &[place, entry] : entries_) {
         Robot *to = namerOf(place, entry);
         if (!to && entry.isOfHost())
-            to = setOf(place.first);
+            to = setAt(place.first, places_.value(entry.link->address(), place.first));
         Robot *const from = std::exchange(entry.robot, to);
         if (from == to)
             continue;
@@ -65,15 +85,15 @@ std::vector<Fleet::Move> Fleet::reassign() {
     return moves;
 }
 
-// A host on which nothing was found is shown, unless a supervisor there stands for it.
+// A host on which nothing was found is shown, unless another robot there stands for it.
 std::vector<std::unique_ptr<Robot>> Fleet::takeEmpty() {
     std::vector<std::unique_ptr<Robot>> gone;
     const auto isOver = [this](const std::unique_ptr<Robot> &robot) {
         const auto standsForIt = [&robot](const std::unique_ptr<Robot> &other) {
-            return other && other->isSupervised() && other->host() == robot->host();
+            return other && other->host() == robot->host() && !other->daemons().empty();
         };
         return !robot->isSupervised() && robot->daemons().empty() &&
-               (!addresses_.contains(robot->host()) ||
+               (robot->address() != robot->host() || !addresses_.contains(robot->host()) ||
                 std::any_of(robots_.begin(), robots_.end(), standsForIt));
     };
     for (auto &robot : robots_)
@@ -140,6 +160,14 @@ void Fleet::tellConflicts() {
     }
     for (const auto &robot : robots_) {
         QStringList &lines = conflicts[robot.get()];
+        const auto daemons = robot->daemons();
+        const auto drivable = std::count_if(daemons.begin(), daemons.end(), [](const DaemonLink *daemon) {
+            return daemon->hasMethod("motor.drive");
+        });
+        if (drivable > 1)
+            lines.prepend(
+                tr("%1 of its daemons can be driven, of which one is: make them robots of their own")
+                    .arg(drivable));
         const int more = lines.size() - mostConflicts;
         lines = lines.mid(0, mostConflicts);
         if (more > 0)

@@ -13,10 +13,10 @@ constexpr std::size_t mostProcesses = 100; // of one supervisor
 
 } // namespace
 
-Robot::Robot(const QString &host, DaemonLink *supervisor, QObject *parent)
+Robot::Robot(const QString &host, const QString &address, DaemonLink *supervisor, QObject *parent)
     : QObject(parent)
     , host_(host)
-    , address_(supervisor ? supervisor->address() : host)
+    , address_(address)
     , isSupervised_(supervisor)
     , supervisor_(supervisor) {
     if (supervisor)
@@ -30,7 +30,10 @@ Robot::~Robot() {
 }
 
 QString Robot::name() const {
-    return !givenName_.isEmpty() ? givenName_ : !toldName_.isEmpty() ? toldName_ : host_;
+    return !givenName_.isEmpty()  ? givenName_
+           : !toldName_.isEmpty() ? toldName_
+           : isSupervised_        ? host_
+                                  : address_;
 }
 
 void Robot::setGivenName(const QString &name) {

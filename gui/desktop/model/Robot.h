@@ -16,13 +16,14 @@ class Robot : public QObject {
     Q_OBJECT
 public:
     /// supervisor: null for the daemons that none names.
-    Robot(const QString &host, DaemonLink *supervisor, QObject *parent = nullptr);
+    Robot(const QString &host, const QString &address, DaemonLink *supervisor, QObject *parent = nullptr);
     ~Robot() override;
 
     const QString &host() const { return host_; }
-    /// What tells it from all others: "HOST:PORT" of its supervisor, or "HOST".
+    /// What tells it from all others: "HOST:PORT" of its supervisor, or "HOST", or "HOST#2" and so on for
+    /// those that the operator has taken out of that.
     const QString &address() const { return address_; }
-    /// What the operator calls it, else its supervisor, else the host.
+    /// What the operator calls it, else its supervisor, else its host.
     QString name() const;
     void setGivenName(const QString &name);
 

@@ -37,6 +37,14 @@ QString usage(const ProcessStatus *process) {
         .arg(process->restarts);
 }
 
+DaemonLink *daemonIn(const QTreeWidgetItem &row) {
+    return qobject_cast<DaemonLink *>(row.data(NameColumn, Qt::UserRole).value<QObject *>());
+}
+
+QString escaped(QString text) {
+    return text.replace('&', "&&");
+}
+
 } // namespace
 
 DaemonTree::DaemonTree(Fleet &fleet, QWidget *parent)
@@ -183,7 +191,7 @@ void DaemonTree::choose() {
         return;
     Q_EMIT clickedAt();
     if (item->parent())
-        fleet_.choose(qobject_cast<DaemonLink *>(item->data(NameColumn, Qt::UserRole).value<QObject *>()));
+        fleet_.choose(daemonIn(*item));
     else if (Robot *const robot = robotOf(item))
         fleet_.choose(robot);
 }
@@ -196,33 +204,57 @@ Robot *DaemonTree::robotOf(const QTreeWidgetItem *item) const {
 }
 
 void DaemonTree::showMenu(const QPoint &place) {
-    QTreeWidgetItem *item = itemAt(place);
+    QTreeWidgetItem *item = itemAt(place), *daemon = nullptr;
     while (item && item->parent())
-        item = item->parent();
+        item = (daemon = item)->parent();
     Robot *const robot = robotOf(item);
     if (!robot)
         return;
     auto *const menu = new QMenu(this);
     menu->setObjectName("robotMenu");
     menu->setAttribute(Qt::WA_DeleteOnClose);
-    const auto add = [&](const QString &text, const char *name, const auto &work) {
-        QAction *const action = menu->addAction(text);
-        action->setObjectName(name);
-        connect(action, &QAction::triggered, this, [this, item, robot, work] {
-            if (robotOf(item) == robot)
-                work();
-        });
-    };
-    const QString title = fleet_.titleOf(*robot).replace('&', "&&");
-    add(tr("Re&name %1").arg(title), "renameRobot", [this, menu, item, robot] {
-        connect(menu, &QObject::destroyed, this, [this, item, robot] { // the focus is back then
-            if (robotOf(item) == robot)
-                rename(item);
+    if (daemon && !robot->isSupervised())
+        addPlaces(*menu, *robot, daemonIn(*daemon));
+    const QString title = escaped(fleet_.titleOf(*robot));
+    const QPointer<Robot> still(robot);
+    add(*menu, tr("Re&name %1").arg(title), "renameRobot", [this, menu, still] {
+        connect(menu, &QObject::destroyed, this, [this, still] { // the focus is back then
+            if (still && items_.contains(still))
+                rename(items_[still]);
         });
     });
-    add(tr("&Remove %1 from this window").arg(title), "removeRobot",
-        [this, robot] { Q_EMIT removalAsked(robot); });
+    add(*menu, tr("&Remove %1 from this window").arg(title), "removeRobot", [this, still] {
+        if (still && fleet_.robotAt(still->address()) == still)
+            Q_EMIT removalAsked(still);
+    });
     menu->popup(viewport()->mapToGlobal(place));
+}
+
+/// Of what no supervisor names nobody but the operator knows which robot it is of.
+void DaemonTree::addPlaces(QMenu &menu, const Robot &robot, DaemonLink *daemon) {
+    const QString name = escaped(daemon->name());
+    const auto put = [this, &menu, link = QPointer<DaemonLink>(daemon)](const QString &text,
+                                                                        const QString &address) {
+        add(menu, text, "putTo " + address, [this, link, address] {
+            Robot *const to = fleet_.robotAt(address);
+            if (link && (to || address.isEmpty()))
+                fleet_.place(link, to);
+        });
+    };
+    if (robot.daemons().size() > 1)
+        put(tr("Make %1 a robot of its &own").arg(name), {});
+    for (const auto &other : fleet_.robots())
+        if (other.get() != &robot && !other->isSupervised() && other->host() == robot.host())
+            put(tr("Put %1 to the robot %2").arg(name, escaped(fleet_.titleOf(*other))), other->address());
+    if (!menu.isEmpty())
+        menu.addSeparator();
+}
+
+void DaemonTree::add(QMenu &menu, const QString &text, const QString &name,
+                     const std::function<void()> &work) {
+    QAction *const action = menu.addAction(text);
+    action->setObjectName(name);
+    connect(action, &QAction::triggered, this, work);
 }
 
 void DaemonTree::rename(QTreeWidgetItem *item) {

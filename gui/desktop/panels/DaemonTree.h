@@ -4,11 +4,12 @@
 
 #include <QHash>
 #include <QTreeWidget>
+#include <functional>
 
 namespace hermes::desktop {
 
 /// The robots, their daemons and what these say of their health. What the operator clicks at is chosen; a
-/// robot is named and removed by its context menu.
+/// robot is named and removed by its context menu, a daemon put to another robot by its own.
 class DaemonTree : public QTreeWidget {
     Q_OBJECT
 public:
@@ -30,6 +31,8 @@ private:
     void showChoice();
     void choose();
     void showMenu(const QPoint &place);
+    void addPlaces(QMenu &menu, const Robot &robot, DaemonLink *daemon);
+    void add(QMenu &menu, const QString &text, const QString &name, const std::function<void()> &work);
     void rename(QTreeWidgetItem *item);
     Robot *robotOf(const QTreeWidgetItem *item) const;
 

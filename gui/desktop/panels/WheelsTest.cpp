@@ -59,6 +59,7 @@ WheelsTest::WheelsTest(Fleet &fleet, QWidget *parent)
     connect(test_, &QPushButton::clicked, this, [this] { isUnderWay() ? giveUp(tr("given up")) : begin(); });
     connect(next_, &QPushButton::clicked, this, &WheelsTest::onSeen);
     connect(&fleet, &Fleet::changed, this, &WheelsTest::updateButtons);
+    connect(&fleet, &Fleet::moved, lifted_, [this] { lifted_->setChecked(false); });
     connect(&fleet, &Fleet::robotChosen, this, [this] {
         lifted_->setChecked(false);
         message_->hide();

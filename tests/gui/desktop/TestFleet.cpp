@@ -22,6 +22,7 @@ private Q_SLOTS:
     void oneProcessAtTwoAddressesIsTold();
     void robotsOfOneNameAreToldApart();
     void givenNames();
+    void putToARobotOfItsOwn();
     void removedAndBroughtBack();
     void removedWhileAnotherNamesItsDaemon();
     void removedFromAHostThatWasSearched();
@@ -251,6 +252,49 @@ void TestFleet::givenNames() {
     fleet.rename(*fleet.robot(), " ");
     QTRY_COMPARE(namesOf(fleet), QStringList("rover"));
     QVERIFY(fleet.names().isEmpty());
+}
+
+void TestFleet::putToARobotOfItsOwn() {
+    const FakeDaemon one(plain()), other(plain()), third(plain());
+    QMap<QString, QString> places;
+    {
+        Fleet fleet;
+        for (const FakeDaemon *daemon : {&one, &other, &third})
+            QVERIFY(fleet.add(addressOf(*daemon)));
+        const auto link = [&](const FakeDaemon &daemon) {
+            for (const auto &robot : fleet.robots())
+                for (DaemonLink *found : robot->daemons())
+                    if (found->address() == addressOf(daemon))
+                        return found;
+            return static_cast<DaemonLink *>(nullptr);
+        };
+        fleet.choose(link(other));
+        QSignalSpy moved(&fleet, &Fleet::moved);
+        fleet.place(link(other), nullptr);
+        QCOMPARE(moved.count(), 1);
+        QCOMPARE(ownerOf(fleet, other), QString("127.0.0.1#2"));
+        QCOMPARE(fleet.robot()->name(), QString("127.0.0.1")); // as it was
+        QVERIFY(!fleet.daemon());
+        fleet.place(link(third), fleet.robotAt("127.0.0.1#2"));
+        fleet.place(link(one), nullptr);
+        QCOMPARE(namesOf(fleet), QStringList({"127.0.0.1#2", "127.0.0.1#3"}));
+        places = fleet.places();
+        fleet.place(link(one), fleet.robotAt("127.0.0.1#2"));
+        QCOMPARE(namesOf(fleet), QStringList("127.0.0.1#2"));
+    }
+    Fleet next;
+    QVERIFY(next.add(addressOf(one)));
+    places["127.0.0.1:1"] = "127.0.0.1:7"; // nonsense
+    places["x"] = "10.0.0.1#2";
+    next.setPlaces(places);
+    for (const FakeDaemon *daemon : {&other, &third})
+        QVERIFY(next.add(addressOf(*daemon)));
+    QVERIFY(next.add("127.0.0.1:1"));
+    QCOMPARE(namesOf(next), QStringList({"127.0.0.1", "127.0.0.1#2", "127.0.0.1#3"}));
+    QCOMPARE(ownerOf(next, third), QString("127.0.0.1#2"));
+    const FakeDaemon rover(supervisor("rover", {third.port()}));
+    QVERIFY(next.add(addressOf(rover)));
+    QTRY_COMPARE(ownerOf(next, third), QString("rover")); // who names it knows better
 }
 
 void TestFleet::removedAndBroughtBack() {

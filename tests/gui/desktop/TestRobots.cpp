@@ -26,6 +26,7 @@ private Q_SLOTS:
     void whoIsDrivenOrStoppedIsNotRemoved();
     void removedAndBroughtBackByHand();
     void renamedByHand();
+    void partedByHand();
 
 private:
     /// One of the robots, with an independent eye on its motors.
@@ -75,7 +76,15 @@ private:
                 return tree->topLevelItem(i);
         return nullptr;
     }
-    void fromMenu(const One &one, const QString &name);
+    DaemonLink *motorLinkOf(const One &one) const {
+        for (const auto &robot : open_->fleet.robots())
+            for (DaemonLink *link : robot->daemons())
+                if (link->address() == motorsOf(one))
+                    return link;
+        return nullptr;
+    }
+    /// Chooses from the menu of a row.
+    void fromMenu(QTreeWidgetItem *row, const QString &name);
 
     std::unique_ptr<One> red_, blue_;
     std::unique_ptr<OpenWindow> open_;
@@ -114,10 +123,10 @@ void TestRobots::openBoth() {
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
 }
 
-void TestRobots::fromMenu(const One &one, const QString &name) {
+void TestRobots::fromMenu(QTreeWidgetItem *row, const QString &name) {
     auto *const tree = find<QTreeWidget>("tree");
-    QTRY_VERIFY(rowOf(one));
-    Q_EMIT tree->customContextMenuRequested(tree->visualItemRect(rowOf(one)).center());
+    QVERIFY(row);
+    Q_EMIT tree->customContextMenuRequested(tree->visualItemRect(row).center());
     auto *const menu = tree->findChild<QMenu *>("robotMenu");
     QTRY_VERIFY(menu && menu->isVisible());
     auto *const action = menu->findChild<QAction *>(name);
@@ -284,7 +293,8 @@ void TestRobots::whoIsDrivenOrStoppedIsNotRemoved() {
 void TestRobots::removedAndBroughtBackByHand() {
     openBoth();
     auto *const panel = open_->panel<DaemonsPanel>("daemons");
-    fromMenu(*blue_, "removeRobot");
+    QTRY_VERIFY(rowOf(*blue_));
+    fromMenu(rowOf(*blue_), "removeRobot");
     QTRY_COMPARE(int(open_->fleet.robots().size()), 1);
     QTRY_VERIFY(!rowOf(*blue_));
     QCOMPARE(open_->fleet.robot(), robot(*red_));
@@ -300,7 +310,8 @@ void TestRobots::renamedByHand() {
     openBoth();
     open_->panel<DaemonsPanel>("daemons");
     auto *const tree = find<QTreeWidget>("tree");
-    fromMenu(*blue_, "renameRobot");
+    QTRY_VERIFY(rowOf(*blue_));
+    fromMenu(rowOf(*blue_), "renameRobot");
     QTRY_VERIFY(tree->findChild<QLineEdit *>());
     QTest::qWait(100); // daemons tell of themselves meanwhile
     auto *const editor = tree->findChild<QLineEdit *>();
@@ -315,6 +326,30 @@ void TestRobots::renamedByHand() {
     QTRY_COMPARE(find<QComboBox>("robots")->itemText(1), QString("north pole"));
     QCOMPARE(speed(*red_) + speed(*blue_), 0.0); // the letters drove nobody
     QVERIFY(!isStopped(*red_) && !isStopped(*blue_));
+}
+
+// Without supervisors.
+void TestRobots::partedByHand() {
+    QVERIFY(open_->fleet.add(motorsOf(*red_)));
+    QVERIFY(open_->fleet.add(motorsOf(*blue_)));
+    QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robot()->allWithMethod("motor.drive").size()), 2, 10000);
+    QTRY_VERIFY(open_->fleet.robot()->problem().startsWith("2 of its daemons can be driven"));
+    open_->panel<DaemonsPanel>("daemons");
+    QTRY_VERIFY(open_->row(motorLinkOf(*blue_)));
+    fromMenu(open_->row(motorLinkOf(*blue_)), "putTo ");
+    QTRY_COMPARE(find<QComboBox>("robots")->count(), 2);
+    Robot *const blue = open_->fleet.robotOf(motorLinkOf(*blue_));
+    QVERIFY(blue != open_->fleet.robotOf(motorLinkOf(*red_)));
+    QCOMPARE(blue->problem(), QString());
+    open_->fleet.choose(blue);
+    QTRY_VERIFY(open_->drive.isPossible());
+    QTest::keyPress(&open_->window, Qt::Key_W);
+    QTRY_VERIFY(speed(*blue_) > 0.2);
+    QCOMPARE(speed(*red_), 0.0);
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+    pressStop();
+    QTRY_VERIFY(open_->drive.stopping().phase() == StopPhase::Confirmed);
+    QVERIFY(isStopped(*blue_) && !isStopped(*red_));
 }
 
 QTEST_MAIN(TestRobots)
