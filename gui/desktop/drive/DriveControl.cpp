@@ -32,8 +32,10 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     });
     connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
     connect(&fleet, &Fleet::robotChosen, this, &DriveControl::follow);
-    connect(&fleet, &Fleet::moved, this,
-            [this](const DaemonLink *daemon, const Robot *, const Robot *to) { onMoved(daemon, to); });
+    connect(&fleet, &Fleet::moved, this, [this](const DaemonLink *daemon, const Robot *from, Robot *to) {
+        if (from == fleet_.robot())
+            onMoved(daemon, to);
+    });
     fleet.setObjection([guard = QPointer<DriveControl>(this)](const Robot &robot) {
         return guard ? guard->objection(robot) : QString();
     });
@@ -81,12 +83,14 @@ void DriveControl::follow() {
     poll();
 }
 
-// It is another robot's now: nobody has said that this one is to be driven.
-void DriveControl::onMoved(const DaemonLink *daemon, const Robot *to) {
-    if (daemon != motors_)
+// It is another robot's now: nobody has said that this one is to be driven. It is the chosen one then:
+// whoever drives on is to move the same wheels as before, and not those of who is left.
+void DriveControl::onMoved(const DaemonLink *daemon, Robot *to) {
+    if (daemon != driven_)
         return;
     const bool wasDriving = isDriving_;
     halt();
+    fleet_.goAlong(to);
     if (wasDriving)
         tell(tr("The drive has ended: %1 belongs to the robot %2 now.")
                  .arg(daemon->name(), fleet_.titleOf(*to)));

@@ -78,7 +78,7 @@ private:
 
     DaemonLink *motors() const;
     void follow();
-    void onMoved(const DaemonLink *daemon, const Robot *to);
+    void onMoved(const DaemonLink *daemon, Robot *to);
     /// Why the robot may not be removed now; empty: it may.
     QString objection(const Robot &robot) const;
     void tick();

@@ -145,7 +145,7 @@ QString Fleet::chosenAddress() const {
 void Fleet::choose(Robot *robot) {
     keepChoice();
     if (robot_ != robot)
-        setChosen(robot, lastDaemon_[robot]);
+        setChosen(robot, lastDaemonOf(robot));
 }
 
 void Fleet::choose(DaemonLink *daemon) {
@@ -154,17 +154,27 @@ void Fleet::choose(DaemonLink *daemon) {
     setChosen(robot ? robot : robot_, daemon);
 }
 
+void Fleet::goAlong(Robot *robot) {
+    if (wish_.isEmpty())
+        setChosen(robot, robotOf(daemon_) == robot ? daemon_.data() : lastDaemonOf(robot));
+}
+
 void Fleet::keepChoice() {
     isMeant_ = isMeant_ || robot_;
     if (isMeant_)
         wish_.clear();
 }
 
+DaemonLink *Fleet::lastDaemonOf(const Robot *robot) const {
+    const auto last = lastDaemons_.find(robot);
+    return last != lastDaemons_.end() && robot && robot->has(last->second) ? last->second.data() : nullptr;
+}
+
 void Fleet::setChosen(Robot *robot, DaemonLink *daemon) {
     const bool isOther = std::exchange(robot_, robot) != robot;
     const bool isOtherDaemon = daemon_ != daemon;
     daemon_ = daemon;
-    lastDaemon_[robot] = daemon;
+    lastDaemons_[robot] = daemon;
     if (isOther)
         Q_EMIT robotChosen(robot);
     if (isOtherDaemon)

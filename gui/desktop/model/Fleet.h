@@ -61,8 +61,11 @@ public:
     void wish(const QString &address);
     /// What will be chosen, or is.
     QString chosenAddress() const;
+    /// Chooses it for what has become of the chosen one, unless another is wished for.
+    void goAlong(Robot *robot);
     /// Whatever is chosen is meant from now on, even if nobody has chosen it.
     void keepChoice();
+    bool isChoiceMeant() const { return isMeant_; }
 
 Q_SIGNALS:
     /// Robots or daemons came or went, or the condition of one changed.
@@ -112,7 +115,9 @@ private:
 
     Robot *heirOf(const Robot &gone, const std::vector<Move> &moves) const;
     void followChoice(const std::vector<Move> &moves, const Robots &gone);
+    /// daemon: none of another robot.
     void setChosen(Robot *robot, DaemonLink *daemon);
+    DaemonLink *lastDaemonOf(const Robot *robot) const;
     void touch();
 
     QStringList addresses_;
@@ -124,7 +129,7 @@ private:
     Objection objection_;
     Robot *robot_ = nullptr;
     QPointer<DaemonLink> daemon_;
-    std::map<const Robot *, QPointer<DaemonLink>> lastDaemon_; ///< chosen of each robot
+    std::map<const Robot *, QPointer<DaemonLink>> lastDaemons_; ///< chosen of each robot
     QString wish_;
     bool isMeant_ = false;
 };

@@ -233,7 +233,7 @@ Robot *Fleet::heirOf(const Robot &gone, const std::vector<Move> &moves) const {
 void Fleet::followChoice(const std::vector<Move> &moves, const Robots &gone) {
     Robot *next = robot_;
     for (const auto &robot : gone) {
-        lastDaemon_.erase(robot.get());
+        lastDaemons_.erase(robot.get());
         if (robot.get() == robot_)
             next = heirOf(*robot, moves);
     }
@@ -247,8 +247,7 @@ void Fleet::followChoice(const std::vector<Move> &moves, const Robots &gone) {
     }
     if (!next && !robots_.empty())
         next = robots_.front().get();
-    DaemonLink *const daemon = robotOf(daemon_) == next ? daemon_.data() : lastDaemon_[next].data();
-    setChosen(next, robotOf(daemon) == next ? daemon : nullptr);
+    setChosen(next, next && next->has(daemon_) ? daemon_.data() : lastDaemonOf(next));
 }
 
 } // namespace hermes::desktop

@@ -70,7 +70,7 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     connect(&fleet, &Fleet::robotChosen, this, &DaemonsPanel::updateButtons);
     connect(&fleet, &Fleet::daemonChosen, this, &DaemonsPanel::updateButtons);
     connect(&fleet, &Fleet::moved, this, [this](const DaemonLink *daemon, const Robot *, const Robot *to) {
-        if (to->supervisor() != daemon)
+        if (fleet_.isChoiceMeant() && to->supervisor() != daemon) // at the start all find their places
             message_->tell(tr("%1 belongs to the robot %2 now").arg(daemon->name(), fleet_.titleOf(*to)));
     });
     update();

@@ -177,6 +177,12 @@ void TestFleet::whatIsChosenStaysChosen() {
     QVERIFY(!fleet.daemon());
     fleet.choose(fleet.robotAt(addressOf(rover)));
     QVERIFY(fleet.daemon() == chosen); // as it was when that robot was chosen last
+    fleet.choose(host);
+    rover.say("processes", list("rover", {}));
+    QTRY_COMPARE(ownerOf(fleet, motors), QString("127.0.0.1"));
+    fleet.choose(fleet.robotAt(addressOf(rover)));
+    QVERIFY(!fleet.daemon()); // which is another robot's now
+    fleet.choose(host);
     rover.say("processes", list("rover", {motors.port(), stranger.port()}));
     QTRY_COMPARE(int(fleet.robots().size()), 1); // nobody is left there
     QCOMPARE(fleet.robot()->name(), QString("rover"));

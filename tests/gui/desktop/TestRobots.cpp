@@ -21,6 +21,7 @@ private Q_SLOTS:
     void panelsShowTheChosenOne();
     void aSupervisorThatDiesLosesNobody();
     void aDriveEndsWhenItsDaemonMoves();
+    void theSameWheelsAreDrivenAfterTheMove();
     void aStopSurvivesTheMove();
     void aStopForNobodyGoesToWhoIsFound();
     void whoIsDrivenOrStoppedIsNotRemoved();
@@ -37,6 +38,13 @@ private:
     };
 
     void openBoth();
+    /// Of the robot of their host; those of red are the ones that are driven.
+    void addBothMotors() {
+        QVERIFY(open_->fleet.add(motorsOf(*red_)));
+        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+        QVERIFY(open_->fleet.add(motorsOf(*blue_)));
+        QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robot()->allWithMethod("motor.estop").size()), 2, 10000);
+    }
     void addSupervisor(One &one) {
         one.supervisor = QString("127.0.0.1:%1").arg(one.processes.supervise(one.name));
         QVERIFY(open_->fleet.add(one.supervisor));
@@ -222,21 +230,33 @@ void TestRobots::aDriveEndsWhenItsDaemonMoves() {
     QTest::keyRelease(&open_->window, Qt::Key_W);
 }
 
+void TestRobots::theSameWheelsAreDrivenAfterTheMove() {
+    addBothMotors();
+    addSupervisor(*blue_); // who is not driven
+    QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withName("motorcontrol"), 20000);
+    QCOMPARE(open_->fleet.robot()->address(), QString("127.0.0.1"));
+    QTest::keyPress(&open_->window, Qt::Key_W);
+    QTRY_VERIFY(speed(*red_) > 0.2);
+    open_->fleet.place(motorLinkOf(*red_), nullptr);
+    QTRY_VERIFY(speed(*red_) < 0.01);
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+    QTest::keyPress(&open_->window, Qt::Key_W);
+    QTRY_VERIFY(speed(*red_) > 0.2);
+    QCOMPARE(speed(*blue_), 0.0);
+    QTest::keyRelease(&open_->window, Qt::Key_W);
+}
+
 void TestRobots::aStopSurvivesTheMove() {
-    QVERIFY(open_->fleet.add(motorsOf(*red_)));
-    QVERIFY(open_->fleet.add(motorsOf(*blue_)));
-    QTRY_COMPARE_WITH_TIMEOUT(int(open_->fleet.robot()->allWithMethod("motor.estop").size()), 2, 10000);
-    Robot *const host = open_->fleet.robot();
+    addBothMotors();
     red_->processes.signal("motorcontrol", SIGSTOP);
     pressStop();
     QTRY_VERIFY(isStopped(*blue_)); // it is of the same set
     addSupervisor(*red_);
     QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && open_->fleet.robotOf(robot(*red_)->withName("motorcontrol")),
                              20000);
-    QCOMPARE(open_->fleet.robot(), host); // of which the other is
+    QCOMPARE(open_->fleet.robot(), robot(*red_)); // who would be driven
     QTRY_VERIFY(open_->drive.stopping().isLate());
     QTRY_VERIFY2(banner().contains("motorcontrol of red"), qPrintable(banner()));
-    choose(*red_);
     QVERIFY(open_->drive.isStopped());
     OpenWindow::click(&open_->window, "release"); // of a robot that does not answer: it is not lost
     QTest::qWait(300);
