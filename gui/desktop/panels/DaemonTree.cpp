@@ -3,6 +3,7 @@
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
+#include <QContextMenuEvent>
 #include <QHeaderView>
 #include <QMenu>
 
@@ -57,8 +58,6 @@ DaemonTree::DaemonTree(Fleet &fleet, QWidget *parent)
     header()->setStretchLastSection(false);
     setUniformRowHeights(true);
     setEditTriggers(QAbstractItemView::NoEditTriggers); // but from the menu
-    setContextMenuPolicy(Qt::CustomContextMenu);
-    connect(this, &QWidget::customContextMenuRequested, this, &DaemonTree::showMenu);
     connect(this, &QTreeWidget::currentItemChanged, this, &DaemonTree::choose);
     connect(this, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem *item) {
         if (Robot *const robot = isUpdating_ ? nullptr : robotOf(item))
@@ -203,8 +202,21 @@ Robot *DaemonTree::robotOf(const QTreeWidgetItem *item) const {
     return nullptr;
 }
 
-void DaemonTree::showMenu(const QPoint &place) {
-    QTreeWidgetItem *item = itemAt(place), *daemon = nullptr;
+void DaemonTree::contextMenuEvent(QContextMenuEvent *event) {
+    const bool isKey = event->reason() == QContextMenuEvent::Keyboard;
+    QTreeWidgetItem *const item = isKey ? currentItem() : itemAt(event->pos());
+    if (item)
+        showMenu(item, isKey ? visualItemRect(item).center() : event->pos());
+}
+
+/// To look into a menu is not to choose.
+void DaemonTree::mousePressEvent(QMouseEvent *event) {
+    if (event->button() != Qt::RightButton)
+        QTreeWidget::mousePressEvent(event);
+}
+
+void DaemonTree::showMenu(QTreeWidgetItem *item, const QPoint &place) {
+    QTreeWidgetItem *daemon = nullptr;
     while (item && item->parent())
         item = (daemon = item)->parent();
     Robot *const robot = robotOf(item);

@@ -21,6 +21,10 @@ Q_SIGNALS:
     /// The operator wants to be rid of it.
     void removalAsked(hermes::desktop::Robot *robot);
 
+protected:
+    void contextMenuEvent(QContextMenuEvent *event) override;
+    void mousePressEvent(QMouseEvent *event) override;
+
 private:
     QTreeWidgetItem *rowOf(const void *shown, QTreeWidgetItem *parent, int row);
     void update();
@@ -30,7 +34,7 @@ private:
     void showHealth(QTreeWidgetItem &item, const DaemonLink &daemon);
     void showChoice();
     void choose();
-    void showMenu(const QPoint &place);
+    void showMenu(QTreeWidgetItem *item, const QPoint &place);
     void addPlaces(QMenu &menu, const Robot &robot, DaemonLink *daemon);
     void add(QMenu &menu, const QString &text, const QString &name, const std::function<void()> &work);
     void rename(QTreeWidgetItem *item);

@@ -134,7 +134,10 @@ void TestRobots::openBoth() {
 void TestRobots::fromMenu(QTreeWidgetItem *row, const QString &name) {
     auto *const tree = find<QTreeWidget>("tree");
     QVERIFY(row);
-    Q_EMIT tree->customContextMenuRequested(tree->visualItemRect(row).center());
+    const QPoint place = tree->visualItemRect(row).center();
+    QTest::mouseClick(tree->viewport(), Qt::RightButton, {}, place);
+    QContextMenuEvent event(QContextMenuEvent::Mouse, place, tree->viewport()->mapToGlobal(place));
+    QApplication::sendEvent(tree->viewport(), &event);
     auto *const menu = tree->findChild<QMenu *>("robotMenu");
     QTRY_VERIFY(menu && menu->isVisible());
     auto *const action = menu->findChild<QAction *>(name);
@@ -332,6 +335,7 @@ void TestRobots::renamedByHand() {
     auto *const tree = find<QTreeWidget>("tree");
     QTRY_VERIFY(rowOf(*blue_));
     fromMenu(rowOf(*blue_), "renameRobot");
+    QCOMPARE(open_->fleet.robot(), robot(*red_)); // a menu chooses nobody
     QTRY_VERIFY(tree->findChild<QLineEdit *>());
     QTest::qWait(100); // daemons tell of themselves meanwhile
     auto *const editor = tree->findChild<QLineEdit *>();
