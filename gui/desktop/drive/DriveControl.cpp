@@ -21,6 +21,11 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     , stop_(fleet)
     , replay_(fleet) {
     connect(&replay_, &ReplayWatch::changed, this, &DriveControl::onReplay);
+    connect(&odometry_, &TopicFeed::sourceChanged, this, [this] {
+        measured_ = {};
+        measuredAge_.forget();
+        Q_EMIT changed();
+    });
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
     connect(&pollTimer_, &QTimer::timeout, this, &DriveControl::poll);

@@ -223,7 +223,7 @@ void DaemonTree::showMenu(QTreeWidgetItem *item, const QPoint &place) {
     if (!robot)
         return;
     auto *const menu = new QMenu(this);
-    menu->setObjectName("robotMenu");
+    menu->setObjectName("rowMenu");
     menu->setAttribute(Qt::WA_DeleteOnClose);
     if (daemon && !robot->isSupervised())
         addPlaces(*menu, *robot, daemonIn(*daemon));

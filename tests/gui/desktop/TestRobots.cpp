@@ -138,7 +138,7 @@ void TestRobots::fromMenu(QTreeWidgetItem *row, const QString &name) {
     QTest::mouseClick(tree->viewport(), Qt::RightButton, {}, place);
     QContextMenuEvent event(QContextMenuEvent::Mouse, place, tree->viewport()->mapToGlobal(place));
     QApplication::sendEvent(tree->viewport(), &event);
-    auto *const menu = tree->findChild<QMenu *>("robotMenu");
+    auto *const menu = tree->findChild<QMenu *>("rowMenu");
     QTRY_VERIFY(menu && menu->isVisible());
     auto *const action = menu->findChild<QAction *>(name);
     QVERIFY(action);
