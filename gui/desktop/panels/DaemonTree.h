@@ -15,6 +15,9 @@ class DaemonTree : public QTreeWidget {
 public:
     explicit DaemonTree(Fleet &fleet, QWidget *parent = nullptr);
 
+    /// It takes what room there is: what is told below it stays in sight in a low window.
+    QSize sizeHint() const override { return {QTreeWidget::sizeHint().width(), leastHeight}; }
+
 Q_SIGNALS:
     /// Another row was clicked at.
     void clickedAt();
@@ -39,6 +42,8 @@ private:
     void add(QMenu &menu, const QString &text, const QString &name, const std::function<void()> &work);
     void rename(QTreeWidgetItem *item);
     Robot *robotOf(const QTreeWidgetItem *item) const;
+
+    static constexpr int leastHeight = 60;
 
     Fleet &fleet_;
     QHash<const void *, QTreeWidgetItem *> items_, shown_; // by Robot or DaemonLink

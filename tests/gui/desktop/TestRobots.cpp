@@ -315,6 +315,7 @@ void TestRobots::whoIsDrivenOrStoppedIsNotRemoved() {
 
 void TestRobots::removedAndBroughtBackByHand() {
     openBoth();
+    open_->window.resize(1024, 600);
     auto *const panel = open_->panel<DaemonsPanel>("daemons");
     QTRY_VERIFY(rowOf(*blue_));
     fromMenu(rowOf(*blue_), "removeRobot");
@@ -323,6 +324,7 @@ void TestRobots::removedAndBroughtBackByHand() {
     QCOMPARE(open_->fleet.robot(), robot(*red_));
     auto *const back = panel->findChild<QPushButton *>("undoRemoval");
     QCOMPARE(back->text(), QString("Bring blue back"));
+    QTRY_VERIFY(!back->visibleRegion().isEmpty()); // in a low window, too
     OpenWindow::click(panel, "undoRemoval");
     QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withMethod("motor.drive"), 20000);
     QTRY_VERIFY(rowOf(*blue_));
