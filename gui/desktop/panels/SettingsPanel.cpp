@@ -182,7 +182,7 @@ void SettingsPanel::update() {
     for (QPushButton *button : {apply_, defaults_, save_})
         button->setToolTip(why);
     apply_->setEnabled(isEditable && changed > 0 && form_->isValid());
-    revert_->setEnabled(changed > 0 || !form_->isValid());
+    revert_->setEnabled(daemon_ && (changed > 0 || !form_->isValid()));
     defaults_->setEnabled(isEditable);
     save_->setText(changed == 0 ? tr("&Save") : tr("Apply and &save"));
     save_->setEnabled(isEditable && form_->isValid()); // what is wrong would be left out
