@@ -50,7 +50,7 @@ private:
     RecordingStop stop_{watch_};
     SessionPlayer player_;
     SessionList list_;
-    int listing_ = 0; ///< counts the times that it was asked for
+    int listing_ = 0;        ///< counts the times that it was asked for
     QString played_;         ///< the id of the session
     QSet<QString> markedIn_; ///< the sessions that the number is of
     int markNumber_ = 0;     ///< of the last mark

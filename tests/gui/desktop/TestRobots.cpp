@@ -58,6 +58,16 @@ private:
         return told ? told->toObject() : QJsonObject();
     }
     static double speed(One &one) { return state(one)["twist"].toObject()["vx"].toDouble(); }
+    /// By the key, which stays down. Again where a busy machine has held up a command, which ends a drive.
+    void drive(One &one) {
+        for (int i = 0; i < 4 && speed(one) <= 0.2; ++i) {
+            QTest::keyRelease(&open_->window, Qt::Key_W);
+            QTest::keyPress(&open_->window, Qt::Key_W);
+            if (QTest::qWaitFor([&] { return speed(one) > 0.2; }, 4000))
+                return;
+        }
+        QVERIFY2(speed(one) > 0.2, qPrintable(open_->drive.problem()));
+    }
     static bool isStopped(One &one) { return state(one)["estop"].toBool(); }
     template <typename T>
     T *find(const QString &name) const {
@@ -148,8 +158,7 @@ void TestRobots::fromMenu(QTreeWidgetItem *row, const QString &name) {
 void TestRobots::drivingOneNeverMovesTheOther() {
     openBoth();
     QTRY_COMPARE(find<QComboBox>("robots")->count(), 2);
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*red_) > 0.2);
+    drive(*red_);
     QCOMPARE(speed(*blue_), 0.0);
     choose(*blue_);
     QCOMPARE(find<QComboBox>("robots")->currentText(), QString("blue"));
@@ -158,8 +167,7 @@ void TestRobots::drivingOneNeverMovesTheOther() {
     QTRY_VERIFY(speed(*red_) < 0.01);
     QCOMPARE(speed(*blue_), 0.0); // the key is held still
     QTest::keyRelease(&open_->window, Qt::Key_W);
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*blue_) > 0.2);
+    drive(*blue_);
     QVERIFY(speed(*red_) < 0.01);
     red_->processes.kill("motorcontrol");
     blue_->processes.kill("motorcontrol"); // nobody else is driven instead
@@ -203,8 +211,7 @@ void TestRobots::aSupervisorThatDiesLosesNobody() {
     Robot *const before = robot(*red_);
     red_->processes.kill("supervisor");
     QTRY_VERIFY(!before->supervisor());
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*red_) > 0.2);
+    drive(*red_);
     QTest::keyRelease(&open_->window, Qt::Key_W);
     QCOMPARE(red_->processes.supervise("crimson"), red_->processes.port("supervisor"));
     QTRY_VERIFY_WITH_TIMEOUT(before->supervisor(), 10000);
@@ -216,8 +223,7 @@ void TestRobots::aSupervisorThatDiesLosesNobody() {
 void TestRobots::aDriveEndsWhenItsDaemonMoves() {
     QVERIFY(open_->fleet.add(motorsOf(*red_)));
     QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*red_) > 0.2);
+    drive(*red_);
     addSupervisor(*red_);
     QTRY_VERIFY_WITH_TIMEOUT(robot(*red_) && robot(*red_)->withName("motorcontrol"), 20000);
     QTRY_COMPARE(state(*red_)["target"].toObject()["vx"].toDouble(), 0.0);
@@ -228,8 +234,7 @@ void TestRobots::aDriveEndsWhenItsDaemonMoves() {
     QVERIFY(speed(*red_) < 0.01); // the key is held all the time
     QCOMPARE(open_->fleet.robot(), robot(*red_));
     QTest::keyRelease(&open_->window, Qt::Key_W);
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*red_) > 0.2);
+    drive(*red_);
     QTest::keyRelease(&open_->window, Qt::Key_W);
 }
 
@@ -238,13 +243,11 @@ void TestRobots::theSameWheelsAreDrivenAfterTheMove() {
     addSupervisor(*blue_); // who is not driven
     QTRY_VERIFY_WITH_TIMEOUT(robot(*blue_) && robot(*blue_)->withName("motorcontrol"), 20000);
     QCOMPARE(open_->fleet.robot()->address(), QString("127.0.0.1"));
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*red_) > 0.2);
+    drive(*red_);
     open_->fleet.place(motorLinkOf(*red_), nullptr);
     QTRY_VERIFY(speed(*red_) < 0.01);
     QTest::keyRelease(&open_->window, Qt::Key_W);
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*red_) > 0.2);
+    drive(*red_);
     QCOMPARE(speed(*blue_), 0.0);
     QTest::keyRelease(&open_->window, Qt::Key_W);
 }
@@ -291,8 +294,7 @@ void TestRobots::aStopForNobodyGoesToWhoIsFound() {
 
 void TestRobots::whoIsDrivenOrStoppedIsNotRemoved() {
     openBoth();
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*red_) > 0.2);
+    drive(*red_);
     const auto refusal = [&] {
         const auto removed = open_->fleet.remove(robot(*red_));
         return removed ? QString() : removed.error().message;
@@ -369,8 +371,7 @@ void TestRobots::partedByHand() {
     QCOMPARE(blue->problem(), QString());
     open_->fleet.choose(blue);
     QTRY_VERIFY(open_->drive.isPossible());
-    QTest::keyPress(&open_->window, Qt::Key_W);
-    QTRY_VERIFY(speed(*blue_) > 0.2);
+    drive(*blue_);
     QCOMPARE(speed(*red_), 0.0);
     QTest::keyRelease(&open_->window, Qt::Key_W);
     pressStop();
