@@ -9,6 +9,7 @@
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/MapPanel.h"
+#include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/ScrolledPanel.h"
@@ -20,10 +21,22 @@
 #include <QDir>
 #include <QDockWidget>
 #include <QFileInfo>
+#include <QJsonDocument>
 #include <QSettings>
 #include <QToolBar>
 
 namespace hermes::desktop {
+namespace {
+
+QString textOf(const QJsonObject &object) {
+    return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
+}
+
+QJsonObject objectFrom(const QVariant &text) {
+    return QJsonDocument::fromJson(text.toString().toUtf8()).object();
+}
+
+} // namespace
 
 MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutFile, QWidget *parent)
     : QMainWindow(parent)
@@ -67,6 +80,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     auto *const stopKeys = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
     addMenus(*stopKeys);
     restoreLayout();
+    connect(&findChild<PlotsPanel *>()->sets(), &PlotSets::changed, this, &MainWindow::saveLayout);
     centralWidget()->setFocus(); // so that the keys drive
 }
 
@@ -169,7 +183,9 @@ void MainWindow::restoreLayout() {
     const QSettings layout(layoutFile_, QSettings::IniFormat);
     restoreGeometry(layout.value("window/geometry").toByteArray());
     restoreState(layout.value("window/state").toByteArray());
-    findChild<PlotsPanel *>()->plot(layout.value("plots/fields").toStringList());
+    auto *const plots = findChild<PlotsPanel *>();
+    plots->sets().setSets(objectFrom(layout.value("plots/sets")));
+    plots->setState(objectFrom(layout.value("plots/shown")));
     for (QToolBar *banner : banners_)
         banner->hide(); // whatever it said when the layout was kept
 }
@@ -181,7 +197,9 @@ void MainWindow::saveLayout() const {
     QSettings layout(layoutFile_, QSettings::IniFormat);
     layout.setValue("window/geometry", saveGeometry());
     layout.setValue("window/state", saveState());
-    layout.setValue("plots/fields", findChild<PlotsPanel *>()->plotted());
+    auto *const plots = findChild<PlotsPanel *>();
+    layout.setValue("plots/sets", textOf(plots->sets().sets()));
+    layout.setValue("plots/shown", textOf(plots->state()));
     layout.setValue("sounds/on", sounds_.areOn());
     layout.setValue("robots/addresses", fleet_.addresses());
 }
