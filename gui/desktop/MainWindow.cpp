@@ -10,6 +10,7 @@
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/MapPanel.h"
+#include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/ScrolledPanel.h"
@@ -19,7 +20,7 @@
 #include <QApplication>
 #include <QCloseEvent>
 #include <QDockWidget>
-#include <QJsonArray>
+#include <QJsonDocument>
 #include <QToolBar>
 #include <cstdio>
 
@@ -27,6 +28,14 @@ namespace hermes::desktop {
 namespace {
 
 constexpr std::chrono::seconds noticeTime{20};
+
+QString textOf(const QJsonObject &object) {
+    return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
+}
+
+QJsonObject objectFrom(const QString &text) {
+    return QJsonDocument::fromJson(text.toUtf8()).object();
+}
 
 } // namespace
 
@@ -78,6 +87,12 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     stopKeys_->letEscapeStop(layouts_.value("escape") == "on");
     addMenus();
     arrange();
+    auto &plotSets = findChild<PlotsPanel *>()->sets();
+    plotSets.setSets(objectFrom(layouts_.value("plotSets")));
+    connect(&plotSets, &PlotSets::changed, this, [this, &plotSets] {
+        layouts_.setValue("plotSets", textOf(plotSets.sets()));
+        save();
+    });
     showLayout();
     tellOfKeeping(layouts_.problem() + layouts_.damage());
     fleet.setNames(layouts_.robots().names);
@@ -213,10 +228,7 @@ void MainWindow::showLayout() {
     if (!restoreState(layout.state))
         restoreState(usual_);
     showBars();
-    QStringList plotted;
-    for (const QJsonValue &field : layout.plots["fields"].toArray())
-        plotted.append(field.toString());
-    findChild<PlotsPanel *>()->plot(plotted);
+    findChild<PlotsPanel *>()->setState(layout.plots);
     centralWidget()->setFocus(); // so that the keys drive
 }
 
@@ -236,8 +248,7 @@ void MainWindow::resetLayout() {
 }
 
 void MainWindow::keepLayout() {
-    const QJsonObject plots{{"fields", QJsonArray::fromStringList(findChild<PlotsPanel *>()->plotted())}};
-    layouts_.setLayout({saveGeometry(), saveState(), plots});
+    layouts_.setLayout({saveGeometry(), saveState(), findChild<PlotsPanel *>()->state()});
     layouts_.setValue("sounds", sounds_.areOn() ? "on" : "off");
     layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
 }

@@ -205,6 +205,7 @@ Result<QStringList> Fleet::remove(Robot *robot) {
     distribute(std::move(removed));
     for (auto &link : links)
         link.release()->deleteLater();
+    changes_.start(); // told once more when they are gone
     return back;
 }
 

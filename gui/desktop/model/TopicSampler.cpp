@@ -1,46 +1,15 @@
 #include "gui/desktop/model/TopicSampler.h"
 
-#include <QJsonArray>
+#include "common/Time.h"
+
 #include <cmath>
 
 namespace hermes::desktop {
-namespace {
 
-/// Longer lists are no set of numbers to choose from: a scan has thousands.
-constexpr int longestList = 16;
-
-void collect(const QJsonValue &value, const QString &prefix, int most, QStringList &paths) {
-    if (paths.size() >= most)
-        return;
-    const auto inner = [&](const QString &name) { return prefix.isEmpty() ? name : prefix + "." + name; };
-    if (value.isDouble() || value.isBool()) {
-        paths.append(prefix);
-    } else if (value.isObject()) {
-        const QJsonObject object = value.toObject();
-        for (auto member = object.begin(); member != object.end(); ++member)
-            collect(member.value(), inner(member.key()), most, paths);
-    } else if (value.isArray() && value.toArray().size() <= longestList) {
-        const QJsonArray array = value.toArray();
-        for (int i = 0; i < array.size(); ++i)
-            collect(array[i], inner(QString::number(i)), most, paths);
-    }
-}
-
-} // namespace
-
-QStringList numericPaths(const QJsonValue &message, int most) {
-    QStringList paths;
-    collect(message, {}, most, paths);
-    return paths;
-}
-
-QJsonValue fieldAt(const QJsonValue &message, const QString &path) {
-    QJsonValue value = message;
-    if (path.isEmpty())
-        return value;
-    for (const QString &name : path.split('.'))
-        value = value.isArray() ? value.toArray().at(name.toInt()) : value[name];
-    return value;
+TopicSampler::TopicSampler(Fleet &fleet, QObject *parent)
+    : QObject(parent)
+    , fleet_(fleet) {
+    connect(&fleet, &Fleet::changed, this, &TopicSampler::followAll);
 }
 
 TopicSampler::~TopicSampler() {
@@ -49,16 +18,10 @@ TopicSampler::~TopicSampler() {
             source.daemon->unsubscribe(source.handle);
 }
 
-void TopicSampler::add(DaemonLink *daemon, const FieldId &field) {
-    if (!fields_.emplace(field, std::deque<QPointF>()).second)
-        return;
-    const TopicId topic(field.address, field.topic);
-    Source &source = sources_[topic];
-    if (source.daemon)
-        return;
-    source.daemon = daemon;
-    source.handle = daemon->subscribe(field.topic, {{"max_rate_hz", maxRate_hz}},
-                                      [this, topic](const TopicUpdate &update) { take(topic, update); });
+void TopicSampler::add(const FieldId &field) {
+    fields_.emplace(field, Samples());
+    sources_[{field.address, field.topic}];
+    followAll();
 }
 
 void TopicSampler::remove(const FieldId &field) {
@@ -75,28 +38,93 @@ void TopicSampler::remove(const FieldId &field) {
     sources_.erase(source);
 }
 
-const std::deque<QPointF> &TopicSampler::samples(const FieldId &field) const {
-    static const std::deque<QPointF> none;
+// The subscription to a daemon that is away for a moment renews itself.
+void TopicSampler::followAll() {
+    for (auto &[topic, source] : sources_) {
+        for (const auto &robot : fleet_.robots())
+            for (DaemonLink *daemon : source.daemon ? std::vector<DaemonLink *>() : robot->daemons())
+                if (daemon->address() == topic.first && daemon->hasTopic(topic.second)) {
+                    source.daemon = daemon;
+                    source.handle = daemon->subscribe(
+                        topic.second, {{"max_rate_hz", maxRate_hz}},
+                        [this, id = topic](const TopicUpdate &update) { take(id, update); });
+                }
+    }
+}
+
+const TopicSampler::Source *TopicSampler::source(const FieldId &field) const {
+    const auto found = sources_.find({field.address, field.topic});
+    return found == sources_.end() ? nullptr : &found->second;
+}
+
+const Samples &TopicSampler::samples(const FieldId &field) const {
+    static const Samples none;
     const auto found = fields_.find(field);
     return found == fields_.end() ? none : found->second;
 }
 
+const Freshness &TopicSampler::freshness(const FieldId &field) const {
+    static const Freshness none;
+    const Source *const found = source(field);
+    return found ? found->freshness : none;
+}
+
+QString TopicSampler::clock(const FieldId &field) const {
+    const Source *const found = source(field);
+    return found ? found->clock : QString();
+}
+
+bool TopicSampler::isRecorded(const FieldId &field) const {
+    const Source *const found = source(field);
+    return found && found->isRecorded;
+}
+
+double TopicSampler::now(const QString &clock) const {
+    constexpr double silent_s = 2; // whose newest stamp may be of before a leap of the replay
+    double last = 0, now = -largest;
+    for (const auto &[topic, source] : sources_)
+        if (source.clock == clock)
+            last = std::max(last, source.arrived);
+    for (const auto &[topic, source] : sources_) {
+        if (source.clock != clock)
+            continue;
+        if (!source.isRecorded)
+            now = std::max(now, source.newest + monotonicNow() - source.arrived);
+        else if (source.arrived >= last - silent_s)
+            now = std::max(now, source.newest);
+    }
+    return now;
+}
+
 void TopicSampler::take(const TopicId &topic, const TopicUpdate &update) {
+    Source &source = sources_[topic];
+    source.freshness.heard();
+    source.newest = update.stamp;
+    source.arrived = monotonicNow();
+    source.isRecorded = !(std::abs(stampNow() - update.stamp) < recorded_s);
+    source.clock = topic.first.section(':', 0, -2) + (source.isRecorded ? " recorded" : " now");
     for (auto &[field, samples] : fields_) {
         if (TopicId(field.address, field.topic) != topic)
             continue;
-        const QJsonValue value = fieldAt(update.json(), field.path);
-        const double number = value.isBool() ? double(value.toBool()) : value.toDouble(2 * largest);
-        if (!(std::abs(number) <= largest && std::abs(update.stamp) <= largest)) {
+        const WireView value = valueAt(update.data, field.path);
+        const double number =
+            value.kind() == WireView::Kind::Boolean ? double(value.boolean()) : value.number();
+        if (std::abs(number) <= largest)
+            keep(samples, {update.stamp, number});
+        else
             ++unusable_;
-            continue;
-        }
-        if (!samples.empty() && update.stamp < samples.back().x())
-            samples.clear(); // the daemon's clock was set back
-        samples.push_back({update.stamp, number});
-        while (samples.front().x() < update.stamp - keep_s || samples.size() > mostSamples)
-            samples.pop_front();
     }
+}
+
+void TopicSampler::keep(Samples &samples, const QPointF &sample) {
+    if (!samples.empty() && sample.x() < samples.back().x()) {
+        if (sample.x() >= samples.back().x() - late_s)
+            return;
+        samples.clear();
+    }
+    samples.push_back(sample);
+    while (samples.front().x() < sample.x() - keep_s || samples.size() > mostSamples)
+        samples.pop_front();
 }
 
 } // namespace hermes::desktop

@@ -1,30 +1,20 @@
 #pragma once
 
 #include "gui/desktop/model/Fleet.h"
+#include "gui/desktop/model/Freshness.h"
+#include "gui/desktop/model/TopicFields.h"
 
 #include <QPointF>
 #include <deque>
 #include <map>
-#include <set>
 
 namespace hermes::desktop {
 
-/// One number in the messages of a topic, e.g. {"127.0.0.1:7410", "odometry", "pose.x"}.
-struct FieldId {
-    QString address, topic, path;
+/// {stamp, value}, oldest first.
+using Samples = std::deque<QPointF>;
 
-    bool operator<(const FieldId &other) const {
-        return std::tie(address, topic, path) < std::tie(other.address, other.topic, other.path);
-    }
-};
-
-/// The dotted paths of the numbers in a message, those in short lists too ("current_a.0"); no more than so
-/// many.
-QStringList numericPaths(const QJsonValue &message, int most);
-/// The value at such a path; undefined where there is none.
-QJsonValue fieldAt(const QJsonValue &message, const QString &path);
-
-/// Keeps the last minutes of the chosen fields. A topic is subscribed to while a field of it is chosen.
+/// Keeps the last minutes of the chosen fields. A topic is subscribed to while a field of it is chosen and
+/// its daemon is known.
 class TopicSampler : public QObject {
     Q_OBJECT
 public:
@@ -33,28 +23,49 @@ public:
     static constexpr std::size_t mostSamples = std::size_t(2 * keep_s * maxRate_hz);
     /// Beyond it a value is not kept: no axis can show it.
     static constexpr double largest = 1e15;
+    /// A stamp that is older than the one before by no more than this came late, and is left out; else the
+    /// topic begins anew: a replay went back, or a clock was set.
+    static constexpr double late_s = 0.5;
+    /// Stamps that lie further from now are of a recording, or of a robot whose clock is wrong.
+    static constexpr double recorded_s = 60;
 
-    using QObject::QObject;
+    explicit TopicSampler(Fleet &fleet, QObject *parent = nullptr);
     ~TopicSampler() override;
 
-    void add(DaemonLink *daemon, const FieldId &field);
+    void add(const FieldId &field);
     void remove(const FieldId &field);
-    /// {stamp, value}, oldest first.
-    const std::deque<QPointF> &samples(const FieldId &field) const;
-    const std::map<FieldId, std::deque<QPointF>> &all() const { return fields_; }
-    /// Values or stamps beyond `largest`, and messages without a number at a chosen field.
+    const Samples &samples(const FieldId &field) const;
+    const std::map<FieldId, Samples> &all() const { return fields_; }
+    /// How old the newest message of its topic is.
+    const Freshness &freshness(const FieldId &field) const;
+    /// Which topics have the same clock: those of one host, apart the ones of now and of a recording. Empty:
+    /// nothing has come.
+    QString clock(const FieldId &field) const;
+    bool isRecorded(const FieldId &field) const;
+    /// What time it is on a clock. That of now goes on by itself, that of a recording stands with it.
+    double now(const QString &clock) const;
+    /// Values beyond `largest`, and messages without a number at a chosen field.
     quint64 unusable() const { return unusable_; }
 
 private:
     struct Source {
         QPointer<DaemonLink> daemon;
         int handle = 0;
+        Freshness freshness;
+        QString clock;      ///< empty: nothing has come
+        double newest = 0;  ///< stamp
+        double arrived = 0; ///< of that, on this computer's clock that never jumps
+        bool isRecorded = false;
     };
     using TopicId = std::pair<QString, QString>; // address, topic
 
+    void followAll();
     void take(const TopicId &topic, const TopicUpdate &update);
+    void keep(Samples &samples, const QPointF &sample);
+    const Source *source(const FieldId &field) const;
 
-    std::map<FieldId, std::deque<QPointF>> fields_;
+    Fleet &fleet_;
+    std::map<FieldId, Samples> fields_;
     std::map<TopicId, Source> sources_;
     quint64 unusable_ = 0;
 };

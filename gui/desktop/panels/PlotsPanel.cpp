@@ -1,294 +1,259 @@
 #include "gui/desktop/panels/PlotsPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/MessageView.h"
+#include "gui/desktop/panels/PlotSets.h"
+#include "gui/desktop/panels/PlotSuggestions.h"
+#include "gui/desktop/panels/TopicTree.h"
+#include "gui/desktop/view/PlotPane.h"
 #include "gui/desktop/widgets/MessageLabel.h"
+#include "gui/desktop/widgets/ScrolledPanel.h"
+#include "gui/desktop/widgets/Seen.h"
 
 #include <QFileDialog>
-#include <QGraphicsLayout>
 #include <QHBoxLayout>
+#include <QImage>
+#include <QMenu>
+#include <QPainter>
 #include <QPushButton>
-#include <QSaveFile>
 #include <QSplitter>
-#include <QTextStream>
-#include <QTreeWidget>
-#include <QVBoxLayout>
-#include <QtCharts/QChart>
-#include <QtCharts/QChartView>
-#include <QtCharts/QLegend>
-#include <QtCharts/QLineSeries>
-#include <QtCharts/QValueAxis>
+#include <QStackedWidget>
+#include <QSvgGenerator>
+#include <QThread>
+#include <QToolButton>
 
 namespace hermes::desktop {
 
-using namespace QtCharts;
-
-namespace {
-
-constexpr int longestName = 60, mostTopics = 200, mostFields = 200;
-
-enum Role { AddressRole = Qt::UserRole, TopicRole, PathRole, DaemonRole };
-
-FieldId fieldOf(const QTreeWidgetItem &item) {
-    return {item.data(0, AddressRole).toString(), item.data(0, TopicRole).toString(),
-            item.data(0, PathRole).toString()};
-}
-
-DaemonLink *daemonOf(const QTreeWidgetItem &item) {
-    return qobject_cast<DaemonLink *>(item.data(0, DaemonRole).value<QPointer<QObject>>());
-}
-
-} // namespace
-
 PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
-    , fleet_(fleet)
-    , tree_(new QTreeWidget)
-    , chart_(new QChart)
-    , chartView_(new QChartView(chart_))
-    , time_(new QValueAxis)
-    , value_(new QValueAxis)
-    , message_(new MessageLabel) {
-    tree_->setObjectName("topics");
-    tree_->setAccessibleName(tr("Topics and their numbers"));
-    tree_->setHeaderHidden(true);
-    tree_->setUniformRowHeights(true);
-    chart_->setTheme(theme::isDark() ? QChart::ChartThemeDark : QChart::ChartThemeLight);
-    chart_->setMargins({});
-    chart_->setBackgroundRoundness(0);
-    chart_->layout()->setContentsMargins(0, 0, 0, 0);
-    chart_->legend()->setAlignment(Qt::AlignRight);
-    QFont small = font();
-    small.setPointSizeF(0.85 * small.pointSizeF());
-    time_->setLabelsFont(small);
-    value_->setLabelsFont(small);
-    chart_->legend()->setFont(small);
-    time_->setRange(-span_s, 0);
-    time_->setLabelFormat(tr("%g s"));
-    value_->setLabelFormat("%g");
-    chart_->addAxis(time_, Qt::AlignBottom);
-    chart_->addAxis(value_, Qt::AlignLeft);
-    chartView_->setMinimumHeight(80);
-    message_->tell(tr("Open a topic and tick a number to plot it."));
+    , board_(new PlotBoard(fleet))
+    , tree_(new TopicTree(fleet, [this](const FieldId &field) { return board_->has(field); }))
+    , message_(new MessageLabel)
+    , newest_(new MessageView)
+    , suggestions_(new PlotSuggestions(fleet))
+    , sets_(new PlotSets(this))
+    , pages_(new QStackedWidget) {
+    layOut();
+    connect(tree_, &TopicTree::ticked, this, &PlotsPanel::tick);
+    connect(tree_, &TopicTree::told, message_, [this](const QString &text) {
+        message_->tell(text);
+        message_->setVisible(!text.isEmpty());
+    });
+    connect(tree_, &TopicTree::topicChosen, this, &PlotsPanel::showPage);
+    connect(suggestions_, &PlotSuggestions::wanted, this, &PlotsPanel::plot);
+    connect(board_, &PlotBoard::changed, this, &PlotsPanel::onBoardChanged);
+    connect(&board_->time(), &TimeWindow::changed, this, &PlotsPanel::showTime);
+    connect(sets_, &PlotSets::chosen, this, &PlotsPanel::setState);
+    connect(sets_, &PlotSets::saveWanted, this, [this](const QString &name) { sets_->save(name, state()); });
+    connect(&timer_, &QTimer::timeout, this, &PlotsPanel::redraw);
+    timer_.start(std::chrono::milliseconds(100));
+    showPage();
+    showTime();
+}
 
+void PlotsPanel::layOut() {
     auto *const left = new QWidget;
     auto *const column = new QVBoxLayout(left);
     column->setContentsMargins(0, 0, 0, 0);
     column->addWidget(tree_, 1);
     column->addWidget(message_);
-    column->addWidget(makeButtons());
+    pages_->addWidget(new ScrolledPanel(suggestions_));
+    pages_->addWidget(new ScrolledPanel(board_)); // many charts do not make the window higher
+    pages_->addWidget(newest_);
+    auto *const right = new QWidget;
+    auto *const rows = new QVBoxLayout(right);
+    rows->setContentsMargins(0, 0, 0, 0);
+    rows->setSpacing(2);
+    rows->addWidget(makeButtons());
+    rows->addWidget(pages_, 1);
     auto *const splitter = new QSplitter;
     splitter->addWidget(left);
-    splitter->addWidget(chartView_);
+    splitter->addWidget(right);
     splitter->setStretchFactor(1, 3);
+    splitter->setSizes({350, 650});
     auto *const layout = new QVBoxLayout(this);
+    layout->setContentsMargins(4, 4, 4, 4);
     layout->addWidget(splitter);
-
-    connect(tree_, &QTreeWidget::itemExpanded, this, [this](QTreeWidgetItem *item) {
-        if (item->parent() && item->childCount() == 0)
-            listFields(daemonOf(*item), item->data(0, TopicRole).toString());
-    });
-    connect(tree_, &QTreeWidget::itemChanged, this, &PlotsPanel::onItemChanged);
-    connect(&fleet, &Fleet::changed, this, &PlotsPanel::listTopics);
-    connect(&timer_, &QTimer::timeout, this, &PlotsPanel::redraw);
-    timer_.start(std::chrono::milliseconds(100));
-    listTopics();
 }
 
 QWidget *PlotsPanel::makeButtons() {
     auto *const row = new QWidget;
     auto *const layout = new QHBoxLayout(row);
     layout->setContentsMargins(0, 0, 0, 0);
-    layout->addWidget(pause_ = new QPushButton(theme::icon("pause"), tr("Pa&use")));
-    auto *const save = new QPushButton(theme::icon("export"), tr("CSV"));
-    layout->addWidget(save);
+    layout->setSpacing(3);
+    pause_ = new QPushButton(theme::icon("pause"), tr("Pa&use"));
     pause_->setObjectName("pause");
     pause_->setCheckable(true);
     pause_->setToolTip(tr("The picture stands still; sampling goes on"));
-    save->setObjectName("csv");
-    save->setToolTip(tr("Writes the last ten minutes of all curves"));
-    connect(save, &QPushButton::clicked, this, &PlotsPanel::askFile);
+    connect(pause_, &QPushButton::clicked, this, [this](bool isOn) { board_->time().setHeld(isOn); });
+    auto *const live = new QPushButton(theme::icon("follow"), tr("Live"));
+    live->setObjectName("live");
+    live->setToolTip(tr("Shows what comes, with all values in sight (also a double click on a chart)"));
+    connect(live, &QPushButton::clicked, board_, &PlotBoard::goLive);
+    layout->addWidget(pause_);
+    layout->addWidget(live);
+    span_ = addMenuButton(*row, "", {}, makeSpans());
+    span_->setObjectName("span");
+    span_->setAccessibleName(tr("Time that is shown"));
+    span_->setToolTip(tr("The time that is shown, in seconds or minutes (also the wheel over a chart)"));
+    addMenuButton(*row, "layers", tr("Panes"), makePanes())
+        ->setToolTip(tr("Charts one below the other; new curves go to the chosen one"));
+    addMenuButton(*row, "save", tr("Sets"), sets_)->setToolTip(tr("Plots that are kept by name"));
+    addMenuButton(*row, "export", tr("Export"), makeExports())
+        ->setToolTip(tr("Writes the curves to a file on this computer"));
+    showMessage_ = new QPushButton(tr("Message"));
+    showMessage_->setObjectName("showMessage");
+    showMessage_->setCheckable(true);
+    showMessage_->setToolTip(tr("The newest message of the topic that is chosen on the left"));
+    connect(showMessage_, &QPushButton::toggled, this, &PlotsPanel::showPage);
+    layout->addWidget(showMessage_);
+    layout->addStretch(1);
     return row;
 }
 
-QStringList PlotsPanel::plotted() const {
-    QStringList fields;
-    for (const auto &[field, curve] : curves_)
-        fields.append(field.address + ' ' + field.topic + ' ' + field.path);
-    for (const FieldId &field : wanted_)
-        fields.append(field.address + ' ' + field.topic + ' ' + field.path);
-    return fields;
+QToolButton *PlotsPanel::addMenuButton(QWidget &row, const char *icon, const QString &text, QMenu *menu) {
+    auto *const button = new QToolButton;
+    button->setText(text);
+    if (*icon)
+        button->setIcon(theme::icon(icon));
+    button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    button->setPopupMode(QToolButton::InstantPopup);
+    button->setFocusPolicy(Qt::StrongFocus);
+    button->setMenu(menu);
+    row.layout()->addWidget(button);
+    return button;
 }
 
-void PlotsPanel::plot(const QStringList &fields) {
-    for (const QString &field : fields)
-        wanted_.insert({field.section(' ', 0, 0), field.section(' ', 1, 1), field.section(' ', 2)});
-    listTopics();
+QMenu *PlotsPanel::makeSpans() {
+    auto *const menu = new QMenu(this);
+    for (const double span_s : {5, 10, 30, 60, 120, 300, 600})
+        menu->addAction(spanText(span_s), this, [this, span_s] { board_->time().setSpan(span_s); });
+    return menu;
 }
 
-// Daemons and topics that are new; what is listed once stays, so that curves do.
-void PlotsPanel::listTopics() {
-    isListing_ = true;
-    for (const auto &robot : fleet_.robots())
-        for (DaemonLink *daemon : robot->daemons()) {
-            if (daemon->topics().isEmpty())
-                continue;
-            QTreeWidgetItem *item = nullptr;
-            for (int i = 0; i < tree_->topLevelItemCount(); ++i)
-                if (daemonOf(*tree_->topLevelItem(i)) == daemon)
-                    item = tree_->topLevelItem(i);
-            if (!item) {
-                item = new QTreeWidgetItem(tree_, {daemon->name()});
-                item->setData(0, DaemonRole, QVariant::fromValue(QPointer<QObject>(daemon)));
-                item->setToolTip(0, daemon->address());
-            }
-            QSet<QString> listed;
-            for (int i = 0; i < item->childCount(); ++i)
-                listed.insert(item->child(i)->data(0, TopicRole).toString());
-            for (const QString &topic : daemon->topics()) {
-                if (item->childCount() >= mostTopics)
-                    break;
-                if (listed.contains(topic) || topic == "log" || topic == "settings")
-                    continue;
-                auto *const child = new QTreeWidgetItem(item, {shortLine(topic, longestName)});
-                child->setData(0, TopicRole, topic);
-                child->setData(0, DaemonRole, item->data(0, DaemonRole));
-                child->setChildIndicatorPolicy(QTreeWidgetItem::ShowIndicator);
-                const bool isWanted = std::any_of(wanted_.begin(), wanted_.end(), [&](const FieldId &field) {
-                    return field.address == daemon->address() && field.topic == topic;
-                });
-                if (isWanted)
-                    listFields(daemon, topic);
-            }
-            if (daemon->topics().size() > mostTopics)
-                item->setText(0, tr("%1 (%2 topics, of which %3 are listed)")
-                                     .arg(daemon->name())
-                                     .arg(daemon->topics().size())
-                                     .arg(mostTopics));
-        }
-    isListing_ = false;
+QMenu *PlotsPanel::makePanes() {
+    auto *const menu = new QMenu(this);
+    QAction *const add = menu->addAction(theme::icon("add"), tr("Add a pane"), board_, &PlotBoard::addPane);
+    add->setObjectName("addPane");
+    QAction *const remove = menu->addAction(theme::icon("remove"), {}, board_, &PlotBoard::removePane);
+    remove->setObjectName("removePane");
+    connect(menu, &QMenu::aboutToShow, this, [this, add, remove] {
+        add->setEnabled(board_->canAddPane());
+        remove->setText(board_->panes().size() > 1 ? tr("Remove the chosen pane") : tr("Remove all curves"));
+    });
+    return menu;
 }
 
-// The numbers of a topic are those of its next message.
-void PlotsPanel::listFields(DaemonLink *daemon, const QString &topic) {
-    if (!daemon)
+QMenu *PlotsPanel::makeExports() {
+    auto *const menu = new QMenu(this);
+    menu->addAction(tr("Table of the last ten minutes (CSV)..."), this,
+                    [this] { askFile(tr("Write the curves"), "curves.csv", tr("Tables (*.csv)")); })
+        ->setObjectName("csv");
+    menu->addAction(tr("Picture of what is shown (SVG or PNG)..."), this,
+                    [this] { askFile(tr("Write the picture"), "curves.svg", tr("Pictures (*.svg *.png)")); })
+        ->setObjectName("picture");
+    return menu;
+}
+
+void PlotsPanel::tick(const FieldId &field, bool isOn) {
+    if (!isOn)
+        return board_->remove(field);
+    if (board_->add(field))
         return;
-    message_->tell(tr("Waiting for a message of %1 ...").arg(shortLine(topic)));
-    const auto handle = std::make_shared<int>(0);
-    *handle = daemon->subscribe(
-        topic, {}, [this, daemon = QPointer<DaemonLink>(daemon), topic, handle](const TopicUpdate &update) {
-            if (!daemon)
-                return;
-            daemon->unsubscribe(*handle);
-            isListing_ = true;
-            const QStringList paths = numericPaths(update.json(), mostFields);
-            for (QTreeWidgetItemIterator i(tree_); *i; ++i) {
-                QTreeWidgetItem *const item = *i;
-                if (item->data(0, TopicRole) != topic || item->data(0, PathRole).isValid() ||
-                    daemonOf(*item) != daemon || item->childCount() > 0)
-                    continue;
-                for (const QString &path : paths) {
-                    auto *const child =
-                        new QTreeWidgetItem(item, {shortLine(path.isEmpty() ? topic : path, longestName)});
-                    child->setData(0, AddressRole, daemon->address());
-                    child->setData(0, TopicRole, topic);
-                    child->setData(0, PathRole, path);
-                    child->setData(0, DaemonRole, item->data(0, DaemonRole));
-                    child->setCheckState(0, Qt::Unchecked);
-                }
-            }
-            isListing_ = false;
-            tickWanted();
-            message_->tell(paths.isEmpty() ? tr("%1 has no number to plot.").arg(shortLine(topic))
-                                           : tr("Tick a number to plot it."));
-        });
+    message_->tell(tr("No more than %1 curves.").arg(PlotBoard::mostCurves), true);
+    onBoardChanged();
 }
 
-void PlotsPanel::tickWanted() {
-    for (QTreeWidgetItemIterator i(tree_); *i; ++i)
-        if ((*i)->data(0, PathRole).isValid() && wanted_.erase(fieldOf(**i)) > 0) {
-            (*i)->parent()->parent()->setExpanded(true);
-            (*i)->parent()->setExpanded(true);
-            (*i)->setCheckState(0, Qt::Checked);
-        }
+void PlotsPanel::plot(const std::vector<FieldId> &fields) {
+    for (const FieldId &field : fields)
+        tick(field, true);
 }
 
-void PlotsPanel::onItemChanged(QTreeWidgetItem *item) {
-    if (isListing_ || !item->data(0, PathRole).isValid())
+void PlotsPanel::onBoardChanged() {
+    std::vector<FieldId> plotted;
+    for (const auto &[field, samples] : board_->sampler().all())
+        plotted.push_back(field);
+    tree_->showTicks(plotted);
+    showPage();
+}
+
+void PlotsPanel::showTime() {
+    pause_->setChecked(board_->time().isHeld());
+    span_->setText(spanText(board_->time().span_s()));
+}
+
+void PlotsPanel::showPage() {
+    if (showMessage_->isChecked()) {
+        const auto [daemon, topic] = tree_->chosenTopic();
+        newest_->follow(daemon, topic);
+        pages_->setCurrentWidget(newest_);
         return;
-    const FieldId field = fieldOf(*item);
-    DaemonLink *const daemon = daemonOf(*item);
-    if (item->checkState(0) == Qt::Checked && daemon) {
-        auto *const series = new QLineSeries;
-        series->setName(shortLine(field.topic + " " + field.path, longestName).toHtmlEscaped());
-        chart_->addSeries(series);
-        series->attachAxis(time_);
-        series->attachAxis(value_);
-        curves_[field] = series;
-        sampler_.add(daemon, field);
-    } else if (const auto curve = curves_.find(field); curve != curves_.end()) {
-        chart_->removeSeries(curve->second);
-        delete curve->second;
-        curves_.erase(curve);
-        sampler_.remove(field);
     }
+    const bool isEmpty = board_->curves() == 0 && board_->panes().size() == 1;
+    pages_->setCurrentIndex(isEmpty ? 0 : 1);
 }
 
 void PlotsPanel::redraw() {
-    if (pause_->isChecked() || curves_.empty() || !isVisible())
+    if (!isSeen(*board_))
         return;
-    double now = 0;
-    for (const auto &[field, series] : curves_)
-        if (!sampler_.samples(field).empty())
-            now = std::max(now, sampler_.samples(field).back().x());
-    double least = 1e300, most = -1e300;
-    for (const auto &[field, series] : curves_) {
-        QVector<QPointF> points;
-        for (const QPointF &sample : sampler_.samples(field)) {
-            if (sample.x() < now - span_s)
-                continue;
-            points.append({sample.x() - now, sample.y()});
-            least = std::min(least, sample.y());
-            most = std::max(most, sample.y());
-        }
-        series->replace(points);
-    }
-    if (sampler_.unusable() > 0)
-        message_->tell(tr("%1 values cannot be plotted: no numbers, or too large.").arg(sampler_.unusable()));
-    if (least > most)
-        return;
-    const double margin = std::max(0.05 * (most - least), 1e-3 * std::max(1.0, std::abs(most)));
-    value_->setRange(least - margin, most + margin);
-    value_->setTickCount(3); // more have no room for their labels in a low panel
-    value_->applyNiceNumbers();
+    board_->redraw();
+    if (const quint64 unusable = board_->sampler().unusable(); unusable > 0)
+        message_->tell(tr("%1 values cannot be plotted: no numbers, or too large.").arg(unusable));
 }
 
-void PlotsPanel::askFile() {
-    auto *const dialog = new QFileDialog(this, tr("Write the curves"), "curves.csv", tr("Tables (*.csv)"));
+void PlotsPanel::askFile(const QString &title, const QString &name, const QString &kinds) {
+    auto *const dialog = new QFileDialog(this, title, name, kinds);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setAcceptMode(QFileDialog::AcceptSave);
     dialog->setOption(QFileDialog::DontUseNativeDialog); // whose keys this program does not see
-    connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
-        const auto done = exportTo(file);
-        message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
-    });
+    connect(dialog, &QFileDialog::fileSelected, this, &PlotsPanel::write);
     dialog->show(); // not modal: STOP stays in reach
 }
 
+// A long table is written beside the event loop.
+void PlotsPanel::write(const QString &file) {
+    const auto tell = [this, file](const Result<void> &done) {
+        message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
+    };
+    if (!file.endsWith(".csv", Qt::CaseInsensitive))
+        return tell(exportTo(file));
+    const auto done = std::make_shared<Result<void>>();
+    QThread *const thread =
+        QThread::create([file, done, kept = board_->kept()] { *done = writeCurves(file, kept); });
+    connect(thread, &QThread::finished, thread, &QObject::deleteLater);
+    connect(thread, &QThread::finished, this, [tell, done] { tell(*done); });
+    thread->start();
+}
+
 Result<void> PlotsPanel::exportTo(const QString &file) const {
-    QSaveFile out(file);
-    if (!out.open(QIODevice::WriteOnly))
-        return Error(ErrorCode::InputOutput, tr("%1: %2").arg(file, out.errorString()));
-    QTextStream text(&out);
-    text.setRealNumberPrecision(17);
-    text << "stamp,daemon,topic,field,value\n";
-    for (const auto &[field, samples] : sampler_.all())
-        for (const QPointF &sample : samples)
-            text << sample.x() << ',' << field.address << ',' << field.topic << ',' << field.path << ','
-                 << sample.y() << '\n';
-    text.flush();
-    if (!out.commit())
-        return Error(ErrorCode::InputOutput, tr("%1: %2").arg(file, out.errorString()));
+    if (file.endsWith(".csv", Qt::CaseInsensitive))
+        return writeCurves(file, board_->kept());
+    const bool isSvg = file.endsWith(".svg", Qt::CaseInsensitive);
+    if (!(isSvg ? drawSvg(file) : drawImage(file)))
+        return Error(ErrorCode::InputOutput, tr("%1 cannot be written").arg(file));
     return {};
+}
+
+bool PlotsPanel::drawSvg(const QString &file) const {
+    QSvgGenerator svg;
+    svg.setFileName(file);
+    svg.setSize(board_->size());
+    svg.setViewBox(board_->rect());
+    svg.setTitle(tr("Hermes plots"));
+    QPainter painter;
+    if (!painter.begin(&svg))
+        return false;
+    board_->render(painter);
+    return painter.end();
+}
+
+bool PlotsPanel::drawImage(const QString &file) const {
+    QImage picture(board_->size(), QImage::Format_RGB32);
+    picture.fill(palette().color(QPalette::Window));
+    QPainter painter(&picture);
+    board_->render(painter);
+    painter.end();
+    return picture.save(file);
 }
 
 } // namespace hermes::desktop

@@ -1,61 +1,67 @@
 #pragma once
 
-#include "gui/desktop/model/TopicSampler.h"
+#include "gui/desktop/panels/PlotBoard.h"
 
 #include <QTimer>
-#include <QWidget>
-#include <QtCharts/QChartGlobal>
 
-QT_CHARTS_BEGIN_NAMESPACE
-class QChart;
-class QChartView;
-class QLineSeries;
-class QValueAxis;
-QT_CHARTS_END_NAMESPACE
+class QMenu;
 class QPushButton;
-class QTreeWidget;
-class QTreeWidgetItem;
+class QStackedWidget;
+class QToolButton;
 
 namespace hermes::desktop {
 
 class MessageLabel;
+class MessageView;
+class PlotSets;
+class PlotSuggestions;
+class TopicTree;
 
-/// Curves of any numeric field of any topic over time, chosen by a click; with pause and CSV.
+/// Curves of any numeric field of any topic over time, chosen by a tick, in several charts; sets of them by
+/// name; files of them; and the newest message of any topic.
 class PlotsPanel : public QWidget {
     Q_OBJECT
 public:
-    static constexpr double span_s = 30;
-
     explicit PlotsPanel(Fleet &fleet, QWidget *parent = nullptr);
 
-    /// What is plotted, for plot() of the next start.
-    QStringList plotted() const;
-    /// Plots these as soon as their daemons are there.
-    void plot(const QStringList &fields);
-    /// Writes all curves: stamp, daemon, topic, field, value. Error: the file cannot be written.
+    PlotBoard &board() { return *board_; }
+    /// What is plotted, for setState() of the next start: as soon as its daemons are there.
+    QJsonObject state() const { return board_->state(); }
+    void setState(const QJsonObject &state) { board_->setState(state); }
+    /// The sets that are kept by name.
+    PlotSets &sets() { return *sets_; }
+    /// Writes all that is kept as CSV, or what is shown as SVG or PNG, as the name ends. Error: the file
+    /// cannot be written.
     Result<void> exportTo(const QString &file) const;
 
 private:
-    void listTopics();
-    void listFields(DaemonLink *daemon, const QString &topic);
-    void tickWanted();
-    void onItemChanged(QTreeWidgetItem *item);
-    void redraw();
-    void askFile();
+    void layOut();
     QWidget *makeButtons();
+    QToolButton *addMenuButton(QWidget &row, const char *icon, const QString &text, QMenu *menu);
+    QMenu *makeSpans();
+    QMenu *makePanes();
+    QMenu *makeExports();
+    void tick(const FieldId &field, bool isOn);
+    void plot(const std::vector<FieldId> &fields);
+    void onBoardChanged();
+    void showTime();
+    void showPage();
+    void redraw();
+    void askFile(const QString &title, const QString &name, const QString &kinds);
+    void write(const QString &file);
+    bool drawSvg(const QString &file) const;
+    bool drawImage(const QString &file) const;
 
-    Fleet &fleet_;
-    TopicSampler sampler_;
-    QTreeWidget *tree_;
-    QtCharts::QChart *chart_;
-    QtCharts::QChartView *chartView_;
-    QtCharts::QValueAxis *time_, *value_;
+    PlotBoard *board_;
+    TopicTree *tree_;
     MessageLabel *message_;
-    QPushButton *pause_;
+    MessageView *newest_;
+    PlotSuggestions *suggestions_;
+    PlotSets *sets_;
+    QStackedWidget *pages_;
+    QPushButton *pause_, *showMessage_;
+    QToolButton *span_;
     QTimer timer_;
-    std::map<FieldId, QtCharts::QLineSeries *> curves_;
-    std::set<FieldId> wanted_; ///< not there as yet
-    bool isListing_ = false;
 };
 
 } // namespace hermes::desktop

@@ -51,14 +51,14 @@ public:
     }
 
     quint16 port() const { return port_; }
-    /// A message to all who have subscribed to the topic.
-    void say(const QByteArray &topic, const QByteArray &data) {
+    /// A message to all who have subscribed to the topic, with a stamp of its own if one is given.
+    void say(const QByteArray &topic, const QByteArray &data, const QByteArray &stamp = {}) {
         QMetaObject::invokeMethod(
             this,
             [&] {
                 for (const Subscriber &one : qAsConst(subscribers_))
                     if (one.client && one.topic == topic)
-                        write(*one.client, message(one.subscription, topic, 0, data));
+                        write(*one.client, message(one.subscription, topic, 0, data, stamp));
             },
             Qt::BlockingQueuedConnection);
     }
@@ -163,10 +163,12 @@ private:
         for (int i = 0; i < mischief_.messages; ++i)
             next();
     }
-    QByteArray message(int subscription, const QByteArray &topic, int count, const QByteArray &data) const {
+    QByteArray message(int subscription, const QByteArray &topic, int count, const QByteArray &data,
+                       const QByteArray &stamp = {}) const {
         return "{\"jsonrpc\":\"2.0\",\"method\":\"topic\",\"params\":{\"subscription\":" +
                QByteArray::number(subscription) + ",\"topic\":\"" + topic +
-               "\",\"seq\":" + QByteArray::number(count) + ",\"dropped\":0,\"stamp\":" + mischief_.stamp +
+               "\",\"seq\":" + QByteArray::number(count) +
+               ",\"dropped\":0,\"stamp\":" + (stamp.isEmpty() ? mischief_.stamp : stamp) +
                ",\"data\":" + data + "}}\n";
     }
     /// As much as the client takes.

@@ -1,17 +1,14 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/LogPanel.h"
 #include "gui/desktop/panels/PlotsPanel.h"
+#include "gui/desktop/view/PlotPane.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
-#include <QChart>
-#include <QChartView>
 #include <QComboBox>
 #include <QFile>
 #include <QLabel>
 #include <QListWidget>
 #include <QPlainTextEdit>
-#include <QValueAxis>
-#include <QXYSeries>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -135,6 +132,8 @@ void TestConsolePanels::whatForgetsAsksFirst() {
 void TestConsolePanels::plotsAndRobotsAreKept() {
     QTemporaryDir folder;
     const QString file = folder.filePath("gui.ini"), address = daemon("motorcontrol")->address();
+    const std::vector<FieldId> plotted{{address, "odometry", "twist.vx"},
+                                       {"127.0.0.1:1", "none", "x"}}; // who is away is kept too
     for (int start = 0; start < 2; ++start) {
         Fleet fleet;
         for (const QString &kept : start == 0 ? QStringList(address) : MainWindow::keptAddresses(file))
@@ -144,13 +143,13 @@ void TestConsolePanels::plotsAndRobotsAreKept() {
         window.show();
         auto *const topics = window.findChild<QTreeWidget *>("topics");
         if (start == 0)
-            window.findChild<PlotsPanel *>()->plot({address + " odometry twist.vx", "127.0.0.1:1 none x"});
+            for (const FieldId &field : plotted)
+                QVERIFY(window.findChild<PlotsPanel *>()->board().add(field));
         QTRY_COMPARE(topics->findItems("twist.vx", Qt::MatchExactly | Qt::MatchRecursive).size(), 1);
         QCOMPARE(topics->findItems("twist.vx", Qt::MatchExactly | Qt::MatchRecursive)[0]->checkState(0),
                  Qt::Checked);
-        const QStringList plotted{address + " odometry twist.vx",
-                                  "127.0.0.1:1 none x"}; // who is away is kept too
-        QCOMPARE(window.findChild<PlotsPanel *>()->plotted(), plotted);
+        for (const FieldId &field : plotted)
+            QVERIFY(window.findChild<PlotsPanel *>()->board().has(field));
         window.close();
         QCOMPARE(MainWindow::keptAddresses(file), QStringList(address));
     }
@@ -196,20 +195,21 @@ void TestConsolePanels::plotTickedPausedAndWritten() {
             vx = odometry->child(i);
     QVERIFY(vx);
     vx->setCheckState(0, Qt::Checked);
-    QtCharts::QChart *const chart = panel->findChild<QtCharts::QChartView *>()->chart();
-    QCOMPARE(chart->series().size(), 1);
-    auto *const curve = static_cast<QtCharts::QXYSeries *>(chart->series().constFirst());
-    QTRY_VERIFY(curve->count() > 10);
+    const PlotPane *const pane = panel->board().panes().front();
+    QCOMPARE(int(pane->scene().lines.size()), 1);
+    const Samples &samples = *pane->scene().lines.front().samples;
+    QTRY_VERIFY(samples.size() > 10);
 
     window_->drive.steer("test", {1, 0, 0}, true);
-    auto *const axis = static_cast<QtCharts::QValueAxis *>(chart->axes(Qt::Vertical).constFirst());
-    QTRY_VERIFY(axis->max() > 0.1); // m/s
+    QTRY_VERIFY(pane->scene().left.most() > 0.1); // m/s
     OpenWindow::click(panel, "pause");
-    const int paused = curve->count();
+    const double held = pane->scene().lines.front().now;
+    const std::size_t paused = samples.size();
     QTest::qWait(400); // nothing may happen
-    QCOMPARE(curve->count(), paused);
+    QCOMPARE(pane->scene().lines.front().now, held);
     OpenWindow::click(panel, "pause");
-    QTRY_VERIFY(curve->count() > paused + 5); // what was sampled meanwhile is there
+    QTRY_VERIFY(pane->scene().lines.front().now > held + 0.3);
+    QVERIFY(samples.size() > paused + 4); // what was sampled meanwhile is there
     window_->drive.halt();
     window_->drive.steer("test", {}, false);
 
@@ -217,20 +217,21 @@ void TestConsolePanels::plotTickedPausedAndWritten() {
     QVERIFY(panel->exportTo(file).ok());
     QFile table(file);
     QVERIFY(table.open(QIODevice::ReadOnly));
-    QCOMPARE(table.readLine().trimmed(), QByteArray("stamp,daemon,topic,field,value"));
-    int rows = 0;
+    QCOMPARE(table.readLine().trimmed(), QByteArray("stamp,daemon,topic,field,value,unit"));
+    std::size_t rows = 0;
     double last = 0;
     while (!table.atEnd()) {
         const QList<QByteArray> cells = table.readLine().trimmed().split(',');
-        QCOMPARE(cells.size(), 5);
+        QCOMPARE(cells.size(), 6);
         QVERIFY(cells[0].toDouble() > last);
         last = cells[0].toDouble();
         QCOMPARE(cells[3], QByteArray("twist.vx"));
+        QCOMPARE(cells[5], QByteArray("m/s"));
         ++rows;
     }
     QVERIFY(rows >= paused);
     vx->setCheckState(0, Qt::Unchecked);
-    QCOMPARE(chart->series().size(), 0);
+    QVERIFY(pane->scene().lines.empty());
 }
 
 void TestConsolePanels::plotThatCannotBeWritten() {

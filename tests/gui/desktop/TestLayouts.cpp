@@ -54,6 +54,7 @@ private:
             dialog->setTextValue(name);
             dialog->accept();
         }
+        QJsonArray plots() const { return window->findChild<PlotsPanel *>()->state()["panes"].toArray()[0].toArray(); }
         QString notice() const { return window->findChild<QLabel *>("keepingBanner")->text(); }
         bool isWhole() const {
             auto *const stop = window->findChild<QPushButton *>("stop");
@@ -84,14 +85,16 @@ void TestLayouts::init() {
 }
 
 void TestLayouts::savedSwitchedAndDeletedByHand() {
+    const QJsonObject plotted{{"daemon", "127.0.0.1:1"}, {"topic", "a"}, {"field", "b"}};
     {
         Window one(file_, {"127.0.0.1:1"});
         QVERIFY(one.dock("drive")->isVisible());
         one.saveAs("Bench & desk");
         one.dock("drive")->hide();
-        one.window->findChild<PlotsPanel *>()->plot({"127.0.0.1:1 a b"});
+        one.window->findChild<PlotsPanel *>()->setState({{"panes", QJsonArray{QJsonArray{plotted}}}});
         one.pick("layout Usual");
         QTRY_VERIFY(one.dock("drive")->isVisible());
+        QVERIFY(one.plots().isEmpty()); // they are of the other one
         one.pick("layout Bench & desk");
         QTRY_VERIFY(!one.dock("drive")->isVisible());
         one.window->close();
@@ -100,7 +103,7 @@ void TestLayouts::savedSwitchedAndDeletedByHand() {
     QVERIFY(!next.dock("drive")->isVisible());
     QCOMPARE(next.window->layouts().names(), QStringList({"Usual", "Bench & desk"}));
     QCOMPARE(next.window->layouts().current(), QString("Bench & desk"));
-    QVERIFY(next.window->findChild<PlotsPanel *>()->plotted().contains("127.0.0.1:1 a b"));
+    QCOMPARE(next.plots(), QJsonArray{plotted});
     next.pick("resetLayout");
     QTRY_VERIFY(next.dock("drive")->isVisible());
     next.pick("removeLayout");

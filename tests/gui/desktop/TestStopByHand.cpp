@@ -3,7 +3,7 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QComboBox>
-#include <QFileDialog>
+#include <QDialog>
 #include <QMenu>
 #include <QMenuBar>
 #include <QToolButton>
@@ -194,25 +194,26 @@ void TestStopByHand::everyDialog() {
     const auto dialog = [] {
         return QApplication::activeWindow() && qobject_cast<QDialog *>(QApplication::activeWindow());
     };
-    for (const QString &name : {QString("export"), QString("csv"), QString("helpHere"), QString("about")}) {
-        if (name == "csv") {
+    for (const char *name : {"export", "csv", "picture", "saveSet", "helpHere", "about"}) {
+        if (name == QString("csv")) {
             auto *const dock = open_->window.findChild<QDockWidget *>("plots");
             dock->show();
             dock->raise();
         }
         auto *const button = open_->window.findChild<QAbstractButton *>(name);
         auto *const action = open_->window.findChild<QAction *>(name); // of a menu
-        QVERIFY2(button || action, qPrintable(name));
+        QVERIFY2(button || action, name);
         QTRY_VERIFY(!button || !button->visibleRegion().isEmpty());
         stopsWhileOpen(
             name, [&] { button ? click(middleOf(button)) : action->trigger(); },
             [&] {
                 if (!dialog())
                     return false;
-                if (hand == "space") // in the list of files; in the field of the name it is text
-                    for (auto *list : QApplication::activeWindow()->findChildren<QAbstractItemView *>())
-                        if (list->isVisible())
-                            list->setFocus();
+                if (hand == "space") // on a list of files or a button; in the field of the name it is text
+                    for (auto *widget : QApplication::activeWindow()->findChildren<QWidget *>())
+                        if (widget->isVisible() && (qobject_cast<QAbstractItemView *>(widget) ||
+                                                    qobject_cast<QAbstractButton *>(widget)))
+                            widget->setFocus();
                 return true;
             },
             hand);

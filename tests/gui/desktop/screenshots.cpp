@@ -2,6 +2,8 @@
 // [DOCK]]], of all docks or of one.
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/PlotsPanel.h"
+#include "gui/desktop/panels/TopicTree.h"
 #include "tests/gui/desktop/RobotProcesses.h"
 
 #include <QAbstractButton>
@@ -26,16 +28,23 @@ private Q_SLOTS:
 
 QStringList Screenshots::arguments;
 
-/// Ticks the measured velocities in the panel of plots.
+/// Plots heading and velocity, and below them how the wheels turn.
 static void plot(MainWindow &window) {
-    auto *const tree = window.findChild<QTreeWidget *>("topics");
-    for (QTreeWidgetItem *item : tree->findItems("odometry", Qt::MatchExactly | Qt::MatchRecursive)) {
-        item->setExpanded(true);
-        QTRY_VERIFY(item->childCount() > 0);
-        for (int i = 0; i < item->childCount(); ++i)
-            if (item->child(i)->text(0).startsWith("twist"))
-                item->child(i)->setCheckState(0, Qt::Checked);
-    }
+    PlotBoard &board = window.findChild<PlotsPanel *>()->board();
+    auto *const tree = window.findChild<TopicTree *>();
+    const auto tick = [tree](const QString &topic, const QStringList &names) {
+        for (QTreeWidgetItem *item : tree->findItems(topic, Qt::MatchExactly | Qt::MatchRecursive)) {
+            item->setExpanded(true);
+            for (int i = 0; i < item->childCount(); ++i)
+                if (names.contains(item->child(i)->text(0)))
+                    item->child(i)->setCheckState(0, Qt::Checked);
+        }
+    };
+    tick("odometry", {"pose.theta", "twist.vx"});
+    board.addPane();
+    tick("wheels", {"front_left.speed", "front_right.speed"});
+    board.time().setSpan(10);
+    tree->scrollToItem(tree->findItems("pose.theta", Qt::MatchExactly | Qt::MatchRecursive).value(0));
 }
 
 /// Whether the picture of this dock is asked for.
@@ -52,6 +61,11 @@ static void resize(MainWindow &window) {
 static void take(MainWindow &window, QDockWidget &dock) {
     dock.raise();
     QTest::qWait(400);
+    if (auto *const plots = dock.findChild<PlotsPanel *>()) {
+        QTest::qWait(2000); // rates are those of a second
+        plots->board().time().setCursor(-3.2);
+        QTest::qWait(200);
+    }
     const QString file =
         QString("%1/desktop-%2%3.png")
             .arg(Screenshots::arguments[1], dock.objectName(), Screenshots::arguments.value(2));

@@ -1,0 +1,117 @@
+#include "gui/desktop/panels/PlotSuggestions.h"
+
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/PlainLabel.h"
+
+#include <QGridLayout>
+#include <QJsonArray>
+#include <QPushButton>
+#include <QVBoxLayout>
+#include <map>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr int mostSuggestions = 6, mostFields = 4, mostSeen = 60, longestText = 48;
+
+/// What operators look at first.
+const QStringList units{"m/s", "rad/s", "V", "A", "°C", "m", "rad", "Hz"};
+
+/// "twist.vx" as "vx", "controllers.0.battery_v" as "battery_v".
+QString leaf(const QString &path) {
+    const QStringList names = path.split('.');
+    bool isNumber = false;
+    names.last().toUInt(&isNumber);
+    return isNumber && names.size() > 1 ? names[names.size() - 2] : names.last();
+}
+
+/// A few numbers together say more than one alone; of many none stands out.
+int rank(std::size_t count) {
+    return count > std::size_t(mostFields) ? 2 : count == 1 ? 1 : 0;
+}
+
+} // namespace
+
+PlotSuggestions::PlotSuggestions(Fleet &fleet, QWidget *parent)
+    : QWidget(parent)
+    , fleet_(fleet)
+    , grid_(new QGridLayout) {
+    setObjectName("suggestions");
+    auto *const text = new PlainLabel(tr("Nothing is plotted. Tick a number on the left, or begin with:"));
+    text->setWordWrap(true);
+    auto *const layout = new QVBoxLayout(this);
+    layout->addWidget(text);
+    layout->addLayout(grid_);
+    layout->addStretch(1);
+    connect(&fleet, &Fleet::changed, this, &PlotSuggestions::refresh);
+    connect(&fleet, &Fleet::robotChosen, this, &PlotSuggestions::refresh);
+    refresh();
+}
+
+// One of each unit.
+std::vector<PlotSuggestions::Suggestion> PlotSuggestions::find() const {
+    std::map<int, Suggestion> best; // by the place of their unit
+    for (const DaemonLink *daemon :
+         fleet_.robot() ? fleet_.robot()->daemons() : std::vector<DaemonLink *>()) {
+        const QJsonArray topics = daemon->description()["x-topics"].toArray();
+        for (int i = 0; i < std::min(topics.size(), mostSeen); ++i) {
+            const QString topic = topics[i]["name"].toString();
+            const QJsonObject schema = topics[i]["schema"].toObject();
+            std::map<int, std::vector<FieldId>> found;
+            for (const QString &path : numericPaths(schema, mostSeen, UnknownLists::One))
+                if (const int unit = units.indexOf(unitAt(schema, path)); unit >= 0)
+                    found[unit].push_back({daemon->address(), topic, path});
+            for (auto &[unit, fields] : found) {
+                Suggestion &known = best[unit];
+                if (!known.fields.empty() && rank(known.fields.size()) <= rank(fields.size()))
+                    continue;
+                known.fields = std::move(fields);
+            }
+        }
+    }
+    std::vector<Suggestion> all;
+    for (auto &[unit, suggestion] : best) {
+        if (int(suggestion.fields.size()) > mostFields)
+            suggestion.fields.resize(mostFields);
+        QStringList names;
+        for (const FieldId &field : suggestion.fields)
+            if (!names.contains(leaf(field.path)))
+                names.append(leaf(field.path));
+        suggestion.text =
+            tr("%1: %2 (%3)").arg(suggestion.fields.front().topic, names.join(", "), units[unit]);
+        if (int(all.size()) < mostSuggestions)
+            all.push_back(suggestion);
+    }
+    return all;
+}
+
+void PlotSuggestions::refresh() {
+    QStringList topics;
+    for (const DaemonLink *daemon : fleet_.robot() ? fleet_.robot()->daemons() : std::vector<DaemonLink *>())
+        topics.append(QString("%1 %2").arg(daemon->address()).arg(daemon->topics().size()));
+    if (std::exchange(topics_, topics) == topics)
+        return; // the same descriptions
+    const std::vector<Suggestion> suggestions = find();
+    QStringList texts;
+    for (const Suggestion &suggestion : suggestions)
+        texts.append(suggestion.text);
+    if (texts == shown_)
+        return;
+    shown_ = texts;
+    while (QLayoutItem *const item = grid_->takeAt(0)) {
+        item->widget()->deleteLater();
+        delete item;
+    }
+    for (std::size_t i = 0; i < suggestions.size(); ++i) {
+        auto *const button = new QPushButton(theme::icon("plot"),
+                                             shortLine(suggestions[i].text, longestText).replace('&', "&&"));
+        button->setObjectName("suggestion");
+        button->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed); // a long text widens no panel
+        button->setToolTip(toolTipOf(tr("Plots %1").arg(suggestions[i].text)));
+        connect(button, &QPushButton::clicked, this,
+                [this, fields = suggestions[i].fields] { Q_EMIT wanted(fields); });
+        grid_->addWidget(button, int(i) / 2, int(i) % 2);
+    }
+}
+
+} // namespace hermes::desktop
