@@ -1,6 +1,7 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/model/MethodSchema.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
@@ -18,24 +19,6 @@
 
 namespace hermes::desktop {
 namespace {
-
-/// The parameters of a method as one object's schema.
-QJsonObject parametersOf(const QJsonObject &method) {
-    QJsonObject properties;
-    QJsonArray required;
-    for (const QJsonValue &parameter : method["params"].toArray()) {
-        QJsonObject schema = parameter["schema"].toObject();
-        if (!schema.contains("description"))
-            schema["description"] = parameter["description"].toString();
-        properties[parameter["name"].toString()] = schema;
-        if (parameter["required"].toBool())
-            required.append(parameter["name"]);
-    }
-    QJsonObject schema{{"type", "object"}, {"properties", properties}};
-    if (!required.isEmpty())
-        schema["required"] = required;
-    return schema;
-}
 
 constexpr int longestName = 80, longestLine = 500, longestAnswer = 100000, mostMethods = 1000;
 
