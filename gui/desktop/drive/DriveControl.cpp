@@ -47,8 +47,10 @@ void DriveControl::follow() {
     if (found == motors_)
         return;
     halt();
-    if (motors_)
+    if (motors_) {
         motors_->disconnect(this);
+        motors_->unsubscribe(settings_);
+    }
     motors_ = found;
     hold_ = {};
     measured_ = {};
@@ -61,12 +63,20 @@ void DriveControl::follow() {
         return tell(tr("No robot that can drive is connected."));
     tell({});
     found->call("settings.get", {{"path", "motion"}}, this, [this](const Result<QJsonValue> &motion) {
-        const auto most = [&](const char *name, double usual) { // m/s or rad/s
-            return qBound(0.0, motion ? (*motion)[QLatin1String(name)].toDouble(usual) : usual, 100.0);
-        };
-        most_ = {most("vx", most_.vx), most("vy", most_.vy), most("omega", most_.omega)};
+        if (motion)
+            takeMost(*motion);
     });
+    settings_ = found->subscribe("settings", {{"max_rate_hz", 2}},
+                                 [this](const TopicUpdate &update) { takeMost(update.json()["motion"]); });
     poll();
+}
+
+void DriveControl::takeMost(const QJsonValue &motion) {
+    const auto most = [&](const char *name, double usual) { // m/s or rad/s
+        return qBound(0.0, motion[QLatin1String(name)].toDouble(usual), 100.0);
+    };
+    most_ = {most("vx", most_.vx), most("vy", most_.vy), most("omega", most_.omega)};
+    Q_EMIT changed();
 }
 
 void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld) {
@@ -76,7 +86,7 @@ void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld)
 }
 
 void DriveControl::setLimit(double share) {
-    limit_ = qBound(0.05, share, 1.0);
+    limit_ = qBound(leastLimit, share, 1.0);
     Q_EMIT changed();
 }
 
