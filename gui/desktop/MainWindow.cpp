@@ -1,5 +1,6 @@
 #include "gui/desktop/MainWindow.h"
 
+#include "gui/desktop/ButtonBar.h"
 #include "gui/desktop/EventBar.h"
 #include "gui/desktop/HelpWindow.h"
 #include "gui/desktop/MenuBar.h"
@@ -8,6 +9,7 @@
 #include "gui/desktop/drive/DriveKeys.h"
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/drive/StopKeys.h"
+#include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
@@ -44,6 +46,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , drive_(drive)
     , log_(fleet)
     , eventWatch_(fleet, log_, events_)
+    , runner_(fleet, drive)
     , layoutFile_(layoutFile) {
     if (!layoutFile_.isEmpty())
         sounds_.switchTo(QSettings(layoutFile_, QSettings::IniFormat).value("sounds/on", true).toBool());
@@ -72,8 +75,9 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     setCentralWidget(map_ = new MapPanel(fleet));
     auto *const gamepad = new DriveGamepad(drive_, layoutFile_, this);
     for (const PanelKind &kind : panelKinds())
-        addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_}));
+        addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_, buttons_}));
     addEventBar();
+    addButtonBar();
     new DriveKeys(drive_, *this);
     new EnterKey(*this);
     new WheelGuard(*this);
@@ -81,10 +85,16 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     addMenus(*stopKeys);
     restoreLayout();
     connect(&findChild<PlotsPanel *>()->sets(), &PlotSets::changed, this, &MainWindow::saveLayout);
+    connect(&buttons_, &Buttons::changed, this, &MainWindow::saveButtons);
     centralWidget()->setFocus(); // so that the keys drive
 }
 
-MainWindow::~MainWindow() = default;
+// What shows the models of this window goes before them.
+MainWindow::~MainWindow() {
+    delete buttonBar_;
+    for (QDockWidget *const dock : docks_)
+        delete dock;
+}
 
 QStringList MainWindow::keptAddresses(const QString &layoutFile) {
     return QSettings(layoutFile, QSettings::IniFormat).value("robots/addresses").toStringList();
@@ -154,15 +164,50 @@ void MainWindow::showHelp() {
     help().showAt(focus && map_->isAncestorOf(focus) ? tr("The map") : QString());
 }
 
-void MainWindow::addEventBar() {
-    auto *const events = new EventBar(events_, sounds_);
-    auto *const bar = new QToolBar(tr("Last event"));
-    bar->setObjectName("eventBar");
+/// At the foot, where nothing above moves with it.
+QToolBar *MainWindow::addFootBar(const QString &title, const char *name, QWidget *content) {
+    auto *const bar = new QToolBar(title);
+    bar->setObjectName(name);
     bar->setMovable(false);
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
-    bar->addWidget(events);
+    bar->addWidget(content);
     addToolBar(Qt::BottomToolBarArea, bar);
+    return bar;
+}
+
+void MainWindow::addEventBar() {
+    auto *const events = new EventBar(events_, sounds_);
+    addFootBar(tr("Last event"), "eventBar", events);
     connect(events, &EventBar::listWanted, this, [this] { showPanel("events"); });
+}
+
+void MainWindow::addButtonBar() {
+    auto *const buttons = new ButtonBar(fleet_, buttons_, runner_);
+    addToolBarBreak(Qt::BottomToolBarArea); // a line of their own, above that of events
+    buttonBar_ = addFootBar(tr("Buttons"), "buttonBar", buttons);
+    connect(buttons, &ButtonBar::editWanted, this, [this] {
+        showPanel("commands");
+        findChild<CommandsPanel *>()->editButtons();
+    });
+    connect(&buttons_, &Buttons::changed, this, [this] { buttonBar_->setVisible(!buttons_.all().empty()); });
+}
+
+/// Whatever stands there.
+void MainWindow::restoreButtons() {
+    constexpr int most = 4 << 20; // bytes
+    const QByteArray kept =
+        QSettings(layoutFile_, QSettings::IniFormat).value("buttons/list").toString().toUtf8();
+    if (kept.size() <= most)
+        buttons_.setState(QJsonDocument::fromJson(kept).array());
+}
+
+void MainWindow::saveButtons() const {
+    if (layoutFile_.isEmpty())
+        return;
+    QDir().mkpath(QFileInfo(layoutFile_).path());
+    QSettings(layoutFile_, QSettings::IniFormat)
+        .setValue("buttons/list",
+                  QString::fromUtf8(QJsonDocument(buttons_.state()).toJson(QJsonDocument::Compact)));
 }
 
 void MainWindow::showPanel(const QString &name) {
@@ -178,6 +223,7 @@ void MainWindow::restoreLayout() {
     resizeDocks({docks_[1]}, {220}, Qt::Vertical);
     docks_[0]->raise();
     docks_[1]->raise();
+    buttonBar_->hide();
     if (layoutFile_.isEmpty())
         return;
     const QSettings layout(layoutFile_, QSettings::IniFormat);
@@ -188,6 +234,7 @@ void MainWindow::restoreLayout() {
     plots->setState(objectFrom(layout.value("plots/shown")));
     for (QToolBar *banner : banners_)
         banner->hide(); // whatever it said when the layout was kept
+    restoreButtons();
 }
 
 void MainWindow::saveLayout() const {

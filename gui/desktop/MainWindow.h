@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/model/EventWatch.h"
+#include "gui/desktop/model/MacroRunner.h"
 #include "gui/desktop/panels/Panels.h"
 
 #include <QMainWindow>
@@ -34,10 +35,14 @@ protected:
 private:
     void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
+    QToolBar *addFootBar(const QString &title, const char *name, QWidget *content);
     void addEventBar();
     void addMenus(StopKeys &keys);
     void showHelp();
     HelpWindow &help();
+    void addButtonBar();
+    void restoreButtons();
+    void saveButtons() const;
     void showPanel(const QString &name);
     void restoreLayout();
     void saveLayout() const;
@@ -48,6 +53,8 @@ private:
     LogFeed log_;
     Events events_;
     EventWatch eventWatch_;
+    Buttons buttons_;
+    MacroRunner runner_;
     MapPanel *map_;
     const QString layoutFile_;
     std::vector<QDockWidget *> docks_;
@@ -55,6 +62,7 @@ private:
     QList<QAction *> panelActions_; ///< with keys of their own
     HelpWindow *help_ = nullptr;
     std::vector<QToolBar *> banners_;
+    QToolBar *buttonBar_ = nullptr;
 };
 
 } // namespace hermes::desktop

@@ -231,6 +231,7 @@ void DriveControl::stop() {
     isDriving_ = false;
     mustCentre_ = isAnyHeld();
     stop_.press();
+    Q_EMIT stopPressed();
     Q_EMIT changed();
 }
 

@@ -72,6 +72,8 @@ public:
 
 Q_SIGNALS:
     void changed();
+    /// STOP was pressed.
+    void stopPressed();
 
 private:
     struct Input {
