@@ -1,5 +1,6 @@
 #include "gui/desktop/MainWindow.h"
 
+#include "gui/desktop/ButtonBar.h"
 #include "gui/desktop/EventBar.h"
 #include "gui/desktop/HelpWindow.h"
 #include "gui/desktop/LayoutMenu.h"
@@ -9,6 +10,7 @@
 #include "gui/desktop/drive/DriveKeys.h"
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/drive/StopKeys.h"
+#include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
@@ -45,6 +47,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , drive_(drive)
     , log_(fleet)
     , eventWatch_(fleet, log_, events_)
+    , runner_(fleet, drive)
     , layouts_(layoutFile)
     , keeping_(new Banner) {
     sounds_.switchTo(layouts_.value("sounds") != "off");
@@ -78,8 +81,9 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     setCentralWidget(map_ = new MapPanel(fleet));
     auto *const gamepad = new DriveGamepad(drive_, layouts_, this);
     for (const PanelKind &kind : panelKinds())
-        addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_}));
+        addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_, buttons_}));
     addEventBar();
+    addButtonBar();
     new DriveKeys(drive_, *this);
     new EnterKey(*this);
     new WheelGuard(*this);
@@ -93,6 +97,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
         layouts_.setValue("plotSets", textOf(plotSets.sets()));
         save();
     });
+    restoreButtons();
     showLayout();
     tellOfKeeping(layouts_.problem() + layouts_.damage());
     fleet.setNames(layouts_.robots().names);
@@ -102,7 +107,12 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     connect(&fleet, &Fleet::robotChosen, this, &MainWindow::keepRobots);
 }
 
-MainWindow::~MainWindow() = default;
+// What shows the models of this window goes before them.
+MainWindow::~MainWindow() {
+    delete buttonBar_;
+    for (QDockWidget *const dock : docks_)
+        delete dock;
+}
 
 QStringList MainWindow::keptAddresses(const QString &layoutFile) {
     return Layouts(layoutFile).robots().addresses;
@@ -173,15 +183,42 @@ void MainWindow::showHelp() {
     help().showAt(focus && map_->isAncestorOf(focus) ? tr("The map") : QString());
 }
 
-void MainWindow::addEventBar() {
-    auto *const events = new EventBar(events_, sounds_);
-    auto *const bar = new QToolBar(tr("Last event"));
-    bar->setObjectName("eventBar");
+/// At the foot, where nothing above moves with it.
+QToolBar *MainWindow::addFootBar(const QString &title, const char *name, QWidget *content) {
+    auto *const bar = new QToolBar(title);
+    bar->setObjectName(name);
     bar->setMovable(false);
     bar->setContextMenuPolicy(Qt::PreventContextMenu);
-    bar->addWidget(events);
+    bar->addWidget(content);
     addToolBar(Qt::BottomToolBarArea, bar);
+    return bar;
+}
+
+void MainWindow::addEventBar() {
+    auto *const events = new EventBar(events_, sounds_);
+    addFootBar(tr("Last event"), "eventBar", events);
     connect(events, &EventBar::listWanted, this, [this] { showPanel("events"); });
+}
+
+void MainWindow::addButtonBar() {
+    auto *const buttons = new ButtonBar(fleet_, buttons_, runner_);
+    addToolBarBreak(Qt::BottomToolBarArea); // a line of their own, above that of events
+    buttonBar_ = addFootBar(tr("Buttons"), "buttonBar", buttons);
+    connect(buttons, &ButtonBar::editWanted, this, [this] {
+        showPanel("commands");
+        findChild<CommandsPanel *>()->editButtons();
+    });
+    connect(&buttons_, &Buttons::changed, this, [this] { buttonBar_->setVisible(!buttons_.all().empty()); });
+}
+
+/// Whatever stands there.
+void MainWindow::restoreButtons() {
+    buttons_.setState(QJsonDocument::fromJson(layouts_.value("buttons").toUtf8()).array());
+    connect(&buttons_, &Buttons::changed, this, [this] {
+        layouts_.setValue("buttons",
+                          QString::fromUtf8(QJsonDocument(buttons_.state()).toJson(QJsonDocument::Compact)));
+        save();
+    });
 }
 
 void MainWindow::showPanel(const QString &name) {
@@ -239,6 +276,7 @@ void MainWindow::showBars() {
         findChild<QToolBar *>(always)->show();
     for (const auto &[banner, bar] : banners_)
         bar->setVisible(!banner->text().isEmpty());
+    buttonBar_->setVisible(!buttons_.all().empty());
 }
 
 void MainWindow::resetLayout() {

@@ -2,6 +2,7 @@
 
 #include "gui/desktop/Layouts.h"
 #include "gui/desktop/model/EventWatch.h"
+#include "gui/desktop/model/MacroRunner.h"
 #include "gui/desktop/panels/Panels.h"
 
 #include <QMainWindow>
@@ -35,10 +36,13 @@ protected:
 private:
     void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
+    QToolBar *addFootBar(const QString &title, const char *name, QWidget *content);
     void addEventBar();
     void addMenus();
     void showHelp();
     HelpWindow &help();
+    void addButtonBar();
+    void restoreButtons();
     void showPanel(const QString &name);
     void arrange();
     QMenu *makeLayoutMenu();
@@ -57,6 +61,8 @@ private:
     LogFeed log_;
     Events events_;
     EventWatch eventWatch_;
+    Buttons buttons_;
+    MacroRunner runner_;
     MapPanel *map_;
     Layouts layouts_;
     QByteArray usual_; ///< how the panels are arranged at the first start
@@ -68,6 +74,7 @@ private:
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
     Banner *keeping_;
     QTimer notice_;
+    QToolBar *buttonBar_ = nullptr;
 };
 
 } // namespace hermes::desktop

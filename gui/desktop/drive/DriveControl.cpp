@@ -64,8 +64,10 @@ void DriveControl::follow() {
     if (found == motors_)
         return;
     halt();
-    if (motors_)
+    if (motors_) {
         motors_->disconnect(this);
+        motors_->unsubscribe(settings_);
+    }
     motors_ = found;
     if (found)
         driven_ = found;
@@ -80,11 +82,11 @@ void DriveControl::follow() {
         return tell(tr("No robot that can drive is connected."));
     tell({});
     found->call("settings.get", {{"path", "motion"}}, this, [this](const Result<QJsonValue> &motion) {
-        const auto most = [&](const char *name, double usual) { // m/s or rad/s
-            return qBound(0.0, motion ? (*motion)[QLatin1String(name)].toDouble(usual) : usual, 100.0);
-        };
-        most_ = {most("vx", most_.vx), most("vy", most_.vy), most("omega", most_.omega)};
+        if (motion)
+            takeMost(*motion);
     });
+    settings_ = found->subscribe("settings", {{"max_rate_hz", 2}},
+                                 [this](const TopicUpdate &update) { takeMost(update.json()["motion"]); });
     poll();
 }
 
@@ -109,6 +111,14 @@ QString DriveControl::objection(const Robot &robot) const {
     return {};
 }
 
+void DriveControl::takeMost(const QJsonValue &motion) {
+    const auto most = [&](const char *name, double usual) { // m/s or rad/s
+        return qBound(0.0, motion[QLatin1String(name)].toDouble(usual), 100.0);
+    };
+    most_ = {most("vx", most_.vx), most("vy", most_.vy), most("omega", most_.omega)};
+    Q_EMIT changed();
+}
+
 void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld) {
     inputs_[input] = {wish, isHeld};
     if (isHeld)
@@ -118,7 +128,7 @@ void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld)
 }
 
 void DriveControl::setLimit(double share) {
-    limit_ = qBound(0.05, share, 1.0);
+    limit_ = qBound(leastLimit, share, 1.0);
     Q_EMIT changed();
 }
 
@@ -263,6 +273,7 @@ void DriveControl::stop() {
     isDriving_ = false;
     mustCentre_ = isAnyHeld();
     stop_.press();
+    Q_EMIT stopPressed();
     Q_EMIT changed();
 }
 

@@ -22,6 +22,7 @@ public:
     static constexpr std::chrono::milliseconds period{50};
     /// How long the control is kept without a command.
     static constexpr double lease_s = 1;
+    static constexpr double leastLimit = 0.05;
 
     explicit DriveControl(Fleet &fleet, QObject *parent = nullptr);
 
@@ -31,6 +32,8 @@ public:
     /// The share of the largest speed that the whole stick means, 0.05 to 1.
     void setLimit(double share);
     double limit() const { return limit_; }
+    /// The robot's largest speeds, in m/s and rad/s.
+    const Twist2D &most() const { return most_; }
     /// The emergency stop of the robot: at once, without the control, latched until release().
     void stop();
     const StopControl &stopping() const { return stop_; }
@@ -69,6 +72,8 @@ public:
 
 Q_SIGNALS:
     void changed();
+    /// STOP was pressed.
+    void stopPressed();
 
 private:
     struct Input {
@@ -81,6 +86,7 @@ private:
     void onMoved(const DaemonLink *daemon, Robot *to);
     /// Why the robot may not be removed now; empty: it may.
     QString objection(const Robot &robot) const;
+    void takeMost(const QJsonValue &motion);
     void tick();
     void acquire(bool takeOver);
     void ask();
@@ -100,6 +106,7 @@ private:
     Fleet &fleet_;
     TopicFeed odometry_;
     QPointer<DaemonLink> motors_, driven_; ///< the second is away, as may be
+    int settings_ = 0;                     // subscription
     StopControl stop_;
     StopPhase shownPhase_ = StopPhase::None;
     ReplayWatch replay_;

@@ -1,6 +1,8 @@
 #include "gui/desktop/panels/CommandsPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/model/MethodSchema.h"
+#include "gui/desktop/panels/ButtonsEditor.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
@@ -10,32 +12,16 @@
 #include <QJsonDocument>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QMenu>
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSplitter>
+#include <QStackedWidget>
 #include <QVBoxLayout>
 
 namespace hermes::desktop {
 namespace {
-
-/// The parameters of a method as one object's schema.
-QJsonObject parametersOf(const QJsonObject &method) {
-    QJsonObject properties;
-    QJsonArray required;
-    for (const QJsonValue &parameter : method["params"].toArray()) {
-        QJsonObject schema = parameter["schema"].toObject();
-        if (!schema.contains("description"))
-            schema["description"] = parameter["description"].toString();
-        properties[parameter["name"].toString()] = schema;
-        if (parameter["required"].toBool())
-            required.append(parameter["name"]);
-    }
-    QJsonObject schema{{"type", "object"}, {"properties", properties}};
-    if (!required.isEmpty())
-        schema["required"] = required;
-    return schema;
-}
 
 constexpr int longestName = 80, longestLine = 500, longestAnswer = 100000, mostMethods = 1000;
 
@@ -66,9 +52,12 @@ QString readable(const QJsonValue &value) {
 
 } // namespace
 
-CommandsPanel::CommandsPanel(Fleet &fleet, QWidget *parent)
+CommandsPanel::CommandsPanel(Fleet &fleet, Buttons &buttons, QWidget *parent)
     : QWidget(parent)
-    , fleet_(fleet) {
+    , fleet_(fleet)
+    , buttons_(buttons)
+    , pages_(new QStackedWidget)
+    , editor_(new ButtonsEditor(fleet, buttons)) {
     auto *const splitter = new QSplitter;
     splitter->addWidget(makeMethods());
     splitter->addWidget(makeCall());
@@ -81,7 +70,12 @@ CommandsPanel::CommandsPanel(Fleet &fleet, QWidget *parent)
     answer_->setFont(theme::fixedFont());
     answer_->setPlaceholderText(tr("The answer appears here."));
     auto *const layout = new QVBoxLayout(this);
-    layout->addWidget(splitter);
+    layout->addWidget(pages_);
+    pages_->addWidget(splitter);
+    pages_->addWidget(editor_);
+    connect(editor_, &ButtonsEditor::closed, this, [this] { pages_->setCurrentIndex(0); });
+    connect(&buttons, &Buttons::changed, this, &CommandsPanel::offerSteps);
+    offerSteps();
 
     connect(&fleet, &Fleet::daemonChosen, this, &CommandsPanel::follow);
     connect(&fleet, &Fleet::changed, this, &CommandsPanel::update);
@@ -123,18 +117,68 @@ QWidget *CommandsPanel::makeCall() {
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     layout->addWidget(scroll, 1);
-    layout->addWidget(call_ = new QPushButton(theme::icon("call"), tr("Ru&n")));
+    layout->addWidget(makeActions());
     summary_->setWordWrap(true);
     summary_->setMinimumWidth(1);
     summary_->setObjectName("summary");
-    call_->setObjectName("call");
     connect(form_, &SchemaForm::edited, this, &CommandsPanel::update);
-    connect(call_, &QPushButton::clicked, this, &CommandsPanel::call);
-    asked_.setSingleShot(true);
-    asked_.setTimerType(Qt::PreciseTimer); // as its remaining time is looked at
-    asked_.setInterval(5000);              // a second press in this time is meant
-    connect(&asked_, &QTimer::timeout, this, &CommandsPanel::update);
+    connect(&second_, &SecondPress::changed, this, &CommandsPanel::update);
     return column;
+}
+
+QWidget *CommandsPanel::makeActions() {
+    auto *const row = new QWidget;
+    auto *const layout = new QHBoxLayout(row);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(call_ = new QPushButton(theme::icon("call"), tr("Ru&n")), 1);
+    layout->addWidget(addButton_ = new QPushButton(theme::icon("add"), tr("Add as a button")));
+    layout->addWidget(addStep_ = new QPushButton(tr("as a step")));
+    call_->setObjectName("call");
+    call_->setMinimumWidth(1); // what is replaced may be long
+    addButton_->setObjectName("addButton");
+    addButton_->setToolTip(tr("A button of your own that runs this command with these parameters"));
+    addStep_->setObjectName("addStep");
+    addStep_->setToolTip(tr("Adds this command to one of your buttons, after what that one does already"));
+    addStep_->setAccessibleName(tr("Add as a step of a button"));
+    addStep_->setMenu(new QMenu(this));
+    connect(call_, &QPushButton::clicked, this, &CommandsPanel::call);
+    connect(addButton_, &QPushButton::clicked, this, &CommandsPanel::addButton);
+    connect(addStep_->menu(), &QMenu::triggered, this,
+            [this](const QAction *chosen) { addStep(chosen->data().toInt()); });
+    return row;
+}
+
+MacroStep CommandsPanel::typedStep() const {
+    return MacroStep::of(fleet_, *daemon_, method_, form_->values());
+}
+
+void CommandsPanel::addButton() {
+    buttons_.add({shortLine(method_, Macro::longestName - 3), {typedStep()}});
+    editButtons();
+    editor_->choose(int(buttons_.all().size()) - 1);
+    editor_->nameIt();
+}
+
+void CommandsPanel::addStep(int place) {
+    Macro macro = buttons_.all().at(std::size_t(place));
+    macro.steps.push_back(typedStep());
+    buttons_.set(place, macro);
+}
+
+void CommandsPanel::editButtons() {
+    pages_->setCurrentWidget(editor_);
+}
+
+void CommandsPanel::offerSteps() {
+    QMenu *const menu = addStep_->menu();
+    menu->clear();
+    for (int i = 0; i < int(buttons_.all().size()); ++i) {
+        const Macro &macro = buttons_.all()[std::size_t(i)];
+        QAction *const action = menu->addAction(QString(macro.name).replace('&', "&&"));
+        action->setData(i);
+        action->setEnabled(int(macro.steps.size()) < Macro::mostSteps);
+    }
+    update();
 }
 
 void CommandsPanel::follow(DaemonLink *daemon) {
@@ -181,7 +225,7 @@ void CommandsPanel::listMethods() {
 
 void CommandsPanel::showMethod(const QString &name) {
     method_ = name;
-    asked_.stop();
+    second_.forget();
     const QJsonObject method = daemon_ ? daemon_->method(name) : QJsonObject();
     QString summary = method["summary"].toString();
     if (method["x-needs-lease"].toBool())
@@ -195,15 +239,8 @@ void CommandsPanel::showMethod(const QString &name) {
 
 void CommandsPanel::call() {
     const QString method = method_;
-    if (!daemon_->method(method)["x-destructive"].toString().isEmpty() && !asked_.isActive()) {
-        asked_.start();
-        return update();
-    }
-    constexpr int shortest_ms = 500; // a double click is no second thought
-    if (asked_.isActive() && asked_.remainingTime() > asked_.interval() - shortest_ms)
+    if (!daemon_->method(method)["x-destructive"].toString().isEmpty() && !second_.press())
         return;
-    asked_.stop();
-    update();
     QElapsedTimer time;
     time.start();
     answer_->setPlainText(tr("%1 ...").arg(shortLine(method)));
@@ -230,11 +267,14 @@ void CommandsPanel::update() {
     title_->setText(daemon_ ? fleet_.titleOf(*daemon_) : tr("Choose a daemon to see its commands."));
     const QString why = daemon_ ? daemon_->refusal(method_) : QString();
     const QString lost = daemon_ ? daemon_->method(method_)["x-destructive"].toString() : QString();
-    call_->setText(asked_.isActive() ? tr("Ru&n %1 now: replaces or forgets %2").arg(method_, shortLine(lost))
-                                     : tr("Ru&n"));
+    call_->setText(second_.isAwaited()
+                       ? tr("Ru&n %1 now: replaces or forgets %2").arg(method_, shortLine(lost))
+                       : tr("Ru&n"));
     call_->setToolTip(why);
-    call_->setEnabled(daemon_ && daemon_->isConnected() && why.isEmpty() && !method_.isEmpty() &&
-                      form_->isValid());
+    const bool isWhole = daemon_ && !method_.isEmpty() && form_->isValid();
+    call_->setEnabled(isWhole && daemon_->isConnected() && why.isEmpty());
+    addButton_->setEnabled(isWhole && !buttons_.isFull());
+    addStep_->setEnabled(isWhole && !buttons_.all().empty());
 }
 
 } // namespace hermes::desktop

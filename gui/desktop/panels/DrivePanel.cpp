@@ -7,6 +7,7 @@
 #include "gui/desktop/widgets/MessageLabel.h"
 
 #include <QGridLayout>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QSlider>
 #include <QVBoxLayout>
@@ -18,16 +19,13 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
     , drive_(drive)
     , stick_(new Stick)
     , limit_(new QSlider(Qt::Horizontal))
-    , limitText_(new PlainLabel)
+    , speed_(new QLineEdit)
+    , turn_(new PlainLabel)
     , control_(new AgedLabel)
     , problem_(new MessageLabel)
     , takeOver_(new QPushButton(tr("Ta&ke over")))
     , blind_(new QPushButton(tr("Drive all the same"))) {
     stick_->setObjectName("stick");
-    limit_->setObjectName("limit");
-    limit_->setRange(5, 100);
-    limit_->setValue(qRound(100 * drive.limit()));
-    limit_->setToolTip(tr("What the whole stick means, as a share of the robot's largest speed"));
     control_->setObjectName("control");
     control_->setWordWrap(true);
     control_->setMinimumWidth(1);
@@ -35,19 +33,13 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
     takeOver_->setObjectName("takeOver");
     takeOver_->setToolTip(tr("Takes the control from the other client; the robot stops first"));
 
-    auto *const limitLabel = new PlainLabel(tr("Speed li&mit"));
-    limitLabel->setBuddy(limit_);
-    auto *const speed = new QHBoxLayout;
-    speed->addWidget(limitLabel);
-    speed->addWidget(limit_, 1);
-    speed->addWidget(limitText_);
     auto *const control = new QHBoxLayout;
     control->addWidget(control_, 1);
     control->addWidget(takeOver_);
     auto *const layout = new QVBoxLayout(this);
     layout->addWidget(stick_, 1);
     layout->addWidget(new GamepadRow(gamepad));
-    layout->addLayout(speed);
+    layout->addLayout(makeLimit());
     layout->addWidget(makeNumbers());
     layout->addLayout(control);
     layout->addWidget(problem_);
@@ -59,7 +51,6 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
 
     connect(stick_, &Stick::moved, this,
             [this](const Twist2D &wish, bool isHeld) { drive_.steer("stick", wish, isHeld); });
-    connect(limit_, &QSlider::valueChanged, this, [this](int percent) { drive_.setLimit(percent / 100.0); });
     connect(takeOver_, &QPushButton::clicked, &drive, &DriveControl::takeOver);
     connect(&drive, &DriveControl::changed, this, &DrivePanel::update);
     update();
@@ -89,6 +80,62 @@ QWidget *DrivePanel::makeNumbers() {
     return table;
 }
 
+QLayout *DrivePanel::makeLimit() {
+    limit_->setObjectName("limit");
+    limit_->setRange(qRound(100 * DriveControl::leastLimit), 100);
+    limit_->setAccessibleName(tr("Speed limit"));
+    speed_->setObjectName("speedLimit");
+    speed_->setAccessibleName(tr("Speed limit in m/s"));
+    speed_->setAlignment(Qt::AlignRight);
+    speed_->setFixedWidth(fontMetrics().horizontalAdvance("00.000") + 16);
+    turn_->setObjectName("turnLimit");
+    connect(limit_, &QSlider::valueChanged, this, [this](int percent) { drive_.setLimit(percent / 100.0); });
+    connect(speed_, &QLineEdit::editingFinished, this, &DrivePanel::takeTypedLimit);
+    connect(speed_, &QLineEdit::returnPressed, speed_, &QWidget::clearFocus); // so that the keys drive
+    auto *const label = new PlainLabel(tr("Speed li&mit"));
+    label->setBuddy(speed_);
+    auto *const grid = new QGridLayout;
+    grid->addWidget(label, 0, 0);
+    grid->addWidget(speed_, 0, 1, Qt::AlignRight);
+    grid->addWidget(new PlainLabel(tr("m/s")), 0, 2);
+    auto *const low = new QHBoxLayout;
+    low->addWidget(limit_, 1);
+    low->addWidget(turn_);
+    grid->addLayout(low, 1, 0, 1, 3);
+    grid->setColumnStretch(1, 1);
+    return grid;
+}
+
+/// Clearly wrong text is as if nothing was typed.
+void DrivePanel::takeTypedLimit() {
+    bool isNumber = false;
+    const double speed = speed_->text().replace(',', '.').toDouble(&isNumber);
+    const double most = drive_.most().vx;
+    const bool isModified = speed_->isModified();
+    speed_->setModified(false);
+    if (isModified && isNumber && speed > 0 && most > 0)
+        drive_.setLimit(speed / most);
+    showLimit();
+}
+
+void DrivePanel::showLimit() {
+    const Twist2D &most = drive_.most();
+    const double share = drive_.limit();
+    const bool isKnown = drive_.isPossible();
+    const QSignalBlocker silence(limit_);
+    limit_->setValue(qRound(100 * share));
+    speed_->setEnabled(isKnown && most.vx > 0);
+    if (!speed_->isModified())
+        speed_->setText(isKnown ? shortNumber(share * most.vx, 2) : QString());
+    turn_->setText(isKnown ? tr("%1 rad/s").arg(shortNumber(share * most.omega, 2)) : tr("rad/s"));
+    const QString toolTip =
+        tr("The speed of the whole stick: ahead, sideways and turning. "
+           "The largest of this robot are %1 m/s, %2 m/s and %3 rad/s.")
+            .arg(shortNumber(most.vx, 2), shortNumber(most.vy, 2), shortNumber(most.omega, 2));
+    for (QWidget *const widget : std::initializer_list<QWidget *>{limit_, speed_, turn_})
+        widget->setToolTip(isKnown ? toolTip : tr("The speed of the whole stick"));
+}
+
 void DrivePanel::update() {
     const auto numbers = [](const Twist2D &velocity) {
         std::array<QString, 3> texts;
@@ -104,7 +151,7 @@ void DrivePanel::update() {
         measured_[i]->tell(isMeasured ? measured[i] : QString(), drive_.measuredAge());
     }
     stick_->setEnabled(drive_.isPossible() && !drive_.isStopped());
-    limitText_->setText(tr("%1 %").arg(qRound(100 * drive_.limit())));
+    showLimit();
     const QString holder = drive_.holder();
     control_->tell(!drive_.isPossible() ? QString()
                    : holder.isEmpty()   ? tr("The control is free: move the stick to take it.")

@@ -4,6 +4,8 @@
 
 #include <QWidget>
 
+class QLayout;
+class QLineEdit;
 class QPushButton;
 class QSlider;
 
@@ -16,8 +18,8 @@ class MessageLabel;
 class PlainLabel;
 class Stick;
 
-/// Drives by hand: stick, speed limit, the velocity that is commanded and the one that is measured, who has
-/// the control.
+/// Drives by hand: stick, speed limit in m/s, the velocity that is commanded and the one that is measured,
+/// who has the control.
 class DrivePanel : public QWidget {
     Q_OBJECT
 public:
@@ -26,11 +28,15 @@ public:
 private:
     void update();
     QWidget *makeNumbers();
+    QLayout *makeLimit();
+    void showLimit();
+    void takeTypedLimit();
 
     DriveControl &drive_;
     Stick *stick_;
-    QSlider *limit_;
-    PlainLabel *limitText_;
+    QSlider *limit_; // of the largest speed, in percent
+    QLineEdit *speed_;
+    PlainLabel *turn_;
     AgedLabel *control_;
     MessageLabel *problem_;
     PlainLabel *commanded_[3];

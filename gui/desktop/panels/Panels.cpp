@@ -20,6 +20,10 @@ QWidget *makeDrivePanel(const PanelContext &context) {
     return new DrivePanel(context.drive, context.gamepad);
 }
 
+QWidget *makeCommandsPanel(const PanelContext &context) {
+    return new CommandsPanel(context.fleet, context.buttons);
+}
+
 QWidget *makeLogPanel(const PanelContext &context) {
     return new LogPanel(context.log);
 }
@@ -33,7 +37,7 @@ std::vector<PanelKind> &known() {
     static std::vector<PanelKind> all = {
         {Qt::LeftDockWidgetArea, "Daemons", "daemons", makePanel<DaemonsPanel>},
         {Qt::BottomDockWidgetArea, "Settings", "settings", makePanel<SettingsPanel>},
-        {Qt::BottomDockWidgetArea, "Commands", "commands", makePanel<CommandsPanel>, "settings"},
+        {Qt::BottomDockWidgetArea, "Commands", "commands", makeCommandsPanel, "settings"},
         {Qt::BottomDockWidgetArea, "Log", "log", makeLogPanel, "settings"},
         {Qt::BottomDockWidgetArea, "Plots", "plots", makePanel<PlotsPanel>, "settings"},
         {Qt::RightDockWidgetArea, "Drive", "drive", makeDrivePanel},

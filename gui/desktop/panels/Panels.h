@@ -3,6 +3,7 @@
 #include "gui/desktop/drive/DriveControl.h"
 #include "gui/desktop/model/Events.h"
 #include "gui/desktop/model/LogFeed.h"
+#include "gui/desktop/model/Macro.h"
 #include "gui/desktop/widgets/Sounds.h"
 
 #include <QWidget>
@@ -20,6 +21,7 @@ struct PanelContext {
     LogFeed &log;
     Events &events;
     Sounds &sounds;
+    Buttons &buttons;
 };
 
 /// A panel of the operator's window: what is in a dock, and where that lies at first.

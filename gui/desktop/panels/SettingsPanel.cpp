@@ -107,7 +107,7 @@ void SettingsPanel::keepEdits() {
                        .arg(daemon_->name()));
 }
 
-void SettingsPanel::load(bool keepsEdits) {
+void SettingsPanel::load() {
     DaemonLink *const daemon = daemon_;
     daemon->call("settings.schema", {}, this, [=](const Result<QJsonValue> &schema) {
         if (daemon != daemon_)
@@ -124,10 +124,8 @@ void SettingsPanel::load(bool keepsEdits) {
             const QJsonObject kept = edits_.take(daemon->address()), typed = form_->changes();
             form_->setSchema(found, values->toObject());
             form_->setFilter(filter_->text());
-            if (keepsEdits) {
-                form_->edit(kept);
-                form_->edit(typed);
-            }
+            form_->edit(kept);
+            form_->edit(typed);
             update();
         });
     });
@@ -139,7 +137,8 @@ void SettingsPanel::apply() {
 
 void SettingsPanel::submit(const std::function<void(const QString &told)> &then) {
     DaemonLink *const daemon = daemon_;
-    daemon->call("settings.set", {{"values", form_->changes()}}, this, [=](const Result<QJsonValue> &done) {
+    const QJsonObject sent = form_->changes();
+    daemon->call("settings.set", {{"values", sent}}, this, [=](const Result<QJsonValue> &done) {
         if (daemon != daemon_)
             return;
         if (!done) {
@@ -149,9 +148,22 @@ void SettingsPanel::submit(const std::function<void(const QString &told)> &then)
         QStringList restart;
         for (const QJsonValue &path : (*done)["restart"].toArray())
             restart.append(path.toString());
-        load(false);
+        accept(sent);
         then(restart.isEmpty() ? tr("Applied.")
                                : tr("Applied. Needs a restart of the daemon: %1").arg(restart.join(", ")));
+    });
+}
+
+/// The daemon may keep other values than were sent, as rounded ones.
+void SettingsPanel::accept(const QJsonObject &sent) {
+    DaemonLink *const daemon = daemon_;
+    form_->setBaseline(merged(form_->baseline(), sent));
+    update();
+    daemon->call("settings.get", {}, this, [=](const Result<QJsonValue> &values) {
+        if (daemon != daemon_ || !values || !values->isObject())
+            return;
+        form_->setBaseline(values->toObject());
+        update();
     });
 }
 

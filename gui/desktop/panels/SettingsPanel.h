@@ -24,10 +24,11 @@ public:
 
 private:
     void follow(DaemonLink *daemon);
-    void load(bool keepsEdits = true);
+    void load();
     void apply();
     /// Applies what was edited, and tells how that ended; then goes on when it was taken.
     void submit(const std::function<void(const QString &told)> &then);
+    void accept(const QJsonObject &sent);
     void save();
     void keepEdits();
     void update();

@@ -4,12 +4,11 @@
 #include "common/schema/SchemaText.h"
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/EditorFactory.h"
+#include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
-#include "gui/desktop/widgets/ValueEditor.h"
 
 #include <QGridLayout>
-#include <QRegularExpression>
-#include <QSet>
 #include <QVBoxLayout>
 #include <algorithm>
 
@@ -18,37 +17,21 @@ namespace {
 
 enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn };
 
-constexpr int longestTitle = 60, longestUnit = 20, longestNote = 120;
 constexpr int mostSteps = 10000; // of a check, which runs with each key
 
-/// The title, or words made of the path: "safety.command_timeout_s" in "s" reads "command timeout".
-QString titleOf(const QString &path, const QJsonObject &schema) {
-    const QString title = schema["title"].toString();
-    if (!title.isEmpty())
-        return title;
-    QStringList words = path.section('.', path.contains('.') ? 1 : 0).split(QRegularExpression("[._]"));
-    static const QSet<QString> units{"s", "m", "v", "a", "c", "b", "mps", "rps", "hz", "deg", "bytes"};
-    if (schema.contains("unit") && words.size() > 1 && units.contains(words.back()))
-        words.removeLast();
-    return words.join(' ');
+/// As the window writes paths: "a.0.b" for "a[0].b".
+QString dotted(QString path) {
+    return path.replace('[', '.').remove(']');
 }
 
-QString limitsOf(const QJsonObject &schema) {
-    const QJsonValue least = schema["minimum"], most = schema["maximum"];
-    if (least.isDouble() && most.isDouble())
-        return SchemaForm::tr("%1 to %2").arg(least.toDouble()).arg(most.toDouble());
-    if (least.isDouble())
-        return SchemaForm::tr("at least %1").arg(least.toDouble());
-    return most.isDouble() ? SchemaForm::tr("at most %1").arg(most.toDouble()) : QString();
-}
-
-QString explanation(const QString &path, const QJsonObject &schema) {
-    QStringList lines{schema["description"].toString(), path + ": " + expectation(schema)};
-    if (schema.contains("default"))
-        lines.append(SchemaForm::tr("default %1").arg(shown(schema["default"])));
-    if (schema["x-applies"].toString() == "restart")
-        lines.append(SchemaForm::tr("has effect after a restart"));
-    return lines.join('\n');
+/// A group of values: each of them has one to begin with.
+bool isGroup(const QJsonObject &schema) {
+    if (!schema["properties"].isObject() || schema.contains("default"))
+        return false;
+    const QJsonObject properties = schema["properties"].toObject();
+    return std::all_of(properties.begin(), properties.end(), [](const QJsonValue &property) {
+        return property.toObject().contains("default") || isGroup(property.toObject());
+    });
 }
 
 } // namespace
@@ -69,6 +52,7 @@ SchemaForm::SchemaForm(QWidget *parent)
 void SchemaForm::setSchema(const QJsonObject &schema, const QJsonObject &values) {
     delete page_;
     page_ = new QWidget;
+    room_ = std::make_shared<EditorRoom>();
     rows_.clear();
     order_.clear();
     headings_.clear();
@@ -88,10 +72,10 @@ void SchemaForm::addRows(const QJsonObject &schema, const QString &prefix) {
     for (auto property = properties.begin(); property != properties.end(); ++property) {
         const QString path = prefix.isEmpty() ? property.key() : prefix + "." + property.key();
         const QJsonObject inner = property.value().toObject();
-        if (inner["properties"].isObject())
+        if (isGroup(inner))
             addRows(inner, path);
         else if (int(order_.size()) < mostRows && rows_.count(path) == 0)
-            addRow(path, inner);
+            addRow(path, inner, schema["required"].toArray().contains(property.key()));
         else
             ++unshown_;
     }
@@ -109,28 +93,32 @@ void SchemaForm::prepareCheck() {
     }
 }
 
-void SchemaForm::addRow(const QString &path, const QJsonObject &schema) {
+void SchemaForm::addRow(const QString &path, const QJsonObject &schema, bool isRequired) {
     Row row;
     row.schema = schema;
     row.group = schema["group"].toString();
     if (row.group.isEmpty())
         row.group = path.contains('.') ? path.section('.', 0, 0) : QString();
     row.title = new PlainLabel(shortLine(titleOf(path, schema), longestTitle).replace('&', "&&"));
-    row.editor = new ValueEditor(schema);
+    const bool isOptional =
+        !isRequired && !schema.contains("default") && valueAt(baseline_, path).isUndefined();
+    row.editor = makeEditor(schema, {room_, 0, isOptional, LineEditor::Empty::Absent});
     row.editor->setObjectName(path);
     row.title->setBuddy(row.editor);
     row.note = new PlainLabel;
     row.note->setObjectName(path + "/note");
-    row.widgets = {row.title, row.editor, new PlainLabel(shortLine(schema["unit"].toString(), longestUnit)),
-                   row.note};
+    row.widgets = {row.title, row.editor, row.note};
+    row.isWide = row.editor->placeNote(row.note);
+    if (!row.isWide)
+        row.widgets.push_back(new PlainLabel(shortLine(schema["unit"].toString(), longestUnit)));
     const QString toolTip = toolTipOf(explanation(path, schema));
     for (QWidget *widget : row.widgets)
         widget->setToolTip(toolTip);
-    connect(row.editor, &ValueEditor::edited, this, [this, path] {
-        errors_.erase(path);
+    connect(row.editor, &ValueEditor::edited, this, [this] {
         check();
         Q_EMIT edited();
     });
+    connect(row.editor, &ValueEditor::rebuilt, this, &SchemaForm::chainRows);
     rows_.emplace(path, row);
     order_.push_back(path);
 }
@@ -155,19 +143,31 @@ void SchemaForm::arrange() {
         grid->addWidget(heading, line++, 0, 1, 4);
         heading->setVisible(!group.isEmpty());
         for (const QString &path : order_)
-            if (const Row &row = rows_.at(path); row.group == group) {
-                for (int column = 0; column < int(row.widgets.size()); ++column)
-                    grid->addWidget(row.widgets[size_t(column)], line, column);
-                ++line;
-            }
+            if (const Row &row = rows_.at(path); row.group == group)
+                place(row, *grid, line++);
     }
     grid->setRowStretch(line, 1);
-    QWidget *before = nullptr;
-    for (const QString &path : order_) {
-        if (before)
-            setTabOrder(before, rows_.at(path).editor);
-        before = rows_.at(path).editor;
+    chainRows();
+}
+
+void SchemaForm::place(const Row &row, QGridLayout &grid, int line) {
+    if (row.isWide) {
+        row.title->setMargin(3); // as high as its first row
+        grid.addWidget(row.title, line, TitleColumn, Qt::AlignTop);
+        grid.addWidget(row.editor, line, EditorColumn, 1, 3);
+        return;
     }
+    grid.addWidget(row.title, line, TitleColumn);
+    grid.addWidget(row.editor, line, EditorColumn);
+    grid.addWidget(row.widgets.back(), line, UnitColumn);
+    grid.addWidget(row.note, line, NoteColumn);
+}
+
+void SchemaForm::chainRows() {
+    QWidgetList all;
+    for (const QString &path : order_)
+        all += rows_.at(path).editor->focusOrder();
+    chainFocus(all);
 }
 
 void SchemaForm::setBaseline(const QJsonObject &values) {
@@ -216,7 +216,7 @@ QJsonObject SchemaForm::changes() const {
 
 void SchemaForm::showErrors(const QJsonArray &errors) {
     for (const QJsonValue &error : errors)
-        errors_[error["path"].toString()] = error["expected"].toString();
+        errors_[dotted(error["path"].toString())] = error["expected"].toString();
     markAll();
 }
 
@@ -226,18 +226,20 @@ void SchemaForm::check() {
     const bool isCheap = isCheapToCheck(schema_, now, mostSteps);
     if (validator_ && isCheap)
         for (const SchemaViolation &violation : validator_->check(now))
-            errors_[violation.path] = violation.expected;
+            errors_[dotted(violation.path)] = violation.expected;
     if (validator_)
         hindrance_ = isCheap ? QString() : tr("there are too many values");
     for (const auto &[path, row] : rows_) // what has a value cannot be left without one
         if (row.editor->value().isUndefined() && !valueAt(baseline_, path).isUndefined())
             errors_[path] = expectation(row.schema);
+    for (const auto &[path, row] : rows_)
+        row.editor->addFaults(path, errors_);
     markAll();
 }
 
 bool SchemaForm::hasRow(const QString &path) const {
     for (QString place = path; !place.isEmpty(); place.truncate(qMax(0, place.lastIndexOf('.'))))
-        if (rows_.count(place.section('[', 0, 0)) > 0)
+        if (rows_.count(place) > 0)
             return true;
     return false;
 }
@@ -256,25 +258,22 @@ void SchemaForm::markAll() {
 }
 
 void SchemaForm::mark(const QString &path, Row &row) {
-    // An array's element that is wrong is a mistake of the array.
-    auto error = errors_.find(path);
-    for (const char *const inner : {".", "["})
-        if (const auto next = errors_.lower_bound(path + inner);
-            error == errors_.end() && next != errors_.end() && next->first.startsWith(path + inner))
-            error = next;
-    const bool isWrong = error != errors_.end();
-    const QJsonValue before = valueAt(baseline_, path);
-    const bool isChanged = row.editor->value() != (before.isUndefined() ? row.schema["default"] : before);
+    const QString fault = faultText(errors_, path, row.schema);
+    const QJsonValue before = valueAt(baseline_, path), now = row.editor->value();
+    const bool isChanged = now != (before.isUndefined() ? row.schema["default"] : before);
     const bool needsRestart = row.schema["x-applies"].toString() == "restart";
-    row.editor->setWrong(isWrong);
-    QString note = isWrong                     ? tr("expected %1").arg(error->second)
+    row.editor->showFaults(path, errors_);
+    QString note = !fault.isEmpty()            ? fault
                    : isChanged && needsRestart ? tr("changed, needs a restart")
                    : isChanged                 ? tr("changed")
                                                : limitsOf(row.schema);
+    if (const QString spoken = spokenAmount(now.toDouble(), row.schema["unit"].toString()); !spoken.isEmpty())
+        note = tr("%1 (%2)").arg(spoken, note);
     row.note->setText(shortLine(note, longestNote));
     QPalette palette;
-    if (isWrong || isChanged)
-        palette.setColor(QPalette::WindowText, theme::colour(isWrong ? Condition::Fault : Condition::Busy));
+    if (!fault.isEmpty() || isChanged)
+        palette.setColor(QPalette::WindowText,
+                         theme::colour(fault.isEmpty() ? Condition::Busy : Condition::Fault));
     row.note->setPalette(palette);
 }
 

@@ -1,15 +1,17 @@
 #pragma once
 
 #include "common/schema/SchemaValidator.h"
+#include "gui/desktop/widgets/ValueEditor.h"
 
-#include <QWidget>
-#include <map>
+#include <memory>
 #include <optional>
+
+class QGridLayout;
 
 namespace hermes::desktop {
 
 class PlainLabel;
-class ValueEditor;
+struct EditorRoom;
 
 /// A form for an object, made from its JSON Schema: one row a value with its title, input, unit and limits,
 /// under the heading of its group. Every edit is checked against the schema at once; what is wrong stands
@@ -28,6 +30,7 @@ public:
     void setSchema(const QJsonObject &schema, const QJsonObject &values);
     /// New unchanged values: rows that the operator has not touched show them.
     void setBaseline(const QJsonObject &values);
+    const QJsonObject &baseline() const { return baseline_; }
     /// All rows show what the schema has as default.
     void setDefaults();
     /// Back to the unchanged values.
@@ -56,11 +59,14 @@ private:
         ValueEditor *editor;
         std::vector<QWidget *> widgets;
         QString group;
+        bool isWide; // it has its note in its own lines
     };
 
     void addRows(const QJsonObject &schema, const QString &prefix);
-    void addRow(const QString &path, const QJsonObject &schema);
+    void addRow(const QString &path, const QJsonObject &schema, bool isRequired);
     void arrange();
+    static void place(const Row &row, QGridLayout &grid, int line);
+    void chainRows();
     void prepareCheck();
     void check();
     bool hasRow(const QString &path) const;
@@ -69,14 +75,15 @@ private:
 
     QJsonObject schema_, baseline_;
     PlainLabel *notice_;
-    QWidget *page_ = nullptr;                  // of the rows
+    QWidget *page_ = nullptr; // of the rows
+    std::shared_ptr<EditorRoom> room_;
     std::optional<SchemaValidator> validator_; // none: cannot be checked
     QString hindrance_;                        // why not
     int unshown_ = 0;                          // values beyond mostRows
     std::map<QString, Row> rows_;              // by dotted path
     std::vector<QString> order_;
     std::vector<PlainLabel *> headings_;
-    std::map<QString, QString> errors_; // expected, by dotted path
+    Faults errors_;
 };
 
 } // namespace hermes::desktop

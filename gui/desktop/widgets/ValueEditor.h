@@ -2,46 +2,45 @@
 
 #include <QJsonObject>
 #include <QWidget>
-
-class QCheckBox;
-class QComboBox;
-class QLineEdit;
+#include <map>
 
 namespace hermes::desktop {
 
-/// The input for one value of a JSON Schema: a check box, a choice, or a line of text. Numbers go up and down
-/// by their step with the arrow keys; arrays and objects are written as JSON. A value too long for a line
-/// stays as it is.
+/// What was expected in place of a wrong value, by its dotted path.
+using Faults = std::map<QString, QString>;
+
+/// What is wrong at the path or below it; the end: nothing.
+Faults::const_iterator faultAt(const Faults &faults, const QString &path);
+/// The path of a member or an element.
+QString pathOf(const QString &parent, const QString &key);
+
+/// The input for one value of a JSON Schema.
 class ValueEditor : public QWidget {
     Q_OBJECT
 public:
-    explicit ValueEditor(const QJsonObject &schema, QWidget *parent = nullptr);
+    using QWidget::QWidget;
 
     /// Undefined: left empty. Text that is no value of the schema's type is given as a string, so that the
     /// schema refuses it.
-    QJsonValue value() const;
-    void setValue(const QJsonValue &value);
-    /// Shows that the value is wrong.
-    void setWrong(bool isWrong);
+    virtual QJsonValue value() const = 0;
+    virtual void setValue(const QJsonValue &value) = 0;
+    /// Adds what is wrong with the input whatever the schema's check says, as text that cannot be read.
+    virtual void addFaults(const QString &path, Faults &faults) const;
+    /// Shows which of its values are wrong.
+    virtual void showFaults(const QString &path, const Faults &faults) = 0;
+    /// Takes a note of the value into its own lines, where it has several; false: it has one line.
+    virtual bool placeNote(QWidget *note);
+    /// What takes the focus, in the order in which Tab goes.
+    virtual QWidgetList focusOrder() const = 0;
 
 Q_SIGNALS:
     /// The operator changed it, by however little.
     void edited();
-
-protected:
-    bool eventFilter(QObject *watched, QEvent *event) override;
-
-private:
-    void step(int count);
-    void choose(const QJsonValue &value);
-    void showText(const QJsonValue &value);
-
-    const QJsonObject schema_;
-    const QString type_;
-    QCheckBox *check_ = nullptr;
-    QComboBox *choice_ = nullptr;
-    QLineEdit *text_ = nullptr;
-    QJsonValue longValue_{QJsonValue::Undefined}; // not editable here
+    /// Rows came or went.
+    void rebuilt();
 };
+
+/// Tab goes from one to the next of them.
+void chainFocus(const QWidgetList &order);
 
 } // namespace hermes::desktop

@@ -190,6 +190,32 @@ inline void addForms() {
                                                                  listOf("{\"minimum\":%1}", 5000) + "}}"));
     alternatives.results["settings.get"] = "{\"a\":" + listOf("-1", 50000) + "}";
     row("many alternatives for many values") << alternatives;
+    const QByteArray texts = R"({"type":"array","items":{"type":"string"}})";
+    Mischief lists =
+        ofMethod("settings.schema", "{\"type\":\"object\",\"properties\":" + objectOf(texts, 100) + '}');
+    lists.results["settings.get"] = objectOf(listOf("\"row\"", 90), 100);
+    row("many lists of many rows") << lists;
+    Mischief objects =
+        ofMethod("settings.schema", schemaOf("{\"type\":\"array\",\"items\":{\"type\":\"object\","
+                                             "\"properties\":" +
+                                             objectOf(texts, 90) + "}}"));
+    objects.results["settings.get"] =
+        "{\"a\":" + listOf(objectOf("[\"x\",7,{\"y\":[]}]", 60), 90) + ",\"b\":1}";
+    row("a list of large objects") << objects;
+    QByteArray deep = "{}", given = "1";
+    for (int i = 0; i < 40; ++i) {
+        deep = R"({"type":"object","required":["a"],"properties":{"a":)" + deep + "}}";
+        given = "{\"a\":" + given + '}';
+    }
+    Mischief nested = ofMethod("settings.schema", deep);
+    nested.results["settings.get"] = given;
+    row("objects in objects") << nested;
+    row("lists change all the time") << [&] {
+        Mischief changing = lists;
+        changing.topics["settings"] = objectOf("[\"%1\",\"x\"]", 50);
+        changing.messages = -1;
+        return changing;
+    }();
     row("settings change all the time") << ofTopic("settings", R"({"a":%1})", -1);
 }
 

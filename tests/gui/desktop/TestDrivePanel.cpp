@@ -1,3 +1,4 @@
+#include "common/client/DaemonAddress.h"
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/drive/Stick.h"
 #include "tests/gui/desktop/RobotProcesses.h"
@@ -6,6 +7,7 @@
 #include <QLineEdit>
 #include <QMenu>
 #include <QPushButton>
+#include <QSlider>
 #include <QToolButton>
 
 using namespace hermes;
@@ -31,6 +33,7 @@ private Q_SLOTS:
     void motorControlKilledAndRestarted();
     void aHeldKeyDrivesOnlyOnce_data();
     void aHeldKeyDrivesOnlyOnce();
+    void speedLimitInItsUnit();
 
 private:
     template <typename T>
@@ -291,6 +294,45 @@ void TestDrivePanel::motorControlKilledAndRestarted() {
     press(0, 1);
     awaitMotion();
     letGo();
+}
+
+void TestDrivePanel::speedLimitInItsUnit() {
+    auto *const speed = find<QLineEdit>("speedLimit");
+    auto *const slider = find<QSlider>("limit");
+    QTRY_COMPARE(speed->text(), QString("0.40")); // of 1 m/s
+    slider->setFocus();
+    QTest::keyClick(slider, Qt::Key_Home);
+    QCOMPARE(speed->text(), QString("0.05"));
+    const auto type = [&](const char *text) {
+        QTest::mouseClick(speed, Qt::LeftButton);
+        speed->selectAll();
+        QTest::keyClicks(speed, text);
+        QTest::keyClick(speed, Qt::Key_Return);
+    };
+    type("0.25");
+    QCOMPARE(drive_->limit(), 0.25);
+    QCOMPARE(slider->value(), 25);
+    QCOMPARE(find<QLabel>("turnLimit")->text(),
+             QString("%1 rad/s").arg(0.25 * drive_->most().omega, 0, 'f', 2));
+    QVERIFY(!speed->hasFocus()); // so that the keys drive
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTRY_COMPARE(commanded("vx"), 0.25);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    for (const char *const nonsense : {"fast", "-1", "0", ""}) {
+        type(nonsense);
+        QCOMPARE(drive_->limit(), 0.25);
+        QCOMPARE(speed->text(), QString("0.25"));
+    }
+    type("7"); // more than it can
+    QCOMPARE(drive_->limit(), 1.0);
+    QCOMPARE(speed->text(), QString("1.00"));
+    Client owner;
+    owner.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol"))));
+    QVERIFY(owner.waitConnected().ok());
+    const QJsonObject slower{{"motion", QJsonObject{{"vx", 0.5}}}};
+    QVERIFY(owner.callAndWait("settings.set", QJsonObject{{"values", slower}}).ok());
+    QTRY_COMPARE(speed->text(), QString("0.50")); // another largest speed
+    QCOMPARE(slider->value(), 100);
 }
 
 QTEST_MAIN(TestDrivePanel)

@@ -33,6 +33,8 @@ private Q_SLOTS:
     void editsOutliveARestart();
     void saveAppliesFirst();
     void theWheelChangesNothing();
+    void typedWhileApplying();
+    void listIsEditedAndApplied();
 
 private:
     QLineEdit *field(const QString &path) const {
@@ -185,10 +187,10 @@ void TestSettingsPanel::everyRowFitsItsSetting() {
     QVERIFY(field("frame.wheel_radius_m")->isVisible());
     QVERIFY(!field("motion.vx")->isVisible());
     auto *const number = field("frame.wheel_radius_m");
-    QTest::keyClick(number, Qt::Key_Up); // steps
+    QTest::keyClick(number, Qt::Key_PageUp); // ten steps
     QCOMPARE(number->text(), QString("0.2"));
     for (int i = 0; i < 20; ++i)
-        QTest::keyClick(number, Qt::Key_Up);
+        QTest::keyClick(number, Qt::Key_PageUp);
     QCOMPARE(number->text(), QString("1")); // its limit
 }
 
@@ -272,6 +274,39 @@ void TestSettingsPanel::theWheelChangesNothing() {
     QVERIFY(scroll->maximum() > 0);
     wheel(panel_->findChild<QScrollArea *>()->viewport());
     QVERIFY(scroll->value() > 0);
+}
+
+// Before the daemon has answered.
+void TestSettingsPanel::typedWhileApplying() {
+    OpenWindow::type(field("motion.vx"), "0.31");
+    OpenWindow::type(field("pid.p"), "2");
+    OpenWindow::click(panel_, "apply");
+    OpenWindow::type(field("pid.i"), "0.7");
+    OpenWindow::type(field("pid.p"), "3"); // once more
+    QCOMPARE(setting("motion.vx"), QJsonValue(0.31));
+    QTRY_VERIFY(note("motion.vx") != "changed");
+    QCOMPARE(field("pid.i")->text(), QString("0.7"));
+    QCOMPARE(note("pid.i"), QString("changed"));
+    QCOMPARE(field("pid.p")->text(), QString("3"));
+    QCOMPARE(note("pid.p"), QString("changed"));
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("pid.i"), QJsonValue(0.7));
+    QCOMPARE(setting("pid.p"), QJsonValue(3));
+    QTRY_VERIFY(!isEnabled("apply"));
+}
+
+void TestSettingsPanel::listIsEditedAndApplied() {
+    OpenWindow::type(panel_->findChild<QLineEdit *>("filter"), "listen");
+    auto *const list = panel_->findChild<QWidget *>("listen");
+    const QString first = list->findChild<QLineEdit *>()->text();
+    OpenWindow::click(list, "add");
+    QVERIFY(!isEnabled("apply")); // nothing is typed into the new row
+    const QString second = QString("tcp://127.0.0.1:%1?protocol=json").arg(reservePort());
+    QTest::keyClicks(QApplication::focusWidget(), second);
+    QCOMPARE(note("listen"), QString("changed, needs a restart"));
+    OpenWindow::click(panel_, "apply");
+    QTRY_VERIFY2(message().startsWith("Applied."), qPrintable(message()));
+    QCOMPARE(setting("listen"), QJsonValue(QJsonArray{first, second}));
 }
 
 QTEST_MAIN(TestSettingsPanel)

@@ -1,0 +1,259 @@
+#include "gui/desktop/panels/ButtonsEditor.h"
+
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/model/MethodSchema.h"
+#include "gui/desktop/widgets/FieldText.h"
+#include "gui/desktop/widgets/PlainLabel.h"
+#include "gui/desktop/widgets/SchemaForm.h"
+
+#include <QHBoxLayout>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QPushButton>
+#include <QScrollArea>
+#include <QToolButton>
+
+namespace hermes::desktop {
+namespace {
+
+void fill(QListWidget &list, const QStringList &texts, int current) {
+    const QSignalBlocker silence(list);
+    list.clear();
+    list.addItems(texts);
+    list.setCurrentRow(std::min(current, list.count() - 1));
+}
+
+} // namespace
+
+ButtonsEditor::ButtonsEditor(const Fleet &fleet, Buttons &buttons, QWidget *parent)
+    : QWidget(parent)
+    , fleet_(fleet)
+    , buttons_(buttons) {
+    auto *const layout = new QHBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(makeList(), 2);
+    layout->addWidget(makeSteps(), 3);
+    layout->addWidget(makeStep(), 4);
+    connect(&buttons, &Buttons::changed, this, [this] {
+        if (!isChanging_)
+            showAll();
+    });
+    showAll();
+}
+
+QToolButton *ButtonsEditor::addTool(QBoxLayout &line, const char *name, const QString &toolTip) {
+    auto *const tool = new QToolButton;
+    tool->setObjectName(name);
+    tool->setToolTip(toolTip);
+    tool->setAccessibleName(toolTip);
+    line.addWidget(tool);
+    return tool;
+}
+
+QWidget *ButtonsEditor::makeList() {
+    auto *const column = new QWidget;
+    auto *const layout = new QVBoxLayout(column);
+    layout->setContentsMargins(0, 0, 0, 0);
+    auto *const back = new QPushButton(tr("Back to the commands"));
+    back->setObjectName("closeButtons");
+    back->setToolTip(tr("Commands are added there"));
+    layout->addWidget(back);
+    layout->addWidget(list_ = new QListWidget, 1);
+    list_->setObjectName("buttonList");
+    list_->setAccessibleName(tr("Buttons"));
+    auto *const line = new QHBoxLayout;
+    listTools_ = {addTool(*line, "buttonUp", tr("Moves the button to the left")),
+                  addTool(*line, "buttonDown", tr("Moves the button to the right")),
+                  addTool(*line, "buttonRemove", tr("Removes the button"))};
+    listTools_[0]->setArrowType(Qt::UpArrow);
+    listTools_[1]->setArrowType(Qt::DownArrow);
+    listTools_[2]->setIcon(theme::icon("remove"));
+    line->addStretch();
+    layout->addLayout(line);
+    connect(back, &QPushButton::clicked, this, &ButtonsEditor::closed);
+    connect(list_, &QListWidget::currentRowChanged, this, &ButtonsEditor::showSteps);
+    for (int i : {0, 1})
+        connect(listTools_[std::size_t(i)], &QToolButton::clicked, this, [this, i] {
+            const int place = button();
+            buttons_.move(place, i == 0 ? -1 : 1);
+            choose(place + (i == 0 ? -1 : 1));
+        });
+    connect(listTools_[2], &QToolButton::clicked, this, [this] { buttons_.remove(button()); });
+    return column;
+}
+
+QWidget *ButtonsEditor::makeSteps() {
+    auto *const column = new QWidget;
+    auto *const layout = new QVBoxLayout(column);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(name_ = new QLineEdit);
+    layout->addWidget(steps_ = new QListWidget, 1);
+    name_->setObjectName("buttonName");
+    name_->setMaxLength(Macro::longestName);
+    name_->setPlaceholderText(tr("Name of the button"));
+    name_->setAccessibleName(tr("Name of the button"));
+    steps_->setObjectName("buttonSteps");
+    steps_->setAccessibleName(tr("Its commands, in their order"));
+    auto *const line = new QHBoxLayout;
+    stepTools_ = {addTool(*line, "stepUp", tr("Runs the command earlier")),
+                  addTool(*line, "stepDown", tr("Runs the command later")),
+                  addTool(*line, "stepRemove", tr("Removes the command"))};
+    stepTools_[0]->setArrowType(Qt::UpArrow);
+    stepTools_[1]->setArrowType(Qt::DownArrow);
+    stepTools_[2]->setIcon(theme::icon("remove"));
+    line->addStretch();
+    line->addWidget(new PlainLabel(tr("then wait")));
+    line->addWidget(pause_ = new QLineEdit);
+    line->addWidget(new PlainLabel(tr("s")));
+    pause_->setObjectName("stepPause");
+    pause_->setFixedWidth(fontMetrics().horizontalAdvance("3600.00") + 16);
+    pause_->setToolTip(tr("Seconds between the answer to this command and the next one, at most 3600"));
+    pause_->setAccessibleName(tr("Pause after the command in seconds"));
+    layout->addLayout(line);
+    connect(name_, &QLineEdit::textEdited, this, [this](const QString &name) {
+        if (name.trimmed().isEmpty() || button() < 0)
+            return;
+        changeMacro([&](Macro &macro) { macro.name = name.trimmed(); });
+        list_->currentItem()->setText(shortLine(name));
+    });
+    connect(name_, &QLineEdit::editingFinished, this, &ButtonsEditor::showTexts);
+    connect(steps_, &QListWidget::currentRowChanged, this, &ButtonsEditor::showStep);
+    connect(pause_, &QLineEdit::textEdited, this, [this](QString text) {
+        const double pause_s = text.replace(',', '.').toDouble();
+        changeStep([&](MacroStep &step) { step.pause_s = qBound(0.0, pause_s, MacroStep::longestPause_s); });
+    });
+    connect(pause_, &QLineEdit::editingFinished, this, &ButtonsEditor::showTexts);
+    connect(stepTools_[0], &QToolButton::clicked, this, [this] { moveStep(-1); });
+    connect(stepTools_[1], &QToolButton::clicked, this, [this] { moveStep(1); });
+    connect(stepTools_[2], &QToolButton::clicked, this, &ButtonsEditor::removeStep);
+    return column;
+}
+
+QWidget *ButtonsEditor::makeStep() {
+    auto *const page = new QWidget;
+    auto *const layout = new QVBoxLayout(page);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->addWidget(about_ = new PlainLabel);
+    layout->addWidget(form_ = new SchemaForm, 1);
+    about_->setObjectName("aboutStep");
+    about_->setWordWrap(true);
+    about_->setMinimumWidth(1);
+    auto *const scroll = new QScrollArea;
+    scroll->setWidget(page);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setFocusPolicy(Qt::NoFocus);
+    connect(form_, &SchemaForm::edited, this, [this] {
+        if (form_->isValid()) // what is wrong is not kept
+            changeStep([this](MacroStep &step) { step.params = form_->values(); });
+    });
+    return scroll;
+}
+
+int ButtonsEditor::button() const {
+    return list_->currentRow();
+}
+
+int ButtonsEditor::step() const {
+    return steps_->currentRow();
+}
+
+template <typename Change>
+void ButtonsEditor::changeMacro(Change change) {
+    if (button() < 0)
+        return;
+    Macro macro = buttons_.all()[std::size_t(button())];
+    change(macro);
+    isChanging_ = true;
+    buttons_.set(button(), macro);
+    isChanging_ = false;
+}
+
+template <typename Change>
+void ButtonsEditor::changeStep(Change change) {
+    if (step() >= 0)
+        changeMacro([&](Macro &macro) { change(macro.steps[std::size_t(step())]); });
+}
+
+void ButtonsEditor::choose(int place) {
+    list_->setCurrentRow(place);
+    showSteps();
+}
+
+void ButtonsEditor::nameIt() {
+    name_->setFocus();
+    name_->selectAll();
+}
+
+void ButtonsEditor::showAll() {
+    QStringList names;
+    for (const Macro &macro : buttons_.all())
+        names.append(shortLine(macro.name));
+    fill(*list_, names, std::max(button(), 0));
+    showSteps();
+}
+
+void ButtonsEditor::showSteps() {
+    const bool isChosen = button() >= 0;
+    const Macro macro = isChosen ? buttons_.all()[std::size_t(button())] : Macro();
+    QStringList titles;
+    for (const MacroStep &one : macro.steps)
+        titles.append(shortLine(one.title()));
+    fill(*steps_, titles, std::max(step(), 0));
+    showStep();
+}
+
+/// Name and pause as they are kept.
+void ButtonsEditor::showTexts() {
+    const Macro macro = button() >= 0 ? buttons_.all()[std::size_t(button())] : Macro();
+    name_->setText(macro.name);
+    pause_->setText(step() >= 0 ? numberText(macro.steps[std::size_t(step())].pause_s) : QString());
+}
+
+void ButtonsEditor::showStep() {
+    const bool isChosen = button() >= 0 && step() >= 0;
+    const MacroStep step =
+        isChosen ? buttons_.all()[std::size_t(button())].steps[std::size_t(this->step())] : MacroStep();
+    showTexts();
+    const DaemonLink *const daemon = isChosen ? step.target(fleet_) : nullptr;
+    const bool isKnown = daemon && daemon->hasMethod(step.method);
+    const QJsonObject method = isKnown ? daemon->method(step.method) : QJsonObject();
+    about_->setText(
+        !isChosen ? tr("A button is made with a command: by Add as a button, beside Run.")
+        : isKnown ? method["summary"].toString()
+        : !daemon ? tr("%1 of %2 is away: its parameters cannot be changed now.").arg(step.daemon, step.robot)
+                  : tr("%1 has no %2 now.").arg(step.daemon, step.method));
+    form_->setSchema(parametersOf(method), {});
+    if (isKnown) {
+        const QSignalBlocker silence(form_);
+        form_->edit(step.params);
+    }
+    update();
+}
+
+void ButtonsEditor::update() {
+    const int buttons = list_->count(), steps = steps_->count();
+    listTools_[0]->setEnabled(button() > 0);
+    listTools_[1]->setEnabled(button() >= 0 && button() + 1 < buttons);
+    listTools_[2]->setEnabled(button() >= 0);
+    stepTools_[0]->setEnabled(step() > 0);
+    stepTools_[1]->setEnabled(step() >= 0 && step() + 1 < steps);
+    stepTools_[2]->setEnabled(steps > 1); // the last one goes with its button
+    name_->setEnabled(button() >= 0);
+    pause_->setEnabled(step() >= 0);
+}
+
+void ButtonsEditor::moveStep(int by) {
+    const int from = step(), to = from + by;
+    changeMacro(
+        [&](Macro &macro) { std::swap(macro.steps.at(std::size_t(from)), macro.steps.at(std::size_t(to))); });
+    showSteps();
+    steps_->setCurrentRow(to);
+}
+
+void ButtonsEditor::removeStep() {
+    changeMacro([this](Macro &macro) { macro.steps.erase(macro.steps.begin() + step()); });
+    showSteps();
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,122 @@
+#include "gui/desktop/widgets/JsonEditor.h"
+
+#include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/FieldText.h"
+#include "gui/desktop/widgets/PlainLabel.h"
+
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonParseError>
+#include <QPlainTextEdit>
+#include <QVBoxLayout>
+#include <algorithm>
+#include <utility>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr int longestText = 100000, longestLine = 2000, lines = 6;
+
+QString indented(const QJsonValue &value) {
+    if (value.isObject())
+        return QString::fromUtf8(QJsonDocument(value.toObject()).toJson()).trimmed();
+    if (value.isArray())
+        return QString::fromUtf8(QJsonDocument(value.toArray()).toJson()).trimmed();
+    return jsonText(value);
+}
+
+/// Qt takes long for a line that has no end.
+bool isShowable(const QString &text) {
+    if (text.size() > longestText)
+        return false;
+    const auto all = text.splitRef('\n');
+    return std::none_of(all.begin(), all.end(), [](const auto &line) { return line.size() > longestLine; });
+}
+
+} // namespace
+
+JsonEditor::JsonEditor(QWidget *parent)
+    : ValueEditor(parent) {
+    auto *const layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+}
+
+/// Above the note.
+void JsonEditor::show(QWidget *shown) {
+    static_cast<QVBoxLayout *>(layout())->insertWidget(0, shown);
+    setFocusProxy(text_);
+    Q_EMIT rebuilt();
+}
+
+void JsonEditor::setValue(const QJsonValue &value) {
+    if (countValues(value, mostValues) > mostValues)
+        return setTooLong(value);
+    const QString text = indented(value);
+    if (!isShowable(text))
+        return setTooLong(value);
+    given_ = value;
+    givenText_ = text;
+    if (!text_) {
+        delete tooLong_;
+        text_ = new QPlainTextEdit;
+        text_->setFont(theme::fixedFont());
+        text_->setTabChangesFocus(true);
+        text_->setFixedHeight(lines * text_->fontMetrics().lineSpacing() + 12);
+        connect(text_, &QPlainTextEdit::textChanged, this, &ValueEditor::edited);
+        show(text_);
+    }
+    const QSignalBlocker silence(text_);
+    if (text_->toPlainText() != text)
+        text_->setPlainText(text);
+}
+
+void JsonEditor::setTooLong(const QJsonValue &value) {
+    given_ = value;
+    delete std::exchange(text_, nullptr);
+    if (!tooLong_)
+        show(tooLong_ = new PlainLabel(tr("too long to be edited here")));
+}
+
+QJsonValue JsonEditor::value() const {
+    if (!text_)
+        return given_;
+    const QString text = text_->toPlainText();
+    if (text == givenText_)
+        return given_;
+    if (text.trimmed().isEmpty())
+        return QJsonValue::Undefined;
+    const QJsonValue value = fromJson(text);
+    return value.isUndefined() ? QJsonValue(text) : value;
+}
+
+void JsonEditor::addFaults(const QString &path, Faults &faults) const {
+    const QString text = text_ ? text_->toPlainText() : QString();
+    if (text == givenText_ || text.trimmed().isEmpty())
+        return;
+    QJsonParseError error;
+    const QByteArray list = '[' + text.toUtf8() + ']';
+    QJsonDocument::fromJson(list, &error);
+    if (error.error != QJsonParseError::NoError)
+        faults[path] = tr("each bracket, quote and comma in its place; line %1 cannot be read")
+                           .arg(1 + list.left(error.offset).count('\n'));
+}
+
+void JsonEditor::showFaults(const QString &path, const Faults &faults) {
+    if (!text_)
+        return;
+    QPalette palette;
+    if (faultAt(faults, path) != faults.end())
+        palette.setColor(QPalette::Text, theme::colour(Condition::Fault));
+    text_->setPalette(palette);
+}
+
+bool JsonEditor::placeNote(QWidget *note) {
+    static_cast<QVBoxLayout *>(layout())->addWidget(note);
+    return true;
+}
+
+QWidgetList JsonEditor::focusOrder() const {
+    return text_ ? QWidgetList{text_} : QWidgetList();
+}
+
+} // namespace hermes::desktop
