@@ -122,8 +122,12 @@ void MapPanel::addLayers(QToolBar &bar) {
     add(tr("Scan points"), &MapLayers::scan);
     add(tr("Segments of the scan"), &MapLayers::segments);
     add(tr("Correspondences"), &MapLayers::correspondences);
-    add(tr("Paths (matched solid, odometry dashed, truth dotted)"), &MapLayers::paths);
-    add(tr("Robot, with its uncertainty ten times enlarged"), &MapLayers::robot);
+    add(tr("Path as matched (solid)"), &MapLayers::path);
+    add(tr("Path by odometry (dashed)"), &MapLayers::odometry);
+    add(tr("True path (dotted; the simulator knows it)"), &MapLayers::truth);
+    add(tr("Robot"), &MapLayers::robot);
+    add(tr("Uncertainty of the pose (ten times enlarged)"), &MapLayers::uncertainty);
+    add(tr("Pose and match in numbers"), &MapLayers::numbers);
     add(tr("Loops (places met again; those refused dashed)"), &MapLayers::loops);
     add(tr("Graph (key scans of the drive)"), &MapLayers::graph);
     add(tr("Trust (how well the drive is known)"), &MapLayers::trust);
