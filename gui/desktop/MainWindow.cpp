@@ -115,8 +115,8 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     panelActions_ += panel->actions();
 
     auto *const show = new QAction(title, this);
-    if (docks_.size() <= 9)
-        show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size())));
+    if (docks_.size() <= 10)
+        show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size() % 10)));
     connect(show, &QAction::triggered, this, [this, name = kind.name] { showPanel(name); });
     addAction(show);
     showPanels_.append(show);

@@ -45,7 +45,7 @@ void DrivenPath::add(const Pose2D &pose, const PathMoment &moment, int keyScan) 
     const QPointF point(pose.x, pose.y);
     const double distance = way_.isEmpty() ? 0 : QLineF(way_.back(), point).length();
     const bool isBroken = distance >= step_m && isJump(distance, moment);
-    lastGap_s_ = moment.stamp - last_.stamp;
+    lastGap_s_ = way_.isEmpty() ? 0 : moment.stamp - last_.stamp;
     last_ = moment;
     if (!way_.isEmpty() && distance < step_m)
         return;
