@@ -186,6 +186,7 @@ void MainWindow::restoreLayout() {
     auto *const plots = findChild<PlotsPanel *>();
     plots->sets().setSets(objectFrom(layout.value("plots/sets")));
     plots->setState(objectFrom(layout.value("plots/shown")));
+    map_->setLayers(layout.value("map/layers").toMap());
     for (QToolBar *banner : banners_)
         banner->hide(); // whatever it said when the layout was kept
 }
@@ -200,6 +201,7 @@ void MainWindow::saveLayout() const {
     auto *const plots = findChild<PlotsPanel *>();
     layout.setValue("plots/sets", textOf(plots->sets().sets()));
     layout.setValue("plots/shown", textOf(plots->state()));
+    layout.setValue("map/layers", map_->layers());
     layout.setValue("sounds/on", sounds_.areOn());
     layout.setValue("robots/addresses", fleet_.addresses());
 }

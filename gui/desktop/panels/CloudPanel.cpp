@@ -40,6 +40,7 @@ QLayout *CloudPanel::makeTop() {
     colour->setToolTip(tr("Height above the lidar in metres, or how much of the light came back (0 to 255)"));
     auto *const label = new PlainLabel(tr("Colour"));
     label->setBuddy(colour);
+    colour->setAccessibleName(tr("Colour of the points"));
     auto *const reset = new QPushButton(theme::icon("fit"), tr("Reset view"));
     reset->setObjectName("resetCloud");
     reset->setToolTip(tr("All of the cloud, from behind the robot (0)"));

@@ -32,6 +32,7 @@ private Q_SLOTS:
     void coordinatesUnderTheMouse();
     void poseInNumbers();
     void layersAreSwitched();
+    void layersAreKept();
     void pathIsBrokenWhereTheRobotJumps();
     void measured();
     void placedByADrag();
@@ -193,6 +194,26 @@ void TestMapPanel::layersAreSwitched() {
     robot_->signal("velodynelogger", SIGCONT);
     robot_->signal("scanmatcher", SIGCONT);
     QTRY_VERIFY_WITH_TIMEOUT(model().poseAge().isFresh() && model().scanAge().isFresh(), 20000);
+}
+
+void TestMapPanel::layersAreKept() {
+    const QString file = robot_->path("gui.ini");
+    for (const bool isFirst : {true, false}) {
+        Fleet fleet;
+        DriveControl drive(fleet);
+        MainWindow other(fleet, drive, file);
+        const auto isTicked = [&other](const char *layer) {
+            return other.map().findChild<QAction *>(layer)->isChecked();
+        };
+        QCOMPARE(isTicked("gridLayer"), isFirst);
+        QCOMPARE(isTicked("graphLayer"), !isFirst);
+        QVERIFY(isTicked("robotLayer"));
+        other.map().findChild<QAction *>("gridLayer")->setChecked(false);
+        other.map().findChild<QAction *>("graphLayer")->setChecked(true);
+        QVERIFY(!other.map().view().layers().grid);
+        other.close();
+    }
+    QVERIFY(window_->show());
 }
 
 void TestMapPanel::pathIsBrokenWhereTheRobotJumps() {
