@@ -40,8 +40,8 @@ private Q_SLOTS:
 private:
     /// Null: not here. wish: of $HERMES_OPENGL.
     static std::unique_ptr<PointOpenGl> openGl(const char *wish);
-    static void figure(const char *name, double value, const char *unit) {
-        qInfo("figure %s: %.3g %s", name, value, unit);
+    static void figure(const QByteArray &name, double value, const char *unit) {
+        qInfo("figure %s: %.3g %s", name.constData(), value, unit);
     }
     static double median(std::vector<double> values) {
         std::sort(values.begin(), values.end());
@@ -475,10 +475,11 @@ void TestCloud::framesOfAWholeTurn() {
         QCoreApplication::processEvents();
     }
     const double rate = double(frame_ms.size()) / (double(whole.elapsed()) / 1000);
+    const QByteArray name = QByteArray("cloud of 69,440 points, ") + QTest::currentDataTag();
     qInfo("%d x %d pixels", panel->view().width(), panel->view().height());
-    figure("a turn of 69,440 points is taken and coloured, median", median(message_ms), "ms");
-    figure("a frame of it, median", median(frame_ms), "ms");
-    figure("turns taken and shown", rate, "a second");
+    figure(name + ", a turn is taken and coloured, median", median(message_ms), "ms");
+    figure(name + ", a frame, median", median(frame_ms), "ms");
+    figure(name + ", turns taken and shown", rate, "a second");
     QVERIFY2(rate > 10.0 / slowness, qPrintable(QString::number(rate)));
 }
 
