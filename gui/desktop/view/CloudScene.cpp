@@ -2,6 +2,7 @@
 
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/view/MapColours.h"
+#include "gui/desktop/view/MapPainter.h"
 
 #include <QPainter>
 #include <QVector4D>
@@ -107,7 +108,10 @@ void CloudScene::paintAxes(QPainter &painter, const QSize &size) const {
     for (const auto &axis : axes)
         if (const auto line = onScreen(matrix, size, {}, length * axis.way)) {
             painter.drawLine(*line);
-            painter.drawText(line->p2() + QPointF(3, -3), axis.name);
+            // "up" and "ahead" often end near each other.
+            const bool isUp = axis.way.z() > 0;
+            const double left = isUp ? -3 - painter.fontMetrics().horizontalAdvance(axis.name) : 3;
+            painter.drawText(line->p2() + QPointF(left, -3), axis.name);
         }
     painter.setRenderHint(QPainter::Antialiasing, false);
 }
@@ -126,7 +130,7 @@ void CloudScene::paintWords(QPainter &painter, const QSize &size) const {
 
 void CloudScene::paintLegend(QPainter &painter, const QSize &size) const {
     const bool isHeight = colouring == Colouring::Height;
-    const auto metres = [](float value) { return QObject::tr("%1 m").arg(double(value), 0, 'f', 1); };
+    const auto metres = [](float value) { return QObject::tr("%1 m").arg(fixedNumber(double(value), 1)); };
     const QString low = isHeight ? metres(model_.lowest_m()) : "0";
     const QString high = isHeight ? metres(model_.highest_m()) : "255";
     const QFontMetrics metrics(painter.font());

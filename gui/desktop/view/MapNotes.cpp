@@ -41,11 +41,16 @@ void MapPainter::paintNotice(QPainter &painter, int leftOut) const {
                      lines.join('\n'));
 }
 
+QString fixedNumber(double value, int decimals) {
+    const QString text = QString::number(value, 'f', decimals);
+    return text.toDouble() == 0 && text.startsWith('-') ? text.mid(1) : text;
+}
+
 QString poseText(const Pose2D &pose) {
     return QObject::tr("x %1 m, y %2 m, %3°")
-        .arg(pose.x, 0, 'f', 2)
-        .arg(pose.y, 0, 'f', 2)
-        .arg(qRadiansToDegrees(vectorlib::wrapAngle(pose.theta)), 0, 'f', 1);
+        .arg(fixedNumber(pose.x, 2))
+        .arg(fixedNumber(pose.y, 2))
+        .arg(fixedNumber(qRadiansToDegrees(vectorlib::wrapAngle(pose.theta)), 1));
 }
 
 QString uncertaintyText(const Covariance &covariance) {

@@ -18,6 +18,8 @@ struct MapLayers {
          graph = false, trust = false;
 };
 
+/// With so many decimals, and never "-0.00".
+QString fixedNumber(double value, int decimals);
 /// "x 1.20 m, y -0.35 m, 12.5°".
 QString poseText(const Pose2D &pose);
 /// What the pose is within with 95 %: "± 0.012 m, ± 0.009 m, ± 0.3° (95 %)" of x, y and heading.

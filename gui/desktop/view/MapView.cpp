@@ -65,7 +65,8 @@ void MapView::tellCursor() {
         cursorLabel_->setPalette(colours);
     const QPointF at = toWorld(*cursor_);
     const int decimals = pixelsPerMetre_ > 100 ? 3 : 2;
-    cursorLabel_->setText(tr("x %1 m, y %2 m").arg(at.x(), 0, 'f', decimals).arg(at.y(), 0, 'f', decimals));
+    cursorLabel_->setText(
+        tr("x %1 m, y %2 m").arg(fixedNumber(at.x(), decimals)).arg(fixedNumber(at.y(), decimals)));
     cursorLabel_->resize(cursorLabel_->sizeHint());
     constexpr int scaleBar = 42; // its height, and that of its text
     cursorLabel_->move(width() - 12 - cursorLabel_->width(), height() - scaleBar - cursorLabel_->height());

@@ -150,6 +150,7 @@ void TestMapPanel::coordinatesUnderTheMouse() {
 void TestMapPanel::poseInNumbers() {
     QCOMPARE(poseText({1.234, -0.5, vectorlib::pi / 2}), QString("x 1.23 m, y -0.50 m, 90.0°"));
     QCOMPARE(poseText({0, 0, 7 * vectorlib::pi / 2}), QString("x 0.00 m, y 0.00 m, -90.0°"));
+    QCOMPARE(poseText({-0.001, -0.004, -1e-4}), QString("x 0.00 m, y 0.00 m, 0.0°"));
     QCOMPARE(uncertaintyText({1e-4, 0, 0, 0, 0.25, 0, 0, 0, 1e-4}),
              QString("± 0.020 m, ± 0.98 m, ± 1.1° (95 %)"));
     QCOMPARE(uncertaintyText({-1, 0, 0, 0, 0, 0, 0, 0, 1e12}),
