@@ -98,6 +98,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
         save();
     });
     restoreButtons();
+    map_->setLayers(objectFrom(layouts_.value("layers")).toVariantMap());
     showLayout();
     tellOfKeeping(layouts_.problem() + layouts_.damage());
     fleet.setNames(layouts_.robots().names);
@@ -143,8 +144,8 @@ void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     panelActions_ += panel->actions();
 
     auto *const show = new QAction(title, this);
-    if (docks_.size() <= 9)
-        show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size())));
+    if (docks_.size() <= 10)
+        show->setShortcut(QKeySequence(Qt::CTRL + Qt::Key_0 + int(docks_.size() % 10)));
     connect(show, &QAction::triggered, this, [this, name = kind.name] { showPanel(name); });
     addAction(show);
     showPanels_.append(show);
@@ -289,6 +290,7 @@ void MainWindow::keepLayout() {
     layouts_.setLayout({saveGeometry(), saveState(), findChild<PlotsPanel *>()->state()});
     layouts_.setValue("sounds", sounds_.areOn() ? "on" : "off");
     layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
+    layouts_.setValue("layers", textOf(QJsonObject::fromVariantMap(map_->layers())));
 }
 
 /// As soon as they change: the window may not be closed in order.

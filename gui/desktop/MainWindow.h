@@ -18,7 +18,7 @@ class MapPanel;
 class StopKeys;
 
 /// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
-/// bring the docks to the front.
+/// and Ctrl+0 bring the docks to the front.
 class MainWindow : public QMainWindow {
     Q_OBJECT
 public:

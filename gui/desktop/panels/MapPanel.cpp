@@ -113,8 +113,9 @@ void MapPanel::addTools(QToolBar &bar) {
 void MapPanel::addLayers(QToolBar &bar) {
     auto *const menu = layers_ = new QMenu(tr("Layers"), this);
     menu->setObjectName("layers");
-    const auto add = [&](const QString &name, bool MapLayers::*layer) {
+    const auto add = [&](const char *key, const QString &name, bool MapLayers::*layer) {
         QAction *const action = menu->addAction(name);
+        action->setObjectName(key); // by which layouts keep it
         action->setCheckable(true);
         action->setChecked(view_->layers().*layer);
         connect(action, &QAction::toggled, this, [this, layer](bool isOn) {
@@ -122,16 +123,20 @@ void MapPanel::addLayers(QToolBar &bar) {
             view_->update();
         });
     };
-    add(tr("Grid"), &MapLayers::grid);
-    add(tr("Map"), &MapLayers::map);
-    add(tr("Scan points"), &MapLayers::scan);
-    add(tr("Segments of the scan"), &MapLayers::segments);
-    add(tr("Correspondences"), &MapLayers::correspondences);
-    add(tr("Paths (matched solid, odometry dashed, truth dotted)"), &MapLayers::paths);
-    add(tr("Robot, with its uncertainty ten times enlarged"), &MapLayers::robot);
-    add(tr("Loops (places met again; those refused dashed)"), &MapLayers::loops);
-    add(tr("Graph (key scans of the drive)"), &MapLayers::graph);
-    add(tr("Trust (how well the drive is known)"), &MapLayers::trust);
+    add("gridLayer", tr("Grid"), &MapLayers::grid);
+    add("mapLayer", tr("Map"), &MapLayers::map);
+    add("scanLayer", tr("Scan points"), &MapLayers::scan);
+    add("segmentsLayer", tr("Segments of the scan"), &MapLayers::segments);
+    add("correspondencesLayer", tr("Correspondences"), &MapLayers::correspondences);
+    add("pathLayer", tr("Path as matched (solid)"), &MapLayers::path);
+    add("odometryLayer", tr("Path by odometry (dashed)"), &MapLayers::odometry);
+    add("truthLayer", tr("True path (dotted; the simulator knows it)"), &MapLayers::truth);
+    add("robotLayer", tr("Robot"), &MapLayers::robot);
+    add("uncertaintyLayer", tr("Uncertainty of the pose (ten times enlarged)"), &MapLayers::uncertainty);
+    add("numbersLayer", tr("Pose and match in numbers"), &MapLayers::numbers);
+    add("loopsLayer", tr("Loops (places met again; those refused dashed)"), &MapLayers::loops);
+    add("graphLayer", tr("Graph (key scans of the drive)"), &MapLayers::graph);
+    add("trustLayer", tr("Trust (how well the drive is known)"), &MapLayers::trust);
     menu->addSeparator();
     menu->addAction(tr("Clear paths"), &model_, &MapModel::clearPaths);
     auto *const button = new QToolButton;
@@ -141,6 +146,20 @@ void MapPanel::addLayers(QToolBar &bar) {
     button->setMenu(menu);
     button->setPopupMode(QToolButton::InstantPopup);
     bar.addWidget(button);
+}
+
+QVariantMap MapPanel::layers() const {
+    QVariantMap ticks;
+    for (const QAction *const action : layers_->actions())
+        if (action->isCheckable())
+            ticks[action->objectName()] = action->isChecked();
+    return ticks;
+}
+
+void MapPanel::setLayers(const QVariantMap &ticks) {
+    for (QAction *const action : layers_->actions())
+        if (ticks.contains(action->objectName()))
+            action->setChecked(ticks[action->objectName()].toBool());
 }
 
 void MapPanel::askFile() {

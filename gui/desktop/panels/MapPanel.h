@@ -21,6 +21,9 @@ public:
     const MapModel &model() const { return model_; }
     QMenu &mapMenu();
     QMenu &layersMenu() { return *layers_; }
+    /// Whether each layer is ticked, by its name, for the next start.
+    QVariantMap layers() const;
+    void setLayers(const QVariantMap &ticks);
     /// Follow, fit, measure, place, relocalize.
     QList<QAction *> tools() const { return {follow_, fit_, measure_, place_, relocalize_}; }
     /// Writes what the view shows; .svg by its name, else a picture. Error: the file cannot be written.

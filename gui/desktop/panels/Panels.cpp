@@ -1,5 +1,6 @@
 #include "gui/desktop/panels/Panels.h"
 
+#include "gui/desktop/panels/CloudPanel.h"
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/DaemonsPanel.h"
 #include "gui/desktop/panels/DrivePanel.h"
@@ -44,6 +45,7 @@ std::vector<PanelKind> &known() {
         {Qt::LeftDockWidgetArea, "Recordings", "recordings", makePanel<RecordPanel>, "daemons"},
         {Qt::BottomDockWidgetArea, "Setup", "setup", makePanel<SetupPanel>, "settings"},
         {Qt::BottomDockWidgetArea, "Events", "events", makeEventsPanel, "settings"},
+        {Qt::BottomDockWidgetArea, "Cloud", "cloud", makePanel<CloudPanel>, "settings"},
     };
     return all;
 }

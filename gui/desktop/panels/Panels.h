@@ -33,7 +33,7 @@ struct PanelKind {
     const char *tabbedWith = nullptr; ///< the name of one before it, with which it shares its place
 };
 
-/// All panels, in the order of Ctrl+1 to Ctrl+9.
+/// All panels, in the order of Ctrl+1 to Ctrl+9 and Ctrl+0.
 const std::vector<PanelKind> &panelKinds();
 /// Adds one as the last, before main() begins: as the initializer of a global constant. Throws
 /// std::invalid_argument when there is one of that name. Gives true.

@@ -16,24 +16,25 @@ std::optional<QLineF> clipped(const QLineF &line, const QRectF &rect) {
     return QLineF(line.pointAt(from), line.pointAt(to));
 }
 
-QPolygonF recent(const QPolygonF &path, const QRectF &rect, double longest) {
+QVector<QPolygonF> recent(const QPolygonF &path, const QVector<int> &breaks, const QRectF &rect,
+                          double longest) {
+    QVector<QPolygonF> pieces;
     double length = 0;
-    int first = path.size() - 1;
-    for (; first > 0 && length < longest; --first)
-        if (const auto part = clipped(QLineF(path[first - 1], path[first]), rect))
+    auto begin = breaks.crbegin();
+    for (int first = path.size() - 1, end = path.size(); first >= 0; --first) {
+        while (begin != breaks.crend() && *begin > first)
+            ++begin;
+        const bool isOver = first == 0 || length >= longest;
+        if (isOver || (begin != breaks.crend() && *begin == first)) {
+            if (end - first > 1)
+                pieces.append(QPolygonF(path.mid(first, end - first)));
+            end = first;
+        } else if (const auto part = clipped(QLineF(path[first - 1], path[first]), rect)) {
             length += part->length();
-    return first > 0 ? QPolygonF(path.mid(first)) : path;
-}
-
-std::vector<QPolygonF> unbroken(const QPolygonF &path, double longestStep) {
-    std::vector<QPolygonF> pieces;
-    int begin = 0;
-    for (int i = 1; i < path.size(); ++i)
-        if (QLineF(path[i - 1], path[i]).length() > longestStep) {
-            pieces.push_back(path.mid(begin, i - begin));
-            begin = i;
         }
-    pieces.push_back(begin == 0 ? path : QPolygonF(path.mid(begin)));
+        if (isOver)
+            break;
+    }
     return pieces;
 }
 

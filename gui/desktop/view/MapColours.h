@@ -13,5 +13,7 @@ struct MapColours {
 };
 
 MapColours mapColours();
+/// From low to high, for the points of a cloud.
+std::array<QColor, 5> cloudColours();
 
 } // namespace hermes::desktop

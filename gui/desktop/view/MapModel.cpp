@@ -6,6 +6,7 @@
 
 #include <QtMath>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace hermes::desktop {
@@ -26,6 +27,7 @@ template <typename Message>
 Client::TopicCallback MapModel::reader(void (MapModel::*take)(const Message &)) {
     return [this, take](const TopicUpdate &update) {
         ReadReport report;
+        stamp_ = update.stamp;
         if (const auto message = readMessage<Message>(update.data, report))
             return (this->*take)(*message);
         ++ignored_;
@@ -191,7 +193,7 @@ void MapModel::onPose(const PoseMessage &message) {
     ignored_ += !isMoving;
     poseScan_ = message.scan;
     if (poseLead_ == 0)
-        paths_[MovingMap::Matched].add(*pose_, newestKeyScan());
+        paths_[MovingMap::Matched].add(*pose_, moment(twist_), newestKeyScan());
     placeScan();
     goOn();
     Q_EMIT changed();
@@ -255,14 +257,18 @@ void MapModel::placeScan() {
 }
 
 void MapModel::onOdometry(const OdometryMessage &odometry) {
-    follow(paths_[MovingMap::Odometry], odometry.pose);
+    follow(paths_[MovingMap::Odometry], odometry.pose, odometry.twist);
 }
 
 void MapModel::onTruth(const TruthMessage &truth) {
-    follow(paths_[MovingMap::Truth], truth.pose);
+    follow(paths_[MovingMap::Truth], truth.pose, truth.twist);
 }
 
-void MapModel::follow(DrivenPath &path, const Pose2D &pose) {
+PathMoment MapModel::moment(const Twist2D &twist) const {
+    return {stamp_, isPlausible(twist) ? std::hypot(twist.vx, twist.vy) : 0};
+}
+
+void MapModel::follow(DrivenPath &path, const Pose2D &pose, const Twist2D &twist) {
     if (!path.frame && (poseLead_ != 0 || (!pose_ && poses_.source())))
         return; // nothing to lay it against yet
     if (!isPlausible(pose)) {
@@ -273,7 +279,7 @@ void MapModel::follow(DrivenPath &path, const Pose2D &pose) {
         path.frame = pose_ ? *pose_ * pose.inverse() : Pose2D();
         path.frameKeyScan = newestKeyScan();
     }
-    path.add(*path.frame * pose, path.frameKeyScan);
+    path.add(*path.frame * pose, moment(twist), path.frameKeyScan);
 }
 
 } // namespace hermes::desktop

@@ -61,6 +61,9 @@ public:
     const QPolygonF &matchedPath() const { return way(MovingMap::Matched); }
     const QPolygonF &odometryPath() const { return way(MovingMap::Odometry); }
     const QPolygonF &truthPath() const { return way(MovingMap::Truth); }
+    const QPolygonF &way(MovingMap::Path path) const;
+    /// Numbers of the points at which a path begins anew, for the robot jumped.
+    const QVector<int> &breaks(MovingMap::Path path) const { return paths_[path].breaks(); }
     /// Forgets the paths.
     void clearPaths();
 
@@ -92,10 +95,10 @@ private:
     void takeTrust(double trust);
     void addEdge(const MapEdgeMessage &edge);
     void removeEdge(qint64 id);
-    void follow(DrivenPath &path, const Pose2D &pose);
+    void follow(DrivenPath &path, const Pose2D &pose, const Twist2D &twist);
+    PathMoment moment(const Twist2D &twist) const;
     void placeScan();
 
-    const QPolygonF &way(MovingMap::Path path) const;
     void forgetPath(MovingMap::Path path);
     int newestKeyScan() const;
     void expectCorrection(Sign sign);
@@ -122,6 +125,7 @@ private:
     std::optional<Pose2D> pose_;
     std::optional<std::array<double, 9>> covariance_;
     QString outcome_;
+    double stamp_ = 0; // of the message that is being read
     quint64 ignored_ = 0;
     double reliability_ = 0, ambiguity_ = 0;
     std::optional<double> trust_;

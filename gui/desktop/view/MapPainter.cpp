@@ -16,7 +16,6 @@ constexpr double robotRadius_m = 0.3; // as large as it is drawn
 constexpr int smoothUpTo = 2000;
 /// Pixels of lines that are drawn smoothly, and at all: a picture is not to take longer than 50 ms.
 constexpr double longestSmooth = 2e5, longestDrawn = 1e6, longestDashed = 4e4;
-constexpr double longestStep_m = 1; // of a path: farther on a replay was sought, or the robot was placed
 
 QVector<QLineF> mapped(const QVector<QLineF> &lines, const QTransform &transform) {
     QVector<QLineF> result;
@@ -57,26 +56,27 @@ void MapPainter::paint(QPainter &painter) const {
     if (layers_.segments)
         leftOut += paintLines(painter, mapped(model_.segments(), sensorTransform()),
                               QPen(agedColour(c.accent, model_.poseAge()), 2));
-    if (layers_.paths) {
-        paintPath(painter, model_.truthPath(), c.truth, Qt::DotLine);
-        paintPath(painter, model_.odometryPath(), c.odometry, Qt::DashLine);
-        paintPath(painter, model_.matchedPath(), c.path, Qt::SolidLine);
-    }
+    if (layers_.truth)
+        paintPath(painter, MovingMap::Truth, QPen(c.truth, 1.5, Qt::DotLine));
+    if (layers_.odometry)
+        paintPath(painter, MovingMap::Odometry, QPen(c.odometry, 1.5, Qt::DashLine));
+    if (layers_.path)
+        paintPath(painter, MovingMap::Matched, QPen(c.path, 1.5));
     if (layers_.trust)
         leftOut += paintTrust(painter);
     if (layers_.graph)
         leftOut += paintGraph(painter);
     if (layers_.loops)
         leftOut += paintLoops(painter);
-    if (layers_.robot && model_.pose()) {
+    if (layers_.uncertainty && model_.pose())
         paintUncertainty(painter);
+    if (layers_.robot && model_.pose())
         paintRobot(painter);
-    }
     if (layers_.grid)
         paintScaleBar(painter, gridStep_m(scale()));
     if (layers_.trust)
         paintTrustLegend(painter);
-    if (model_.pose())
+    if (layers_.numbers && model_.pose())
         paintMatch(painter);
     paintCorrection(painter);
     paintNotice(painter, leftOut);
@@ -154,12 +154,12 @@ int MapPainter::paintCorrespondences(QPainter &painter) const {
     return paintLines(painter, arrows, QPen(mapColours().correspondence, 1));
 }
 
-void MapPainter::paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour,
-                           Qt::PenStyle style) const {
-    painter.setRenderHint(QPainter::Antialiasing, path.size() <= smoothUpTo);
-    painter.setPen(QPen(colour, 1.5, style));
-    for (const QPolygonF &piece : unbroken(path, longestStep_m))
-        painter.drawPolyline(recent(transform_.map(piece), QRectF(QPointF(), size_), longestSmooth));
+void MapPainter::paintPath(QPainter &painter, MovingMap::Path path, const QPen &pen) const {
+    const QPolygonF shown = transform_.map(model_.way(path));
+    painter.setRenderHint(QPainter::Antialiasing, shown.size() <= smoothUpTo);
+    painter.setPen(pen);
+    for (const QPolygonF &piece : recent(shown, model_.breaks(path), QRectF(QPointF(), size_), longestSmooth))
+        painter.drawPolyline(piece);
 }
 
 // The ellipse and the pie hold the pose with 95 %, and are drawn ten times their size: on a good day
@@ -204,93 +204,6 @@ void MapPainter::paintRobot(QPainter &painter) const {
     painter.setBrush(colour);
     painter.drawPolygon(QVector<QPointF>{at(r, 0), at(0.3 * r, 0.35 * r), at(0.3 * r, -0.35 * r)});
     painter.setBrush(Qt::NoBrush);
-}
-
-void MapPainter::paintBox(QPainter &painter, const QRectF &box) const {
-    QColor back = mapColours().background;
-    back.setAlpha(220);
-    painter.setRenderHint(QPainter::Antialiasing, true);
-    painter.setPen(QPen(mapColours().grid, 1));
-    painter.setBrush(back);
-    painter.drawRoundedRect(box, 4, 4);
-    painter.setBrush(Qt::NoBrush);
-}
-
-void MapPainter::paintScaleBar(QPainter &painter, double step_m) const {
-    const double length = step_m * scale();
-    const QPointF right(size_.width() - 12, size_.height() - 12), left = right - QPointF(length, 0);
-    painter.setRenderHint(QPainter::Antialiasing, false);
-    painter.setPen(QPen(mapColours().text, 2));
-    painter.drawLine(left, right);
-    for (const QPointF &end : {left, right})
-        painter.drawLine(end - QPointF(0, 4), end);
-    painter.drawText(QRectF(left - QPointF(20, 26), QSizeF(length + 40, 20)), Qt::AlignCenter,
-                     step_m < 1 ? QObject::tr("%1 cm").arg(100 * step_m) : QObject::tr("%1 m").arg(step_m));
-}
-
-void MapPainter::paintNotice(QPainter &painter, int leftOut) const {
-    QStringList lines;
-    if (model_.ignored() > 0)
-        lines.append(QObject::tr("%1 impossible values are not shown").arg(model_.ignored()));
-    if (leftOut > 0)
-        lines.append(QObject::tr("%1 more lines are not drawn").arg(leftOut));
-    painter.setPen(theme::colour(Condition::Warning));
-    painter.drawText(QRectF(12, 0, size_.width() / 2.0, size_.height() - 12), Qt::AlignLeft | Qt::AlignBottom,
-                     lines.join('\n'));
-}
-
-// How far to trust the pose: numbers with a bar whose colour and length say the same.
-void MapPainter::paintMatch(QPainter &painter) const {
-    const bool isLost = model_.outcome() == "lost";
-    const double reliability = qBound(0.0, model_.reliability(), 1.0);
-    const Freshness &age = model_.poseAge();
-    const Condition condition = !age.isFresh()      ? Condition::Unreachable
-                                : isLost            ? Condition::Fault
-                                : reliability < 0.1 ? Condition::Warning
-                                                    : Condition::Ready;
-    QStringList lines{QObject::tr("%1, reliability %2").arg(model_.outcome()).arg(reliability, 0, 'f', 2),
-                      QObject::tr("ambiguity %1 m²").arg(model_.ambiguity(), 0, 'g', 2)};
-    if (model_.trust())
-        lines.append(QObject::tr("trust of the pose %1").arg(*model_.trust(), 0, 'f', 2));
-    const int struck = age.state() == Freshness::State::Silent ? lines.size() : 0; // what held once
-    if (struck > 0)
-        lines.append(age.text());
-    const QFontMetrics metrics(painter.font());
-    const int height = metrics.height();
-    int width = 0;
-    for (const QString &line : lines)
-        width = qMax(width, metrics.horizontalAdvance(line));
-    const QRectF box(12, 12, width + 24, lines.size() * height + 24);
-    paintBox(painter, box);
-    const QRectF bar = QRectF(box.left() + 8, box.bottom() - 14, box.width() - 16, 6);
-    painter.setPen(Qt::NoPen);
-    painter.setBrush(mapColours().grid);
-    painter.drawRect(bar);
-    painter.setBrush(theme::colour(condition));
-    painter.drawRect(QRectF(bar.topLeft(), QSizeF(bar.width() * reliability, bar.height())));
-    painter.setBrush(Qt::NoBrush);
-    for (int i = 0; i < lines.size(); ++i) {
-        painter.setPen(!age.isFresh() || (isLost && i == 0) ? theme::colour(condition) : mapColours().text);
-        QFont font = painter.font();
-        font.setStrikeOut(i < struck);
-        painter.setFont(font);
-        painter.drawText(box.topLeft() + QPointF(8, 4 + i * height + metrics.ascent()), lines[i]);
-    }
-}
-
-// What an operator must know who saw the map move, or looked elsewhere.
-void MapPainter::paintCorrection(QPainter &painter) const {
-    if (!model_.correction_m())
-        return;
-    const QString text = QObject::tr("map corrected: %1 m").arg(*model_.correction_m(), 0, 'f', 2);
-    const QFontMetrics metrics(painter.font());
-    constexpr int narrow = 640; // pixels: what stands in the corners leaves no room between
-    QRectF box(0, size_.width() < narrow ? 5 * metrics.height() : 12, metrics.horizontalAdvance(text) + 24,
-               metrics.height() + 12);
-    box.moveLeft((size_.width() - box.width()) / 2);
-    paintBox(painter, box);
-    painter.setPen(mapColours().text);
-    painter.drawText(box, Qt::AlignCenter, text);
 }
 
 } // namespace hermes::desktop

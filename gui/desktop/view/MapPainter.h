@@ -13,9 +13,17 @@ namespace hermes::desktop {
 
 /// What of the map is drawn.
 struct MapLayers {
-    bool grid = true, map = true, scan = true, segments = true, correspondences = true, paths = true,
-         robot = true, loops = true, graph = false, trust = false;
+    bool grid = true, map = true, scan = true, segments = true, correspondences = true, path = true,
+         odometry = true, truth = true, robot = true, uncertainty = true, numbers = true, loops = true,
+         graph = false, trust = false;
 };
+
+/// With so many decimals, and never "-0.00".
+QString fixedNumber(double value, int decimals);
+/// "x 1.20 m, y -0.35 m, 12.5°".
+QString poseText(const Pose2D &pose);
+/// What the pose is within with 95 %: "± 0.012 m, ± 0.009 m, ± 0.3° (95 %)" of x, y and heading.
+QString uncertaintyText(const Covariance &covariance);
 
 /// Draws a map model. World to screen is `transform` (metres to pixels, y up).
 class MapPainter {
@@ -41,10 +49,11 @@ private:
     void paintTrustLegend(QPainter &painter) const;
     void paintScan(QPainter &painter) const;
     int paintCorrespondences(QPainter &painter) const;
-    void paintPath(QPainter &painter, const QPolygonF &path, const QColor &colour, Qt::PenStyle style) const;
+    void paintPath(QPainter &painter, MovingMap::Path path, const QPen &pen) const;
     void paintUncertainty(QPainter &painter) const;
     void paintRobot(QPainter &painter) const;
     void paintScaleBar(QPainter &painter, double step_m) const;
+    QStringList matchLines() const;
     void paintMatch(QPainter &painter) const;
     void paintCorrection(QPainter &painter) const;
     /// For text on the map.

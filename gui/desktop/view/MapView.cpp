@@ -1,6 +1,8 @@
 #include "gui/desktop/view/MapView.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/view/MapColours.h"
+#include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QMouseEvent>
 #include <QPainter>
@@ -11,11 +13,19 @@ namespace hermes::desktop {
 
 MapView::MapView(const MapModel &model, QWidget *parent)
     : QWidget(parent)
-    , model_(model) {
+    , model_(model)
+    , cursorLabel_(new PlainLabel({}, this)) {
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setMinimumSize(200, 150);
     setAttribute(Qt::WA_OpaquePaintEvent);
+    cursorLabel_->setObjectName("cursor");
+    cursorLabel_->setToolTip(tr("Under the mouse: x and y on the map, in metres"));
+    cursorLabel_->setAutoFillBackground(
+        true); // so that the map is not drawn anew with each move of the mouse
+    cursorLabel_->setAttribute(Qt::WA_TransparentForMouseEvents);
+    cursorLabel_->setMargin(2);
+    cursorLabel_->hide();
     connect(&model, &MapModel::changed, this, &MapView::refresh);
 }
 
@@ -28,15 +38,43 @@ QTransform MapView::transform() const {
 }
 
 void MapView::refresh() {
-    if (!wasFitted_ && !model_.edges().isEmpty() && model_.isWhole()) {
-        wasFitted_ = true;
-        showAll();
+    const DaemonLink *const matcher = model_.matcher();
+    if (matcher && fitted_ != matcher && !model_.edges().isEmpty() && model_.isWhole()) {
+        if (model_.pose())
+            fitted_ = matcher;
+        isUntouched_ = true;
+        showFirst();
     }
     if (isFitting_ && !showsAll())
         showAll();
     if (const auto pose = model_.shownPose(); isFollowing_ && pose)
         centre_ = QPointF(pose->x, pose->y);
+    tellCursor();
     update();
+}
+
+// A label of its own: what is under the mouse changes far more often than the map.
+void MapView::tellCursor() {
+    cursorLabel_->setVisible(cursor_.has_value());
+    if (!cursor_)
+        return;
+    QPalette colours = cursorLabel_->palette();
+    colours.setColor(QPalette::Window, mapColours().background);
+    colours.setColor(QPalette::WindowText, mapColours().text);
+    if (colours != cursorLabel_->palette())
+        cursorLabel_->setPalette(colours);
+    const QPointF at = toWorld(*cursor_);
+    const int decimals = pixelsPerMetre_ > 100 ? 3 : 2;
+    cursorLabel_->setText(
+        tr("x %1 m, y %2 m").arg(fixedNumber(at.x(), decimals)).arg(fixedNumber(at.y(), decimals)));
+    cursorLabel_->resize(cursorLabel_->sizeHint());
+    constexpr int scaleBar = 42; // its height, and that of its text
+    cursorLabel_->move(width() - 12 - cursorLabel_->width(), height() - scaleBar - cursorLabel_->height());
+}
+
+void MapView::leaveEvent(QEvent *) {
+    cursor_.reset();
+    tellCursor();
 }
 
 void MapView::setTool(Tool tool) {
@@ -74,16 +112,39 @@ bool MapView::showsAll() const {
     return model_.bounds().isNull() || (QRectF(rect()).contains(all) && !isSmall);
 }
 
+/// The operator wants to see it so.
+void MapView::keepScale() {
+    fitted_ = model_.matcher();
+    isUntouched_ = false;
+}
+
+/// The whole map, with the robot in the middle if the view follows it.
+void MapView::showFirst() {
+    showAll();
+    const auto pose = model_.shownPose();
+    const QRectF all = model_.bounds();
+    if (!isFollowing_ || !pose || !all.isValid())
+        return;
+    const double across = 2 * qMax(pose->x - all.left(), all.right() - pose->x);
+    const double along = 2 * qMax(pose->y - all.top(), all.bottom() - pose->y);
+    fitTo(across, along);
+    centre_ = QPointF(pose->x, pose->y);
+}
+
 void MapView::showAll() {
     const QRectF all = model_.bounds();
     if (all.isNull())
         return;
-    constexpr double margin = 1.15;
-    pixelsPerMetre_ = qBound(
-        0.5, qMin(width() / qMax(1.0, margin * all.width()), height() / qMax(1.0, margin * all.height())),
-        5000.0);
+    fitTo(all.width(), all.height());
     centre_ = all.center();
     update();
+}
+
+/// So that so many metres are seen.
+void MapView::fitTo(double across_m, double along_m) {
+    constexpr double margin = 1.15;
+    pixelsPerMetre_ = qBound(
+        0.5, qMin(width() / qMax(1.0, margin * across_m), height() / qMax(1.0, margin * along_m)), 5000.0);
 }
 
 void MapView::zoom(double factor) {
@@ -92,10 +153,12 @@ void MapView::zoom(double factor) {
 
 void MapView::zoomAt(QPointF pixel, double factor) {
     setFitting(false);
+    keepScale();
     const QPointF fixed = toWorld(pixel);
     pixelsPerMetre_ = qBound(0.5, pixelsPerMetre_ * factor, 5000.0);
     if (!isFollowing_)
         centre_ += fixed - toWorld(pixel);
+    tellCursor();
     update();
 }
 
@@ -143,6 +206,8 @@ void MapView::mousePressEvent(QMouseEvent *event) {
 }
 
 void MapView::mouseMoveEvent(QMouseEvent *event) {
+    cursor_ = event->pos();
+    tellCursor();
     if (!pressed_ || !(event->buttons() & Qt::LeftButton))
         return;
     if (tool_ == Tool::Pan) {
@@ -151,6 +216,7 @@ void MapView::mouseMoveEvent(QMouseEvent *event) {
             return; // a click is no wish to look elsewhere
         setFollowing(false);
         setFitting(false);
+        keepScale();
         centre_ -= QPointF(way.x(), -way.y()) / pixelsPerMetre_;
         pressed_ = event->localPos();
     } else {
@@ -181,6 +247,8 @@ void MapView::mouseReleaseEvent(QMouseEvent *event) {
 void MapView::resizeEvent(QResizeEvent *) {
     if (isFitting_)
         showAll();
+    else if (isUntouched_ && isFollowing_)
+        showFirst();
 }
 
 void MapView::keyPressEvent(QKeyEvent *event) {

@@ -7,6 +7,8 @@
 
 namespace hermes::desktop {
 
+class PlainLabel;
+
 /// The map: pan with the mouse, zoom with the wheel or + and -, F follows the robot, 0 shows everything.
 class MapView : public QWidget {
     Q_OBJECT
@@ -54,12 +56,17 @@ protected:
     void mouseReleaseEvent(QMouseEvent *event) override;
     void keyPressEvent(QKeyEvent *event) override;
     void resizeEvent(QResizeEvent *event) override;
+    void leaveEvent(QEvent *event) override;
 
 private:
     void zoomAt(QPointF pixel, double factor);
     void refresh();
     bool showsAll() const;
     void showAll();
+    void showFirst();
+    void keepScale();
+    void fitTo(double across_m, double along_m);
+    void tellCursor();
     QPointF toWorld(QPointF pixel) const { return transform().inverted().map(pixel); }
     void paintTool(QPainter &painter) const;
 
@@ -67,7 +74,10 @@ private:
     MapLayers layers_;
     Tool tool_ = Tool::Pan;
     bool isFollowing_ = true, isFitting_ = false;
-    bool wasFitted_ = false;
+    const DaemonLink *fitted_ = nullptr; // whose map was fitted to the view
+    bool isUntouched_ = false;           // it is as it was fitted
+    std::optional<QPoint> cursor_;       // pixels
+    PlainLabel *cursorLabel_;
     double pixelsPerMetre_ = 40;
     QPointF centre_;                 // metres
     std::optional<QPointF> pressed_; // metres; pixels while panning

@@ -205,7 +205,7 @@ private:
                     << "motor.estop"
                     << "motor.state";
         QStringList topics{"map",   "pose",   "scan",     "scan2d", "odometry",  "truth", "graph",
-                           "power", "status", "settings", "log",    "processes", "free"};
+                           "power", "status", "settings", "log",    "processes", "free",  "cloud"};
         if (!mischief_.hasTopics)
             topics.clear();
         return "{\"openrpc\":\"1.2.6\",\"methods\":" + named(methods) + ",\"x-topics\":" + named(topics) +

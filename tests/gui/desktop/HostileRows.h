@@ -100,7 +100,7 @@ inline void addNonsenseEverywhere() {
     for (const auto &[name, json] : nonsense) {
         Mischief topics, results;
         for (const char *const topic : {"map", "graph", "pose", "scan", "scan2d", "odometry", "truth",
-                                        "power", "status", "settings", "log", "processes", "free"})
+                                        "power", "status", "settings", "log", "processes", "free", "cloud"})
             topics.topics[topic] = json;
         for (const char *const method : {"daemon.status", "settings.schema", "record.status", "record.list",
                                          "log.tail", "topics.subscribe", "fake.call"})

@@ -98,7 +98,7 @@ void TestKeyboard::docksComeByNumber() {
     QVERIFY(docks.size() >= 6);
     QSet<QString> seen;
     for (int number = 1; number <= docks.size(); ++number) {
-        QTest::keyClick(window_.get(), Qt::Key(Qt::Key_0 + number), Qt::ControlModifier);
+        QTest::keyClick(window_.get(), Qt::Key(Qt::Key_0 + number % 10), Qt::ControlModifier);
         QWidget *const focus = QApplication::focusWidget();
         QVERIFY2(focus, qPrintable(QString::number(number)));
         for (const QDockWidget *dock : docks)

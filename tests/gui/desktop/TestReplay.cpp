@@ -1,5 +1,4 @@
 #include "gui/desktop/panels/RecordPanel.h"
-#include "gui/desktop/view/Clipping.h"
 #include "gui/desktop/widgets/Timeline.h"
 #include "tests/gui/FakeLogger.h"
 #include "tests/gui/desktop/OpenWindow.h"
@@ -33,7 +32,6 @@ private Q_SLOTS:
     void aLoggerThatDiesWhileOneDrags();
     void impossibleTimes();
     void twoOfOneNameReplay();
-    void aPathIsBrokenAtJumps();
 
 private:
     template <typename T = QPushButton>
@@ -384,17 +382,6 @@ void TestReplay::twoOfOneNameReplay() {
     robot.loggers[0]->source = "live";
     QTRY_VERIFY(!watch.text().contains("run0"));
     QVERIFY(watch.text().contains("run1"));
-}
-
-void TestReplay::aPathIsBrokenAtJumps() {
-    const QPolygonF path({{0, 0}, {0.5, 0}, {1, 0}, {9, 9}, {9.1, 9}, {0, 0}});
-    const auto pieces = unbroken(path, 1);
-    QCOMPARE(pieces.size(), std::size_t(3));
-    QCOMPARE(pieces[0], QPolygonF(path.mid(0, 3)));
-    QCOMPARE(pieces[1], QPolygonF(path.mid(3, 2)));
-    QCOMPARE(pieces[2], QPolygonF(path.mid(5)));
-    QCOMPARE(unbroken({}, 1), std::vector<QPolygonF>{QPolygonF()});
-    QCOMPARE(unbroken(QPolygonF(path.mid(0, 3)), 1).size(), std::size_t(1));
 }
 
 QTEST_MAIN(TestReplay)

@@ -4,7 +4,7 @@ set -eu
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 HERMES_PICTURE_S=1 "$HERMES_SOURCE/docs/pictures/make" "$folder" >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
-for picture in daemons settings commands log plots drive setup settings-dark settings-200; do
+for picture in daemons settings commands log plots drive setup cloud settings-dark settings-200; do
     [ -s "$folder/desktop-$picture.png" ] || { echo "desktop-$picture.png is missing"; exit 1; }
 done
 size() { od -An -tu1 -j16 -N8 "$1" | awk '{ print $3 * 256 + $4 "x" $7 * 256 + $8 }'; }

@@ -59,8 +59,11 @@ static void resize(MainWindow &window) {
 }
 
 static void take(MainWindow &window, QDockWidget &dock) {
+    const bool isCloud = dock.objectName() == "cloud";
+    if (isCloud) // more of it is to be seen
+        window.resizeDocks({&dock}, {window.height() / 2}, Qt::Vertical);
     dock.raise();
-    QTest::qWait(400);
+    QTest::qWait(isCloud ? 1000 : 400);
     if (auto *const plots = dock.findChild<PlotsPanel *>()) {
         QTest::qWait(2000); // rates are those of a second
         plots->board().time().setCursor(-3.2);
@@ -70,6 +73,8 @@ static void take(MainWindow &window, QDockWidget &dock) {
         QString("%1/desktop-%2%3.png")
             .arg(Screenshots::arguments[1], dock.objectName(), Screenshots::arguments.value(2));
     QVERIFY2(window.grab().save(file), qPrintable(file));
+    if (isCloud)
+        window.resizeDocks({&dock}, {220}, Qt::Vertical);
 }
 
 /// Somebody stops the robot and releases it, then a daemon is killed.
