@@ -49,7 +49,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , eventWatch_(fleet, log_, events_)
     , runner_(fleet, drive)
     , layouts_(layoutFile)
-    , keeping_(new Banner) {
+    , note_(new Banner) {
     sounds_.switchTo(layouts_.value("sounds") != "off");
     setWindowTitle(tr("Hermes"));
     setDockNestingEnabled(true);
@@ -73,10 +73,10 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
                      "background: #6a2fb0; color: white;");
     });
 
-    keeping_->setObjectName("keepingBanner");
-    addBanner(keeping_, "keepingBar");
+    note_->setObjectName("noticeBanner");
+    addBanner(note_, "noticeBar");
     notice_.setSingleShot(true);
-    connect(&notice_, &QTimer::timeout, keeping_, [this] { keeping_->tell({}, {}); });
+    connect(&notice_, &QTimer::timeout, note_, [this] { note_->tell({}, {}); });
 
     setCentralWidget(map_ = new MapPanel(fleet));
     auto *const gamepad = new DriveGamepad(drive_, layouts_, this);
@@ -100,7 +100,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     restoreButtons();
     map_->setLayers(objectFrom(layouts_.value("layers")).toVariantMap());
     showLayout();
-    tellOfKeeping(layouts_.problem() + layouts_.damage());
+    notify(layouts_.problem() + layouts_.damage());
     fleet.setNames(layouts_.robots().names);
     fleet.setPlaces(layouts_.robots().places);
     fleet.wish(layouts_.robots().chosen);
@@ -242,7 +242,7 @@ QMenu *MainWindow::makeLayoutMenu() {
     auto *const menu = new LayoutMenu(layouts_, this);
     const auto change = [this](const Result<void> &changed) {
         if (!changed)
-            return tellOfKeeping(changed.error().message);
+            return notify(changed.error().message);
         showLayout();
         save();
     };
@@ -306,19 +306,28 @@ void MainWindow::save() {
     if (!layouts_.problem().isEmpty())
         return; // which was said
     if (const auto saved = layouts_.save(); !saved)
-        tellOfKeeping(saved.error().message);
+        notify(saved.error().message);
 }
 
-void MainWindow::tellOfKeeping(const QString &problem) {
+void MainWindow::notify(const QString &problem) {
     if (problem.isEmpty())
         return;
     std::fprintf(stderr, "hermes-gui: %s\n", qPrintable(problem));
-    keeping_->tell(problem, "background: #8a6100; color: white;");
+    note_->tell(problem, "background: #8a6100; color: white;");
     notice_.start(noticeTime);
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
+    const bool isAgain =
+        closing_.isValid() && !closing_.hasExpired(std::chrono::milliseconds(noticeTime).count());
+    if (drive_.stopping().isOnItsWay() && !isAgain) {
+        closing_.start();
+        notify(tr(
+            "STOP is not confirmed as yet, and nothing repeats it when this window is closed. Close it once "
+            "more to leave it so."));
+        return event->ignore();
+    }
     keepLayout();
     keepRobots();
     save();

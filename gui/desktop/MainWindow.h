@@ -53,7 +53,7 @@ private:
     void resetLayout();
     void keepRobots();
     void save();
-    void tellOfKeeping(const QString &problem);
+    void notify(const QString &problem);
 
     Fleet &fleet_;
     DriveControl &drive_;
@@ -72,8 +72,9 @@ private:
     HelpWindow *help_ = nullptr;
     StopKeys *stopKeys_;
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
-    Banner *keeping_;
+    Banner *note_;
     QTimer notice_;
+    QElapsedTimer closing_; ///< since it was tried beside a STOP on its way
     QToolBar *buttonBar_ = nullptr;
 };
 

@@ -144,6 +144,11 @@ bool StopControl::isLate() const {
            (line && line->phase() != StopPhase::Confirmed && line->unconfirmed_s() > late_s);
 }
 
+bool StopControl::isOnItsWay() const {
+    const StopLine *const line = worst(true);
+    return reachesNobody() || (line && line->phase() != StopPhase::Confirmed);
+}
+
 QString StopControl::text() const {
     if (reachesNobody())
         return tr("STOP REACHES NOBODY: no robot that can drive is connected. It goes out as soon as one is. "

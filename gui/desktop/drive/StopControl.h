@@ -26,6 +26,8 @@ public:
     StopPhase phase() const;
     /// Of any robot.
     bool isLate() const;
+    /// One was pressed, for any robot, and is not confirmed as yet.
+    bool isOnItsWay() const;
     /// A STOP for this robot was pressed here, and is not released as yet.
     bool isPressedFor(const Robot &robot) const { return pressed_.contains(&robot); }
     /// What the operator has to know now; empty: nothing.

@@ -55,7 +55,7 @@ private:
             dialog->accept();
         }
         QJsonArray plots() const { return window->findChild<PlotsPanel *>()->state()["panes"].toArray()[0].toArray(); }
-        QString notice() const { return window->findChild<QLabel *>("keepingBanner")->text(); }
+        QString notice() const { return window->findChild<QLabel *>("noticeBanner")->text(); }
         bool isWhole() const {
             auto *const stop = window->findChild<QPushButton *>("stop");
             return stop->isVisible() && window->findChild<QToolBar *>("topBar")->isVisible();

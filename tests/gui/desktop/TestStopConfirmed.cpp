@@ -46,6 +46,7 @@ private Q_SLOTS:
     void cleanup();
     void isConfirmedByAMeasurement();
     void isSaidAloudWhileFrozen();
+    void closingTheWindowAsksMeanwhile();
     void goesOutWhenTheRobotIsBack();
     void goesOverANewConnection();
     void goesOutWhenARobotIsFound();
@@ -150,6 +151,29 @@ void TestStopConfirmed::isSaidAloudWhileFrozen() {
     robot_->signal("motorcontrol", SIGCONT);
     QTRY_VERIFY(phase() == StopPhase::Confirmed);
     QTest::keyRelease(&open_->window, Qt::Key_W);
+}
+
+void TestStopConfirmed::closingTheWindowAsksMeanwhile() {
+    openWindow(robot_->port("motorcontrol"));
+    robot_->signal("motorcontrol", SIGSTOP);
+    press();
+    open_->window.close();
+    QVERIFY(open_->window.isVisible());
+    const auto *const notice = open_->window.findChild<QLabel *>("noticeBanner");
+    QVERIFY2(notice->text().startsWith("STOP is not confirmed"), qPrintable(notice->text()));
+    robot_->signal("motorcontrol", SIGCONT);
+    QTRY_COMPARE_WITH_TIMEOUT(phase(), StopPhase::Confirmed, 10000);
+    open_->window.close();
+    QVERIFY(!open_->window.isVisible());
+
+    openWindow(robot_->port("motorcontrol"));
+    robot_->signal("motorcontrol", SIGSTOP);
+    press();
+    open_->window.close();
+    QVERIFY(open_->window.isVisible());
+    open_->window.close(); // said twice
+    QVERIFY(!open_->window.isVisible());
+    robot_->signal("motorcontrol", SIGCONT);
 }
 
 void TestStopConfirmed::goesOutWhenTheRobotIsBack() {
