@@ -54,7 +54,9 @@ private:
             dialog->setTextValue(name);
             dialog->accept();
         }
-        QJsonArray plots() const { return window->findChild<PlotsPanel *>()->state()["panes"].toArray()[0].toArray(); }
+        QJsonArray plots() const {
+            return window->findChild<PlotsPanel *>()->state()["panes"].toArray()[0].toArray();
+        }
         QString notice() const { return window->findChild<QLabel *>("noticeBanner")->text(); }
         bool isWhole() const {
             auto *const stop = window->findChild<QPushButton *>("stop");
