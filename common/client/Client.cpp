@@ -367,7 +367,7 @@ void Client::deliver(int handle, const QJsonObject &params, const WireValue &dat
     update.seq = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("seq")))));
     update.dropped = quint64(qMax<qint64>(0, toCount(params.value(QStringLiteral("dropped")))));
     update.stamp = params.value(QStringLiteral("stamp")).toDouble(latestStamp + 1);
-    if (std::abs(update.stamp) > latestStamp)
+    if (!(std::abs(update.stamp) <= latestStamp)) // NaN, too
         return refuse(
             {ErrorCode::InvalidParams,
              QStringLiteral("topic %1: stamp: found %2, expected seconds since the Unix epoch")

@@ -9,6 +9,7 @@
 #include <QObject>
 #include <QSettings>
 #include <algorithm>
+#include <cstdio>
 
 namespace hermes::desktop {
 namespace {
@@ -20,10 +21,15 @@ QString tr(const char *text) {
     return QObject::tr(text);
 }
 
+/// What QSettings makes a value of that is no text.
+bool isBuilt(const QByteArray &text) {
+    return text.contains("@Variant(") || text.contains("@DateTime(");
+}
+
 /// Lines of an ini file that this program may have written. What QSettings would build from "@Variant" is
 /// never what was kept.
 bool isOurs(const QByteArray &text) {
-    if (text.contains('\0') || text.contains("@Variant(") || text.contains("@DateTime("))
+    if (text.contains('\0') || isBuilt(text))
         return false;
     bool hasGroup = false, hasLine = false;
     for (const QByteArray &line : text.split('\n')) {
@@ -189,10 +195,27 @@ Result<void> Layouts::save() const {
         return {};
     if (!problem_.isEmpty())
         return Error(ErrorCode::InputOutput, problem_);
+    const Error failed(ErrorCode::InputOutput,
+                       tr("The layout of the window and the robots could not be written to %1").arg(file_));
+    const QString fresh = file_ + ".new"; // so that a whole one is there at any time
     QDir().mkpath(QFileInfo(file_).absolutePath());
-    QSettings file(file_, QSettings::IniFormat);
-    for (const char *const before : {"window", "plots", "layouts", "kept"})
-        file.remove(before);
+    QFile::remove(fresh);
+    if (!write(fresh))
+        return failed;
+    QFile written(fresh);
+    if (!written.open(QIODevice::ReadOnly))
+        return failed;
+    if (written.size() > largest || !isOurs(written.readAll())) {
+        written.remove();
+        return Error(ErrorCode::InputOutput, tr("The layout of the window and the robots are not kept: a "
+                                                "name or a value is too long, or is none "
+                                                "that can be kept"));
+    }
+    return std::rename(QFile::encodeName(fresh), QFile::encodeName(file_)) == 0 ? Result<void>() : failed;
+}
+
+bool Layouts::write(const QString &path) const {
+    QSettings file(path, QSettings::IniFormat);
     file.beginWriteArray("layouts", int(layouts_.size()));
     for (std::size_t i = 0; i < layouts_.size(); ++i) {
         file.setArrayIndex(int(i));
@@ -211,10 +234,7 @@ Result<void> Layouts::save() const {
     for (auto one = values_.begin(); one != values_.end(); ++one)
         file.setValue("kept/" + one.key(), one.value());
     file.sync();
-    if (file.status() != QSettings::NoError)
-        return Error(ErrorCode::InputOutput,
-                     tr("The layout of the window and the robots could not be written to %1").arg(file_));
-    return {};
+    return file.status() == QSettings::NoError;
 }
 
 } // namespace hermes::desktop

@@ -71,6 +71,7 @@ private:
         Layout layout;
     };
 
+    bool write(const QString &path) const;
     void read();
     void readLayouts(QSettings &file);
     std::vector<Named>::iterator find(const QString &name);

@@ -84,8 +84,9 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
         addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_, buttons_}));
     addEventBar();
     addButtonBar();
-    new DriveKeys(drive_, *this);
-    new EnterKey(*this);
+    auto *const typing = new TypingWatch(this);
+    new DriveKeys(drive_, *typing, *this);
+    new EnterKey(*typing, *this);
     new WheelGuard(*this);
     stopKeys_ = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
     stopKeys_->letEscapeStop(layouts_.value("escape") == "on");
@@ -110,6 +111,8 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
 
 // What shows the models of this window goes before them.
 MainWindow::~MainWindow() {
+    if (saving_.isActive())
+        save();
     delete buttonBar_;
     for (QDockWidget *const dock : docks_)
         delete dock;
@@ -214,11 +217,14 @@ void MainWindow::addButtonBar() {
 
 /// Whatever stands there.
 void MainWindow::restoreButtons() {
+    saving_.setSingleShot(true);
+    saving_.setInterval(std::chrono::seconds(1));
+    connect(&saving_, &QTimer::timeout, this, &MainWindow::save);
     buttons_.setState(QJsonDocument::fromJson(layouts_.value("buttons").toUtf8()).array());
     connect(&buttons_, &Buttons::changed, this, [this] {
         layouts_.setValue("buttons",
                           QString::fromUtf8(QJsonDocument(buttons_.state()).toJson(QJsonDocument::Compact)));
-        save();
+        saving_.start(); // each letter of a name is a change
     });
 }
 

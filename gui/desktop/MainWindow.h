@@ -73,7 +73,7 @@ private:
     StopKeys *stopKeys_;
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
     Banner *note_;
-    QTimer notice_;
+    QTimer notice_, saving_;
     QElapsedTimer closing_; ///< since it was tried beside a STOP on its way
     QToolBar *buttonBar_ = nullptr;
 };

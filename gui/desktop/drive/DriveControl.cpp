@@ -69,6 +69,10 @@ void DriveControl::follow() {
         motors_->unsubscribe(settings_);
     }
     motors_ = found;
+    if (found && found != driven_) { // what the limit means is another robot's
+        limit_ = usualLimit;
+        most_ = usualMost;
+    }
     if (found)
         driven_ = found;
     hold_ = {};
@@ -81,10 +85,11 @@ void DriveControl::follow() {
     if (!found)
         return tell(tr("No robot that can drive is connected."));
     tell({});
-    found->call("settings.get", {{"path", "motion"}}, this, [this](const Result<QJsonValue> &motion) {
-        if (motion)
-            takeMost(*motion);
-    });
+    found->call("settings.get", {{"path", "motion"}}, this,
+                [this, asked = motors_](const Result<QJsonValue> &motion) {
+                    if (motion && asked == motors_)
+                        takeMost(*motion);
+                });
     settings_ = found->subscribe("settings", {{"max_rate_hz", 2}},
                                  [this](const TopicUpdate &update) { takeMost(update.json()["motion"]); });
     poll();
@@ -189,26 +194,33 @@ void DriveControl::acquire(bool takeOver) {
     QJsonObject params{{"client", ownName()}, {"timeout_s", lease_s}};
     if (takeOver)
         params["take_over"] = true;
-    motors_->call("control.acquire", params, this, [this, takeOver](const Result<QJsonValue> &result) {
-        isAsking_ = false;
-        isHolding_ = result.ok();
-        tell(result ? QString() : result.error().message);
-        if (!result)
-            mustCentre_ = isAnyHeld();
-        else if (!takeOver && (!isAnyHeld() || mustCentre_))
-            giveBack(); // let go meanwhile
-        if (!result && takeOver && result.error().is(ErrorCode::NotAuthorised))
-            ask();
-        poll();
-    });
+    motors_->call("control.acquire", params, this,
+                  [this, takeOver, asked = motors_](const Result<QJsonValue> &result) {
+                      if (!asked || asked != motors_)
+                          return; // another robot's answer; its control ends by itself
+                      isAsking_ = false;
+                      isHolding_ = result.ok();
+                      tell(result ? QString() : result.error().message);
+                      if (!result)
+                          mustCentre_ = isAnyHeld();
+                      else if (!takeOver && (!isAnyHeld() || mustCentre_))
+                          giveBack(); // let go meanwhile
+                      if (!result && takeOver && result.error().is(ErrorCode::NotAuthorised))
+                          ask();
+                      poll();
+                  });
 }
 
 // Who may not take the control can still say that they would like it.
 void DriveControl::ask() {
-    motors_->call("control.ask", {{"client", ownName()}}, this, [this](const Result<QJsonValue> &result) {
-        tell(result ? tr("You may not take the control over; %1 has been asked for it.").arg(holder())
-                    : result.error().message);
-    });
+    motors_->call(
+        "control.ask", {{"client", ownName()}}, this,
+        [this, asked = motors_](const Result<QJsonValue> &result) {
+            if (!asked || asked != motors_)
+                return;
+            tell(result ? tr("You may not take the control over; %1 has been asked for it.").arg(holder())
+                        : result.error().message);
+        });
 }
 
 void DriveControl::send() {
@@ -293,13 +305,16 @@ void DriveControl::poll() {
     if (!motors_ || !motors_->isConnected() || isPolling_)
         return;
     isPolling_ = true;
-    motors_->call("motor.state", {}, this, [this, losses = losses_](const Result<QJsonValue> &state) {
-        isPolling_ = false;
-        if (losses != losses_)
-            poll();
-        else if (state)
-            onState(*state);
-    });
+    motors_->call("motor.state", {}, this,
+                  [this, losses = losses_, asked = motors_](const Result<QJsonValue> &state) {
+                      if (!asked || asked != motors_)
+                          return;
+                      isPolling_ = false;
+                      if (losses != losses_)
+                          poll();
+                      else if (state)
+                          onState(*state);
+                  });
 }
 
 void DriveControl::onOdometry(const TopicUpdate &update) {

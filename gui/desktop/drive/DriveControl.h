@@ -76,6 +76,9 @@ Q_SIGNALS:
     void stopPressed();
 
 private:
+    static constexpr double usualLimit = 0.4;
+    static constexpr Twist2D usualMost{0.5, 0.5, 1};
+
     struct Input {
         Twist2D wish;
         bool isHeld = false;
@@ -113,11 +116,11 @@ private:
     QTimer timer_, pollTimer_;
     QMap<QString, Input> inputs_;
     MotionHold hold_;
-    Twist2D most_{0.5, 0.5, 1}, commanded_, measured_;
+    Twist2D most_ = usualMost, commanded_, measured_;
     int losses_ = 0; ///< of the control
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
-    double limit_ = 0.4;
+    double limit_ = usualLimit;
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;
     bool isBlindMeant_ = false;
     QString problem_;

@@ -34,7 +34,8 @@ DriveGamepad::DriveGamepad(DriveControl &drive, Layouts &kept, QObject *parent)
 
 void DriveGamepad::steer() {
     const auto [leftX, leftY, rightX] = sticks();
-    const bool isHeld = pad_.isDeadManHeld() && step_ == Step::None;
+    mustRelease_ = pad_.isDeadManHeld() && (mustRelease_ || step_ != Step::None);
+    const bool isHeld = pad_.isDeadManHeld() && !mustRelease_;
     drive_.steer("gamepad", isHeld ? Twist2D{-leftY, -leftX, -rightX} : Twist2D(), isHeld);
 }
 

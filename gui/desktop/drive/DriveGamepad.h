@@ -47,6 +47,7 @@ private:
     QString kind_; ///< whose calibration it is
     GamepadCalibration calibration_;
     Step step_ = Step::None;
+    bool mustRelease_ = false; ///< the dead-man button was held in a calibration
     QTimer resting_, sampling_;
     std::vector<GamepadSticks> atRest_, moved_;
 };

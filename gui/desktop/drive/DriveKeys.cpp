@@ -6,8 +6,10 @@
 #include <QAbstractSlider>
 #include <QApplication>
 #include <QComboBox>
+#include <QDialog>
 #include <QKeyEvent>
 #include <QPlainTextEdit>
+#include <QTextEdit>
 
 namespace hermes::desktop {
 namespace {
@@ -18,7 +20,8 @@ constexpr double slow = 0.3;
 bool usesKeys(const QWidget *focus) {
     return QApplication::activePopupWidget() || isTyping(focus) ||
            qobject_cast<const QAbstractItemView *>(focus) || qobject_cast<const QComboBox *>(focus) ||
-           qobject_cast<const QAbstractSlider *>(focus) || qobject_cast<const QPlainTextEdit *>(focus);
+           qobject_cast<const QAbstractSlider *>(focus) || qobject_cast<const QPlainTextEdit *>(focus) ||
+           qobject_cast<const QTextEdit *>(focus);
 }
 
 bool isDriveKey(int key) {
@@ -29,10 +32,11 @@ bool isDriveKey(int key) {
 
 } // namespace
 
-DriveKeys::DriveKeys(DriveControl &drive, QWidget &window)
+DriveKeys::DriveKeys(DriveControl &drive, const TypingWatch &typing, QWidget &window)
     : QObject(&window)
     , drive_(drive)
-    , window_(window) {
+    , window_(window)
+    , typing_(typing) {
     qApp->installEventFilter(this);
 }
 
@@ -57,8 +61,9 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
             return true;
         }
     }
-    if (!widget || (widget->window() != &window_ && widget->window()->parentWidget() != &window_))
-        return false;
+    if (!widget || (widget->window() != &window_ && widget->window()->parentWidget() != &window_) ||
+        qobject_cast<const QDialog *>(widget->window()))
+        return false; // a dialog has its keys for itself
     if (event->type() == QEvent::ShortcutOverride) {
         // Else a shortcut of the same key would come first.
         const auto *const key = static_cast<QKeyEvent *>(event);
@@ -84,7 +89,7 @@ bool DriveKeys::press(int key, Qt::KeyboardModifiers modifiers) {
         return false;
     }
     const bool isChord = modifiers & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier);
-    if (!isDriveKey(key) || isChord || usesKeys(focus))
+    if (!isDriveKey(key) || isChord || usesKeys(focus) || typing_.isCutOff())
         return false;
     down_.insert(key);
     steer(modifiers);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/drive/DriveControl.h"
+#include "gui/desktop/widgets/TypingWatch.h"
 
 #include <QSet>
 
@@ -12,7 +13,7 @@ namespace hermes::desktop {
 class DriveKeys : public QObject {
     Q_OBJECT
 public:
-    DriveKeys(DriveControl &drive, QWidget &window);
+    DriveKeys(DriveControl &drive, const TypingWatch &typing, QWidget &window);
 
 protected:
     bool eventFilter(QObject *watched, QEvent *event) override;
@@ -24,6 +25,7 @@ private:
 
     DriveControl &drive_;
     QWidget &window_;
+    const TypingWatch &typing_;
     QSet<int> down_;
     QSet<int> stale_; ///< held since a drive that has ended
 };

@@ -89,8 +89,9 @@ void StopControl::onMoved(const DaemonLink *daemon, const Robot *from, const Rob
 void StopControl::onRobotGone(const Robot *robot, const Robot *heir) {
     if (pressed_.remove(robot) && heir)
         pressed_.insert(heir);
-    const auto isIts = [robot](const Line &line) { return line.robot == robot; };
-    lines_.erase(std::remove_if(lines_.begin(), lines_.end(), isIts), lines_.end());
+    for (Line &line : lines_)
+        if (line.robot == robot)
+            line.robot = heir; // one that is on its way goes on, whoever it belongs to
     follow();
     Q_EMIT changed();
 }

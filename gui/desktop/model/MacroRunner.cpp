@@ -11,6 +11,10 @@ MacroRunner::MacroRunner(Fleet &fleet, DriveControl &drive, QObject *parent)
     pause_.setSingleShot(true);
     connect(&pause_, &QTimer::timeout, this, &MacroRunner::next);
     connect(&drive, &DriveControl::stopPressed, this, [this] { end(tr("STOP")); });
+    connect(&fleet, &Fleet::robotChosen, this, [this] { // whose stops are not heard any more
+        end(tr("another robot was chosen"));
+        wasStopped_ = drive_.isStopped();
+    });
     connect(&drive, &DriveControl::changed, this, [this] {
         const bool was = std::exchange(wasStopped_, drive_.isStopped());
         if (wasStopped_ && !was)

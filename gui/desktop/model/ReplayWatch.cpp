@@ -60,7 +60,8 @@ void ReplayWatch::take(const QString &address, const QString &name, const Result
         return;
     const QJsonValue source = answer->toObject().contains("source") ? (*answer)["source"] : *answer;
     const auto before = replays_;
-    if (source["state"] == QJsonValue("replay"))
+    const QString state = source["state"].toString();
+    if (state == "replay" || state == "ended") // at its end it still shows what was
         replays_[address] = textOf(name, source);
     else
         replays_.erase(address);

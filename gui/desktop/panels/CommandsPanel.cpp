@@ -153,6 +153,8 @@ MacroStep CommandsPanel::typedStep() const {
 }
 
 void CommandsPanel::addButton() {
+    if (!daemon_ || method_.isEmpty())
+        return; // it went meanwhile
     buttons_.add({shortLine(method_, Macro::longestName - 3), {typedStep()}});
     editButtons();
     editor_->choose(int(buttons_.all().size()) - 1);
@@ -160,6 +162,8 @@ void CommandsPanel::addButton() {
 }
 
 void CommandsPanel::addStep(int place) {
+    if (!daemon_ || method_.isEmpty() || place >= int(buttons_.all().size()))
+        return; // a menu may be open for long
     Macro macro = buttons_.all().at(std::size_t(place));
     macro.steps.push_back(typedStep());
     buttons_.set(place, macro);

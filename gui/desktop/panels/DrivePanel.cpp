@@ -11,6 +11,7 @@
 #include <QPushButton>
 #include <QSlider>
 #include <QVBoxLayout>
+#include <cmath>
 
 namespace hermes::desktop {
 
@@ -113,7 +114,7 @@ void DrivePanel::takeTypedLimit() {
     const double most = drive_.most().vx;
     const bool isModified = speed_->isModified();
     speed_->setModified(false);
-    if (isModified && isNumber && speed > 0 && most > 0)
+    if (isModified && isNumber && std::isfinite(speed) && speed > 0 && most > 0)
         drive_.setLimit(speed / most);
     showLimit();
 }

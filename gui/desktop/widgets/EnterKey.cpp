@@ -18,8 +18,9 @@ bool tick(QAbstractItemView &view) {
 
 } // namespace
 
-EnterKey::EnterKey(QWidget &window)
+EnterKey::EnterKey(const TypingWatch &typing, QWidget &window)
     : QObject(&window)
+    , typing_(typing)
     , window_(window) {
     qApp->installEventFilter(this);
 }
@@ -31,6 +32,8 @@ bool EnterKey::eventFilter(QObject *watched, QEvent *event) {
     auto *const widget = qobject_cast<QWidget *>(watched);
     if ((key != Qt::Key_Return && key != Qt::Key_Enter) || !widget || widget->window() != &window_)
         return false;
+    if (typing_.isCutOff())
+        return true;
     if (auto *const button = qobject_cast<QAbstractButton *>(widget)) {
         button->click();
         return true;

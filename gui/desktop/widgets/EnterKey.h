@@ -1,6 +1,6 @@
 #pragma once
 
-#include <QObject>
+#include "gui/desktop/widgets/TypingWatch.h"
 
 class QWidget;
 
@@ -11,12 +11,13 @@ namespace hermes::desktop {
 class EnterKey : public QObject {
     Q_OBJECT
 public:
-    explicit EnterKey(QWidget &window);
+    EnterKey(const TypingWatch &typing, QWidget &window);
 
 protected:
     bool eventFilter(QObject *watched, QEvent *event) override;
 
 private:
+    const TypingWatch &typing_;
     QWidget &window_;
 };
 

@@ -23,6 +23,8 @@ private Q_SLOTS:
     void keysDriveTurnAndGoSlow();
     void openingAMenuStops();
     void keysInAFieldDoNotDrive();
+    void keysInADialogDoNotDrive();
+    void keysAfterAFieldHasVanishedDoNotDrive();
     void stopIsLatchedAndNeedsNoControl_data();
     void stopIsLatchedAndNeedsNoControl();
     void afterAReleaseTheStickMustBeCentred();
@@ -154,6 +156,36 @@ void TestDrivePanel::keysInAFieldDoNotDrive() {
     QCOMPARE(field->text(), QString("wasd qe"));
     QVERIFY(!drive_->isDriving());
     QVERIFY(!state()["control"].toObject()["held"].toBool());
+}
+
+void TestDrivePanel::keysInADialogDoNotDrive() {
+    find<QAction>("helpHere")->trigger();
+    auto *const text = find<QWidget>("helpText");
+    text->window()->activateWindow();
+    QVERIFY(QTest::qWaitForWindowActive(text->window()));
+    text->setFocus();
+    QTest::keyPress(text, Qt::Key_Down); // scrolls
+    QTest::qWait(200);
+    QVERIFY(!drive_->isDriving());
+    QTest::keyRelease(text, Qt::Key_Down);
+}
+
+void TestDrivePanel::keysAfterAFieldHasVanishedDoNotDrive() {
+    auto *const field = find<QLineEdit>("address");
+    field->setFocus();
+    QTest::keyClicks(field, "wheel");
+    field->hide(); // as that of a mark when the recording ends
+    QWidget *const next = QApplication::focusWidget() ? QApplication::focusWidget() : window_.get();
+    QTest::keyPress(next, Qt::Key_S);
+    QTest::qWait(200);
+    QVERIFY(!drive_->isDriving());
+    QTest::keyRelease(next, Qt::Key_S);
+    field->show();
+    window_->centralWidget()->setFocus();
+    QTest::qWait(1200); // who has paused sees what has the focus
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    awaitMotion();
+    QTest::keyRelease(window_.get(), Qt::Key_W);
 }
 
 void TestDrivePanel::stopIsLatchedAndNeedsNoControl_data() {

@@ -21,6 +21,7 @@ private Q_SLOTS:
     void drivesWhileTheDeadManButtonIsHeld();
     void unpluggedWhileItDrivesItStops();
     void pluggedInWithItsButtonHeldItDoesNotDrive();
+    void afterACalibrationTheButtonMustBeLetGo();
     void stopHoweverShort();
     void measuresWhereSticksRest();
     void calibrationsThatCannotBe_data();
@@ -108,6 +109,23 @@ void TestGamepad::pluggedInWithItsButtonHeldItDoesNotDrive() {
     QVERIFY(!drive().isDriving());
     pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, false);
     QTRY_VERIFY(isSeen() && shown().contains("hold"));
+    pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, true);
+    QTRY_VERIFY_WITH_TIMEOUT(drive().isDriving(), 10000);
+}
+
+void TestGamepad::afterACalibrationTheButtonMustBeLetGo() {
+    VirtualGamepad pad;
+    QTRY_VERIFY(isSeen() && shown().contains("hold"));
+    OpenWindow::click(&window(), "calibrate");
+    pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, true); // by habit
+    pad.move(SDL_CONTROLLER_AXIS_LEFTY, -1);
+    const DriveGamepad *const gamepad = window().findChild<DriveGamepad *>();
+    QTRY_VERIFY(gamepad->pad().isDeadManHeld() && gamepad->step() != DriveGamepad::Step::None);
+    OpenWindow::click(&window(), "calibrateOther"); // Cancel
+    QTest::qWait(300);
+    QVERIFY(!drive().isDriving());
+    pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, false);
+    QTest::qWait(100);
     pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, true);
     QTRY_VERIFY_WITH_TIMEOUT(drive().isDriving(), 10000);
 }
