@@ -18,6 +18,7 @@ RecordingStop::RecordingStop(LoggerWatch &watch, QObject *parent)
 void RecordingStop::begin() {
     sessions_ += watch_.sessions();
     answered_.clear();
+    unconfirmed_.clear();
     goOn();
 }
 
@@ -57,7 +58,10 @@ void RecordingStop::goOn() {
 void RecordingStop::take(const QString &address, const SessionReply &reply) {
     told_.remove(address);
     const auto is = [&](ErrorCode code) { return !reply.result && reply.result.error().is(code); };
-    if (!is(ErrorCode::TimedOut) && !is(ErrorCode::Disconnected)) {
+    if (is(ErrorCode::TimedOut) || is(ErrorCode::Disconnected)) {
+        unconfirmed_[address] = reply.member.name;
+    } else {
+        unconfirmed_.remove(address);
         answered_.insert(address);
         if (!is(ErrorCode::NotReady)) // it had ended before: its sidecar tells how
             ends_.push_back(reply);
@@ -71,7 +75,10 @@ void RecordingStop::check() {
     recorder_.setMembers(watch_.members());
     recorder_.check(sessions_, std::exchange(ends_, {}), [this](const SessionRecorder::Stopped &stopped) {
         checks_ = isUnderWay_ = false;
-        Q_EMIT ended(stopped.problems);
+        QStringList problems = stopped.problems; // of another robot's loggers, when that was chosen meanwhile
+        for (const QString &name : qAsConst(unconfirmed_))
+            problems.append(tr("%1 has not confirmed that it stopped: it may still record").arg(name));
+        Q_EMIT ended(problems);
         goOn();
     });
 }

@@ -31,8 +31,9 @@ private:
 
     LoggerWatch &watch_;
     SessionRecorder recorder_;
-    QSet<QString> sessions_;        ///< that were to end
-    QSet<QString> told_, answered_; ///< the addresses of loggers
+    QSet<QString> sessions_;             ///< that were to end
+    QSet<QString> told_, answered_;      ///< the addresses of loggers
+    QMap<QString, QString> unconfirmed_; ///< names of those that were told and gave no answer, by address
     SessionReplies ends_;
     bool isUnderWay_ = false, checks_ = false;
 };
