@@ -16,18 +16,14 @@ void Playback::start(const Options &options, std::function<void()> play) {
     stopping_ = false;
     paused_ = options.paused;
     seek_ns_.reset();
+    sought_ns_.reset();
     position_ns_ = 0;
     loops_ = 0;
     jump(0);
     thread_ = std::thread([this, play = std::move(play)] {
-        waitForBegin();
+        waitToEnd(); // of nothing: it would not wait for any time
         play();
     });
-}
-
-void Playback::waitForBegin() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    wake_.wait(lock, [this] { return !paused_ || stopping_ || seek_ns_; });
 }
 
 void Playback::stop() {
@@ -71,11 +67,14 @@ Playback::Turn Playback::waitFor(std::int64_t time_ns) {
             return Turn::End;
         if (seek_ns_)
             return Turn::Seek;
+        if (isPreview(time_ns))
+            return Turn::Due;
         if (paused_) {
             hold();
             wake_.wait(lock);
             continue;
         }
+        sought_ns_.reset();
         since_ = since_.value_or(Clock::now());
         if (options_.speed <= 0 || Clock::now() >= due(time_ns))
             break;
@@ -85,6 +84,16 @@ Playback::Turn Playback::waitFor(std::int64_t time_ns) {
     return Turn::Due;
 }
 
+Playback::Turn Playback::waitToEnd() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    wake_.wait(lock, [this] { return !paused_ || stopping_ || seek_ns_; });
+    return stopping_ ? Turn::End : seek_ns_ ? Turn::Seek : Turn::Due;
+}
+
+bool Playback::isPreview(std::int64_t time_ns) const {
+    return paused_ && sought_ns_ && time_ns <= *sought_ns_ + preview_ns;
+}
+
 bool Playback::rest(std::chrono::milliseconds time) {
     std::unique_lock<std::mutex> lock(mutex_);
     return !wake_.wait_for(lock, time, [this] { return stopping_; });
@@ -92,7 +101,8 @@ bool Playback::rest(std::chrono::milliseconds time) {
 
 std::int64_t Playback::takeSeek() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return std::exchange(seek_ns_, std::nullopt).value_or(position_ns_);
+    sought_ns_ = std::exchange(seek_ns_, std::nullopt).value_or(position_ns_);
+    return *sought_ns_;
 }
 
 bool Playback::isInterrupted() const {

@@ -11,7 +11,8 @@
 namespace hermes {
 
 /// The thread that plays a recording and its pace, the time of the replay: others let it wait, seek and end
-/// it.
+/// it. A seek while it waits plays a quarter of a second at once, which is a whole turn of a lidar, so that
+/// the place can be seen; the time stays that of the seek.
 class Playback {
 public:
     struct Options {
@@ -43,6 +44,8 @@ public:
 
     /// Until this time of the replay has come. The playing thread's, as what follows.
     Turn waitFor(std::int64_t time_ns);
+    /// At the end of what there is: Due when it does not wait.
+    Turn waitToEnd();
     /// A pause for other reasons; false when the replay is to end.
     bool rest(std::chrono::milliseconds time);
     /// The time that was sought last. After Turn::Seek.
@@ -57,7 +60,9 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    void waitForBegin();
+    static constexpr std::int64_t preview_ns = 250000000;
+
+    bool isPreview(std::int64_t time_ns) const;
     void change(const std::function<void()> &what);
     void hold();
     Clock::time_point due(std::int64_t time_ns) const;
@@ -74,6 +79,7 @@ private:
     std::uint64_t loops_ = 0;
     std::optional<Clock::time_point> since_; ///< when the time was that of begin_ns_; nothing: it waits there
     std::int64_t begin_ns_ = 0;
+    std::optional<std::int64_t> sought_ns_; ///< the last seek, until the time goes on
 };
 
 } // namespace hermes

@@ -133,7 +133,8 @@ Command ReplaySource::pauseCommand() {
 
 Command ReplaySource::seekCommand() {
     return whileReplaying(
-        Command("source.seek", "The replay goes on there; beyond its end it ends")
+        Command("source.seek", "The replay goes on there; beyond its end it ends. One that waits plays "
+                               "a quarter of a second, and waits on")
             .param(Field::number("t_s", "Seconds after the first record, of a recording after its beginning")
                        .unit("s")
                        .range(0, 1e7))

@@ -101,15 +101,17 @@ SerialPlayer::Track *SerialPlayer::nextTrack() const {
 }
 
 void SerialPlayer::run() {
-    while (Track *const track = nextTrack()) {
-        const Playback::Turn turn = wait(*track);
+    for (;;) {
+        Track *const track = nextTrack();
+        const Playback::Turn turn = track ? wait(*track) : playback_.waitToEnd();
         if (turn == Playback::Turn::End)
             return;
+        if (!track && turn == Playback::Turn::Due)
+            return end_(missing_);
         const Result<void> done = turn == Playback::Turn::Seek ? goTo(playback_.takeSeek()) : play(*track);
         if (!done)
             return end_(done);
     }
-    end_(missing_);
 }
 
 /// Until the piece is due and there is room for it.

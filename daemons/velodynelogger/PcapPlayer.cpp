@@ -49,11 +49,15 @@ void PcapPlayer::run() {
                 return;
             continue;
         }
-        const bool failed = next == PcapReader::Next::Failed;
-        if (!playback_.options().loop || failed || !played) {
-            end_(failed ? Outcome<void>(reader_.error()) : Outcome<void>());
+        if (next == PcapReader::Next::Failed)
+            return end_(reader_.error());
+        const Playback::Turn turn = playback_.waitToEnd();
+        if (turn == Playback::Turn::End || (turn == Playback::Turn::Seek && !goTo(playback_.takeSeek())))
             return;
-        }
+        if (turn == Playback::Turn::Seek)
+            continue;
+        if (!playback_.options().loop || !played)
+            return end_({});
         played = false;
         if (!rewind({begin_, {}}))
             return;
