@@ -151,7 +151,7 @@ void TopBar::updateDrive() {
 }
 
 void TopBar::showPower(WireView told) {
-    powerAge_.heard();
+    powerAge_.heard(powerFeed_.source());
     ReadReport report;
     const auto power = readMessage<PowerMessage>(told, report);
     if (!power)

@@ -323,7 +323,7 @@ void DriveControl::onOdometry(const TopicUpdate &update) {
     if (!odometry)
         return tell(tr("Odometry: %1").arg(report.text()));
     measured_ = odometry->twist;
-    measuredAge_.heard();
+    measuredAge_.heard(odometry_.source());
     if (odometry_.source() == motors_) // no other clock is asked for
         clock_.add(update.stamp, stampNow(), motors_ ? motors_->latency_ms() / 1000 : 0);
     Q_EMIT changed();
@@ -334,7 +334,7 @@ void DriveControl::onState(const QJsonValue &state) {
     auto hold = readMessage<MotionHold>(WireValue(state), report);
     if (!hold)
         return tell(tr("State of the motors: %1").arg(report.text()));
-    stateAge_.heard();
+    stateAge_.heard(motors_);
     const bool wasStopped = isStopped();
     hold_ = std::move(*hold);
     if (!isDriving_ && hold_.control.holder != ownName())

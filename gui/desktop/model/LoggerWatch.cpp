@@ -33,8 +33,12 @@ void LoggerWatch::follow() {
     const bool isSame =
         std::equal(before.begin(), before.end(), members_.all.begin(), members_.all.end(),
                    [](const SessionMember &a, const SessionMember &b) { return a.client == b.client; });
-    if (isSame && !isOther)
+    const QStringList wereSilent = std::exchange(silent_, silent());
+    if (isSame && !isOther) {
+        if (wereSilent != silent_)
+            Q_EMIT changed();
         return;
+    }
     if (isOther) {
         states_.clear();
         lost_.clear();

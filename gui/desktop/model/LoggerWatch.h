@@ -65,6 +65,7 @@ private:
     SessionMembers members_;
     std::map<QString, QJsonObject> states_;
     std::map<QString, Lost> lost_;
+    QStringList silent_;
     std::deque<std::pair<double, double>> progress_; // monotonic seconds, bytes
 };
 

@@ -20,7 +20,7 @@ TopicMeter::~TopicMeter() {
 
 void TopicMeter::take(const TopicUpdate &update) {
     constexpr double least_s = 0.9; // that a rate is measured over
-    freshness_.heard();
+    freshness_.heard(daemon_);
     const double now = monotonicNow();
     if (since_ == 0 || update.seq < first_) { // the first, or of a daemon that was started again
         since_ = now;

@@ -98,7 +98,7 @@ double TopicSampler::now(const QString &clock) const {
 
 void TopicSampler::take(const TopicId &topic, const TopicUpdate &update) {
     Source &source = sources_[topic];
-    source.freshness.heard();
+    source.freshness.heard(source.daemon);
     source.newest = update.stamp;
     source.arrived = monotonicNow();
     source.isRecorded = !(std::abs(stampNow() - update.stamp) < recorded_s);

@@ -68,7 +68,9 @@ void CloudPanel::tell() {
 }
 
 void CloudPanel::onSight(bool isInSight) {
-    model_.setEnabled(isInSight);
+    // One that is taken out of its tabs says that it is not in sight.
+    const auto *const dock = qobject_cast<const QDockWidget *>(sender());
+    model_.setEnabled(isInSight || (dock && dock->isFloating() && isVisible()));
 }
 
 // A tab over the panel does not hide it.
@@ -77,7 +79,7 @@ void CloudPanel::showEvent(QShowEvent *event) {
     for (QWidget *above = parentWidget(); above; above = above->parentWidget())
         if (const auto *const dock = qobject_cast<QDockWidget *>(above)) {
             connect(dock, &QDockWidget::visibilityChanged, this, &CloudPanel::onSight, Qt::UniqueConnection);
-            isInDock = true;
+            isInDock = !dock->isFloating();
         }
     if (!isInDock)
         onSight(true);

@@ -78,7 +78,7 @@ void CloudModel::take(const CloudMessage &cloud) {
     lidar_ = shortLine(cloud.model, longestModel);
     beams_ = cloud.header.rays.value_or(0) * quint64(lasers);
     isReplayed_ = cloud.header.replayed;
-    age_.heard();
+    age_.heard(feed_.source());
     measure();
     Q_EMIT changed();
 }

@@ -179,7 +179,7 @@ void MapModel::onPose(const PoseMessage &message) {
     }
     takeLeap(message);
     pose_ = message.pose;
-    poseAge_.heard();
+    poseAge_.heard(poses_.source());
     takeTrust(message.trust);
     outcome_ = shortLine(message.outcome, longestOutcome);
     covariance_ = message.covariance;
@@ -229,7 +229,7 @@ void MapModel::onResult(const ScanResult &result) {
 
 void MapModel::onScan(const ScanMessage &scan) {
     rawScan_ = scan;
-    scanAge_.heard();
+    scanAge_.heard(scans_.source());
     placeScan();
     if (!poses_.source())
         Q_EMIT changed();
