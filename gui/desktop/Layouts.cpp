@@ -1,6 +1,7 @@
 #include "gui/desktop/Layouts.h"
 
 #include "gui/desktop/widgets/ForeignText.h"
+#include "gui/desktop/widgets/Quantities.h"
 
 #include <QCryptographicHash>
 #include <QDir>
@@ -159,13 +160,13 @@ Layouts::Layout Layouts::layout() const {
 }
 
 void Layouts::setLayout(const Layout &layout) {
-    find(current_)->layout = layout;
+    put(find(current_)->layout, layout);
 }
 
 Result<void> Layouts::choose(const QString &name) {
     if (find(name) == layouts_.end())
         return Error(ErrorCode::InvalidParams, tr("There is no layout %1.").arg(shortLine(name)));
-    current_ = name;
+    put(current_, name);
     return {};
 }
 
@@ -178,7 +179,7 @@ Result<void> Layouts::saveAs(const QString &name) {
     if (int(layouts_.size()) >= most)
         return Error(ErrorCode::InvalidParams, tr("There are %1 layouts: delete one first.").arg(most));
     layouts_.push_back({wanted, layout()});
-    current_ = wanted;
+    put(current_, wanted);
     return {};
 }
 
@@ -186,7 +187,7 @@ Result<void> Layouts::remove() {
     if (layouts_.size() < 2)
         return Error(ErrorCode::InvalidParams, tr("The last layout stays."));
     layouts_.erase(find(current_));
-    current_ = layouts_.front().name;
+    put(current_, layouts_.front().name);
     return {};
 }
 
@@ -205,11 +206,14 @@ Result<void> Layouts::save() const {
     QFile written(fresh);
     if (!written.open(QIODevice::ReadOnly))
         return failed;
-    if (written.size() > largest || !isOurs(written.readAll())) {
+    const qint64 size = written.size();
+    if (size > largest || !isOurs(written.readAll())) {
         written.remove();
-        return Error(ErrorCode::InputOutput, tr("The layout of the window and the robots are not kept: a "
-                                                "name or a value is too long, or is none "
-                                                "that can be kept"));
+        return Error(ErrorCode::InputOutput,
+                     tr("The layout of the window and the robots are not kept any more: %1")
+                         .arg(size > largest ? tr("with buttons, plots and names it has %1, and may have %2.")
+                                                   .arg(sizeText(double(size)), sizeText(double(largest)))
+                                             : tr("a name or a value is none that can be kept.")));
     }
     return std::rename(QFile::encodeName(fresh), QFile::encodeName(file_)) == 0 ? Result<void>() : failed;
 }

@@ -1,14 +1,9 @@
-#include "gui/desktop/LayoutMenu.h"
-#include "gui/desktop/panels/PlotsPanel.h"
 #include "tests/gui/desktop/FakeDaemon.h"
-#include "tests/gui/desktop/OpenWindow.h"
+#include "tests/gui/desktop/LayoutWindow.h"
 
 #include <QComboBox>
-#include <QInputDialog>
-#include <QLabel>
 #include <QRandomGenerator>
 #include <QSettings>
-#include <QToolBar>
 #include <csignal>
 #include <sys/resource.h>
 
@@ -30,44 +25,6 @@ private Q_SLOTS:
     void whatCannotBeWrittenIsTold();
 
 private:
-    struct Window {
-        explicit Window(const QString &file, const QStringList &addresses = {}) {
-            for (const QString &address : addresses.isEmpty() ? MainWindow::keptAddresses(file) : addresses)
-                fleet.add(address);
-            drive = std::make_unique<DriveControl>(fleet);
-            window = std::make_unique<MainWindow>(fleet, *drive, file);
-            window->show();
-        }
-        QWidget *dock(const char *name) const { return window->findChild<QDockWidget *>(name); }
-        LayoutMenu &menu() const { return *window->findChild<LayoutMenu *>(); }
-        /// Opens the menu and presses one of what is in it.
-        void pick(const QString &name) const {
-            Q_EMIT menu().aboutToShow();
-            auto *const action = menu().findChild<QAction *>(name);
-            QVERIFY2(action && action->isEnabled(), qPrintable(name));
-            action->trigger();
-        }
-        void saveAs(const QString &name) const {
-            pick("saveLayoutAs");
-            auto *const dialog = window->findChildren<QInputDialog *>("layoutName").back();
-            QVERIFY(dialog->isVisible() && !dialog->isModal());
-            dialog->setTextValue(name);
-            dialog->accept();
-        }
-        QJsonArray plots() const {
-            return window->findChild<PlotsPanel *>()->state()["panes"].toArray()[0].toArray();
-        }
-        QString notice() const { return window->findChild<QLabel *>("noticeBanner")->text(); }
-        bool isWhole() const {
-            auto *const stop = window->findChild<QPushButton *>("stop");
-            return stop->isVisible() && window->findChild<QToolBar *>("topBar")->isVisible();
-        }
-
-        Fleet fleet;
-        std::unique_ptr<DriveControl> drive;
-        std::unique_ptr<MainWindow> window;
-    };
-
     QByteArray content() const {
         QFile file(file_);
         return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
@@ -89,7 +46,7 @@ void TestLayouts::init() {
 void TestLayouts::savedSwitchedAndDeletedByHand() {
     const QJsonObject plotted{{"daemon", "127.0.0.1:1"}, {"topic", "a"}, {"field", "b"}};
     {
-        Window one(file_, {"127.0.0.1:1"});
+        LayoutWindow one(file_, {"127.0.0.1:1"});
         QVERIFY(one.dock("drive")->isVisible());
         one.saveAs("Bench & desk");
         one.dock("drive")->hide();
@@ -101,7 +58,7 @@ void TestLayouts::savedSwitchedAndDeletedByHand() {
         QTRY_VERIFY(!one.dock("drive")->isVisible());
         one.window->close();
     }
-    Window next(file_);
+    LayoutWindow next(file_);
     QVERIFY(!next.dock("drive")->isVisible());
     QCOMPARE(next.window->layouts().names(), QStringList({"Usual", "Bench & desk"}));
     QCOMPARE(next.window->layouts().current(), QString("Bench & desk"));
@@ -117,7 +74,7 @@ void TestLayouts::savedSwitchedAndDeletedByHand() {
 }
 
 void TestLayouts::badNamesAreTold() {
-    Window one(file_, {"127.0.0.1:1"});
+    LayoutWindow one(file_, {"127.0.0.1:1"});
     one.saveAs("  ");
     QCOMPARE(one.notice(), QString("A layout needs a name."));
     one.saveAs("Usual");
@@ -136,7 +93,7 @@ void TestLayouts::switchingDropsNoConnectionAndNoBanner() {
     motors.isMotors = true;
     motors.hasTopics = false;
     const FakeDaemon daemon(motors);
-    Window one(file_, {QString("127.0.0.1:%1").arg(daemon.port())});
+    LayoutWindow one(file_, {QString("127.0.0.1:%1").arg(daemon.port())});
     QTRY_VERIFY(one.drive->isPossible());
     one.saveAs("other");
     DaemonLink *const link = one.fleet.robot()->daemons().front();
@@ -159,14 +116,14 @@ void TestLayouts::robotsAreKept() {
     const FakeDaemon one(supervisor), other(supervisor);
     const auto address = [](const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); };
     {
-        Window first(file_, {address(one), address(other)});
+        LayoutWindow first(file_, {address(one), address(other)});
         QTRY_VERIFY(first.fleet.robotAt(address(one)) && first.fleet.robotAt(address(other)));
         first.fleet.rename(*first.fleet.robotAt(address(other)), "Blue, \"the\" second; [x]");
         first.fleet.choose(first.fleet.robotAt(address(other)));
         first.saveAs("desk");
         QTRY_COMPARE(Layouts(file_).robots().names.size(), 1); // before it is closed
     }
-    Window next(file_);
+    LayoutWindow next(file_);
     QTRY_VERIFY(next.fleet.robotAt(address(other)) && next.fleet.robotAt(address(one)));
     QCOMPARE(next.fleet.robot(), next.fleet.robotAt(address(other)));
     QCOMPARE(next.fleet.robot()->name(), QString("Blue, \"the\" second; [x]"));
@@ -216,7 +173,7 @@ void TestLayouts::anyFile() {
     QElapsedTimer clock;
     clock.start();
     {
-        Window one(file_);
+        LayoutWindow one(file_);
         QVERIFY(one.isWhole());
         QVERIFY(one.dock("daemons")->isVisible());
         QCOMPARE(one.notice().isEmpty(), isOurs && !bytes.contains("1\\state"));
@@ -235,7 +192,7 @@ void TestLayouts::anyState() {
     const quint32 seed = QRandomGenerator::global()->generate();
     qInfo("seed %u", seed);
     QRandomGenerator random(seed);
-    { Window(file_, {"127.0.0.1:1"}).window->close(); }
+    { LayoutWindow(file_, {"127.0.0.1:1"}).window->close(); }
     QVERIFY(Layouts(file_).damage().isEmpty());
     QSettings file(file_, QSettings::IniFormat);
     const QStringList keys{"layouts/1/state", "layouts/1/geometry"};
@@ -250,7 +207,7 @@ void TestLayouts::anyState() {
         file.setValue(keys[which], bytes);
         file.setValue(keys[1 - which], good[1 - which]);
         file.sync();
-        Window one(file_, {"127.0.0.1:1"});
+        LayoutWindow one(file_, {"127.0.0.1:1"});
         QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
         QVERIFY2(one.notice().contains("damaged"), qPrintable(one.notice()));
     }
@@ -258,12 +215,12 @@ void TestLayouts::anyState() {
 
 void TestLayouts::whatCannotBeWrittenIsTold() {
     {
-        Window folder(folder_->path(), {"127.0.0.1:1"}); // which is no file
+        LayoutWindow folder(folder_->path(), {"127.0.0.1:1"}); // which is no file
         QVERIFY2(folder.notice().contains("is no file"), qPrintable(folder.notice()));
         QVERIFY(folder.isWhole());
     }
     {
-        Window device("/dev/null", {"127.0.0.1:1"});
+        LayoutWindow device("/dev/null", {"127.0.0.1:1"});
         QVERIFY(!device.notice().isEmpty());
         device.window->close();
         QVERIFY(QFileInfo::exists("/dev/null") && !QFileInfo("/dev/null").isFile());
@@ -271,20 +228,21 @@ void TestLayouts::whatCannotBeWrittenIsTold() {
     file_ = folder_->filePath("gui.ini");
     write({});
     {
-        Window below(file_ + "/gui.ini", {"127.0.0.1:1"}); // where no folder can be
+        LayoutWindow below(file_ + "/gui.ini", {"127.0.0.1:1"}); // where no folder can be
         QTRY_VERIFY2(below.notice().contains("could not be written"), qPrintable(below.notice()));
     }
-    Window full(file_, {"127.0.0.1:1"});
+    LayoutWindow full(file_, {"127.0.0.1:1"});
     std::signal(SIGXFSZ, SIG_IGN);
     rlimit before{};
     QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
     const rlimit none{0, before.rlim_max};
     QCOMPARE(setrlimit(RLIMIT_FSIZE, &none), 0); // as on a full disk
     full.saveAs("more");
+    const bool isTold = QTest::qWaitFor([&full] { return full.notice().contains("could not be written"); });
     QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
-    QVERIFY2(full.notice().contains("could not be written"), qPrintable(full.notice()));
+    QVERIFY2(isTold, qPrintable(full.notice()));
     full.saveAs("when there is room");
-    QVERIFY(Layouts(file_).names().contains("when there is room"));
+    QTRY_VERIFY(Layouts(file_).names().contains("when there is room"));
     QVERIFY(Layouts(file_).names().contains("more")); // the window had it
 }
 
