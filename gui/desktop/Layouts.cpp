@@ -27,6 +27,22 @@ bool isBuilt(const QByteArray &text) {
     return text.contains("@Variant(") || text.contains("@DateTime(");
 }
 
+/// A section, or a key with a value whose quotes end with it. QSettings says that it found anything else only
+/// to the first who reads the file, or reads on in the next line.
+bool isWhole(const QByteArray &line) {
+    if (line.startsWith('['))
+        return line.endsWith(']');
+    const int equals = line.indexOf('=');
+    bool isQuoted = false;
+    for (int i = equals + 1; i < line.size(); ++i) {
+        if (line[i] == '"')
+            isQuoted = !isQuoted;
+        else if (line[i] == '\\' && ++i == line.size())
+            return false;
+    }
+    return equals >= 0 && !isQuoted && !line.left(equals).contains('"');
+}
+
 /// Lines of an ini file that this program may have written. What QSettings would build from "@Variant" is
 /// never what was kept.
 bool isOurs(const QByteArray &text) {
@@ -39,7 +55,7 @@ bool isOurs(const QByteArray &text) {
             continue;
         hasLine = true;
         hasGroup = hasGroup || one == "[window]" || one == "[layouts]" || one == "[robots]";
-        if (!one.startsWith('[') && !one.contains('='))
+        if (!isWhole(one))
             return false;
     }
     return hasGroup || !hasLine;

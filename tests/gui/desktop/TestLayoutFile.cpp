@@ -1,6 +1,5 @@
 #include "tests/gui/desktop/LayoutWindow.h"
 
-#include <QComboBox>
 #include <QProcess>
 #include <QRandomGenerator>
 #include <QSettings>
@@ -61,6 +60,10 @@ void TestLayoutFile::anyFile_data() {
     QTest::newRow("one long line") << "[window]\na=" + QByteArray(1000000, 'x') << true;
     QTest::newRow("another program's") << QByteArray("[Desktop Entry]\nName=x\n") << false;
     QTest::newRow("a text") << QByteArray("Dear diary,\ntoday I drove.\n") << false;
+    QTest::newRow("an open section") << QByteArray("[window]\nlayout=x\n[kept\na=b\n") << false;
+    QTest::newRow("an open quote") << QByteArray("[window]\nlayout=\"x\n[kept]\na=\"b\"\n") << false;
+    QTest::newRow("a quote in a key") << QByteArray("[window]\nlay\"out=x\n") << false;
+    QTest::newRow("an open end") << QByteArray("[kept]\n[window]\nlayout=x\\\n") << false;
     QTest::newRow("types of Qt") << QByteArray("[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n")
                                  << false;
     QTest::newRow("wrong types") << QByteArray(
