@@ -1,6 +1,7 @@
 #include "gui/desktop/Layouts.h"
 
 #include "gui/desktop/widgets/ForeignText.h"
+#include "gui/desktop/widgets/Quantities.h"
 
 #include <QCryptographicHash>
 #include <QDir>
@@ -26,6 +27,22 @@ bool isBuilt(const QByteArray &text) {
     return text.contains("@Variant(") || text.contains("@DateTime(");
 }
 
+/// A section, or a key with a value whose quotes end with it. QSettings says that it found anything else only
+/// to the first who reads the file, or reads on in the next line.
+bool isWhole(const QByteArray &line) {
+    if (line.startsWith('['))
+        return line.endsWith(']');
+    const int equals = line.indexOf('=');
+    bool isQuoted = false;
+    for (int i = equals + 1; i < line.size(); ++i) {
+        if (line[i] == '"')
+            isQuoted = !isQuoted;
+        else if (line[i] == '\\' && ++i == line.size())
+            return false;
+    }
+    return equals >= 0 && !isQuoted && !line.left(equals).contains('"');
+}
+
 /// Lines of an ini file that this program may have written. What QSettings would build from "@Variant" is
 /// never what was kept.
 bool isOurs(const QByteArray &text) {
@@ -38,7 +55,7 @@ bool isOurs(const QByteArray &text) {
             continue;
         hasLine = true;
         hasGroup = hasGroup || one == "[window]" || one == "[layouts]" || one == "[robots]";
-        if (!one.startsWith('[') && !one.contains('='))
+        if (!isWhole(one))
             return false;
     }
     return hasGroup || !hasLine;
@@ -159,13 +176,13 @@ Layouts::Layout Layouts::layout() const {
 }
 
 void Layouts::setLayout(const Layout &layout) {
-    find(current_)->layout = layout;
+    put(find(current_)->layout, layout);
 }
 
 Result<void> Layouts::choose(const QString &name) {
     if (find(name) == layouts_.end())
         return Error(ErrorCode::InvalidParams, tr("There is no layout %1.").arg(shortLine(name)));
-    current_ = name;
+    put(current_, name);
     return {};
 }
 
@@ -178,7 +195,7 @@ Result<void> Layouts::saveAs(const QString &name) {
     if (int(layouts_.size()) >= most)
         return Error(ErrorCode::InvalidParams, tr("There are %1 layouts: delete one first.").arg(most));
     layouts_.push_back({wanted, layout()});
-    current_ = wanted;
+    put(current_, wanted);
     return {};
 }
 
@@ -186,7 +203,7 @@ Result<void> Layouts::remove() {
     if (layouts_.size() < 2)
         return Error(ErrorCode::InvalidParams, tr("The last layout stays."));
     layouts_.erase(find(current_));
-    current_ = layouts_.front().name;
+    put(current_, layouts_.front().name);
     return {};
 }
 
@@ -205,11 +222,14 @@ Result<void> Layouts::save() const {
     QFile written(fresh);
     if (!written.open(QIODevice::ReadOnly))
         return failed;
-    if (written.size() > largest || !isOurs(written.readAll())) {
+    const qint64 size = written.size();
+    if (size > largest || !isOurs(written.readAll())) {
         written.remove();
-        return Error(ErrorCode::InputOutput, tr("The layout of the window and the robots are not kept: a "
-                                                "name or a value is too long, or is none "
-                                                "that can be kept"));
+        return Error(ErrorCode::InputOutput,
+                     tr("The layout of the window and the robots are not kept any more: %1")
+                         .arg(size > largest ? tr("with buttons, plots and names it has %1, and may have %2.")
+                                                   .arg(sizeText(double(size)), sizeText(double(largest)))
+                                             : tr("a name or a value is none that can be kept.")));
     }
     return std::rename(QFile::encodeName(fresh), QFile::encodeName(file_)) == 0 ? Result<void>() : failed;
 }

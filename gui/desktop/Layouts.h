@@ -22,6 +22,10 @@ public:
     struct Layout {
         QByteArray geometry, state; ///< as QMainWindow saves them; empty: the default
         QJsonObject plots;
+
+        bool operator==(const Layout &other) const {
+            return geometry == other.geometry && state == other.state && plots == other.plots;
+        }
     };
     struct Robots {
         QStringList addresses;
@@ -57,11 +61,18 @@ public:
     Result<void> remove();
 
     const Robots &robots() const { return robots_; }
-    void setRobots(const Robots &robots) { robots_ = robots; }
+    void setRobots(const Robots &robots) { put(robots_, robots); }
     /// What else is kept, of all layouts.
     QString value(const QString &key) const { return values_.value(key); }
-    void setValue(const QString &key, const QString &text) { values_[key] = text; }
+    void setValue(const QString &key, const QString &text) { put(values_[key], text); }
 
+    /// Since it was read, or taken.
+    bool isChanged() const { return isChanged_; }
+    /// A copy of all as it is now, to be saved in another thread.
+    Layouts take() {
+        isChanged_ = false;
+        return *this;
+    }
     /// Error: why it could not be written.
     Result<void> save() const;
 
@@ -71,6 +82,11 @@ private:
         Layout layout;
     };
 
+    template <typename T>
+    void put(T &kept, const T &wanted) {
+        isChanged_ = isChanged_ || !(kept == wanted);
+        kept = wanted;
+    }
     bool write(const QString &path) const;
     void read();
     void readLayouts(QSettings &file);
@@ -81,6 +97,7 @@ private:
     std::vector<Named> layouts_;
     Robots robots_;
     QMap<QString, QString> values_;
+    bool isChanged_ = false;
 };
 
 } // namespace hermes::desktop

@@ -30,6 +30,7 @@ namespace hermes::desktop {
 namespace {
 
 constexpr std::chrono::seconds noticeTime{20};
+constexpr std::chrono::milliseconds keepEach{500}; // who is killed a second later has lost nothing
 
 QString textOf(const QJsonObject &object) {
     return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
@@ -94,10 +95,8 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     arrange();
     auto &plotSets = findChild<PlotsPanel *>()->sets();
     plotSets.setSets(objectFrom(layouts_.value("plotSets")));
-    connect(&plotSets, &PlotSets::changed, this, [this, &plotSets] {
-        layouts_.setValue("plotSets", textOf(plotSets.sets()));
-        save();
-    });
+    connect(&plotSets, &PlotSets::changed, this,
+            [this, &plotSets] { layouts_.setValue("plotSets", textOf(plotSets.sets())); });
     restoreButtons();
     map_->setLayers(objectFrom(layouts_.value("layers")).toVariantMap());
     showLayout();
@@ -105,13 +104,12 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     fleet.setNames(layouts_.robots().names);
     fleet.setPlaces(layouts_.robots().places);
     fleet.wish(layouts_.robots().chosen);
-    connect(&fleet, &Fleet::changed, this, &MainWindow::keepRobots);
-    connect(&fleet, &Fleet::robotChosen, this, &MainWindow::keepRobots);
+    connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
 }
 
 // What shows the models of this window goes before them.
 MainWindow::~MainWindow() {
-    if (saving_.isActive())
+    if (layouts_.isChanged())
         save();
     delete buttonBar_;
     for (QDockWidget *const dock : docks_)
@@ -217,14 +215,10 @@ void MainWindow::addButtonBar() {
 
 /// Whatever stands there.
 void MainWindow::restoreButtons() {
-    saving_.setSingleShot(true);
-    saving_.setInterval(std::chrono::seconds(1));
-    connect(&saving_, &QTimer::timeout, this, &MainWindow::save);
     buttons_.setState(QJsonDocument::fromJson(layouts_.value("buttons").toUtf8()).array());
     connect(&buttons_, &Buttons::changed, this, [this] {
         layouts_.setValue("buttons",
                           QString::fromUtf8(QJsonDocument(buttons_.state()).toJson(QJsonDocument::Compact)));
-        saving_.start(); // each letter of a name is a change
     });
 }
 
@@ -250,14 +244,14 @@ QMenu *MainWindow::makeLayoutMenu() {
         if (!changed)
             return notify(changed.error().message);
         showLayout();
-        save();
+        keep();
     };
     connect(menu, &LayoutMenu::chosen, this, [this, change](const QString &name) {
-        keepLayout();
+        keepAll();
         change(layouts_.choose(name));
     });
     connect(menu, &LayoutMenu::savedAs, this, [this, change](const QString &name) {
-        keepLayout();
+        keepAll();
         change(layouts_.saveAs(name));
     });
     connect(menu, &LayoutMenu::removalWanted, this, [this, change] { change(layouts_.remove()); });
@@ -292,23 +286,29 @@ void MainWindow::resetLayout() {
     centralWidget()->setFocus();
 }
 
-void MainWindow::keepLayout() {
+void MainWindow::keepAll() {
     layouts_.setLayout({saveGeometry(), saveState(), findChild<PlotsPanel *>()->state()});
     layouts_.setValue("sounds", sounds_.areOn() ? "on" : "off");
     layouts_.setValue("escape", stopKeys_->doesEscapeStop() ? "on" : "off");
     layouts_.setValue("layers", textOf(QJsonObject::fromVariantMap(map_->layers())));
+    layouts_.setRobots({fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()});
 }
 
-/// As soon as they change: the window may not be closed in order.
-void MainWindow::keepRobots() {
-    const Layouts::Robots robots{fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()};
-    if (robots == layouts_.robots())
+// Now and then, whatever was set, for the window may not be closed in order; and in another thread, for a
+// disk may take its time.
+void MainWindow::keep() {
+    keepAll();
+    if (!layouts_.isChanged() || !layouts_.problem().isEmpty() || writing_.activeThreadCount() > 0)
         return;
-    layouts_.setRobots(robots);
-    save();
+    writing_.start([this, taken = layouts_.take()] {
+        if (const auto saved = taken.save(); !saved)
+            QMetaObject::invokeMethod(this, [this, why = saved.error().message] { notify(why); });
+    });
 }
 
+/// Now.
 void MainWindow::save() {
+    writing_.waitForDone();
     if (!layouts_.problem().isEmpty())
         return; // which was said
     if (const auto saved = layouts_.save(); !saved)
@@ -323,6 +323,11 @@ void MainWindow::notify(const QString &problem) {
     notice_.start(noticeTime);
 }
 
+void MainWindow::showEvent(QShowEvent *event) {
+    keeping_.start(keepEach);
+    QMainWindow::showEvent(event);
+}
+
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
     const bool isAgain =
@@ -334,9 +339,9 @@ void MainWindow::closeEvent(QCloseEvent *event) {
             "more to leave it so."));
         return event->ignore();
     }
-    keepLayout();
-    keepRobots();
-    save();
+    keeping_.stop();
+    keepAll();
+    save(); // what could not be written before, too
     event->accept();
 }
 

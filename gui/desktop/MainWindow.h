@@ -6,6 +6,7 @@
 #include "gui/desktop/panels/Panels.h"
 
 #include <QMainWindow>
+#include <QThreadPool>
 
 class QDockWidget;
 class QToolBar;
@@ -31,6 +32,7 @@ public:
     MapPanel &map() { return *map_; }
 
 protected:
+    void showEvent(QShowEvent *event) override;
     void closeEvent(QCloseEvent *event) override;
 
 private:
@@ -49,9 +51,11 @@ private:
     /// Shows what is kept of the current layout; what is not is as at the first start.
     void showLayout();
     void showBars();
-    void keepLayout();
     void resetLayout();
-    void keepRobots();
+    /// Takes down what the operator has set.
+    void keepAll();
+    /// The same, and has it saved when it has changed.
+    void keep();
     void save();
     void notify(const QString &problem);
 
@@ -73,7 +77,8 @@ private:
     StopKeys *stopKeys_;
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
     Banner *note_;
-    QTimer notice_, saving_;
+    QTimer notice_, keeping_;
+    QThreadPool writing_;   ///< what is kept, one after the other
     QElapsedTimer closing_; ///< since it was tried beside a STOP on its way
     QToolBar *buttonBar_ = nullptr;
 };

@@ -105,7 +105,7 @@ def desktop(build, quick):
     """[name, value, unit] of each line "figure NAME: VALUE UNIT" of the tests that measure the window."""
     environment = {**os.environ, "HERMES_BIN": os.path.join(build, "bin"), "HERMES_SOURCE": ROOT, "QT_QPA_PLATFORM": "offscreen",
                    **({} if quick else {"HERMES_HOUR": "1", "HERMES_TRIALS": "20"}), "QTEST_FUNCTION_TIMEOUT": "600000"}
-    programs = [program_of(build, "gui", "desktop", test) for test in ("TestSpeed", "TestCloud", "TestBadLink")]
+    programs = [program_of(build, "gui", "desktop", test) for test in ("TestSpeed", "TestCloud", "TestCloudDrawing", "TestBadLink")]
     functions = [subprocess.run([p, "-functions"], env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout.count("()")
                  for p in programs]
     figures, done, progress = [], 0, Progress("desktop", sum(functions))

@@ -62,7 +62,8 @@ Result<void> DriveGamepad::endCalibration() {
     enter(Step::None);
     if (!made)
         return made.error();
-    return keep(*made);
+    keep(*made);
+    return {};
 }
 
 void DriveGamepad::cancelCalibration() {
@@ -94,14 +95,13 @@ void DriveGamepad::load() {
             QJsonDocument::fromJson(kept_.value(keyOf(kind_)).toUtf8()).array().toVariantList());
 }
 
-Result<void> DriveGamepad::keep(const GamepadCalibration &calibration) {
+void DriveGamepad::keep(const GamepadCalibration &calibration) {
     calibration_ = calibration;
     if (!kind_.isEmpty())
         kept_.setValue(keyOf(kind_),
                        QString::fromUtf8(QJsonDocument(QJsonArray::fromVariantList(calibration.toList()))
                                              .toJson(QJsonDocument::Compact)));
     Q_EMIT changed();
-    return kept_.save();
 }
 
 } // namespace hermes::desktop

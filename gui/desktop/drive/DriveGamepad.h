@@ -25,7 +25,7 @@ public:
     Step step() const { return step_; }
     /// Measures the sticks at rest for a second, then as they are moved; nothing drives meanwhile.
     void beginCalibration();
-    /// With what was measured since. Error: the calibration of before holds, or it could not be kept.
+    /// With what was measured since. Error: the calibration of before holds.
     Result<void> endCalibration();
     void cancelCalibration();
     /// Forgets the calibration.
@@ -39,7 +39,7 @@ private:
     void enter(Step step);
     void sample();
     void load();
-    Result<void> keep(const GamepadCalibration &calibration);
+    void keep(const GamepadCalibration &calibration);
 
     DriveControl &drive_;
     Layouts &kept_;

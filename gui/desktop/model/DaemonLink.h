@@ -22,7 +22,7 @@ enum class Condition { Ready, Busy, Warning, Fault, Unreachable };
 class DaemonLink : public QObject {
     Q_OBJECT
 public:
-    static constexpr std::chrono::milliseconds pollPeriod{400};
+    static constexpr std::chrono::milliseconds pollPeriod{300};
     /// Of messages that come by themselves: what takes longer to read than the event loop may be busy is
     /// refused.
     static constexpr int usualFrame = 320 << 10;

@@ -8,10 +8,14 @@
 namespace hermes::desktop {
 namespace {
 
-constexpr int longestPlace = 200;
+constexpr int longestPlace = 200, longestTitle = 80;
 
 QString text(const QJsonValue &value, int longest) {
     return shortLine(value.toString(), longest);
+}
+
+QByteArray compact(const QJsonDocument &json) {
+    return json.toJson(QJsonDocument::Compact);
 }
 
 /// By which it is known in the next run, too.
@@ -45,6 +49,27 @@ QString MacroStep::title() const {
     return daemon + ", " + method;
 }
 
+QString MacroStep::problem() const {
+    const int bytes = compact(QJsonDocument(params)).size();
+    if (bytes > mostParams)
+        return QObject::tr("The parameters of %1 have %2 bytes; a button keeps %3 at most.")
+            .arg(shortLine(title(), longestTitle))
+            .arg(bytes)
+            .arg(mostParams);
+    for (const QString &name : {robot, daemon, method})
+        if (text(name, longestPlace) != name)
+            return QObject::tr("%1 has a name of %2 characters; a button keeps one line of %3 at most.")
+                .arg(shortLine(name, longestTitle))
+                .arg(name.size())
+                .arg(longestPlace);
+    const QJsonArray kept{Macro{{}, {*this}}.toJson()};
+    if (QJsonDocument::fromJson(compact(QJsonDocument(kept))).isNull())
+        return QObject::tr("The parameters of %1 have too many lists in lists; a button keeps 1000 in each "
+                           "other at most.")
+            .arg(shortLine(title(), longestTitle));
+    return {};
+}
+
 QJsonObject Macro::toJson() const {
     QJsonArray list;
     for (const MacroStep &step : steps)
@@ -59,12 +84,10 @@ QJsonObject Macro::toJson() const {
 Macro Macro::from(const QJsonObject &json) {
     Macro macro{text(json["name"], longestName), {}};
     for (const QJsonValue &value : json["steps"].toArray()) {
-        const QJsonObject params = value["params"].toObject();
         MacroStep step{text(value["robot"], longestPlace), text(value["daemon"], longestPlace),
-                       text(value["method"], longestPlace), params,
+                       text(value["method"], longestPlace), value["params"].toObject(),
                        qBound(0.0, value["pause_s"].toDouble(), MacroStep::longestPause_s)};
-        const bool isSmall = QJsonDocument(params).toJson(QJsonDocument::Compact).size() <= mostParams;
-        if (int(macro.steps.size()) < mostSteps && !step.method.isEmpty() && isSmall)
+        if (int(macro.steps.size()) < mostSteps && !step.method.isEmpty() && step.problem().isEmpty())
             macro.steps.push_back(step);
         else
             return {macro.name, {}}; // a part of it would be something else

@@ -10,6 +10,7 @@ namespace hermes::desktop {
 /// One command to a daemon of a robot, and how long to wait after its answer.
 struct MacroStep {
     static constexpr double longestPause_s = 3600;
+    static constexpr int mostParams = 20000; ///< bytes, as the layout keeps them
 
     QString robot, daemon, method;
     QJsonObject params;
@@ -21,11 +22,13 @@ struct MacroStep {
     DaemonLink *target(const Fleet &fleet) const;
     /// "motorcontrol, motor.stop"
     QString title() const;
+    /// Why it cannot be kept; empty: it can.
+    QString problem() const;
 };
 
 /// Commands under one name, run one after the other.
 struct Macro {
-    static constexpr int longestName = 40, mostSteps = 50, mostParams = 20000;
+    static constexpr int longestName = 40, mostSteps = 50;
 
     QString name;
     std::vector<MacroStep> steps;

@@ -7,11 +7,13 @@ namespace hermes::desktop {
 MacroRunner::MacroRunner(Fleet &fleet, DriveControl &drive, QObject *parent)
     : QObject(parent)
     , fleet_(fleet)
-    , drive_(drive) {
+    , drive_(drive)
+    , stops_(fleet) {
     pause_.setSingleShot(true);
     connect(&pause_, &QTimer::timeout, this, &MacroRunner::next);
+    connect(&stops_, &LatchWatch::stopped, this, &MacroRunner::end);
     connect(&drive, &DriveControl::stopPressed, this, [this] { end(tr("STOP")); });
-    connect(&fleet, &Fleet::robotChosen, this, [this] { // whose stops are not heard any more
+    connect(&fleet, &Fleet::robotChosen, this, [this] { // whom the STOP button is not for any more
         end(tr("another robot was chosen"));
         wasStopped_ = drive_.isStopped();
     });
@@ -57,6 +59,10 @@ void MacroRunner::run(const Macro &macro) {
         return;
     macro_ = macro;
     step_ = 0;
+    QSet<QString> robots;
+    for (const MacroStep &step : macro.steps)
+        robots.insert(step.robot);
+    stops_.begin(robots);
     next();
 }
 
@@ -67,18 +73,26 @@ QString MacroRunner::place() const {
                : tr("step %1 of %2, %3").arg(step_ + 1).arg(macro_.steps.size()).arg(title);
 }
 
+// No command goes out behind a stop that is not known here as yet: it could be the one that releases it.
 void MacroRunner::next() {
+    text_ = tr("%1: %2").arg(macro_.name, place());
+    hasFailed_ = false;
+    Q_EMIT changed();
+    stops_.look([this, turn = ++turn_] {
+        if (turn == turn_ && isRunning())
+            send();
+    });
+}
+
+void MacroRunner::send() {
     const MacroStep &step = macro_.steps[step_];
     DaemonLink *const daemon = step.target(fleet_);
     if (!daemon || !daemon->isConnected())
         return finish(tr("%1 ended at %2: %3 is away").arg(macro_.name, place(), step.daemon), true);
-    text_ = tr("%1: %2").arg(macro_.name, place());
-    hasFailed_ = false;
     const auto answered = [this, turn = ++turn_](const Result<QJsonValue> &result) {
         if (turn == turn_ && isRunning())
             onAnswer(result);
     };
-    Q_EMIT changed();
     if (daemon->method(step.method)["x-needs-lease"].toBool())
         daemon->call(step.method, step.params, this, answered, Client::Repeats::None); // a late one moves it
     else
@@ -102,6 +116,7 @@ void MacroRunner::end(const QString &why) {
 
 void MacroRunner::finish(const QString &text, bool hasFailed) {
     pause_.stop();
+    stops_.end();
     ++turn_;
     macro_ = {};
     step_ = 0;

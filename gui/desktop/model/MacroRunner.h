@@ -1,12 +1,14 @@
 #pragma once
 
 #include "gui/desktop/drive/DriveControl.h"
+#include "gui/desktop/drive/LatchWatch.h"
 #include "gui/desktop/model/Macro.h"
 
 namespace hermes::desktop {
 
 /// Runs the operator's buttons, one at a time: each command after the answer to the one before. It ends at
-/// the first error, when it is told to, and with every stop of the robot. It takes no control.
+/// the first error, when it is told to, with every STOP of this window, and with every stop of the chosen
+/// robot and of those that its commands go to. It takes no control.
 class MacroRunner : public QObject {
     Q_OBJECT
 public:
@@ -32,6 +34,7 @@ Q_SIGNALS:
 
 private:
     void next();
+    void send();
     void onAnswer(const Result<QJsonValue> &result);
     void finish(const QString &text, bool hasFailed);
     /// "step 2 of 3, motorcontrol, motor.stop"; of a single command only the command.
@@ -39,7 +42,8 @@ private:
 
     Fleet &fleet_;
     DriveControl &drive_;
-    Macro macro_; // that runs; without steps: none
+    LatchWatch stops_; // of the robots that it goes to
+    Macro macro_;      // that runs; without steps: none
     std::size_t step_ = 0;
     int turn_ = 0; // answers to those that were ended are not waited for
     bool wasStopped_ = false, hasFailed_ = false;

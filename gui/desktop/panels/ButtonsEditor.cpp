@@ -3,7 +3,7 @@
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/model/MethodSchema.h"
 #include "gui/desktop/widgets/FieldText.h"
-#include "gui/desktop/widgets/PlainLabel.h"
+#include "gui/desktop/widgets/MessageLabel.h"
 #include "gui/desktop/widgets/SchemaForm.h"
 
 #include <QHBoxLayout>
@@ -134,7 +134,9 @@ QWidget *ButtonsEditor::makeStep() {
     auto *const layout = new QVBoxLayout(page);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->addWidget(about_ = new PlainLabel);
+    layout->addWidget(notKept_ = new MessageLabel);
     layout->addWidget(form_ = new SchemaForm, 1);
+    notKept_->setObjectName("stepNotKept");
     about_->setObjectName("aboutStep");
     about_->setWordWrap(true);
     about_->setMinimumWidth(1);
@@ -145,7 +147,7 @@ QWidget *ButtonsEditor::makeStep() {
     scroll->setFocusPolicy(Qt::NoFocus);
     connect(form_, &SchemaForm::edited, this, [this] {
         if (form_->isValid()) // what is wrong is not kept
-            changeStep([this](MacroStep &step) { step.params = form_->values(); });
+            changeStep([this](MacroStep &step) { takeParameters(step); });
     });
     return scroll;
 }
@@ -173,6 +175,17 @@ template <typename Change>
 void ButtonsEditor::changeStep(Change change) {
     if (step() >= 0)
         changeMacro([&](Macro &macro) { change(macro.steps[std::size_t(step())]); });
+}
+
+void ButtonsEditor::takeParameters(MacroStep &step) {
+    MacroStep changed = step;
+    changed.params = form_->values();
+    const QString problem = changed.problem();
+    if (problem.isEmpty())
+        step = changed;
+    else
+        notKept_->tell(tr("This change is not kept. %1").arg(problem), true);
+    notKept_->setVisible(!problem.isEmpty());
 }
 
 void ButtonsEditor::choose(int place) {
@@ -223,6 +236,7 @@ void ButtonsEditor::showStep() {
         : isKnown ? method["summary"].toString()
         : !daemon ? tr("%1 of %2 is away: its parameters cannot be changed now.").arg(step.daemon, step.robot)
                   : tr("%1 has no %2 now.").arg(step.daemon, step.method));
+    notKept_->hide();
     form_->setSchema(parametersOf(method), {});
     if (isKnown) {
         const QSignalBlocker silence(form_);

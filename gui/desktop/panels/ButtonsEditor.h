@@ -11,6 +11,7 @@ class QToolButton;
 
 namespace hermes::desktop {
 
+class MessageLabel;
 class PlainLabel;
 class SchemaForm;
 
@@ -41,6 +42,8 @@ private:
     void update();
     void moveStep(int by);
     void removeStep();
+    /// What is typed, where it can be kept; else says why not.
+    void takeParameters(MacroStep &step);
     template <typename Change>
     void changeMacro(Change change);
     template <typename Change>
@@ -54,6 +57,7 @@ private:
     QListWidget *list_, *steps_;
     QLineEdit *name_, *pause_;
     PlainLabel *about_;
+    MessageLabel *notKept_;
     SchemaForm *form_;
     std::vector<QToolButton *> listTools_, stepTools_; // up, down, remove
 };

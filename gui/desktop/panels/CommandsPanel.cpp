@@ -152,10 +152,20 @@ MacroStep CommandsPanel::typedStep() const {
     return MacroStep::of(fleet_, *daemon_, method_, form_->values());
 }
 
+bool CommandsPanel::canKeep(const MacroStep &step) {
+    const QString problem = step.problem();
+    if (!problem.isEmpty())
+        answer_->setPlainText(tr("Not added. %1").arg(problem));
+    return problem.isEmpty();
+}
+
 void CommandsPanel::addButton() {
     if (!daemon_ || method_.isEmpty())
         return; // it went meanwhile
-    buttons_.add({shortLine(method_, Macro::longestName - 3), {typedStep()}});
+    const MacroStep step = typedStep();
+    if (!canKeep(step))
+        return;
+    buttons_.add({shortLine(method_, Macro::longestName - 3), {step}});
     editButtons();
     editor_->choose(int(buttons_.all().size()) - 1);
     editor_->nameIt();
@@ -164,8 +174,11 @@ void CommandsPanel::addButton() {
 void CommandsPanel::addStep(int place) {
     if (!daemon_ || method_.isEmpty() || place >= int(buttons_.all().size()))
         return; // a menu may be open for long
+    const MacroStep step = typedStep();
+    if (!canKeep(step))
+        return;
     Macro macro = buttons_.all().at(std::size_t(place));
-    macro.steps.push_back(typedStep());
+    macro.steps.push_back(step);
     buttons_.set(place, macro);
 }
 

@@ -38,6 +38,8 @@ private:
     QWidget *makeCall();
     QWidget *makeActions();
     MacroStep typedStep() const;
+    /// Says so where it cannot.
+    bool canKeep(const MacroStep &step);
     void addButton();
     void addStep(int place);
     void offerSteps();

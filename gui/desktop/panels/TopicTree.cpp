@@ -70,7 +70,7 @@ TopicTree::TopicTree(Fleet &fleet, std::function<bool(const FieldId &)> isPlotte
     connect(this, &QTreeWidget::currentItemChanged, this, &TopicTree::topicChosen);
     connect(&fleet, &Fleet::changed, this, &TopicTree::listTopics);
     connect(&timer_, &QTimer::timeout, this, &TopicTree::measureAll);
-    timer_.start(std::chrono::milliseconds(250));
+    timer_.start(std::chrono::milliseconds(150));
     listTopics();
 }
 

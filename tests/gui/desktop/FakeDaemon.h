@@ -13,6 +13,8 @@
 #include <QTimer>
 #include <QVector>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 namespace hermes {
 
@@ -40,12 +42,10 @@ public:
         : mischief_(mischief) {
         moveToThread(&thread_);
         thread_.start();
-        QMetaObject::invokeMethod(
-            this, [this] { listen(); }, Qt::BlockingQueuedConnection);
+        inThread([this] { listen(); });
     }
     ~FakeDaemon() override {
-        QMetaObject::invokeMethod(
-            this, [this] { delete server_; }, Qt::BlockingQueuedConnection);
+        inThread([this] { delete server_; });
         thread_.quit();
         thread_.wait();
     }
@@ -53,14 +53,35 @@ public:
     quint16 port() const { return port_; }
     /// A message to all who have subscribed to the topic, with a stamp of its own if one is given.
     void say(const QByteArray &topic, const QByteArray &data, const QByteArray &stamp = {}) {
-        QMetaObject::invokeMethod(
-            this,
-            [&] {
-                for (const Subscriber &one : qAsConst(subscribers_))
-                    if (one.client && one.topic == topic)
-                        write(*one.client, message(one.subscription, topic, 0, data, stamp));
-            },
-            Qt::BlockingQueuedConnection);
+        inThread([&] {
+            for (const Subscriber &one : qAsConst(subscribers_))
+                if (one.client && one.topic == topic)
+                    write(*one.client, message(one.subscription, topic, 0, data, stamp));
+        });
+    }
+    /// Another answer of a method from now on.
+    void setResult(const QString &method, const QByteArray &result) {
+        inThread([&] { mischief_.results[method] = result; });
+    }
+    /// What asks for this waits for its answer until letGo().
+    void holdBack(const QString &method) {
+        inThread([&] { heldMethod_ = method; });
+    }
+    /// Sends the answers that were held back, and holds back no more.
+    void letGo() {
+        inThread([&] {
+            heldMethod_.clear();
+            for (const auto &[client, reply] : std::exchange(held_, {}))
+                if (client)
+                    write(*client, reply);
+        });
+    }
+    /// Ends all connections; whoever wants to comes back.
+    void dropAll() {
+        inThread([&] {
+            for (auto *const client : server_->findChildren<QTcpSocket *>())
+                client->abort();
+        });
     }
     /// How often a method was called.
     int calls(const QString &method) const {
@@ -78,6 +99,10 @@ private:
 
     static constexpr qint64 mostWaiting = 1 << 20; // bytes
 
+    template <typename Work>
+    void inThread(const Work &work) {
+        QMetaObject::invokeMethod(this, work, Qt::BlockingQueuedConnection);
+    }
     void listen() {
         server_ = new QTcpServer;
         server_->listen(QHostAddress::LocalHost);
@@ -136,8 +161,12 @@ private:
                                      ? QByteArray("null")
                                      : "{\"subscription\":" + QByteArray::number(subscription) + '}';
         QByteArray reply = mischief_.reply;
-        write(client, reply.replace("%1", QByteArray::number(request["id"].toInt()))
-                          .replace("%2", mischief_.results.value(method, good(method, usual))));
+        reply.replace("%1", QByteArray::number(request["id"].toInt()))
+            .replace("%2", mischief_.results.value(method, good(method, usual)));
+        if (method == heldMethod_)
+            held_.emplace_back(&client, reply);
+        else
+            write(client, reply);
         if (!topic.isEmpty())
             subscribers_.append({&client, topic.toUtf8(), subscription});
         if (mischief_.topics.contains(topic))
@@ -218,12 +247,14 @@ private:
         return list + ']';
     }
 
-    const Mischief mischief_;
+    Mischief mischief_;
     QThread thread_;
     QTcpServer *server_ = nullptr;
     quint16 port_ = 0;
     int lastSubscription_ = 0;
     QVector<Subscriber> subscribers_;
+    QString heldMethod_;
+    std::vector<std::pair<QPointer<QTcpSocket>, QByteArray>> held_;
     QHash<QTcpSocket *, std::shared_ptr<Codec>> cbor_; // of those who speak it
     mutable std::mutex mutex_;
     QMap<QString, int> calls_;

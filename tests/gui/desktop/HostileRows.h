@@ -37,6 +37,28 @@ inline Mischief ofTopic(const char *topic, const QByteArray &data, int messages 
     return mischief;
 }
 
+/// Such as only CBOR has, in place of all numbers of what is shown of a robot.
+inline Mischief withoutNumbers(const QByteArray &word) {
+    Mischief all;
+    all.isMotors = true;
+    all.topics = {
+        {"odometry", R"({"pose":{"x":#,"y":#,"theta":#},"twist":{"vx":#,"vy":#,"omega":#},
+            "covariance":[#,#,#,#,#,#,#,#,#],"mono":#})"},
+        {"pose", R"({"x":#,"y":#,"theta":#,"outcome":"matched","scan":0,"covariance":[#,#,#,#,#,#,#,#,#]})"},
+        {"map", R"({"revision":1,"cleared":true,"size":1,"removed":[],
+            "edges":[{"id":1,"x1":#,"y1":#,"x2":#,"y2":#}]})"},
+        {"scan2d", R"({"turn":0,"stamp":#,"duration_s":#,"x":[#],"y":[#],"t":[#],"laser":1,"frame":"l"})"},
+        {"truth", R"({"stamp":#,"pose":{"x":#,"y":#,"theta":#},"twist":{"vx":#,"vy":#,"omega":#}})"},
+        {"power", R"({"controllers":[{"ready":true,"battery_v":#,"temperature_c":#,"current_a":[#,#]}]})"},
+        {"log", R"({"stamp":#,"level":"error","source":"a","text":"b"})"},
+        {"free", R"({"a":#,"b":[#,#]})"}};
+    for (QByteArray &topic : all.topics)
+        topic.replace('\n', ' ').replace("#", word);
+    all.results["record.list"] = QByteArray(R"([{"name":"r","format":"x","start":#,"end":#,"bytes":#}])");
+    all.results["record.list"].replace("#", word);
+    return all;
+}
+
 inline Mischief ofMethod(const char *method, const QByteArray &result) {
     Mischief mischief;
     mischief.results[method] = result;
@@ -262,6 +284,12 @@ inline void addPanels() {
     Mischief stamps = ofTopic("free", R"({"a":%1})", 50);
     stamps.stamp = "1e300";
     row("stamps beyond") << stamps;
+    stamps.stamp = "nan";
+    row("stamps that are none") << stamps;
+    stamps.stamp = "-inf";
+    row("endless stamps") << stamps;
+    row("numbers that are none") << withoutNumbers("nan");
+    row("endless numbers") << withoutNumbers("inf");
     Mischief motors =
         ofMethod("motor.state", R"({"latched":{"<b>":"<i>x","y":5},"control":{"held":true,"holder":7}})");
     motors.isMotors = true;

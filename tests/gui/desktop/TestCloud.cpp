@@ -1,22 +1,16 @@
 #include "gui/desktop/Theme.h"
-#include "gui/desktop/panels/CloudPanel.h"
-#include "gui/desktop/view/PointOpenGl.h"
-#include "gui/desktop/view/PointRaster.h"
-#include "tests/gui/desktop/FakeDaemon.h"
+#include "tests/gui/desktop/CloudSession.h"
 #include "tests/gui/desktop/HostileRows.h"
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
 #include "tests/support/Patience.h"
 
-#include <QComboBox>
-#include <QLabel>
 #include <QWheelEvent>
 
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// The lidar's cloud in the window: of a simulated lidar, and of daemons that send nonsense. What needs
-/// OpenGL is skipped where there is none. Each figure is a line "figure NAME VALUE UNIT".
+/// The lidar's cloud in the window: of a simulated lidar, and of daemons that send nonsense.
 class TestCloud : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -24,84 +18,12 @@ private Q_SLOTS:
     void subscribedToOnlyInSight();
     void mouseAndKeys();
     void keysOfDrivingAreNotTaken();
-    void nearestPointIsSeen();
     void onlyWhatMakesSenseIsShown_data();
     void onlyWhatMakesSenseIsShown();
     void noNumbersAmongOthers();
     void otherLidar();
     void agesAndSaysSo();
-    void goesOnWithoutOpenGl();
-    void openGlDrawsAlike();
-    void openGlIsLoadedBesideTheWindow();
-    void floatsAndComesBack();
-    void framesOfAWholeTurn_data();
-    void framesOfAWholeTurn();
-
-private:
-    /// Null: not here. wish: of $HERMES_OPENGL.
-    static std::unique_ptr<PointOpenGl> openGl(const char *wish);
-    static void figure(const QByteArray &name, double value, const char *unit) {
-        qInfo("figure %s: %.3g %s", name.constData(), value, unit);
-    }
-    static double median(std::vector<double> values) {
-        std::sort(values.begin(), values.end());
-        return values[values.size() / 2];
-    }
-    /// The panel alone, on a daemon that says what a test wants.
-    struct Session {
-        explicit Session(const Mischief &mischief = {})
-            : daemon(mischief) {
-            panel.resize(640, 360);
-            panel.show();
-            fleet.add(QString("127.0.0.1:%1").arg(daemon.port()));
-            QTRY_VERIFY(daemon.subscriptions("cloud") > 0);
-        }
-        QString summary() const { return panel.findChild<QLabel *>("cloudSummary")->text(); }
-        const CloudModel &model() { return panel.model(); }
-
-        FakeDaemon daemon;
-        Fleet fleet;
-        CloudPanel panel{fleet};
-    };
 };
-
-static QByteArray cloudOf(const QByteArray &x, const QByteArray &y, const QByteArray &z,
-                          const QByteArray &intensity = "[]", const QByteArray &laser = "[]") {
-    return R"({"turn":1,"stamp":1718000000,"duration_s":0.1,"partial":false,"rays":100,"lost_packets":0,)"
-           R"("frame":"lidar","replayed":false,"model":"HDL-32E","x":)" +
-           x + ",\"y\":" + y + ",\"z\":" + z + ",\"intensity\":" + intensity + ",\"laser\":" + laser + '}';
-}
-
-/// A turn of an HDL-32E in a round room, without any thinning.
-static CloudMessage wholeTurn() {
-    constexpr int firings = 2170, lasers = 32;
-    CloudMessage cloud;
-    cloud.model = "HDL-32E";
-    cloud.header.rays = firings;
-    for (int i = 0; i < firings; ++i)
-        for (int laser = 0; laser < lasers; ++laser) {
-            const double azimuth = 2 * M_PI * i / firings, elevation = (laser * 1.333 - 30.67) * M_PI / 180;
-            const double range = 5 + 2 * std::sin(3 * azimuth);
-            cloud.x.push_back(float(range * std::cos(azimuth)));
-            cloud.y.push_back(float(range * std::sin(azimuth)));
-            cloud.z.push_back(float(range * std::tan(elevation)));
-            cloud.laser.push_back(quint16(laser));
-            cloud.intensity.push_back(quint8(i % 256));
-        }
-    return cloud;
-}
-
-/// How many pixels have a colour that is neither grey nor the robot's.
-static int colouredPixels(QWidget &widget) {
-    const QImage picture = widget.grab().toImage().convertToFormat(QImage::Format_RGB32);
-    int count = 0;
-    for (int y = 60; y < picture.height(); ++y) // below the legend
-        for (int x = 0; x < picture.width(); ++x) {
-            const QColor colour = picture.pixelColor(x, y);
-            count += colour.saturation() > 120 && (colour.hue() > 60 && colour.hue() < 300);
-        }
-    return count;
-}
 
 void TestCloud::cloudOfTheSimulator() {
     RobotProcesses robot;
@@ -164,7 +86,7 @@ static void drag(QWidget &view, Qt::MouseButton button, QPoint way) {
 }
 
 void TestCloud::mouseAndKeys() {
-    Session s;
+    CloudSession s;
     s.daemon.say("cloud", cloudOf("[10,-10]", "[0,0]", "[0,0]"));
     QTRY_COMPARE(s.model().points().size(), std::size_t(2));
     CloudView &view = s.panel.view();
@@ -206,7 +128,7 @@ void TestCloud::mouseAndKeys() {
 }
 
 void TestCloud::keysOfDrivingAreNotTaken() {
-    Session s;
+    CloudSession s;
     for (const int key :
          {Qt::Key_W, Qt::Key_A, Qt::Key_S, Qt::Key_D, Qt::Key_Q, Qt::Key_E, Qt::Key_Up, Qt::Key_Down,
           Qt::Key_Left, Qt::Key_Right, Qt::Key_Space, Qt::Key_Escape, Qt::Key_F12, Qt::Key_F}) {
@@ -215,32 +137,6 @@ void TestCloud::keysOfDrivingAreNotTaken() {
         QApplication::sendEvent(&s.panel.view(), &press);
         QVERIFY2(!press.isAccepted(), qPrintable(QKeySequence(key).toString()));
     }
-}
-
-void TestCloud::nearestPointIsSeen() {
-    CloudCamera camera;
-    camera.reset(5);
-    camera.orbit(0, 90); // from above: ahead is up
-    const std::array<quint8, 4> red{255, 0, 0, 255}, blue{0, 0, 255, 255};
-    const QSize size(101, 101);
-    PointRaster raster;
-    for (const bool isRedFirst : {true, false}) {
-        const CloudVertex high{0, 0, 1, red}, low{0, 0, -1, blue}, ahead{2, 0, 0, blue};
-        const std::vector<CloudVertex> points = isRedFirst ? std::vector<CloudVertex>{high, low, ahead}
-                                                           : std::vector<CloudVertex>{ahead, low, high};
-        const QImage picture = *raster.draw({points, 1, camera.matrix(size), size, 2});
-        QCOMPARE(picture.pixelColor(50, 50), QColor(Qt::red));
-        bool isAheadAbove = false;
-        for (int y = 0; y < 45; ++y)
-            isAheadAbove |= picture.pixelColor(50, y) == QColor(Qt::blue);
-        QVERIFY(isAheadAbove);
-        QCOMPARE(picture.pixelColor(10, 90).alpha(), 0);
-    }
-    // Behind the eye, and where no arithmetic leads.
-    const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-    const std::vector<CloudVertex> strange{
-        {0, 0, 900, red}, {inf, 0, 0, red}, {nan, nan, nan, red}, {1e30F, -1e30F, 1e30F, red}};
-    raster.draw({strange, 2, camera.matrix(size), size, 2});
 }
 
 void TestCloud::onlyWhatMakesSenseIsShown_data() {
@@ -271,7 +167,7 @@ void TestCloud::onlyWhatMakesSenseIsShown_data() {
 void TestCloud::onlyWhatMakesSenseIsShown() {
     QFETCH(QByteArray, cloud);
     QFETCH(int, points);
-    Session s;
+    CloudSession s;
     LoopWatch watch;
     s.daemon.say("cloud", cloud);
     watch.restart(); // the text was made here
@@ -311,7 +207,7 @@ void TestCloud::noNumbersAmongOthers() {
 
 // The points of one lidar are not shown as those of another.
 void TestCloud::otherLidar() {
-    Session s;
+    CloudSession s;
     s.daemon.say("cloud", cloudOf("[1]", "[2]", "[3]").replace("HDL-32E", QByteArray(10000, 'W')));
     QTRY_COMPARE(s.model().points().size(), std::size_t(1));
     QVERIFY(s.summary().size() < 100);
@@ -322,7 +218,7 @@ void TestCloud::otherLidar() {
 }
 
 void TestCloud::agesAndSaysSo() {
-    Session s;
+    CloudSession s;
     auto *const summary = s.panel.findChild<QLabel *>("cloudSummary");
     s.daemon.say("cloud", cloudOf("[1,2]", "[2,3]", "[3,4]", "[1,2]", "[0,31]").replace("false", "true"));
     QTRY_COMPARE(s.summary(), QString("HDL-32E: 2 points of 3200 beams, replayed"));
@@ -337,151 +233,6 @@ void TestCloud::agesAndSaysSo() {
     QVERIFY2(s.summary().contains("no data for "), qPrintable(s.summary()));
     s.daemon.say("cloud", cloudOf("[1]", "[2]", "[3]", "[1]", "[0]"));
     QTRY_VERIFY(!isGrey() && summary->isEnabled() && !summary->font().strikeOut());
-}
-
-/// As a driver that has lost its device.
-class FailingRenderer : public PointRenderer {
-public:
-    const QImage *draw(const PointPicture &) override { return nullptr; }
-    bool isByOpenGl() const override { return true; }
-};
-
-void TestCloud::goesOnWithoutOpenGl() {
-    Session s;
-    auto *const way = s.panel.findChild<QLabel *>("cloudWay");
-    s.panel.model().take(wholeTurn());
-    s.panel.view().setRenderer(std::make_unique<FailingRenderer>());
-    QVERIFY(way->text().isEmpty());
-    QVERIFY(colouredPixels(s.panel.view()) > 300);
-    QVERIFY(!s.panel.view().renderer()->isByOpenGl());
-    QCOMPARE(way->text(), QString("drawn without OpenGL"));
-    s.panel.findChild<QComboBox *>("cloudColour")->setCurrentIndex(1);
-    QVERIFY(colouredPixels(s.panel.view()) > 300);
-}
-
-std::unique_ptr<PointOpenGl> TestCloud::openGl(const char *wish) {
-    const QByteArray before = qgetenv("HERMES_OPENGL");
-    qputenv("HERMES_OPENGL", wish);
-    auto made = PointOpenGl::make();
-    before.isNull() ? qunsetenv("HERMES_OPENGL") : qputenv("HERMES_OPENGL", before);
-    return made;
-}
-
-// The same picture, whatever draws it.
-void TestCloud::openGlDrawsAlike() {
-    QVERIFY(!openGl("off"));
-    QElapsedTimer time;
-    time.start();
-    if (const auto loading = PointOpenGl::load()) {
-        loading->start();
-        QVERIFY(loading->wait(20000));
-    }
-    const double loaded_ms = double(time.nsecsElapsed()) * 1e-6;
-    time.restart();
-    const auto byOpenGl = openGl("on");
-    if (!byOpenGl)
-        QSKIP("no OpenGL here");
-    figure("the driver of OpenGL is loaded beside the window in", loaded_ms, "ms");
-    figure("OpenGL begins in", double(time.nsecsElapsed()) * 1e-6, "ms");
-    Session s;
-    CloudScene &scene = s.panel.view().scene();
-    for (const int step : {1, 7}) { // fewer points come after many
-        CloudMessage turn = wholeTurn();
-        for (auto *const values : {&turn.x, &turn.y, &turn.z})
-            values->resize(values->size() / std::size_t(step));
-        s.panel.model().take(turn);
-        const QSize size(400, 300);
-        const PointPicture wanted{scene.vertices(), scene.revision(), scene.camera.matrix(size), size, 2};
-        const QImage *const drawn = byOpenGl->draw(wanted);
-        QVERIFY(drawn);
-        PointRaster raster;
-        const QImage *const other = raster.draw(wanted);
-        int points = 0, unlike = 0;
-        for (int y = 0; y < size.height(); ++y)
-            for (int x = 0; x < size.width(); ++x) {
-                const bool isPoint = qAlpha(drawn->pixel(x, y)) > 0;
-                points += isPoint;
-                unlike += isPoint != (qAlpha(other->pixel(x, y)) > 0);
-            }
-        QVERIFY2(points > 1000 && unlike < points / 5,
-                 qPrintable(QString("%1 of %2 pixels differ").arg(unlike).arg(points)));
-    }
-}
-
-// The view begins without it and goes over when its driver is loaded.
-void TestCloud::openGlIsLoadedBesideTheWindow() {
-    if (!openGl("on"))
-        QSKIP("no OpenGL here");
-    qputenv("HERMES_OPENGL", "on");
-    Fleet fleet;
-    CloudPanel panel(fleet);
-    panel.show();
-    QVERIFY(!panel.view().renderer()->isByOpenGl());
-    QTRY_VERIFY(panel.view().renderer()->isByOpenGl());
-    qunsetenv("HERMES_OPENGL");
-    panel.model().take(wholeTurn());
-    QVERIFY(colouredPixels(panel.view()) > 300);
-    QVERIFY(panel.view().renderer()->isByOpenGl());
-    QVERIFY(panel.findChild<QLabel *>("cloudWay")->text().isEmpty());
-}
-
-// A panel that gets a window of its own.
-void TestCloud::floatsAndComesBack() {
-    OpenWindow open;
-    QVERIFY(open.show());
-    auto *const panel = open.panel<CloudPanel>("cloud");
-    auto *const dock = open.window.findChild<QDockWidget *>("cloud");
-    for (const bool isFloating : {false, true, false}) {
-        dock->setFloating(isFloating);
-        dock->raise();
-        QTRY_VERIFY(panel->model().isEnabled());
-        const auto areSeen = [panel] {
-            panel->model().take(wholeTurn());
-            return colouredPixels(panel->view()) > 300;
-        };
-        QTRY_VERIFY(areSeen());
-    }
-}
-
-void TestCloud::framesOfAWholeTurn_data() {
-    QTest::addColumn<bool>("isByOpenGl");
-    QTest::newRow("without OpenGL") << false;
-    QTest::newRow("by OpenGL") << true;
-}
-
-void TestCloud::framesOfAWholeTurn() {
-    QFETCH(bool, isByOpenGl);
-    const CloudMessage turn = wholeTurn();
-    OpenWindow open;
-    QVERIFY(open.show());
-    auto *const dock = open.window.findChild<QDockWidget *>("cloud");
-    auto *const panel = open.panel<CloudPanel>("cloud");
-    std::unique_ptr<PointRenderer> renderer = std::make_unique<PointRaster>();
-    if (isByOpenGl && !(renderer = openGl("on")))
-        QSKIP("no OpenGL here");
-    panel->view().setRenderer(std::move(renderer));
-    dock->setFloating(true);
-    dock->resize(1280, 720);
-    QTRY_VERIFY(panel->view().width() > 1200 && panel->view().height() > 500);
-    std::vector<double> message_ms, frame_ms;
-    QElapsedTimer whole, one;
-    for (whole.start(); whole.elapsed() < 3000;) {
-        one.start();
-        panel->model().take(turn);
-        message_ms.push_back(double(one.nsecsElapsed()) * 1e-6);
-        QCOMPARE(panel->model().points().size(), turn.x.size());
-        one.restart();
-        panel->view().repaint();
-        frame_ms.push_back(double(one.nsecsElapsed()) * 1e-6);
-        QCoreApplication::processEvents();
-    }
-    const double rate = double(frame_ms.size()) / (double(whole.elapsed()) / 1000);
-    const QByteArray name = QByteArray("cloud of 69,440 points, ") + QTest::currentDataTag();
-    qInfo("%d x %d pixels", panel->view().width(), panel->view().height());
-    figure(name + ", a turn is taken and coloured, median", median(message_ms), "ms");
-    figure(name + ", a frame, median", median(frame_ms), "ms");
-    figure(name + ", turns taken and shown", rate, "a second");
-    QVERIFY2(rate > 10.0 / slowness, qPrintable(QString::number(rate)));
 }
 
 QTEST_MAIN(TestCloud)

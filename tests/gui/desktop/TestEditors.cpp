@@ -1,36 +1,25 @@
-#include "gui/desktop/widgets/WheelGuard.h"
 #include "tests/gui/desktop/OpenForm.h"
 
 #include <QCheckBox>
 #include <QToolButton>
-#include <QWheelEvent>
 
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// Each kind of value is edited by mouse and keys, and comes out as its schema wants it.
+/// The inputs for lists and objects.
 class TestEditors : public QObject {
     Q_OBJECT
 private Q_SLOTS:
     void init();
     void cleanup();
     void textsAreRows();
-    void numbersAreOneLine();
     void objectsFoldOut();
     void rowsMoveAndKeepTheFocus();
-    void choicesHaveTitles();
     void whatMayBeAbsentIs();
-    void numbersStepAndKeepTheirDigits();
-    void amountsAreSpoken();
     void freeKeys();
-    void patternsAndFormats_data();
-    void patternsAndFormats();
     void whatNoRowsSuitIsText_data();
     void whatNoRowsSuitIsText();
-    void textIsChecked();
-    void anyValueKeepsItsType();
     void tabGoesThroughTheRows();
-    void theWheelChangesNothing();
     void manyRowsAreShownSoon();
 
 private:
@@ -67,22 +56,6 @@ void TestEditors::textsAreRows() {
     QVERIFY2(open_->note().contains("at least 1"), qPrintable(open_->note()));
     form_->revert();
     QCOMPARE(open_->value(), QByteArray(R"(["/"])"));
-}
-
-void TestEditors::numbersAreOneLine() {
-    open_->showOne(R"({"type":"array","items":{"type":"number","maximum":10},"maxItems":4})", "[1,2.5,0.1]");
-    QCOMPARE(open_->seen<QLineEdit>()->text(), QString("1, 2.5, 0.1"));
-    OpenForm::type(open_->seen<QLineEdit>(), "3 4,5.25");
-    QCOMPARE(open_->value(), QByteArray("[3,4,5.25]"));
-    QVERIFY(form_->isValid());
-    OpenForm::type(open_->seen<QLineEdit>(), "3, 40");
-    QVERIFY(!form_->isValid());
-    QVERIFY2(open_->note().contains("at most 10"), qPrintable(open_->note()));
-    OpenForm::type(open_->seen<QLineEdit>(), "3, x");
-    QVERIFY(!form_->isValid());
-    OpenForm::type(open_->seen<QLineEdit>(), "");
-    QCOMPARE(open_->value(), QByteArray("")); // what has a value cannot be left without one
-    QVERIFY(!form_->isValid());
 }
 
 static const char *const triggers = R"({"type":"array","maxItems":3,"items":{"type":"object",
@@ -143,25 +116,6 @@ void TestEditors::rowsMoveAndKeepTheFocus() {
     QCOMPARE(open_->value(), QByteArray(R"(["a","c","b"])"));
 }
 
-void TestEditors::choicesHaveTitles() {
-    open_->showOne(R"({"enum":["a","b",3],"enumNames":["First","Second"],"default":"a"})");
-    auto *list = open_->seen<QComboBox>();
-    QCOMPARE(list->itemText(1), QString("Second"));
-    QCOMPARE(list->itemText(2), QString("3"));
-    QTest::keyClick(list, Qt::Key_Down);
-    QCOMPARE(open_->value(), QByteArray(R"("b")"));
-    QTest::keyClick(list, Qt::Key_Down);
-    QCOMPARE(open_->value(), QByteArray("3"));
-    open_->showOne(R"({"oneOf":[{"const":1,"title":"Slow"},{"const":2,"title":"Fast"}],"default":1})");
-    list = open_->seen<QComboBox>();
-    QCOMPARE(list->currentText(), QString("Slow"));
-    QTest::keyClick(list, Qt::Key_Down);
-    QCOMPARE(open_->value(), QByteArray("2"));
-    open_->showOne(R"({"enum":["a","b"],"default":"a"})", R"("other")");
-    QCOMPARE(open_->value(), QByteArray(R"("other")")); // not dropped in silence
-    QVERIFY(!form_->isValid());
-}
-
 void TestEditors::whatMayBeAbsentIs() {
     for (const char *const schema :
          {R"({"type":"string"})", R"({"type":"number"})", R"({"type":"boolean"})", R"({"enum":["x","y"]})",
@@ -186,38 +140,6 @@ void TestEditors::whatMayBeAbsentIs() {
     QCOMPARE(open_->value(), QByteArray("true"));
 }
 
-void TestEditors::numbersStepAndKeepTheirDigits() {
-    open_->showOne(R"({"type":"number","default":0.1,"maximum":1})", "0.30000000000000004");
-    auto *line = open_->seen<QLineEdit>();
-    QCOMPARE(line->text(), QString("0.3"));
-    QCOMPARE(form_->values()["a"].toDouble(), 0.30000000000000004);
-    QVERIFY(form_->changes().isEmpty());
-    QTest::keyClick(line, Qt::Key_Up); // a tenth of what is usual
-    QCOMPARE(line->text(), QString("0.31"));
-    QTest::keyClick(line, Qt::Key_PageDown);
-    QCOMPARE(line->text(), QString("0.21"));
-    for (int i = 0; i < 10; ++i)
-        QTest::keyClick(line, Qt::Key_PageUp);
-    QCOMPARE(line->text(), QString("1"));
-    open_->showOne(R"({"type":"integer","default":100000000})");
-    line = open_->seen<QLineEdit>();
-    QCOMPARE(line->text(), QString("100000000"));
-    QTest::keyClick(line, Qt::Key_Down);
-    QCOMPARE(open_->value(), QByteArray("99999999"));
-    open_->showOne(R"({"type":"number","increment":0.25,"default":1})");
-    QTest::keyClick(open_->seen<QLineEdit>(), Qt::Key_Up);
-    QCOMPARE(open_->value(), QByteArray("1.25"));
-}
-
-void TestEditors::amountsAreSpoken() {
-    open_->showOne(R"({"type":"integer","unit":"B","minimum":1024,"maximum":67108864,"default":1048576})");
-    QCOMPARE(open_->note(), QString("1.0 MiB (1.0 KiB to 64.0 MiB)"));
-    OpenForm::type(open_->seen<QLineEdit>(), "6764573491");
-    QVERIFY2(open_->note().startsWith("6.3 GiB (expected"), qPrintable(open_->note()));
-    open_->showOne(R"({"type":"number","unit":"s","default":200})");
-    QVERIFY2(open_->note().startsWith("3 min 20 s"), qPrintable(open_->note()));
-}
-
 void TestEditors::freeKeys() {
     open_->showOne(R"({"type":"object","additionalProperties":{"type":"integer","minimum":1}})",
                    R"({"x":1})");
@@ -237,36 +159,6 @@ void TestEditors::freeKeys() {
     open_->click("remove", 0);
     QVERIFY(form_->isValid());
     QCOMPARE(open_->value(), QByteArray(R"({"y":7})"));
-}
-
-void TestEditors::patternsAndFormats_data() {
-    QTest::addColumn<QByteArray>("schema");
-    QTest::addColumn<QString>("good");
-    QTest::addColumn<QString>("bad");
-    QTest::newRow("pattern") << QByteArray(R"({"type":"string","pattern":"^[a-z]+$"})") << "abc"
-                             << "ab1";
-    const auto format = [](const char *name, const char *good, const char *bad) {
-        QTest::newRow(name) << QByteArray(R"({"type":"string","format":")") + name + R"("})" << QString(good)
-                            << QString(bad);
-    };
-    format("date-time", "2026-01-31T12:00:00Z", "2026-02-31T12:00:00Z");
-    format("date", "2026-01-31", "31.1.2026");
-    format("ipv4", "192.168.1.20", "192.168.1.300");
-    format("ipv6", "fe80::1", "fe80:::1");
-    format("uri", "tcp://robot:7400", "robot");
-}
-
-void TestEditors::patternsAndFormats() {
-    QFETCH(QByteArray, schema);
-    QFETCH(QString, good);
-    QFETCH(QString, bad);
-    open_->showOne(schema);
-    OpenForm::type(open_->seen<QLineEdit>(), bad);
-    QVERIFY(!form_->isValid());
-    QVERIFY2(open_->note().startsWith("expected"), qPrintable(open_->note()));
-    OpenForm::type(open_->seen<QLineEdit>(), good);
-    QVERIFY2(form_->isValid(), qPrintable(open_->note()));
-    QCOMPARE(form_->values()["a"], QJsonValue(good));
 }
 
 static QByteArray nested(int depth) {
@@ -305,46 +197,6 @@ void TestEditors::whatNoRowsSuitIsText() {
     QCOMPARE(open_->seen<QPlainTextEdit>() == nullptr, isLine);
 }
 
-void TestEditors::textIsChecked() {
-    open_->showOne(R"({"type":"array","items":{"type":"string"}})", R"({"b":1})");
-    auto *const text = open_->seen<QPlainTextEdit>();
-    QVERIFY(!form_->isValid()); // no list
-    QTest::mouseClick(text->viewport(), Qt::LeftButton);
-    QTest::keyClick(text, Qt::Key_A, Qt::ControlModifier);
-    QTest::keyClicks(text, "[\"x\",");
-    QTest::keyClick(text, Qt::Key_Return);
-    QTest::keyClicks(text, "5");
-    QVERIFY(!form_->isValid());
-    QVERIFY2(open_->note().contains("bracket") && open_->note().contains("line"), qPrintable(open_->note()));
-    QTest::keyClicks(text, "]");
-    QVERIFY(!form_->isValid()); // 5 is no text
-    QVERIFY2(open_->note().startsWith("row 2: expected a string"), qPrintable(open_->note()));
-    QTest::keyClick(text, Qt::Key_Backspace);
-    QTest::keyClick(text, Qt::Key_Backspace);
-    QTest::keyClicks(text, "\"y\"]");
-    QVERIFY2(form_->isValid(), qPrintable(open_->note()));
-    QCOMPARE(open_->value(), QByteArray(R"(["x","y"])"));
-}
-
-void TestEditors::anyValueKeepsItsType() {
-    const char *const any = R"({"type":["number","string","boolean","null"]})";
-    for (const char *const given : {"5", R"("5")", "null", R"("null")", "true", R"("true")", R"("")",
-                                    R"("a b")", R"(" a")", "1e300", R"("[")"}) {
-        open_->showOne(any, given);
-        QCOMPARE(open_->value(), QJsonDocument::fromJson(QByteArray("[") + given + ']').array()[0] ==
-                                         QJsonDocument::fromJson("[" + open_->value() + "]").array()[0]
-                                     ? open_->value()
-                                     : QByteArray(given));
-        auto *const line = open_->seen<QLineEdit>();
-        const QString text = line->text();
-        OpenForm::type(line, "other");
-        QCOMPARE(open_->value(), QByteArray(R"("other")"));
-        OpenForm::type(line, text); // as it was shown, it means the same
-        QCOMPARE(QJsonDocument::fromJson("[" + open_->value() + "]").array()[0],
-                 QJsonDocument::fromJson(QByteArray("[") + given + ']').array()[0]);
-    }
-}
-
 void TestEditors::tabGoesThroughTheRows() {
     open_->showOne(R"({"type":"array","items":{"type":"string"}})", R"(["x"])");
     open_->click("add");
@@ -363,23 +215,6 @@ void TestEditors::tabGoesThroughTheRows() {
                              open_->seen<QToolButton>(1, "remove"),
                              open_->seen<QPushButton>(0, "add")};
     QCOMPARE(met.mid(0, wanted.size()), wanted);
-}
-
-void TestEditors::theWheelChangesNothing() {
-    open_->showOne(R"({"type":"array","items":{"type":"object","required":["k","n"],"properties":{
-             "k":{"enum":["x","y","z"]},"n":{"type":"number"}}}})",
-                   R"([{"k":"y","n":5}])");
-    new WheelGuard(open_->window());
-    open_->click("fold");
-    const QByteArray before = open_->value();
-    for (QWidget *const over : {static_cast<QWidget *>(open_->seen<QComboBox>()),
-                                static_cast<QWidget *>(open_->seen<QLineEdit>())}) {
-        over->setFocus();
-        const QPointF at(over->rect().center());
-        QWheelEvent event(at, over->mapToGlobal(at.toPoint()), {}, {0, -240}, {}, {}, {}, false);
-        QApplication::sendEvent(over, &event);
-        QCOMPARE(open_->value(), before);
-    }
 }
 
 // As many as are shown as rows, in a form that has many such lists.

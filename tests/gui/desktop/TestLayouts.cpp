@@ -1,21 +1,12 @@
-#include "gui/desktop/LayoutMenu.h"
-#include "gui/desktop/panels/PlotsPanel.h"
 #include "tests/gui/desktop/FakeDaemon.h"
-#include "tests/gui/desktop/OpenWindow.h"
+#include "tests/gui/desktop/LayoutWindow.h"
 
 #include <QComboBox>
-#include <QInputDialog>
-#include <QLabel>
-#include <QRandomGenerator>
-#include <QSettings>
-#include <QToolBar>
-#include <csignal>
-#include <sys/resource.h>
 
 using namespace hermes;
 using namespace hermes::desktop;
 
-/// Layouts of the window and robots, kept in a file that may be anything.
+/// Layouts of the window and robots, kept in a file.
 class TestLayouts : public QObject {
     Q_OBJECT
 private Q_SLOTS:
@@ -24,59 +15,8 @@ private Q_SLOTS:
     void badNamesAreTold();
     void switchingDropsNoConnectionAndNoBanner();
     void robotsAreKept();
-    void anyFile_data();
-    void anyFile();
-    void anyState();
-    void whatCannotBeWrittenIsTold();
 
 private:
-    struct Window {
-        explicit Window(const QString &file, const QStringList &addresses = {}) {
-            for (const QString &address : addresses.isEmpty() ? MainWindow::keptAddresses(file) : addresses)
-                fleet.add(address);
-            drive = std::make_unique<DriveControl>(fleet);
-            window = std::make_unique<MainWindow>(fleet, *drive, file);
-            window->show();
-        }
-        QWidget *dock(const char *name) const { return window->findChild<QDockWidget *>(name); }
-        LayoutMenu &menu() const { return *window->findChild<LayoutMenu *>(); }
-        /// Opens the menu and presses one of what is in it.
-        void pick(const QString &name) const {
-            Q_EMIT menu().aboutToShow();
-            auto *const action = menu().findChild<QAction *>(name);
-            QVERIFY2(action && action->isEnabled(), qPrintable(name));
-            action->trigger();
-        }
-        void saveAs(const QString &name) const {
-            pick("saveLayoutAs");
-            auto *const dialog = window->findChildren<QInputDialog *>("layoutName").back();
-            QVERIFY(dialog->isVisible() && !dialog->isModal());
-            dialog->setTextValue(name);
-            dialog->accept();
-        }
-        QJsonArray plots() const {
-            return window->findChild<PlotsPanel *>()->state()["panes"].toArray()[0].toArray();
-        }
-        QString notice() const { return window->findChild<QLabel *>("noticeBanner")->text(); }
-        bool isWhole() const {
-            auto *const stop = window->findChild<QPushButton *>("stop");
-            return stop->isVisible() && window->findChild<QToolBar *>("topBar")->isVisible();
-        }
-
-        Fleet fleet;
-        std::unique_ptr<DriveControl> drive;
-        std::unique_ptr<MainWindow> window;
-    };
-
-    QByteArray content() const {
-        QFile file(file_);
-        return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
-    }
-    void write(const QByteArray &bytes) const {
-        QFile file(file_);
-        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(bytes) == bytes.size());
-    }
-
     std::unique_ptr<QTemporaryDir> folder_;
     QString file_;
 };
@@ -89,7 +29,7 @@ void TestLayouts::init() {
 void TestLayouts::savedSwitchedAndDeletedByHand() {
     const QJsonObject plotted{{"daemon", "127.0.0.1:1"}, {"topic", "a"}, {"field", "b"}};
     {
-        Window one(file_, {"127.0.0.1:1"});
+        LayoutWindow one(file_, {"127.0.0.1:1"});
         QVERIFY(one.dock("drive")->isVisible());
         one.saveAs("Bench & desk");
         one.dock("drive")->hide();
@@ -101,7 +41,7 @@ void TestLayouts::savedSwitchedAndDeletedByHand() {
         QTRY_VERIFY(!one.dock("drive")->isVisible());
         one.window->close();
     }
-    Window next(file_);
+    LayoutWindow next(file_);
     QVERIFY(!next.dock("drive")->isVisible());
     QCOMPARE(next.window->layouts().names(), QStringList({"Usual", "Bench & desk"}));
     QCOMPARE(next.window->layouts().current(), QString("Bench & desk"));
@@ -117,7 +57,7 @@ void TestLayouts::savedSwitchedAndDeletedByHand() {
 }
 
 void TestLayouts::badNamesAreTold() {
-    Window one(file_, {"127.0.0.1:1"});
+    LayoutWindow one(file_, {"127.0.0.1:1"});
     one.saveAs("  ");
     QCOMPARE(one.notice(), QString("A layout needs a name."));
     one.saveAs("Usual");
@@ -136,7 +76,7 @@ void TestLayouts::switchingDropsNoConnectionAndNoBanner() {
     motors.isMotors = true;
     motors.hasTopics = false;
     const FakeDaemon daemon(motors);
-    Window one(file_, {QString("127.0.0.1:%1").arg(daemon.port())});
+    LayoutWindow one(file_, {QString("127.0.0.1:%1").arg(daemon.port())});
     QTRY_VERIFY(one.drive->isPossible());
     one.saveAs("other");
     DaemonLink *const link = one.fleet.robot()->daemons().front();
@@ -159,133 +99,20 @@ void TestLayouts::robotsAreKept() {
     const FakeDaemon one(supervisor), other(supervisor);
     const auto address = [](const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); };
     {
-        Window first(file_, {address(one), address(other)});
+        LayoutWindow first(file_, {address(one), address(other)});
         QTRY_VERIFY(first.fleet.robotAt(address(one)) && first.fleet.robotAt(address(other)));
         first.fleet.rename(*first.fleet.robotAt(address(other)), "Blue, \"the\" second; [x]");
         first.fleet.choose(first.fleet.robotAt(address(other)));
         first.saveAs("desk");
         QTRY_COMPARE(Layouts(file_).robots().names.size(), 1); // before it is closed
     }
-    Window next(file_);
+    LayoutWindow next(file_);
     QTRY_VERIFY(next.fleet.robotAt(address(other)) && next.fleet.robotAt(address(one)));
     QCOMPARE(next.fleet.robot(), next.fleet.robotAt(address(other)));
     QCOMPARE(next.fleet.robot()->name(), QString("Blue, \"the\" second; [x]"));
     next.pick("layout Usual");
     QCOMPARE(int(next.fleet.robots().size()), 2); // robots are of no layout
     QCOMPARE(next.window->findChild<QComboBox *>("robots")->currentText(), next.fleet.robot()->name());
-}
-
-void TestLayouts::anyFile_data() {
-    QTest::addColumn<QByteArray>("bytes");
-    QTest::addColumn<bool>("isOurs");
-    QByteArray noise(10 << 20, 0);
-    QRandomGenerator random(1);
-    for (char &c : noise)
-        c = char(random.bounded(256));
-    QTest::newRow("empty") << QByteArray() << true;
-    QTest::newRow("10 MB of noise") << noise << false;
-    QTest::newRow("a little noise") << noise.left(1000) << false;
-    QTest::newRow("10 MB of lines") << QByteArray("[window]\n") + QByteArray("a=b\n").repeated(2 << 20)
-                                    << false;
-    QTest::newRow("one long line") << "[window]\na=" + QByteArray(1000000, 'x') << true;
-    QTest::newRow("another program's") << QByteArray("[Desktop Entry]\nName=x\n") << false;
-    QTest::newRow("a text") << QByteArray("Dear diary,\ntoday I drove.\n") << false;
-    QTest::newRow("types of Qt") << QByteArray("[window]\nstate=@Variant(\\0\\0\\0\\b\\xff\\xff\\xff\\xff)\n")
-                                 << false;
-    QTest::newRow("wrong types") << QByteArray(
-                                        "[window]\ngeometry=1, 2, 3\nstate=@Rect(1 2 3 4)\nlayout=7, 8\n"
-                                        "[layouts]\nsize=many\n1\\name=a, b\n[robots]\naddresses=5\nnames=x\n"
-                                        "chosen=1, 2\n")
-                                 << true;
-    QTest::newRow("more than there are")
-        << QByteArray("[layouts]\nsize=2000000000\n1\\name=x\n1\\state=@ByteArray(\\0\\0\\0\\xff)\n"
-                      "1\\geometry=@ByteArray(\\x1\\xd9\\xd0)\n1\\plots={\\\"fields\\\":5}\n"
-                      "[window]\nlayout=y\n")
-        << true;
-    QTest::newRow("addresses") << "[robots]\naddresses=:, robot:0, http://x, 127.0.0.1:1, " +
-                                      QByteArray("x").repeated(10000) + "\nnames=127.0.0.1:1, " +
-                                      QByteArray("w").repeated(10000) + "\n"
-                               << true;
-}
-
-void TestLayouts::anyFile() {
-    QFETCH(QByteArray, bytes);
-    QFETCH(bool, isOurs);
-    QVERIFY(QDir().mkpath(QFileInfo(file_).path()));
-    write(bytes);
-    QElapsedTimer clock;
-    clock.start();
-    {
-        Window one(file_);
-        QVERIFY(one.isWhole());
-        QVERIFY(one.dock("daemons")->isVisible());
-        QCOMPARE(one.notice().isEmpty(), isOurs && !bytes.contains("1\\state"));
-        QVERIFY(one.fleet.robots().size() <= 2);
-        one.saveAs("mine");
-        QVERIFY(one.isWhole());
-        one.window->close();
-    }
-    QVERIFY(clock.elapsed() < 10000);
-    QCOMPARE(content() == bytes, !isOurs);
-    QCOMPARE(Layouts(file_).names().contains("mine"), isOurs);
-}
-
-// Bytes of a layout, changed or cut at random.
-void TestLayouts::anyState() {
-    const quint32 seed = QRandomGenerator::global()->generate();
-    qInfo("seed %u", seed);
-    QRandomGenerator random(seed);
-    { Window(file_, {"127.0.0.1:1"}).window->close(); }
-    QVERIFY(Layouts(file_).damage().isEmpty());
-    QSettings file(file_, QSettings::IniFormat);
-    const QStringList keys{"layouts/1/state", "layouts/1/geometry"};
-    const QList<QByteArray> good{file.value(keys[0]).toByteArray(), file.value(keys[1]).toByteArray()};
-    for (int round = 0; round < 40; ++round) {
-        const int which = round % 2;
-        QByteArray bytes = good[which];
-        const int place = random.bounded(bytes.size());
-        bytes[place] = char(bytes[place] + 1 + random.bounded(255));
-        if (random.bounded(4) == 0)
-            bytes.truncate(random.bounded(bytes.size()));
-        file.setValue(keys[which], bytes);
-        file.setValue(keys[1 - which], good[1 - which]);
-        file.sync();
-        Window one(file_, {"127.0.0.1:1"});
-        QVERIFY(one.isWhole() && one.dock("daemons")->isVisible());
-        QVERIFY2(one.notice().contains("damaged"), qPrintable(one.notice()));
-    }
-}
-
-void TestLayouts::whatCannotBeWrittenIsTold() {
-    {
-        Window folder(folder_->path(), {"127.0.0.1:1"}); // which is no file
-        QVERIFY2(folder.notice().contains("is no file"), qPrintable(folder.notice()));
-        QVERIFY(folder.isWhole());
-    }
-    {
-        Window device("/dev/null", {"127.0.0.1:1"});
-        QVERIFY(!device.notice().isEmpty());
-        device.window->close();
-        QVERIFY(QFileInfo::exists("/dev/null") && !QFileInfo("/dev/null").isFile());
-    }
-    file_ = folder_->filePath("gui.ini");
-    write({});
-    {
-        Window below(file_ + "/gui.ini", {"127.0.0.1:1"}); // where no folder can be
-        QTRY_VERIFY2(below.notice().contains("could not be written"), qPrintable(below.notice()));
-    }
-    Window full(file_, {"127.0.0.1:1"});
-    std::signal(SIGXFSZ, SIG_IGN);
-    rlimit before{};
-    QCOMPARE(getrlimit(RLIMIT_FSIZE, &before), 0);
-    const rlimit none{0, before.rlim_max};
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &none), 0); // as on a full disk
-    full.saveAs("more");
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
-    QVERIFY2(full.notice().contains("could not be written"), qPrintable(full.notice()));
-    full.saveAs("when there is room");
-    QVERIFY(Layouts(file_).names().contains("when there is room"));
-    QVERIFY(Layouts(file_).names().contains("more")); // the window had it
 }
 
 QTEST_MAIN(TestLayouts)

@@ -15,6 +15,8 @@ private Q_SLOTS:
     void recordedStampsAndThoseThatGoBack();
     void recordedBesideLive();
     void hostileValues();
+    void noNumbersOverCbor_data();
+    void noNumbersOverCbor();
     void manyTopicsAndLongNames();
     void goneDaemon();
 };
@@ -94,6 +96,41 @@ void TestPlottedStamps::hostileValues() {
     QCOMPARE(samples("vx").back().y(), 2.0); // refused with its stamp
     say(4102444801, "{\"vx\":true,\"list\":[1,2]}");
     QCOMPARE(samples("list.1").back().y(), 2.0);
+    QVERIFY(!panel_->grab().isNull());
+}
+
+void TestPlottedStamps::noNumbersOverCbor_data() {
+    QTest::addColumn<QByteArray>("stamp");
+    QTest::addColumn<QByteArray>("value");
+    QTest::addColumn<QString>("refusal");
+    const QByteArray now = QByteArray::number(stampNow(), 'f', 3);
+    for (const char *const word : {"nan", "inf", "-inf"}) { // JSON has none of them
+        QTest::newRow(QByteArray("stamp ") + word) << QByteArray(word) << QByteArray("7") << "not finite";
+        QTest::newRow(QByteArray("value ") + word) << now << QByteArray(word) << "not finite";
+    }
+    for (const char *const word : {"1e11", "-1e300"})
+        QTest::newRow(QByteArray("stamp ") + word)
+            << QByteArray(word) << QByteArray("7") << "expected seconds since the Unix epoch";
+}
+
+void TestPlottedStamps::noNumbersOverCbor() {
+    QFETCH(QByteArray, stamp);
+    QFETCH(QByteArray, value);
+    QFETCH(QString, refusal);
+    raise();
+    QVERIFY(panel_->board().add(field("vx")));
+    subscribed("drive");
+    const double now = stampNow();
+    sayVx(now, 1);
+    const DaemonLink *const daemon = window_->fleet.robot()->daemons().front();
+    daemon_->say("drive", "{\"vx\":" + value + '}', stamp);
+    QTRY_VERIFY2(daemon->reason().contains(refusal), qPrintable(daemon->reason()));
+    QCOMPARE(daemon->condition(), Condition::Warning);
+    sayVx(now + 2, 2); // the connection goes on
+    QCOMPARE(samples("vx"), Samples({QPointF(now, 1), QPointF(now + 2, 2)}));
+    const TopicSampler &sampler = panel_->board().sampler();
+    QVERIFY(std::abs(sampler.now(sampler.clock(field("vx"))) - now) < 60);
+    QVERIFY(!sampler.isRecorded(field("vx")));
     QVERIFY(!panel_->grab().isNull());
 }
 

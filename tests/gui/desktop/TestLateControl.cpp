@@ -1,0 +1,141 @@
+#include "gui/desktop/drive/OwnName.h"
+#include "tests/gui/desktop/FakeDaemon.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// The control of a robot that is given when another one is chosen already drives nobody.
+class TestLateControl : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup();
+    void drivesNobody_data();
+    void drivesNobody();
+    void isNotThatOfTheOther_data();
+    void isNotThatOfTheOther();
+    void refusalIsNotTold();
+
+private:
+    static Mischief robotOf(const QByteArray &name) {
+        Mischief robot;
+        robot.isMotors = true;
+        robot.topics["processes"] = "{\"robot\":\"" + name + "\",\"processes\":[]}";
+        return robot;
+    }
+    static QString addressOf(const FakeDaemon &daemon) { return QString("127.0.0.1:%1").arg(daemon.port()); }
+    Robot *robot(const FakeDaemon &daemon) const { return window_->fleet.robotAt(addressOf(daemon)); }
+    void choose(const FakeDaemon &daemon) {
+        window_->fleet.choose(robot(daemon));
+        QCOMPARE(window_->fleet.robot(), robot(daemon));
+    }
+    void hold(bool isHeld) { window_->drive.steer("test", isHeld ? Twist2D{1, 0, 0} : Twist2D(), isHeld); }
+    /// Asks for the control of red, by driving or by hand; the answer is held back.
+    void askRed(bool takesOver) {
+        red_->holdBack("control.acquire");
+        if (takesOver)
+            window_->drive.takeOver();
+        else
+            hold(true);
+        QTRY_COMPARE(red_->calls("control.acquire"), 1);
+    }
+    /// Sends what red has held back, and waits until it was read.
+    void letRedAnswer() {
+        red_->letGo();
+        bool isRead = false;
+        robot(*red_)->daemons().front()->call("fake.call", {}, this, [&](const auto &) { isRead = true; });
+        QTRY_VERIFY(isRead);
+    }
+    /// A turn of the loop in which commands go out, with time to spare.
+    void letCommandsGo() {
+        const int asked = blue_->calls("motor.state");
+        QTRY_VERIFY(blue_->calls("motor.state") > asked + 1); // twice a second
+    }
+
+    std::unique_ptr<FakeDaemon> red_, blue_;
+    std::unique_ptr<OpenWindow> window_;
+};
+
+void TestLateControl::init() {
+    red_ = std::make_unique<FakeDaemon>(robotOf("red"));
+    blue_ = std::make_unique<FakeDaemon>(robotOf("blue"));
+    blue_->setResult("motor.state", // whatever it says, it has not given the control as yet
+                     "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() +
+                         "\"}}");
+    window_ = std::make_unique<OpenWindow>();
+    QVERIFY(window_->show());
+    for (const FakeDaemon *const one : {red_.get(), blue_.get()})
+        QVERIFY(window_->fleet.add(addressOf(*one)));
+    QTRY_VERIFY(robot(*red_) && robot(*blue_));
+    choose(*red_);
+    QTRY_VERIFY(window_->drive.isPossible());
+}
+
+void TestLateControl::cleanup() {
+    window_.reset();
+    blue_.reset();
+    red_.reset();
+}
+
+void TestLateControl::drivesNobody_data() {
+    QTest::addColumn<bool>("takesOver");
+    QTest::newRow("asked for by driving") << false;
+    QTest::newRow("taken over") << true;
+}
+
+void TestLateControl::drivesNobody() {
+    QFETCH(bool, takesOver);
+    askRed(takesOver);
+    choose(*blue_);
+    letRedAnswer();
+    hold(true);
+    letCommandsGo();
+    QCOMPARE(red_->calls("motor.drive"), 0);
+    if (takesOver)
+        return; // nothing was held before: blue is driven now
+    QVERIFY(!window_->drive.isDriving());
+    QCOMPARE(blue_->calls("motor.drive") + blue_->calls("control.acquire"), 0); // let go first
+}
+
+void TestLateControl::isNotThatOfTheOther_data() {
+    drivesNobody_data();
+}
+
+void TestLateControl::isNotThatOfTheOther() {
+    QFETCH(bool, takesOver);
+    askRed(takesOver);
+    choose(*blue_);
+    hold(false);
+    blue_->holdBack("control.acquire");
+    hold(true);
+    QTRY_COMPARE(blue_->calls("control.acquire"), 1);
+    letRedAnswer();
+    letCommandsGo();
+    QVERIFY(!window_->drive.isDriving());
+    QCOMPARE(blue_->calls("motor.drive") + red_->calls("motor.drive"), 0);
+    QCOMPARE(blue_->calls("control.acquire"), 1); // the question is still open
+    blue_->letGo();
+    QTRY_VERIFY(blue_->calls("motor.drive") > 0);
+    QCOMPARE(red_->calls("motor.drive"), 0);
+    hold(false);
+}
+
+void TestLateControl::refusalIsNotTold() {
+    red_->setResult("control.acquire", R"(null,"error":{"code":-32003,"message":"red says no"})");
+    askRed(false);
+    choose(*blue_);
+    hold(false);
+    hold(true);
+    QTRY_VERIFY(blue_->calls("motor.drive") > 0);
+    letRedAnswer();
+    const int driven = blue_->calls("motor.drive");
+    letCommandsGo();
+    QVERIFY(window_->drive.isDriving());
+    QVERIFY(blue_->calls("motor.drive") > driven);
+    QCOMPARE(window_->drive.problem(), QString());
+    hold(false);
+}
+
+QTEST_MAIN(TestLateControl)
+#include "TestLateControl.moc"
