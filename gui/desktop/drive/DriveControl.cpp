@@ -2,6 +2,7 @@
 
 #include "common/Time.h"
 #include "gui/desktop/drive/OwnName.h"
+#include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
 #include <QPointer>
@@ -28,6 +29,12 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
     });
     timer_.setTimerType(Qt::PreciseTimer);
     connect(&timer_, &QTimer::timeout, this, &DriveControl::tick);
+    letGo_.setTimerType(Qt::PreciseTimer);
+    letGo_.setSingleShot(true);
+    connect(&letGo_, &QTimer::timeout, this, [this] {
+        if (isDriving_ && !inputs_.isAnyHeld())
+            end();
+    });
     connect(&pollTimer_, &QTimer::timeout, this, &DriveControl::poll);
     connect(&stop_, &StopControl::changed, this, [this] {
         const StopPhase before = std::exchange(shownPhase_, stop_.phase());
@@ -80,7 +87,6 @@ void DriveControl::follow() {
     measuredAge_.forget();
     stateAge_.forget();
     isHolding_ = isAsking_ = isPolling_ = false;
-    mustCentre_ = isAnyHeld();
     clock_ = {};
     if (!found)
         return tell(tr("No robot that can drive is connected."));
@@ -125,11 +131,13 @@ void DriveControl::takeMost(const QJsonValue &motion) {
 }
 
 void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld) {
-    inputs_[input] = {wish, isHeld};
+    inputs_.steer(input, wish, isHeld);
     if (isHeld)
         fleet_.keepChoice();
-    if (mustCentre_ && !isAnyHeld())
-        mustCentre_ = false;
+    if (inputs_.isAnyHeld())
+        letGo_.stop();
+    else if (isDriving_ && !letGo_.isActive())
+        letGo_.start(repeatGap);
 }
 
 void DriveControl::setLimit(double share) {
@@ -137,28 +145,14 @@ void DriveControl::setLimit(double share) {
     Q_EMIT changed();
 }
 
-bool DriveControl::isAnyHeld() const {
-    return std::any_of(inputs_.begin(), inputs_.end(), [](const Input &input) { return input.isHeld; });
-}
-
 Twist2D DriveControl::wish() const {
-    Twist2D sum;
-    for (const Input &input : inputs_) {
-        if (!input.isHeld)
-            continue;
-        sum.vx += input.wish.vx;
-        sum.vy += input.wish.vy;
-        sum.omega += input.wish.omega;
-    }
-    const auto scaled = [this](double share, double most) {
-        return qBound(-1.0, share, 1.0) * limit_ * most;
-    };
-    return {scaled(sum.vx, most_.vx), scaled(sum.vy, most_.vy), scaled(sum.omega, most_.omega)};
+    const Twist2D share = inputs_.wish();
+    return {share.vx * limit_ * most_.vx, share.vy * limit_ * most_.vy, share.omega * limit_ * most_.omega};
 }
 
 void DriveControl::driveBlindly() {
     isBlindMeant_ = true;
-    mustCentre_ = isAnyHeld();
+    inputs_.needRest();
     tell({});
     Q_EMIT changed();
 }
@@ -168,17 +162,28 @@ void DriveControl::onReplay() {
     if (!replay_.isReplaying())
         isBlindMeant_ = false;
     else if (refusesForReplay())
-        mustCentre_ = mustCentre_ || isAnyHeld();
+        inputs_.needRest();
     Q_EMIT changed();
 }
 
 void DriveControl::tick() {
-    if (isAnyHeld() && refusesForReplay())
-        mustCentre_ = true;
-    const bool wants = isAnyHeld() && !mustCentre_ && motors_ && motors_->isConnected() && !isStopped();
+    const bool hadToRest = mustLetGo();
+    inputs_.tick();
+    if (hadToRest && !mustLetGo())
+        Q_EMIT changed();
+    const bool isHeld = inputs_.isAnyHeld();
+    if (isHeld && refusesForReplay())
+        inputs_.needRest();
+    if (isDriving_ && answered_.hasExpired(qint64(1000 * lease_s))) { // the control has run out
+        halt();
+        tell(tr("The drive has ended: %1 did not answer.").arg(shortLine(motors_->name())));
+    }
+    const bool wants = isHeld && !mustLetGo() && motors_ && motors_->isConnected() && !isStopped();
     if (!wants) {
-        if (isDriving_)
+        if (isDriving_ && isHeld)
             halt();
+        else if (isDriving_ && !letGo_.isActive())
+            end();
         return;
     }
     if (isHolding_)
@@ -202,8 +207,8 @@ void DriveControl::acquire(bool takeOver) {
                       isHolding_ = result.ok();
                       tell(result ? QString() : result.error().message);
                       if (!result)
-                          mustCentre_ = isAnyHeld();
-                      else if (!takeOver && (!isAnyHeld() || mustCentre_))
+                          inputs_.needRest();
+                      else if (!takeOver && (!inputs_.isAnyHeld() || mustLetGo()))
                           giveBack(); // let go meanwhile
                       if (!result && takeOver && result.error().is(ErrorCode::NotAuthorised))
                           ask();
@@ -224,7 +229,8 @@ void DriveControl::ask() {
 }
 
 void DriveControl::send() {
-    isDriving_ = true;
+    if (!std::exchange(isDriving_, true))
+        answered_.start();
     commanded_ = wish();
     const QJsonObject command{{"vx", commanded_.vx},
                               {"vy", commanded_.vy},
@@ -233,6 +239,7 @@ void DriveControl::send() {
     const auto done = [this, guard = QPointer<DriveControl>(this)](const Result<QJsonValue> &result) {
         if (!guard)
             return;
+        answered_.start();
         if (result)
             return tell({});
         if (!isDriving_)
@@ -261,6 +268,13 @@ void DriveControl::lose() {
 }
 
 void DriveControl::halt() {
+    end();
+    inputs_.needRest();
+    Q_EMIT changed();
+}
+
+/// Because it was let go: the next press counts at once.
+void DriveControl::end() {
     commanded_ = {};
     if (isDriving_ && motors_) {
         // Calls, which are repeated where frames are lost.
@@ -270,7 +284,6 @@ void DriveControl::halt() {
         giveBack();
     }
     isDriving_ = isHolding_ = false;
-    mustCentre_ = isAnyHeld();
     Q_EMIT changed();
 }
 
@@ -283,14 +296,14 @@ void DriveControl::stop() {
     lose();
     commanded_ = {};
     isDriving_ = false;
-    mustCentre_ = isAnyHeld();
+    inputs_.needRest();
     stop_.press();
     Q_EMIT stopPressed();
     Q_EMIT changed();
 }
 
 void DriveControl::release() {
-    mustCentre_ = isAnyHeld();
+    inputs_.needRest();
     stop_.release();
     if (!motors_ || stop_.phase() != StopPhase::None)
         return; // whose lines ask for it
@@ -342,7 +355,7 @@ void DriveControl::onState(const QJsonValue &state) {
     if (isStopped() && !wasStopped) {
         isDriving_ = isHolding_ = false;
         commanded_ = {};
-        mustCentre_ = isAnyHeld();
+        inputs_.needRest();
     }
     Q_EMIT changed();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/client/ClockOffset.h"
+#include "gui/desktop/drive/DriveInputs.h"
 #include "gui/desktop/drive/StopControl.h"
 #include "gui/desktop/model/Freshness.h"
 #include "gui/desktop/model/ReplayWatch.h"
@@ -8,18 +9,20 @@
 #include "protocol/messages/Motion.h"
 #include "protocol/messages/Motors.h"
 
-#include <QMap>
+#include <QElapsedTimer>
 
 namespace hermes::desktop {
 
 /// Drives the chosen robot: takes what stick, keys and gamepad wish, asks for the control, sends motion
 /// commands at 20 Hz with their time, and stops. Whatever ends a drive (released, focus lost, link lost,
-/// a command refused, another robot chosen, STOP) ends it with a stop; then every input has to be let go once
-/// before it counts again. While another client has the control nothing is sent to the motors but STOP.
+/// a command refused, another robot chosen, STOP) ends it with a stop; then every input has to be at rest
+/// before one counts again. While another client has the control nothing is sent to the motors but STOP.
 class DriveControl : public QObject {
     Q_OBJECT
 public:
     static constexpr std::chrono::milliseconds period{50};
+    /// A key that is pressed again so soon was not let go: the keyboard repeats it.
+    static constexpr std::chrono::milliseconds repeatGap{20};
     /// How long the control is kept without a command.
     static constexpr double lease_s = 1;
     static constexpr double leastLimit = 0.05;
@@ -53,6 +56,8 @@ public:
     /// Somebody who can be driven is there.
     bool isPossible() const { return motors() != nullptr; }
     bool isDriving() const { return isDriving_; }
+    /// What is held does not count: let go first.
+    bool mustLetGo() const { return inputs_.mustRest(); }
     /// Or STOP is on its way.
     bool isStopped() const { return !hold_.latched.isEmpty() || stop_.phase() != StopPhase::None; }
     /// Why the robot does not move, by cause: "estop", faults.
@@ -79,11 +84,6 @@ private:
     static constexpr double usualLimit = 0.4;
     static constexpr Twist2D usualMost{0.5, 0.5, 1};
 
-    struct Input {
-        Twist2D wish;
-        bool isHeld = false;
-    };
-
     DaemonLink *motors() const;
     void follow();
     void onMoved(const DaemonLink *daemon, Robot *to);
@@ -91,6 +91,7 @@ private:
     QString objection(const Robot &robot) const;
     void takeMost(const QJsonValue &motion);
     void tick();
+    void end();
     void acquire(bool takeOver);
     void ask();
     QJsonObject named(const QString &method) const;
@@ -103,7 +104,6 @@ private:
     void onOdometry(const TopicUpdate &update);
     /// What all inputs wish together, in m/s and rad/s.
     Twist2D wish() const;
-    bool isAnyHeld() const;
     void tell(const QString &problem);
 
     Fleet &fleet_;
@@ -114,14 +114,16 @@ private:
     StopPhase shownPhase_ = StopPhase::None;
     ReplayWatch replay_;
     QTimer timer_, pollTimer_;
-    QMap<QString, Input> inputs_;
+    QTimer letGo_; ///< since nothing is held
+    DriveInputs inputs_;
+    QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;
     Twist2D most_ = usualMost, commanded_, measured_;
     int losses_ = 0; ///< of the control
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
     double limit_ = usualLimit;
-    bool isDriving_ = false, isHolding_ = false, isAsking_ = false, mustCentre_ = false, isPolling_ = false;
+    bool isDriving_ = false, isHolding_ = false, isAsking_ = false, isPolling_ = false;
     bool isBlindMeant_ = false;
     QString problem_;
 };

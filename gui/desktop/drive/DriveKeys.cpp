@@ -7,7 +7,6 @@
 #include <QApplication>
 #include <QComboBox>
 #include <QDialog>
-#include <QKeyEvent>
 #include <QPlainTextEdit>
 #include <QTextEdit>
 
@@ -15,6 +14,8 @@ namespace hermes::desktop {
 namespace {
 
 constexpr double slow = 0.3;
+constexpr qint64 rest_ms = 150; // what is pressed sooner after its release is held, and repeated
+constexpr auto chord = Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier;
 
 /// Widgets that need arrows or letters themselves.
 bool usesKeys(const QWidget *focus) {
@@ -52,14 +53,17 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
         // Wherever it is heard: what is let go drives no more, and what was held when the drive ended is no
         // key of a menu or a dialog.
         const auto *const key = static_cast<QKeyEvent *>(event);
-        if (key->isAutoRepeat() && stale_.contains(key->key()))
-            return true;
-        if (!key->isAutoRepeat())
-            stale_.remove(key->key());
-        if (!key->isAutoRepeat() && event->type() == QEvent::KeyRelease && down_.remove(key->key())) {
+        const bool isRelease = event->type() == QEvent::KeyRelease;
+        if (!key->isAutoRepeat() && isRelease && down_.remove(key->key())) {
             steer(key->modifiers());
             return true;
         }
+        if (isRepeat(*key) && stale_.contains(key->key()))
+            return true;
+        if (!isRelease && !isRepeat(*key))
+            stale_.remove(key->key());
+        if (!key->isAutoRepeat() && isRelease)
+            noteRelease(*key);
     }
     if (!widget || (widget->window() != &window_ && widget->window()->parentWidget() != &window_) ||
         qobject_cast<const QDialog *>(widget->window()))
@@ -67,7 +71,7 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
     if (event->type() == QEvent::ShortcutOverride) {
         // Else a shortcut of the same key would come first.
         const auto *const key = static_cast<QKeyEvent *>(event);
-        if (isDriveKey(key->key()) && !usesKeys(QApplication::focusWidget()))
+        if (isDriveKey(key->key()) && !(key->modifiers() & chord) && !usesKeys(QApplication::focusWidget()))
             event->accept();
         return false;
     }
@@ -75,24 +79,41 @@ bool DriveKeys::eventFilter(QObject *watched, QEvent *event) {
         return false;
     const auto *const key = static_cast<QKeyEvent *>(event);
     if (event->type() == QEvent::KeyPress)
-        return press(key->key(), key->modifiers());
+        return press(*key);
     if (key->isAutoRepeat())
         return down_.contains(key->key());
     steer(key->modifiers()); // Shift
     return false;
 }
 
-bool DriveKeys::press(int key, Qt::KeyboardModifiers modifiers) {
-    const QWidget *const focus = QApplication::focusWidget();
-    if (key == Qt::Key_Shift) {
-        steer(modifiers | Qt::ShiftModifier);
+// Not each display says it, and some tell a release and a press for each repeat.
+bool DriveKeys::isRepeat(const QKeyEvent &key) const {
+    if (key.isAutoRepeat())
+        return true;
+    const auto released = released_.constFind(key.key());
+    return key.type() == QEvent::KeyPress && released != released_.constEnd() &&
+           ((key.timestamp() != 0 && key.timestamp() == released->stamp) ||
+            !released->age.hasExpired(rest_ms));
+}
+
+void DriveKeys::noteRelease(const QKeyEvent &key) {
+    Release &release = released_[key.key()];
+    release.stamp = key.timestamp();
+    release.age.start();
+}
+
+// A key that was held before the drive keys were the window's begins no drive.
+bool DriveKeys::press(const QKeyEvent &key) {
+    if (key.key() == Qt::Key_Shift) {
+        steer(key.modifiers() | Qt::ShiftModifier);
         return false;
     }
-    const bool isChord = modifiers & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier);
-    if (!isDriveKey(key) || isChord || usesKeys(focus) || typing_.isCutOff())
+    if (!isDriveKey(key.key()) || (key.modifiers() & chord) || usesKeys(QApplication::focusWidget()) ||
+        typing_.isCutOff())
         return false;
-    down_.insert(key);
-    steer(modifiers);
+    if (!isRepeat(key))
+        down_.insert(key.key());
+    steer(key.modifiers());
     return true;
 }
 

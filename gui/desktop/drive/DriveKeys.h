@@ -3,6 +3,9 @@
 #include "gui/desktop/drive/DriveControl.h"
 #include "gui/desktop/widgets/TypingWatch.h"
 
+#include <QElapsedTimer>
+#include <QHash>
+#include <QKeyEvent>
 #include <QSet>
 
 namespace hermes::desktop {
@@ -19,7 +22,9 @@ protected:
     bool eventFilter(QObject *watched, QEvent *event) override;
 
 private:
-    bool press(int key, Qt::KeyboardModifiers modifiers);
+    bool isRepeat(const QKeyEvent &key) const;
+    void noteRelease(const QKeyEvent &key);
+    bool press(const QKeyEvent &key);
     void steer(Qt::KeyboardModifiers modifiers);
     void letGo();
 
@@ -28,6 +33,11 @@ private:
     const TypingWatch &typing_;
     QSet<int> down_;
     QSet<int> stale_; ///< held since a drive that has ended
+    struct Release {
+        ulong stamp; ///< of the display; 0: not known
+        QElapsedTimer age;
+    };
+    QHash<int, Release> released_; ///< the last of keys that drove nobody
 };
 
 } // namespace hermes::desktop

@@ -100,7 +100,9 @@ public:
                       settings);
     }
     void signal(const QString &name, int number) {
-        ::kill(pid_t(daemons_.at(name).process->processId()), number);
+        const qint64 process = daemons_.at(name).process->processId();
+        QVERIFY2(process > 0, qPrintable(name)); // 0 would be all processes of the test
+        ::kill(pid_t(process), number);
     }
     /// As SIGKILL does.
     void kill(const QString &name) {

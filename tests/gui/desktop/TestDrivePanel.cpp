@@ -35,6 +35,7 @@ private Q_SLOTS:
     void motorControlKilledAndRestarted();
     void aHeldKeyDrivesOnlyOnce_data();
     void aHeldKeyDrivesOnlyOnce();
+    void aRepeatedKeyOfAMenuDoesNotDrive();
     void speedLimitInItsUnit();
 
 private:
@@ -62,6 +63,20 @@ private:
     }
     void letGo() { QTest::mouseRelease(find<Stick>("stick"), Qt::LeftButton, {}, onStick(0, 0)); }
 
+    /// Repeats a held key as some displays do: by releases and presses that are not marked as repeats.
+    void repeat(Qt::Key key) {
+        repeating_ = std::make_unique<QTimer>();
+        connect(repeating_.get(), &QTimer::timeout, this, [this, key] {
+            QWidget *const popup = QApplication::activePopupWidget();
+            QWidget *const hearing = popup ? popup : window_.get();
+            QTest::keyRelease(hearing, key);
+            QTest::keyPress(hearing, key);
+        });
+        repeating_->start(20);
+    }
+    void awaitRest() { QTRY_VERIFY(!drive_->mustLetGo()); }
+
+    std::unique_ptr<QTimer> repeating_;
     std::unique_ptr<RobotProcesses> robot_;
     std::unique_ptr<Fleet> fleet_;
     std::unique_ptr<DriveControl> drive_;
@@ -87,6 +102,7 @@ void TestDrivePanel::init() {
 }
 
 void TestDrivePanel::cleanup() {
+    repeating_.reset();
     window_.reset();
     drive_.reset();
     fleet_.reset();
@@ -226,6 +242,7 @@ void TestDrivePanel::afterAReleaseTheStickMustBeCentred() {
     QTest::qWait(300);             // in which it would drive off
     QCOMPARE(commanded("vx"), 0.0);
     QTest::keyRelease(window_.get(), Qt::Key_W);
+    awaitRest();
     QTest::keyPress(window_.get(), Qt::Key_W);
     QTRY_VERIFY(commanded("vx") > 0.1);
     QTest::keyRelease(window_.get(), Qt::Key_W);
@@ -259,6 +276,7 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
     QTest::keyRelease(window_.get(), Qt::Key_W);
     QTRY_VERIFY(find<QPushButton>("takeOver")->isVisible());
     QTest::mouseClick(find<QPushButton>("takeOver"), Qt::LeftButton);
+    awaitRest();
     QTest::keyPress(window_.get(), Qt::Key_W);
     QTRY_VERIFY(commanded("vx") > 0.1);
     QTest::keyRelease(window_.get(), Qt::Key_W);
@@ -283,13 +301,19 @@ void TestDrivePanel::keysDoNotDisturbTheDriveOfAnother() {
 
 void TestDrivePanel::aHeldKeyDrivesOnlyOnce_data() {
     QTest::addColumn<bool>("isKilled");
-    QTest::newRow("killed") << true;
-    QTest::newRow("frozen") << false;
+    QTest::addColumn<bool>("isRepeated");
+    QTest::newRow("killed") << true << false;
+    QTest::newRow("frozen") << false << false;
+    QTest::newRow("killed, repeated") << true << true;
+    QTest::newRow("frozen, repeated") << false << true;
 }
 
 void TestDrivePanel::aHeldKeyDrivesOnlyOnce() {
     QFETCH(bool, isKilled);
+    QFETCH(bool, isRepeated);
     QTest::keyPress(window_.get(), Qt::Key_W);
+    if (isRepeated)
+        repeat(Qt::Key_W);
     awaitMotion();
     if (isKilled) {
         robot_->kill("motorcontrol");
@@ -307,9 +331,32 @@ void TestDrivePanel::aHeldKeyDrivesOnlyOnce() {
         QTest::qWait(50);
         QCOMPARE(commanded("vx"), 0.0);
     }
+    repeating_.reset();
     QTest::keyRelease(window_.get(), Qt::Key_W);
+    awaitRest();
     QTest::keyPress(window_.get(), Qt::Key_W);
     QTRY_VERIFY2(commanded("vx") > 0.1, qPrintable(drive_->problem()));
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+}
+
+void TestDrivePanel::aRepeatedKeyOfAMenuDoesNotDrive() {
+    QMenu *const menu = find<QToolButton>("mapMenu")->menu();
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    repeat(Qt::Key_W);
+    awaitMotion();
+    menu->popup(window_->mapToGlobal(QPoint(300, 300)));
+    QTRY_COMPARE(commanded("vx"), 0.0);
+    QTest::qWait(300);
+    menu->hide();
+    for (int i = 0; i < 10; ++i) {
+        QTest::qWait(50);
+        QVERIFY(!drive_->isDriving());
+    }
+    repeating_.reset();
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QTest::qWait(300); // let go
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    awaitMotion();
     QTest::keyRelease(window_.get(), Qt::Key_W);
 }
 
@@ -323,6 +370,7 @@ void TestDrivePanel::motorControlKilledAndRestarted() {
     robot_->startMotorControl();
     QTRY_VERIFY_WITH_TIMEOUT(find<Stick>("stick")->isEnabled(), 10000);
     QTRY_VERIFY_WITH_TIMEOUT(state()["ready"].toBool(), 10000);
+    awaitRest();
     press(0, 1);
     awaitMotion();
     letGo();

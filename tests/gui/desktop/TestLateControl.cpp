@@ -31,6 +31,12 @@ private:
         QCOMPARE(window_->fleet.robot(), robot(daemon));
     }
     void hold(bool isHeld) { window_->drive.steer("test", isHeld ? Twist2D{1, 0, 0} : Twist2D(), isHeld); }
+    /// As an operator must after another robot was chosen.
+    void holdAnew() {
+        hold(false);
+        QTRY_VERIFY(!window_->drive.mustLetGo());
+        hold(true);
+    }
     /// Asks for the control of red, by driving or by hand; the answer is held back.
     void askRed(bool takesOver) {
         red_->holdBack("control.acquire");
@@ -106,9 +112,8 @@ void TestLateControl::isNotThatOfTheOther() {
     QFETCH(bool, takesOver);
     askRed(takesOver);
     choose(*blue_);
-    hold(false);
     blue_->holdBack("control.acquire");
-    hold(true);
+    holdAnew();
     QTRY_COMPARE(blue_->calls("control.acquire"), 1);
     letRedAnswer();
     letCommandsGo();
@@ -125,8 +130,7 @@ void TestLateControl::refusalIsNotTold() {
     red_->setResult("control.acquire", R"(null,"error":{"code":-32003,"message":"red says no"})");
     askRed(false);
     choose(*blue_);
-    hold(false);
-    hold(true);
+    holdAnew();
     QTRY_VERIFY(blue_->calls("motor.drive") > 0);
     letRedAnswer();
     const int driven = blue_->calls("motor.drive");

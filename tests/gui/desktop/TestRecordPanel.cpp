@@ -173,6 +173,7 @@ void TestRecordPanel::aReplayIsShownAndDrivingAsks() {
                  qPrintable(label("problem")->text()));
     QTest::keyRelease(&open.window, Qt::Key_W);
     OpenWindow::click(&open.window, "driveBlindly");
+    QTRY_VERIFY(!open.drive.mustLetGo());
     QTest::keyPress(&open.window, Qt::Key_W);
     QTRY_VERIFY2(speed() > 0.1, qPrintable(open.drive.problem()));
     QTest::keyRelease(&open.window, Qt::Key_W);

@@ -1,0 +1,158 @@
+#include "gui/desktop/panels/MapPanel.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// A key that stays held while the keyboard repeats it drives only once: with real keys (xdotool) on a
+/// display (with_display), whose releases between repeats are not always told to be repeats, on a real motor
+/// control.
+class TestHeldKeys : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void initTestCase();
+    void cleanup();
+    void drivesOnlyOnce_data();
+    void drivesOnlyOnce();
+    void refusedItDoesNotDriveLater_data() { keys(); }
+    void refusedItDoesNotDriveLater();
+    void repeatsDriveEvenly();
+    void closesByCtrlQ();
+
+private:
+    static void keys();
+    static void xdotool(const QString &words) { QProcess::execute("xdotool", words.split(' ')); }
+    void hold(const QString &key) {
+        QTest::mouseClick(&open_->window.map().view(), Qt::LeftButton);
+        xdotool("keydown " + key);
+        held_ = key;
+    }
+    void letGo() {
+        if (!held_.isEmpty())
+            xdotool("keyup " + std::exchange(held_, {}));
+    }
+    double speed() const {
+        const Twist2D &measured = open_->drive.measured();
+        return std::hypot(measured.vx, measured.vy) + std::abs(measured.omega);
+    }
+    void awaitMotion() { QTRY_VERIFY2(speed() > 0.1, qPrintable(open_->drive.problem())); }
+    void staysAtRest(int time_ms);
+    /// Let go and pressed once more it drives.
+    void drivesAnew(const QString &key);
+
+    std::unique_ptr<RobotProcesses> robot_;
+    std::unique_ptr<OpenWindow> open_;
+    QString held_;
+};
+
+void TestHeldKeys::initTestCase() {
+    if (QGuiApplication::platformName() != "xcb")
+        QSKIP("needs a display: tests/gui/desktop/with_display");
+    QProcess::execute("xset", {"r", "rate", "200", "60"}); // where there is one; Xvfb repeats without it
+    robot_ = std::make_unique<RobotProcesses>();
+    robot_->startMotors();
+    open_ = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(open_->show());
+    QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+}
+
+void TestHeldKeys::cleanup() {
+    letGo();
+    if (open_)
+        QTRY_VERIFY(!open_->drive.isDriving());
+}
+
+void TestHeldKeys::keys() {
+    QTest::addColumn<QString>("key");
+    for (const char *key : {"s", "Up", "q"})
+        QTest::newRow(key) << QString(key);
+}
+
+void TestHeldKeys::staysAtRest(int time_ms) {
+    QElapsedTimer time;
+    for (time.start(); time.elapsed() < time_ms; QTest::qWait(5)) {
+        QVERIFY2(!open_->drive.isDriving(), qPrintable(QString("after %1 ms").arg(time.elapsed())));
+        QCOMPARE(open_->drive.commanded().vx, 0.0);
+    }
+    QTRY_VERIFY(speed() < 0.02);
+}
+
+void TestHeldKeys::drivesAnew(const QString &key) {
+    letGo();
+    QTRY_VERIFY(!open_->drive.mustLetGo());
+    hold(key);
+    awaitMotion();
+    letGo();
+    QTRY_VERIFY(speed() < 0.02);
+}
+
+void TestHeldKeys::drivesOnlyOnce_data() {
+    QTest::addColumn<QString>("key");
+    QTest::addColumn<bool>("isKilled");
+    for (const char *key : {"s", "Up", "q"})
+        for (const bool isKilled : {true, false})
+            QTest::addRow("%s, %s", key, isKilled ? "killed" : "frozen") << QString(key) << isKilled;
+}
+
+void TestHeldKeys::drivesOnlyOnce() {
+    QFETCH(QString, key);
+    QFETCH(bool, isKilled);
+    hold(key);
+    awaitMotion();
+    if (isKilled) {
+        robot_->kill("motorcontrol");
+        QTRY_VERIFY(!open_->drive.isPossible());
+        QTRY_VERIFY(!open_->drive.isDriving());
+        robot_->startMotorControl();
+        QTRY_VERIFY_WITH_TIMEOUT(open_->drive.isPossible(), 10000);
+    } else {
+        robot_->signal("motorcontrol", SIGSTOP);
+        QTest::qWait(2000); // longer than the control lasts
+        robot_->signal("motorcontrol", SIGCONT);
+    }
+    staysAtRest(3000);
+    if (!QTest::currentTestFailed())
+        drivesAnew(key);
+}
+
+void TestHeldKeys::refusedItDoesNotDriveLater() {
+    QFETCH(QString, key);
+    auto other = std::make_unique<Client>();
+    other->connectTo(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol")));
+    QVERIFY(other->waitConnected().ok());
+    QVERIFY(other->callAndWait("control.acquire", QJsonObject{{"client", "patrol"}, {"timeout_s", 30}}).ok());
+    hold(key);
+    QTRY_VERIFY(open_->drive.problem().contains("patrol"));
+    QTest::qWait(1000); // the keyboard repeats
+    other.reset();      // which ends its control
+    staysAtRest(3000);
+    if (!QTest::currentTestFailed())
+        drivesAnew(key);
+}
+
+// No release between two repeats stops the robot.
+void TestHeldKeys::repeatsDriveEvenly() {
+    hold("Up");
+    awaitMotion();
+    int stops = 0;
+    const auto counting =
+        connect(&open_->drive, &DriveControl::changed, this, [&] { stops += !open_->drive.isDriving(); });
+    QTest::qWait(6000);
+    disconnect(counting);
+    QCOMPARE(stops, 0);
+    letGo();
+    QElapsedTimer sinceRelease;
+    sinceRelease.start();
+    QTRY_VERIFY(!open_->drive.isDriving());
+    qInfo("figure stopped %lld ms after the key", sinceRelease.elapsed());
+}
+
+void TestHeldKeys::closesByCtrlQ() {
+    QTest::mouseClick(&open_->window.map().view(), Qt::LeftButton);
+    xdotool("key ctrl+q");
+    QTRY_VERIFY(!open_->window.isVisible());
+    open_->window.show();
+}
+
+QTEST_MAIN(TestHeldKeys)
+#include "TestHeldKeys.moc"
