@@ -18,11 +18,13 @@
 #include "gui/desktop/widgets/ScrolledPanel.h"
 #include "gui/desktop/widgets/WheelGuard.h"
 
+#include <QAbstractItemView>
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QJsonDocument>
+#include <QPlainTextEdit>
 #include <QToolBar>
 #include <cstdio>
 
@@ -38,6 +40,23 @@ QString textOf(const QJsonObject &object) {
 
 QJsonObject objectFrom(const QString &text) {
     return QJsonDocument::fromJson(text.toUtf8()).object();
+}
+
+/// A list or a tree, else a text, else what Tab leads to first.
+QWidget *mainWidgetOf(QWidget *panel) {
+    const auto isWanted = [panel](const QWidget *widget) {
+        return widget->isVisibleTo(panel) && widget->isEnabled() && (widget->focusPolicy() & Qt::TabFocus);
+    };
+    for (auto *const view : panel->findChildren<QAbstractItemView *>())
+        if (isWanted(view) && !view->inherits("QComboBoxListView"))
+            return view;
+    for (auto *const text : panel->findChildren<QPlainTextEdit *>())
+        if (isWanted(text))
+            return text;
+    for (auto *const any : panel->findChildren<QWidget *>())
+        if (isWanted(any))
+            return any;
+    return panel;
 }
 
 } // namespace
@@ -226,7 +245,8 @@ void MainWindow::showPanel(const QString &name) {
     auto *const dock = findChild<QDockWidget *>(name);
     dock->show();
     dock->raise();
-    static_cast<ScrolledPanel *>(dock->widget())->widget()->setFocus();
+    QWidget *const panel = static_cast<ScrolledPanel *>(dock->widget())->widget();
+    (name == "drive" ? centralWidget() : mainWidgetOf(panel))->setFocus(Qt::ShortcutFocusReason);
 }
 
 void MainWindow::arrange() {
