@@ -1,5 +1,7 @@
 #include "gui/desktop/drive/StopControl.h"
 
+#include "gui/desktop/widgets/ForeignText.h"
+
 #include <algorithm>
 
 namespace hermes::desktop {
@@ -157,22 +159,31 @@ QString StopControl::text() const {
     const StopLine *const line = worst(true);
     if (!line)
         return {};
-    const QString name = line->name();
-    if (isLate() && line->isWatched())
+    const QString text = textOf(*line);
+    const auto own = std::find_if(lines_.begin(), lines_.end(),
+                                  [line](const Line &one) { return one.stop.get() == line; });
+    return text.isEmpty() || !own->robot || own->robot == fleet_.robot()
+               ? text
+               : tr("%1: %2").arg(shortLine(fleet_.titleOf(*own->robot), 40), text);
+}
+
+QString StopControl::textOf(const StopLine &line) const {
+    const QString name = line.name();
+    if (isLate() && line.isWatched())
         return tr("THE ROBOT IS NOT KNOWN TO STAND for %1 s: %2 is stopped, but %3. %4 If it moves, use the "
                   "switch on the robot.")
-            .arg(line->unconfirmed_s(), 0, 'f', 1)
-            .arg(name, line->reason(), line->watchdogs());
-    if (line->isWatched())
+            .arg(line.unconfirmed_s(), 0, 'f', 1)
+            .arg(name, line.reason(), line.watchdogs());
+    if (line.isWatched())
         return {}; // who stopped it is said
     if (isLate())
         return tr("STOP IS NOT CONFIRMED by %1 for %2 s: %3. It is sent again and again, over new "
                   "connections too. "
                   "%4 If it moves, use the switch on the robot.")
             .arg(name)
-            .arg(line->unconfirmed_s(), 0, 'f', 1)
-            .arg(line->reason(), line->watchdogs());
-    switch (line->phase()) {
+            .arg(line.unconfirmed_s(), 0, 'f', 1)
+            .arg(line.reason(), line.watchdogs());
+    switch (line.phase()) {
     case StopPhase::Pressed:
         return tr("STOP pressed");
     case StopPhase::Sent:
@@ -182,7 +193,7 @@ QString StopControl::text() const {
     default:
         return tr("STOPPED: %1 has measured that the robot stands, %2 s after STOP")
             .arg(name)
-            .arg(line->took_s(), 0, 'f', 2);
+            .arg(line.took_s(), 0, 'f', 2);
     }
 }
 

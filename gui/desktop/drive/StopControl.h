@@ -51,6 +51,7 @@ private:
     /// It was pressed for a robot of which nobody can be stopped.
     bool reachesNobody() const;
     const StopLine *worst(bool ofAny) const;
+    QString textOf(const StopLine &line) const;
 
     Fleet &fleet_;
     std::vector<Line> lines_;
