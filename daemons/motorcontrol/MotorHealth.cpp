@@ -81,7 +81,7 @@ void MotorControl::updateHealth() {
 
     const bool latched = told_.latch.isSet();
     const auto &causes = told_.latch.causes();
-    QStringList texts{latched ? told_.latch.text() : QString("not latched")};
+    QStringList texts{latched ? told_.latch.text() : QString("no emergency stop")};
     const bool lost = !isReady() && !allStand(told_); // while it brakes it is ready
     if (lost)
         texts.append(standingOf(told_).all.text);

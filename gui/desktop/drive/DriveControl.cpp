@@ -1,7 +1,7 @@
 #include "gui/desktop/drive/DriveControl.h"
 
 #include "common/Time.h"
-#include "gui/desktop/drive/OwnName.h"
+#include "gui/desktop/drive/StopReason.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "protocol/wire/Fields.h"
 
@@ -77,7 +77,7 @@ void DriveControl::follow() {
     }
     motors_ = found;
     if (found && found != driven_) { // what the limit means is another robot's
-        limit_ = usualLimit;
+        limit_ = limits_.value(found->address(), usualLimit);
         most_ = usualMost;
     }
     if (found)
@@ -142,6 +142,8 @@ void DriveControl::steer(const QString &input, const Twist2D &wish, bool isHeld)
 
 void DriveControl::setLimit(double share) {
     limit_ = qBound(leastLimit, share, 1.0);
+    if (driven_)
+        limits_[driven_->address()] = limit_;
     Q_EMIT changed();
 }
 
@@ -348,7 +350,7 @@ void DriveControl::onState(const QJsonValue &state) {
     if (!hold)
         return tell(tr("State of the motors: %1").arg(report.text()));
     stateAge_.heard(motors_);
-    const bool wasStopped = isStopped();
+    const bool wasStopped = isStopped(), wasLatched = !hold_.latched.isEmpty();
     hold_ = std::move(*hold);
     if (!isDriving_ && hold_.control.holder != ownName())
         isHolding_ = false; // it ran out
@@ -357,7 +359,17 @@ void DriveControl::onState(const QJsonValue &state) {
         commanded_ = {};
         inputs_.needRest();
     }
+    if (wasLatched && hold_.latched.isEmpty())
+        tell({}); // what was refused because of it
     Q_EMIT changed();
+}
+
+QString DriveControl::stopReason() const {
+    QStringList reasons;
+    const bool isOurs = fleet_.robot() && stop_.isPressedFor(*fleet_.robot());
+    for (const QString &reason : hold_.latched)
+        reasons.append(readableStop(reason, isOurs));
+    return reasons.join("; ");
 }
 
 QString DriveControl::holder() const {

@@ -10,6 +10,7 @@
 #include "protocol/messages/Motors.h"
 
 #include <QElapsedTimer>
+#include <QHash>
 
 namespace hermes::desktop {
 
@@ -62,6 +63,8 @@ public:
     bool isStopped() const { return !hold_.latched.isEmpty() || stop_.phase() != StopPhase::None; }
     /// Why the robot does not move, by cause: "estop", faults.
     const QMap<QString, QString> &latched() const { return hold_.latched; }
+    /// The same for people; empty: nothing stops it.
+    QString stopReason() const;
     /// Who holds the control: "" nobody, "you", or the name of another client.
     QString holder() const;
     /// Who asks for the control that this program has; empty: nobody.
@@ -123,6 +126,7 @@ private:
     Freshness measuredAge_, stateAge_;
     ClockOffset clock_;
     double limit_ = usualLimit;
+    QHash<QString, double> limits_; ///< of each robot, by the address of its motor control
     bool isDriving_ = false, isHolding_ = false, isAsking_ = false, isPolling_ = false;
     bool isBlindMeant_ = false;
     QString problem_;

@@ -45,7 +45,7 @@ QString StopBanner::styleOf(const DriveControl &drive) {
 void StopBanner::update() {
     QString text = drive_.stopping().text();
     if (text.isEmpty() && drive_.isStopped())
-        text = tr("STOPPED: %1").arg(QStringList(drive_.latched().values()).join("; "));
+        text = tr("STOPPED: %1").arg(drive_.stopReason());
     tell(text, styleOf(drive_));
     if (!drive_.stopping().isLate()) {
         sound_.stop();

@@ -42,9 +42,15 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
     layout->addWidget(new GamepadRow(gamepad));
     layout->addLayout(makeLimit());
     layout->addWidget(makeNumbers());
-    layout->addLayout(control);
-    layout->addWidget(problem_);
-    layout->addWidget(blind_);
+    auto *const told = new QWidget; // as high as what is told usually: nothing above moves
+    auto *const texts = new QVBoxLayout(told);
+    texts->setContentsMargins(0, 0, 0, 0);
+    texts->addLayout(control);
+    texts->addWidget(problem_);
+    texts->addWidget(blind_);
+    texts->addStretch();
+    told->setMinimumHeight(takeOver_->sizeHint().height() + 4 * fontMetrics().lineSpacing());
+    layout->addWidget(told);
     blind_->setObjectName("driveBlindly");
     for (QPushButton *const passing : {takeOver_, blind_})
         passing->setFocusPolicy(Qt::TabFocus); // a click leaves the keys to driving: the button goes
@@ -90,8 +96,12 @@ QLayout *DrivePanel::makeLimit() {
     speed_->setAlignment(Qt::AlignRight);
     speed_->setFixedWidth(fontMetrics().horizontalAdvance("00.000") + 16);
     turn_->setObjectName("turnLimit");
-    connect(limit_, &QSlider::valueChanged, this, [this](int percent) { drive_.setLimit(percent / 100.0); });
+    connect(limit_, &QSlider::valueChanged, this, [this](int percent) {
+        wrongLimit_.clear();
+        drive_.setLimit(percent / 100.0);
+    });
     connect(speed_, &QLineEdit::editingFinished, this, &DrivePanel::takeTypedLimit);
+    connect(speed_, &QLineEdit::textEdited, this, [this] { wrongLimit_.clear(); });
     connect(speed_, &QLineEdit::returnPressed, speed_, &QWidget::clearFocus); // so that the keys drive
     auto *const label = new PlainLabel(tr("Speed li&mit"));
     label->setBuddy(speed_);
@@ -107,16 +117,19 @@ QLayout *DrivePanel::makeLimit() {
     return grid;
 }
 
-/// Clearly wrong text is as if nothing was typed.
 void DrivePanel::takeTypedLimit() {
+    if (!speed_->isModified())
+        return;
     bool isNumber = false;
     const double speed = speed_->text().replace(',', '.').toDouble(&isNumber);
     const double most = drive_.most().vx;
-    const bool isModified = speed_->isModified();
     speed_->setModified(false);
-    if (isModified && isNumber && std::isfinite(speed) && speed > 0 && most > 0)
+    wrongLimit_.clear();
+    if (isNumber && std::isfinite(speed) && speed > 0 && most > 0)
         drive_.setLimit(speed / most);
-    showLimit();
+    else
+        wrongLimit_ = tr("\"%1\" is no speed: the limit stays as it was.").arg(shortLine(speed_->text(), 20));
+    update();
 }
 
 void DrivePanel::showLimit() {
@@ -126,8 +139,9 @@ void DrivePanel::showLimit() {
     const QSignalBlocker silence(limit_);
     limit_->setValue(qRound(100 * share));
     speed_->setEnabled(isKnown && most.vx > 0);
-    if (!speed_->isModified())
-        speed_->setText(isKnown ? shortNumber(share * most.vx, 2) : QString());
+    const QString speed = isKnown ? shortNumber(share * most.vx, 2) : QString();
+    if (!speed_->isModified() && speed_->text() != speed)
+        speed_->setText(speed); // which forgets what is selected
     turn_->setText(isKnown ? tr("%1 rad/s").arg(shortNumber(share * most.omega, 2)) : tr("rad/s"));
     const QString toolTip =
         tr("The speed of the whole stick: ahead, sideways and turning. "
@@ -135,6 +149,15 @@ void DrivePanel::showLimit() {
             .arg(shortNumber(most.vx, 2), shortNumber(most.vy, 2), shortNumber(most.omega, 2));
     for (QWidget *const widget : std::initializer_list<QWidget *>{limit_, speed_, turn_})
         widget->setToolTip(isKnown ? toolTip : tr("The speed of the whole stick"));
+}
+
+/// What moves the robot while nobody has the control.
+QString DrivePanel::freeText() const {
+    if (drive_.isStopped() || drive_.refusesForReplay())
+        return tr("Control: free");
+    if (drive_.mustLetGo())
+        return tr("Control: free. Let go first.");
+    return tr("Control: free. The stick takes it.");
 }
 
 void DrivePanel::update() {
@@ -155,17 +178,16 @@ void DrivePanel::update() {
     showLimit();
     const QString holder = drive_.holder();
     control_->tell(!drive_.isPossible() ? QString()
-                   : holder.isEmpty()   ? tr("The control is free: move the stick to take it.")
+                   : holder.isEmpty()   ? freeText()
                    : drive_.wanted().isEmpty()
                        ? tr("Control: %1").arg(holder)
                        : tr("Control: %1; %2 asks for it").arg(holder, shortLine(drive_.wanted(), 40)),
                    drive_.isPossible() ? drive_.stateAge() : Freshness());
     takeOver_->setVisible(!holder.isEmpty() && holder != tr("you"));
-    QString problem = drive_.problem();
-    if (!drive_.latched().isEmpty()) {
-        const QStringList reasons = drive_.latched().values();
-        problem = tr("Stopped: %1. Release it above.").arg(reasons.join("; "));
-    }
+    QString problem = wrongLimit_.isEmpty() ? drive_.problem() : wrongLimit_;
+    if (!drive_.latched().isEmpty())
+        problem = tr("Stopped: %1. Release it above.").arg(drive_.stopReason());
+    problem_->setToolTip(toolTipOf(QStringList(drive_.latched().values()).join("; ")));
     blind_->setVisible(drive_.refusesForReplay());
     if (drive_.refusesForReplay())
         problem = tr("A replay is shown, not where the robot is: driving is off.");

@@ -27,6 +27,7 @@ public:
 
 private:
     void update();
+    QString freeText() const;
     QWidget *makeNumbers();
     QLayout *makeLimit();
     void showLimit();
@@ -42,6 +43,7 @@ private:
     PlainLabel *commanded_[3];
     AgedLabel *measured_[3];
     QPushButton *takeOver_, *blind_;
+    QString wrongLimit_; ///< why the last typed one was refused
 };
 
 } // namespace hermes::desktop

@@ -28,6 +28,7 @@ private Q_SLOTS:
     void stopIsLatchedAndNeedsNoControl_data();
     void stopIsLatchedAndNeedsNoControl();
     void afterAReleaseTheStickMustBeCentred();
+    void aReleaseByAnotherIsSeen();
     void losingTheFocusStops();
     void closingTheWindowStops();
     void heldByAnotherAndTakenOver();
@@ -248,6 +249,20 @@ void TestDrivePanel::afterAReleaseTheStickMustBeCentred() {
     QTest::keyRelease(window_.get(), Qt::Key_W);
 }
 
+void TestDrivePanel::aReleaseByAnotherIsSeen() {
+    QVERIFY(client_->callAndWait("motor.estop", QJsonObject{{"client", "anna on laptop7"}}).ok());
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QTRY_COMPARE(find<QLabel>("problem")->text(),
+                 QString("Stopped: emergency stop by anna on laptop7. Release it above."));
+    QCOMPARE(find<QLabel>("control")->text(), QString("Control: free"));
+    QVERIFY(client_->callAndWait("motor.reset_estop").ok());
+    QTRY_VERIFY(find<QLabel>("problem")->text().isEmpty() || !find<QLabel>("problem")->isVisible());
+    find<QPushButton>("stop")->pressed();
+    QTRY_COMPARE(find<QLabel>("problem")->text(),
+                 QString("Stopped: emergency stop by you (this window). Release it above."));
+}
+
 void TestDrivePanel::losingTheFocusStops() {
     QTest::keyPress(window_.get(), Qt::Key_W);
     awaitMotion();
@@ -402,7 +417,13 @@ void TestDrivePanel::speedLimitInItsUnit() {
         type(nonsense);
         QCOMPARE(drive_->limit(), 0.25);
         QCOMPARE(speed->text(), QString("0.25"));
+        QVERIFY(find<QLabel>("problem")->text().contains("is no speed"));
     }
+    QTest::mouseClick(speed, Qt::LeftButton);
+    QTest::keyClick(speed, Qt::Key_A, Qt::ControlModifier);
+    QSignalSpy told(drive_.get(), &DriveControl::changed);
+    QTRY_VERIFY(told.count() > 2);
+    QCOMPARE(speed->selectedText(), QString("0.25"));
     type("7"); // more than it can
     QCOMPARE(drive_->limit(), 1.0);
     QCOMPARE(speed->text(), QString("1.00"));
