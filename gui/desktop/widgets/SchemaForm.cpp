@@ -11,6 +11,7 @@
 #include <QGridLayout>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <set>
 
 namespace hermes::desktop {
 namespace {
@@ -139,7 +140,8 @@ void SchemaForm::arrange() {
     for (const QString &group : groups) {
         auto *const heading = new PlainLabel(shortLine(group, longestTitle));
         heading->setBold(true);
-        headings_.push_back(heading);
+        heading->setObjectName("heading");
+        headings_.emplace_back(heading, group);
         grid->addWidget(heading, line++, 0, 1, 4);
         heading->setVisible(!group.isEmpty());
         for (const QString &path : order_)
@@ -180,7 +182,8 @@ void SchemaForm::setBaseline(const QJsonObject &values) {
 
 void SchemaForm::setDefaults() {
     for (auto &[path, row] : rows_)
-        row.editor->setValue(row.schema["default"]);
+        if (row.isInSight)
+            row.editor->setValue(row.schema["default"]);
     errors_.clear();
     check();
     Q_EMIT edited();
@@ -212,6 +215,17 @@ QJsonObject SchemaForm::values() const {
 
 QJsonObject SchemaForm::changes() const {
     return difference(values(), baseline_);
+}
+
+int SchemaForm::unseenChanges() const {
+    int count = 0;
+    for (const QString &path : leafPaths(changes()))
+        for (QString place = path; !place.isEmpty(); place.truncate(qMax(0, place.lastIndexOf('.'))))
+            if (const auto row = rows_.find(place); row != rows_.end()) {
+                count += row->second.isInSight ? 0 : 1;
+                break;
+            }
+    return count;
 }
 
 void SchemaForm::showErrors(const QJsonArray &errors) {
@@ -278,15 +292,18 @@ void SchemaForm::mark(const QString &path, Row &row) {
 }
 
 void SchemaForm::setFilter(const QString &text) {
+    std::set<QString> groups;
     for (auto &[path, row] : rows_) {
-        const bool isShown = text.isEmpty() || path.contains(text, Qt::CaseInsensitive) ||
-                             row.title->text().contains(text, Qt::CaseInsensitive) ||
-                             row.schema["description"].toString().contains(text, Qt::CaseInsensitive);
+        row.isInSight = text.isEmpty() || path.contains(text, Qt::CaseInsensitive) ||
+                        row.title->text().contains(text, Qt::CaseInsensitive) ||
+                        row.schema["description"].toString().contains(text, Qt::CaseInsensitive);
         for (QWidget *widget : row.widgets)
-            widget->setVisible(isShown);
+            widget->setVisible(row.isInSight);
+        if (row.isInSight)
+            groups.insert(row.group);
     }
-    for (PlainLabel *heading : headings_)
-        heading->setVisible(text.isEmpty() && !heading->text().isEmpty());
+    for (const auto &[heading, group] : headings_)
+        heading->setVisible(groups.count(group) > 0 && !group.isEmpty());
 }
 
 } // namespace hermes::desktop
