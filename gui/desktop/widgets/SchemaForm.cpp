@@ -5,6 +5,7 @@
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/EditorFactory.h"
+#include "gui/desktop/widgets/ElidedLabel.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
@@ -16,7 +17,9 @@
 namespace hermes::desktop {
 namespace {
 
-enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn };
+enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn, DescriptionColumn };
+
+constexpr int roomy = 700; // pixels: there is room for descriptions
 
 constexpr int mostSteps = 10000; // of a check, which runs with each key
 
@@ -33,6 +36,14 @@ bool isGroup(const QJsonObject &schema) {
     return std::all_of(properties.begin(), properties.end(), [](const QJsonValue &property) {
         return property.toObject().contains("default") || isGroup(property.toObject());
     });
+}
+
+QLabel *makeDescription(const QJsonObject &schema) {
+    auto *const label = new ElidedLabel(Qt::ElideRight);
+    label->setObjectName("description");
+    label->setText(shortLine(schema["description"].toString()));
+    label->setForegroundRole(QPalette::PlaceholderText);
+    return label;
 }
 
 } // namespace
@@ -111,7 +122,8 @@ void SchemaForm::addRow(const QString &path, const QJsonObject &schema, bool isR
     row.widgets = {row.title, row.editor, row.note};
     row.isWide = row.editor->placeNote(row.note);
     if (!row.isWide)
-        row.widgets.push_back(new PlainLabel(shortLine(schema["unit"].toString(), longestUnit)));
+        row.widgets.push_back(row.unit = new PlainLabel(shownUnit(schema)));
+    row.widgets.push_back(row.description = makeDescription(schema));
     const QString toolTip = toolTipOf(explanation(path, schema));
     for (QWidget *widget : row.widgets)
         widget->setToolTip(toolTip);
@@ -134,7 +146,7 @@ void SchemaForm::arrange() {
     auto *const grid = new QGridLayout(page_);
     grid->setContentsMargins({});
     grid->setColumnStretch(EditorColumn, 2);
-    grid->setColumnStretch(NoteColumn, 3);
+    grid->setColumnStretch(NoteColumn, 2);
     grid->setVerticalSpacing(4);
     int line = 0;
     for (const QString &group : groups) {
@@ -142,14 +154,25 @@ void SchemaForm::arrange() {
         heading->setBold(true);
         heading->setObjectName("heading");
         headings_.emplace_back(heading, group);
-        grid->addWidget(heading, line++, 0, 1, 4);
+        grid->addWidget(heading, line++, 0, 1, 5);
         heading->setVisible(!group.isEmpty());
         for (const QString &path : order_)
             if (const Row &row = rows_.at(path); row.group == group)
                 place(row, *grid, line++);
     }
     grid->setRowStretch(line, 1);
+    giveRoom();
     chainRows();
+}
+
+void SchemaForm::giveRoom() {
+    if (auto *const grid = page_ ? static_cast<QGridLayout *>(page_->layout()) : nullptr)
+        grid->setColumnStretch(DescriptionColumn, width() < roomy ? 0 : 3);
+}
+
+void SchemaForm::resizeEvent(QResizeEvent *event) {
+    QWidget::resizeEvent(event);
+    giveRoom();
 }
 
 void SchemaForm::place(const Row &row, QGridLayout &grid, int line) {
@@ -157,11 +180,13 @@ void SchemaForm::place(const Row &row, QGridLayout &grid, int line) {
         row.title->setMargin(3); // as high as its first row
         grid.addWidget(row.title, line, TitleColumn, Qt::AlignTop);
         grid.addWidget(row.editor, line, EditorColumn, 1, 3);
+        grid.addWidget(row.description, line, DescriptionColumn, Qt::AlignTop);
         return;
     }
+    grid.addWidget(row.description, line, DescriptionColumn);
     grid.addWidget(row.title, line, TitleColumn);
     grid.addWidget(row.editor, line, EditorColumn);
-    grid.addWidget(row.widgets.back(), line, UnitColumn);
+    grid.addWidget(row.unit, line, UnitColumn);
     grid.addWidget(row.note, line, NoteColumn);
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 class QGridLayout;
+class QLabel;
 
 namespace hermes::desktop {
 
@@ -54,10 +55,14 @@ public:
 Q_SIGNALS:
     void edited();
 
+protected:
+    void resizeEvent(QResizeEvent *event) override;
+
 private:
     struct Row {
         QJsonObject schema;
-        PlainLabel *title, *note;
+        PlainLabel *title, *note, *unit = nullptr;
+        QLabel *description;
         ValueEditor *editor;
         std::vector<QWidget *> widgets;
         QString group;
@@ -68,6 +73,7 @@ private:
     void addRows(const QJsonObject &schema, const QString &prefix);
     void addRow(const QString &path, const QJsonObject &schema, bool isRequired);
     void arrange();
+    void giveRoom();
     static void place(const Row &row, QGridLayout &grid, int line);
     void chainRows();
     void prepareCheck();
