@@ -6,6 +6,7 @@
 
 #include <QHBoxLayout>
 #include <QPushButton>
+#include <algorithm>
 
 namespace hermes::desktop {
 namespace {
@@ -18,9 +19,9 @@ bool isPast(const Event &event) {
 QString line(const Event &event) {
     const QString time = timeOf(event.stamp).value_or(QDateTime()).toString("HH:mm:ss") + "  ";
     const QString text = event.from + ": " + event.text;
-    return time + (isPast(event)
-                       ? EventBar::tr("OVER after %1: %2").arg(durationText(event.over - event.began), text)
-                       : text);
+    return time + (isPast(event) ? EventBar::tr("OVER after %1: %2")
+                                       .arg(durationText(std::max(1.0, event.over - event.began)), text)
+                                 : text);
 }
 
 /// Loud while it goes on.

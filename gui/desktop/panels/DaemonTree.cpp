@@ -56,9 +56,10 @@ DaemonTree::DaemonTree(Fleet &fleet, QWidget *parent)
     header()->setSectionResizeMode(NameColumn, QHeaderView::Stretch);
     // Names have the room: what does not fit into the state has its tool tip.
     header()->setSectionResizeMode(StateColumn, QHeaderView::Fixed);
-    header()->resizeSection(StateColumn, fontMetrics().horizontalAdvance("unreachable") + iconRoom);
+    header()->resizeSection(StateColumn, fontMetrics().horizontalAdvance("degraded") + iconRoom);
     header()->setStretchLastSection(false);
     setUniformRowHeights(true);
+    setIndentation(12);
     setEditTriggers(QAbstractItemView::NoEditTriggers); // but from the menu
     connect(this, &QTreeWidget::currentItemChanged, this, &DaemonTree::choose);
     connect(this, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem *item) {

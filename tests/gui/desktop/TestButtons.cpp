@@ -116,7 +116,8 @@ void TestButtons::stopEndsIt() {
         QTest::keyClick(window_.get(), Qt::Key_F12);
     else
         QVERIFY(client_->callAndWait("motor.estop").ok());
-    QTRY_VERIFY2(text().startsWith("Slow ended before step 2 of 2, ") && text().endsWith(": STOP"), qPrintable(text()));
+    QTRY_VERIFY2(text().startsWith("Slow ended before step 2 of 2, ") && text().endsWith(": STOP"),
+                 qPrintable(text()));
     QVERIFY(!find<QPushButton>("endMacro")->isEnabled());
 }
 
