@@ -122,17 +122,14 @@ void ButtonBar::rebuild() {
     update();
 }
 
-QString ButtonBar::titleOf(const Macro &macro) const {
-    const QString away = shortLine(runner_.away(macro), 30);
-    const QString title = away.isEmpty() ? macro.name : tr("%1 (%2 away)").arg(macro.name, away);
-    return QString(title).replace('&', "&&");
-}
-
+// Texts stay as they are: a button beside would move under the mouse.
 void ButtonBar::update() {
     for (std::size_t i = 0; i < made_.size(); ++i) {
         const Macro &macro = buttons_.all()[i];
         const QString hindrance = runner_.hindrance(macro);
-        made_[i]->setText(titleOf(macro));
+        made_[i]->setText(QString(macro.name).replace('&', "&&"));
+        made_[i]->setIcon(runner_.away(macro).isEmpty() ? theme::icon("call")
+                                                        : theme::icon(Condition::Unreachable));
         made_[i]->setEnabled(hindrance.isEmpty() && !runner_.isRunning());
         made_[i]->setToolTip(toolTipOf(hindrance.isEmpty() ? explanation(macro) : hindrance));
     }

@@ -27,7 +27,6 @@ private:
     void rebuild();
     void update();
     void press(int place);
-    QString titleOf(const Macro &macro) const;
     void tell(const QString &text, Condition condition);
 
     const Buttons &buttons_;

@@ -1,17 +1,37 @@
 #include "gui/desktop/EventBar.h"
 
+#include "gui/desktop/widgets/ElidedLabel.h"
 #include "gui/desktop/widgets/ForeignText.h"
-#include "gui/desktop/widgets/PlainLabel.h"
+#include "gui/desktop/widgets/Quantities.h"
 
 #include <QHBoxLayout>
 #include <QPushButton>
+#include <algorithm>
 
 namespace hermes::desktop {
 namespace {
 
+/// What went on for a time, and does not any more.
+bool isPast(const Event &event) {
+    return event.isOver && !event.key.isEmpty();
+}
+
 QString line(const Event &event) {
-    const QString time = timeOf(event.stamp).value_or(QDateTime()).toString("HH:mm:ss");
-    return time + "  " + event.from + ": " + event.text;
+    const QString time = timeOf(event.stamp).value_or(QDateTime()).toString("HH:mm:ss") + "  ";
+    const QString text = event.from + ": " + event.text;
+    return time + (isPast(event) ? EventBar::tr("OVER after %1: %2")
+                                       .arg(durationText(std::max(1.0, event.over - event.began)), text)
+                                 : text);
+}
+
+/// Loud while it goes on.
+QString styleOf(const Event &event) {
+    const bool isError = event.level == Event::Level::Error;
+    const char *const colours =
+        isPast(event) ? isError ? "background: #7d4a48; color: white;" : "background: #6f6146; color: white;"
+        : isError     ? "background: #d0100c; color: white;"
+                      : "background: #f0a000; color: black;";
+    return QString(colours) + " font-weight: bold;";
 }
 
 } // namespace
@@ -20,13 +40,14 @@ EventBar::EventBar(Events &events, const Sounds &sounds, QWidget *parent)
     : QWidget(parent)
     , events_(events)
     , sounds_(sounds)
-    , text_(new PlainLabel)
+    , text_(new ElidedLabel(Qt::ElideMiddle))
+    , others_(new PlainLabel)
     , acknowledge_(new QPushButton(tr("Acknowled&ge"))) {
     setObjectName("eventLine");
     text_->setObjectName("eventText");
-    text_->setMinimumWidth(1); // cut off where there is no room
-    text_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     text_->setMargin(4);
+    others_->setObjectName("otherEvents");
+    others_->setToolTip(tr("So many more events wait to be acknowledged"));
     acknowledge_->setObjectName("acknowledge");
     acknowledge_->setToolTip(tr("I have seen this event; the next one that waits is shown"));
     auto *const list = new QPushButton(tr("Events"));
@@ -35,6 +56,7 @@ EventBar::EventBar(Events &events, const Sounds &sounds, QWidget *parent)
     auto *const layout = new QHBoxLayout(this);
     layout->setContentsMargins(4, 0, 4, 0);
     layout->addWidget(text_, 1);
+    layout->addWidget(others_);
     layout->addWidget(acknowledge_);
     layout->addWidget(list);
 
@@ -59,17 +81,14 @@ void EventBar::update() {
     refresh_.start(std::chrono::seconds(1)); // warnings go by themselves
     const Event *const loudest = events_.loudest();
     const int others = events_.waiting() - 1;
-    QString text = tr("No events"), style = "color: palette(mid);";
+    QString text = tr("No events"), style;
     if (loudest) {
         text = line(*loudest);
-        if (others > 0)
-            text = tr("%1    (%2 more)").arg(text).arg(others);
-        style = loudest->level == Event::Level::Error
-                    ? "background: #d0100c; color: white; font-weight: bold;"
-                    : "background: #f0a000; color: black; font-weight: bold;";
+        style = styleOf(*loudest);
     } else if (!events_.all().empty()) {
         text = line(events_.all().back());
     }
+    others_->setText(others > 0 ? tr("%1 more").arg(others) : QString());
     shown_ = loudest ? loudest->id : 0;
     text_->setText(text);
     text_->setToolTip(toolTipOf(text));

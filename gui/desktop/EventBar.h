@@ -10,6 +10,7 @@ class QPushButton;
 
 namespace hermes::desktop {
 
+class ElidedLabel;
 class PlainLabel;
 
 /// One line at the foot of the window: the worst event that waits to be acknowledged, else what happened
@@ -28,7 +29,8 @@ private:
 
     Events &events_;
     const Sounds &sounds_;
-    PlainLabel *text_;
+    ElidedLabel *text_;
+    PlainLabel *others_; // how many wait beside it
     QPushButton *acknowledge_;
     quint64 shown_ = 0; ///< the event that Acknowledge means
     QTimer refresh_, quiet_;

@@ -15,6 +15,7 @@
 #include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
+#include "gui/desktop/widgets/FloatingDock.h"
 #include "gui/desktop/widgets/ScrolledPanel.h"
 #include "gui/desktop/widgets/WheelGuard.h"
 
@@ -22,7 +23,6 @@
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
-#include <QDockWidget>
 #include <QJsonDocument>
 #include <QPlainTextEdit>
 #include <QToolBar>
@@ -67,6 +67,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , drive_(drive)
     , log_(fleet)
     , eventWatch_(fleet, log_, events_)
+    , controlWatch_(fleet, drive, events_)
     , runner_(fleet, drive)
     , layouts_(layoutFile)
     , note_(new Banner) {
@@ -131,7 +132,7 @@ MainWindow::~MainWindow() {
     if (layouts_.isChanged())
         save();
     delete buttonBar_;
-    for (QDockWidget *const dock : docks_)
+    for (FloatingDock *const dock : docks_)
         delete dock;
 }
 
@@ -153,7 +154,7 @@ void MainWindow::addBanner(Banner *banner, const char *name) {
 
 void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
     const QString title = tr(kind.title);
-    auto *const dock = new QDockWidget(title, this);
+    auto *const dock = new FloatingDock(title, this);
     dock->setObjectName(kind.name);
     dock->setWidget(new ScrolledPanel(panel));
     addDockWidget(kind.area, dock);
@@ -283,8 +284,8 @@ void MainWindow::showLayout() {
     const Layouts::Layout layout = layouts_.layout();
     if (!layout.geometry.isEmpty())
         restoreGeometry(layout.geometry);
-    if (!restoreState(layout.state))
-        restoreState(usual_);
+    if (!restorePanels(layout.state))
+        restorePanels(usual_);
     showBars();
     findChild<PlotsPanel *>()->setState(layout.plots);
     centralWidget()->setFocus(); // so that the keys drive
@@ -300,8 +301,17 @@ void MainWindow::showBars() {
     buttonBar_->setVisible(!buttons_.all().empty());
 }
 
+bool MainWindow::restorePanels(const QByteArray &state) {
+    for (FloatingDock *const dock : docks_)
+        dock->setRestoring(true);
+    const bool isRestored = restoreState(state);
+    for (FloatingDock *const dock : docks_)
+        dock->setRestoring(false);
+    return isRestored;
+}
+
 void MainWindow::resetLayout() {
-    restoreState(usual_);
+    restorePanels(usual_);
     showBars();
     centralWidget()->setFocus();
 }
@@ -346,6 +356,10 @@ void MainWindow::notify(const QString &problem) {
 void MainWindow::showEvent(QShowEvent *event) {
     keeping_.start(keepEach);
     QMainWindow::showEvent(event);
+    QTimer::singleShot(0, this, [this] { // when the window itself is there
+        for (FloatingDock *const dock : docks_)
+            dock->comeForward();
+    });
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/Layouts.h"
+#include "gui/desktop/model/ControlWatch.h"
 #include "gui/desktop/model/EventWatch.h"
 #include "gui/desktop/model/MacroRunner.h"
 #include "gui/desktop/panels/Panels.h"
@@ -8,12 +9,12 @@
 #include <QMainWindow>
 #include <QThreadPool>
 
-class QDockWidget;
 class QToolBar;
 
 namespace hermes::desktop {
 
 class Banner;
+class FloatingDock;
 class HelpWindow;
 class MapPanel;
 class StopKeys;
@@ -50,6 +51,7 @@ private:
     QMenu *makeLayoutMenu();
     /// Shows what is kept of the current layout; what is not is as at the first start.
     void showLayout();
+    bool restorePanels(const QByteArray &state);
     void showBars();
     void resetLayout();
     /// Takes down what the operator has set.
@@ -65,12 +67,13 @@ private:
     LogFeed log_;
     Events events_;
     EventWatch eventWatch_;
+    ControlWatch controlWatch_;
     Buttons buttons_;
     MacroRunner runner_;
     MapPanel *map_;
     Layouts layouts_;
     QByteArray usual_; ///< how the panels are arranged at the first start
-    std::vector<QDockWidget *> docks_;
+    std::vector<FloatingDock *> docks_;
     QList<QAction *> showPanels_;
     QList<QAction *> panelActions_; ///< with keys of their own
     HelpWindow *help_ = nullptr;

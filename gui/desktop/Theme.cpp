@@ -7,6 +7,7 @@
 #include <QStyle>
 #include <QStyleFactory>
 #include <QSvgRenderer>
+#include <utility>
 
 // The icons are in a library, which has to be asked for them by name.
 static void loadIcons() {
@@ -25,14 +26,19 @@ QIcon drawn(const QString &name, const QColor &colour) {
     QFile file(":/icons/" + name + ".svg");
     if (!file.open(QIODevice::ReadOnly))
         return {};
-    QSvgRenderer renderer(file.readAll().replace("currentColor", colour.name().toLatin1()));
+    const QByteArray svg = file.readAll();
+    const QColor onChosen = QApplication::palette().color(QPalette::HighlightedText);
     QIcon icon;
-    for (const int size : {16, 24, 32, 48}) {
-        QPixmap picture(size, size);
-        picture.fill(Qt::transparent);
-        QPainter painter(&picture);
-        renderer.render(&painter);
-        icon.addPixmap(picture);
+    for (const auto &[mode, ink] : {std::pair(QIcon::Normal, colour), std::pair(QIcon::Selected, onChosen)}) {
+        QSvgRenderer renderer(QByteArray(svg).replace("currentColor", ink.name().toLatin1()));
+        for (const int size : {16, 24, 32, 48}) {
+            QPixmap picture(size, size);
+            picture.fill(Qt::transparent);
+            QPainter painter(&picture);
+            renderer.render(&painter);
+            painter.end();
+            icon.addPixmap(picture, mode);
+        }
     }
     known.insert(key, icon);
     return icon;

@@ -30,8 +30,8 @@ Result<void> writeCurves(const QString &file, const std::vector<KeptCurve> &curv
         return failed();
     out.write("stamp,daemon,topic,field,value,unit\n");
     for (const KeptCurve &curve : curves) {
-        const QByteArray names = ',' + cell(curve.field.address) + ',' + cell(curve.field.topic) + ',' +
-                                 cell(curve.field.path) + ',';
+        const QByteArray names =
+            ',' + cell(curve.daemon) + ',' + cell(curve.field.topic) + ',' + cell(curve.field.path) + ',';
         const QByteArray unit = ',' + cell(curve.unit) + '\n';
         for (const QPointF &sample : curve.samples) {
             QByteArray line;

@@ -8,6 +8,7 @@ namespace hermes::desktop {
 /// What is written of one curve.
 struct KeptCurve {
     FieldId field;
+    QString daemon; ///< its name, with its robot's where there are several
     QString unit;
     Samples samples;
 };

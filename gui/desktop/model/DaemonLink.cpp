@@ -52,9 +52,9 @@ DaemonLink::DaemonLink(const QString &address, QObject *parent)
 }
 
 QString DaemonLink::name() const {
-    const QString name = shortLine(info_.name, longestName);
-    if (!name.isEmpty())
-        return name;
+    for (const QString &told : {info_.name, supervisedName_})
+        if (const QString name = shortLine(told, longestName); !name.isEmpty())
+            return name;
     for (const QString &known : daemonNames())
         if (defaultPort(known) == port())
             return known;
@@ -131,11 +131,12 @@ QString DaemonLink::reason() const {
         lines.append(nonsense_);
     const Client::Rejected &rejected = client_.rejected();
     if (rejected.unreadable > 0)
-        lines.append(
-            tr("%1 messages could not be read: %2").arg(rejected.unreadable).arg(shortLine(rejected.last)));
+        lines.append(tr("Messages that could not be read: %1 (%2)")
+                         .arg(rejected.unreadable)
+                         .arg(shortLine(rejected.last)));
     if (rejected.unasked > 0)
-        lines.append(tr("%1 messages that nobody waits for").arg(rejected.unasked));
-    return lines.join('\n');
+        lines.append(tr("Messages that nobody waits for: %1").arg(rejected.unasked));
+    return lines.join(".\n"); // sentences, also where they are put in one line
 }
 
 bool DaemonLink::isUnderstood() const {

@@ -35,8 +35,10 @@ public:
     quint16 port() const { return address_.section(':', -1).toUShort(); }
     /// The same for two links that lead to one process; empty: not known.
     QString identity() const;
-    /// Its own name ("motorcontrol"); before it has answered, the usual one of its port, or the address.
+    /// Its own name ("motorcontrol"); before it has answered, what its supervisor calls it, the usual one of
+    /// its port, or the address.
     QString name() const;
+    void setSupervisedName(const QString &name) { supervisedName_ = name; }
     QString title() const;
     bool isConnected() const { return client_.isConnected(); }
     /// It has answered once; what it said then is still here when the connection is gone.
@@ -97,6 +99,7 @@ private:
     void ask();
 
     const QString address_;
+    QString supervisedName_;
     Client client_;
     QTimer timer_;
     DaemonInfo info_;

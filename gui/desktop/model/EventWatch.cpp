@@ -3,6 +3,8 @@
 #include "gui/desktop/drive/OwnName.h"
 #include "gui/desktop/widgets/ForeignText.h"
 
+#include <utility>
+
 namespace hermes::desktop {
 namespace {
 
@@ -19,6 +21,13 @@ bool isOfStop(const LogMessage &record) {
 
 QString keyOf(const DaemonLink &daemon, const QString &what) {
     return daemon.address() + '\n' + what;
+}
+
+/// Without its address, of which its name tells more.
+QString whyAway(const DaemonLink &daemon) {
+    const QString reason = daemon.reason().section(".\n", 0, 0), address = daemon.address() + ": ";
+    const int at = reason.indexOf(address);
+    return at < 0 ? reason : reason.mid(at + address.size());
 }
 
 /// The supervisor says that nobody wants it to run, or tells itself what is wrong with it.
@@ -62,6 +71,9 @@ void EventWatch::watch(const Robot &robot, DaemonLink &daemon) {
             events_.endAll(begin);
         });
     }
+    const QString name = nameOf(daemon), before = std::exchange(watched_[&daemon].name, name);
+    if (!before.isEmpty() && before != name)
+        events_.rename(before, name); // one form of it in all of the list
     lookAtLink(robot, daemon);
     lookAtHealth(daemon);
 }
@@ -73,7 +85,7 @@ void EventWatch::lookAtLink(const Robot &robot, const DaemonLink &daemon) {
         return events_.ends(key);
     events_.goesOn(key, Event::Level::Error, nameOf(daemon),
                    daemon.isSilent() ? tr("It is connected, but does not answer")
-                                     : tr("No connection: %1").arg(shortLine(daemon.reason(), longestText)));
+                                     : tr("No connection: %1").arg(shortLine(whyAway(daemon), longestText)));
 }
 
 void EventWatch::lookAtHealth(const DaemonLink &daemon) {

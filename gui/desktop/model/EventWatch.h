@@ -21,6 +21,7 @@ private:
     struct Watched {
         QStringList ailing;      ///< the keys of what is not well
         QElapsedTimer connected; ///< since the connection was made
+        QString name;            ///< under which it was told of
     };
 
     void watchAll();

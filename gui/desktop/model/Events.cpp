@@ -72,6 +72,13 @@ void Events::endAll(const QString &prefix) {
         ends(key);
 }
 
+void Events::rename(const QString &from, const QString &to) {
+    for (Event &event : events_)
+        if (event.from == from)
+            event.from = to;
+    Q_EMIT changed();
+}
+
 void Events::acknowledge(quint64 id) {
     Event *const event = find(id);
     if (!event || event->isAcknowledged)
@@ -124,6 +131,7 @@ Event &Events::add(Event::Level level, const QString &from, const QString &text,
     event.id = ++last_;
     event.level = level;
     event.stamp = stamp;
+    event.began = monotonicNow();
     event.from = from;
     event.text = text;
     events_.push_back(event);
@@ -151,6 +159,7 @@ void Events::makeRoom() {
 void Events::comeAgain(Event &event, bool isSeen) {
     ++event.times;
     event.stamp = stampNow();
+    event.began = monotonicNow();
     if (event.isOver)
         event.over = monotonicNow();
     if (event.level == Event::Level::Error)

@@ -18,8 +18,8 @@ struct Event {
     int times = 1;    ///< how often it came
     bool isOver = true;
     bool isAcknowledged = false;
-    double over = 0; ///< monotonic s: when it ended
-    QString key;     ///< of Events::goesOn()
+    double began = 0, over = 0; ///< monotonic s: when it came last, and ended
+    QString key;                ///< of Events::goesOn()
 };
 
 /// What has happened to the robots and what is wrong with them now, the latest last: of each whether it goes
@@ -48,6 +48,8 @@ public:
     /// All whose key begins so.
     void endAll(const QString &prefix);
 
+    /// Whoever told it has another name now.
+    void rename(const QString &from, const QString &to);
     void acknowledge(quint64 id);
     void acknowledgeAll();
 

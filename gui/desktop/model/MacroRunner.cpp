@@ -59,6 +59,7 @@ void MacroRunner::run(const Macro &macro) {
         return;
     macro_ = macro;
     step_ = 0;
+    isSent_ = false;
     QSet<QString> robots;
     for (const MacroStep &step : macro.steps)
         robots.insert(step.robot);
@@ -71,6 +72,10 @@ QString MacroRunner::place() const {
     return macro_.steps.size() == 1
                ? title
                : tr("step %1 of %2, %3").arg(step_ + 1).arg(macro_.steps.size()).arg(title);
+}
+
+QString MacroRunner::where() const {
+    return isSent_ ? tr("at %1").arg(place()) : tr("before %1").arg(place());
 }
 
 // No command goes out behind a stop that is not known here as yet: it could be the one that releases it.
@@ -88,7 +93,8 @@ void MacroRunner::send() {
     const MacroStep &step = macro_.steps[step_];
     DaemonLink *const daemon = step.target(fleet_);
     if (!daemon || !daemon->isConnected())
-        return finish(tr("%1 ended at %2: %3 is away").arg(macro_.name, place(), step.daemon), true);
+        return finish(tr("%1 ended %2: %3 is away").arg(macro_.name, where(), step.daemon), true);
+    isSent_ = true;
     const auto answered = [this, turn = ++turn_](const Result<QJsonValue> &result) {
         if (turn == turn_ && isRunning())
             onAnswer(result);
@@ -101,17 +107,22 @@ void MacroRunner::send() {
 
 void MacroRunner::onAnswer(const Result<QJsonValue> &result) {
     if (!result)
-        return finish(tr("%1 ended at %2: %3").arg(macro_.name, place(), shortLine(result.error().message)),
+        return finish(tr("%1 ended %2: %3").arg(macro_.name, where(), shortLine(result.error().message)),
                       true);
     const double pause_s = macro_.steps[step_].pause_s;
+    isSent_ = false;
     if (++step_ == macro_.steps.size())
         return finish(tr("%1: done").arg(macro_.name), false);
     pause_.start(int(pause_s * 1000));
+    if (pause_s == 0)
+        return;
+    text_ = tr("%1: waits %2 s before %3").arg(macro_.name, QString::number(pause_s), place());
+    Q_EMIT changed();
 }
 
 void MacroRunner::end(const QString &why) {
     if (isRunning())
-        finish(tr("%1 ended at %2: %3").arg(macro_.name, place(), why), true);
+        finish(tr("%1 ended %2: %3").arg(macro_.name, where(), why), true);
 }
 
 void MacroRunner::finish(const QString &text, bool hasFailed) {
@@ -120,6 +131,7 @@ void MacroRunner::finish(const QString &text, bool hasFailed) {
     ++turn_;
     macro_ = {};
     step_ = 0;
+    isSent_ = false;
     text_ = text;
     hasFailed_ = hasFailed;
     Q_EMIT changed();

@@ -39,6 +39,8 @@ private:
     void finish(const QString &text, bool hasFailed);
     /// "step 2 of 3, motorcontrol, motor.stop"; of a single command only the command.
     QString place() const;
+    /// "at step 2 of 3, ...", "before" what was not sent.
+    QString where() const;
 
     Fleet &fleet_;
     DriveControl &drive_;
@@ -47,6 +49,7 @@ private:
     std::size_t step_ = 0;
     int turn_ = 0; // answers to those that were ended are not waited for
     bool wasStopped_ = false, hasFailed_ = false;
+    bool isSent_ = false; // the command of its step
     QTimer pause_;
     QString text_;
 };

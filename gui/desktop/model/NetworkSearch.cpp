@@ -60,8 +60,10 @@ void NetworkSearch::start() {
 void NetworkSearch::finish(int status) {
     limit_.stop();
     if (status != 0) {
-        const QJsonObject told = QJsonDocument::fromJson(process_.readAllStandardError()).object();
-        return Q_EMIT failed(shortLine(told["message"].toString(tr("the search did not end"))));
+        process_.readAllStandardError(); // in words of the program, not of who looks for a robot
+        return Q_EMIT failed(
+            tr("This computer cannot look for robots on the network. Type the address of the "
+               "robot into the field above, as 192.168.1.20, and press Add."));
     }
     QStringList urls;
     for (const QJsonValue &daemon : QJsonDocument::fromJson(process_.readAllStandardOutput()).array())

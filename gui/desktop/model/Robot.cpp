@@ -112,6 +112,7 @@ void Robot::take(DaemonLink *daemon) {
         if (daemon->isKnown())
             Q_EMIT capabilitiesChanged();
     });
+    nameDaemons();
 }
 
 void Robot::release(DaemonLink *daemon) {
@@ -125,6 +126,13 @@ void Robot::setConflicts(const QStringList &conflicts) {
         return;
     conflicts_ = conflicts;
     Q_EMIT changed();
+}
+
+/// Those that have not said their names.
+void Robot::nameDaemons() {
+    for (const auto &[port, daemon] : daemons_)
+        if (const ProcessStatus *const process = this->process(*daemon))
+            daemon->setSupervisedName(process->entry.name);
 }
 
 void Robot::takeProcesses(WireView data) {
@@ -147,6 +155,7 @@ void Robot::takeProcesses(WireView data) {
             named.insert(process.entry.port);
     if (std::exchange(named_, named) != named || before != toldName_)
         Q_EMIT namedChanged();
+    nameDaemons();
     Q_EMIT changed();
 }
 

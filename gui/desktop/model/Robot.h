@@ -62,6 +62,7 @@ Q_SIGNALS:
 
 private:
     void takeProcesses(WireView data);
+    void nameDaemons();
 
     const QString host_, address_;
     const bool isSupervised_;

@@ -105,7 +105,8 @@ QString unitAt(const QJsonObject &schema, const QString &path) {
 }
 
 QString unitOf(const QJsonObject &schema) {
-    const QString unit = schema["unit"].toString().left(12);
+    QString unit = schema["unit"].toString().left(12);
+    unit.replace("^2", u8"\u00b2").replace("^3", u8"\u00b3");
     return unit == "degC" ? QStringLiteral("°C") : unit == "deg" ? QStringLiteral("°") : unit;
 }
 

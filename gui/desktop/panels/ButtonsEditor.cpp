@@ -134,9 +134,7 @@ QWidget *ButtonsEditor::makeStep() {
     auto *const layout = new QVBoxLayout(page);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->addWidget(about_ = new PlainLabel);
-    layout->addWidget(notKept_ = new MessageLabel);
     layout->addWidget(form_ = new SchemaForm, 1);
-    notKept_->setObjectName("stepNotKept");
     about_->setObjectName("aboutStep");
     about_->setWordWrap(true);
     about_->setMinimumWidth(1);
@@ -145,11 +143,17 @@ QWidget *ButtonsEditor::makeStep() {
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setFocusPolicy(Qt::NoFocus);
+    auto *const column = new QWidget;
+    auto *const rows = new QVBoxLayout(column);
+    rows->setContentsMargins(0, 0, 0, 0);
+    rows->addWidget(scroll, 1);
+    rows->addWidget(notKept_ = new MessageLabel); // where no row moves with it
+    notKept_->setObjectName("stepNotKept");
     connect(form_, &SchemaForm::edited, this, [this] {
         if (form_->isValid()) // what is wrong is not kept
             changeStep([this](MacroStep &step) { takeParameters(step); });
     });
-    return scroll;
+    return column;
 }
 
 int ButtonsEditor::button() const {

@@ -180,6 +180,10 @@ void CommandsPanel::addStep(int place) {
     Macro macro = buttons_.all().at(std::size_t(place));
     macro.steps.push_back(step);
     buttons_.set(place, macro);
+    answer_->setPlainText(tr("Added to %1 as step %2: %3")
+                              .arg(macro.name)
+                              .arg(macro.steps.size())
+                              .arg(shortLine(step.title())));
 }
 
 void CommandsPanel::editButtons() {
@@ -267,7 +271,7 @@ void CommandsPanel::call() {
         const QString took =
             tr("%1: %2 ms").arg(shortLine(method)).arg(double(time.nsecsElapsed()) * 1e-6, 0, 'f', 1);
         if (result)
-            return answer_->setPlainText(took + "\n" + readable(*result));
+            return answer_->setPlainText(took + "\n" + (result->isNull() ? tr("done") : readable(*result)));
         const Error &error = result.error();
         answer_->setPlainText(
             tr("%1\nError %2: %3\n%4")

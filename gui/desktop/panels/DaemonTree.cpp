@@ -12,7 +12,7 @@ namespace {
 
 enum Column { NameColumn, StateColumn };
 
-constexpr int longestName = 60, longestWord = 20, mostHealthItems = 50;
+constexpr int longestName = 60, longestWord = 20, mostHealthItems = 50, iconRoom = 34;
 
 Condition conditionOf(const QString &level) {
     return level == "ok" ? Condition::Ready : level == "error" ? Condition::Fault : Condition::Warning;
@@ -54,9 +54,12 @@ DaemonTree::DaemonTree(Fleet &fleet, QWidget *parent)
     setColumnCount(2);
     setHeaderLabels({tr("Daemon"), tr("State")});
     header()->setSectionResizeMode(NameColumn, QHeaderView::Stretch);
-    header()->setSectionResizeMode(StateColumn, QHeaderView::ResizeToContents);
+    // Names have the room: what does not fit into the state has its tool tip.
+    header()->setSectionResizeMode(StateColumn, QHeaderView::Fixed);
+    header()->resizeSection(StateColumn, fontMetrics().horizontalAdvance("degraded") + iconRoom);
     header()->setStretchLastSection(false);
     setUniformRowHeights(true);
+    setIndentation(12);
     setEditTriggers(QAbstractItemView::NoEditTriggers); // but from the menu
     connect(this, &QTreeWidget::currentItemChanged, this, &DaemonTree::choose);
     connect(this, &QTreeWidget::itemChanged, this, [this](QTreeWidgetItem *item) {
@@ -143,10 +146,10 @@ void DaemonTree::showDaemon(QTreeWidgetItem &item, const Robot &robot, const Dae
     const ProcessStatus *const process = robot.process(daemon);
     const QString processState = process ? shortLine(process->state, longestWord) : QString();
     const bool isStopped = !daemon.isConnected() && !processState.isEmpty() && processState != "running";
-    QStringList toolTip{daemon.title() + ", " + daemon.address(), daemon.reason(), usage(process)};
+    const QString word = isStopped ? processState : daemon.conditionWord();
+    QStringList toolTip{daemon.title() + ", " + daemon.address(), word, daemon.reason(), usage(process)};
     toolTip.removeAll(QString());
-    setText(item, daemon.name(), isStopped ? processState : daemon.conditionWord(), daemon.condition(),
-            toolTip.join('\n'));
+    setText(item, daemon.name(), word, daemon.condition(), toolTip.join('\n'));
     showHealth(item, daemon);
 }
 
@@ -166,6 +169,16 @@ void DaemonTree::showHealth(QTreeWidgetItem &item, const DaemonLink &daemon) {
     }
     if (rows > shown)
         setText(*item.child(shown), tr("%1 more").arg(count - shown), {}, Condition::Warning, {});
+}
+
+void DaemonTree::lookFor(const QString &address) {
+    for (const auto &robot : fleet_.robots())
+        for (const DaemonLink *daemon : robot->daemons())
+            if (QTreeWidgetItem *const item = items_.value(daemon);
+                item && (daemon->address() == address || daemon->host() == address)) {
+                setCurrentItem(item);
+                return scrollToItem(item);
+            }
 }
 
 /// Where another panel has chosen.

@@ -18,6 +18,9 @@ public:
     /// It takes what room there is: what is told below it stays in sight in a low window.
     QSize sizeHint() const override { return {QTreeWidget::sizeHint().width(), leastHeight}; }
 
+    /// The row of this address is brought into sight and chosen.
+    void lookFor(const QString &address);
+
 Q_SIGNALS:
     /// Another row was clicked at.
     void clickedAt();

@@ -27,7 +27,8 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     hint_->setWordWrap(true);
 
     address_->setObjectName("address");
-    address_->setPlaceholderText(tr("HOST or HOST:PORT"));
+    address_->setPlaceholderText(tr("Address"));
+    address_->setToolTip(tr("Of a robot, as 192.168.1.20, or of one daemon, as 192.168.1.20:7410"));
     auto *const add = new QPushButton(theme::icon("add"), tr("A&dd"));
     add->setObjectName("add");
     auto *const adding = new QHBoxLayout;
@@ -39,7 +40,7 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     undo_->setToolTip(tr("Adds the robot again that was removed last"));
     undo_->hide();
     find_->setObjectName("find");
-    find_->setToolTip(tr("Looks for daemons that announce themselves on the network (Avahi)"));
+    find_->setToolTip(tr("Looks for daemons that announce themselves on the network"));
 
     auto *const layout = new QVBoxLayout(this);
     layout->addLayout(adding);
@@ -116,9 +117,11 @@ void DaemonsPanel::updateButtons() {
 }
 
 void DaemonsPanel::addAddress() {
-    const auto added = fleet_.add(address_->text().trimmed());
+    const QString address = address_->text().trimmed();
+    const auto added = fleet_.add(address);
     if (!added)
         return message_->tell(added.error().message, true);
+    tree_->lookFor(address);
     address_->clear();
     message_->hide();
 }

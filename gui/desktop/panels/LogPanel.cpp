@@ -20,7 +20,7 @@ namespace {
 
 const QStringList levels{"debug", "info", "warning", "error"};
 constexpr int usualLevel = 1;
-constexpr int longestText = 500;
+constexpr int longestText = 500, nameColumn = 24;
 
 QBrush colourOf(int level) {
     return level == 3   ? QBrush(theme::colour(Condition::Fault))
@@ -121,7 +121,8 @@ void LogPanel::append(const std::vector<const Record *> &records) {
             format.setForeground(colour);
         const QDateTime time = timeOf(record.stamp).value_or(QDateTime());
         cursor.insertText(QString("%1  %2  %3  %4")
-                              .arg(time.toString("HH:mm:ss.zzz"), record.daemon.leftJustified(15),
+                              .arg(time.toString("HH:mm:ss.zzz"),
+                                   shortLine(record.daemon, nameColumn).leftJustified(nameColumn),
                                    levels.value(record.level, "?").leftJustified(7), record.text),
                           format);
     }

@@ -252,7 +252,7 @@ void PlotBoard::render(QPainter &painter) const {
 std::vector<KeptCurve> PlotBoard::kept() const {
     std::vector<KeptCurve> all;
     for (const auto &[field, samples] : sampler_.all())
-        all.push_back({field, {}, samples});
+        all.push_back({field, ownerOf(field), {}, samples});
     for (const Pane &pane : panes_)
         for (const Curve &curve : pane.curves)
             for (KeptCurve &one : all)

@@ -32,7 +32,7 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     , live_(new QPushButton(tr("&Live")))
     , takeMark_(new QAction(tr("Mark this moment of the recording"), this))
     , amount_(new PlainLabel)
-    , lost_(new MessageLabel)
+    , lost_(new PlainLabel)
     , message_(new MessageLabel)
     , sessions_(new SessionTable)
     , bar_(new ReplayBar(player_)) {
@@ -60,8 +60,15 @@ void RecordPanel::nameAll() {
     live_->setToolTip(tr("Ends the replay"));
     amount_->setObjectName("amount");
     amount_->setWordWrap(true);
-    amount_->setMinimumWidth(1);
+    amount_->setMinimumSize(1, 2 * fontMetrics().lineSpacing()); // else the list moves under the mouse
+    amount_->setAlignment(Qt::AlignTop);
     lost_->setObjectName("lost");
+    lost_->setWordWrap(true);
+    lost_->setMinimumWidth(1);
+    QPalette fault;
+    fault.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
+    lost_->setPalette(fault);
+    lost_->hide();
     mark_->setObjectName("markText");
     mark_->setPlaceholderText(tr("What to remember of this moment"));
     mark_->setToolTip(tr("Without a text the mark gets a number"));
@@ -88,11 +95,21 @@ void RecordPanel::layOut() {
     layout->addLayout(top);
     layout->addLayout(middle);
     layout->addWidget(amount_);
+    layout->addWidget(sessions_, 1); // gives its room to what is told below it: no button moves
     layout->addWidget(lost_);
-    layout->addWidget(sessions_, 1);
+    layout->addWidget(message_);
     layout->addWidget(bar_);
     layout->addLayout(bottom);
-    layout->addWidget(message_);
+    for (QWidget *const widget : std::initializer_list<QWidget *>{mark_, addMark_}) {
+        QSizePolicy policy = widget->sizePolicy();
+        policy.setRetainSizeWhenHidden(true);
+        widget->setSizePolicy(policy);
+    }
+    record_->setIcon(theme::icon("stop")); // the wider of its two texts
+    for (const QString &text : {tr("S&top"), tr("Re&cord")}) {
+        record_->setText(text);
+        record_->setMinimumWidth(std::max(record_->minimumWidth(), record_->sizeHint().width()));
+    }
 }
 
 void RecordPanel::connectAll() {
@@ -262,9 +279,8 @@ void RecordPanel::showLost() {
                 ? tr("%1 was gone while it recorded %2: what it has of it ends there.")
                       .arg(name, shortLine(lost.recording, longestName))
                 : tr("%1 was recording %2 and is gone.").arg(name, shortLine(lost.recording, longestName)));
-    if (lines.isEmpty())
-        return lost_->hide();
-    lost_->tell(lines.join('\n'), true);
+    lost_->setText(lines.join('\n'));
+    lost_->setVisible(!lines.isEmpty());
 }
 
 QString RecordPanel::amountText() const {

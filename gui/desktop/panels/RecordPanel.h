@@ -58,7 +58,8 @@ private:
     QPushButton *record_, *addMark_, *replay_, *live_;
     QAction *takeMark_;
     PlainLabel *amount_;
-    MessageLabel *lost_, *message_;
+    PlainLabel *lost_;
+    MessageLabel *message_;
     SessionTable *sessions_;
     ReplayBar *bar_;
 };

@@ -20,6 +20,7 @@ SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     , title_(new PlainLabel)
     , message_(new MessageLabel)
     , filter_(new QLineEdit)
+    , changed_(new PlainLabel)
     , form_(new SchemaForm) {
     title_->setObjectName("title");
     filter_->setObjectName("filter");
@@ -36,10 +37,20 @@ SettingsPanel::SettingsPanel(Fleet &fleet, QWidget *parent)
     top->addWidget(makeButtons());
     auto *const layout = new QVBoxLayout(this);
     layout->addLayout(top);
-    layout->addWidget(message_);
     layout->addWidget(scroll, 1);
+    auto *const foot = new QHBoxLayout; // where no row moves with what is told
+    foot->addWidget(message_, 1);
+    foot->addWidget(changed_, 0, Qt::AlignTop);
+    layout->addLayout(foot);
+    changed_->setObjectName("changed");
+    changed_->setToolTip(tr("What is typed and not applied"));
+    changed_->setFixedWidth(fontMetrics().horizontalAdvance(changesText(999, 999)));
+    changed_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
 
-    connect(filter_, &QLineEdit::textChanged, form_, &SchemaForm::setFilter);
+    connect(filter_, &QLineEdit::textChanged, this, [this](const QString &text) {
+        form_->setFilter(text);
+        update();
+    });
     connect(form_, &SchemaForm::edited, this, [this] {
         message_->hide();
         update();
@@ -53,19 +64,17 @@ QWidget *SettingsPanel::makeButtons() {
     auto *const row = new QWidget;
     auto *const layout = new QHBoxLayout(row);
     layout->setContentsMargins(0, 0, 0, 0);
-    const auto button = [&](const char *icon, const QString &text, const char *name, const QString &toolTip) {
+    const auto button = [&](const char *icon, const QString &text, const char *name) {
         auto *const made = new QPushButton(theme::icon(QString(icon)), text);
         made->setObjectName(name);
-        made->setToolTip(toolTip);
         layout->addWidget(made);
         return made;
     };
-    apply_ = button("apply", tr("A&pply"), "apply",
-                    tr("Sends the changes: all of them, or none when one is refused"));
-    revert_ = button("revert", tr("Re&vert"), "revert", tr("Forgets the changes that were not applied"));
-    defaults_ =
-        button("restart", tr("De&faults"), "defaults", tr("Shows the defaults; Apply makes them true"));
-    save_ = button("save", tr("&Save"), "save", tr("The daemon keeps its settings for its next start"));
+    apply_ = button("apply", tr("A&pply"), "apply");
+    revert_ = button("revert", tr("Re&vert"), "revert");
+    revert_->setToolTip(tr("Forgets the changes that were not applied"));
+    defaults_ = button("restart", tr("De&faults"), "defaults");
+    save_ = button("save", tr("&Save"), "save");
     connect(apply_, &QPushButton::clicked, this, &SettingsPanel::apply);
     connect(revert_, &QPushButton::clicked, this, [this] {
         form_->revert();
@@ -183,20 +192,34 @@ void SettingsPanel::save() {
     submit([keep](const QString &told) { keep(told + ' '); });
 }
 
+/// "3 changes, 2 not in sight"
+QString SettingsPanel::changesText(int changed, int unseen) {
+    if (changed == 0)
+        return {};
+    const QString text = changed == 1 ? tr("1 change") : tr("%1 changes").arg(changed);
+    return unseen == 0 ? text : tr("%1, %2 not in sight").arg(text).arg(unseen);
+}
+
+// Texts of buttons stay as they are: what is beside them would move under the mouse.
 void SettingsPanel::update() {
     const bool isThere = daemon_ && daemon_->isConnected();
     title_->setBold(daemon_);
     title_->setText(daemon_ ? fleet_.titleOf(*daemon_) : tr("Choose a daemon to see its settings."));
     const int changed = leafPaths(form_->changes()).size();
-    apply_->setText(changed == 0 ? tr("A&pply") : tr("A&pply %n change(s)", nullptr, changed));
+    changed_->setText(changesText(changed, form_->unseenChanges()));
     const QString why = isThere ? daemon_->refusal("settings.set") : QString();
     const bool isEditable = isThere && why.isEmpty();
-    for (QPushButton *button : {apply_, defaults_, save_})
-        button->setToolTip(why);
+    const auto explain = [&why](QWidget *button, const QString &text) {
+        button->setToolTip(why.isEmpty() ? text : why);
+    };
+    explain(apply_, tr("Sends the changes: all of them, or none when one is refused"));
+    explain(defaults_, filter_->text().isEmpty()
+                           ? tr("Shows the defaults; Apply makes them true")
+                           : tr("Shows the defaults of the settings in sight; Apply makes them true"));
+    explain(save_, tr("Applies the changes; the daemon keeps its settings for its next start"));
     apply_->setEnabled(isEditable && changed > 0 && form_->isValid());
     revert_->setEnabled(daemon_ && (changed > 0 || !form_->isValid()));
     defaults_->setEnabled(isEditable);
-    save_->setText(changed == 0 ? tr("&Save") : tr("Apply and &save"));
     save_->setEnabled(isEditable && form_->isValid()); // what is wrong would be left out
     form_->setEnabled(isEditable);
     form_->setToolTip(why);

@@ -32,6 +32,7 @@ private:
     void save();
     void keepEdits();
     void update();
+    static QString changesText(int changed, int unseen);
     QWidget *makeButtons();
 
     Fleet &fleet_;
@@ -41,6 +42,7 @@ private:
     PlainLabel *title_;
     MessageLabel *message_;
     QLineEdit *filter_;
+    PlainLabel *changed_; // how many, at a place that is kept for it
     SchemaForm *form_;
     QPushButton *apply_, *revert_, *defaults_, *save_;
 };

@@ -36,6 +36,12 @@ QString titleOf(const QString &path, const QJsonObject &schema) {
     return words.join(' ');
 }
 
+QString shownUnit(const QJsonObject &schema) {
+    return shortLine(schema["unit"].toString(), longestUnit)
+        .replace("^2", u8"\u00b2")
+        .replace("^3", u8"\u00b3");
+}
+
 QString limitsOf(const QJsonObject &schema) {
     const QJsonValue least = schema["minimum"], most = schema["maximum"];
     const QString unit = schema["unit"].toString();

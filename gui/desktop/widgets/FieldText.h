@@ -13,6 +13,8 @@ constexpr int longestTitle = 60, longestUnit = 20, longestNote = 160;
 
 /// The title, or words made of the path: "safety.command_timeout_s" in "s" reads "command timeout".
 QString titleOf(const QString &path, const QJsonObject &schema);
+/// "m/s²" of "m/s^2"; short.
+QString shownUnit(const QJsonObject &schema);
 /// "0.1 to 5"; sizes as "1.0 KiB to 64.0 MiB"; empty: any.
 QString limitsOf(const QJsonObject &schema);
 /// For a tool tip: description, path, what is expected, default.

@@ -8,7 +8,10 @@ MessageLabel::MessageLabel(QWidget *parent)
     : PlainLabel(QString(), parent) {
     setObjectName("message");
     setWordWrap(true);
-    setMinimumWidth(1); // a word without end widens no panel
+    setMinimumSize(1, fontMetrics().lineSpacing()); // a word without end widens no panel
+    QSizePolicy policy = sizePolicy();
+    policy.setRetainSizeWhenHidden(true);
+    setSizePolicy(policy);
     hide();
 }
 

@@ -4,7 +4,8 @@
 
 namespace hermes::desktop {
 
-/// Where a panel tells how something ended, beside what caused it; hidden until there is something to tell.
+/// Where a panel tells how something ended; hidden until there is something to tell. Its place is kept
+/// while it is hidden: what is clicked at does not move under the mouse.
 class MessageLabel : public PlainLabel {
     Q_OBJECT
 public:

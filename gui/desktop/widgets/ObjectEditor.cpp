@@ -142,7 +142,7 @@ ObjectEditor::Row &ObjectEditor::addRow(const QString &key, const QJsonValue &va
     row.note->setObjectName("note");
     row.note->setWordWrap(true);
     row.note->setMinimumWidth(1);
-    auto *const unit = new PlainLabel(shortLine(row.schema["unit"].toString(), longestUnit));
+    auto *const unit = new PlainLabel(shownUnit(row.schema));
     row.widgets = {makeTitle(row), row.editor, unit, row.note};
     const bool isWide = row.editor->placeNote(row.note);
     grid_->addWidget(row.widgets[0], line_, TitleColumn, isWide ? Qt::AlignTop : Qt::AlignVCenter);

@@ -5,17 +5,21 @@
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/EditorFactory.h"
+#include "gui/desktop/widgets/ElidedLabel.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
 #include <QGridLayout>
 #include <QVBoxLayout>
 #include <algorithm>
+#include <set>
 
 namespace hermes::desktop {
 namespace {
 
-enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn };
+enum Column { TitleColumn, EditorColumn, UnitColumn, NoteColumn, DescriptionColumn };
+
+constexpr int roomy = 700; // pixels: there is room for descriptions
 
 constexpr int mostSteps = 10000; // of a check, which runs with each key
 
@@ -32,6 +36,14 @@ bool isGroup(const QJsonObject &schema) {
     return std::all_of(properties.begin(), properties.end(), [](const QJsonValue &property) {
         return property.toObject().contains("default") || isGroup(property.toObject());
     });
+}
+
+QLabel *makeDescription(const QJsonObject &schema) {
+    auto *const label = new ElidedLabel(Qt::ElideRight);
+    label->setObjectName("description");
+    label->setText(shortLine(schema["description"].toString()));
+    label->setForegroundRole(QPalette::PlaceholderText);
+    return label;
 }
 
 } // namespace
@@ -110,7 +122,8 @@ void SchemaForm::addRow(const QString &path, const QJsonObject &schema, bool isR
     row.widgets = {row.title, row.editor, row.note};
     row.isWide = row.editor->placeNote(row.note);
     if (!row.isWide)
-        row.widgets.push_back(new PlainLabel(shortLine(schema["unit"].toString(), longestUnit)));
+        row.widgets.push_back(row.unit = new PlainLabel(shownUnit(schema)));
+    row.widgets.push_back(row.description = makeDescription(schema));
     const QString toolTip = toolTipOf(explanation(path, schema));
     for (QWidget *widget : row.widgets)
         widget->setToolTip(toolTip);
@@ -133,21 +146,33 @@ void SchemaForm::arrange() {
     auto *const grid = new QGridLayout(page_);
     grid->setContentsMargins({});
     grid->setColumnStretch(EditorColumn, 2);
-    grid->setColumnStretch(NoteColumn, 3);
+    grid->setColumnStretch(NoteColumn, 2);
     grid->setVerticalSpacing(4);
     int line = 0;
     for (const QString &group : groups) {
         auto *const heading = new PlainLabel(shortLine(group, longestTitle));
         heading->setBold(true);
-        headings_.push_back(heading);
-        grid->addWidget(heading, line++, 0, 1, 4);
+        heading->setObjectName("heading");
+        headings_.emplace_back(heading, group);
+        grid->addWidget(heading, line++, 0, 1, 5);
         heading->setVisible(!group.isEmpty());
         for (const QString &path : order_)
             if (const Row &row = rows_.at(path); row.group == group)
                 place(row, *grid, line++);
     }
     grid->setRowStretch(line, 1);
+    giveRoom();
     chainRows();
+}
+
+void SchemaForm::giveRoom() {
+    if (auto *const grid = page_ ? static_cast<QGridLayout *>(page_->layout()) : nullptr)
+        grid->setColumnStretch(DescriptionColumn, width() < roomy ? 0 : 3);
+}
+
+void SchemaForm::resizeEvent(QResizeEvent *event) {
+    QWidget::resizeEvent(event);
+    giveRoom();
 }
 
 void SchemaForm::place(const Row &row, QGridLayout &grid, int line) {
@@ -155,11 +180,13 @@ void SchemaForm::place(const Row &row, QGridLayout &grid, int line) {
         row.title->setMargin(3); // as high as its first row
         grid.addWidget(row.title, line, TitleColumn, Qt::AlignTop);
         grid.addWidget(row.editor, line, EditorColumn, 1, 3);
+        grid.addWidget(row.description, line, DescriptionColumn, Qt::AlignTop);
         return;
     }
+    grid.addWidget(row.description, line, DescriptionColumn);
     grid.addWidget(row.title, line, TitleColumn);
     grid.addWidget(row.editor, line, EditorColumn);
-    grid.addWidget(row.widgets.back(), line, UnitColumn);
+    grid.addWidget(row.unit, line, UnitColumn);
     grid.addWidget(row.note, line, NoteColumn);
 }
 
@@ -180,7 +207,8 @@ void SchemaForm::setBaseline(const QJsonObject &values) {
 
 void SchemaForm::setDefaults() {
     for (auto &[path, row] : rows_)
-        row.editor->setValue(row.schema["default"]);
+        if (row.isInSight)
+            row.editor->setValue(row.schema["default"]);
     errors_.clear();
     check();
     Q_EMIT edited();
@@ -212,6 +240,17 @@ QJsonObject SchemaForm::values() const {
 
 QJsonObject SchemaForm::changes() const {
     return difference(values(), baseline_);
+}
+
+int SchemaForm::unseenChanges() const {
+    int count = 0;
+    for (const QString &path : leafPaths(changes()))
+        for (QString place = path; !place.isEmpty(); place.truncate(qMax(0, place.lastIndexOf('.'))))
+            if (const auto row = rows_.find(place); row != rows_.end()) {
+                count += row->second.isInSight ? 0 : 1;
+                break;
+            }
+    return count;
 }
 
 void SchemaForm::showErrors(const QJsonArray &errors) {
@@ -278,15 +317,18 @@ void SchemaForm::mark(const QString &path, Row &row) {
 }
 
 void SchemaForm::setFilter(const QString &text) {
+    std::set<QString> groups;
     for (auto &[path, row] : rows_) {
-        const bool isShown = text.isEmpty() || path.contains(text, Qt::CaseInsensitive) ||
-                             row.title->text().contains(text, Qt::CaseInsensitive) ||
-                             row.schema["description"].toString().contains(text, Qt::CaseInsensitive);
+        row.isInSight = text.isEmpty() || path.contains(text, Qt::CaseInsensitive) ||
+                        row.title->text().contains(text, Qt::CaseInsensitive) ||
+                        row.schema["description"].toString().contains(text, Qt::CaseInsensitive);
         for (QWidget *widget : row.widgets)
-            widget->setVisible(isShown);
+            widget->setVisible(row.isInSight);
+        if (row.isInSight)
+            groups.insert(row.group);
     }
-    for (PlainLabel *heading : headings_)
-        heading->setVisible(text.isEmpty() && !heading->text().isEmpty());
+    for (const auto &[heading, group] : headings_)
+        heading->setVisible(groups.count(group) > 0 && !group.isEmpty());
 }
 
 } // namespace hermes::desktop

@@ -7,6 +7,7 @@
 #include <optional>
 
 class QGridLayout;
+class QLabel;
 
 namespace hermes::desktop {
 
@@ -31,7 +32,7 @@ public:
     /// New unchanged values: rows that the operator has not touched show them.
     void setBaseline(const QJsonObject &values);
     const QJsonObject &baseline() const { return baseline_; }
-    /// All rows show what the schema has as default.
+    /// All rows in sight show what the schema has as default; those that the filter hides stay as they are.
     void setDefaults();
     /// Back to the unchanged values.
     void revert();
@@ -43,6 +44,8 @@ public:
     QJsonObject values() const;
     /// Only what differs from the unchanged values.
     QJsonObject changes() const;
+    /// How many values of the changes the filter hides.
+    int unseenChanges() const;
     bool isValid() const { return errors_.empty(); }
     /// Errors that came back from the daemon: [{path, value, expected}].
     void showErrors(const QJsonArray &errors);
@@ -52,19 +55,25 @@ public:
 Q_SIGNALS:
     void edited();
 
+protected:
+    void resizeEvent(QResizeEvent *event) override;
+
 private:
     struct Row {
         QJsonObject schema;
-        PlainLabel *title, *note;
+        PlainLabel *title, *note, *unit = nullptr;
+        QLabel *description;
         ValueEditor *editor;
         std::vector<QWidget *> widgets;
         QString group;
-        bool isWide; // it has its note in its own lines
+        bool isWide;           // it has its note in its own lines
+        bool isInSight = true; // for all that the filter says
     };
 
     void addRows(const QJsonObject &schema, const QString &prefix);
     void addRow(const QString &path, const QJsonObject &schema, bool isRequired);
     void arrange();
+    void giveRoom();
     static void place(const Row &row, QGridLayout &grid, int line);
     void chainRows();
     void prepareCheck();
@@ -82,7 +91,7 @@ private:
     int unshown_ = 0;                          // values beyond mostRows
     std::map<QString, Row> rows_;              // by dotted path
     std::vector<QString> order_;
-    std::vector<PlainLabel *> headings_;
+    std::vector<std::pair<PlainLabel *, QString>> headings_; // of the groups
     Faults errors_;
 };
 

@@ -243,13 +243,14 @@ void TestButtonsMade::isKeptAndGreyWithoutItsDaemon() {
     window_ = std::make_unique<MainWindow>(*fleet_, *drive_, file_);
     window_->show();
     QTRY_VERIFY(button(0));
-    QTRY_COMPARE(title(0), QString("Kept && fine (simulator away)"));
+    QTRY_COMPARE(title(0), QString("Kept && fine"));
     QVERIFY(!button(0)->isEnabled());
+    const int width = button(0)->sizeHint().width();
     QVERIFY2(button(0)->toolTip().contains("simulator of 127.0.0.1 is away"),
              qPrintable(button(0)->toolTip()));
     robot_->connectTo(*fleet_);
     QTRY_VERIFY(button(0)->isEnabled());
-    QCOMPARE(title(0), QString("Kept && fine"));
+    QCOMPARE(button(0)->sizeHint().width(), width); // what is beside it does not move
     press(0);
     QTRY_COMPARE(text(), QString("Kept & fine: done"));
     QCOMPARE(x(), 0.35);

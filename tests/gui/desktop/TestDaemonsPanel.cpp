@@ -196,7 +196,9 @@ void TestDaemonsPanel::foundOnTheNetwork() {
     QCOMPARE(window_->fleet.robots().size(), robots + 1);
     QVERIFY(write("echo '{\"message\":\"no bus\"}' >&2; exit 1"));
     OpenWindow::click(panel(), "find");
-    QTRY_COMPARE(message()->text(), QString("no bus"));
+    QTRY_COMPARE(message()->text(),
+                 QString("This computer cannot look for robots on the network. Type the address of the robot "
+                         "into the field above, as 192.168.1.20, and press Add."));
     qputenv("PATH", before);
 }
 

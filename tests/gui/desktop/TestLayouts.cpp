@@ -15,6 +15,7 @@ private Q_SLOTS:
     void badNamesAreTold();
     void switchingDropsNoConnectionAndNoBanner();
     void robotsAreKept();
+    void floatingPanelIsSeenToFloat();
 
 private:
     std::unique_ptr<QTemporaryDir> folder_;
@@ -113,6 +114,24 @@ void TestLayouts::robotsAreKept() {
     next.pick("layout Usual");
     QCOMPARE(int(next.fleet.robots().size()), 2); // robots are of no layout
     QCOMPARE(next.window->findChild<QComboBox *>("robots")->currentText(), next.fleet.robot()->name());
+}
+
+// By its button it would lie exactly where it was.
+void TestLayouts::floatingPanelIsSeenToFloat() {
+    LayoutWindow first(file_);
+    auto *const dock = static_cast<QDockWidget *>(first.dock("daemons"));
+    const QPoint docked = dock->mapToGlobal(QPoint());
+    dock->setFloating(true); // as its button does
+    const QPoint moved = dock->pos() - docked;
+    QVERIFY2(moved.manhattanLength() >= 40, qPrintable(QString("%1, %2").arg(moved.x()).arg(moved.y())));
+    const QPoint place = dock->pos();
+    dock->setFloating(false);
+    dock->setFloating(true);
+    QCOMPARE(dock->pos(), place); // it does not wander
+    first.window->close();
+    LayoutWindow again(file_);
+    QCOMPARE(again.dock("daemons")->pos(), place);
+    QVERIFY(again.dock("daemons")->isWindow() && again.dock("daemons")->isVisible());
 }
 
 QTEST_MAIN(TestLayouts)

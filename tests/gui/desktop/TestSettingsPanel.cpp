@@ -35,6 +35,8 @@ private Q_SLOTS:
     void theWheelChangesNothing();
     void typedWhileApplying();
     void listIsEditedAndApplied();
+    void nothingMovesUnderTheMouse();
+    void defaultsAreOfWhatIsInSight();
 
 private:
     QLineEdit *field(const QString &path) const {
@@ -307,6 +309,55 @@ void TestSettingsPanel::listIsEditedAndApplied() {
     OpenWindow::click(panel_, "apply");
     QTRY_VERIFY2(message().startsWith("Applied."), qPrintable(message()));
     QCOMPARE(setting("listen"), QJsonValue(QJsonArray{first, second}));
+}
+
+// A click is meant for what was there when the hand set out.
+void TestSettingsPanel::nothingMovesUnderTheMouse() {
+    const auto places = [this] {
+        QList<QRect> all;
+        for (const char *const button : {"apply", "revert", "defaults", "save"}) {
+            auto *const found = panel_->findChild<QPushButton *>(button);
+            all.append({found->mapTo(panel_, QPoint()), found->size()});
+        }
+        for (const char *const row : {"motion.vx", "pid.p"}) {
+            auto *const found = panel_->findChild<QWidget *>(row);
+            all.append({found->mapTo(panel_, QPoint()), found->size()});
+        }
+        return all;
+    };
+    QTest::qWait(100); // laid out
+    const QList<QRect> before = places();
+    OpenWindow::type(field("motion.vx"), "0.31");
+    QCOMPARE(panel_->findChild<QLabel *>("changed")->text(), QString("1 change"));
+    QTest::qWait(100);
+    QCOMPARE(places(), before);
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(message(), QString("Applied."));
+    QTRY_VERIFY(panel_->findChild<QLabel *>("message")->isVisible());
+    QTest::qWait(100);
+    QCOMPARE(places(), before);
+}
+
+void TestSettingsPanel::defaultsAreOfWhatIsInSight() {
+    OpenWindow::type(field("motion.vx"), "0.31");
+    OpenWindow::type(field("pid.p"), "2");
+    OpenWindow::click(panel_, "apply");
+    QTRY_COMPARE(setting("pid.p"), QJsonValue(2));
+    QTRY_VERIFY(!isEnabled("apply"));
+    OpenWindow::type(panel_->findChild<QLineEdit *>("filter"), "motion");
+    QVERIFY(panel_->findChild<QPushButton *>("defaults")->toolTip().contains("in sight"));
+    OpenWindow::click(panel_, "defaults");
+    QVERIFY(field("motion.vx")->text() != "0.31");
+    QCOMPARE(field("pid.p")->text(), QString("2"));
+    QVERIFY(!note("listen").startsWith("changed"));
+    OpenWindow::click(panel_, "revert");
+    OpenWindow::type(field("motion.vx"), "0.33");
+    OpenWindow::type(panel_->findChild<QLineEdit *>("filter"), "pid");
+    QCOMPARE(panel_->findChild<QLabel *>("changed")->text(), QString("1 change, 1 not in sight"));
+    const auto headings = panel_->findChildren<QLabel *>("heading");
+    const auto shown = std::count_if(headings.begin(), headings.end(),
+                                     [](const QLabel *heading) { return heading->isVisible(); });
+    QVERIFY2(shown > 0 && shown < headings.size(), qPrintable(QString::number(shown)));
 }
 
 QTEST_MAIN(TestSettingsPanel)

@@ -1,0 +1,30 @@
+#include "gui/desktop/widgets/FloatingDock.h"
+
+#include <QScreen>
+#include <algorithm>
+
+namespace hermes::desktop {
+
+FloatingDock::FloatingDock(const QString &title, QWidget *parent)
+    : QDockWidget(title, parent) {
+    connect(this, &QDockWidget::topLevelChanged, this, &FloatingDock::moveOff);
+}
+
+void FloatingDock::moveOff(bool isFloating) {
+    const bool isDragged = windowFlags() & Qt::X11BypassWindowManagerHint; // it is where the mouse has it
+    if (!isFloating || isRestoring_ || isDragged)
+        return;
+    const QRect room = screen()->availableGeometry();
+    const QPoint wanted = place_.value_or(pos() + QPoint(step, -step));
+    move(std::clamp(wanted.x(), room.left(), std::max(room.left(), room.right() - width())),
+         std::clamp(wanted.y(), room.top(), std::max(room.top(), room.bottom() - height())));
+    place_ = pos();
+    comeForward();
+}
+
+void FloatingDock::comeForward() {
+    if (isFloating() && isVisible())
+        raise();
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,107 @@
+#include "gui/desktop/panels/EventsPanel.h"
+#include "gui/desktop/widgets/ElidedLabel.h"
+#include "tests/gui/desktop/OpenWindow.h"
+
+#include <QTreeView>
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// What the line at the foot says, and how much of it is seen.
+class TestEventLine : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void whatIsOverIsSaidToBeOver();
+    void theFaultIsSeenInASmallWindow();
+    void oneNameOfADaemonInAllOfTheList();
+    void otherClientTakesTheControl();
+
+private:
+    static ElidedLabel *line(OpenWindow &window) {
+        return window.window.findChild<ElidedLabel *>("eventText");
+    }
+    static QStringList column(OpenWindow &window, EventTable::Column column) {
+        auto *const model = window.panel<EventsPanel>("events")->findChild<QTreeView *>("events")->model();
+        QStringList cells;
+        for (int row = 0; row < model->rowCount(); ++row)
+            cells.append(model->index(row, column).data().toString());
+        return cells;
+    }
+};
+
+void TestEventLine::whatIsOverIsSaidToBeOver() {
+    RobotProcesses robot;
+    robot.startMotors();
+    OpenWindow window(robot);
+    QVERIFY(window.show());
+    QTRY_VERIFY(window.fleet.robot()->withName("simulator"));
+    robot.signal("simulator", SIGSTOP);
+    QTRY_VERIFY2_WITH_TIMEOUT(line(window)->text().contains("simulator: It is connected, but does not"),
+                              qPrintable(line(window)->text()), 10000);
+    QVERIFY(line(window)->styleSheet().contains("#d0100c"));
+    robot.signal("simulator", SIGCONT);
+    QTRY_VERIFY2_WITH_TIMEOUT(
+        line(window)->text().contains(QRegularExpression("OVER after \\d+ s: simulator: It is connected")),
+        qPrintable(line(window)->text()), 10000);
+    QVERIFY(!line(window)->styleSheet().contains("#d0100c"));
+}
+
+void TestEventLine::theFaultIsSeenInASmallWindow() {
+    RobotProcesses robot;
+    robot.start("scanmatcher");
+    OpenWindow window(robot);
+    QVERIFY(window.show());
+    QTRY_VERIFY(window.fleet.robot()->withName("scanmatcher")->isKnown());
+    window.window.resize(1024, 600);
+    robot.kill("scanmatcher");
+    QTRY_VERIFY_WITH_TIMEOUT(line(window)->text().contains("No connection"), 10000);
+    QVERIFY2(!line(window)->text().contains("127.0.0.1:"), qPrintable(line(window)->text()));
+    QVERIFY2(line(window)->shownText().contains("scanmatcher: No connection: "),
+             qPrintable(line(window)->shownText()));
+    QCOMPARE(line(window)->shownText(), line(window)->text()); // all of it
+    ElidedLabel label(Qt::ElideMiddle);
+    label.setText("The beginning " + QString(500, 'x') + " and the end");
+    label.resize(300, 20);
+    QVERIFY(label.shownText().startsWith("The beg") && label.shownText().endsWith("the end"));
+    QVERIFY(label.shownText().contains(u8"\u2026"));
+}
+
+void TestEventLine::oneNameOfADaemonInAllOfTheList() {
+    Events events;
+    events.happened(Event::Level::Error, "motorcontrol", "killed");
+    events.rename("motorcontrol", "alpha, motorcontrol");
+    QCOMPARE(events.all().front().from, QString("alpha, motorcontrol"));
+
+    RobotProcesses first, second;
+    first.start("scanmatcher");
+    OpenWindow window(first);
+    QVERIFY(window.show());
+    QTRY_VERIFY(window.fleet.robot()->withName("scanmatcher")->isKnown());
+    window.fleet.rename(*window.fleet.robot(), "alpha");
+    first.kill("scanmatcher");
+    QTRY_VERIFY_WITH_TIMEOUT(column(window, EventTable::FromColumn).contains("scanmatcher"), 10000);
+    second.start("supervisor");
+    QVERIFY(window.fleet.add(QString("127.0.0.1:%1").arg(second.port("supervisor"))).ok());
+    QTRY_COMPARE_WITH_TIMEOUT(window.fleet.robots().size(), std::size_t(2), 10000);
+    QTRY_VERIFY2_WITH_TIMEOUT(column(window, EventTable::FromColumn).contains("alpha, scanmatcher") &&
+                                  !column(window, EventTable::FromColumn).contains("scanmatcher"),
+                              qPrintable(column(window, EventTable::FromColumn).join('\n')), 10000);
+}
+
+void TestEventLine::otherClientTakesTheControl() {
+    RobotProcesses robot;
+    robot.startMotors();
+    OpenWindow window(robot);
+    QVERIFY(window.show());
+    Client other;
+    other.connectTo(QString("127.0.0.1:%1").arg(robot.port("motorcontrol")));
+    QTRY_VERIFY(other.isConnected());
+    const QJsonObject patrol{{"client", "patrol"}, {"timeout_s", 30}};
+    QTRY_VERIFY_WITH_TIMEOUT(other.callAndWait("control.acquire", patrol).ok(), 10000);
+    QTRY_VERIFY2_WITH_TIMEOUT(column(window, EventTable::TextColumn).contains("patrol has taken the control"),
+                              qPrintable(column(window, EventTable::TextColumn).join('\n')), 10000);
+    QVERIFY(other.callAndWait("control.release").ok());
+}
+
+QTEST_MAIN(TestEventLine)
+#include "TestEventLine.moc"
