@@ -1,11 +1,12 @@
 #include "gui/desktop/Theme.h"
 
+#include "gui/desktop/ThemeStyle.h"
+
 #include <QApplication>
 #include <QFile>
 #include <QHash>
 #include <QPainter>
 #include <QStyle>
-#include <QStyleFactory>
 #include <QSvgRenderer>
 
 // The icons are in a library, which has to be asked for them by name.
@@ -80,7 +81,7 @@ const char *iconOf(Condition condition) {
 
 void apply() {
     loadIcons();
-    QApplication::setStyle(QStyleFactory::create("Fusion"));
+    QApplication::setStyle(new ThemeStyle);
     const QByteArray wish = qgetenv("HERMES_THEME");
     const bool dark = wish == "dark" || (wish != "light" && isDark());
     QApplication::setPalette(dark ? darkPalette() : QApplication::style()->standardPalette());
