@@ -157,6 +157,7 @@ void ScanMatcher::replace(vectorlib::ScanTracker &tracker, vectorlib::VectorMap 
     }
     tracker.clear();
     std::swap(tracker.builder.map, map);
+    mapNumber_ = ++mapsBegun_;
 }
 
 void ScanMatcher::undo(vectorlib::ScanTracker &tracker, const Reply &reply) {
@@ -182,9 +183,11 @@ void ScanMatcher::setLiveMapAside(vectorlib::ScanTracker &tracker) {
         return;
     live_.emplace();
     live_->pose = tracker.builder.report().pose;
+    live_->number = mapNumber_;
     if (isEmpty(tracker.builder.map))
         return;
     std::swap(live_->map, tracker.builder.map);
+    mapNumber_ = ++mapsBegun_;
     keepsLiveMap_ = true;
     tracker.clear();
     corrector_->follow(false, tracker); // its journal is of the live drive
@@ -201,6 +204,7 @@ void ScanMatcher::bringLiveMapBack(vectorlib::ScanTracker &tracker) {
     keepsLiveMap_ = false;
     seeks_ = isEmpty(live.map) ? Seeks::Nothing : Seeks::Anywhere;
     replace(tracker, std::move(live.map));
+    mapNumber_ = live.number;
     tracker.place(live.pose);
     corrector_->restart(tracker);
     QMetaObject::invokeMethod(this, [this] { // whether it closes loops is known there
@@ -245,17 +249,18 @@ void ScanMatcher::showNewMap(vectorlib::ScanTracker &tracker, const std::optiona
     auto edges = std::make_shared<MapMirror::Edges>();
     tracker.builder.map.forEach(
         [&](const vectorlib::MapEdge &edge) { edges->emplace_hint(edges->end(), edge.id, edge); });
-    QMetaObject::invokeMethod(this, [this, edges = std::move(edges), reply, answer]() mutable {
-        counts_ = vectorlib::ScanTrackerCounts();
-        lostInARow_ = 0;
-        lastRecovery_.reset();
-        mirror_.replace(*edges);
-        if (worker_) // where the old map is freed, which takes its time too
-            worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
-        publishSnapshot("map");
-        if (reply)
-            reply->result(answer);
-    });
+    QMetaObject::invokeMethod(this,
+                              [this, edges = std::move(edges), number = mapNumber_, reply, answer]() mutable {
+                                  counts_ = vectorlib::ScanTrackerCounts();
+                                  lostInARow_ = 0;
+                                  lastRecovery_.reset();
+                                  mirror_.replace(*edges, number);
+                                  if (worker_) // where the old map is freed, which takes its time too
+                                      worker_->post([old = std::move(edges)](vectorlib::ScanTracker &) {});
+                                  publishSnapshot("map");
+                                  if (reply)
+                                      reply->result(answer);
+                              });
 }
 
 } // namespace hermes::scanmatcher

@@ -29,8 +29,9 @@ MapChanges takeChanges(vectorlib::VectorMap &map) {
     return changes;
 }
 
-void MapMirror::replace(Edges &other) {
+void MapMirror::replace(Edges &other, qint64 number) {
     edges_.swap(other);
+    number_ = number;
     poses_.clear();
     ++revision_;
 }
@@ -55,7 +56,7 @@ void MapMirror::correct(Edges &other, const std::vector<quint64> &numbers,
 }
 
 MapMessage MapMirror::message(bool cleared) const {
-    return {revision_, cleared, {}, {}, qint64(edges_.size())};
+    return {revision_, cleared, {}, {}, qint64(edges_.size()), number_};
 }
 
 MapMessage MapMirror::apply(const MapChanges &changes) {

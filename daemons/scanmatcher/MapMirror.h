@@ -24,8 +24,9 @@ class MapMirror {
 public:
     using Edges = std::map<qint64, vectorlib::MapEdge>;
 
-    /// Takes the edges of another map over and forgets the trajectory; `other` has the old edges afterwards.
-    void replace(Edges &other);
+    /// Takes the edges of another map over, of this number, and forgets the trajectory; `other` has the old
+    /// edges afterwards.
+    void replace(Edges &other, qint64 number);
     /// Takes the edges of the same map over, made anew, and where the scans of these numbers lie now; those
     /// between and after them move with the one before.
     void correct(Edges &other, const std::vector<quint64> &numbers,
@@ -49,6 +50,7 @@ private:
     Edges edges_;
     std::vector<vectorlib::StampedPose> poses_;
     qint64 revision_ = 0;
+    qint64 number_ = 0; ///< which map it is
 };
 
 } // namespace hermes::scanmatcher

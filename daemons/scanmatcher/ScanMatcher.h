@@ -104,7 +104,9 @@ private:
     struct LiveMap {
         vectorlib::VectorMap map;
         vectorlib::Pose2D pose;
+        qint64 number = 0;
     };
+    qint64 mapNumber_ = 0, mapsBegun_ = 0;  ///< the worker's
     bool matchesReplay_ = false;            ///< the worker's
     std::optional<LiveMap> live_;           ///< while a replay is mapped; the worker's
     std::atomic<bool> keepsLiveMap_{false}; ///< it is not empty

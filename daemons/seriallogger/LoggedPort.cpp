@@ -36,7 +36,7 @@ void LoggedPort::tick(double elapsed_s) {
     rate_ = elapsed_s > 0 ? double(bytes - bytesAtTick_) / elapsed_s : 0;
     bytesAtTick_ = bytes;
     if (const quint64 sentences = view_.fixes().sentences().sentences;
-        sentences != sentences_ || bytes == 0) {
+        sentences != sentences_ || bytes == 0 || !view_.isOpen()) { // in a replay nobody looks for any
         sentences_ = sentences;
         bytesAtSentence_ = bytes;
         sentenceMono_ = monotonicNow();

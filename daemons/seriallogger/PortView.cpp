@@ -3,11 +3,13 @@
 namespace hermes::seriallogger {
 
 void PortView::open() {
-    if (kind_ != PortSettings::View::None)
+    isOpen_ = kind_ != PortSettings::View::None;
+    if (isOpen_)
         queue_.open();
 }
 
 void PortView::close(const Sinks &sinks) {
+    isOpen_ = false;
     queue_.close();
     process(sinks);
     lines_.finish(sinks.line);

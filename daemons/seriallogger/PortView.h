@@ -25,6 +25,7 @@ public:
     const ChunkQueue &queue() const { return queue_; }
     /// Where nothing is to be shown it stays closed.
     void open();
+    bool isOpen() const { return isOpen_; }
     /// Shows what waits, and what was begun.
     void close(const Sinks &sinks);
 
@@ -46,6 +47,7 @@ private:
     FixTracker fixes_;
     ChunkBatch batch_;
     std::optional<Fix> lastFix_;
+    bool isOpen_ = false;
 };
 
 } // namespace hermes::seriallogger

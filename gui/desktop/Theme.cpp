@@ -1,11 +1,12 @@
 #include "gui/desktop/Theme.h"
 
+#include "gui/desktop/ThemeStyle.h"
+
 #include <QApplication>
 #include <QFile>
 #include <QHash>
 #include <QPainter>
 #include <QStyle>
-#include <QStyleFactory>
 #include <QSvgRenderer>
 #include <utility>
 
@@ -86,7 +87,7 @@ const char *iconOf(Condition condition) {
 
 void apply() {
     loadIcons();
-    QApplication::setStyle(QStyleFactory::create("Fusion"));
+    QApplication::setStyle(new ThemeStyle);
     const QByteArray wish = qgetenv("HERMES_THEME");
     const bool dark = wish == "dark" || (wish != "light" && isDark());
     QApplication::setPalette(dark ? darkPalette() : QApplication::style()->standardPalette());

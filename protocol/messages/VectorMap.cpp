@@ -31,7 +31,12 @@ const Fields<MapMessage> &fieldsOf(Of<MapMessage>) {
                  "or its first part")
             .add("edges", &MapMessage::edges, "New and altered ones")
             .add("removed", &MapMessage::removed, "Ids of edges that are there no more")
-            .add("size", &MapMessage::size, "Edges of the map after this change");
+            .add("size", &MapMessage::size, "Edges of the map after this change")
+            .add(
+                "map", &MapMessage::map,
+                "Which map it is: another one has another number, a corrected one keeps its own, and so does "
+                "the live map that a replay has set aside")
+            .mayBeMissing();
     return fields;
 }
 

@@ -23,6 +23,7 @@ struct MapMessage {
     std::vector<MapEdgeMessage> edges;
     std::vector<qint64> removed;
     qint64 size = 0;
+    qint64 map = 0;
 };
 
 const Fields<MapEdgeMessage> &fieldsOf(Of<MapEdgeMessage>);

@@ -21,6 +21,7 @@ private Q_SLOTS:
     void marksNeedARecording();
     void exportsToCsv();
     void replaysARecording();
+    void aReplayIsNoForeignDevice();
     void seeksInAReplay();
     void listsMarks();
 };
@@ -118,6 +119,27 @@ void TestSerialRecording::exportsToCsv() {
         QCOMPARE(failure("record.export", {{"name", "run"}, {"port", wrong}}).code,
                  int(ErrorCode::InvalidParams));
     }
+}
+
+// What the port gets meanwhile is not decoded, and so no sentence is found in it.
+void TestSerialRecording::aReplayIsNoForeignDevice() {
+    launch({QJsonObject{{"name", "gps"}, {"url", deviceUrl()}, {"view", "nmea"}}});
+    QTRY_VERIFY(isOpen("gps"));
+    call("record.start", {{"name", "run"}});
+    device_->write(rmc + gga);
+    QTRY_COMPARE(port("gps").value("bytes").toInt(), rmc.size() + gga.size());
+    call("record.stop");
+    call("source.open", {{"recording", "run"}, {"paused", true}});
+    constexpr int seconds = 6; // more than are forgiven
+    for (int i = 0; i < 2 * seconds; ++i) {
+        device_->write(rmc.repeated(3) + gga.repeated(3));
+        QTest::qWait(500);
+        QCOMPARE(healthItem("port gps").value("level").toString(), "ok");
+    }
+    call("source.open", {{"live", true}});
+    device_->write(rmc + gga);
+    QTest::qWait(1500); // health is told each second
+    QCOMPARE(healthItem("port gps").value("level").toString(), "ok");
 }
 
 void TestSerialRecording::replaysARecording() {

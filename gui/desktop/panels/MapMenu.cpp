@@ -19,7 +19,7 @@ namespace {
 
 constexpr int longestPath = 120, mostMaps = 200;
 
-/// Not modal: STOP and all else stay in reach. Ends with its parent, or when it is closed.
+/// Ends with its parent, or when it is closed.
 QDialog *makeDialog(QWidget *parent, const QString &title) {
     auto *const dialog = new QDialog(parent);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
@@ -51,7 +51,7 @@ MapMenu::MapMenu(QWidget *parent)
     save_ = add(tr("&Save"), "saveMap", "map.save", &MapMenu::save);
     add(tr("Save &as..."), "saveMapAs", "map.save", &MapMenu::saveAs);
     add(tr("&Export on the robot..."), "exportMap", "map.export", &MapMenu::exportAs);
-    add(tr("&Undo: bring back the map before"), "undoMap", "map.undo", &MapMenu::bringBack);
+    add(tr("&Undo: bring back the last map"), "undoMap", "map.undo", &MapMenu::bringBack);
     addSeparator();
     mapping_ = add(tr("&Mapping: the map grows"), "mapping", "matcher.start", nullptr);
     localization_ =
@@ -77,10 +77,22 @@ void MapMenu::setMatcher(DaemonLink *matcher) {
     if (matcher_ != matcher) {
         path_.clear();
         matcher_ = matcher;
-        Q_EMIT matcherChanged();
+        endQuestion();
         Q_EMIT told({}, false);
     }
     update();
+}
+
+void MapMenu::endQuestion() {
+    if (question_)
+        question_->close();
+}
+
+/// Not modal: STOP and all else stay in reach. It takes the place of the one before.
+void MapMenu::show(QDialog *question) {
+    endQuestion();
+    question_ = question;
+    question->show();
 }
 
 void MapMenu::update() {
@@ -115,9 +127,8 @@ void MapMenu::ask(const QString &question, const QString &yes, const std::functi
     QPushButton *const accept = box->addButton(yes, QMessageBox::AcceptRole);
     accept->setObjectName("accept");
     box->setDefaultButton(QMessageBox::Cancel);
-    connect(this, &MapMenu::matcherChanged, box, &QDialog::close);
     connect(accept, &QPushButton::clicked, this, [work] { work(); });
-    box->show();
+    show(box);
 }
 
 void MapMenu::startNew() {
@@ -135,7 +146,6 @@ void MapMenu::open() {
     call("map.list", {}, [this](const QJsonValue &list) {
         Q_EMIT told({}, false);
         QDialog *const dialog = makeDialog(parentWidget(), tr("Open a map of the robot"));
-        connect(this, &MapMenu::matcherChanged, dialog, &QDialog::close);
         auto *const maps = new QTreeWidget;
         maps->setObjectName("maps");
         maps->setHeaderLabels({tr("Map"), tr("Written"), tr("KiB")});
@@ -152,6 +162,8 @@ void MapMenu::open() {
                                            shortNumber(map["bytes"].toDouble() / 1024, 0)});
             item->setData(0, Qt::UserRole, map["path"].toString());
         }
+        maps->header()->setStretchLastSection(false);
+        maps->header()->setSectionResizeMode(QHeaderView::ResizeToContents);
         maps->header()->setSectionResizeMode(0, QHeaderView::Stretch);
         maps->setCurrentItem(maps->topLevelItem(0));
         dialog->layout()->addWidget(maps);
@@ -163,7 +175,7 @@ void MapMenu::open() {
                 load(item->data(0, Qt::UserRole).toString());
         });
         dialog->resize(560, 320);
-        dialog->show();
+        show(dialog);
     });
 }
 
@@ -171,18 +183,18 @@ void MapMenu::load(const QString &path) {
     call("map.load", {{"path", path}}, [this, path](const QJsonValue &loaded) {
         path_ = path.endsWith(".csv") ? path : QString();
         update();
-        Q_EMIT told(tr("Opened %1: %2 walls. The robot is sought in it; until it is found nothing is mapped. "
-                       "Map, Undo brings the last one back.")
-                        .arg(shortLine(path, longestPath))
-                        .arg(loaded["segments"].toDouble()),
+        const QString opened = tr("Opened %1: %2 walls. Map, Undo brings back the one before, saved or not.")
+                                   .arg(shortLine(path, longestPath))
+                                   .arg(loaded["segments"].toDouble());
+        Q_EMIT told(opened + ' ' + tr("The robot is sought in it; until it is found nothing is mapped."),
                     false);
+        Q_EMIT sought(opened);
     });
 }
 
 void MapMenu::askName(const QString &title, const QString &name,
                       const std::function<void(const QString &)> &use) {
     QDialog *const dialog = makeDialog(parentWidget(), title);
-    connect(this, &MapMenu::matcherChanged, dialog, &QDialog::close);
     auto *const field = new QLineEdit(name);
     field->setObjectName("mapName");
     field->setToolTip(tr("Below the folder of maps on the robot (setting map.folder)"));
@@ -193,7 +205,7 @@ void MapMenu::askName(const QString &title, const QString &name,
     connect(field, &QLineEdit::returnPressed, accept, &QPushButton::click);
     connect(dialog, &QDialog::accepted, this, [field, use] { use(field->text().trimmed()); });
     dialog->resize(420, 80);
-    dialog->show();
+    show(dialog);
 }
 
 /// Asks again where the file exists.
@@ -252,14 +264,15 @@ void MapMenu::bringBack() {
     call("map.undo", {}, [this](const QJsonValue &back) {
         path_.clear();
         update();
-        Q_EMIT told(tr("The map before is back: %1 walls. The robot is sought in it.")
-                        .arg(back["segments"].toDouble()),
-                    false);
+        const QString brought = tr("The last map is back: %1 walls.").arg(back["segments"].toDouble());
+        Q_EMIT told(brought + ' ' + tr("The robot is sought in it."), false);
+        Q_EMIT sought(brought);
     });
 }
 
 void MapMenu::setMode(const QString &mode) {
     call("matcher.start", {{"mode", mode}}, [this, mode](const QJsonValue &) {
+        endQuestion();
         Q_EMIT told(mode == "mapping" ? tr("The map grows.") : tr("The map stays as it is."), false);
         readMode();
     });

@@ -2,6 +2,7 @@
 
 #include "gui/desktop/model/DaemonLink.h"
 
+#include <QDialog>
 #include <QMenu>
 #include <QPointer>
 #include <functional>
@@ -18,12 +19,14 @@ public:
 
     /// Whose map it is; null: nobody's.
     void setMatcher(DaemonLink *matcher);
+    /// What is asked is of a map, mode or robot that is no more.
+    void endQuestion();
 
 Q_SIGNALS:
     /// How a command ended, or that it goes on.
     void told(const QString &text, bool isError);
-    /// What is asked of the old one is asked no more.
-    void matcherChanged();
+    /// The robot is sought in a map that was told of; what holds of it once the robot was found.
+    void sought(const QString &text);
 
 private:
     using Then = std::function<void(const QJsonValue &)>;
@@ -42,10 +45,12 @@ private:
     void askName(const QString &title, const QString &name, const std::function<void(const QString &)> &use);
     void ask(const QString &question, const QString &yes, const std::function<void()> &work);
     void write(const QString &method, QJsonObject params);
+    void show(QDialog *question);
     void readMode();
     void update();
 
     QPointer<DaemonLink> matcher_;
+    QPointer<QDialog> question_;                         ///< one at a time: two would mean different maps
     std::vector<std::pair<QAction *, QString>> actions_; ///< with the method that each needs
     QAction *save_ = nullptr, *mapping_ = nullptr, *localization_ = nullptr;
     QString path_; ///< of the map, as it was opened or saved last

@@ -77,6 +77,20 @@ void MapPanel::addMap(QToolBar &bar) {
         else
             message_->tell(text, isError);
     });
+    connect(&model_, &MapModel::replaced, map_, &MapMenu::endQuestion);
+    connect(map_, &MapMenu::sought, this, [this](const QString &text) {
+        sought_ = {message_->text(), text};
+    });
+    connect(&model_, &MapModel::changed, this, &MapPanel::tellFound);
+}
+
+/// Unless something else was told meanwhile.
+void MapPanel::tellFound() {
+    if (sought_.first.isEmpty() || !model_.pose() || model_.outcome() != "matched")
+        return;
+    const auto [sought, found] = std::exchange(sought_, {});
+    if (!message_->isHidden() && message_->text() == sought)
+        message_->tell(found + ' ' + tr("The robot was found in it."));
 }
 
 QMenu &MapPanel::mapMenu() {

@@ -33,6 +33,7 @@ private:
     void addTools(QToolBar &bar);
     void addMap(QToolBar &bar);
     void addLayers(QToolBar &bar);
+    void tellFound();
     void askFile();
     /// A command of the matcher; tells how it ended.
     void ask(const QString &method, const QJsonObject &params, const QString &done);
@@ -43,6 +44,7 @@ private:
     MapMenu *map_;
     QMenu *layers_ = nullptr;
     MessageLabel *message_;
+    std::pair<QString, QString> sought_; // what was told, and is once the robot was found
     QAction *follow_, *fit_, *measure_, *place_, *relocalize_;
 };
 

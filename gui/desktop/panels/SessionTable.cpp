@@ -164,7 +164,8 @@ void SessionTable::fill(QTreeWidgetItem &item, const RecordedSession &session) c
                                                              : Condition::Warning));
     row.setValue(Date, session.start, dateText(session.start, hasRoom_));
     row.setValue(Duration, duration_s, session.goesOn() ? tr("goes on") : durationText(duration_s));
-    row.setValue(Size, session.bytes(), sizeText(session.bytes()));
+    // Of one that goes on it is what was known when it began.
+    row.setValue(Size, session.bytes(), session.goesOn() ? QString() : sizeText(session.bytes()));
     for (const Column column : {Name, Date, Duration, Size})
         row.setToolTip(column, toolTipOf(session));
     for (const Column column : {Duration, Size})

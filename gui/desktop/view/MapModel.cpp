@@ -52,6 +52,7 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
         poseAge_.forget();
         trust_.reset();
         odometryFrame_.reset();
+        aside_.clear();
         clearPaths();
     });
     connect(&results_, &TopicFeed::sourceChanged, this, [this] { onResult({}); });
@@ -84,21 +85,6 @@ MapModel::MapModel(Fleet &fleet, QObject *parent)
     notice_.setSingleShot(true);
 }
 
-void MapModel::clearPaths() {
-    paths_ = {};
-    Q_EMIT changed();
-}
-
-void MapModel::forgetPath(MovingMap::Path path) {
-    endGlide();
-    paths_[path] = {};
-    Q_EMIT changed();
-}
-
-const QPolygonF &MapModel::way(MovingMap::Path path) const {
-    return isGliding() ? glide_.shown().ways[path] : paths_[path].way();
-}
-
 std::optional<Pose2D> MapModel::shownPose() const {
     return pose_ ? std::optional(glide_.shownPose(*pose_)) : std::nullopt;
 }
@@ -116,6 +102,10 @@ QRectF MapModel::bounds() const {
 }
 
 void MapModel::onMap(const MapMessage &map) {
+    if (map.cleared && map.map != map_.first) {
+        turnTo({map.map, map_.second});
+        edges_.clear(); // the new one is no correction of them
+    }
     if (map.cleared) {
         if (map.size <= 0)
             endGlide(); // the map was cleared, not corrected
@@ -228,6 +218,8 @@ void MapModel::onResult(const ScanResult &result) {
 }
 
 void MapModel::onScan(const ScanMessage &scan) {
+    if (scan.header.replayed != map_.second)
+        turnTo({map_.first, scan.header.replayed});
     rawScan_ = scan;
     scanAge_.heard(scans_.source());
     placeScan();
@@ -254,32 +246,6 @@ void MapModel::placeScan() {
         else
             ++ignored_;
     }
-}
-
-void MapModel::onOdometry(const OdometryMessage &odometry) {
-    follow(paths_[MovingMap::Odometry], odometry.pose, odometry.twist);
-}
-
-void MapModel::onTruth(const TruthMessage &truth) {
-    follow(paths_[MovingMap::Truth], truth.pose, truth.twist);
-}
-
-PathMoment MapModel::moment(const Twist2D &twist) const {
-    return {stamp_, isPlausible(twist) ? std::hypot(twist.vx, twist.vy) : 0};
-}
-
-void MapModel::follow(DrivenPath &path, const Pose2D &pose, const Twist2D &twist) {
-    if (!path.frame && (poseLead_ != 0 || (!pose_ && poses_.source())))
-        return; // nothing to lay it against yet
-    if (!isPlausible(pose)) {
-        ++ignored_;
-        return Q_EMIT changed();
-    }
-    if (!path.frame) {
-        path.frame = pose_ ? *pose_ * pose.inverse() : Pose2D();
-        path.frameKeyScan = newestKeyScan();
-    }
-    path.add(*path.frame * pose, moment(twist), path.frameKeyScan);
 }
 
 } // namespace hermes::desktop

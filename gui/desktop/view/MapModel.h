@@ -9,6 +9,7 @@
 
 #include <QElapsedTimer>
 #include <QTimer>
+#include <deque>
 
 namespace hermes::desktop {
 
@@ -64,7 +65,7 @@ public:
     const QPolygonF &way(MovingMap::Path path) const;
     /// Numbers of the points at which a path begins anew, for the robot jumped.
     const QVector<int> &breaks(MovingMap::Path path) const { return paths_[path].breaks(); }
-    /// Forgets the paths.
+    /// Forgets the paths of the map that is shown.
     void clearPaths();
 
     /// What came and is not shown: values that are no numbers or beyond any place on Earth (farthest_m),
@@ -78,8 +79,13 @@ public:
 
 Q_SIGNALS:
     void changed();
+    /// By another map, not a corrected one.
+    void replaced();
 
 private:
+    using Paths = std::array<DrivenPath, 3>; // by MovingMap::Path
+    /// Which map, and whether what is matched is a replay: paths belong to both.
+    using MapKey = std::pair<qint64, bool>;
     /// What tells that the map was corrected, in any order.
     enum Sign { MapSign = 1, GraphSign = 2, PoseSign = 4, AllSigns = 7 };
 
@@ -100,6 +106,7 @@ private:
     void placeScan();
 
     void forgetPath(MovingMap::Path path);
+    void turnTo(MapKey map);
     int newestKeyScan() const;
     void expectCorrection(Sign sign);
     void takeLeap(const PoseMessage &message);
@@ -132,7 +139,10 @@ private:
     Freshness poseAge_, scanAge_;
     QTimer ageing_; // shows that nothing comes
     std::pair<std::pair<Freshness::State, QString>, std::pair<Freshness::State, QString>> shownAge_;
-    std::array<DrivenPath, 3> paths_; // by MovingMap::Path
+    Paths paths_;
+    MapKey map_{0, false};                       // that the paths are of
+    static constexpr std::size_t mostAside = 3;  // of sets of paths
+    std::deque<std::pair<MapKey, Paths>> aside_; // until their map is back; the oldest first
 
     KeyScanGraph graph_;
     QVector<Pose2D> before_;              // key scans before the correction that is coming in

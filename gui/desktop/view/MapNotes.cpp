@@ -21,12 +21,14 @@ void MapPainter::paintBox(QPainter &painter, const QRectF &box) const {
 void MapPainter::paintScaleBar(QPainter &painter, double step_m) const {
     const double length = step_m * scale();
     const QPointF right(size_.width() - 12, size_.height() - 12), left = right - QPointF(length, 0);
+    const QRectF text(left - QPointF(0, 26), QSizeF(length, 20));
+    paintBox(painter, QRectF(text.topLeft(), right).adjusted(-6, 0, 6, 6));
     painter.setRenderHint(QPainter::Antialiasing, false);
     painter.setPen(QPen(mapColours().text, 2));
     painter.drawLine(left, right);
     for (const QPointF &end : {left, right})
         painter.drawLine(end - QPointF(0, 4), end);
-    painter.drawText(QRectF(left - QPointF(20, 26), QSizeF(length + 40, 20)), Qt::AlignCenter,
+    painter.drawText(text, Qt::AlignCenter,
                      step_m < 1 ? QObject::tr("%1 cm").arg(100 * step_m) : QObject::tr("%1 m").arg(step_m));
 }
 

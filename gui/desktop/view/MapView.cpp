@@ -143,6 +143,7 @@ void MapView::showAll() {
 /// So that so many metres are seen.
 void MapView::fitTo(double across_m, double along_m) {
     constexpr double margin = 1.15;
+    fittedSize_ = size();
     pixelsPerMetre_ = qBound(
         0.5, qMin(width() / qMax(1.0, margin * across_m), height() / qMax(1.0, margin * along_m)), 5000.0);
 }
@@ -244,10 +245,15 @@ void MapView::mouseReleaseEvent(QMouseEvent *event) {
     update();
 }
 
+/// A note below the map makes it lower by a line or two: that is no reason for another scale.
 void MapView::resizeEvent(QResizeEvent *) {
-    if (isFitting_)
+    constexpr int some = 5; // the part of the size
+    const QSize change = size() - fittedSize_;
+    const bool isMuch = some * qAbs(change.width()) > fittedSize_.width() ||
+                        some * qAbs(change.height()) > fittedSize_.height();
+    if (isFitting_ && (isMuch || !showsAll()))
         showAll();
-    else if (isUntouched_ && isFollowing_)
+    else if (isMuch && isUntouched_ && isFollowing_)
         showFirst();
 }
 

@@ -76,6 +76,7 @@ private:
     bool isFollowing_ = true, isFitting_ = false;
     const DaemonLink *fitted_ = nullptr; // whose map was fitted to the view
     bool isUntouched_ = false;           // it is as it was fitted
+    QSize fittedSize_;                   // pixels of the view, when it was fitted
     std::optional<QPoint> cursor_;       // pixels
     PlainLabel *cursorLabel_;
     double pixelsPerMetre_ = 40;

@@ -144,7 +144,7 @@ void TestMapPanel::mapsByTheMenu() {
     accept();
     QTRY_VERIFY2(message().startsWith("A new map has begun"), qPrintable(message()));
     trigger("undoMap");
-    QTRY_VERIFY2(message().startsWith("The map before is back"), qPrintable(message()));
+    QTRY_VERIFY2(message().startsWith("The last map is back"), qPrintable(message()));
     QTRY_VERIFY(model().edges().size() >= walls);
     trigger("localization");
     QTRY_COMPARE(message(), QString("The map stays as it is."));

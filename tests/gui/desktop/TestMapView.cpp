@@ -20,6 +20,7 @@ private Q_SLOTS:
     void firstViewShowsTheMap();
     void coordinatesUnderTheMouse();
     void poseInNumbers();
+    void aNoteKeepsTheScale();
     void layersAreSwitched();
     void layersAreKept();
     void pathIsBrokenWhereTheRobotJumps();
@@ -143,6 +144,35 @@ void TestMapView::poseInNumbers() {
     const QString svg = QString::fromUtf8(picture.readAll());
     QVERIFY(svg.contains(poseText(*model().pose()).section(',', 0, 0)));
     QVERIFY(svg.contains("(95 %)"));
+}
+
+// A line below the map makes the view lower.
+void TestMapView::aNoteKeepsTheScale() {
+    auto other = std::make_unique<OpenWindow>(*robot_);
+    QVERIFY(other->show());
+    MapPanel &map = other->window.map();
+    const auto scaleOf = [&map] { return map.view().transform().m11(); };
+    QTRY_VERIFY_WITH_TIMEOUT(map.model().edges().size() > 10 && map.model().pose(), 10000);
+    QTest::qWait(200); // it is laid out
+    auto *const message = map.findChild<QLabel *>("message");
+    message->hide();
+    QCoreApplication::processEvents();
+    for (const bool isFitting : {false, true}) {
+        map.view().setFollowing(!isFitting);
+        map.view().setFitting(isFitting);
+        QCoreApplication::processEvents();
+        const int height = map.view().height();
+        const double before = scaleOf();
+        message->setText("Wrote 12 walls");
+        message->show();
+        QTRY_VERIFY(map.view().height() < height);
+        QCOMPARE(scaleOf(), before);
+        message->hide();
+        QTRY_COMPARE(map.view().height(), height);
+        QCOMPARE(scaleOf(), before);
+    }
+    other.reset();
+    QVERIFY(window_->show());
 }
 
 void TestMapView::layersAreSwitched() {
