@@ -32,6 +32,7 @@ HealthItem worstItem(const DaemonStatus &status) {
 DaemonLink::DaemonLink(const QString &address, QObject *parent)
     : QObject(parent)
     , address_(address) {
+    ++links_;
     client_.prefer("cbor");
     client_.setFrameLimit(usualFrame);
     connect(&client_, &Client::connected, this, &DaemonLink::onConnected);
@@ -184,7 +185,18 @@ void DaemonLink::unsubscribe(int handle) {
 void DaemonLink::onConnected() {
     poll();
     nonsense_.clear();
-    call("daemon.info", {}, this, [this](const Result<QJsonValue> &info) {
+    introduce();
+}
+
+/// Who is too busy to answer in time is asked again when it answers.
+void DaemonLink::introduce() {
+    isLate_ = false;
+    const auto isLate = [this](const Result<QJsonValue> &answer) {
+        return isLate_ = !answer && answer.error().is(ErrorCode::TimedOut);
+    };
+    call("daemon.info", {}, this, [this, isLate](const Result<QJsonValue> &info) {
+        if (isLate(info))
+            return;
         ReadReport report;
         const auto read = info ? readMessage<DaemonInfo>(WireValue(*info), report) : std::nullopt;
         if (!read) {
@@ -199,7 +211,9 @@ void DaemonLink::onConnected() {
             Q_EMIT ready();
             return;
         }
-        call("rpc.discover", {}, this, [this](const Result<QJsonValue> &description) {
+        call("rpc.discover", {}, this, [this, isLate](const Result<QJsonValue> &description) {
+            if (isLate(description))
+                return;
             if (description)
                 return onDescription(*description);
             nonsense_ = "rpc.discover: " + shortLine(description.error().message);
@@ -241,6 +255,8 @@ void DaemonLink::onStatus(WireView status) {
 }
 
 void DaemonLink::poll() {
+    if (const auto period = std::max(pollPeriod, links_ * pollShare); timer_.intervalAsDuration() != period)
+        timer_.setInterval(period);
     const quint64 unreadable = client_.rejected().unreadable;
     if (std::exchange(shownUnreadable_, unreadable) != unreadable || !isConnected())
         Q_EMIT changed(); // also that somebody is there who does not answer
@@ -262,6 +278,8 @@ void DaemonLink::ask() {
             return;
         latency_ms_ = double(asked_.nsecsElapsed()) * 1e-6;
         onStatus(WireValue(*status));
+        if (isLate_)
+            introduce();
     });
 }
 

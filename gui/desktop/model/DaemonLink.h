@@ -16,19 +16,21 @@ namespace hermes::desktop {
 enum class Condition { Ready, Busy, Warning, Fault, Unreachable };
 
 /// One daemon as the operator's program knows it: the connection, and what the daemon says of itself. It
-/// keeps connecting, reads the description again when its hash changes, and asks for the status each second,
-/// which also measures the link. Nothing here blocks, nothing is known beforehand of any daemon, and nothing
-/// that it says is trusted to make sense.
+/// keeps connecting, reads the description again when its hash changes, and asks for the status again and
+/// again, which also measures the link. Nothing here blocks, nothing is known beforehand of any daemon, and
+/// nothing that it says is trusted to make sense.
 class DaemonLink : public QObject {
     Q_OBJECT
 public:
-    static constexpr std::chrono::milliseconds pollPeriod{300};
+    /// Between two questions; of more than a hundred daemons so long for each of them.
+    static constexpr std::chrono::milliseconds pollPeriod{300}, pollShare{3};
     /// Of messages that come by themselves: what takes longer to read than the event loop may be busy is
     /// refused.
     static constexpr int usualFrame = 320 << 10;
 
     /// address: "HOST:PORT".
     explicit DaemonLink(const QString &address, QObject *parent = nullptr);
+    ~DaemonLink() override { --links_; }
 
     const QString &address() const { return address_; }
     QString host() const { return address_.section(':', 0, -2); }
@@ -92,6 +94,7 @@ Q_SIGNALS:
 
 private:
     void onConnected();
+    void introduce();
     void onDescription(const QJsonValue &description);
     void onStatus(WireView status);
     bool isUnderstood() const;
@@ -101,6 +104,8 @@ private:
     const QString address_;
     QString supervisedName_;
     Client client_;
+    static inline int links_ = 0; // of the program
+    bool isLate_ = false;         // with who it is, and what it can do
     QTimer timer_;
     DaemonInfo info_;
     DaemonStatus status_;

@@ -11,6 +11,7 @@ namespace hermes::desktop {
 namespace {
 
 enum Column { NameColumn, StateColumn };
+constexpr int conditionRole = Qt::UserRole + 1; // whose icon and colour stand there: to set them costs
 
 constexpr int longestName = 60, longestWord = 20, mostHealthItems = 50, iconRoom = 34;
 
@@ -22,8 +23,11 @@ void setText(QTreeWidgetItem &item, const QString &name, const QString &state, C
              const QString &toolTip) {
     item.setText(NameColumn, name);
     item.setText(StateColumn, state);
-    item.setIcon(StateColumn, theme::icon(condition));
-    item.setForeground(StateColumn, theme::colour(condition));
+    if (const QVariant now = int(condition); item.data(StateColumn, conditionRole) != now) {
+        item.setData(StateColumn, conditionRole, now);
+        item.setIcon(StateColumn, theme::icon(condition));
+        item.setForeground(StateColumn, theme::colour(condition));
+    }
     for (const Column column : {NameColumn, StateColumn})
         item.setToolTip(column, toolTipOf(toolTip));
 }
@@ -138,8 +142,11 @@ void DaemonTree::showRobot(QTreeWidgetItem &item, const Robot &robot) {
                         robot.problem()};
     toolTip.removeAll(QString());
     item.setToolTip(NameColumn, toolTipOf(toolTip.join('\n')));
-    item.setIcon(NameColumn,
-                 robot.problem().isEmpty() ? theme::icon("robot") : theme::icon(Condition::Warning));
+    const QVariant isWell = robot.problem().isEmpty();
+    if (item.data(NameColumn, conditionRole) == isWell)
+        return;
+    item.setData(NameColumn, conditionRole, isWell);
+    item.setIcon(NameColumn, isWell.toBool() ? theme::icon("robot") : theme::icon(Condition::Warning));
 }
 
 void DaemonTree::showDaemon(QTreeWidgetItem &item, const Robot &robot, const DaemonLink &daemon) {

@@ -22,6 +22,7 @@ namespace hermes {
 struct Mischief {
     QMap<QString, QByteArray> results; ///< by method
     QMap<QString, QByteArray> topics;  ///< the data of their messages; %1 counts them
+    QList<QByteArray> then;            ///< in place of that data, in turn with it
     int messages = 1;                  ///< of each topic; negative: without end
     QByteArray stamp = "1718000000";   ///< of the messages
     QByteArray reply = "{\"jsonrpc\":\"2.0\",\"id\":%1,\"result\":%2}\n";
@@ -32,6 +33,7 @@ struct Mischief {
     bool hasTopics = true;
     bool isMotors = false;     ///< has the methods of a motor control
     bool isSupervisor = false; ///< so it is where it has something to say as `processes`, too
+    bool isEverywhere = false; ///< at all addresses of this computer: 127.0.0.2 is another host
     bool knowsCbor = true;     ///< and says the same in it when it is asked to
 };
 
@@ -105,7 +107,8 @@ private:
     }
     void listen() {
         server_ = new QTcpServer;
-        server_->listen(QHostAddress::LocalHost);
+        server_->listen(mischief_.isEverywhere ? QHostAddress::AnyIPv4 : QHostAddress::LocalHost);
+        server_->setMaxPendingConnections(1000);
         port_ = server_->serverPort();
         connect(server_, &QTcpServer::newConnection, server_, [this] {
             QTcpSocket *const client = server_->nextPendingConnection();
@@ -181,7 +184,8 @@ private:
     }
     void publish(QTcpSocket &client, const QString &topic, int subscription) {
         const auto one = [this, &client, topic, subscription, count = 0]() mutable {
-            QByteArray data = mischief_.topics.value(topic);
+            const int turn = count % (mischief_.then.size() + 1);
+            QByteArray data = turn == 0 ? mischief_.topics.value(topic) : mischief_.then.at(turn - 1);
             write(client, message(subscription, topic.toUtf8(), count,
                                   data.replace("%1", QByteArray::number(count))));
             ++count;

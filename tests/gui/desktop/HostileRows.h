@@ -241,6 +241,26 @@ inline void addForms() {
     row("settings change all the time") << ofTopic("settings", R"({"a":%1})", -1);
 }
 
+/// All names that a daemon has to give, of so many of these letters.
+inline Mischief namesOf(const QByteArray &letters, int count) {
+    const QByteArray name = letters.repeated(count), quoted = '"' + name + '"';
+    Mischief all;
+    all.results["daemon.info"] = "{\"name\":" + quoted + ",\"title\":" + quoted + ",\"host\":" + quoted +
+                                 ",\"description_hash\":\"2\"}";
+    all.results["daemon.status"] = "{\"state\":" + quoted + R"(,"health":[{"name":)" + quoted +
+                                   R"(,"level":"warn","message":)" + quoted + "}]}";
+    all.results["rpc.discover"] = R"({"methods":[{"name":)" + quoted + R"(,"summary":)" + quoted +
+                                  R"(,"params":[{"name":)" + quoted +
+                                  R"(,"schema":{"type":"number"}}]}],"x-topics":[{"name":)" + quoted +
+                                  R"(,"description":)" + quoted + "}]}";
+    all.results["settings.schema"] = "{\"type\":\"object\",\"properties\":{" + quoted +
+                                     R"(:{"type":"number","title":)" + quoted + R"(,"group":)" + quoted +
+                                     "}}}";
+    all.results["settings.get"] = '{' + quoted + ":1}";
+    all.results["record.list"] = R"([{"name":)" + quoted + R"(,"start":1,"bytes":1}])";
+    return all;
+}
+
 inline void addPanels() {
     row("many methods and topics") << ofMethod(
         "rpc.discover", "{\"methods\":" + listOf("{\"name\":\"m%1\"}", 9000) +
@@ -288,6 +308,25 @@ inline void addPanels() {
     row("stamps that are none") << stamps;
     stamps.stamp = "-inf";
     row("endless stamps") << stamps;
+    stamps.stamp = "0";
+    row("stamps of 1970") << stamps;
+    stamps.stamp = "4102444800";
+    row("stamps of 2100") << stamps;
+    row("values that change their type") << [] {
+        Mischief changing = ofTopic("free", R"({"a":%1,"b":[%1]})", 10);
+        changing.then = {R"({"a":"%1","b":{"c":%1}})",
+                         R"({"a":null,"b":%1})",
+                         R"({"a":{"d":[true]},"b":[[%1]]})",
+                         R"({"a":[%1,"x"],"b":false})",
+                         R"([%1])",
+                         R"("%1")",
+                         "%1"};
+        return changing;
+    }();
+    row("names from right to left") << namesOf(QByteArray("\xe2\x80\xae\xd7\xa9\xd7\x9c\xd7\x95\xd7\x9d"),
+                                               10);
+    row("names of 10,000 letters") << namesOf("W", 10000);
+    row("names of 10,000 letters from right to left") << namesOf("\xd7\xa9", 10000);
     row("numbers that are none") << withoutNumbers("nan");
     row("endless numbers") << withoutNumbers("inf");
     Mischief motors =
