@@ -25,12 +25,13 @@
 #include <QCloseEvent>
 #include <QJsonDocument>
 #include <QPlainTextEdit>
+#include <QScreen>
 #include <QToolBar>
-#include <cstdio>
 
 namespace hermes::desktop {
 namespace {
 
+constexpr int titleRoom = 40; // of a window's title, pixels
 constexpr std::chrono::seconds noticeTime{20};
 constexpr std::chrono::milliseconds keepEach{500}; // who is killed a second later has lost nothing
 
@@ -251,7 +252,7 @@ void MainWindow::showPanel(const QString &name) {
 }
 
 void MainWindow::arrange() {
-    resize(1280, 720);
+    resize(QSize(1280, 720).boundedTo(screen()->availableSize() - QSize(0, titleRoom)));
     resizeDocks({docks_.front(), findChild<QDockWidget *>("drive")}, {300, 240}, Qt::Horizontal);
     resizeDocks({docks_[1]}, {220}, Qt::Vertical);
     docks_[0]->raise();
@@ -348,7 +349,7 @@ void MainWindow::save() {
 void MainWindow::notify(const QString &problem) {
     if (problem.isEmpty())
         return;
-    std::fprintf(stderr, "hermes-gui: %s\n", qPrintable(problem));
+    qWarning("hermes-gui: %s", qPrintable(problem));
     note_->tell(problem, "background: #8a6100; color: white;");
     notice_.start(noticeTime);
 }

@@ -1,5 +1,6 @@
 #include "common/Project.h"
 #include "gui/desktop/MainWindow.h"
+#include "gui/desktop/MessageWriter.h"
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/panels/MapPanel.h"
 
@@ -73,6 +74,7 @@ int main(int argc, char **argv) {
             fleet.add(address); // what is no address is passed over
     if (fleet.robots().empty())
         fleet.add("127.0.0.1");
+    const MessageWriter writer;
     DriveControl drive(fleet);
     MainWindow window(fleet, drive, parser.value("layout"));
     if (parser.isSet("whole-map"))

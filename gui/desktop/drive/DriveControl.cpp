@@ -169,6 +169,11 @@ void DriveControl::onReplay() {
 }
 
 void DriveControl::tick() {
+    // After a time in which this program stood still, what was let go meanwhile is not known as yet.
+    const bool isLate = ticked_.isValid() && ticked_.hasExpired(3 * period.count());
+    ticked_.start();
+    if (isLate)
+        return;
     const bool hadToRest = mustLetGo();
     inputs_.tick();
     if (hadToRest && !mustLetGo())
@@ -245,8 +250,10 @@ void DriveControl::send() {
         if (result)
             return tell({});
         if (!isDriving_)
-            return;                                  // it was on its way when the drive ended
-        if (!result.error().is(ErrorCode::NotReady)) // one that is late is refused alone
+            return; // it was on its way when the drive ended
+        if (result.error().is(ErrorCode::ControlHeld))
+            yieldControl();
+        else if (!result.error().is(ErrorCode::NotReady)) // one that is late is refused alone
             halt();
         tell(result.error().message);
     };
@@ -267,6 +274,14 @@ void DriveControl::lose() {
         hold_.control.held = false;
     isHolding_ = false;
     ++losses_;
+}
+
+/// To who has taken it over: the robot was stopped by that, and a stop from here would be one of their drive.
+void DriveControl::yieldControl() {
+    isDriving_ = false;
+    lose();
+    halt();
+    poll();
 }
 
 void DriveControl::halt() {

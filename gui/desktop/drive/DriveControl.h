@@ -42,6 +42,7 @@ public:
     void stop();
     const StopControl &stopping() const { return stop_; }
     /// Ends driving softly; the control is given back.
+    void yieldControl();
     void halt();
     /// Ends the emergency stop and latched faults.
     void release();
@@ -119,6 +120,7 @@ private:
     QTimer timer_, pollTimer_;
     QTimer letGo_; ///< since nothing is held
     DriveInputs inputs_;
+    QElapsedTimer ticked_;
     QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;
     Twist2D most_ = usualMost, commanded_, measured_;

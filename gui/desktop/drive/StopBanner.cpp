@@ -30,22 +30,26 @@ QString StopBanner::wordOf(const DriveControl &drive) {
         return tr("STOP sent");
     case StopPhase::Taken:
         return tr("STOP taken");
-    default:
+    case StopPhase::Confirmed:
         return tr("STOPPED");
+    default:
+        return tr("STOP holds"); // that it stands is not known as yet
     }
 }
 
 QString StopBanner::styleOf(const DriveControl &drive) {
     const StopPhase phase = drive.stopping().phase();
-    return drive.stopping().isLate()                                   ? red
-           : phase == StopPhase::None || phase == StopPhase::Confirmed ? dark
-                                                                       : amber;
+    return drive.stopping().isLate()                             ? red
+           : phase == StopPhase::Confirmed || !drive.isStopped() ? dark
+                                                                 : amber;
 }
 
 void StopBanner::update() {
     QString text = drive_.stopping().text();
     if (text.isEmpty() && drive_.isStopped())
-        text = tr("STOPPED: %1").arg(drive_.stopReason());
+        text = (drive_.stopping().phase() == StopPhase::Confirmed ? tr("STOPPED: %1")
+                                                                  : tr("The robot brakes: %1"))
+                   .arg(drive_.stopReason());
     tell(text, styleOf(drive_));
     if (!drive_.stopping().isLate()) {
         sound_.stop();

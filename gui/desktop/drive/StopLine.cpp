@@ -254,15 +254,15 @@ void StopLine::look() {
 
 void StopLine::onState(const Result<QJsonValue> &state) {
     const QJsonValue latched = state ? (*state)["latched"] : QJsonValue();
-    const bool isLatched = latched.toObject().contains("estop");
+    const bool holds = !latched.toObject().isEmpty(); // a stop of any kind
     if (phase_ == StopPhase::None)
-        return isLatched ? watch() : void();
+        return holds ? watch() : void();
     if (phase_ != StopPhase::Taken && phase_ != StopPhase::Confirmed)
         return;
     if (!state)
         return; // the other connection may tell
     heard_.start();
-    if (latched.isObject() && !isLatched) {
+    if (latched.isObject() && !(isWatched_ ? holds : latched.toObject().contains("estop"))) {
         if (isWatched_ || lastPress_.elapsed() > overtaken_ms)
             return forget(); // somebody has released it
         tries_ = 0;          // a release that was on its way may have come behind the stop

@@ -32,6 +32,7 @@ private Q_SLOTS:
     void losingTheFocusStops();
     void closingTheWindowStops();
     void heldByAnotherAndTakenOver();
+    void whoTakesOverKeepsTheControl();
     void keysDoNotDisturbTheDriveOfAnother();
     void motorControlKilledAndRestarted();
     void aHeldKeyDrivesOnlyOnce_data();
@@ -295,6 +296,23 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
     QTest::keyPress(window_.get(), Qt::Key_W);
     QTRY_VERIFY(commanded("vx") > 0.1);
     QTest::keyRelease(window_.get(), Qt::Key_W);
+}
+
+void TestDrivePanel::whoTakesOverKeepsTheControl() {
+    QTest::keyPress(window_.get(), Qt::Key_W);
+    awaitMotion();
+    QVERIFY(client_
+                ->callAndWait("control.acquire",
+                              QJsonObject{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}})
+                .ok());
+    for (int i = 0; i < 20; ++i) {
+        const auto driven = client_->callAndWait("motor.drive", QJsonObject{{"vx", -0.2}});
+        QVERIFY2(driven, driven ? "" : qPrintable(driven.error().message));
+        QTest::qWait(50);
+    }
+    QCOMPARE(state()["control"].toObject()["holder"].toString(), QString("patrol"));
+    QTest::keyRelease(window_.get(), Qt::Key_W);
+    QVERIFY(client_->callAndWait("motor.stop").ok());
 }
 
 void TestDrivePanel::keysDoNotDisturbTheDriveOfAnother() {

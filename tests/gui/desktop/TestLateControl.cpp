@@ -16,6 +16,7 @@ private Q_SLOTS:
     void isNotThatOfTheOther_data();
     void isNotThatOfTheOther();
     void refusalIsNotTold();
+    void whatWasLetGoWhileTheWindowStoodStill();
 
 private:
     static Mischief robotOf(const QByteArray &name) {
@@ -138,6 +139,32 @@ void TestLateControl::refusalIsNotTold() {
     QVERIFY(window_->drive.isDriving());
     QVERIFY(blue_->calls("motor.drive") > driven);
     QCOMPARE(window_->drive.problem(), QString());
+    hold(false);
+}
+
+// The timer of the commands comes before the key that was let go meanwhile.
+void TestLateControl::whatWasLetGoWhileTheWindowStoodStill() {
+    choose(*red_);
+    QTRY_VERIFY(window_->drive.isPossible());
+    QTRY_VERIFY(!window_->drive.mustLetGo());
+    hold(true);
+    QTRY_VERIFY(red_->calls("motor.drive") > 5);
+    for (int i = 0; i < 5; ++i) {
+        QThread::msleep(400);
+        const int before = red_->calls("motor.drive");
+        bool isLetGo = false;
+        QTimer::singleShot(1, this, [&] {
+            hold(false);
+            isLetGo = true;
+        });
+        QThread::msleep(5);
+        QTRY_VERIFY(isLetGo && !window_->drive.isDriving());
+        QTest::qWait(100);
+        QCOMPARE(red_->calls("motor.drive"), before);
+        QTRY_VERIFY(!window_->drive.mustLetGo());
+        hold(true);
+        QTRY_VERIFY(red_->calls("motor.drive") > before + 5);
+    }
     hold(false);
 }
 

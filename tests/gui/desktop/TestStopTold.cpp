@@ -1,0 +1,62 @@
+#include "tests/gui/desktop/FakeDaemon.h"
+#include "tests/gui/desktop/OpenWindow.h"
+#include "tests/support/Patience.h"
+
+#include <QLabel>
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// "STOPPED" is never said of a robot that is not known to stand, whatever has stopped it.
+class TestStopTold : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void onlyOfOneThatStands_data();
+    void onlyOfOneThatStands();
+};
+
+void TestStopTold::onlyOfOneThatStands_data() {
+    QTest::addColumn<QString>("cause");
+    QTest::newRow("the stop of another client") << "estop";
+    QTest::newRow("a controller that keeps turning") << "encoder";
+}
+
+void TestStopTold::onlyOfOneThatStands() {
+    QFETCH(QString, cause);
+    const auto state = [&](const char *standing) {
+        return QString(
+                   R"({"latched":{"%1":"controller 1 kept turning"},"control":{"held":false},"standing":%2})")
+            .arg(cause, standing)
+            .toLatin1();
+    };
+    Mischief motors;
+    motors.isMotors = true;
+    FakeDaemon daemon(motors);
+    OpenWindow open;
+    QVERIFY(open.fleet.add(QString("127.0.0.1:%1").arg(daemon.port())).ok());
+    QVERIFY(open.show());
+    QTRY_VERIFY(open.drive.isPossible());
+    const auto *const button = open.window.findChild<QPushButton *>("stop");
+    const auto *const banner = open.window.findChild<QLabel *>("stopBanner");
+    QCOMPARE(button->text(), QString("STOP"));
+    bool isSaid = false;
+    connect(&open.drive, &DriveControl::changed, this, [&] {
+        isSaid = isSaid || button->text() == "STOPPED" ||
+                 (banner->isVisible() && banner->text().contains("STOPPED"));
+    });
+    daemon.setResult("motor.state", state(R"({"confirmed":false,"text":"wheel 1 turns with 2 rad/s"})"));
+    QTRY_VERIFY(open.drive.isStopped());
+    QTRY_VERIFY2_WITH_TIMEOUT(banner->isVisible() && banner->text().contains("NOT KNOWN TO STAND") &&
+                                  banner->text().contains("wheel 1 turns"),
+                              qPrintable(banner->text()), 4000);
+    QVERIFY(!isSaid);
+    daemon.setResult("motor.state", state(R"({"confirmed":true,"text":""})"));
+    QTRY_COMPARE(button->text(), QString("STOPPED"));
+    QTRY_VERIFY2(banner->text().startsWith("STOPPED: controller 1 kept turning"), qPrintable(banner->text()));
+    daemon.setResult("motor.state", R"({"latched":{},"control":{"held":false}})");
+    QTRY_COMPARE(button->text(), QString("STOP"));
+    QTRY_VERIFY(!banner->isVisible());
+}
+
+QTEST_MAIN(TestStopTold)
+#include "TestStopTold.moc"
