@@ -229,7 +229,7 @@ private:
     /// The methods and topics of all daemons in one.
     QByteArray description() const {
         QStringList methods{"fake.call",   "daemon.info", "settings.schema", "record.start",
-                            "record.list", "source.open", "pose.set", "map.undo"};
+                            "record.list", "source.open", "pose.set",        "map.undo"};
         if (mischief_.isSupervisor || mischief_.topics.contains("processes"))
             methods << "process.list"
                     << "process.start";
