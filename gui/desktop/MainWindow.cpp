@@ -14,6 +14,7 @@
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
+#include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/FloatingDock.h"
 #include "gui/desktop/widgets/ScrolledPanel.h"
@@ -104,6 +105,10 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     auto *const gamepad = new DriveGamepad(drive_, layouts_, this);
     for (const PanelKind &kind : panelKinds())
         addPanel(kind, kind.make({fleet, drive_, *gamepad, log_, events_, sounds_, buttons_}));
+    auto *const recordings = findChild<RecordPanel *>();
+    connect(&drive_.replay(), &ReplayWatch::changed, recordings,
+            [this, recordings] { recordings->setReplaying(drive_.replay().isReplaying()); });
+    connect(recordings, &RecordPanel::liveWanted, this, [this] { drive_.replay().endAll(); });
     addEventBar();
     addButtonBar();
     auto *const typing = new TypingWatch(this);
@@ -363,17 +368,28 @@ void MainWindow::showEvent(QShowEvent *event) {
     });
 }
 
+/// What one should know before; empty: nothing.
+QString MainWindow::objectionToClosing() const {
+    QStringList reasons;
+    if (drive_.stopping().isOnItsWay())
+        reasons << tr("STOP is not confirmed as yet, and nothing repeats it when this window is closed.");
+    if (drive_.replay().isReplaying())
+        reasons << tr("The robot still shows a recording; closing ends that replay.");
+    if (!reasons.isEmpty())
+        reasons << tr("Close the window once more if that is meant.");
+    return reasons.join(' ');
+}
+
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
     const bool isAgain =
         closing_.isValid() && !closing_.hasExpired(std::chrono::milliseconds(noticeTime).count());
-    if (drive_.stopping().isOnItsWay() && !isAgain) {
+    if (const QString reason = objectionToClosing(); !reason.isEmpty() && !isAgain) {
         closing_.start();
-        notify(tr(
-            "STOP is not confirmed as yet, and nothing repeats it when this window is closed. Close it once "
-            "more to leave it so."));
+        notify(reason);
         return event->ignore();
     }
+    drive_.replay().endAll();
     keeping_.stop();
     keepAll();
     save(); // what could not be written before, too

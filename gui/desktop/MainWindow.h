@@ -37,6 +37,7 @@ protected:
     void closeEvent(QCloseEvent *event) override;
 
 private:
+    QString objectionToClosing() const;
     void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
     QToolBar *addFootBar(const QString &title, const char *name, QWidget *content);

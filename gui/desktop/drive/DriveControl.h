@@ -120,7 +120,7 @@ private:
     QTimer timer_, pollTimer_;
     QTimer letGo_; ///< since nothing is held
     DriveInputs inputs_;
-    QElapsedTimer ticked_;
+    QElapsedTimer ticked_;   ///< the last turn of the timer
     QElapsedTimer answered_; ///< of this drive: the last answer to a command
     MotionHold hold_;
     Twist2D most_ = usualMost, commanded_, measured_;

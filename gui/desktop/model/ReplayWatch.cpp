@@ -69,6 +69,14 @@ void ReplayWatch::take(const QString &address, const QString &name, const Result
         Q_EMIT changed();
 }
 
+void ReplayWatch::endAll() const {
+    if (!fleet_.robot())
+        return;
+    for (DaemonLink *daemon : fleet_.robot()->daemons())
+        if (replays_.count(daemon->address()) > 0)
+            daemon->client().call("source.open", QJsonObject{{"live", true}}, [](const auto &) {});
+}
+
 QString ReplayWatch::text() const {
     QStringList all;
     for (const auto &[address, text] : replays_)

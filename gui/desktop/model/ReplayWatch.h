@@ -14,6 +14,8 @@ public:
     bool isReplaying() const { return !replays_.empty(); }
     /// Who replays what, and how far it is; empty: nobody.
     QString text() const;
+    /// Has all of them receive live again.
+    void endAll() const;
 
 Q_SIGNALS:
     void changed();

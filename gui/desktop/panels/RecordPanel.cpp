@@ -120,7 +120,8 @@ void RecordPanel::connectAll() {
     connect(mark_, &QLineEdit::returnPressed, addMark_, &QPushButton::click);
     connect(takeMark_, &QAction::triggered, this, &RecordPanel::mark);
     connect(replay_, &QPushButton::clicked, this, &RecordPanel::play);
-    connect(live_, &QPushButton::clicked, &player_, &SessionPlayer::end);
+    connect(live_, &QPushButton::clicked, this,
+            [this] { player_.isPlaying() ? player_.end() : Q_EMIT liveWanted(); });
     connect(sessions_, &SessionTable::currentItemChanged, this, &RecordPanel::update);
     connect(sessions_, &SessionTable::itemActivated, this, &RecordPanel::play);
     connect(&watch_, &LoggerWatch::changed, this, &RecordPanel::update);
@@ -233,6 +234,11 @@ void RecordPanel::play() {
     update();
 }
 
+void RecordPanel::setReplaying(bool isReplaying) {
+    if (std::exchange(isReplaying_, isReplaying) != isReplaying)
+        update();
+}
+
 void RecordPanel::update() {
     const bool isRecording = watch_.isRecording();
     record_->setText(isRecording ? tr("S&top") : tr("Re&cord"));
@@ -245,7 +251,7 @@ void RecordPanel::update() {
     showLost();
     showStop();
     replay_->setEnabled(sessions_->chosen() && !isRecording);
-    live_->setEnabled(player_.isPlaying());
+    live_->setEnabled(player_.isPlaying() || isReplaying_);
 }
 
 void RecordPanel::showStop() {

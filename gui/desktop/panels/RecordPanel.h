@@ -25,6 +25,12 @@ public:
     static constexpr int mostRecordings = 200;
 
     explicit RecordPanel(Fleet &fleet, QWidget *parent = nullptr);
+    /// Loggers replay, whoever began it.
+    void setReplaying(bool isReplaying);
+
+Q_SIGNALS:
+    /// The replay of somebody else is to end.
+    void liveWanted();
 
 private:
     void layOut();
@@ -50,6 +56,7 @@ private:
     RecordingStop stop_{watch_};
     SessionPlayer player_;
     SessionList list_;
+    bool isReplaying_ = false;
     int listing_ = 0;        ///< counts the times that it was asked for
     QString played_;         ///< the id of the session
     QSet<QString> markedIn_; ///< the sessions that the number is of

@@ -3,6 +3,7 @@
 #include <QByteArray>
 #include <QFile>
 #include <QList>
+#include <malloc.h>
 
 namespace hermes {
 
@@ -14,6 +15,11 @@ inline double resident_mb() {
             if (line.startsWith("VmRSS:"))
                 return line.mid(6).trimmed().split(' ')[0].toDouble() * 1024 / 1e6;
     return 0;
+}
+
+/// What this process has allocated and not given back, in MB.
+inline double heap_mb() {
+    return double(::mallinfo2().uordblks + ::mallinfo2().hblkhd) / 1e6;
 }
 
 /// How many programs want a processor, of the last minute.

@@ -28,6 +28,8 @@ private Q_SLOTS:
     void pauseSpeedAndLoop();
     void keysSeek();
     void enterReplaysOnALowScreen();
+    void liveEndsTheReplayOfAnother();
+    void closingAsksAndEndsTheReplay();
     void aLoggerThatFreezesWhileOneDrags();
     void aLoggerThatDiesWhileOneDrags();
     void impossibleTimes();
@@ -293,6 +295,43 @@ void TestReplay::enterReplaysOnALowScreen() {
     open_->window.resize(before);
 }
 
+/// Also when that has come to its end.
+void TestReplay::liveEndsTheReplayOfAnother() {
+    open_->panel<RecordPanel>("recordings");
+    waitForLoggers();
+    QVERIFY(!find("live")->isEnabled());
+    Client other;
+    other.connectTo(QString("127.0.0.1:%1").arg(robot_->port("velodynelogger")));
+    QVERIFY(other.waitConnected().ok());
+    for (const double speed : {1.0, 0.0}) {
+        const auto opened =
+            other.callAndWait("source.open", QJsonObject{{"recording", "run1"}, {"speed", speed}});
+        QVERIFY2(opened, opened ? "" : qPrintable(opened.error().message));
+        QTRY_COMPARE_WITH_TIMEOUT(source("velodynelogger")["state"].toString(),
+                                  QString(speed > 0 ? "replay" : "ended"), 20000);
+        QTRY_VERIFY(find("live")->isEnabled());
+        QVERIFY(open_->window.findChild<QLabel *>("replayBanner")->isVisible());
+        OpenWindow::click(panel_, "live");
+        QTRY_COMPARE(source("velodynelogger")["state"].toString(), QString("live"));
+        QTRY_VERIFY(!find("live")->isEnabled());
+        QTRY_VERIFY(!open_->window.findChild<QLabel *>("replayBanner")->isVisible());
+    }
+}
+
+void TestReplay::closingAsksAndEndsTheReplay() {
+    play();
+    find("pauseReplay")->click();
+    QTRY_VERIFY(open_->drive.replay().isReplaying());
+    open_->window.close();
+    QVERIFY(open_->window.isVisible());
+    const QString notice = open_->window.findChild<QLabel *>("noticeBanner")->text();
+    QVERIFY2(notice.startsWith("The robot still shows a recording"), qPrintable(notice));
+    open_->window.close();
+    QVERIFY(!open_->window.isVisible());
+    QTRY_VERIFY(areBoth("state", "live"));
+    QVERIFY(open_->show());
+}
+
 void TestReplay::aLoggerThatFreezesWhileOneDrags() {
     play();
     QTRY_VERIFY(areBoth("state", "replay"));
@@ -308,7 +347,7 @@ void TestReplay::aLoggerThatFreezesWhileOneDrags() {
         QTest::qWait(5);
     }
     QVERIFY2(longest_ms < 200, qPrintable(QString::number(longest_ms))); // a loaded machine; nothing waits
-    QTRY_VERIFY_WITH_TIMEOUT(!find("live")->isEnabled(), 20000);
+    QTRY_VERIFY_WITH_TIMEOUT(!line()->isVisible(), 20000);
     QVERIFY2(message().contains("velodynelogger") && message().contains("no reply"), qPrintable(message()));
     QVERIFY(!line()->isVisible() && !line()->isHeld());
     QCOMPARE(source("seriallogger")["state"].toString(), QString("live"));
