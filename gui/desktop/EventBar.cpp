@@ -1,5 +1,6 @@
 #include "gui/desktop/EventBar.h"
 
+#include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/ForeignText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
@@ -23,8 +24,10 @@ EventBar::EventBar(Events &events, const Sounds &sounds, QWidget *parent)
     , text_(new PlainLabel)
     , acknowledge_(new QPushButton(tr("Acknowled&ge"))) {
     setObjectName("eventLine");
+    setBackgroundRole(QPalette::Window); // a tool bar's is that of buttons
     text_->setObjectName("eventText");
-    text_->setMinimumWidth(1); // cut off where there is no room
+    text_->letElide();
+    text_->setAutoFillBackground(true);
     text_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     text_->setMargin(4);
     acknowledge_->setObjectName("acknowledge");
@@ -59,22 +62,24 @@ void EventBar::update() {
     refresh_.start(std::chrono::seconds(1)); // warnings go by themselves
     const Event *const loudest = events_.loudest();
     const int others = events_.waiting() - 1;
-    QString text = tr("No events"), style = "color: palette(mid);";
+    QString text = tr("No events");
+    QPalette colours = palette();
+    colours.setColor(QPalette::WindowText, theme::colour(Condition::Unreachable));
     if (loudest) {
         text = line(*loudest);
         if (others > 0)
             text = tr("%1    (%2 more)").arg(text).arg(others);
-        style = loudest->level == Event::Level::Error
-                    ? "background: #d0100c; color: white; font-weight: bold;"
-                    : "background: #f0a000; color: black; font-weight: bold;";
+        const bool isError = loudest->level == Event::Level::Error;
+        colours.setColor(QPalette::Window, isError ? QColor(0xd0, 0x10, 0x0c) : QColor(0xf0, 0xa0, 0x00));
+        colours.setColor(QPalette::WindowText, isError ? Qt::white : Qt::black);
     } else if (!events_.all().empty()) {
         text = line(events_.all().back());
     }
     shown_ = loudest ? loudest->id : 0;
     text_->setText(text);
-    text_->setToolTip(toolTipOf(text));
-    if (style != text_->styleSheet())
-        text_->setStyleSheet(style);
+    text_->setBold(loudest);
+    if (colours != text_->palette())
+        text_->setPalette(colours);
     acknowledge_->setEnabled(loudest);
 }
 

@@ -46,7 +46,7 @@ void StopBanner::update() {
     QString text = drive_.stopping().text();
     if (text.isEmpty() && drive_.isStopped())
         text = tr("STOPPED: %1").arg(QStringList(drive_.latched().values()).join("; "));
-    tell(text, styleOf(drive_));
+    tell(inPlainWords(text), styleOf(drive_));
     if (!drive_.stopping().isLate()) {
         sound_.stop();
     } else if (!sound_.isActive()) {

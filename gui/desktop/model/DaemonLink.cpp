@@ -134,7 +134,7 @@ QString DaemonLink::reason() const {
         lines.append(
             tr("%1 messages could not be read: %2").arg(rejected.unreadable).arg(shortLine(rejected.last)));
     if (rejected.unasked > 0)
-        lines.append(tr("%1 messages that nobody waits for").arg(rejected.unasked));
+        lines.append(tr("%1 messages came unasked").arg(rejected.unasked));
     return lines.join('\n');
 }
 
@@ -211,7 +211,7 @@ void DaemonLink::onDescription(const QJsonValue &description) {
     description_ = description.toObject();
     const QJsonValue methods = description_["methods"], topics = description_["x-topics"];
     if (!methods.isArray())
-        nonsense_ = tr("rpc.discover describes no methods");
+        nonsense_ = tr("It does not describe its commands");
     methods_.clear();
     topics_.clear();
     topicNames_.clear();

@@ -27,7 +27,8 @@ DaemonsPanel::DaemonsPanel(Fleet &fleet, QWidget *parent)
     hint_->setWordWrap(true);
 
     address_->setObjectName("address");
-    address_->setPlaceholderText(tr("HOST or HOST:PORT"));
+    address_->setPlaceholderText(tr("Address"));
+    address_->setToolTip(tr("Of a robot, as 192.168.1.20, or of one daemon, as 192.168.1.20:7450"));
     auto *const add = new QPushButton(theme::icon("add"), tr("A&dd"));
     add->setObjectName("add");
     auto *const adding = new QHBoxLayout;

@@ -10,17 +10,21 @@ namespace hermes::desktop {
 class PlainLabel : public QLabel {
     Q_OBJECT
 public:
-    explicit PlainLabel(const QString &text = {}, QWidget *parent = nullptr)
-        : QLabel(parent) {
-        setTextFormat(Qt::PlainText);
-        setText(text);
-    }
-    void setText(const QString &text) { QLabel::setText(shortText(text)); }
-    void setBold(bool isBold) {
-        QFont changed = font();
-        changed.setBold(isBold);
-        setFont(changed);
-    }
+    explicit PlainLabel(const QString &text = {}, QWidget *parent = nullptr);
+
+    void setText(const QString &text);
+    void setBold(bool isBold);
+    /// One line that gives way to what is beside it: it ends with "..." then, and the tool tip has all of it.
+    void letElide();
+    /// Whether not all of it is seen at this width.
+    bool isElided() const;
+
+protected:
+    bool event(QEvent *event) override;
+    void paintEvent(QPaintEvent *event) override;
+
+private:
+    bool elides_ = false;
 };
 
 } // namespace hermes::desktop
