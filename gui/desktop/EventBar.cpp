@@ -1,7 +1,7 @@
 #include "gui/desktop/EventBar.h"
 
-#include "gui/desktop/widgets/ElidedLabel.h"
 #include "gui/desktop/widgets/ForeignText.h"
+#include "gui/desktop/widgets/PlainLabel.h"
 #include "gui/desktop/widgets/Quantities.h"
 
 #include <QHBoxLayout>
@@ -40,11 +40,13 @@ EventBar::EventBar(Events &events, const Sounds &sounds, QWidget *parent)
     : QWidget(parent)
     , events_(events)
     , sounds_(sounds)
-    , text_(new ElidedLabel(Qt::ElideMiddle))
+    , text_(new PlainLabel)
     , others_(new PlainLabel)
     , acknowledge_(new QPushButton(tr("Acknowled&ge"))) {
     setObjectName("eventLine");
     text_->setObjectName("eventText");
+    text_->letElide(Qt::ElideMiddle);
+    text_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     text_->setMargin(4);
     others_->setObjectName("otherEvents");
     others_->setToolTip(tr("So many more events wait to be acknowledged"));

@@ -10,7 +10,6 @@ class QPushButton;
 
 namespace hermes::desktop {
 
-class ElidedLabel;
 class PlainLabel;
 
 /// One line at the foot of the window: the worst event that waits to be acknowledged, else what happened
@@ -29,7 +28,7 @@ private:
 
     Events &events_;
     const Sounds &sounds_;
-    ElidedLabel *text_;
+    PlainLabel *text_;
     PlainLabel *others_; // how many wait beside it
     QPushButton *acknowledge_;
     quint64 shown_ = 0; ///< the event that Acknowledge means

@@ -33,6 +33,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     , power_(new AgedLabel)
     , release_(new QPushButton(tr("&Release")))
     , stop_(new QPushButton(tr("STOP"))) {
+    setBackgroundRole(QPalette::Window); // a tool bar's is that of buttons
     robots_->setObjectName("robots");
     robots_->setToolTip(tr("The robot that the panels show and drive"));
     robots_->setSizeAdjustPolicy(QComboBox::AdjustToContents);
@@ -43,7 +44,8 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     power_->setToolTip(tr("The lower battery voltage, the sum of the motor currents and the higher "
                           "temperature of the controllers"));
     release_->setObjectName("release");
-    release_->setToolTip(tr("Ends the emergency stop and latched faults. The robot does not move by it."));
+    release_->setToolTip(
+        tr("Ends the emergency stop and faults that hold the robot. The robot does not move by it."));
     stop_->setObjectName("stop");
     stop_->setToolTip(tr("Emergency stop over the network (Space or F12). It does not replace a wired one."));
     stop_->setFocusPolicy(Qt::NoFocus);
@@ -54,10 +56,10 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     stop_->setMinimumSize(QFontMetrics(big).horizontalAdvance("STOP pressed") + 40, 40); // nothing jumps
 
     for (PlainLabel *const told : std::initializer_list<PlainLabel *>{link_, control_, power_})
-        told->setMinimumWidth(1); // it is cut off where there is no room: nothing pushes STOP out of sight
+        told->letElide(); // nothing pushes STOP out of sight
 
     auto *const layout = new QHBoxLayout(this);
-    layout->setContentsMargins(8, 4, 8, 4);
+    layout->setContentsMargins(8, 0, 8, 0);
     auto *const label = new PlainLabel(tr("Ro&bot"));
     label->setBuddy(robots_);
     layout->addWidget(label);

@@ -16,7 +16,7 @@ constexpr double fullTurn = vectorlib::pi / 3; // of the ring is the whole rate 
 
 Stick::Stick(QWidget *parent)
     : QWidget(parent) {
-    setMinimumSize(110, 110);
+    setMinimumSize(96, 96);
     setToolTip(tr("Drag the knob to drive, the ring to turn. The arrow keys or WASD, Q and E do the same."));
 }
 

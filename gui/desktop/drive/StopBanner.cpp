@@ -50,7 +50,7 @@ void StopBanner::update() {
         text = (drive_.stopping().phase() == StopPhase::Confirmed ? tr("STOPPED: %1")
                                                                   : tr("The robot brakes: %1"))
                    .arg(drive_.stopReason());
-    tell(text, styleOf(drive_));
+    tell(inPlainWords(text), styleOf(drive_));
     if (!drive_.stopping().isLate()) {
         sound_.stop();
     } else if (!sound_.isActive()) {

@@ -85,7 +85,7 @@ void EventWatch::lookAtLink(const Robot &robot, const DaemonLink &daemon) {
         return events_.ends(key);
     events_.goesOn(key, Event::Level::Error, nameOf(daemon),
                    daemon.isSilent() ? tr("It is connected, but does not answer")
-                                     : tr("No connection: %1").arg(shortLine(whyAway(daemon), longestText)));
+                                     : tr("No connection: %1").arg(shortLine(inPlainWords(whyAway(daemon)), longestText)));
 }
 
 void EventWatch::lookAtHealth(const DaemonLink &daemon) {
@@ -97,7 +97,7 @@ void EventWatch::lookAtHealth(const DaemonLink &daemon) {
         if (item.level == "ok" || now.size() == mostItems)
             continue;
         const QString key = keyOf(daemon, "health " + shortLine(item.name, longestName));
-        const QString text = shortLine(item.name + ": " + item.message, longestText);
+        const QString text = shortLine(inPlainWords(item.name + ": " + item.message), longestText);
         events_.goesOn(key, levelOf(item.level), nameOf(daemon), text, text.contains(ownName()));
         now.append(key);
     }
@@ -114,7 +114,7 @@ void EventWatch::onRecord(DaemonLink *daemon, const LogMessage &record, bool isP
     if (!isAlarming && (!isOfStop(record) || record.text.contains(ownName())))
         return; // what was done from this window needs no note
     const auto level = isAlarming ? levelOf(record.level) : Event::Level::Info;
-    const QString text = shortLine(record.source + ": " + record.text, longestText);
+    const QString text = shortLine(inPlainWords(record.source + ": " + record.text), longestText);
     if (isPast)
         events_.happenedBefore(level, nameOf(*daemon), text, record.stamp);
     else

@@ -29,9 +29,9 @@ Result<void> Fleet::add(const QString &address) {
     if (!url)
         return url.error();
     if (url->scheme != "tcp" || url->host.isEmpty() || url->port == 0 || !url->path.isEmpty())
-        return Error(
-            ErrorCode::InvalidParams,
-            tr("address \"%1\": expected HOST or HOST:PORT, with a port from 1 to 65535").arg(address));
+        return Error(ErrorCode::InvalidParams, tr("address \"%1\": expected a name or an address, as "
+                                                  "192.168.1.20, or with a port, as 192.168.1.20:7450")
+                                                   .arg(address));
     const QString name = url->host == "localhost" ? QString("127.0.0.1") : url->host;
     const QString host = name.contains(':') ? '[' + name + ']' : name;
     const QString known = hasPort ? QString("%1:%2").arg(host).arg(url->port) : host;

@@ -28,7 +28,7 @@ CloudPanel::CloudPanel(Fleet &fleet, QWidget *parent)
     setFocusProxy(view_);
     connect(&model_, &CloudModel::changed, this, &CloudPanel::tell);
     connect(view_, &CloudView::rendererChanged, this, [this] {
-        way_->setText(view_->renderer()->isByOpenGl() ? QString() : tr("drawn without OpenGL"));
+        way_->setText(view_->renderer()->isByOpenGl() ? QString() : tr("without graphics card"));
     });
     tell();
 }
@@ -48,7 +48,8 @@ QLayout *CloudPanel::makeTop() {
     summary_->setToolTip(
         tr("Of the last turn of the lidar. The setting cloud.max_points of its logger thins it."));
     way_->setObjectName("cloudWay");
-    way_->setToolTip(tr("OpenGL cannot be had here: the processor draws the points"));
+    way_->setToolTip(tr(
+        "No graphics card can be used here: the processor draws the points, with fewer pictures a second"));
     auto *const top = new QHBoxLayout;
     top->setContentsMargins(6, 2, 6, 0);
     top->setSpacing(10);

@@ -14,10 +14,16 @@
 #include <cmath>
 
 namespace hermes::desktop {
+namespace {
+
+constexpr int highPanel = 480; // pixels
+
+} // namespace
 
 DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *parent)
     : QWidget(parent)
     , drive_(drive)
+    , top_(new QBoxLayout(QBoxLayout::LeftToRight))
     , stick_(new Stick)
     , limit_(new QSlider(Qt::Horizontal))
     , speed_(new QLineEdit)
@@ -32,15 +38,18 @@ DrivePanel::DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *pare
     control_->setMinimumWidth(1);
     problem_->setObjectName("problem");
     takeOver_->setObjectName("takeOver");
-    takeOver_->setToolTip(tr("Takes the control from the other client; the robot stops first"));
+    takeOver_->setToolTip(tr("Takes the control from who has it; the robot stops first"));
 
     auto *const control = new QHBoxLayout;
     control->addWidget(control_, 1);
-    control->addWidget(takeOver_);
+    control->addWidget(takeOver_, 0, Qt::AlignTop);
     auto *const layout = new QVBoxLayout(this);
-    layout->addWidget(stick_, 1);
+    layout->setContentsMargins(9, 2, 9, 2);
+    layout->setSpacing(2);
+    top_->addWidget(stick_, 1);
+    top_->addLayout(makeLimit());
+    layout->addLayout(top_, 1);
     layout->addWidget(new GamepadRow(gamepad));
-    layout->addLayout(makeLimit());
     layout->addWidget(makeNumbers());
     auto *const told = new QWidget; // as high as what is told usually: nothing above moves
     auto *const texts = new QVBoxLayout(told);
@@ -67,6 +76,7 @@ QWidget *DrivePanel::makeNumbers() {
     auto *const table = new QWidget;
     auto *const grid = new QGridLayout(table);
     grid->setContentsMargins(0, 0, 0, 0);
+    grid->setVerticalSpacing(0);
     const QStringList names{tr("ahead\nm/s"), tr("left\nm/s"), tr("turn\nrad/s")};
     grid->addWidget(new PlainLabel(tr("commanded")), 1, 0);
     auto *const measured = new PlainLabel(tr("measured"));
@@ -106,15 +116,19 @@ QLayout *DrivePanel::makeLimit() {
     auto *const label = new PlainLabel(tr("Speed li&mit"));
     label->setBuddy(speed_);
     auto *const grid = new QGridLayout;
-    grid->addWidget(label, 0, 0);
-    grid->addWidget(speed_, 0, 1, Qt::AlignRight);
-    grid->addWidget(new PlainLabel(tr("m/s")), 0, 2);
-    auto *const low = new QHBoxLayout;
-    low->addWidget(limit_, 1);
-    low->addWidget(turn_);
-    grid->addLayout(low, 1, 0, 1, 3);
-    grid->setColumnStretch(1, 1);
+    grid->setVerticalSpacing(2);
+    grid->addWidget(label, 0, 0, 1, 2);
+    grid->addWidget(speed_, 1, 0, Qt::AlignRight);
+    grid->addWidget(new PlainLabel(tr("m/s")), 1, 1);
+    grid->addWidget(turn_, 2, 0, 1, 2);
+    grid->addWidget(limit_, 3, 0, 1, 2);
     return grid;
+}
+
+/// All of it is in sight on a low screen, and the stick is large on a high one.
+void DrivePanel::resizeEvent(QResizeEvent *event) {
+    top_->setDirection(height() < highPanel ? QBoxLayout::LeftToRight : QBoxLayout::TopToBottom);
+    QWidget::resizeEvent(event);
 }
 
 void DrivePanel::takeTypedLimit() {

@@ -4,6 +4,7 @@
 
 #include <QWidget>
 
+class QBoxLayout;
 class QLayout;
 class QLineEdit;
 class QPushButton;
@@ -25,6 +26,9 @@ class DrivePanel : public QWidget {
 public:
     DrivePanel(DriveControl &drive, DriveGamepad &gamepad, QWidget *parent = nullptr);
 
+protected:
+    void resizeEvent(QResizeEvent *event) override;
+
 private:
     void update();
     QString freeText() const;
@@ -34,6 +38,7 @@ private:
     void takeTypedLimit();
 
     DriveControl &drive_;
+    QBoxLayout *top_; ///< the stick, and its limit beside or below it
     Stick *stick_;
     QSlider *limit_; // of the largest speed, in percent
     QLineEdit *speed_;

@@ -107,7 +107,7 @@ void MapMenu::update() {
 void MapMenu::call(const QString &method, const QJsonObject &params, const Then &then) {
     if (!matcher_)
         return Q_EMIT told(tr("No scan matcher is connected."), true);
-    Q_EMIT told(tr("%1 ...").arg(method), false);
+    Q_EMIT told(tr("Waiting for the scan matcher ..."), false);
     matcher_->callForMuch(method, params, this,
                           [this, then, asked = matcher_](const Result<QJsonValue> &result) {
                               if (asked != matcher_)

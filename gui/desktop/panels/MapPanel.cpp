@@ -215,7 +215,7 @@ void MapPanel::ask(const QString &method, const QJsonObject &params, const QStri
     DaemonLink *const matcher = model_.matcher();
     if (!matcher)
         return message_->tell(tr("No scan matcher is connected."), true);
-    message_->tell(tr("%1 ...").arg(method));
+    message_->tell(tr("Waiting for the scan matcher ..."));
     matcher->call(method, params, this, [this, matcher, done](const Result<QJsonValue> &result) {
         if (matcher == model_.matcher())
             message_->tell(result ? done : result.error().message, !result);

@@ -50,8 +50,9 @@ public:
 protected:
     QSize sectionSizeFromContents(int section) const override {
         const QSize size = QHeaderView::sectionSizeFromContents(section);
+        const bool hasRoom = !isSortIndicatorShown() || section == sortIndicatorSection();
         const int arrow = size.height() + style()->pixelMetric(QStyle::PM_HeaderMargin, nullptr, this);
-        return {size.width() - (isSortIndicatorShown() ? arrow : 0), size.height()};
+        return {size.width() - (hasRoom ? 0 : arrow), size.height()};
     }
 };
 

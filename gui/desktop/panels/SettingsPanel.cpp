@@ -122,13 +122,14 @@ void SettingsPanel::load() {
         if (daemon != daemon_)
             return;
         if (!schema || !schema->isObject())
-            return message_->tell(schema ? tr("settings.schema is no object") : schema.error().message, true);
+            return message_->tell(schema ? tr("It does not describe its settings") : schema.error().message,
+                                  true);
         const QJsonObject found = schema->toObject();
         daemon->call("settings.get", {}, this, [=](const Result<QJsonValue> &values) {
             if (daemon != daemon_)
                 return;
             if (!values || !values->isObject())
-                return message_->tell(values ? tr("settings.get is no object") : values.error().message,
+                return message_->tell(values ? tr("It does not tell its settings") : values.error().message,
                                       true);
             const QJsonObject kept = edits_.take(daemon->address()), typed = form_->changes();
             form_->setSchema(found, values->toObject());

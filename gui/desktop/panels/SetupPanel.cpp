@@ -44,6 +44,16 @@ QTreeWidgetItem *rowOf(const QStringList &texts) {
     return row;
 }
 
+/// What a search has found, in words.
+QString spoken(const QString &kind) {
+    static const QHash<QString, QString> words{
+        {"roboclaw", SetupPanel::tr("motors")},        {"nmea", SetupPanel::tr("GPS receiver")},
+        {"talker", SetupPanel::tr("unknown, talks")},  {"other", SetupPanel::tr("unknown, answers")},
+        {"not_asked", SetupPanel::tr("not asked")},    {"in_use", SetupPanel::tr("in use")},
+        {"failed", SetupPanel::tr("cannot be opened")}};
+    return words.value(kind, kind);
+}
+
 } // namespace
 
 SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
@@ -68,6 +78,7 @@ SetupPanel::SetupPanel(Fleet &fleet, QWidget *parent)
     row->addWidget(tables, 1);
     row->addWidget(wheels);
     auto *const layout = new QVBoxLayout(this);
+    layout->setContentsMargins(9, 2, 9, 2);
     layout->addLayout(row, 1);
     layout->addWidget(message_);
 
@@ -106,15 +117,16 @@ QWidget *SetupPanel::makeSteps() {
     progress_->hide();
 
     auto *const writing = new QHBoxLayout;
+    writing->addWidget(find_);
     writing->addWidget(apply_);
     writing->addWidget(undo_);
     auto *const steps = new QWidget;
     auto *const layout = new QVBoxLayout(steps);
     layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(4); // all of it without scrolling
     layout->addWidget(samples_);
     layout->addWidget(release_);
     layout->addWidget(ask_);
-    layout->addWidget(find_);
     layout->addLayout(writing);
     layout->addWidget(progress_);
     layout->addStretch(1);
@@ -152,8 +164,7 @@ void SetupPanel::follow() {
 
 void SetupPanel::updateButtons() {
     const QString why = supervisor_ ? supervisor_->refusal("setup.find")
-                                    : tr("Only with the supervisor of the robot (systemctl start "
-                                         "hermes-supervisor there)");
+                                    : tr("Only with the supervisor of the robot, which is not connected");
     const bool isFree = why.isEmpty() && !isBusy_;
     find_->setEnabled(isFree);
     find_->setToolTip(why.isEmpty() ? tr("Looks for some seconds what is plugged in") : why);
@@ -204,9 +215,11 @@ void SetupPanel::find() {
 
 void SetupPanel::showFound(const Findings &found) {
     found_->clear();
-    for (const QStringList &row : rowsOf(found, tr("the tick \"Ask silent lines\"")))
-        if (found_->topLevelItemCount() < mostRows)
+    for (QStringList &row : rowsOf(found, tr("the tick \"Ask silent lines\"")))
+        if (found_->topLevelItemCount() < mostRows) {
+            row.front() = spoken(row.front());
             found_->addTopLevelItem(rowOf(row));
+        }
     found_->resizeColumnToContents(1);
     if (found_->topLevelItemCount() == 0)
         found_->addTopLevelItem(rowOf({tr("nothing")}));

@@ -1,5 +1,7 @@
 #include "gui/desktop/widgets/ForeignText.h"
 
+#include <QObject>
+#include <QRegularExpression>
 #include <cmath>
 
 namespace hermes::desktop {
@@ -29,6 +31,13 @@ QString toolTipOf(const QString &text) {
     if (text.isEmpty())
         return {};
     return "<span style='white-space: pre-wrap'>" + shortText(text).toHtmlEscaped() + "</span>";
+}
+
+QString inPlainWords(QString text) {
+    static const QRegularExpression address("\\btcp://([^\\s?,;)]+)(?:\\?protocol=\\w+)?");
+    text.replace(address, "\\1");
+    text.replace("motor.reset_estop releases it", QObject::tr("Release ends it"));
+    return text.replace("waits for a new lease", QObject::tr("waits for a new drive"));
 }
 
 std::optional<QDateTime> timeOf(double stamp) {

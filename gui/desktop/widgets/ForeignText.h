@@ -16,6 +16,8 @@ QString shortText(const QString &text, int longest = 1000);
 QString toolTipOf(const QString &text);
 /// With so many decimals while that is short, else as a power of ten.
 QString shortNumber(double value, int decimals);
+/// What daemons tell, in words of the window: addresses without "tcp://", buttons in place of commands.
+QString inPlainWords(QString text);
 /// Of a stamp in seconds since the epoch; nothing where no clock of a robot can stand.
 std::optional<QDateTime> timeOf(double stamp);
 

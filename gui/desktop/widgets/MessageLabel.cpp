@@ -1,6 +1,7 @@
 #include "gui/desktop/widgets/MessageLabel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/widgets/ForeignText.h"
 
 namespace hermes::desktop {
 
@@ -20,7 +21,7 @@ void MessageLabel::tell(const QString &text, bool isError) {
     if (isError)
         palette.setColor(QPalette::WindowText, theme::colour(Condition::Fault));
     setPalette(palette);
-    setText(text);
+    setText(inPlainWords(text));
     show();
 }
 

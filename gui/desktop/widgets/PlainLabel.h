@@ -10,17 +10,24 @@ namespace hermes::desktop {
 class PlainLabel : public QLabel {
     Q_OBJECT
 public:
-    explicit PlainLabel(const QString &text = {}, QWidget *parent = nullptr)
-        : QLabel(parent) {
-        setTextFormat(Qt::PlainText);
-        setText(text);
-    }
-    void setText(const QString &text) { QLabel::setText(shortText(text)); }
-    void setBold(bool isBold) {
-        QFont changed = font();
-        changed.setBold(isBold);
-        setFont(changed);
-    }
+    explicit PlainLabel(const QString &text = {}, QWidget *parent = nullptr);
+
+    void setText(const QString &text);
+    void setBold(bool isBold);
+    /// One line that gives way to what is beside it: dots stand for what is left out, and the tool tip has
+    /// all.
+    void letElide(Qt::TextElideMode mode = Qt::ElideRight);
+    /// Whether not all of it is seen at this width.
+    bool isElided() const;
+    /// What is seen of the text.
+    QString shownText() const;
+
+protected:
+    bool event(QEvent *event) override;
+    void paintEvent(QPaintEvent *event) override;
+
+private:
+    Qt::TextElideMode mode_ = Qt::ElideNone;
 };
 
 } // namespace hermes::desktop

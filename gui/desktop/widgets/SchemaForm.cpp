@@ -5,7 +5,6 @@
 #include "common/settings/DottedPath.h"
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/EditorFactory.h"
-#include "gui/desktop/widgets/ElidedLabel.h"
 #include "gui/desktop/widgets/FieldText.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
@@ -39,7 +38,9 @@ bool isGroup(const QJsonObject &schema) {
 }
 
 QLabel *makeDescription(const QJsonObject &schema) {
-    auto *const label = new ElidedLabel(Qt::ElideRight);
+    auto *const label = new PlainLabel;
+    label->letElide();
+    label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     label->setObjectName("description");
     label->setText(shortLine(schema["description"].toString()));
     label->setForegroundRole(QPalette::PlaceholderText);

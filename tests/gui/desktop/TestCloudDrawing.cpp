@@ -71,7 +71,7 @@ void TestCloudDrawing::goesOnWithoutOpenGl() {
     QVERIFY(way->text().isEmpty());
     QVERIFY(colouredPixels(s.panel.view()) > 300);
     QVERIFY(!s.panel.view().renderer()->isByOpenGl());
-    QCOMPARE(way->text(), QString("drawn without OpenGL"));
+    QCOMPARE(way->text(), QString("without graphics card"));
     s.panel.findChild<QComboBox *>("cloudColour")->setCurrentIndex(1);
     QVERIFY(colouredPixels(s.panel.view()) > 300);
 }

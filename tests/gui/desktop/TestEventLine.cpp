@@ -1,5 +1,5 @@
 #include "gui/desktop/panels/EventsPanel.h"
-#include "gui/desktop/widgets/ElidedLabel.h"
+#include "gui/desktop/widgets/PlainLabel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QTreeView>
@@ -17,9 +17,7 @@ private Q_SLOTS:
     void otherClientTakesTheControl();
 
 private:
-    static ElidedLabel *line(OpenWindow &window) {
-        return window.window.findChild<ElidedLabel *>("eventText");
-    }
+    static PlainLabel *line(OpenWindow &window) { return window.window.findChild<PlainLabel *>("eventText"); }
     static QStringList column(OpenWindow &window, EventTable::Column column) {
         auto *const model = window.panel<EventsPanel>("events")->findChild<QTreeView *>("events")->model();
         QStringList cells;
@@ -59,7 +57,8 @@ void TestEventLine::theFaultIsSeenInASmallWindow() {
     QVERIFY2(line(window)->shownText().contains("scanmatcher: No connection: "),
              qPrintable(line(window)->shownText()));
     QCOMPARE(line(window)->shownText(), line(window)->text()); // all of it
-    ElidedLabel label(Qt::ElideMiddle);
+    PlainLabel label;
+    label.letElide(Qt::ElideMiddle);
     label.setText("The beginning " + QString(500, 'x') + " and the end");
     label.resize(300, 20);
     QVERIFY(label.shownText().startsWith("The beg") && label.shownText().endsWith("the end"));

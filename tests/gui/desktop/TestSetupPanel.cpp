@@ -119,10 +119,10 @@ void TestSetupPanel::findsProposesWritesAndUndoes() {
     open(false);
     QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
     search(false);
-    QCOMPARE(what(motors_), QString("not_asked"));
+    QCOMPARE(what(motors_), QString("not asked"));
     QVERIFY(!find<QPushButton>("applySetup")->isEnabled());
     search(true);
-    QTRY_COMPARE(what(motors_), QString("roboclaw"));
+    QTRY_COMPARE(what(motors_), QString("motors"));
     for (const char *tick : {"ask", "release"}) // they are said for one search
         QVERIFY(!find<QCheckBox>(tick)->isChecked());
     QTRY_COMPARE(change("controllers.2.address"), folder_ + "/motorcontrol.json  129");
