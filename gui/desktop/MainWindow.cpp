@@ -32,6 +32,7 @@
 namespace hermes::desktop {
 namespace {
 
+constexpr QSize usualSize{1280, 720};
 constexpr int titleRoom = 40; // of a window's title, pixels
 constexpr std::chrono::seconds noticeTime{20};
 constexpr std::chrono::milliseconds keepEach{500}; // who is killed a second later has lost nothing
@@ -257,7 +258,8 @@ void MainWindow::showPanel(const QString &name) {
 }
 
 void MainWindow::arrange() {
-    resize(QSize(1280, 720).boundedTo(screen()->availableSize() - QSize(0, titleRoom)));
+    const bool hasScreen = QGuiApplication::platformName() != "offscreen"; // whose screen nobody has
+    resize(hasScreen ? usualSize.boundedTo(screen()->availableSize() - QSize(0, titleRoom)) : usualSize);
     resizeDocks({docks_.front(), findChild<QDockWidget *>("drive")}, {300, 240}, Qt::Horizontal);
     resizeDocks({docks_[1]}, {220}, Qt::Vertical);
     docks_[0]->raise();

@@ -299,20 +299,22 @@ void TestDrivePanel::heldByAnotherAndTakenOver() {
 }
 
 void TestDrivePanel::whoTakesOverKeepsTheControl() {
+    Client owner; // who may
+    owner.connectTo(asOwner(QString("127.0.0.1:%1").arg(robot_->port("motorcontrol"))));
+    QVERIFY(owner.waitConnected().ok());
     QTest::keyPress(window_.get(), Qt::Key_W);
     awaitMotion();
-    QVERIFY(client_
-                ->callAndWait("control.acquire",
-                              QJsonObject{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}})
-                .ok());
+    const QJsonObject wish{{"client", "patrol"}, {"take_over", true}, {"timeout_s", 2}};
+    const auto taken = owner.callAndWait("control.acquire", wish);
+    QVERIFY2(taken, taken ? "" : qPrintable(taken.error().message));
     for (int i = 0; i < 20; ++i) {
-        const auto driven = client_->callAndWait("motor.drive", QJsonObject{{"vx", -0.2}});
+        const auto driven = owner.callAndWait("motor.drive", QJsonObject{{"vx", -0.2}});
         QVERIFY2(driven, driven ? "" : qPrintable(driven.error().message));
         QTest::qWait(50);
     }
     QCOMPARE(state()["control"].toObject()["holder"].toString(), QString("patrol"));
     QTest::keyRelease(window_.get(), Qt::Key_W);
-    QVERIFY(client_->callAndWait("motor.stop").ok());
+    QVERIFY(owner.callAndWait("motor.stop").ok());
 }
 
 void TestDrivePanel::keysDoNotDisturbTheDriveOfAnother() {

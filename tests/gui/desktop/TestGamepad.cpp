@@ -109,6 +109,7 @@ void TestGamepad::pluggedInWithItsButtonHeldItDoesNotDrive() {
     QVERIFY(!drive().isDriving());
     pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, false);
     QTRY_VERIFY(isSeen() && shown().contains("hold"));
+    QTRY_VERIFY(!drive().mustLetGo());
     pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, true);
     QTRY_VERIFY_WITH_TIMEOUT(drive().isDriving(), 10000);
 }
@@ -125,7 +126,7 @@ void TestGamepad::afterACalibrationTheButtonMustBeLetGo() {
     QTest::qWait(300);
     QVERIFY(!drive().isDriving());
     pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, false);
-    QTest::qWait(100);
+    QTRY_VERIFY(!drive().mustLetGo());
     pad.press(SDL_CONTROLLER_BUTTON_LEFTSHOULDER, true);
     QTRY_VERIFY_WITH_TIMEOUT(drive().isDriving(), 10000);
 }

@@ -144,6 +144,8 @@ void TestLateControl::refusalIsNotTold() {
 
 // The timer of the commands comes before the key that was let go meanwhile.
 void TestLateControl::whatWasLetGoWhileTheWindowStoodStill() {
+    red_->setResult("motor.state", // so does red, which gives it
+                    "{\"latched\":{},\"control\":{\"held\":true,\"holder\":\"" + ownName().toUtf8() + "\"}}");
     choose(*red_);
     QTRY_VERIFY(window_->drive.isPossible());
     QTRY_VERIFY(!window_->drive.mustLetGo());
