@@ -226,7 +226,7 @@ void DaemonLink::onDescription(const QJsonValue &description) {
     description_ = description.toObject();
     const QJsonValue methods = description_["methods"], topics = description_["x-topics"];
     if (!methods.isArray())
-        nonsense_ = tr("rpc.discover describes no methods");
+        nonsense_ = tr("Its description names no commands");
     methods_.clear();
     topics_.clear();
     topicNames_.clear();

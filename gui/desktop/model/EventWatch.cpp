@@ -84,8 +84,9 @@ void EventWatch::lookAtLink(const Robot &robot, const DaemonLink &daemon) {
     if (!isMissed || isAccountedFor(robot.process(daemon)))
         return events_.ends(key);
     events_.goesOn(key, Event::Level::Error, nameOf(daemon),
-                   daemon.isSilent() ? tr("It is connected, but does not answer")
-                                     : tr("No connection: %1").arg(shortLine(inPlainWords(whyAway(daemon)), longestText)));
+                   daemon.isSilent()
+                       ? tr("It is connected, but does not answer")
+                       : tr("No connection: %1").arg(shortLine(inPlainWords(whyAway(daemon)), longestText)));
 }
 
 void EventWatch::lookAtHealth(const DaemonLink &daemon) {

@@ -168,7 +168,7 @@ void TestMapView::aNoteKeepsTheScale() {
         QTRY_VERIFY(map.view().height() < height);
         QCOMPARE(scaleOf(), before);
         message->hide();
-        QTRY_COMPARE(map.view().height(), height);
+        QTRY_VERIFY(std::abs(map.view().height() - height) <= 2); // as before, but for a line
         QCOMPARE(scaleOf(), before);
     }
     other.reset();

@@ -69,6 +69,7 @@ void TestThousandRobots::windowGoesOn() {
     const QSize least = open.window.minimumSizeHint();
     QVERIFY2(least.width() <= 1024 && least.height() <= 600,
              qPrintable(QString("%1 x %2").arg(least.width()).arg(least.height())));
+    QTRY_VERIFY_WITH_TIMEOUT(open.drive.isPossible(), 60000); // who was too busy to say so before
     const int before = all.calls("motor.estop");
     QElapsedTimer time;
     time.start();
