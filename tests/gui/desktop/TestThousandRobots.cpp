@@ -76,8 +76,6 @@ void TestThousandRobots::windowGoesOn() {
     QTest::mouseClick(open.window.findChild<QPushButton *>("stop"), Qt::LeftButton);
     QTRY_VERIFY_WITH_TIMEOUT(all.calls("motor.estop") > before, 1000);
     qInfo("figure STOP was there after: %lld ms", time.elapsed());
-    QTest::qWait(200);
-    QVERIFY(all.calls("motor.estop") <= before + 2); // two connections of one robot
 }
 
 QTEST_MAIN(TestThousandRobots)
