@@ -173,7 +173,12 @@ void DriveControl::tick() {
     const bool isLate = ticked_.isValid() && ticked_.hasExpired(3 * period.count());
     ticked_.start();
     if (isLate)
-        return;
+        QTimer::singleShot(1, this, &DriveControl::turn); // behind it
+    else
+        turn();
+}
+
+void DriveControl::turn() {
     const bool hadToRest = mustLetGo();
     inputs_.tick();
     if (hadToRest && !mustLetGo())

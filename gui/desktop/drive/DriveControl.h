@@ -95,6 +95,7 @@ private:
     QString objection(const Robot &robot) const;
     void takeMost(const QJsonValue &motion);
     void tick();
+    void turn();
     void end();
     void acquire(bool takeOver);
     void ask();
