@@ -103,7 +103,13 @@ void Screenshots::all() {
     resize(window);
     fleet.choose(fleet.robot()->withName("scanmatcher"));
     plot(window);
-    drive.steer("pictures", {1, 0, 0.35}, true);
+    const auto drives = [&drive] { // what was refused at first, is until one lets go
+        drive.steer("pictures", {}, false);
+        drive.steer("pictures", {1, 0, 0.35}, true);
+        QTest::qWait(1500);
+        return drive.measured().vx > 0.1;
+    };
+    QTRY_VERIFY_WITH_TIMEOUT(drives(), 20000);
     QTest::qWait(qEnvironmentVariable("HERMES_PICTURE_S", "8").toInt() *
                  1000); // so that there is a map to see
     for (auto *const dock : window.findChildren<QDockWidget *>())
