@@ -6,11 +6,29 @@
 #include <QGridLayout>
 #include <QJsonArray>
 #include <QPushButton>
+#include <QStyleOptionButton>
+#include <QStylePainter>
 #include <QVBoxLayout>
 #include <map>
 
 namespace hermes::desktop {
 namespace {
+
+/// Its text ends with "..." where there is no room for it.
+class NarrowButton : public QPushButton {
+public:
+    using QPushButton::QPushButton;
+
+protected:
+    void paintEvent(QPaintEvent *) override {
+        QStyleOptionButton option;
+        initStyleOption(&option);
+        const int room = style()->subElementRect(QStyle::SE_PushButtonContents, &option, this).width() -
+                         iconSize().width() - 8;
+        option.text = fontMetrics().elidedText(option.text, Qt::ElideRight, room, Qt::TextShowMnemonic);
+        QStylePainter(this).drawControl(QStyle::CE_PushButton, option);
+    }
+};
 
 constexpr int mostSuggestions = 6, mostFields = 4, mostSeen = 60, longestText = 48;
 
@@ -103,8 +121,8 @@ void PlotSuggestions::refresh() {
         delete item;
     }
     for (std::size_t i = 0; i < suggestions.size(); ++i) {
-        auto *const button = new QPushButton(theme::icon("plot"),
-                                             shortLine(suggestions[i].text, longestText).replace('&', "&&"));
+        auto *const button = new NarrowButton(theme::icon("plot"),
+                                              shortLine(suggestions[i].text, longestText).replace('&', "&&"));
         button->setObjectName("suggestion");
         button->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed); // a long text widens no panel
         button->setToolTip(toolTipOf(tr("Plots %1").arg(suggestions[i].text)));

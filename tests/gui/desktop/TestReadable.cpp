@@ -106,7 +106,8 @@ QStringList tooNarrow(MainWindow &window) {
         if (auto *const label = qobject_cast<QLabel *>(widget); label && !fits(*label))
             found.append(nameOf(*label, label->text()));
         if (auto *const button = qobject_cast<QAbstractButton *>(widget);
-            button && !button->text().isEmpty() && button->width() < widthOf(*button, button->text()))
+            button && !button->text().isEmpty() && button->width() < widthOf(*button, button->text()) &&
+            !button->toolTip().contains(button->text().toHtmlEscaped()))
             found.append(nameOf(*button, button->text()));
         if (auto *const list = qobject_cast<QComboBox *>(widget); list && !fits(*list))
             found.append(nameOf(*list, list->currentText()));

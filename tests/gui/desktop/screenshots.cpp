@@ -105,11 +105,12 @@ void Screenshots::all() {
     plot(window);
     const auto drives = [&drive] { // what was refused at first, is until one lets go
         drive.steer("pictures", {}, false);
+        QTest::qWait(200);
         drive.steer("pictures", {1, 0, 0.35}, true);
         QTest::qWait(1500);
         return drive.measured().vx > 0.1;
     };
-    QTRY_VERIFY_WITH_TIMEOUT(drives(), 20000);
+    QVERIFY(QTest::qWaitFor(drives, 20000));
     QTest::qWait(qEnvironmentVariable("HERMES_PICTURE_S", "8").toInt() *
                  1000); // so that there is a map to see
     for (auto *const dock : window.findChildren<QDockWidget *>())
