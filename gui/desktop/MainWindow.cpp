@@ -73,6 +73,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , controlWatch_(fleet, drive, events_)
     , runner_(fleet, drive)
     , layouts_(layoutFile)
+    , keeper_(layouts_)
     , note_(new Banner) {
     sounds_.switchTo(layouts_.value("sounds") != "off");
     setWindowTitle(tr("Hermes"));
@@ -132,12 +133,17 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     fleet.setPlaces(layouts_.robots().places);
     fleet.wish(layouts_.robots().chosen);
     connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
+    connect(&keeper_, &LayoutKeeper::failed, this, &MainWindow::notify);
+    connect(&keeper_, &LayoutKeeper::ended, this, [this] {
+        if (!std::exchange(closesWhenWritten_, false))
+            return;
+        closing_.invalidate();
+        close();
+    });
 }
 
 // What shows the models of this window goes before them.
 MainWindow::~MainWindow() {
-    if (layouts_.isChanged())
-        save();
     delete buttonBar_;
     for (FloatingDock *const dock : docks_)
         delete dock;
@@ -332,25 +338,10 @@ void MainWindow::keepAll() {
     layouts_.setRobots({fleet_.addresses(), fleet_.names(), fleet_.places(), fleet_.chosenAddress()});
 }
 
-// Now and then, whatever was set, for the window may not be closed in order; and in another thread, for a
-// disk may take its time.
+// Now and then, whatever was set, for the window may not be closed in order.
 void MainWindow::keep() {
     keepAll();
-    if (!layouts_.isChanged() || !layouts_.problem().isEmpty() || writing_.activeThreadCount() > 0)
-        return;
-    writing_.start([this, taken = layouts_.take()] {
-        if (const auto saved = taken.save(); !saved)
-            QMetaObject::invokeMethod(this, [this, why = saved.error().message] { notify(why); });
-    });
-}
-
-/// Now.
-void MainWindow::save() {
-    writing_.waitForDone();
-    if (!layouts_.problem().isEmpty())
-        return; // which was said
-    if (const auto saved = layouts_.save(); !saved)
-        notify(saved.error().message);
+    keeper_.keep();
 }
 
 void MainWindow::notify(const QString &problem) {
@@ -384,17 +375,21 @@ QString MainWindow::objectionToClosing() const {
 
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
+    keepAll();
+    const bool isWritten = keeper_.finish();
     const bool isAgain =
         closing_.isValid() && !closing_.hasExpired(std::chrono::milliseconds(noticeTime).count());
-    if (const QString reason = objectionToClosing(); !reason.isEmpty() && !isAgain) {
+    const QString reason = objectionToClosing();
+    const QString told =
+        isWritten ? reason : tr("%1 What was set is still being written.").arg(reason).trimmed();
+    if (!told.isEmpty() && !isAgain) {
         closing_.start();
-        notify(reason);
+        closesWhenWritten_ = reason.isEmpty();
+        notify(told);
         return event->ignore();
     }
     drive_.replay().endAll();
     keeping_.stop();
-    keepAll();
-    save(); // what could not be written before, too
     event->accept();
 }
 

@@ -1,13 +1,12 @@
 #pragma once
 
-#include "gui/desktop/Layouts.h"
+#include "gui/desktop/LayoutKeeper.h"
 #include "gui/desktop/model/ControlWatch.h"
 #include "gui/desktop/model/EventWatch.h"
 #include "gui/desktop/model/MacroRunner.h"
 #include "gui/desktop/panels/Panels.h"
 
 #include <QMainWindow>
-#include <QThreadPool>
 
 class QToolBar;
 
@@ -59,7 +58,6 @@ private:
     void keepAll();
     /// The same, and has it saved when it has changed.
     void keep();
-    void save();
     void notify(const QString &problem);
 
     Fleet &fleet_;
@@ -73,6 +71,7 @@ private:
     MacroRunner runner_;
     MapPanel *map_;
     Layouts layouts_;
+    LayoutKeeper keeper_;
     QByteArray usual_; ///< how the panels are arranged at the first start
     std::vector<FloatingDock *> docks_;
     QList<QAction *> showPanels_;
@@ -82,8 +81,8 @@ private:
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
     Banner *note_;
     QTimer notice_, keeping_;
-    QThreadPool writing_;   ///< what is kept, one after the other
-    QElapsedTimer closing_; ///< since it was tried beside a STOP on its way
+    bool closesWhenWritten_ = false;
+    QElapsedTimer closing_; ///< since it was tried, and there was something to be said
     QToolBar *buttonBar_ = nullptr;
 };
 

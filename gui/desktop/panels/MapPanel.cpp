@@ -6,8 +6,6 @@
 
 #include <QFileDialog>
 #include <QMenu>
-#include <QPainter>
-#include <QSvgGenerator>
 #include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -183,32 +181,16 @@ void MapPanel::askFile() {
     dialog->setAcceptMode(QFileDialog::AcceptSave);
     dialog->setOption(QFileDialog::DontUseNativeDialog); // whose keys this program does not see
     connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
-        const auto done = exportTo(file);
-        message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
+        writeBeside(drawn(file), this, [this, file](const Result<void> &done) {
+            message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
+        });
     });
     dialog->show(); // not modal: STOP stays in reach
 }
 
-Result<void> MapPanel::exportTo(const QString &file) {
-    if (file.endsWith(".svg", Qt::CaseInsensitive)) {
-        QSvgGenerator svg;
-        svg.setFileName(file);
-        svg.setSize(view_->size());
-        svg.setViewBox(view_->rect());
-        svg.setTitle(tr("Hermes map"));
-        QPainter painter;
-        if (!painter.begin(&svg))
-            return Error(ErrorCode::InputOutput, tr("%1 cannot be written").arg(file));
-        view_->render(painter);
-        return {};
-    }
-    QImage picture(view_->size(), QImage::Format_RGB32);
-    QPainter painter(&picture);
-    view_->render(painter);
-    painter.end();
-    if (!picture.save(file))
-        return Error(ErrorCode::InputOutput, tr("%1 cannot be written").arg(file));
-    return {};
+Writing MapPanel::drawn(const QString &file) const {
+    return picture(file, tr("Hermes map"), view_->size(),
+                   [this](QPainter &painter) { view_->render(painter); });
 }
 
 void MapPanel::ask(const QString &method, const QJsonObject &params, const QString &done) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/view/MapView.h"
+#include "gui/desktop/widgets/WrittenFile.h"
 
 class QAction;
 class QMenu;
@@ -27,9 +28,10 @@ public:
     /// Follow, fit, measure, place, relocalize.
     QList<QAction *> tools() const { return {follow_, fit_, measure_, place_, relocalize_}; }
     /// Writes what the view shows; .svg by its name, else a picture. Error: the file cannot be written.
-    Result<void> exportTo(const QString &file);
+    Result<void> exportTo(const QString &file) const { return drawn(file)(); }
 
 private:
+    Writing drawn(const QString &file) const;
     void addTools(QToolBar &bar);
     void addMap(QToolBar &bar);
     void addLayers(QToolBar &bar);

@@ -12,14 +12,10 @@
 
 #include <QFileDialog>
 #include <QHBoxLayout>
-#include <QImage>
 #include <QMenu>
-#include <QPainter>
 #include <QPushButton>
 #include <QSplitter>
 #include <QStackedWidget>
-#include <QSvgGenerator>
-#include <QThread>
 #include <QToolButton>
 
 namespace hermes::desktop {
@@ -210,50 +206,17 @@ void PlotsPanel::askFile(const QString &title, const QString &name, const QStrin
     dialog->show(); // not modal: STOP stays in reach
 }
 
-// A long table is written beside the event loop.
 void PlotsPanel::write(const QString &file) {
-    const auto tell = [this, file](const Result<void> &done) {
+    writeBeside(drawn(file), this, [this, file](const Result<void> &done) {
         message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
-    };
-    if (!file.endsWith(".csv", Qt::CaseInsensitive))
-        return tell(exportTo(file));
-    const auto done = std::make_shared<Result<void>>();
-    QThread *const thread =
-        QThread::create([file, done, kept = board_->kept()] { *done = writeCurves(file, kept); });
-    connect(thread, &QThread::finished, thread, &QObject::deleteLater);
-    connect(thread, &QThread::finished, this, [tell, done] { tell(*done); });
-    thread->start();
+    });
 }
 
-Result<void> PlotsPanel::exportTo(const QString &file) const {
+Writing PlotsPanel::drawn(const QString &file) const {
     if (file.endsWith(".csv", Qt::CaseInsensitive))
-        return writeCurves(file, board_->kept());
-    const bool isSvg = file.endsWith(".svg", Qt::CaseInsensitive);
-    if (!(isSvg ? drawSvg(file) : drawImage(file)))
-        return Error(ErrorCode::InputOutput, tr("%1 cannot be written").arg(file));
-    return {};
-}
-
-bool PlotsPanel::drawSvg(const QString &file) const {
-    QSvgGenerator svg;
-    svg.setFileName(file);
-    svg.setSize(board_->size());
-    svg.setViewBox(board_->rect());
-    svg.setTitle(tr("Hermes plots"));
-    QPainter painter;
-    if (!painter.begin(&svg))
-        return false;
-    board_->render(painter);
-    return painter.end();
-}
-
-bool PlotsPanel::drawImage(const QString &file) const {
-    QImage picture(board_->size(), QImage::Format_RGB32);
-    picture.fill(palette().color(QPalette::Window));
-    QPainter painter(&picture);
-    board_->render(painter);
-    painter.end();
-    return picture.save(file);
+        return [file, kept = board_->kept()] { return writeCurves(file, kept); };
+    return picture(file, tr("Hermes plots"), board_->size(),
+                   [this](QPainter &painter) { board_->render(painter); });
 }
 
 } // namespace hermes::desktop

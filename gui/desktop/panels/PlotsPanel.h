@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/panels/PlotBoard.h"
+#include "gui/desktop/widgets/WrittenFile.h"
 
 #include <QTimer>
 
@@ -32,7 +33,7 @@ public:
     PlotSets &sets() { return *sets_; }
     /// Writes all that is kept as CSV, or what is shown as SVG or PNG, as the name ends. Error: the file
     /// cannot be written.
-    Result<void> exportTo(const QString &file) const;
+    Result<void> exportTo(const QString &file) const { return drawn(file)(); }
 
 private:
     void layOut();
@@ -49,8 +50,7 @@ private:
     void redraw();
     void askFile(const QString &title, const QString &name, const QString &kinds);
     void write(const QString &file);
-    bool drawSvg(const QString &file) const;
-    bool drawImage(const QString &file) const;
+    Writing drawn(const QString &file) const;
 
     PlotBoard *board_;
     TopicTree *tree_;

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "gui/desktop/Layouts.h"
+
+#include <QElapsedTimer>
+#include <QObject>
+#include <QThreadPool>
+#include <future>
+
+namespace hermes::desktop {
+
+/// Writes layouts when they have changed, in a thread of its own, for a disk may take its time. What could
+/// not be written is tried again after 5 s. Its end writes what is left, and waits for it.
+class LayoutKeeper : public QObject {
+    Q_OBJECT
+public:
+    explicit LayoutKeeper(Layouts &layouts, QObject *parent = nullptr);
+    ~LayoutKeeper() override;
+
+    /// Begins to write, unless it does already.
+    void keep();
+    /// The same, and waits for a moment. False: it still writes.
+    bool finish();
+    /// Why what was set could not be written; empty: it was.
+    const QString &problem() const { return problem_; }
+
+Q_SIGNALS:
+    void failed(const QString &problem);
+    /// Whether it failed or not.
+    void ended();
+
+private:
+    void begin();
+    bool collect(std::chrono::milliseconds patience);
+
+    Layouts &layouts_;
+    QThreadPool pool_;
+    std::future<Result<void>> writing_;
+    QElapsedTimer since_; ///< it was tried
+    QString problem_;
+};
+
+} // namespace hermes::desktop

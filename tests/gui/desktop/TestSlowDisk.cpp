@@ -1,0 +1,176 @@
+#include "gui/desktop/model/Macro.h"
+#include "tests/gui/desktop/LayoutWindow.h"
+
+#include <QFileDialog>
+#include <atomic>
+#include <thread>
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+namespace {
+
+std::atomic<int> syncs{0};
+std::atomic<int> sync_ms{0};
+
+int sync() {
+    ++syncs;
+    std::this_thread::sleep_for(std::chrono::milliseconds(sync_ms));
+    return 0;
+}
+
+} // namespace
+
+// In the place of those of the C library.
+extern "C" int fsync(int) {
+    return sync();
+}
+extern "C" int fdatasync(int) {
+    return sync();
+}
+
+/// How long the event loop stood at most.
+class Standing {
+public:
+    Standing() {
+        beat_.setTimerType(Qt::PreciseTimer);
+        QObject::connect(&beat_, &QTimer::timeout, &beat_,
+                         [this] { most_ms_ = qMax(most_ms_, last_.restart()); });
+        last_.start();
+        beat_.start(5);
+    }
+    qint64 most_ms() {
+        QTest::qWait(20); // what it stood last
+        return most_ms_;
+    }
+
+private:
+    QTimer beat_;
+    QElapsedTimer last_;
+    qint64 most_ms_ = 0;
+};
+
+using Set = std::function<void(LayoutWindow &)>;
+Q_DECLARE_METATYPE(Set)
+
+/// A disk on which whatever is written takes two seconds holds up no STOP.
+class TestSlowDisk : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void init();
+    void cleanup() { sync_ms = 0; }
+    void whatIsSet_data();
+    void whatIsSet();
+    void exports_data();
+    void exports();
+    void closing();
+    void closingAgainWaitsForNothing();
+
+private:
+    static constexpr qint64 limit_ms = 700; // with other tests beside; the disk takes three times as much
+
+    std::unique_ptr<QTemporaryDir> folder_;
+    QString file_;
+};
+
+void TestSlowDisk::init() {
+    folder_ = std::make_unique<QTemporaryDir>();
+    file_ = folder_->filePath("gui.ini");
+}
+
+void TestSlowDisk::whatIsSet_data() {
+    QTest::addColumn<Set>("set");
+    QTest::newRow("layout") << Set([](LayoutWindow &one) { one.saveAs("Bench"); });
+    QTest::newRow("layer") << Set(
+        [](LayoutWindow &one) { one.window->findChild<QAction *>("trustLayer")->trigger(); });
+    QTest::newRow("robot added") << Set([](LayoutWindow &one) { one.fleet.add("127.0.0.1:2"); });
+    QTest::newRow("robot renamed") << Set(
+        [](LayoutWindow &one) { one.fleet.rename(*one.fleet.robots().front(), "Blue"); });
+    QTest::newRow("robot chosen") << Set([](LayoutWindow &one) {
+        one.fleet.add("127.0.0.1:2");
+        one.fleet.choose(one.fleet.robots().back().get());
+    });
+    QTest::newRow("plots") << Set(
+        [](LayoutWindow &one) { one.window->findChild<PlotsPanel *>()->board().time().setSpan(7); });
+}
+
+void TestSlowDisk::whatIsSet() {
+    QFETCH(Set, set);
+    LayoutWindow one(file_, {"127.0.0.1:1"});
+    QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty()); // how it began
+    QTest::qWait(1000);
+    sync_ms = 2000;
+    const int before = syncs;
+    Standing standing;
+    set(one);
+    QTRY_VERIFY(syncs > before);
+    QTest::qWait(300); // in the middle of it
+    sync_ms = 0;
+    QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+}
+
+void TestSlowDisk::exports_data() {
+    QTest::addColumn<QString>("action");
+    QTest::addColumn<QString>("name");
+    QTest::newRow("map as SVG") << "export"
+                                << "map.svg";
+    QTest::newRow("map as PNG") << "export"
+                                << "map.png";
+    QTest::newRow("plots as SVG") << "picture"
+                                  << "plots.svg";
+    QTest::newRow("plots as PNG") << "picture"
+                                  << "plots.png";
+    QTest::newRow("plots as CSV") << "csv"
+                                  << "plots.csv";
+}
+
+void TestSlowDisk::exports() {
+    QFETCH(QString, action);
+    QFETCH(QString, name);
+    LayoutWindow one({}, {"127.0.0.1:1"});
+    one.window->findChild<QAction *>(action)->trigger();
+    auto *const dialog = one.window->findChild<QFileDialog *>();
+    QVERIFY(dialog && !dialog->isModal());
+    QTest::qWait(500);
+    sync_ms = 2000;
+    const int before = syncs;
+    const QString path = folder_->filePath(name);
+    Standing standing;
+    Q_EMIT dialog->fileSelected(path);
+    QTRY_VERIFY_WITH_TIMEOUT(QFileInfo(path).size() > 0, 20000);
+    QVERIFY(syncs > before);
+    QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+}
+
+void TestSlowDisk::closing() {
+    LayoutWindow one(file_, {"127.0.0.1:1"});
+    QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty());
+    QTest::qWait(1000);
+    sync_ms = 2000;
+    Standing standing;
+    one.window->findChild<QAction *>("trustLayer")->trigger();
+    one.window->close();
+    QVERIFY(one.window->isVisible() && one.isWhole()); // STOP is in reach
+    QVERIFY2(one.notice().contains("still being written"), qPrintable(one.notice()));
+    QTRY_VERIFY_WITH_TIMEOUT(!one.window->isVisible(), 20000); // by itself
+    QVERIFY2(standing.most_ms() < limit_ms, qPrintable(QString::number(standing.most_ms())));
+    QVERIFY(Layouts(file_).value("layers").contains("\"trustLayer\":true"));
+}
+
+void TestSlowDisk::closingAgainWaitsForNothing() {
+    {
+        LayoutWindow one(file_, {"127.0.0.1:1"});
+        QTRY_VERIFY(!Layouts(file_).layout().state.isEmpty());
+        QTest::qWait(1000);
+        sync_ms = 2000;
+        one.window->findChild<QAction *>("trustLayer")->trigger();
+        one.window->close();
+        QVERIFY(one.window->isVisible());
+        one.window->close();
+        QVERIFY(!one.window->isVisible());
+    }
+    QVERIFY(Layouts(file_).value("layers").contains("\"trustLayer\":true")); // the end waited
+}
+
+QTEST_MAIN(TestSlowDisk)
+#include "TestSlowDisk.moc"
