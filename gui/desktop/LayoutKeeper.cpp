@@ -1,7 +1,6 @@
 #include "gui/desktop/LayoutKeeper.h"
 
 #include <memory>
-#include <utility>
 
 namespace hermes::desktop {
 namespace {
@@ -9,17 +8,37 @@ namespace {
 constexpr std::chrono::seconds again{5};
 constexpr std::chrono::milliseconds moment{20}; // is enough for most disks
 
+Error keptElsewhere() {
+    return Error(ErrorCode::NotReady,
+                 QObject::tr("Another window keeps the layouts; what is set here is kept only "
+                             "until this window is closed."));
+}
+
+Error changedElsewhere(const QString &file) {
+    return Error(
+        ErrorCode::InputOutput,
+        QObject::tr("The layouts were changed by another window or program, and are left so; what is "
+                    "set here is kept only until this window is closed: %1")
+            .arg(file));
+}
+
 } // namespace
 
 LayoutKeeper::LayoutKeeper(Layouts &layouts, QObject *parent)
     : QObject(parent)
-    , layouts_(layouts) {}
+    , layouts_(layouts)
+    , lock_(layouts.file())
+    , expected_(layouts.fingerprint()) {
+    since_.start();
+    if (isKept() && !lock_.take())
+        setOutcome(keptElsewhere());
+}
 
 LayoutKeeper::~LayoutKeeper() {
     blockSignals(true); // who would show it has gone
     pool_.waitForDone();
     collect({});
-    if (layouts_.problem().isEmpty() && (layouts_.isChanged() || !problem_.isEmpty()))
+    if (isKept() && (layouts_.isChanged() || !problem_.isEmpty()))
         begin();
     pool_.waitForDone();
     if (collect({}) && !problem_.isEmpty())
@@ -27,7 +46,7 @@ LayoutKeeper::~LayoutKeeper() {
 }
 
 void LayoutKeeper::keep() {
-    if (!collect({}) || !layouts_.problem().isEmpty())
+    if (!collect({}) || !isKept())
         return;
     const bool isToBeTriedAgain =
         !problem_.isEmpty() && since_.hasExpired(std::chrono::milliseconds(again).count());
@@ -45,7 +64,7 @@ bool LayoutKeeper::finish() {
 void LayoutKeeper::begin() {
     since_.start();
     const auto task = std::make_shared<std::packaged_task<Result<void>()>>(
-        [taken = layouts_.take()] { return taken.save(); });
+        [this, taken = layouts_.take()] { return write(taken); });
     writing_ = task->get_future();
     pool_.start([this, task] {
         (*task)();
@@ -53,13 +72,31 @@ void LayoutKeeper::begin() {
     });
 }
 
+/// In the thread that writes.
+Result<void> LayoutKeeper::write(const Layouts &taken) {
+    if (!lock_.take())
+        return keptElsewhere();
+    const QByteArray found = Layouts::fingerprintOf(taken.file());
+    if (!found.isEmpty() && found != expected_)
+        return changedElsewhere(taken.file());
+    const auto saved = taken.save();
+    if (saved)
+        expected_ = Layouts::fingerprintOf(taken.file());
+    return saved;
+}
+
+void LayoutKeeper::setOutcome(const Result<void> &outcome) {
+    problem_ = outcome ? QString() : outcome.error().message;
+    isWaiting_ = !outcome && outcome.error().is(ErrorCode::NotReady);
+}
+
 bool LayoutKeeper::collect(std::chrono::milliseconds patience) {
     if (!writing_.valid())
         return true;
     if (writing_.wait_for(patience) != std::future_status::ready)
         return false;
-    const Result<void> done = writing_.get();
-    const QString before = std::exchange(problem_, done ? QString() : done.error().message);
+    const QString before = problem_;
+    setOutcome(writing_.get());
     if (!problem_.isEmpty() && problem_ != before)
         Q_EMIT failed(problem_);
     Q_EMIT ended();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/desktop/LayoutLock.h"
 #include "gui/desktop/Layouts.h"
 
 #include <QElapsedTimer>
@@ -10,7 +11,8 @@
 namespace hermes::desktop {
 
 /// Writes layouts when they have changed, in a thread of its own, for a disk may take its time. What could
-/// not be written is tried again after 5 s. Its end writes what is left, and waits for it.
+/// not be written is tried again after 5 s. Of several windows with the same file the first one writes it;
+/// what others have changed there is never overwritten. Its end writes what is left, and waits for it.
 class LayoutKeeper : public QObject {
     Q_OBJECT
 public:
@@ -23,6 +25,8 @@ public:
     bool finish();
     /// Why what was set could not be written; empty: it was.
     const QString &problem() const { return problem_; }
+    /// It can still be written, when another window is closed.
+    bool isWaiting() const { return isWaiting_; }
 
 Q_SIGNALS:
     void failed(const QString &problem);
@@ -30,14 +34,20 @@ Q_SIGNALS:
     void ended();
 
 private:
+    bool isKept() const { return layouts_.problem().isEmpty() && !layouts_.file().isEmpty(); }
     void begin();
+    Result<void> write(const Layouts &taken);
+    void setOutcome(const Result<void> &outcome);
     bool collect(std::chrono::milliseconds patience);
 
     Layouts &layouts_;
-    QThreadPool pool_;
     std::future<Result<void>> writing_;
     QElapsedTimer since_; ///< it was tried
     QString problem_;
+    bool isWaiting_ = false;
+    LayoutLock lock_;     ///< of the thread that writes, once that has begun
+    QByteArray expected_; ///< fingerprint of the file; so, too
+    QThreadPool pool_;
 };
 
 } // namespace hermes::desktop

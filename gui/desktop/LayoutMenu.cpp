@@ -1,6 +1,7 @@
 #include "gui/desktop/LayoutMenu.h"
 
-#include "gui/desktop/Layouts.h"
+#include "gui/desktop/LayoutKeeper.h"
+#include "gui/desktop/widgets/ForeignText.h"
 
 #include <QActionGroup>
 #include <QInputDialog>
@@ -15,9 +16,10 @@ QString asText(QString name) {
 
 } // namespace
 
-LayoutMenu::LayoutMenu(const Layouts &layouts, QWidget *parent)
+LayoutMenu::LayoutMenu(const Layouts &layouts, const LayoutKeeper &keeper, QWidget *parent)
     : QMenu(tr("Layout"), parent)
     , layouts_(layouts)
+    , keeper_(keeper)
     , removal_(new QMenu(this)) {
     setObjectName("layoutMenu");
     removal_->addAction(tr("Delete &now"), this, &LayoutMenu::removalWanted)->setObjectName("removeLayout");
@@ -27,6 +29,7 @@ LayoutMenu::LayoutMenu(const Layouts &layouts, QWidget *parent)
 
 void LayoutMenu::fill() {
     clear();
+    addProblem();
     auto *const group = new QActionGroup(this);
     connect(this, &QMenu::aboutToShow, group, &QObject::deleteLater);
     for (const QString &name : layouts_.names()) {
@@ -42,6 +45,17 @@ void LayoutMenu::fill() {
     addMenu(removal_);
     removal_->setTitle(tr("D&elete %1").arg(asText(layouts_.current())));
     removal_->menuAction()->setEnabled(layouts_.names().size() > 1);
+}
+
+/// Why nothing of it is kept.
+void LayoutMenu::addProblem() {
+    const QString problem = layouts_.problem() + keeper_.problem();
+    if (problem.isEmpty())
+        return;
+    auto *const note = addAction(asText(shortLine(problem, 120)));
+    note->setObjectName("layoutsNotKept");
+    note->setEnabled(false);
+    addSeparator();
 }
 
 // Not modal: STOP stays in reach.

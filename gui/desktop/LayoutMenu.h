@@ -4,13 +4,14 @@
 
 namespace hermes::desktop {
 
+class LayoutKeeper;
 class Layouts;
 
 /// The layouts of the window by name, and what can be done with them. Who makes the window does it.
 class LayoutMenu : public QMenu {
     Q_OBJECT
 public:
-    explicit LayoutMenu(const Layouts &layouts, QWidget *parent = nullptr);
+    explicit LayoutMenu(const Layouts &layouts, const LayoutKeeper &keeper, QWidget *parent = nullptr);
 
 Q_SIGNALS:
     void chosen(const QString &name);
@@ -21,9 +22,11 @@ Q_SIGNALS:
 
 private:
     void fill();
+    void addProblem();
     void askName();
 
     const Layouts &layouts_;
+    const LayoutKeeper &keeper_;
     QMenu *removal_;
 };
 

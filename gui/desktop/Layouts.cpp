@@ -92,6 +92,11 @@ QByteArray checkOf(const Layouts::Layout &layout) {
     return hash.result().toHex();
 }
 
+/// Never empty.
+QByteArray hashOf(const QByteArray &text) {
+    return QCryptographicHash::hash(text, QCryptographicHash::Sha256);
+}
+
 QString nameOf(const QVariant &text) {
     return shortLine(text.toString().trimmed(), Layouts::longestName);
 }
@@ -107,6 +112,11 @@ Layouts::Layouts(const QString &file)
         current_ = layouts_.front().name;
 }
 
+QByteArray Layouts::fingerprintOf(const QString &file) {
+    QFile content(file);
+    return content.open(QIODevice::ReadOnly) ? hashOf(content.read(largest + 1)) : QByteArray();
+}
+
 void Layouts::read() {
     const QFileInfo info(file_);
     if (file_.isEmpty() || !info.exists())
@@ -119,7 +129,9 @@ void Layouts::read() {
     QFile content(file_);
     if (!content.open(QIODevice::ReadOnly))
         return refuse(tr("cannot be read: %1").arg(content.errorString()));
-    if (content.size() > largest || !isOurs(content.readAll()))
+    const QByteArray text = content.size() > largest ? QByteArray() : content.readAll();
+    fingerprint_ = hashOf(text);
+    if (content.size() > largest || !isOurs(text))
         return refuse(tr("is damaged, or was not written by this program. It is left as it is"));
     QSettings file(file_, QSettings::IniFormat);
     if (file.status() != QSettings::NoError)

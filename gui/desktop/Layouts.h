@@ -41,6 +41,11 @@ public:
 
     /// file: empty: nothing is kept, and that is no problem.
     explicit Layouts(const QString &file);
+    const QString &file() const { return file_; }
+
+    /// Of what was read, to be compared with that of a file; empty: there was none.
+    const QByteArray &fingerprint() const { return fingerprint_; }
+    static QByteArray fingerprintOf(const QString &file);
 
     /// Why nothing is kept; empty: it is.
     const QString &problem() const { return problem_; }
@@ -93,6 +98,7 @@ private:
     std::vector<Named>::iterator find(const QString &name);
 
     const QString file_;
+    QByteArray fingerprint_;
     QString problem_, damage_, current_;
     std::vector<Named> layouts_;
     Robots robots_;

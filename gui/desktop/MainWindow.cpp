@@ -128,7 +128,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     restoreButtons();
     map_->setLayers(objectFrom(layouts_.value("layers")).toVariantMap());
     showLayout();
-    notify(layouts_.problem() + layouts_.damage());
+    notify(QStringList{layouts_.problem(), layouts_.damage(), keeper_.problem()}.join(' ').trimmed());
     fleet.setNames(layouts_.robots().names);
     fleet.setPlaces(layouts_.robots().places);
     fleet.wish(layouts_.robots().chosen);
@@ -274,7 +274,7 @@ void MainWindow::arrange() {
 }
 
 QMenu *MainWindow::makeLayoutMenu() {
-    auto *const menu = new LayoutMenu(layouts_, this);
+    auto *const menu = new LayoutMenu(layouts_, keeper_, this);
     const auto change = [this](const Result<void> &changed) {
         if (!changed)
             return notify(changed.error().message);
