@@ -15,6 +15,7 @@
 #include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
 #include "gui/desktop/panels/RecordPanel.h"
+#include "gui/desktop/panels/SettingsPanel.h"
 #include "gui/desktop/widgets/EnterKey.h"
 #include "gui/desktop/widgets/FloatingDock.h"
 #include "gui/desktop/widgets/ScrolledPanel.h"
@@ -368,6 +369,11 @@ QString MainWindow::objectionToClosing() const {
         reasons << tr("STOP is not confirmed as yet, and nothing repeats it when this window is closed.");
     if (drive_.replay().isReplaying())
         reasons << tr("The robot still shows a recording; closing ends that replay.");
+    if (const int count = findChild<SettingsPanel *>()->unapplied())
+        reasons << (count == 1 ? tr("A setting was changed and is not applied.")
+                               : tr("%1 settings were changed and are not applied.").arg(count));
+    if (!keeper_.problem().isEmpty() && !keeper_.isWaiting())
+        reasons << keeper_.problem() + '.';
     if (!reasons.isEmpty())
         reasons << tr("Close the window once more if that is meant.");
     return reasons.join(' ');

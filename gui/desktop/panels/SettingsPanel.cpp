@@ -106,6 +106,13 @@ void SettingsPanel::follow(DaemonLink *daemon) {
     update();
 }
 
+int SettingsPanel::unapplied() const {
+    int count = leafPaths(form_->changes()).size();
+    for (const QJsonObject &changes : edits_)
+        count += leafPaths(changes).size();
+    return count;
+}
+
 void SettingsPanel::keepEdits() {
     message_->hide();
     const QJsonObject changes = form_->changes();

@@ -21,6 +21,8 @@ class SettingsPanel : public QWidget {
     Q_OBJECT
 public:
     explicit SettingsPanel(Fleet &fleet, QWidget *parent = nullptr);
+    /// How many values were edited and not applied, of all daemons.
+    int unapplied() const;
 
 private:
     void follow(DaemonLink *daemon);

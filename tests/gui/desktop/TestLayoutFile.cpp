@@ -234,8 +234,12 @@ void TestLayoutFile::whatCannotBeWrittenIsTold() {
     const bool isTold = QTest::qWaitFor([&full] { return full.notice().contains("could not be written"); });
     QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
     QVERIFY2(isTold, qPrintable(full.notice()));
+    full.window->close();
+    const bool isAsked =
+        QTest::qWaitFor([&full] { return full.notice().contains("Close the window once more"); });
     full.saveAs("when there is room");
     QTRY_VERIFY(Layouts(file_).names().contains("when there is room"));
+    QVERIFY2(isAsked, qPrintable(full.notice()));
     QVERIFY(Layouts(file_).names().contains("more")); // the window had it
 }
 

@@ -31,6 +31,7 @@ private Q_SLOTS:
     void everyRowFitsItsSetting();
     void editsAreKeptForEachDaemon();
     void editsOutliveARestart();
+    void closingAsksForWhatIsNotApplied();
     void saveAppliesFirst();
     void theWheelChangesNothing();
     void typedWhileApplying();
@@ -233,6 +234,17 @@ void TestSettingsPanel::editsOutliveARestart() {
     QVERIFY(client_->waitConnected().ok());
     OpenWindow::click(panel_, "apply");
     QTRY_COMPARE(setting("motion.vx"), QJsonValue(0.31));
+}
+
+void TestSettingsPanel::closingAsksForWhatIsNotApplied() {
+    OpenWindow::type(field("motion.vx"), "0.4");
+    QVERIFY(window_->choose(window_->fleet.robot()->withName("scanmatcher"))); // out of sight
+    window_->window.close();
+    QVERIFY(window_->window.isVisible());
+    const QString notice = window_->window.findChild<QLabel *>("noticeBanner")->text();
+    QVERIFY2(notice.contains("A setting was changed and is not applied"), qPrintable(notice));
+    window_->window.close();
+    QVERIFY(!window_->window.isVisible());
 }
 
 void TestSettingsPanel::saveAppliesFirst() {
