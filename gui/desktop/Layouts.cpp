@@ -92,6 +92,13 @@ QByteArray checkOf(const Layouts::Layout &layout) {
     return hash.result().toHex();
 }
 
+/// Where a symbolic link leads to, which stays one.
+QString targetOf(QString file) {
+    for (int links = 0; links < 40 && QFileInfo(file).isSymLink(); ++links)
+        file = QFileInfo(file).symLinkTarget();
+    return file;
+}
+
 /// Never empty.
 QByteArray hashOf(const QByteArray &text) {
     return QCryptographicHash::hash(text, QCryptographicHash::Sha256);
@@ -104,7 +111,7 @@ QString nameOf(const QVariant &text) {
 } // namespace
 
 Layouts::Layouts(const QString &file)
-    : file_(file) {
+    : file_(targetOf(file)) {
     read();
     if (layouts_.empty())
         layouts_.push_back({tr("Usual"), {}});

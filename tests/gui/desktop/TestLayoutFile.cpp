@@ -22,6 +22,7 @@ private Q_SLOTS:
     void anyValue();
     void programBeginsWithNonsense();
     void whatCannotBeWrittenIsTold();
+    void linkStaysOne();
 
 private:
     QByteArray content() const {
@@ -244,4 +245,15 @@ void TestLayoutFile::whatCannotBeWrittenIsTold() {
 }
 
 QTEST_MAIN(TestLayoutFile)
+void TestLayoutFile::linkStaysOne() {
+    const QString link = folder_->filePath("link.ini"), second = folder_->filePath("second.ini");
+    QVERIFY(QFile::link(file_, second) && QFile::link("second.ini", link)); // where nothing is as yet
+    for (const char *const name : {"first", "then"}) {
+        LayoutWindow one(link, {"127.0.0.1:1"});
+        one.saveAs(name);
+        QTRY_VERIFY(Layouts(file_).names().contains(name));
+        QVERIFY(QFileInfo(link).isSymLink() && QFileInfo(second).isSymLink());
+    }
+}
+
 #include "TestLayoutFile.moc"
