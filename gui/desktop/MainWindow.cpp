@@ -379,6 +379,11 @@ QString MainWindow::objectionToClosing() const {
     return reasons.join(' ');
 }
 
+void MainWindow::leave() {
+    isLeaving_ = true;
+    close();
+}
+
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
     keepAll();
@@ -388,7 +393,7 @@ void MainWindow::closeEvent(QCloseEvent *event) {
     const QString reason = objectionToClosing();
     const QString told =
         isWritten ? reason : tr("%1 What was set is still being written.").arg(reason).trimmed();
-    if (!told.isEmpty() && !isAgain) {
+    if (!told.isEmpty() && !isAgain && !isLeaving_) {
         closing_.start();
         closesWhenWritten_ = reason.isEmpty();
         notify(told);

@@ -30,6 +30,8 @@ public:
     static QStringList keptAddresses(const QString &layoutFile);
     const Layouts &layouts() const { return layouts_; }
     MapPanel &map() { return *map_; }
+    /// Closes the window without a question.
+    void leave();
 
 protected:
     void showEvent(QShowEvent *event) override;
@@ -81,7 +83,7 @@ private:
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
     Banner *note_;
     QTimer notice_, keeping_;
-    bool closesWhenWritten_ = false;
+    bool closesWhenWritten_ = false, isLeaving_ = false;
     QElapsedTimer closing_; ///< since it was tried, and there was something to be said
     QToolBar *buttonBar_ = nullptr;
 };

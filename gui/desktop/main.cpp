@@ -1,4 +1,5 @@
 #include "common/Project.h"
+#include "gui/desktop/EndSignals.h"
 #include "gui/desktop/MainWindow.h"
 #include "gui/desktop/MessageWriter.h"
 #include "gui/desktop/Theme.h"
@@ -79,6 +80,8 @@ int main(int argc, char **argv) {
     MainWindow window(fleet, drive, parser.value("layout"));
     if (parser.isSet("whole-map"))
         window.map().view().fit();
+    const EndSignals signals;
+    QObject::connect(&signals, &EndSignals::endWanted, &window, &MainWindow::leave);
     window.show();
     return QApplication::exec();
 }

@@ -204,6 +204,7 @@ void TestLayoutFile::programBeginsWithNonsense() {
     QCOMPARE(program.state(), QProcess::Running);
     program.terminate();
     QVERIFY(program.waitForFinished());
+    QCOMPARE(program.exitStatus(), QProcess::NormalExit); // in order
     QCOMPARE(content(), nonsense);
 }
 
@@ -233,18 +234,17 @@ void TestLayoutFile::whatCannotBeWrittenIsTold() {
     QCOMPARE(setrlimit(RLIMIT_FSIZE, &none), 0); // as on a full disk
     full.saveAs("more");
     const bool isTold = QTest::qWaitFor([&full] { return full.notice().contains("could not be written"); });
-    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
-    QVERIFY2(isTold, qPrintable(full.notice()));
     full.window->close();
     const bool isAsked =
         QTest::qWaitFor([&full] { return full.notice().contains("Close the window once more"); });
+    QCOMPARE(setrlimit(RLIMIT_FSIZE, &before), 0);
+    QVERIFY2(isTold, qPrintable(full.notice()));
+    QVERIFY2(isAsked, qPrintable(full.notice()));
     full.saveAs("when there is room");
     QTRY_VERIFY(Layouts(file_).names().contains("when there is room"));
-    QVERIFY2(isAsked, qPrintable(full.notice()));
     QVERIFY(Layouts(file_).names().contains("more")); // the window had it
 }
 
-QTEST_MAIN(TestLayoutFile)
 void TestLayoutFile::linkStaysOne() {
     const QString link = folder_->filePath("link.ini"), second = folder_->filePath("second.ini");
     QVERIFY(QFile::link(file_, second) && QFile::link("second.ini", link)); // where nothing is as yet
@@ -256,4 +256,5 @@ void TestLayoutFile::linkStaysOne() {
     }
 }
 
+QTEST_MAIN(TestLayoutFile)
 #include "TestLayoutFile.moc"
