@@ -388,13 +388,15 @@ void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
     keepAll();
     const bool isWritten = keeper_.finish();
-    const bool isAgain =
-        closing_.isValid() && !closing_.hasExpired(std::chrono::milliseconds(noticeTime).count());
     const QString reason = objectionToClosing();
+    const bool isAgain = closing_.isValid() &&
+                         !closing_.hasExpired(std::chrono::milliseconds(noticeTime).count()) &&
+                         (reason.isEmpty() || reason == objection_); // another one is told, too
     const QString told =
         isWritten ? reason : tr("%1 What was set is still being written.").arg(reason).trimmed();
     if (!told.isEmpty() && !isAgain && !isLeaving_) {
         closing_.start();
+        objection_ = reason;
         closesWhenWritten_ = reason.isEmpty();
         notify(told);
         return event->ignore();

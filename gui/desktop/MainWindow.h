@@ -85,6 +85,7 @@ private:
     QTimer notice_, keeping_;
     bool closesWhenWritten_ = false, isLeaving_ = false;
     QElapsedTimer closing_; ///< since it was tried, and there was something to be said
+    QString objection_;     ///< that was said then
     QToolBar *buttonBar_ = nullptr;
 };
 

@@ -326,7 +326,17 @@ void TestReplay::closingAsksAndEndsTheReplay() {
     QVERIFY(open_->window.isVisible());
     const QString notice = open_->window.findChild<QLabel *>("noticeBanner")->text();
     QVERIFY2(notice.startsWith("The robot still shows a recording"), qPrintable(notice));
+    robot_->signal("motorcontrol", SIGSTOP);
+    open_->drive.stop();
+    open_->window.close(); // something else is to be said now
+    QVERIFY(open_->window.isVisible());
+    robot_->signal("motorcontrol", SIGCONT);
+    QTRY_COMPARE_WITH_TIMEOUT(open_->drive.stopping().phase(), StopPhase::Confirmed, 10000);
+    open_->drive.release();
+    QTRY_VERIFY(!open_->drive.isStopped());
     open_->window.close();
+    if (open_->window.isVisible())
+        open_->window.close();
     QVERIFY(!open_->window.isVisible());
     QTRY_VERIFY(areBoth("state", "live"));
     QVERIFY(open_->show());
