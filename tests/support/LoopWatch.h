@@ -1,11 +1,11 @@
 #pragma once
 
 #include "tests/daemons/MachineStalls.h"
+#include "tests/support/ThreadTime.h"
 
 #include <QElapsedTimer>
 #include <QTimer>
 #include <algorithm>
-#include <ctime>
 
 namespace hermes {
 
@@ -36,19 +36,14 @@ public:
 private:
     static constexpr int period_ms = 2;
 
-    static double cpuNow_ms() {
-        timespec now{};
-        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-        return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
-    }
     void beat() {
-        const double cpu = cpuNow_ms(), stalled_ms = 1e3 * stalls_.takeLongest();
+        const double cpu = threadTime_ms(), stalled_ms = 1e3 * stalls_.takeLongest();
         if (clock_.isValid())
             longest_ms_ =
                 std::max(longest_ms_, double(clock_.nsecsElapsed()) * 1e-6 - period_ms - stalled_ms);
         longestCpu_ms_ = std::max(longestCpu_ms_, cpu - cpu_ms_ - stalled_ms);
         clock_.start();
-        cpu_ms_ = cpuNow_ms();
+        cpu_ms_ = threadTime_ms();
     }
 
     MachineStalls stalls_;

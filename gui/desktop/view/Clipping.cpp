@@ -1,5 +1,7 @@
 #include "gui/desktop/view/Clipping.h"
 
+#include <algorithm>
+
 namespace hermes::desktop {
 
 std::optional<QLineF> clipped(const QLineF &line, const QRectF &rect) {
@@ -16,25 +18,34 @@ std::optional<QLineF> clipped(const QLineF &line, const QRectF &rect) {
     return QLineF(line.pointAt(from), line.pointAt(to));
 }
 
-QVector<QPolygonF> recent(const QPolygonF &path, const QVector<int> &breaks, const QRectF &rect,
-                          double longest) {
+QVector<QPolygonF> recent(const QPolygonF &path, const QVector<int> &breaks, const QTransform &transform,
+                          const QRectF &rect, double longest) {
+    constexpr double leastStep = 2; // pixels
     QVector<QPolygonF> pieces;
+    QPolygonF piece; // the newest point first
+    const auto end = [&] {
+        std::reverse(piece.begin(), piece.end());
+        if (piece.size() > 1)
+            pieces.append(piece);
+        piece.clear();
+    };
     double length = 0;
     auto begin = breaks.crbegin();
-    for (int first = path.size() - 1, end = path.size(); first >= 0; --first) {
-        while (begin != breaks.crend() && *begin > first)
+    for (int i = path.size() - 1; i >= 0 && length < longest; --i) {
+        while (begin != breaks.crend() && *begin > i)
             ++begin;
-        const bool isOver = first == 0 || length >= longest;
-        if (isOver || (begin != breaks.crend() && *begin == first)) {
-            if (end - first > 1)
-                pieces.append(QPolygonF(path.mid(first, end - first)));
-            end = first;
-        } else if (const auto part = clipped(QLineF(path[first - 1], path[first]), rect)) {
-            length += part->length();
-        }
-        if (isOver)
-            break;
+        const bool isFirst = i == 0 || (begin != breaks.crend() && *begin == i);
+        const QPointF at = transform.map(path[i]);
+        if (!isFirst && !piece.isEmpty() && (at - piece.back()).manhattanLength() < leastStep)
+            continue;
+        if (!piece.isEmpty())
+            if (const auto part = clipped(QLineF(at, piece.back()), rect))
+                length += part->length();
+        piece.append(at);
+        if (isFirst)
+            end();
     }
+    end();
     return pieces;
 }
 

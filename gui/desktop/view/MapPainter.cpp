@@ -41,6 +41,21 @@ double gridStep_m(double pixelsPerMetre) {
     return 10 * decade;
 }
 
+void paintWay(QPainter &painter, const QPolygonF &way, const QVector<int> &breaks,
+              const QTransform &transform, const QSize &size, QPen pen) {
+    const double longest = pen.style() == Qt::SolidLine ? longestSmooth : longestDashed;
+    const auto pieces = recent(way, breaks, transform, QRectF(QPointF(), size), longest);
+    int points = 0;
+    for (const QPolygonF &piece : pieces)
+        points += piece.size();
+    painter.setRenderHint(QPainter::Antialiasing, points <= smoothUpTo);
+    if (points > smoothUpTo)
+        pen.setWidth(1);
+    painter.setPen(pen);
+    for (const QPolygonF &piece : pieces)
+        painter.drawPolyline(piece);
+}
+
 void MapPainter::paint(QPainter &painter) const {
     const MapColours c = mapColours();
     painter.fillRect(QRect({}, size_), c.background);
@@ -155,11 +170,7 @@ int MapPainter::paintCorrespondences(QPainter &painter) const {
 }
 
 void MapPainter::paintPath(QPainter &painter, MovingMap::Path path, const QPen &pen) const {
-    const QPolygonF shown = transform_.map(model_.way(path));
-    painter.setRenderHint(QPainter::Antialiasing, shown.size() <= smoothUpTo);
-    painter.setPen(pen);
-    for (const QPolygonF &piece : recent(shown, model_.breaks(path), QRectF(QPointF(), size_), longestSmooth))
-        painter.drawPolyline(piece);
+    paintWay(painter, model_.way(path), model_.breaks(path), transform_, size_, pen);
 }
 
 // The ellipse and the pie hold the pose with 95 %, and are drawn ten times their size: on a good day

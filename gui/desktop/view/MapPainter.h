@@ -73,6 +73,11 @@ private:
     const QSize size_;
 };
 
+/// Draws a way of the robot (in metres), broken before the points of those numbers: the newest of it, where
+/// all would take too long.
+void paintWay(QPainter &painter, const QPolygonF &way, const QVector<int> &breaks,
+              const QTransform &transform, const QSize &size, QPen pen);
+
 /// The distance between lines of the grid at so many pixels a metre: 1, 2 or 5 times a power of ten, some
 /// 80 pixels.
 double gridStep_m(double pixelsPerMetre);

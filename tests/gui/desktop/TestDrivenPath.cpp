@@ -1,5 +1,10 @@
 #include "gui/desktop/view/Clipping.h"
+#include "gui/desktop/view/MapPainter.h"
 #include "tests/gui/desktop/EightSession.h"
+#include "tests/support/Patience.h"
+#include "tests/support/ThreadTime.h"
+
+#include <QPainter>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -14,6 +19,8 @@ private Q_SLOTS:
     void fastReplayHasAPath();
     void breaksGoWithTheirPoints();
     void piecesOfAPathAreDrawn();
+    void pointsThatNobodyCanTellApart();
+    void anHourOfCirclesIsDrawnFast();
 };
 
 void TestDrivenPath::pathIsFixedToKeyScans() {
@@ -91,15 +98,54 @@ void TestDrivenPath::breaksGoWithTheirPoints() {
 void TestDrivenPath::piecesOfAPathAreDrawn() {
     const QPolygonF path(QVector<QPointF>{{0, 0}, {10, 0}, {20, 0}, {500, 500}, {20, 20}, {10, 20}});
     const QRectF seen(0, 0, 100, 100);
-    const auto pieces = recent(path, {3, 4}, seen, 1e6);
+    const auto pieces = recent(path, {3, 4}, {}, seen, 1e6);
     QCOMPARE(pieces.size(), 2); // a point alone is no line
     QCOMPARE(pieces[0], QPolygonF(path.mid(4)));
     QCOMPARE(pieces[1], QPolygonF(path.mid(0, 3)));
-    QCOMPARE(recent(path, {3, 4}, seen, 15).size(), 2);
-    QCOMPARE(recent(path, {3, 4}, seen, 15).back().size(), 2); // the oldest is left out
-    QCOMPARE(recent(path, {3, 4}, seen, 5).size(), 1);
-    QVERIFY(recent({}, {}, seen, 5).isEmpty());
-    QCOMPARE(recent(path, {2, 700}, seen, 1e6).size(), 2); // numbers of points that there are not
+    QCOMPARE(recent(path, {3, 4}, {}, seen, 15).size(), 2);
+    QCOMPARE(recent(path, {3, 4}, {}, seen, 15).back().size(), 2); // the oldest is left out
+    QCOMPARE(recent(path, {3, 4}, {}, seen, 5).size(), 1);
+    QVERIFY(recent({}, {}, {}, seen, 5).isEmpty());
+    QCOMPARE(recent(path, {2, 700}, {}, seen, 1e6).size(), 2); // numbers of points that there are not
+}
+
+void TestDrivenPath::pointsThatNobodyCanTellApart() {
+    QPolygonF path;
+    for (int i = 0; i <= 1000; ++i)
+        path.append({0.1 * i, 0});
+    const auto pieces = recent(path, {505}, {}, QRectF(-1, -1, 200, 200), 1e6);
+    QCOMPARE(pieces.size(), 2);
+    QCOMPARE(pieces[0].back(), path.back());
+    QCOMPARE(pieces[0].front(), path[505]);
+    QCOMPARE(pieces[1].back(), path[504]);
+    QCOMPARE(pieces[1].front(), path.front());
+    for (const QPolygonF &piece : pieces)
+        QVERIFY2(piece.size() > 20 && piece.size() < 30, qPrintable(QString::number(piece.size())));
+}
+
+// 700 m of circles, one upon the other: three such ways are drawn ten times a second, for less than 10 ms.
+void TestDrivenPath::anHourOfCirclesIsDrawnFast() {
+    QPolygonF way; // metres
+    for (int i = 0; i < 35000; ++i)
+        way.append({(0.9 + 1e-6 * i) * std::cos(0.02 * i), 0.9 * std::sin(0.02 * i)});
+    QImage image(1280, 720, QImage::Format_RGB32);
+    image.fill(Qt::white);
+    QPainter painter(&image);
+    const auto draw_ms = [&](Qt::PenStyle style) {
+        double least = 1e9;
+        for (int i = 0; i < 20; ++i) {
+            const double before = threadTime_ms();
+            paintWay(painter, way, {}, QTransform(60, 0, 0, -60, 640, 360), image.size(),
+                     QPen(Qt::red, 1.5, style));
+            least = std::min(least, threadTime_ms() - before);
+        }
+        return least;
+    };
+    const double all = draw_ms(Qt::SolidLine) + draw_ms(Qt::DashLine) + draw_ms(Qt::DotLine);
+    qInfo("figure three ways of 700 m: %.1f ms of the processor", all);
+    QVERIFY2(all < 10 * slowness, qPrintable(QString::number(all)));
+    painter.end();
+    QVERIFY(image.pixelColor(640 + 54, 360).value() < 256 && image.pixelColor(640 + 54, 360) != Qt::white);
 }
 
 QTEST_MAIN(TestDrivenPath)

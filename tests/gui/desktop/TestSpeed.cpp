@@ -4,12 +4,12 @@
 #include "tests/gui/desktop/OpenWindow.h"
 #include "tests/support/LoopWatch.h"
 #include "tests/support/Patience.h"
+#include "tests/support/ThreadTime.h"
 
 #include <QPlainTextEdit>
 #include <QTcpServer>
 #include <QTcpSocket>
 #include <csignal>
-#include <ctime>
 
 using namespace hermes;
 using namespace hermes::desktop;
@@ -30,11 +30,6 @@ private Q_SLOTS:
 private:
     static void figure(const char *name, double value, const char *unit) {
         qInfo("figure %s: %.3g %s", name, value, unit);
-    }
-    static double processor_ms() { // of this thread
-        timespec now{};
-        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-        return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
     }
     static double median(std::vector<double> values) {
         std::sort(values.begin(), values.end());
@@ -160,9 +155,9 @@ void TestSpeed::framesOfALongDrive() {
     const auto frame_ms = [&] {
         std::vector<double> times;
         for (int i = 0; i < 20; ++i) {
-            const double before = processor_ms();
+            const double before = threadTime_ms();
             view.repaint();
-            times.push_back(processor_ms() - before);
+            times.push_back(threadTime_ms() - before);
         }
         return median(times);
     };
@@ -204,9 +199,9 @@ void TestSpeed::largeMapArrivesWhole() {
     view.fit(); // all of it is in sight
     std::vector<double> frames_ms;
     for (int i = 0; i < 20; ++i) {
-        const double before = processor_ms();
+        const double before = threadTime_ms();
         view.repaint();
-        frames_ms.push_back(processor_ms() - before);
+        frames_ms.push_back(threadTime_ms() - before);
     }
     figure("a frame, 100,000 edges, median", median(frames_ms), "ms of the processor");
     QVERIFY2(median(frames_ms) < 50 * slowness, qPrintable(QString::number(median(frames_ms))));

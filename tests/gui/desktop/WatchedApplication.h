@@ -1,10 +1,11 @@
 #pragma once
 
+#include "tests/support/ThreadTime.h"
+
 #include <QApplication>
 #include <QElapsedTimer>
 #include <QEvent>
 #include <QWidget>
-#include <ctime>
 
 namespace hermes {
 
@@ -23,13 +24,13 @@ public:
                                 QByteArray::number(event->type()); // it may be gone afterwards
         QElapsedTimer time;
         time.start();
-        const double before_ms = processor_ms();
+        const double before_ms = threadTime_ms();
         ++depth_;
         const bool done = QApplication::notify(receiver, event);
         --depth_;
         const double ms = double(time.nsecsElapsed()) * 1e-6;
         over50 += ms > 50;
-        over50Cpu += processor_ms() - before_ms > 50;
+        over50Cpu += threadTime_ms() - before_ms > 50;
         if (ms > longest_ms) {
             longest_ms = ms;
             longest = name;
@@ -43,12 +44,6 @@ public:
     int shown = 0;
 
 private:
-    static double processor_ms() { // of this thread
-        timespec now{};
-        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-        return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
-    }
-
     int depth_ = 0;
 };
 
