@@ -102,9 +102,9 @@ void SessionRecorder::begin(const SessionMembers &members, const QString &name,
     callAll(callsOf(members.all, params), "record.start", members.timeout, this,
             [=](const SessionReplies &replies) {
                 if (complaints(replies).isEmpty())
-                    done(replies);
-                else
-                    takeBack(name, replies, done);
+                    return done(replies);
+                takenBack_ = params["session"].toString();
+                takeBack(name, replies, done);
             });
 }
 

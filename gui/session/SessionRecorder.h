@@ -33,6 +33,8 @@ public:
     /// All begin one session, or none does: those that have begun, or may have, are stopped, and the error
     /// tells so. Gives the replies to record.start.
     void start(const QString &name, const Done<Result<SessionReplies>> &done);
+    /// The id of the last session that start() had to stop; empty: none.
+    const QString &takenBack() const { return takenBack_; }
     /// Ends the recording of all, and compares what each told at its end with its sidecar. NotReady when
     /// nothing is being recorded, and nothing has ended by an error.
     void stop(const Done<Result<Stopped>> &done);
@@ -55,6 +57,7 @@ private:
     void end(const States &states, const Done<Result<Stopped>> &done);
 
     SessionMembers members_;
+    QString takenBack_;
 };
 
 } // namespace hermes

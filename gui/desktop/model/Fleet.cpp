@@ -84,6 +84,11 @@ Robot *Fleet::makeRobot(const QString &host, const QString &address, DaemonLink 
     return robot;
 }
 
+DaemonLink *Fleet::daemonAt(const QString &address) const {
+    const auto entry = entries_.find({address.section(':', 0, -2), address.section(':', -1).toUShort()});
+    return entry == entries_.end() ? nullptr : entry->second.link.get();
+}
+
 Robot *Fleet::robotOf(const DaemonLink *daemon) const {
     for (const auto &robot : robots_)
         if (daemon && robot->has(daemon))

@@ -31,6 +31,8 @@ public:
     void setObjection(const Objection &objection) { objection_ = objection; }
 
     const std::vector<std::unique_ptr<Robot>> &robots() const { return robots_; }
+    /// Null: there is none.
+    DaemonLink *daemonAt(const QString &address) const;
     /// Whose daemon it is; null: nobody's.
     Robot *robotOf(const DaemonLink *daemon) const;
     /// Puts a daemon that no supervisor names to another robot of its host that has none; null: to one of its

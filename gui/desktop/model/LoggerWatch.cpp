@@ -11,6 +11,17 @@ constexpr double rateOver_s = 10;
 
 } // namespace
 
+SessionMembers loggersOf(const Robot &robot) {
+    SessionMembers members;
+    for (DaemonLink *daemon : robot.daemons())
+        if (daemon->isConnected() && daemon->description().isEmpty())
+            members.silent.append(LoggerWatch::tr("%1: it does not say what it can do").arg(daemon->name()));
+        else if (daemon->isConnected())
+            members.add(daemon->name(), daemon->client(),
+                        [daemon](const QString &method) { return daemon->hasMethod(method); });
+    return members;
+}
+
 LoggerWatch::LoggerWatch(Fleet &fleet, QObject *parent)
     : QObject(parent)
     , fleet_(fleet) {
@@ -23,13 +34,7 @@ LoggerWatch::LoggerWatch(Fleet &fleet, QObject *parent)
 
 void LoggerWatch::follow() {
     const bool isOther = std::exchange(robot_, fleet_.robot()) != fleet_.robot();
-    const auto before = std::exchange(members_, {}).all;
-    for (DaemonLink *daemon : fleet_.robot() ? fleet_.robot()->daemons() : std::vector<DaemonLink *>())
-        if (daemon->isConnected() && daemon->description().isEmpty())
-            members_.silent.append(tr("%1: it does not say what it can do").arg(daemon->name()));
-        else if (daemon->isConnected())
-            members_.add(daemon->name(), daemon->client(),
-                         [daemon](const QString &method) { return daemon->hasMethod(method); });
+    const auto before = std::exchange(members_, robot_ ? loggersOf(*robot_) : SessionMembers()).all;
     const bool isSame =
         std::equal(before.begin(), before.end(), members_.all.begin(), members_.all.end(),
                    [](const SessionMember &a, const SessionMember &b) { return a.client == b.client; });
@@ -61,7 +66,8 @@ void LoggerWatch::drop(const std::vector<SessionMember> &before) {
         if (isHere || state == states_.end())
             continue;
         if (state->second["recording"].toBool())
-            lost_[member.name] = {state->second["name"].toString(), false};
+            lost_[member.name] = {state->second["name"].toString(), state->second["session"].toString(),
+                                  false};
         states_.erase(state);
     }
 }
@@ -82,16 +88,27 @@ void LoggerWatch::take(const SessionReply &reply) {
     for (const SessionMember &known : members_.all) {
         if (known.client != reply.member.client || !reply.result)
             continue;
-        const QJsonObject state = reply.result->toObject();
-        states_[known.name] = state;
-        const auto lost = lost_.find(known.name);
-        if (lost == lost_.end())
-            continue;
-        lost->second.isBack = true;
-        if (state["recording"].toBool() && state["name"].toString() == lost->second.recording)
-            lost_.erase(lost); // the link was away, not the logger
+        const QJsonObject now = reply.result->toObject();
+        compare(known.name, std::exchange(states_[known.name], now), now);
     }
     Q_EMIT changed();
+}
+
+/// Whether what it recorded goes on.
+void LoggerWatch::compare(const QString &logger, const QJsonObject &before, const QJsonObject &now) {
+    const auto lost = lost_.find(logger);
+    const bool wasGone = lost != lost_.end() && !lost->second.isBack;
+    if (!wasGone && !before["recording"].toBool())
+        return;
+    const Lost was =
+        wasGone ? lost->second : Lost{before["name"].toString(), before["session"].toString(), false};
+    const QString session = now["session"].toString();
+    if (session != was.session && (wasGone || session.isEmpty())) // it knows of none: it began anew
+        lost_[logger] = {was.recording, was.session, true};
+    else if (wasGone)
+        lost_.erase(lost); // the link was away, not the logger
+    if (session != was.session || !now["recording"].toBool())
+        Q_EMIT ended(was.session, was.recording);
 }
 
 void LoggerWatch::forgetLost() {

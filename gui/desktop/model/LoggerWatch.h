@@ -7,6 +7,9 @@
 
 namespace hermes::desktop {
 
+/// Those of a robot that can be spoken to.
+SessionMembers loggersOf(const Robot &robot);
+
 /// The loggers of the chosen robot, and what record.status says of each, asked once a second. One that goes
 /// while it records is remembered.
 class LoggerWatch : public QObject {
@@ -33,7 +36,7 @@ public:
     QStringList silent() const;
     /// A logger that was gone while it recorded.
     struct Lost {
-        QString recording;
+        QString recording, session;
         bool isBack = false;
     };
     /// By the name of the logger, until forgetLost() or another robot.
@@ -51,11 +54,14 @@ Q_SIGNALS:
     void changed();
     /// Loggers came or went.
     void membersChanged();
+    /// A logger records the session (an id) no more; name: of the recording.
+    void ended(const QString &session, const QString &name);
 
 private:
     void follow();
     void drop(const std::vector<SessionMember> &before);
     void take(const SessionReply &reply);
+    void compare(const QString &logger, const QJsonObject &before, const QJsonObject &now);
     SessionMembers recordingMembers(bool onlyMarkers) const;
     std::vector<QJsonObject> recording() const;
 

@@ -1,86 +1,173 @@
 #include "gui/desktop/model/RecordingStop.h"
 
+#include <algorithm>
+
 namespace hermes::desktop {
 namespace {
 
-QString addressOf(const SessionMember &member) {
-    return member.client ? member.client->address() : QString();
+QString addressOf(const Robot &robot, const SessionMember &member) {
+    for (DaemonLink *const daemon : robot.daemons())
+        if (&daemon->client() == member.client)
+            return daemon->address();
+    return {};
 }
 
 } // namespace
 
-RecordingStop::RecordingStop(LoggerWatch &watch, QObject *parent)
+RecordingStop::RecordingStop(Fleet &fleet, const QString &title, QObject *parent)
     : QObject(parent)
-    , watch_(watch) {
-    connect(&watch, &LoggerWatch::changed, this, &RecordingStop::goOn);
+    , fleet_(fleet)
+    , title_(title) {
+    connect(&timer_, &QTimer::timeout, this, &RecordingStop::goOn);
+    timer_.start(std::chrono::seconds(1));
 }
 
-void RecordingStop::begin() {
-    sessions_ += watch_.sessions();
-    answered_.clear();
-    unconfirmed_.clear();
-    goOn();
+void RecordingStop::begin(const LoggerWatch &watch) {
+    sessions_ += watch.sessions();
+    for (const SessionMember &member : watch.recordingMembers().all) {
+        const QString address = fleet_.robot() ? addressOf(*fleet_.robot(), member) : QString();
+        const auto known = loggers_.find(address);
+        if (!address.isEmpty() && (known == loggers_.end() || known->second.state == State::Answered))
+            tell(address, member);
+    }
 }
 
-/// Loggers that record what is to end.
-std::vector<SessionMember> RecordingStop::unanswered() const {
-    std::vector<SessionMember> found;
-    for (const SessionMember &member : watch_.recordingMembers().all)
-        if (sessions_.contains(watch_.states().at(member.name)["session"].toString()) &&
-            !answered_.contains(addressOf(member)))
-            found.push_back(member);
+bool RecordingStop::isOf(const Robot *robot) const {
+    const std::vector<Robot *> all = robots();
+    return std::find(all.begin(), all.end(), robot) != all.end();
+}
+
+/// Whose they are now: a daemon may turn out to be of another robot.
+std::vector<Robot *> RecordingStop::robots() const {
+    std::vector<Robot *> found;
+    for (const auto &[address, logger] : loggers_) {
+        Robot *const robot = fleet_.robotOf(fleet_.daemonAt(address));
+        if (robot && std::find(found.begin(), found.end(), robot) == found.end())
+            found.push_back(robot);
+    }
     return found;
 }
 
-QStringList RecordingStop::waitingFor() const {
+QStringList RecordingStop::silent() const {
     QStringList names;
-    for (const SessionMember &member : unanswered())
-        names.append(member.name);
+    for (const auto &[address, logger] : loggers_) {
+        const DaemonLink *const daemon = fleet_.daemonAt(address);
+        if (logger.state != State::Answered && daemon && daemon->isSilent())
+            names.append(logger.member.name);
+    }
     return names;
 }
 
 void RecordingStop::goOn() {
-    if (checks_)
+    const std::vector<Robot *> all = robots();
+    if (all.empty()) {
+        timer_.stop();
+        const bool doubt =
+            isUnderWay() || std::any_of(loggers_.begin(), loggers_.end(), [](const auto &logger) {
+                return logger.second.state != State::Answered;
+            });
+        return Q_EMIT removed(doubt);
+    }
+    for (const Robot *const robot : all)
+        for (const SessionMember &member : loggersOf(*robot).all)
+            ask(addressOf(*robot, member), member);
+    checkWhenAnswered();
+    Q_EMIT changed();
+}
+
+/// One that was away may record as well.
+void RecordingStop::ask(const QString &address, const SessionMember &member) {
+    if (asked_.contains(address) || !mayBeAsked(address))
         return;
-    for (const SessionMember &member : unanswered()) {
-        const QString address = addressOf(member);
-        if (told_.contains(address))
-            continue;
-        isUnderWay_ = true;
-        told_.insert(address);
-        callAll({{member, {}}}, "record.stop", SessionRecorder::stopLimit, this,
-                [this, address](const SessionReplies &replies) { take(address, replies.front()); });
-    }
-    if (isUnderWay_ && told_.isEmpty())
-        check();
+    asked_.insert(address);
+    const auto told = [this, address](const SessionReplies &replies) {
+        asked_.remove(address);
+        if (replies.front().result) // else it is asked again
+            take(address, replies.front().member, replies.front().result->toObject());
+    };
+    callAll({{member, {}}}, "record.status", Client::defaultTimeout, this, told);
 }
 
-void RecordingStop::take(const QString &address, const SessionReply &reply) {
-    told_.remove(address);
-    const auto is = [&](ErrorCode code) { return !reply.result && reply.result.error().is(code); };
-    if (is(ErrorCode::TimedOut) || is(ErrorCode::Disconnected)) {
-        unconfirmed_[address] = reply.member.name;
-    } else {
-        unconfirmed_.remove(address);
-        answered_.insert(address);
-        if (!is(ErrorCode::NotReady)) // it had ended before: its sidecar tells how
-            ends_.push_back(reply);
-    }
-    watch_.poll();
-    goOn();
+void RecordingStop::take(const QString &address, const SessionMember &member, const QJsonObject &state) {
+    if (!mayBeAsked(address)) // told meanwhile
+        return;
+    if (state["recording"].toBool() && ends(state["session"].toString()))
+        return tell(address, member);
+    const auto known = loggers_.find(address);
+    if (known == loggers_.end())
+        return;
+    known->second.state = State::Answered; // its sidecar tells how it ended
+    isToCheck_ = true;
+    checkWhenAnswered();
 }
 
-void RecordingStop::check() {
-    checks_ = true;
-    recorder_.setMembers(watch_.members());
-    recorder_.check(sessions_, std::exchange(ends_, {}), [this](const SessionRecorder::Stopped &stopped) {
-        checks_ = isUnderWay_ = false;
-        QStringList problems = stopped.problems; // of another robot's loggers, when that was chosen meanwhile
-        for (const QString &name : qAsConst(unconfirmed_))
-            problems.append(tr("%1 has not confirmed that it stopped: it may still record").arg(name));
+/// It was not told, or has not confirmed it.
+bool RecordingStop::mayBeAsked(const QString &address) const {
+    const auto known = loggers_.find(address);
+    return known == loggers_.end() || known->second.state == State::Unconfirmed;
+}
+
+void RecordingStop::tell(const QString &address, const SessionMember &member) {
+    loggers_[address] = {member, State::Told, {}};
+    isToCheck_ = true;
+    callAll({{member, {}}}, "record.stop", SessionRecorder::stopLimit, this,
+            [this, address](const SessionReplies &replies) {
+                take(loggers_.at(address), replies.front().result);
+                checkWhenAnswered();
+            });
+}
+
+void RecordingStop::take(Logger &logger, const Result<QJsonValue> &reply) {
+    const auto is = [&](ErrorCode code) { return !reply && reply.error().is(code); };
+    const bool hasAnswered = !is(ErrorCode::TimedOut) && !is(ErrorCode::Disconnected);
+    logger.state = hasAnswered ? State::Answered : State::Unconfirmed;
+    if (hasAnswered && !is(ErrorCode::NotReady)) // it had ended before: its sidecar tells how
+        logger.end = reply;
+}
+
+bool RecordingStop::isWaitedFor(const QString &address, const Logger &logger) const {
+    const DaemonLink *const daemon = fleet_.daemonAt(address);
+    return logger.state == State::Told ||
+           (logger.state == State::Unconfirmed && daemon && daemon->isConnected());
+}
+
+void RecordingStop::checkWhenAnswered() {
+    const auto isWaitedFor = [this](const auto &one) { return this->isWaitedFor(one.first, one.second); };
+    if (!isToCheck_ || isChecking_ || std::any_of(loggers_.begin(), loggers_.end(), isWaitedFor))
+        return;
+    isToCheck_ = false;
+    isChecking_ = true;
+    SessionMembers members;
+    for (const Robot *const robot : robots()) {
+        const SessionMembers loggers = loggersOf(*robot);
+        members.all.insert(members.all.end(), loggers.all.begin(), loggers.all.end());
+        members.silent += loggers.silent;
+    }
+    recorder_.setMembers(members);
+    recorder_.check(sessions_, takeEnds(members), [this](const SessionRecorder::Stopped &stopped) {
+        isChecking_ = false;
+        QStringList problems = stopped.problems;
+        for (const auto &[address, logger] : loggers_)
+            if (logger.state == State::Unconfirmed)
+                problems.append(
+                    tr("%1 has not confirmed that it stopped: it may still record").arg(logger.member.name));
         Q_EMIT ended(problems);
-        goOn();
+        checkWhenAnswered();
     });
+}
+
+/// Under the names that the members have now.
+SessionReplies RecordingStop::takeEnds(const SessionMembers &members) {
+    SessionReplies ends;
+    for (auto &[address, logger] : loggers_) {
+        if (!logger.end)
+            continue;
+        for (const SessionMember &member : members.all)
+            if (member.client == logger.member.client)
+                logger.member = member;
+        ends.push_back({logger.member, *std::exchange(logger.end, std::nullopt)});
+    }
+    return ends;
 }
 
 } // namespace hermes::desktop

@@ -5,37 +5,59 @@
 
 namespace hermes::desktop {
 
-/// Ends what the robot records: each logger is told at once, and again until it has answered, for as long as
-/// it takes. One that is gone is not waited for, but told when it comes back and still records.
+/// Ends what one robot records, whichever robot is chosen meanwhile: each logger is told at once, and again
+/// until it has answered, for as long as it takes. One that is gone is not waited for, but told when it comes
+/// back and still records. What is begun later goes on.
 class RecordingStop : public QObject {
     Q_OBJECT
 public:
-    explicit RecordingStop(LoggerWatch &watch, QObject *parent = nullptr);
+    /// title: of the robot, for people.
+    RecordingStop(Fleet &fleet, const QString &title, QObject *parent = nullptr);
 
-    void begin();
-    /// A new recording begins: none of before is to end any more.
-    void forget() { sessions_.clear(); }
-    bool isUnderWay() const { return isUnderWay_; }
-    /// Who has not answered as yet.
-    QStringList waitingFor() const;
+    /// All that the watch knows to be under way is to end, too.
+    void begin(const LoggerWatch &watch);
+    bool isUnderWay() const { return isToCheck_ || isChecking_; }
+    bool ends(const QString &session) const { return sessions_.contains(session); }
+    bool isOf(const Robot *robot) const;
+    const QString &title() const { return title_; }
+    /// Who has not answered as yet, and answers nothing else either.
+    QStringList silent() const;
 
 Q_SIGNALS:
+    void changed();
     /// All have answered; what is missing, or does not agree.
     void ended(const QStringList &problems);
+    /// Its loggers are no robot's any more. doubt: some may still record.
+    void removed(bool doubt);
 
 private:
-    std::vector<SessionMember> unanswered() const;
-    void goOn();
-    void take(const QString &address, const SessionReply &reply);
-    void check();
+    enum class State { Told, Unconfirmed, Answered };
+    /// Who was told to stop.
+    struct Logger {
+        SessionMember member;
+        State state = State::Told;
+        std::optional<Result<QJsonValue>> end; ///< that is to be compared with its sidecar
+    };
 
-    LoggerWatch &watch_;
+    std::vector<Robot *> robots() const;
+    void goOn();
+    void ask(const QString &address, const SessionMember &member);
+    bool mayBeAsked(const QString &address) const;
+    void take(const QString &address, const SessionMember &member, const QJsonObject &state);
+    void tell(const QString &address, const SessionMember &member);
+    void take(Logger &logger, const Result<QJsonValue> &reply);
+    bool isWaitedFor(const QString &address, const Logger &logger) const;
+    void checkWhenAnswered();
+    SessionReplies takeEnds(const SessionMembers &members);
+
+    Fleet &fleet_;
+    const QString title_;
+    QTimer timer_;
     SessionRecorder recorder_;
-    QSet<QString> sessions_;             ///< that were to end
-    QSet<QString> told_, answered_;      ///< the addresses of loggers
-    QMap<QString, QString> unconfirmed_; ///< names of those that were told and gave no answer, by address
-    SessionReplies ends_;
-    bool isUnderWay_ = false, checks_ = false;
+    QSet<QString> sessions_;            ///< that are to end
+    std::map<QString, Logger> loggers_; ///< by address
+    QSet<QString> asked_;               ///< the addresses of loggers that are asked what they record
+    bool isToCheck_ = false, isChecking_ = false;
 };
 
 } // namespace hermes::desktop

@@ -1,10 +1,10 @@
 #include "gui/desktop/panels/RecordPanel.h"
 
 #include "gui/desktop/Theme.h"
+#include "gui/desktop/panels/RecordTexts.h"
 #include "gui/desktop/panels/ReplayBar.h"
 #include "gui/desktop/panels/SessionTable.h"
 #include "gui/desktop/widgets/MessageLabel.h"
-#include "gui/desktop/widgets/Quantities.h"
 
 #include <QAction>
 #include <QHBoxLayout>
@@ -24,6 +24,7 @@ constexpr int longestName = 60;
 RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
     , watch_(fleet)
+    , stops_(fleet, watch_)
     , name_(new QLineEdit("run1"))
     , mark_(new QLineEdit)
     , record_(new QPushButton)
@@ -41,6 +42,7 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     connectAll();
     connect(&fleet, &Fleet::robotChosen, this, [this] { // what was recorded there is not here
         list_ = {};
+        ends_.clear();
         sessions_->tell(list_);
         message_->hide();
         list();
@@ -124,9 +126,15 @@ void RecordPanel::connectAll() {
             [this] { player_.isPlaying() ? player_.end() : Q_EMIT liveWanted(); });
     connect(sessions_, &SessionTable::currentItemChanged, this, &RecordPanel::update);
     connect(sessions_, &SessionTable::itemActivated, this, &RecordPanel::play);
-    connect(&watch_, &LoggerWatch::changed, this, &RecordPanel::update);
+    connect(&watch_, &LoggerWatch::changed, this, [this] {
+        if (std::exchange(listed_, watch_.sessions()) != watch_.sessions()) // whoever began or ended one
+            list();
+        update();
+    });
+    connect(&watch_, &LoggerWatch::ended, this, &RecordPanel::takeEnd);
     connect(&watch_, &LoggerWatch::membersChanged, this, &RecordPanel::list);
-    connect(&stop_, &RecordingStop::ended, this, &RecordPanel::showEnd);
+    connect(&stops_, &RecordingStops::changed, this, &RecordPanel::update);
+    connect(&stops_, &RecordingStops::ended, this, &RecordPanel::showStopped);
     connect(&player_, &SessionPlayer::ended, this, [this](const Result<void> &result) {
         message_->tell(result ? tr("The replay has ended; everything is live.") : result.error().message,
                        !result);
@@ -143,7 +151,7 @@ SessionRecorder &RecordPanel::recorder() {
 void RecordPanel::start() {
     const QString name = name_->text().trimmed();
     watch_.forgetLost();
-    stop_.forget();
+    stops_.forget();
     recorder().start(name, [this, name](const Result<SessionReplies> &replies) {
         message_->tell(replies ? tr("Recording %1.").arg(name) : replies.error().message, !replies);
         if (replies)
@@ -154,13 +162,33 @@ void RecordPanel::start() {
 }
 
 void RecordPanel::stop() {
-    stop_.begin();
+    stops_.begin();
     update();
 }
 
-void RecordPanel::showEnd(const QStringList &problems) {
-    message_->tell(problems.isEmpty() ? tr("Stopped, nothing missing.") : problems.join('\n'),
-                   !problems.isEmpty());
+/// Unless it was ended from here.
+void RecordPanel::takeEnd(const QString &session, const QString &name) {
+    const RecordingStop *const stop = stops_.chosen();
+    if ((stop && stop->ends(session)) || recorder_.takenBack() == session)
+        return;
+    ends_[session] = name;
+    list();
+}
+
+/// As the list has them now.
+void RecordPanel::showEnds() {
+    QStringList lines;
+    const QMap<QString, QString> ends = std::exchange(ends_, {});
+    for (auto end = ends.begin(); end != ends.end(); ++end)
+        lines += endLines(end.key(), end.value(), watch_, list_);
+    if (!lines.isEmpty())
+        message_->tell(lines.join('\n'), lines.size() > ends.size()); // with reasons
+}
+
+void RecordPanel::showStopped(const QString &text, bool isError, bool isChosen) {
+    message_->tell(text, isError);
+    if (!isChosen)
+        return;
     sessions_->setCurrentItem(nullptr); // the latest is chosen
     watch_.poll();
     list();
@@ -200,6 +228,7 @@ void RecordPanel::list() {
         list_ = found;
         sessions_->tell(found);
         proposeName();
+        showEnds();
         update();
     });
 }
@@ -255,12 +284,10 @@ void RecordPanel::update() {
 }
 
 void RecordPanel::showStop() {
-    if (!stop_.isUnderWay())
+    const RecordingStop *const stop = stops_.chosen();
+    if (!stop || !stop->isUnderWay())
         return;
-    QStringList silent;
-    for (const QString &name : stop_.waitingFor())
-        if (watch_.silent().contains(name.section('@', 0, 0)))
-            silent.append(name);
+    const QStringList silent = stop->silent();
     message_->tell(silent.isEmpty()
                        ? tr("Stopping.")
                        : tr("%1 does not answer, and may go on recording. Stop is sent again until it "
@@ -271,46 +298,18 @@ void RecordPanel::showStop() {
 
 void RecordPanel::showAmount() {
     const QStringList silent = watch_.silent();
+    const QString amount = amountText(watch_, list_);
     amount_->setEnabled(silent.isEmpty()); // else it is old
-    amount_->setText(silent.isEmpty()
-                         ? amountText()
-                         : tr("%1 does not answer; last known: %2").arg(silent.join(", "), amountText()));
+    amount_->setText(
+        silent.isEmpty() ? amount : tr("%1 does not answer; last known: %2").arg(silent.join(", "), amount));
 }
 
 void RecordPanel::showLost() {
-    QStringList lines;
-    for (const auto &[name, lost] : watch_.lost())
-        lines.append(
-            lost.isBack
-                ? tr("%1 was gone while it recorded %2: what it has of it ends there.")
-                      .arg(name, shortLine(lost.recording, longestName))
-                : tr("%1 was recording %2 and is gone.").arg(name, shortLine(lost.recording, longestName)));
+    QStringList lines = stops_.silentElsewhere();
+    if (!watch_.lost().empty())
+        lines.append(lostText(watch_));
     lost_->setText(lines.join('\n'));
     lost_->setVisible(!lines.isEmpty());
-}
-
-QString RecordPanel::amountText() const {
-    if (watch_.members().all.empty())
-        return tr("No logger is connected.");
-    if (!watch_.isRecording()) {
-        QStringList names;
-        for (const SessionMember &member : watch_.members().all)
-            names.append(member.name);
-        QString text = tr("Records with %1.").arg(names.join(", "));
-        if (list_.unlisted > 0)
-            text += ' ' + tr("%1 older recordings are not listed.").arg(list_.unlisted);
-        return text;
-    }
-    QString text = tr("%1: %2, %3")
-                       .arg(shortLine(watch_.name(), longestName), durationText(watch_.seconds()),
-                            sizeText(watch_.bytes()));
-    if (watch_.secondsLeft() > 0)
-        text += tr(", the disk will do for %1").arg(durationText(watch_.secondsLeft()));
-    for (const auto &[name, state] : watch_.states())
-        if (state["recording"].toBool() && sumOf(state["losses"]) > 0) // one packet may count as several
-            text +=
-                tr("; %1 lost: %2").arg(name, shortLine(countsText(state["losses"]).replace('_', ' '), 100));
-    return text;
 }
 
 } // namespace hermes::desktop

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gui/desktop/model/RecordingStop.h"
+#include "gui/desktop/model/RecordingStops.h"
 #include "gui/session/SessionPlayer.h"
 
 #include <QWidget>
@@ -39,7 +39,9 @@ private:
     SessionRecorder &recorder();
     void start();
     void stop();
-    void showEnd(const QStringList &problems);
+    void showStopped(const QString &text, bool isError, bool isChosen);
+    void takeEnd(const QString &session, const QString &name);
+    void showEnds();
     void mark();
     QString markText();
     void list();
@@ -49,18 +51,19 @@ private:
     void showStop();
     void showAmount();
     void showLost();
-    QString amountText() const;
 
     LoggerWatch watch_;
     SessionRecorder recorder_;
-    RecordingStop stop_{watch_};
+    RecordingStops stops_;
     SessionPlayer player_;
     SessionList list_;
     bool isReplaying_ = false;
-    int listing_ = 0;        ///< counts the times that it was asked for
-    QString played_;         ///< the id of the session
-    QSet<QString> markedIn_; ///< the sessions that the number is of
-    int markNumber_ = 0;     ///< of the last mark
+    int listing_ = 0;             ///< counts the times that it was asked for
+    QSet<QString> listed_;        ///< the sessions that were under way then
+    QMap<QString, QString> ends_; ///< names of recordings that ended otherwise, by session; to be told
+    QString played_;              ///< the id of the session
+    QSet<QString> markedIn_;      ///< the sessions that the number is of
+    int markNumber_ = 0;          ///< of the last mark
     QLineEdit *name_, *mark_;
     QPushButton *record_, *addMark_, *replay_, *live_;
     QAction *takeMark_;

@@ -132,6 +132,9 @@ void TestRecordPanel::aStartThatTimesOutIsTakenBack() {
                      message().contains("late had begun and was stopped"),
                  qPrintable(message()));
     QVERIFY(!robot.isRecording());
+    const auto *const sessions = find<QTreeWidget>("sessions");
+    QTRY_VERIFY(sessions->topLevelItemCount() == 1 && sessions->topLevelItem(0)->text(2) != "goes on");
+    QVERIFY2(message().contains("late had begun and was stopped"), qPrintable(message()));
     panel_.reset();
 }
 
@@ -289,6 +292,7 @@ void TestRecordPanel::aLoggerThatDiesIsTold() {
     QTRY_VERIFY(find<QPushButton>("record")->isEnabled() &&
                 !find<QPushButton>("record")->text().contains("top"));
     QTRY_COMPARE(find<QLineEdit>("name")->text(), QString("run2"));
+    QTRY_COMPARE(message(), QString("The recording run1 has ended.\nseriallogger: it was cut off"));
     click("record"); // who begins anew has seen it
     QTRY_VERIFY(!lost->isVisible());
     panel_.reset();

@@ -1,0 +1,220 @@
+#include "common/client/DaemonAddress.h"
+#include "gui/desktop/panels/RecordPanel.h"
+#include "tests/gui/FakeLogger.h"
+#include "tests/gui/desktop/RobotProcesses.h"
+
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QRegularExpression>
+#include <QTreeWidget>
+
+using namespace hermes;
+using namespace hermes::desktop;
+
+/// A recording ends while another robot is chosen, or by others than the window.
+class TestRecordingEnd : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void aStopGoesOnWhileAnotherRobotIsChosen();
+    void aStopOfARobotThatIsRemoved();
+    void whatWasBegunLaterGoesOn();
+    void anotherClientEndsIt();
+    void aFullDiskEndsIt();
+    void aFaultEndsIt();
+    void cleanup() { panel_.reset(); }
+
+private:
+    /// A robot with a serial logger that may be frozen, the chosen one, beside one with a logger in the
+    /// process of the test.
+    struct TwoRobots {
+        TwoRobots() {
+            real.start("velodynelogger",
+                       {QString("source.port=%1").arg(reservePort()), "source.position_port=0",
+                        "record.folder=" + real.path("recordings")});
+            real.start("seriallogger", {"record.folder=" + real.path("recordings")});
+            real.connectTo(fleet);
+            other.add("other");
+            QVERIFY(fleet.add(address()).ok());
+            QTRY_VERIFY(fleet.daemonAt(address()) && fleet.robotOf(fleet.daemonAt(address())));
+            fleet.place(fleet.daemonAt(address()), nullptr);
+            fleet.rename(*fleet.robotAt("127.0.0.1"), "red");
+            fleet.choose(fleet.robotAt("127.0.0.1"));
+            for (const char *const name : {"velodynelogger", "seriallogger"}) {
+                clients.push_back(std::make_unique<Client>());
+                clients.back()->connectTo(asOwner(QString("127.0.0.1:%1").arg(real.port(name))));
+                QVERIFY(clients.back()->waitConnected().ok());
+            }
+        }
+        QString address() const { return other.loggers.front()->address().section("//", -1); }
+        void chooseOther() { fleet.choose(fleet.robotOf(fleet.daemonAt(address()))); }
+        static bool records(Client &client) {
+            return client.callAndWait("record.status")->toObject()["recording"].toBool();
+        }
+        bool lidarRecords() { return records(*clients[0]); }
+        bool serialRecords() { return records(*clients[1]); }
+
+        RobotProcesses real;
+        FakeRobot other;
+        Fleet fleet;
+        std::vector<std::unique_ptr<Client>> clients;
+    };
+
+    void open(Fleet &fleet, const QStringList &loggers) {
+        panel_ = std::make_unique<RecordPanel>(fleet);
+        panel_->show();
+        for (const QString &logger : loggers)
+            QTRY_VERIFY(text("amount").contains(logger));
+    }
+    void open(Fleet &fleet, FakeRobot &robot) {
+        QStringList names;
+        for (const auto &logger : robot.loggers) {
+            QVERIFY(fleet.add(logger->address().section("//", -1)).ok());
+            names.append(logger->info().name);
+        }
+        open(fleet, names);
+    }
+    /// Stop is pressed while the serial logger is frozen, and another robot is chosen.
+    void stopAndChooseOther(TwoRobots &robots) {
+        open(robots.fleet, {"velodynelogger", "seriallogger"});
+        click("record");
+        QTRY_COMPARE(button("record"), QString("S&top"));
+        QTRY_VERIFY(robots.lidarRecords() && robots.serialRecords());
+        robots.real.signal("seriallogger", SIGSTOP);
+        click("record");
+        robots.chooseOther();
+        QTRY_COMPARE(text("amount"), QString("Records with other."));
+        QTRY_VERIFY(!robots.lidarRecords());
+    }
+    template <typename T>
+    T *find(const QString &name) const {
+        return panel_->findChild<T *>(name);
+    }
+    QString text(const QString &label) const { return find<QLabel>(label)->text(); }
+    QString button(const QString &name) const { return find<QPushButton>(name)->text(); }
+    QString length(int row) const {
+        const QTreeWidgetItem *const item = find<QTreeWidget>("sessions")->topLevelItem(row);
+        return item ? item->text(2) : QString();
+    }
+    void click(const QString &button) { QTest::mouseClick(find<QPushButton>(button), Qt::LeftButton); }
+    /// So that it has asked all loggers several times.
+    bool recordsForSeconds(const QString &name) const {
+        return QRegularExpression('^' + name + ": ([4-9]|\\d\\d) s").match(text("amount")).hasMatch();
+    }
+
+    std::unique_ptr<RecordPanel> panel_;
+};
+
+void TestRecordingEnd::aStopGoesOnWhileAnotherRobotIsChosen() {
+    TwoRobots robots;
+    stopAndChooseOther(robots);
+    QTRY_COMPARE_WITH_TIMEOUT(text("lost"),
+                              QString("red: seriallogger does not answer, and may go on recording."), 15000);
+    click("record"); // of the other robot
+    QTRY_COMPARE(text("message"), QString("Recording run1."));
+    robots.real.signal("seriallogger", SIGCONT);
+    QTRY_VERIFY_WITH_TIMEOUT(!robots.serialRecords(), 15000);
+    QTRY_VERIFY_WITH_TIMEOUT(text("message") != "Recording run1.", 15000);
+    QCOMPARE(text("message"), QString("red: Stopped, nothing missing."));
+    QVERIFY(robots.other.isRecording());
+    QTRY_VERIFY(!find<QLabel>("lost")->isVisible());
+    robots.fleet.choose(robots.fleet.robotAt("127.0.0.1"));
+    QTRY_VERIFY(!length(0).isEmpty());
+    QVERIFY(length(0) != "goes on");
+    QVERIFY(find<QTreeWidget>("sessions")->topLevelItem(0)->toolTip(0).contains("seriallogger"));
+}
+
+void TestRecordingEnd::aStopOfARobotThatIsRemoved() {
+    TwoRobots robots;
+    stopAndChooseOther(robots);
+    QVERIFY(robots.fleet.remove(robots.fleet.robotAt("127.0.0.1")).ok());
+    QTRY_COMPARE(text("message"),
+                 QString("red was removed before its recording had ended: it may still record."));
+    robots.real.signal("seriallogger", SIGCONT);
+    click("record"); // of the other robot
+    QTRY_COMPARE(text("message"), QString("Recording run1."));
+    QTRY_VERIFY_WITH_TIMEOUT(recordsForSeconds("run1"), 15000);
+    QCOMPARE(text("message"), QString("Recording run1.")); // it was said once
+}
+
+/// Its link was gone as Stop was pressed, and others have begun another recording meanwhile.
+void TestRecordingEnd::whatWasBegunLaterGoesOn() {
+    FakeRobot robot;
+    FakeLogger &here = robot.add("here"), &away = robot.add("away");
+    Fleet fleet;
+    open(fleet, robot);
+    click("record");
+    QTRY_COMPARE(button("record"), QString("S&top"));
+    QTRY_VERIFY(here.recording.isActive() && away.recording.isActive());
+    DaemonLink *const link = fleet.robot()->withName("away");
+    link->client().close();
+    QTRY_COMPARE(text("lost"), QString("away was recording run1 and is gone."));
+    click("record");
+    QTRY_VERIFY2(text("message").contains("away: it took part, but does not answer"),
+                 qPrintable(text("message")));
+    QVERIFY(robot.clients.back()->callAndWait("record.stop").ok());
+    QVERIFY(robot.clients.back()->callAndWait("record.start", QJsonObject{{"name", "later"}}).ok());
+    QVERIFY(link->client().connectTo(away.address()).ok());
+    QTRY_VERIFY_WITH_TIMEOUT(recordsForSeconds("later"), 30000);
+    QVERIFY(away.recording.isActive());
+    click("record");
+    QTRY_VERIFY(!away.recording.isActive());
+    QTRY_COMPARE(text("message"), QString("Stopped, nothing missing."));
+}
+
+/// And begins one.
+void TestRecordingEnd::anotherClientEndsIt() {
+    FakeRobot robot;
+    robot.add("one");
+    robot.add("two");
+    Fleet fleet;
+    open(fleet, robot);
+    for (const auto &client : robot.clients)
+        QVERIFY(client->callAndWait("record.start", QJsonObject{{"name", "run1"}, {"session", "x"}}).ok());
+    QTRY_COMPARE(length(0), QString("goes on"));
+    QVERIFY(robot.clients.front()->callAndWait("record.stop").ok());
+    QTRY_COMPARE(text("message"), QString("one no longer records run1 (not from here)."));
+    QCOMPARE(length(0), QString("goes on"));
+    QVERIFY(robot.clients.back()->callAndWait("record.stop").ok());
+    QTRY_COMPARE(text("message"), QString("The recording run1 has ended (not from here)."));
+    QVERIFY(length(0) != "goes on" && !length(0).isEmpty());
+    QCOMPARE(button("record"), QString("Re&cord"));
+    QCOMPARE(find<QLineEdit>("name")->text(), QString("run2"));
+}
+
+void TestRecordingEnd::aFullDiskEndsIt() {
+    FakeRobot robot;
+    FakeLogger &logger = robot.add("lidar");
+    Fleet fleet;
+    open(fleet, robot);
+    click("record");
+    QTRY_COMPARE(length(0), QString("goes on"));
+    QTRY_COMPARE(button("record"), QString("S&top"));
+    const QJsonObject full{{"free_floor_bytes", 1e15}, {"free_warn_bytes", 1e15}};
+    QVERIFY(logger.settings().set({{"record", full}}).ok());
+    QTRY_VERIFY(!logger.recording.isActive());
+    QTRY_COMPARE(text("message"), QString("The recording run1 has ended.\nlidar: the disk was full"));
+    QVERIFY(length(0) != "goes on" && !length(0).isEmpty());
+    const auto colour = [this](const char *label) {
+        return find<QLabel>(label)->palette().color(QPalette::WindowText);
+    };
+    QCOMPARE(colour("message"), colour("lost"));
+}
+
+void TestRecordingEnd::aFaultEndsIt() {
+    FakeRobot robot;
+    FakeLogger &logger = robot.add("lidar");
+    Fleet fleet;
+    open(fleet, robot);
+    click("record");
+    QTRY_COMPARE(button("record"), QString("S&top"));
+    RecordingState state;
+    state.error = Error(ErrorCode::InputOutput, "the disk was pulled out");
+    logger.writer.setState(state);
+    QTRY_VERIFY2(text("message").startsWith("The recording run1 has ended.\nlidar: ") &&
+                     text("message").contains("the disk was pulled out"),
+                 qPrintable(text("message")));
+}
+
+QTEST_MAIN(TestRecordingEnd)
+#include "TestRecordingEnd.moc"
