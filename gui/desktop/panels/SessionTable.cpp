@@ -116,6 +116,11 @@ SessionTable::SessionTable(QWidget *parent)
     sortByColumn(Date, Qt::DescendingOrder);
 }
 
+/// As low as it can be: what is told below it is to be seen.
+QSize SessionTable::sizeHint() const {
+    return {QTreeWidget::sizeHint().width(), minimumHeight()};
+}
+
 void SessionTable::resizeEvent(QResizeEvent *event) {
     QTreeWidget::resizeEvent(event);
     if (std::exchange(hasRoom_, viewport()->width() >= roomyWidth) != hasRoom_)

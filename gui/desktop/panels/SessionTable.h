@@ -20,6 +20,7 @@ public:
     const std::vector<RecordedSession> &sessions() const { return sessions_; }
     /// Null: none.
     const RecordedSession *chosen() const;
+    QSize sizeHint() const override;
 
 protected:
     void resizeEvent(QResizeEvent *event) override;

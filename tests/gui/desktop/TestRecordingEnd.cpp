@@ -7,6 +7,7 @@
 #include <QLineEdit>
 #include <QPushButton>
 #include <QRegularExpression>
+#include <QScrollArea>
 #include <QTreeWidget>
 
 using namespace hermes;
@@ -22,6 +23,7 @@ private Q_SLOTS:
     void anotherClientEndsIt();
     void aFullDiskEndsIt();
     void aFaultEndsIt();
+    void whatIsToldIsInView();
     void cleanup() { panel_.reset(); }
 
 private:
@@ -214,6 +216,20 @@ void TestRecordingEnd::aFaultEndsIt() {
     QTRY_VERIFY2(text("message").startsWith("The recording run1 has ended.\nlidar: ") &&
                      text("message").contains("the disk was pulled out"),
                  qPrintable(text("message")));
+}
+
+/// In a dock that is not high the list gives way.
+void TestRecordingEnd::whatIsToldIsInView() {
+    Fleet fleet;
+    open(fleet, QStringList("No logger"));
+    QScrollArea area; // as docks have it
+    area.setWidgetResizable(true);
+    area.setWidget(panel_.release());
+    const QTreeWidget *const list = area.findChild<QTreeWidget *>("sessions");
+    area.resize(300, area.widget()->minimumSizeHint().height() + 40);
+    area.show();
+    QTRY_COMPARE(area.widget()->height(), area.viewport()->height());
+    QVERIFY(list->height() >= list->minimumHeight());
 }
 
 QTEST_MAIN(TestRecordingEnd)
