@@ -192,7 +192,12 @@ std::vector<TestLongDrive::Doing> TestLongDrive::doings() {
         {"mark", key("key ctrl+m"), 1000, {}},
         {"drive while it records", key(leftCircle), 11000, driven},
         {"end the recording", [this] { click("record"); }, 3000, {}},
-        {"save the map", [this] { chooseFromMenu("map", "saveMap"); }, 3000, [this] { return isMapSaved(); }},
+        {"save the map",
+         [this] {
+             chooseFromMenu("map", "saveMap");
+             QTimer::singleShot(1500, this, [this] { click("accept"); }); // where it is to replace one
+         },
+         3000, [this] { return isMapSaved(); }},
         {"a menu", [this] { chooseFromMenu("viewMenu", "none"); }, 1000, shown},
         {"no menu", key("key Escape"), 500, [] { return !QApplication::activePopupWidget(); }},
         {"help", key("key F1 sleep 1 key Escape"), 2500, shown},
