@@ -113,6 +113,7 @@ void Recording::start(const Call &call, const Reply &reply) {
     if (!fine)
         return reply.error(fine.error());
     phase_ = Phase::Starting;
+    beginning_ = name.session;
     run(disk_, [this, name, reply, options = options()]() -> Done {
         const Result<void> begun = session_.begin(options, name);
         return [this, name, reply, begun] {
@@ -138,7 +139,11 @@ void Recording::start(const Call &call, const Reply &reply) {
     });
 }
 
-void Recording::stop(const Reply &reply) {
+void Recording::stop(const Call &call, const Reply &reply) {
+    const QString session = phase_ == Phase::Starting ? beginning_ : name_.session;
+    if (call.has("session") && call.text("session") != session)
+        return reply.error(
+            Error(ErrorCode::NotReady, "no such session is being recorded: " + call.text("session")));
     if (phase_ == Phase::Idle)
         return reply.error(error_ ? *error_ : nothingRecorded());
     stopping_.push_back(reply);

@@ -50,7 +50,7 @@ private:
     using Done = std::function<void()>;
 
     void start(const Call &call, const Reply &reply);
-    void stop(const Reply &reply);
+    void stop(const Call &call, const Reply &reply);
     void list(const Reply &reply);
     void end(RecordingEnd reason, const std::optional<Error> &error);
     void ended(const Result<void> &result);
@@ -78,7 +78,8 @@ private:
     int checks_ = 0;
 
     Phase phase_ = Phase::Idle;
-    SessionName name_; ///< of this recording or the last
+    SessionName name_;  ///< of this recording or the last
+    QString beginning_; ///< the session of the next
     QString folder_;
     double start_ = 0;
     std::function<Result<void>()> condition_;

@@ -97,8 +97,10 @@ std::vector<Command> Recording::commands() {
             .example({{"name", "drive"}}, example)
             .asyncHandler([this](const Call &call, const Reply &reply) { start(call, reply); }),
         Command("record.stop", "Ends the recording; everything is on the disk when this returns")
+            .param(Field::text("session", "Ends only this one: what was begun since by others goes on")
+                       .optional())
             .gives<RecordingStatus>()
-            .asyncHandler([this](const Call &, const Reply &reply) { stop(reply); }),
+            .asyncHandler([this](const Call &call, const Reply &reply) { stop(call, reply); }),
         Command("record.status", "The recording under way or the last")
             .needs(Role::Observer)
             .gives<RecordingStatus>()

@@ -114,18 +114,19 @@ void SessionRecorder::takeBack(const QString &name, const SessionReplies &replie
     for (const SessionReply &reply : replies)
         if (reply.result || reply.result.error().is(ErrorCode::TimedOut))
             toStop.push_back(reply.member);
-    callAll(callsOf(toStop), "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
-        QStringList lines = complaints(replies);
-        for (const SessionReply &end : ends) {
-            if (end.result)
-                lines.append(QString("%1 had begun and was stopped, see %2")
-                                 .arg(end.member.name, (*end.result)["folder"].toString()));
-            else if (!end.result.error().is(ErrorCode::NotReady)) // it had not begun
-                lines.append(QString("%1 may have begun and could not be stopped: %2")
-                                 .arg(end.member.name, end.result.error().message));
-        }
-        done(sessionError(QString("\"%1\" is not recorded").arg(name), lines));
-    });
+    callAll(callsOf(toStop, {{"session", takenBack_}}), "record.stop", stopLimit, this,
+            [=](const SessionReplies &ends) {
+                QStringList lines = complaints(replies);
+                for (const SessionReply &end : ends) {
+                    if (end.result)
+                        lines.append(QString("%1 had begun and was stopped, see %2")
+                                         .arg(end.member.name, (*end.result)["folder"].toString()));
+                    else if (!end.result.error().is(ErrorCode::NotReady)) // it had not begun
+                        lines.append(QString("%1 may have begun and could not be stopped: %2")
+                                         .arg(end.member.name, end.result.error().message));
+                }
+                done(sessionError(QString("\"%1\" is not recorded").arg(name), lines));
+            });
 }
 
 void SessionRecorder::stop(const Done<Result<Stopped>> &done) {
@@ -134,12 +135,12 @@ void SessionRecorder::stop(const Done<Result<Stopped>> &done) {
 
 /// Those that record; and where none does, the sessions that were ended by an error are told.
 void SessionRecorder::end(const States &states, const Done<Result<Stopped>> &done) {
-    std::vector<SessionMember> active;
+    std::vector<SessionCall> active;
     QSet<QString> ids, failed;
     for (const SessionReply &state : states.replies) {
         const QJsonValue said = state.result ? *state.result : QJsonValue();
         if (isRecording(state)) {
-            active.push_back(state.member);
+            active.push_back({state.member, {{"session", said["session"]}}});
             ids.insert(said["session"].toString());
         } else if (said["error"].isObject()) {
             failed.insert(said["session"].toString());
@@ -151,7 +152,7 @@ void SessionRecorder::end(const States &states, const Done<Result<Stopped>> &don
     stopped.problems = states.problems;
     if (ids.isEmpty() && stopped.problems.isEmpty())
         return done(Error(ErrorCode::NotReady, "nothing is being recorded"));
-    callAll(callsOf(active), "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
+    callAll(active, "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
         check(ids, ends, [stopped, done](Stopped checked) {
             checked.problems = stopped.problems + checked.problems;
             done(checked);

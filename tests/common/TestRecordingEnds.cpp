@@ -28,6 +28,7 @@ private Q_SLOTS:
     void aFileThatIsRemovedJustBeforeTheStopIsMissed();
     void aStopWhileItBeginsEndsIt_data();
     void aStopWhileItBeginsEndsIt();
+    void aStopOfAnotherSessionEndsNothing();
     void aRecordingThatWasCutOffIsCompleted();
     void foreignSidecarsAreToldAndLeftAlone_data();
     void foreignSidecarsAreToldAndLeftAlone();
@@ -171,6 +172,31 @@ void TestRecordingEnds::aStopWhileItBeginsEndsIt() {
         QCOMPARE(sidecarOf(root.path() + "/a").value("ended").toString(), "stopped");
     else
         QCOMPARE(stopped.error().code, int(ErrorCode::NotReady));
+}
+
+void TestRecordingEnds::aStopOfAnotherSessionEndsNothing() {
+    QTemporaryDir root;
+    Logger logger(root.path());
+    const QJsonObject mine{{"session", "mine"}}, late{{"session", "late"}};
+    QCOMPARE(logger.call("record.stop", mine).error().code, int(ErrorCode::NotReady));
+    QVERIFY(logger.call("record.start", {{"name", "a"}, {"session", "mine"}}).ok());
+    QCOMPARE(logger.call("record.stop", late).error().message, "no such session is being recorded: late");
+    QVERIFY(logger.recording.isActive());
+    QVERIFY(logger.call("record.stop", mine).ok());
+    QVERIFY(logger.call("record.start", {{"name", "b"}, {"session", "late"}}).ok());
+    QCOMPARE(logger.call("record.stop", mine).error().code, int(ErrorCode::NotReady));
+    QVERIFY(logger.recording.isActive());
+
+    QVERIFY(logger.call("record.stop").ok());
+    logger.writer.hold = true; // while one begins
+    for (const Command &command : logger.recording.commands())
+        if (command.name() == "record.start")
+            command.execute(QJsonObject{{"name", "c"}, {"session", "next"}}, Call(),
+                            Reply([](const Result<QJsonValue> &) {}));
+    QVERIFY(!logger.call("record.stop", late).ok());
+    QTimer::singleShot(50, [&] { logger.writer.hold = false; });
+    QVERIFY(logger.call("record.stop", {{"session", "next"}}).ok());
+    QVERIFY(!logger.recording.isActive());
 }
 
 void TestRecordingEnds::aRecordingThatWasCutOffIsCompleted() {

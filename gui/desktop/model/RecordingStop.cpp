@@ -28,7 +28,7 @@ void RecordingStop::begin(const LoggerWatch &watch) {
         const QString address = fleet_.robot() ? addressOf(*fleet_.robot(), member) : QString();
         const auto known = loggers_.find(address);
         if (!address.isEmpty() && (known == loggers_.end() || known->second.state == State::Answered))
-            tell(address, member);
+            tell(address, member, watch.states().at(member.name)["session"]);
     }
 }
 
@@ -92,7 +92,7 @@ void RecordingStop::take(const QString &address, const SessionMember &member, co
     if (!mayBeAsked(address)) // told meanwhile
         return;
     if (state["recording"].toBool() && ends(state["session"].toString()))
-        return tell(address, member);
+        return tell(address, member, state["session"]);
     const auto known = loggers_.find(address);
     if (known == loggers_.end())
         return;
@@ -107,10 +107,10 @@ bool RecordingStop::mayBeAsked(const QString &address) const {
     return known == loggers_.end() || known->second.state == State::Unconfirmed;
 }
 
-void RecordingStop::tell(const QString &address, const SessionMember &member) {
+void RecordingStop::tell(const QString &address, const SessionMember &member, const QJsonValue &session) {
     loggers_[address] = {member, State::Told, {}};
     isToCheck_ = true;
-    callAll({{member, {}}}, "record.stop", SessionRecorder::stopLimit, this,
+    callAll({{member, {{"session", session}}}}, "record.stop", SessionRecorder::stopLimit, this,
             [this, address](const SessionReplies &replies) {
                 take(loggers_.at(address), replies.front().result);
                 checkWhenAnswered();

@@ -44,7 +44,7 @@ private:
     void ask(const QString &address, const SessionMember &member);
     bool mayBeAsked(const QString &address) const;
     void take(const QString &address, const SessionMember &member, const QJsonObject &state);
-    void tell(const QString &address, const SessionMember &member);
+    void tell(const QString &address, const SessionMember &member, const QJsonValue &session);
     void take(Logger &logger, const Result<QJsonValue> &reply);
     bool isWaitedFor(const QString &address, const Logger &logger) const;
     void checkWhenAnswered();
