@@ -18,7 +18,10 @@ Fleet::Fleet(QObject *parent)
     : QObject(parent) {
     changes_.setSingleShot(true);
     changes_.setInterval(10);
-    connect(&changes_, &QTimer::timeout, this, &Fleet::changed);
+    connect(&changes_, &QTimer::timeout, this, [this] {
+        tellConflicts();
+        Q_EMIT changed();
+    });
 }
 
 Fleet::~Fleet() = default;
@@ -64,7 +67,7 @@ Fleet::Entry &Fleet::entryAt(const Place &place) {
 void Fleet::onReady(const Place &place) {
     Entry &entry = entries_.at(place);
     if (entry.led || !entry.link->hasMethod("process.list"))
-        return tellConflicts();
+        return touch();
     entry.led = makeRobot(place.first, entry.link->address(), entry.link.get());
     connect(entry.led, &Robot::namedChanged, this, [this] { distribute(); });
     distribute();
@@ -72,7 +75,7 @@ void Fleet::onReady(const Place &place) {
 
 void Fleet::onChanged(const Place &place) {
     const Entry &entry = entries_.at(place);
-    if (!namerOf(place, entry) && entry.isOfHost() != bool(entry.robot))
+    if (!entry.namer && entry.isOfHost() != bool(entry.robot))
         distribute();
 }
 
@@ -90,10 +93,10 @@ DaemonLink *Fleet::daemonAt(const QString &address) const {
 }
 
 Robot *Fleet::robotOf(const DaemonLink *daemon) const {
-    for (const auto &robot : robots_)
-        if (daemon && robot->has(daemon))
-            return robot.get();
-    return nullptr;
+    if (!daemon)
+        return nullptr;
+    const auto entry = entries_.find({daemon->host(), daemon->port()});
+    return entry != entries_.end() && entry->second.link.get() == daemon ? entry->second.robot : nullptr;
 }
 
 Robot *Fleet::robotAt(const QString &address) const {

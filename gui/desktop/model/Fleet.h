@@ -88,7 +88,8 @@ private:
         bool isAdded = false;  ///< by its address: shown although it has never answered
         bool isSought = false; ///< at its usual port: shown once it has answered
         Robot *robot = nullptr;
-        Robot *led = nullptr; ///< whose supervisor it is
+        Robot *led = nullptr;   ///< whose supervisor it is
+        Robot *namer = nullptr; ///< whose supervisor names it, or it is
 
         /// Shown there while no supervisor names it; one that was named before until it ends.
         bool isOfHost() const { return isAdded || (isSought ? link->isKnown() : link->isConnected()); }
@@ -105,8 +106,7 @@ private:
     void onChanged(const Place &place);
     Robot *makeRobot(const QString &host, const QString &address, DaemonLink *supervisor);
 
-    void makeNamed();
-    Robot *namerOf(const Place &place, const Entry &entry) const;
+    void findNamers();
     Robot *setAt(const QString &host, const QString &address);
     std::vector<Move> reassign();
     Robots takeEmpty();

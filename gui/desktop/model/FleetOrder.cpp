@@ -39,40 +39,33 @@ void Fleet::setPlaces(const QMap<QString, QString> &places) {
     distribute();
 }
 
-// Who has it keeps it for as long as it is named. Null: nobody names it.
-Robot *Fleet::namerOf(const Place &place, const Entry &entry) const {
-    const auto &[host, port] = place;
-    if (entry.led)
-        return entry.led;
-    if (entry.robot && entry.robot->named().count(port))
-        return entry.robot;
+// Who has it keeps it for as long as it is named. As far as there are not too many: a supervisor may name
+// what it likes.
+void Fleet::findNamers() {
+    for (auto &[place, entry] : entries_)
+        entry.namer = entry.led;
     for (const auto &robot : robots_)
-        if (robot->host() == host && robot->named().count(port))
-            return robot.get();
-    return nullptr;
-}
-
-// As far as there are not too many: a supervisor may name what it likes.
-void Fleet::makeNamed() {
-    std::vector<Place> missing;
-    for (const auto &robot : robots_)
-        for (const quint16 port : robot->named())
-            if (!entries_.count({robot->host(), port}))
-                missing.push_back({robot->host(), port});
-    for (const Place &place : missing) {
-        const auto isThere = [&](const auto &entry) { return entry.first.first == place.first; };
-        if (std::count_if(entries_.begin(), entries_.end(), isThere) < mostAtHost)
-            entryAt(place);
-    }
+        for (const quint16 port : robot->named()) {
+            const auto isThere = [&](const auto &entry) { return entry.first.first == robot->host(); };
+            if (!entries_.count({robot->host(), port}) &&
+                std::count_if(entries_.begin(), entries_.end(), isThere) >= mostAtHost)
+                continue;
+            Entry &entry = entryAt({robot->host(), port});
+            if (!entry.led && (!entry.namer || entry.robot == robot.get()))
+                entry.namer = robot.get();
+        }
 }
 
 std::vector<Fleet::Move> Fleet::reassign() {
     std::vector<Move> moves;
     for (auto &[place, entry] : entries_) {
-        Robot *to = namerOf(place, entry);
-        if (!to && entry.isOfHost())
-            to = setAt(place.first, places_.value(entry.link->address(), place.first));
-        Robot *const from = std::exchange(entry.robot, to);
+        Robot *to = entry.namer;
+        Robot *const from = entry.robot;
+        if (!to && entry.isOfHost()) {
+            const QString address = places_.value(entry.link->address(), place.first);
+            to = from && from->address() == address ? from : setAt(place.first, address);
+        }
+        entry.robot = to;
         if (from == to)
             continue;
         DaemonLink *const daemon = entry.link.get();
@@ -104,7 +97,7 @@ std::vector<std::unique_ptr<Robot>> Fleet::takeEmpty() {
 }
 
 void Fleet::distribute(std::unique_ptr<Robot> removed) {
-    makeNamed();
+    findNamers();
     const std::vector<Move> moves = reassign();
     Robots gone = takeEmpty();
     namesakes_.clear();
