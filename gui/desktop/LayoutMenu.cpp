@@ -58,15 +58,13 @@ void LayoutMenu::addProblem() {
     addSeparator();
 }
 
-// Not modal: STOP stays in reach.
 void LayoutMenu::askName() {
     auto *const dialog = new QInputDialog(parentWidget());
     dialog->setObjectName("layoutName");
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setWindowTitle(tr("Save the layout as"));
     dialog->setLabelText(tr("Panels and plots as they are now, by this name:"));
     connect(dialog, &QInputDialog::textValueSelected, this, &LayoutMenu::savedAs);
-    dialog->show();
+    question_.show(dialog);
     if (auto *const field = dialog->findChild<QLineEdit *>())
         field->setMaxLength(Layouts::longestName);
 }

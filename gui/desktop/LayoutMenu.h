@@ -1,5 +1,7 @@
 #pragma once
 
+#include "gui/desktop/widgets/OneDialog.h"
+
 #include <QMenu>
 
 namespace hermes::desktop {
@@ -28,6 +30,7 @@ private:
     const Layouts &layouts_;
     const LayoutKeeper &keeper_;
     QMenu *removal_;
+    OneDialog question_;
 };
 
 } // namespace hermes::desktop

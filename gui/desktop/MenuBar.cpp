@@ -87,9 +87,7 @@ void MenuBar::addHelp() {
                             QMessageBox::NoIcon, tr("About Hermes"),
                             tr("Hermes %1\n\nSees, drives and manages robots.").arg(projectVersion()),
                             QMessageBox::Ok, this);
-                        box->setAttribute(Qt::WA_DeleteOnClose);
-                        box->setWindowModality(Qt::NonModal); // STOP stays in reach
-                        box->show();
+                        about_.show(box);
                     })
         ->setObjectName("about");
 }

@@ -2,6 +2,7 @@
 
 #include "gui/desktop/drive/DriveControl.h"
 #include "gui/desktop/model/Events.h"
+#include "gui/desktop/widgets/OneDialog.h"
 
 #include <QMenuBar>
 
@@ -35,6 +36,8 @@ Q_SIGNALS:
 
 private:
     QMenu *addNamed(const QString &title, const char *name);
+
+    OneDialog about_;
 };
 
 } // namespace hermes::desktop

@@ -4,7 +4,6 @@
 
 #include <QActionGroup>
 #include <QDateTime>
-#include <QDialog>
 #include <QDialogButtonBox>
 #include <QHeaderView>
 #include <QJsonArray>
@@ -19,10 +18,8 @@ namespace {
 
 constexpr int longestPath = 120, mostMaps = 200;
 
-/// Ends with its parent, or when it is closed.
 QDialog *makeDialog(QWidget *parent, const QString &title) {
     auto *const dialog = new QDialog(parent);
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setWindowTitle(title);
     new QVBoxLayout(dialog);
     return dialog;
@@ -77,22 +74,10 @@ void MapMenu::setMatcher(DaemonLink *matcher) {
     if (matcher_ != matcher) {
         path_.clear();
         matcher_ = matcher;
-        endQuestion();
+        question_.close();
         Q_EMIT told({}, false);
     }
     update();
-}
-
-void MapMenu::endQuestion() {
-    if (question_)
-        question_->close();
-}
-
-/// Not modal: STOP and all else stay in reach. It takes the place of the one before.
-void MapMenu::show(QDialog *question) {
-    endQuestion();
-    question_ = question;
-    question->show();
 }
 
 void MapMenu::update() {
@@ -122,13 +107,11 @@ void MapMenu::call(const QString &method, const QJsonObject &params, const Then 
 void MapMenu::ask(const QString &question, const QString &yes, const std::function<void()> &work) {
     auto *const box =
         new QMessageBox(QMessageBox::Question, tr("Map"), question, QMessageBox::Cancel, parentWidget());
-    box->setAttribute(Qt::WA_DeleteOnClose);
-    box->setWindowModality(Qt::NonModal);
     QPushButton *const accept = box->addButton(yes, QMessageBox::AcceptRole);
     accept->setObjectName("accept");
     box->setDefaultButton(QMessageBox::Cancel);
     connect(accept, &QPushButton::clicked, this, [work] { work(); });
-    show(box);
+    question_.show(box);
 }
 
 void MapMenu::startNew() {
@@ -175,7 +158,7 @@ void MapMenu::open() {
                 load(item->data(0, Qt::UserRole).toString());
         });
         dialog->resize(560, 320);
-        show(dialog);
+        question_.show(dialog);
     });
 }
 
@@ -205,7 +188,7 @@ void MapMenu::askName(const QString &title, const QString &name,
     connect(field, &QLineEdit::returnPressed, accept, &QPushButton::click);
     connect(dialog, &QDialog::accepted, this, [field, use] { use(field->text().trimmed()); });
     dialog->resize(420, 80);
-    show(dialog);
+    question_.show(dialog);
 }
 
 /// Asks again where the file exists.
@@ -272,7 +255,7 @@ void MapMenu::bringBack() {
 
 void MapMenu::setMode(const QString &mode) {
     call("matcher.start", {{"mode", mode}}, [this, mode](const QJsonValue &) {
-        endQuestion();
+        question_.close();
         Q_EMIT told(mode == "mapping" ? tr("The map grows.") : tr("The map stays as it is."), false);
         readMode();
     });

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "gui/desktop/model/DaemonLink.h"
+#include "gui/desktop/widgets/OneDialog.h"
 
-#include <QDialog>
 #include <QMenu>
 #include <QPointer>
 #include <functional>
@@ -20,7 +20,7 @@ public:
     /// Whose map it is; null: nobody's.
     void setMatcher(DaemonLink *matcher);
     /// What is asked is of a map, mode or robot that is no more.
-    void endQuestion();
+    void endQuestion() { question_.close(); }
 
 Q_SIGNALS:
     /// How a command ended, or that it goes on.
@@ -45,12 +45,11 @@ private:
     void askName(const QString &title, const QString &name, const std::function<void(const QString &)> &use);
     void ask(const QString &question, const QString &yes, const std::function<void()> &work);
     void write(const QString &method, QJsonObject params);
-    void show(QDialog *question);
     void readMode();
     void update();
 
     QPointer<DaemonLink> matcher_;
-    QPointer<QDialog> question_;                         ///< one at a time: two would mean different maps
+    OneDialog question_;                                 ///< two would mean different maps
     std::vector<std::pair<QAction *, QString>> actions_; ///< with the method that each needs
     QAction *save_ = nullptr, *mapping_ = nullptr, *localization_ = nullptr;
     QString path_; ///< of the map, as it was opened or saved last

@@ -4,7 +4,6 @@
 #include "gui/desktop/panels/MapMenu.h"
 #include "gui/desktop/widgets/MessageLabel.h"
 
-#include <QFileDialog>
 #include <QMenu>
 #include <QToolBar>
 #include <QToolButton>
@@ -175,17 +174,14 @@ void MapPanel::setLayers(const QVariantMap &ticks) {
 }
 
 void MapPanel::askFile() {
-    auto *const dialog =
-        new QFileDialog(this, tr("Export the view"), "map.svg", tr("Pictures (*.svg *.png)"));
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
-    dialog->setAcceptMode(QFileDialog::AcceptSave);
-    dialog->setOption(QFileDialog::DontUseNativeDialog); // whose keys this program does not see
+    QFileDialog *const dialog =
+        makeSaveDialog(this, tr("Export the view"), "map.svg", tr("Pictures (*.svg *.png)"));
     connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
         writeBeside(drawn(file), this, [this, file](const Result<void> &done) {
             message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
         });
     });
-    dialog->show(); // not modal: STOP stays in reach
+    export_.show(dialog);
 }
 
 Writing MapPanel::drawn(const QString &file) const {

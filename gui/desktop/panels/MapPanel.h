@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/view/MapView.h"
+#include "gui/desktop/widgets/OneDialog.h"
 #include "gui/desktop/widgets/WrittenFile.h"
 
 class QAction;
@@ -46,6 +47,7 @@ private:
     MapMenu *map_;
     QMenu *layers_ = nullptr;
     MessageLabel *message_;
+    OneDialog export_;
     std::pair<QString, QString> sought_; // what was told, and is once the robot was found
     QAction *follow_, *fit_, *measure_, *place_, *relocalize_;
 };

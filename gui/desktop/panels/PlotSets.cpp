@@ -52,12 +52,11 @@ void PlotSets::refill() {
 
 void PlotSets::askName() {
     auto *const dialog = new QInputDialog(parentWidget());
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     dialog->setObjectName("setName");
     dialog->setWindowTitle(tr("Save the plots"));
     dialog->setLabelText(tr("Name of the set (one that is there is replaced)"));
     connect(dialog, &QInputDialog::textValueSelected, this, &PlotSets::saveWanted);
-    dialog->show(); // not modal: STOP stays in reach
+    question_.show(dialog);
 }
 
 } // namespace hermes::desktop

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "gui/desktop/widgets/OneDialog.h"
+
 #include <QJsonObject>
 #include <QMenu>
 
@@ -32,6 +34,7 @@ private:
 
     QJsonObject sets_;
     QMenu *deletion_;
+    OneDialog question_;
 };
 
 } // namespace hermes::desktop

@@ -10,7 +10,6 @@
 #include "gui/desktop/widgets/ScrolledPanel.h"
 #include "gui/desktop/widgets/Seen.h"
 
-#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QMenu>
 #include <QPushButton>
@@ -198,12 +197,9 @@ void PlotsPanel::redraw() {
 }
 
 void PlotsPanel::askFile(const QString &title, const QString &name, const QString &kinds) {
-    auto *const dialog = new QFileDialog(this, title, name, kinds);
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
-    dialog->setAcceptMode(QFileDialog::AcceptSave);
-    dialog->setOption(QFileDialog::DontUseNativeDialog); // whose keys this program does not see
+    QFileDialog *const dialog = makeSaveDialog(this, title, name, kinds);
     connect(dialog, &QFileDialog::fileSelected, this, &PlotsPanel::write);
-    dialog->show(); // not modal: STOP stays in reach
+    export_.show(dialog);
 }
 
 void PlotsPanel::write(const QString &file) {

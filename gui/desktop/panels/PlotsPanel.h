@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/desktop/panels/PlotBoard.h"
+#include "gui/desktop/widgets/OneDialog.h"
 #include "gui/desktop/widgets/WrittenFile.h"
 
 #include <QTimer>
@@ -62,6 +63,7 @@ private:
     QPushButton *pause_, *showMessage_;
     QToolButton *span_;
     QTimer timer_;
+    OneDialog export_;
 };
 
 } // namespace hermes::desktop

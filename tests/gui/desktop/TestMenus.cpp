@@ -24,6 +24,7 @@ private Q_SLOTS:
     void helpHasEveryPanel();
     void escapeStopsOnlyWhenToldTo();
     void everyControlHasAName();
+    void whatIsAskedTwiceIsOpenOnce();
 };
 
 /// All actions of the menu bar, those of menus in menus too.
@@ -140,6 +141,31 @@ void TestMenus::everyControlHasAName() {
     }
     QVERIFY(count > 30);
     QVERIFY2(nameless.isEmpty(), qPrintable(nameless.join("\n")));
+}
+
+void TestMenus::whatIsAskedTwiceIsOpenOnce() {
+    OpenWindow open;
+    QVERIFY(open.show());
+    for (const char *const name : {"export", "csv", "saveSet", "saveLayoutAs", "about"}) {
+        QDialog *first = nullptr;
+        for (int i = 0; i < 2; ++i) {
+            if (auto *const menu = open.window.findChild<QMenu *>("layoutMenu"))
+                Q_EMIT menu->aboutToShow(); // fills it
+            if (auto *const action = open.window.findChild<QAction *>(name))
+                action->trigger();
+            else
+                open.window.findChild<QAbstractButton *>(name)->click();
+            QList<QDialog *> seen;
+            for (auto *const dialog : open.window.findChildren<QDialog *>())
+                if (dialog->isVisible())
+                    seen.append(dialog);
+            QVERIFY2(seen.size() == 1, qPrintable(QString("%1: %2").arg(name).arg(seen.size())));
+            QVERIFY(seen[0] != first);
+            QVERIFY(!seen[0]->isModal());
+            first = seen[0];
+        }
+        first->close();
+    }
 }
 
 QTEST_MAIN(TestMenus)
