@@ -115,7 +115,10 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     addEventBar();
     addButtonBar();
     auto *const typing = new TypingWatch(this);
-    new DriveKeys(drive_, *typing, *this);
+    auto *const keys = new DriveKeys(drive_, *typing, *this);
+    connect(keys, &DriveKeys::drivesNothing, this, [this] {
+        tell(tr("Keys go to the list with the focus. A click on the map, or Ctrl+6: they drive."));
+    });
     new EnterKey(*typing, *this);
     new WheelGuard(*this);
     stopKeys_ = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
@@ -349,7 +352,12 @@ void MainWindow::notify(const QString &problem) {
     if (problem.isEmpty())
         return;
     qWarning("hermes-gui: %s", qPrintable(problem));
-    note_->tell(problem, "background: #8a6100; color: white;");
+    tell(problem);
+}
+
+/// For a while.
+void MainWindow::tell(const QString &text) {
+    note_->tell(text, "background: #8a6100; color: white;");
     notice_.start(noticeTime);
 }
 

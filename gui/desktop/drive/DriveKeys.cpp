@@ -108,9 +108,14 @@ bool DriveKeys::press(const QKeyEvent &key) {
         steer(key.modifiers() | Qt::ShiftModifier);
         return false;
     }
-    if (!isDriveKey(key.key()) || (key.modifiers() & chord) || usesKeys(QApplication::focusWidget()) ||
-        typing_.isCutOff())
+    if (!isDriveKey(key.key()) || (key.modifiers() & chord) || typing_.isCutOff())
         return false;
+    if (const QWidget *const focus = QApplication::focusWidget(); usesKeys(focus)) {
+        const bool isLetter = key.key() < Qt::Key_Escape; // arrows are meant for it
+        if (isLetter && !isRepeat(key) && !QApplication::activePopupWidget() && !isTyping(focus))
+            Q_EMIT drivesNothing();
+        return false;
+    }
     if (!isRepeat(key))
         down_.insert(key.key());
     steer(key.modifiers());

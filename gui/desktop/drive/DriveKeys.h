@@ -18,6 +18,10 @@ class DriveKeys : public QObject {
 public:
     DriveKeys(DriveControl &drive, const TypingWatch &typing, QWidget &window);
 
+Q_SIGNALS:
+    /// A key that would drive was given to a list or the like, for that has the focus.
+    void drivesNothing();
+
 protected:
     bool eventFilter(QObject *watched, QEvent *event) override;
 

@@ -35,7 +35,10 @@ PlotsPanel::PlotsPanel(Fleet &fleet, QWidget *parent)
         message_->setVisible(!text.isEmpty());
     });
     connect(tree_, &TopicTree::topicChosen, this, &PlotsPanel::showPage);
-    connect(suggestions_, &PlotSuggestions::wanted, this, &PlotsPanel::plot);
+    connect(suggestions_, &PlotSuggestions::wanted, this, [this](const std::vector<FieldId> &fields) {
+        plot(fields);
+        board_->panes().front()->setFocus(); // what had it is gone; the keys drive from here
+    });
     connect(board_, &PlotBoard::changed, this, &PlotsPanel::onBoardChanged);
     connect(&board_->time(), &TimeWindow::changed, this, &PlotsPanel::showTime);
     connect(sets_, &PlotSets::chosen, this, &PlotsPanel::setState);

@@ -24,6 +24,7 @@ private Q_SLOTS:
     void mnemonicsAreUnique();
     void everyControlIsInTheTabOrder();
     void docksComeByNumber();
+    void keysThatDriveNothingAreTold();
     void enterPressesAndTicks();
 
 private:
@@ -112,6 +113,15 @@ void TestKeyboard::docksComeByNumber() {
             QVERIFY(window_->centralWidget()->isAncestorOf(focus));
     }
     QCOMPARE(seen.size(), docks.size() - 1);
+}
+
+void TestKeyboard::keysThatDriveNothingAreTold() {
+    const auto *const notice = window_->findChild<QLabel *>("noticeBanner");
+    QTest::keyClick(window_.get(), Qt::Key_1, Qt::ControlModifier); // the list of daemons
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Down);     // is for it
+    QVERIFY(!notice->text().contains("Ctrl+6"));
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_W);
+    QVERIFY2(notice->text().contains("Ctrl+6"), qPrintable(notice->text()));
 }
 
 void TestKeyboard::enterPressesAndTicks() {

@@ -38,6 +38,7 @@ void TestPlots::twoClicksToAPlot() {
     QCOMPARE(texts, (QStringList{"drive: vx, vy (m/s)", "drive: battery (V)"}));
     OpenWindow::click(panel_, "suggestion");
     QCOMPARE(panel_->board().curves(), 2);
+    QCOMPARE(QApplication::focusWidget(), panel_->board().panes()[0]); // whose keys drive
     subscribed("drive");
     sayVx(stampNow(), 0.4);
     QTRY_VERIFY(!panel_->board().panes()[0]->visibleRegion().isEmpty());
