@@ -48,6 +48,8 @@ QJsonObject objectFrom(const QString &text) {
 
 /// A list or a tree, else a text, else what Tab leads to first.
 QWidget *mainWidgetOf(QWidget *panel) {
+    if (QWidget *const own = panel->focusProxy())
+        return own;
     const auto isWanted = [panel](const QWidget *widget) {
         return widget->isVisibleTo(panel) && widget->isEnabled() && (widget->focusPolicy() & Qt::TabFocus);
     };

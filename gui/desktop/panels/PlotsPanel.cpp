@@ -184,11 +184,13 @@ void PlotsPanel::showPage() {
     if (showMessage_->isChecked()) {
         const auto [daemon, topic] = tree_->chosenTopic();
         newest_->follow(daemon, topic);
+        setFocusProxy(nullptr);
         pages_->setCurrentWidget(newest_);
         return;
     }
     const bool isEmpty = board_->curves() == 0 && board_->panes().size() == 1;
     pages_->setCurrentIndex(isEmpty ? 0 : 1);
+    setFocusProxy(isEmpty ? nullptr : board_->panes().front()); // who looks at curves may go on driving
 }
 
 void PlotsPanel::redraw() {

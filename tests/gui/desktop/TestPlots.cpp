@@ -44,6 +44,9 @@ void TestPlots::twoClicksToAPlot() {
     QTRY_VERIFY(!panel_->board().panes()[0]->visibleRegion().isEmpty());
     QTRY_COMPARE(panel_->board().panes()[0]->valueText(0), QString("0.400 m/s"));
     QCOMPARE(row("vx")->checkState(0), Qt::Checked); // and can be taken away there
+    QTest::keyClick(&window_->window, Qt::Key_1, Qt::ControlModifier);
+    QTest::keyClick(&window_->window, Qt::Key_5, Qt::ControlModifier);
+    QCOMPARE(QApplication::focusWidget(), panel_->board().panes()[0]);
 }
 
 void TestPlots::panesAndAxes() {
