@@ -39,7 +39,7 @@ Outcome<void> LidarFeed::openLive(const std::string &address, std::uint16_t port
                                   const Options &options) {
     close();
     lossless_ = false;
-    begin(options);
+    begin(options, false);
     return live_.start({address, port, options.positionPort, bufferBytes});
 }
 
@@ -48,13 +48,14 @@ Outcome<void> LidarFeed::openPcap(const std::vector<std::string> &paths, const P
     close();
     ended_ = std::move(ended);
     lossless_ = play.speed == 0;
-    this->begin(options);
+    this->begin(options, true);
     return player_.start(paths, play, begin);
 }
 
-void LidarFeed::begin(const Options &options) {
+void LidarFeed::begin(const Options &options, bool replays) {
     const std::lock_guard<std::mutex> lock(decoderMutex_);
     options_ = options;
+    replays_ = replays;
     LidarStream::Options stream;
     stream.sensor = {options.onlyPort, {}, patience_ns};
     stream.model = options.model;
@@ -148,7 +149,7 @@ void LidarFeed::takeOver(const velodyne::Turn &turn) {
     counts_.beamsBack = turn.beamsBack;
     const bool isBlind = turn.beamsBack < leastBack * turn.beams;
     counts_.blind_s = isBlind ? counts_.blind_s + double(turn.end_ns - turn.begin_ns) * 1e-9 : 0;
-    const auto copy = std::make_shared<velodyne::Turn>(turn);
+    const Turn copy = finished(turn);
     {
         const std::lock_guard<std::mutex> lock(queueMutex_);
         if (!turns_.push(copy, lossless_))
@@ -162,13 +163,17 @@ void LidarFeed::takeOverCloud(const velodyne::Turn &turn) {
         cloud_->setFiringStep(firingStep(*turn.model, turn.firings, thinning_->maximumPoints));
     if (turn.number % thinning_->turnStep != 0)
         return;
-    const auto copy = std::make_shared<velodyne::Turn>(turn);
+    const Turn copy = finished(turn);
     {
         const std::lock_guard<std::mutex> lock(queueMutex_);
         if (!clouds_.push(copy, lossless_))
             return;
     }
     turnReady_();
+}
+
+LidarFeed::Turn LidarFeed::finished(const velodyne::Turn &turn) const {
+    return std::make_shared<FinishedTurn>(FinishedTurn{turn, replays_});
 }
 
 LidarFeed::Turn LidarFeed::take(TurnQueue &queue) {

@@ -85,7 +85,7 @@ public:
 private:
     using Assembler = std::unique_ptr<velodyne::TurnAssembler>;
 
-    void begin(const Options &options);
+    void begin(const Options &options, bool replays);
     void finish();
     void jump();
     void play(const Datagram &datagram);
@@ -97,6 +97,7 @@ private:
     void takeOver(const velodyne::Turn &turn);
     void takeOverCloud(const velodyne::Turn &turn);
     void deliver(const velodyne::Turn *turn);
+    Turn finished(const velodyne::Turn &turn) const;
     Turn take(TurnQueue &queue);
 
     Recorder &recorder_;
@@ -106,6 +107,7 @@ private:
 
     mutable std::mutex decoderMutex_; // guards what follows
     Options options_;
+    bool replays_ = false;
     std::optional<Thinning> thinning_;
     LidarStream stream_;
     Assembler ring_;

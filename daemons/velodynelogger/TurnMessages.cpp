@@ -11,7 +11,7 @@ float rounded(double metres) {
     return float(std::round(metres * 1e3) / 1e3);
 }
 
-TurnHeader headerOf(const velodyne::Turn &turn, bool replayed) {
+TurnHeader headerOf(const FinishedTurn &turn) {
     return {turn.number,
             double(turn.begin_ns) * 1e-9,
             double(turn.end_ns - turn.begin_ns) * 1e-9,
@@ -19,14 +19,14 @@ TurnHeader headerOf(const velodyne::Turn &turn, bool replayed) {
             turn.firings,
             turn.lostPackets,
             "lidar",
-            replayed};
+            turn.replayed};
 }
 
 } // namespace
 
-ScanMessage toScanMessage(const velodyne::Turn &turn, bool replayed) {
+ScanMessage toScanMessage(const FinishedTurn &turn) {
     ScanMessage message;
-    message.header = headerOf(turn, replayed);
+    message.header = headerOf(turn);
     message.laser = turn.laser;
     std::vector<float> &t = message.t.emplace();
     for (std::vector<float> *values : {&message.x, &message.y, &t})
@@ -41,9 +41,9 @@ ScanMessage toScanMessage(const velodyne::Turn &turn, bool replayed) {
     return message;
 }
 
-CloudMessage toCloudMessage(const velodyne::Turn &turn, bool replayed) {
+CloudMessage toCloudMessage(const FinishedTurn &turn) {
     CloudMessage message;
-    message.header = headerOf(turn, replayed);
+    message.header = headerOf(turn);
     message.model = turn.model->name;
     for (std::vector<float> *values : {&message.x, &message.y, &message.z})
         values->reserve(turn.points.size());

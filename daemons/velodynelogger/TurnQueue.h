@@ -7,11 +7,16 @@
 
 namespace hermes::velodynelogger {
 
+/// A turn, and whether it was recorded or is of now: whatever the source is by the time it is taken.
+struct FinishedTurn : velodyne::Turn {
+    bool replayed = false;
+};
+
 /// Finished turns that wait to be taken: so many, the rest is dropped and counted. Not for several threads at
 /// once.
 class TurnQueue {
 public:
-    using Turn = std::shared_ptr<const velodyne::Turn>;
+    using Turn = std::shared_ptr<const FinishedTurn>;
 
     explicit TurnQueue(std::size_t capacity)
         : capacity_(capacity) {}

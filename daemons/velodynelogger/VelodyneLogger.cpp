@@ -260,15 +260,14 @@ void VelodyneLogger::publishTurns() {
         retry_.start(retry_ms);
         return;
     }
-    const bool replayed = source_.state() == State::Replay || source_.state() == State::Ended;
     const LidarFeed::Turn turn = feed_.takeTurn(), cloud = feed_.takeCloud();
     if (turn || cloud) {
         if (turn)
             publish(
-                "scan2d", [&] { return toScanMessage(*turn, replayed); }, double(turn->begin_ns) * 1e-9);
+                "scan2d", [&] { return toScanMessage(*turn); }, double(turn->begin_ns) * 1e-9);
         if (cloud)
             publish(
-                "cloud", [&] { return toCloudMessage(*cloud, replayed); }, double(cloud->begin_ns) * 1e-9);
+                "cloud", [&] { return toCloudMessage(*cloud); }, double(cloud->begin_ns) * 1e-9);
         retry_.start(0);
     } else if (replayEnd_) {
         replayEnded();

@@ -77,6 +77,7 @@ private Q_SLOTS:
     void liveGivesWhatDirectDecodingGives();
     void sourcesThatCannotBeOpened();
     void slowReadersLoseTurnsAndAreTold();
+    void whatWaitsIsStillOfTheReplay();
     void foreignDatagramsAreCounted();
     void positionPacketsTellTheHour();
     void ofSeveralSensorsInACaptureOneIsDecoded_data();
@@ -133,6 +134,39 @@ void TestLidarFeed::slowReadersLoseTurnsAndAreTold() {
     QCOMPARE(listener.turns.size(), std::size_t(16));
     QCOMPARE(counts.turnsDropped, counts.turns - 16);
     QVERIFY(counts.turns > 30);
+}
+
+/// Also when the source is live by the time it is taken; the turn that was cut off by that, too.
+void TestLidarFeed::whatWaitsIsStillOfTheReplay() {
+    QTemporaryDir folder;
+    const QString path = makeCapture(folder, 6000);
+    LidarListener listener;
+    listener.feed.wantClouds(LidarFeed::Thinning());
+    QVERIFY(listener.openPcap(path.toStdString(), 0));
+    QTRY_VERIFY(listener.ready.load() >= 16); // the queue of the clouds is full
+    QVERIFY(listener.feed.openLive("127.0.0.1", 0, 1 << 20, {}));
+    int turns = 0, clouds = 0;
+    while (const LidarFeed::Turn turn = listener.feed.takeTurn()) {
+        QVERIFY(turn->replayed);
+        ++turns;
+    }
+    while (const LidarFeed::Turn cloud = listener.feed.takeCloud()) {
+        QVERIFY(cloud->replayed);
+        ++clouds;
+    }
+    QVERIFY2(turns >= 8 && clouds >= 8, qPrintable(QString("%1, %2").arg(turns).arg(clouds)));
+
+    QUdpSocket socket;
+    for (int i = 0; i < 1000; ++i) {
+        const auto bytes = Sensor().packet(i);
+        socket.writeDatagram(reinterpret_cast<const char *>(bytes.data()), qint64(bytes.size()),
+                             QHostAddress::LocalHost, listener.feed.port());
+        if (i % 20 == 0)
+            QTest::qWait(1);
+    }
+    LidarFeed::Turn live;
+    QTRY_VERIFY((live = listener.feed.takeTurn()));
+    QVERIFY(!live->replayed);
 }
 
 void TestLidarFeed::foreignDatagramsAreCounted() {
