@@ -114,6 +114,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     connect(&drive_.replay(), &ReplayWatch::changed, recordings,
             [this, recordings] { recordings->setReplaying(drive_.replay().isReplaying()); });
     connect(recordings, &RecordPanel::liveWanted, this, [this] { drive_.replay().endAll(); });
+    drive_.replay().setPlayer(&recordings->player());
     addEventBar();
     addButtonBar();
     auto *const typing = new TypingWatch(this);
@@ -377,8 +378,8 @@ QString MainWindow::objectionToClosing() const {
     QStringList reasons;
     if (drive_.stopping().isOnItsWay())
         reasons << tr("STOP is not confirmed as yet, and nothing repeats it when this window is closed.");
-    if (drive_.replay().isReplaying())
-        reasons << tr("The robot still shows a recording; closing ends that replay.");
+    if (const QString replays = drive_.replay().whenClosed(); !replays.isEmpty())
+        reasons << replays;
     if (const int count = findChild<SettingsPanel *>()->unapplied())
         reasons << (count == 1 ? tr("A setting was changed and is not applied.")
                                : tr("%1 settings were changed and are not applied.").arg(count));
@@ -411,7 +412,7 @@ void MainWindow::closeEvent(QCloseEvent *event) {
         notify(told);
         return event->ignore();
     }
-    drive_.replay().endAll();
+    drive_.replay().endOwn();
     keeping_.stop();
     event->accept();
 }

@@ -9,6 +9,8 @@ constexpr std::chrono::milliseconds statusPeriod{200};
 constexpr double longest_s = 1e7;  // as source.seek takes it
 constexpr double lastPart_s = 0.3; // of a recording: who was sought to it may be at its end
 
+const QJsonObject live{{"live", true}};
+
 Result<void> firstError(const SessionReplies &replies) {
     for (const SessionReply &reply : replies)
         if (!reply.result)
@@ -61,6 +63,7 @@ void SessionPlayer::play(const RecordedSession &session, const Options &options)
     begin_s_ = 0;
     sought_s_.reset();
     playing_.clear();
+    opening_.clear();
     std::vector<SessionMember> players;
     auto &parts = session_.parts;
     parts.erase(std::remove_if(parts.begin(), parts.end(),
@@ -75,6 +78,24 @@ void SessionPlayer::end() {
     next_.reset();
     isEnding_ = isPlaying_;
     obeySoon();
+}
+
+void SessionPlayer::endAtOnce() {
+    if (!isPlaying_)
+        return;
+    end();
+    const bool mayGoLive = timer_.isActive(); // else once more with the reply that is waited for
+    timer_.stop();
+    if (mayGoLive)
+        goLive({});
+    else
+        callAll(callsOf(told(), live), "source.open", options_.timeout, this, [](const auto &) {});
+}
+
+bool SessionPlayer::plays(const Client &client) const {
+    return isPlaying_ && std::any_of(told().begin(), told().end(), [&client](const SessionMember &member) {
+               return member.client == &client;
+           });
 }
 
 void SessionPlayer::obeySoon() {
@@ -136,12 +157,15 @@ void SessionPlayer::onStates(const SessionReplies &states) {
 
 void SessionPlayer::open() {
     std::vector<SessionCall> calls;
-    for (const SessionPart &part : session_.parts)
+    opening_.clear();
+    for (const SessionPart &part : session_.parts) {
+        opening_.push_back(part.member);
         calls.push_back({part.member,
                          {{"recording", part.entry["name"]},
                           {"speed", options_.speed},
                           {"paused", true},
                           {"delay_s", part.entry["start"].toDouble() - session_.start}}});
+    }
     call(calls, "source.open", &SessionPlayer::onOpened);
 }
 
@@ -153,6 +177,7 @@ void SessionPlayer::onOpened(const SessionReplies &replies) {
     for (const SessionReply &reply : replies)
         if ((reply.result || reply.result.error().is(ErrorCode::TimedOut)) && !isPlayed(reply.member))
             playing_.push_back(reply.member);
+    opening_.clear();
     if (!goesOn(firstError(replies)))
         return;
     if (begin_s_ > 0)
@@ -278,7 +303,7 @@ Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
 }
 
 void SessionPlayer::goLive(const Result<void> &result) {
-    callAll(callsOf(playing_, {{"live", true}}), "source.open", options_.timeout, this,
+    callAll(callsOf(playing_, live), "source.open", options_.timeout, this,
             [this, result](const SessionReplies &replies) {
                 isPlaying_ = false;
                 Q_EMIT ended(result ? firstError(replies) : result);

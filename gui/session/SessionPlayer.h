@@ -24,7 +24,11 @@ public:
     void play(const RecordedSession &session, const Options &options);
     /// All are live again soon.
     void end();
+    /// The same; all are told before it returns, whatever is waited for.
+    void endAtOnce();
     bool isPlaying() const { return isPlaying_; }
+    /// This logger shows what is played here, or may.
+    bool plays(const Client &client) const;
 
     /// Whether all of them have what it takes.
     bool canSeek() const;
@@ -65,11 +69,13 @@ private:
     QString folderOf(const QString &logger) const;
     Result<bool> isAtEnd(const SessionReplies &replies);
     void goLive(const Result<void> &result);
+    const std::vector<SessionMember> &told() const { return opening_.empty() ? playing_ : opening_; }
 
     RecordedSession session_;
     Options options_;
     QTimer timer_;
     std::vector<SessionMember> playing_; ///< who shows what is recorded, or may
+    std::vector<SessionMember> opening_; ///< the same and who has not answered as yet
     std::optional<std::pair<RecordedSession, Options>> next_;
     std::optional<double> seekWanted_, speedWanted_;
     std::optional<bool> pauseWanted_;

@@ -55,6 +55,7 @@ public:
     double delay_s = -1;     ///< of the last replay
     double speed = -1;       ///< that it goes at
     QJsonObject told;        ///< of its source, in place of what is so
+    int questions = 0;       ///< where it is
 
 protected:
     Result<void> start() override {
@@ -96,6 +97,7 @@ private:
                            return obey(QString(": goes at %1").arg(speed));
                        }));
         addCommand(Command("source.status", "Where it is").handler([this](const Call &) {
+            ++questions;
             if (source == "replay" && !paused_ && --positionsLeft_ <= 0)
                 source = "ended";
             return QJsonObject{{"source", state()}};

@@ -43,7 +43,11 @@ DriveControl::DriveControl(Fleet &fleet, QObject *parent)
         Q_EMIT changed();
     });
     connect(&fleet, &Fleet::changed, this, &DriveControl::follow);
-    connect(&fleet, &Fleet::robotChosen, this, &DriveControl::follow);
+    connect(&fleet, &Fleet::robotChosen, this, [this] {
+        isBlindMeant_ = false; // that was said of another
+        follow();
+        onReplay();
+    });
     connect(&fleet, &Fleet::moved, this, [this](const DaemonLink *daemon, const Robot *from, Robot *to) {
         if (from == fleet_.robot())
             onMoved(daemon, to);

@@ -53,6 +53,7 @@ public:
     /// that replay ends.
     void driveBlindly();
     const ReplayWatch &replay() const { return replay_; }
+    ReplayWatch &replay() { return replay_; }
     bool refusesForReplay() const { return replay_.isReplaying() && !isBlindMeant_; }
 
     /// Somebody who can be driven is there.

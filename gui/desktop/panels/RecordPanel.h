@@ -27,6 +27,7 @@ public:
     explicit RecordPanel(Fleet &fleet, QWidget *parent = nullptr);
     /// Loggers replay, whoever began it.
     void setReplaying(bool isReplaying);
+    SessionPlayer &player() { return player_; }
 
 Q_SIGNALS:
     /// The replay of somebody else is to end.

@@ -325,7 +325,8 @@ void TestReplay::closingAsksAndEndsTheReplay() {
     open_->window.close();
     QVERIFY(open_->window.isVisible());
     const QString notice = open_->window.findChild<QLabel *>("noticeBanner")->text();
-    QVERIFY2(notice.startsWith("The robot still shows a recording"), qPrintable(notice));
+    QVERIFY2(notice.startsWith("127.0.0.1 still shows a recording; closing ends that replay."),
+             qPrintable(notice));
     robot_->signal("motorcontrol", SIGSTOP);
     open_->drive.stop();
     open_->window.close(); // something else is to be said now
