@@ -123,6 +123,8 @@ QString DriveControl::objection(const Robot &robot) const {
         return tr("%1 is driven: let go first.").arg(robot.name());
     if (stop_.isPressedFor(robot))
         return tr("STOP was pressed for %1: release it first.").arg(robot.name());
+    if (replay_.isOwn(robot))
+        return tr("%1 shows a recording that is played here: press Live first.").arg(robot.name());
     return {};
 }
 

@@ -17,6 +17,7 @@ private Q_SLOTS:
     void othersAreAskedSeldom();
     void ownEndsWhicheverIsChosen();
     void ownEndsWhileItIsOpened();
+    void whoPlaysIsNotRemoved();
 
 private:
     Robot *robotOf(const QString &logger) const {
@@ -141,6 +142,22 @@ void TestReplayEnds::ownEndsWhileItIsOpened() {
     QVERIFY(time.elapsed() < 2000);
     QTRY_VERIFY_WITH_TIMEOUT(!player().isPlaying(), 10000);
     QCOMPARE(fakes_->loggers[0]->source, QString("live")); // that it was opened after that changes nothing
+}
+
+void TestReplayEnds::whoPlaysIsNotRemoved() {
+    Fleet &fleet = open_->fleet;
+    play("far");
+    replay(0);
+    QTRY_VERIFY(watch().isOwn(*robotOf("far")) && watch().isReplaying());
+    const auto refused = fleet.remove(robotOf("far"));
+    QVERIFY(!refused);
+    QCOMPARE(refused.error().message,
+             title("far") + " shows a recording that is played here: press Live first.");
+    QVERIFY(fleet.remove(robotOf("near")).ok()); // what another client plays there goes on
+    player().end();
+    QTRY_VERIFY(!player().isPlaying());
+    QVERIFY(fleet.remove(robotOf("far")).ok());
+    QVERIFY(!fakes_->asked.contains("near: live"));
 }
 
 QTEST_MAIN(TestReplayEnds)
