@@ -25,6 +25,7 @@
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
+#include <QEventLoop>
 #include <QJsonDocument>
 #include <QPlainTextEdit>
 #include <QScreen>
@@ -36,7 +37,8 @@ namespace {
 constexpr QSize usualSize{1280, 720};
 constexpr int titleRoom = 40; // of a window's title, pixels
 constexpr std::chrono::seconds noticeTime{20};
-constexpr std::chrono::milliseconds keepEach{500}; // who is killed a second later has lost nothing
+constexpr std::chrono::milliseconds farewellLimit{1000}; // more than a far robot takes to answer
+constexpr std::chrono::milliseconds keepEach{500};       // who is killed a second later has lost nothing
 
 QString textOf(const QJsonObject &object) {
     return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
@@ -393,6 +395,16 @@ QString MainWindow::objectionToClosing() const {
 void MainWindow::leave() {
     isLeaving_ = true;
     close();
+}
+
+void MainWindow::finish() {
+    const SessionPlayer &player = findChild<RecordPanel *>()->player();
+    if (!player.isPlaying())
+        return;
+    QEventLoop wait;
+    connect(&player, &SessionPlayer::ended, &wait, &QEventLoop::quit);
+    QTimer::singleShot(farewellLimit, &wait, &QEventLoop::quit);
+    wait.exec();
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {

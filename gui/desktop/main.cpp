@@ -83,5 +83,7 @@ int main(int argc, char **argv) {
     const EndSignals signals;
     QObject::connect(&signals, &EndSignals::endWanted, &window, &MainWindow::leave);
     window.show();
-    return QApplication::exec();
+    const int code = QApplication::exec();
+    window.finish();
+    return code;
 }

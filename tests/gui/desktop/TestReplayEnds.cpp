@@ -3,9 +3,41 @@
 #include "tests/gui/desktop/OpenWindow.h"
 
 #include <QLabel>
+#include <QProcess>
+#include <QTcpServer>
+#include <QTcpSocket>
 
 using namespace hermes;
 using namespace hermes::desktop;
+
+/// A link on which everything takes a while, and what is under way is lost when an end goes.
+class SlowLink {
+public:
+    static constexpr std::chrono::milliseconds delay{150};
+
+    explicit SlowLink(quint16 to) {
+        if (!server_.listen(QHostAddress::LocalHost))
+            qFatal("no port is free");
+        QObject::connect(&server_, &QTcpServer::newConnection, &server_, [this, to] {
+            QTcpSocket *const near = server_.nextPendingConnection();
+            auto *const far = new QTcpSocket(near);
+            far->connectToHost(QHostAddress::LocalHost, to);
+            carry(near, far);
+            carry(far, near);
+            QObject::connect(near, &QTcpSocket::disconnected, near, &QObject::deleteLater);
+        });
+    }
+    quint16 port() const { return server_.serverPort(); }
+
+private:
+    static void carry(QTcpSocket *from, QTcpSocket *to) {
+        QObject::connect(from, &QTcpSocket::readyRead, to, [from, to] {
+            QTimer::singleShot(delay, to, [to, bytes = from->readAll()] { to->write(bytes); });
+        });
+    }
+
+    QTcpServer server_;
+};
 
 /// Replays of several robots, of this window and of others, and what becomes of them when it is closed.
 class TestReplayEnds : public QObject {
@@ -18,6 +50,8 @@ private Q_SLOTS:
     void ownEndsWhicheverIsChosen();
     void ownEndsWhileItIsOpened();
     void whoPlaysIsNotRemoved();
+    void theProgramLeavesTheRobotLive_data();
+    void theProgramLeavesTheRobotLive();
 
 private:
     Robot *robotOf(const QString &logger) const {
@@ -158,6 +192,67 @@ void TestReplayEnds::whoPlaysIsNotRemoved() {
     QTRY_VERIFY(!player().isPlaying());
     QVERIFY(fleet.remove(robotOf("far")).ok());
     QVERIFY(!fakes_->asked.contains("near: live"));
+}
+
+void TestReplayEnds::theProgramLeavesTheRobotLive_data() {
+    QTest::addColumn<QString>("end");
+    QTest::newRow("closed by its window") << "close";
+    QTest::newRow("told to end") << "terminate";
+    QTest::newRow("told to end behind a slow link") << "slow";
+    QTest::newRow("told to end while the logger stands still") << "freeze";
+}
+
+/// The real program, by real keys.
+void TestReplayEnds::theProgramLeavesTheRobotLive() {
+    if (QGuiApplication::platformName() != "xcb")
+        QSKIP("needs a display: tests/gui/desktop/with_display");
+    QFETCH(QString, end);
+    open_->window.close();
+    RobotProcesses robot;
+    robot.startAll();
+    Client logger;
+    logger.connectTo(QString("127.0.0.1:%1").arg(robot.port("velodynelogger")));
+    QVERIFY(logger.waitConnected(std::chrono::seconds(20)).ok());
+    const auto source = [&logger] { return logger.callAndWait("source.status").take()["source"]; };
+    QVERIFY(logger.callAndWait("record.start", QJsonObject{{"name", "run1"}}).ok());
+    const auto bytes = [&logger] { return logger.callAndWait("record.status").take()["bytes"].toDouble(); };
+    QTRY_VERIFY_WITH_TIMEOUT(bytes() > 8e6, 60000); // for seconds
+    QVERIFY(logger.callAndWait("record.stop").ok());
+
+    const SlowLink link(robot.port("velodynelogger"));
+    const quint16 port = end == "slow" ? link.port() : robot.port("velodynelogger");
+    ChildProcess program;
+    program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
+                  {"--connect", QString("127.0.0.1:%1").arg(port), "--layout", robot.path("gui.ini")});
+    QVERIFY(program.waitForStarted());
+    const auto xdotool = [](const QString &words) {
+        QProcess tool;
+        tool.start("xdotool", words.split(' '));
+        return tool.waitForFinished(20000) && tool.exitCode() == 0;
+    };
+    QVERIFY(xdotool(QString("search --sync --onlyvisible --pid %1 --name Hermes windowactivate --sync")
+                        .arg(program.processId())));
+    QElapsedTimer time;
+    time.start();
+    bool plays = false;
+    while (!plays && time.elapsed() < 30000) { // as soon as the list is there
+        QVERIFY(xdotool("key ctrl+7 Return"));
+        plays = QTest::qWaitFor([&] { return source()["state"] == "replay"; }, 2000);
+    }
+    QTRY_COMPARE(source()["paused"].toBool(), false);
+    QCOMPARE(source()["state"].toString(), QString("replay"));
+
+    if (end == "freeze")
+        robot.signal("velodynelogger", SIGSTOP);
+    if (end == "close")
+        QVERIFY(xdotool("key ctrl+q") && xdotool("key ctrl+q"));
+    else
+        program.terminate();
+    QTRY_COMPARE_WITH_TIMEOUT(program.state(), QProcess::NotRunning, 10000);
+    QCOMPARE(program.exitStatus(), QProcess::NormalExit);
+    if (end == "freeze")
+        robot.signal("velodynelogger", SIGCONT);
+    QTRY_COMPARE(source()["state"].toString(), QString("live"));
 }
 
 QTEST_MAIN(TestReplayEnds)
