@@ -228,8 +228,8 @@ private:
     }
     /// The methods and topics of all daemons in one.
     QByteArray description() const {
-        QStringList methods{"fake.call",   "daemon.info", "settings.schema", "record.start",
-                            "record.list", "source.open", "pose.set",        "map.undo"};
+        QStringList methods{"fake.call",   "daemon.info",   "settings.schema", "record.start", "record.list",
+                            "source.open", "source.status", "pose.set",        "map.undo"};
         if (mischief_.isSupervisor || mischief_.topics.contains("processes"))
             methods << "process.list"
                     << "process.start";

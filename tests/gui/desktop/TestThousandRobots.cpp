@@ -66,6 +66,7 @@ void TestThousandRobots::windowGoesOn() {
     }
     qInfo("figure others are chosen, event loop busy at most: %.1f ms of the processor",
           watch.longestCpu_ms());
+    QVERIFY(all.calls("source.status") > 0); // whether they replay
     const QSize least = open.window.minimumSizeHint();
     QVERIFY2(least.width() <= 1024 && least.height() <= 600,
              qPrintable(QString("%1 x %2").arg(least.width()).arg(least.height())));
