@@ -22,6 +22,12 @@ bool isNotReady(const SessionReply &reply) {
     return !reply.result && reply.result.error().is(ErrorCode::NotReady);
 }
 
+/// Nobody knows whether it was done.
+bool isUnconfirmed(const SessionReply &reply) {
+    return !reply.result &&
+           (reply.result.error().is(ErrorCode::TimedOut) || reply.result.error().is(ErrorCode::Disconnected));
+}
+
 /// One that has come to its end takes no orders; if it is not that, source.status will tell.
 Result<void> firstRefusal(SessionReplies replies) {
     replies.erase(std::remove_if(replies.begin(), replies.end(), isNotReady), replies.end());
@@ -81,21 +87,25 @@ void SessionPlayer::end() {
 }
 
 void SessionPlayer::endAtOnce() {
-    if (!isPlaying_)
-        return;
     end();
-    const bool mayGoLive = timer_.isActive(); // else once more with the reply that is waited for
+    const bool isWaiting = isPlaying_ && !timer_.isActive(); // for a reply, with which it ends once more
     timer_.stop();
-    if (mayGoLive)
+    if (!isWaiting && !told().empty())
         goLive({});
-    else
+    else if (isWaiting)
         callAll(callsOf(told(), live), "source.open", options_.timeout, this, [](const auto &) {});
 }
 
 bool SessionPlayer::plays(const Client &client) const {
-    return isPlaying_ && std::any_of(told().begin(), told().end(), [&client](const SessionMember &member) {
-               return member.client == &client;
-           });
+    return std::any_of(told().begin(), told().end(),
+                       [&client](const SessionMember &member) { return member.client == &client; });
+}
+
+void SessionPlayer::forget(const Client &client) {
+    if (!isPlaying_) // else it finds out by itself
+        playing_.erase(std::remove_if(playing_.begin(), playing_.end(),
+                                      [&client](const auto &one) { return one.client == &client; }),
+                       playing_.end());
 }
 
 void SessionPlayer::obeySoon() {
@@ -175,7 +185,7 @@ void SessionPlayer::onOpened(const SessionReplies &replies) {
                            [&](const SessionMember &one) { return one.name == member.name; });
     };
     for (const SessionReply &reply : replies)
-        if ((reply.result || reply.result.error().is(ErrorCode::TimedOut)) && !isPlayed(reply.member))
+        if ((reply.result || isUnconfirmed(reply)) && !isPlayed(reply.member))
             playing_.push_back(reply.member);
     opening_.clear();
     if (!goesOn(firstError(replies)))
@@ -303,9 +313,15 @@ Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
 }
 
 void SessionPlayer::goLive(const Result<void> &result) {
+    isPlaying_ = true;
+    opening_.clear();
     callAll(callsOf(playing_, live), "source.open", options_.timeout, this,
             [this, result](const SessionReplies &replies) {
                 isPlaying_ = false;
+                playing_.clear();
+                for (const SessionReply &reply : replies)
+                    if (isUnconfirmed(reply))
+                        playing_.push_back(reply.member);
                 Q_EMIT ended(result ? firstError(replies) : result);
                 if (const auto next = std::exchange(next_, std::nullopt); next && !isPlaying_)
                     play(next->first, next->second);

@@ -27,8 +27,10 @@ public:
     /// The same; all are told before it returns, whatever is waited for.
     void endAtOnce();
     bool isPlaying() const { return isPlaying_; }
-    /// This logger shows what is played here, or may.
+    /// This logger shows what is played here, or may: also one that has not confirmed that it ended.
     bool plays(const Client &client) const;
+    /// That one shows nothing of it any more.
+    void forget(const Client &client);
 
     /// Whether all of them have what it takes.
     bool canSeek() const;

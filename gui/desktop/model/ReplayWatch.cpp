@@ -70,7 +70,7 @@ void ReplayWatch::askAll(const Robot &robot) {
     }
 }
 
-void ReplayWatch::take(const QObject *daemon, const QString &name, const Result<QJsonValue> &answer) {
+void ReplayWatch::take(DaemonLink *daemon, const QString &name, const Result<QJsonValue> &answer) {
     const auto found = sources_.find(daemon);
     if (found == sources_.end()) // it went meanwhile
         return;
@@ -80,6 +80,8 @@ void ReplayWatch::take(const QObject *daemon, const QString &name, const Result<
     const QJsonValue source = answer->toObject().contains("source") ? (*answer)["source"] : *answer;
     const QString state = source["state"].toString();
     const bool isReplay = state == "replay" || state == "ended"; // at its end it still shows what was
+    if (!isReplay && player_)
+        player_->forget(daemon->client());
     found->replay = isReplay ? textOf(name, source) : QString();
     tell();
 }
@@ -111,8 +113,9 @@ bool ReplayWatch::isReplaying(const Robot &robot) const {
 
 bool ReplayWatch::isOwn(const Robot &robot) const {
     const auto daemons = robot.daemons();
-    return player_ && std::any_of(daemons.begin(), daemons.end(),
-                                  [this](DaemonLink *daemon) { return player_->plays(daemon->client()); });
+    return player_ && std::any_of(daemons.begin(), daemons.end(), [this](DaemonLink *daemon) {
+               return daemon->isConnected() && player_->plays(daemon->client());
+           });
 }
 
 QString ReplayWatch::whenClosed() const {

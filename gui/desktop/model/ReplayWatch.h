@@ -40,7 +40,7 @@ private:
 
     void ask();
     void askAll(const Robot &robot);
-    void take(const QObject *daemon, const QString &name, const Result<QJsonValue> &answer);
+    void take(DaemonLink *daemon, const QString &name, const Result<QJsonValue> &answer);
     void forget(QObject *daemon) { sources_.remove(daemon); }
     void tell();
     QString replayOf(const DaemonLink *daemon) const { return sources_.value(daemon).replay; }

@@ -13,11 +13,11 @@ using namespace hermes::desktop;
 /// A link on which everything takes a while, and what is under way is lost when an end goes.
 class SlowLink {
 public:
-    static constexpr std::chrono::milliseconds delay{150};
-
-    explicit SlowLink(quint16 to) {
+    SlowLink(quint16 to, std::chrono::milliseconds delay)
+        : delay_(delay) {
         if (!server_.listen(QHostAddress::LocalHost))
             qFatal("no port is free");
+        port_ = server_.serverPort();
         QObject::connect(&server_, &QTcpServer::newConnection, &server_, [this, to] {
             QTcpSocket *const near = server_.nextPendingConnection();
             auto *const far = new QTcpSocket(near);
@@ -27,16 +27,24 @@ public:
             QObject::connect(near, &QTcpSocket::disconnected, near, &QObject::deleteLater);
         });
     }
-    quint16 port() const { return server_.serverPort(); }
+    quint16 port() const { return port_; }
+    void cut() {
+        server_.close();
+        for (auto *const near : server_.findChildren<QTcpSocket *>(QString(), Qt::FindDirectChildrenOnly))
+            near->abort();
+    }
+    bool mend() { return server_.listen(QHostAddress::LocalHost, port_); }
 
 private:
-    static void carry(QTcpSocket *from, QTcpSocket *to) {
-        QObject::connect(from, &QTcpSocket::readyRead, to, [from, to] {
-            QTimer::singleShot(delay, to, [to, bytes = from->readAll()] { to->write(bytes); });
+    void carry(QTcpSocket *from, QTcpSocket *to) {
+        QObject::connect(from, &QTcpSocket::readyRead, to, [this, from, to] {
+            QTimer::singleShot(delay_, to, [to, bytes = from->readAll()] { to->write(bytes); });
         });
     }
 
+    const std::chrono::milliseconds delay_;
     QTcpServer server_;
+    quint16 port_ = 0;
 };
 
 /// Replays of several robots, of this window and of others, and what becomes of them when it is closed.
@@ -49,6 +57,7 @@ private Q_SLOTS:
     void othersAreAskedSeldom();
     void ownEndsWhicheverIsChosen();
     void ownEndsWhileItIsOpened();
+    void ownEndsAfterABrokenLink();
     void whoPlaysIsNotRemoved();
     void theProgramLeavesTheRobotLive_data();
     void theProgramLeavesTheRobotLive();
@@ -84,6 +93,7 @@ private:
     }
 
     std::unique_ptr<FakeRobot> fakes_;
+    std::unique_ptr<SlowLink> link_; ///< to the first
     std::unique_ptr<OpenWindow> open_;
 };
 
@@ -94,8 +104,12 @@ void TestReplayEnds::init() {
     for (const char *const name : {"near", "far"}) {
         FakeLogger &logger = fakes_->add(name);
         logger.positionsToEnd = 100000;
-        QVERIFY(open_->fleet.add(logger.address().section("//", -1)).ok());
     }
+    const auto addressOf = [this](std::size_t i) { return fakes_->loggers[i]->address().section("//", -1); };
+    link_ =
+        std::make_unique<SlowLink>(addressOf(0).section(':', -1).toUShort(), std::chrono::milliseconds(0));
+    QVERIFY(open_->fleet.add(QString("127.0.0.1:%1").arg(link_->port())).ok());
+    QVERIFY(open_->fleet.add(addressOf(1)).ok());
     QTRY_VERIFY(robotOf("near") && robotOf("far"));
     open_->fleet.place(robotOf("far")->withName("far"), nullptr);
     QTRY_VERIFY(robotOf("far") != robotOf("near"));
@@ -107,6 +121,7 @@ void TestReplayEnds::init() {
 
 void TestReplayEnds::cleanup() {
     open_.reset();
+    link_.reset();
     fakes_.reset();
 }
 
@@ -178,6 +193,31 @@ void TestReplayEnds::ownEndsWhileItIsOpened() {
     QCOMPARE(fakes_->loggers[0]->source, QString("live")); // that it was opened after that changes nothing
 }
 
+/// It plays on, and is still of this window when it is back; until somebody has ended it.
+void TestReplayEnds::ownEndsAfterABrokenLink() {
+    for (const bool isEnded : {false, true}) {
+        play("near");
+        QTRY_VERIFY(fakes_->loggers[0]->source == "replay" && watch().isOwn(*robotOf("near")));
+        const DaemonLink *const daemon = robotOf("near")->withName("near");
+        link_->cut();
+        QTRY_VERIFY(!player().isPlaying());
+        QVERIFY(link_->mend());
+        QTRY_VERIFY_WITH_TIMEOUT(daemon->isConnected() && watch().isReplaying(), 10000);
+        QVERIFY(watch().isOwn(*robotOf("near")));
+        if (isEnded) {
+            fakes_->loggers[0]->source = "live";
+            QTRY_VERIFY(!watch().isOwn(*robotOf("near")));
+            replay(0);
+            QTRY_VERIFY(watch().isReplaying());
+        }
+        fakes_->asked.clear();
+        open_->window.leave();
+        QTRY_VERIFY(!player().isPlaying());
+        QCOMPARE(fakes_->asked.contains("near: live"), !isEnded);
+        QVERIFY(open_->show());
+    }
+}
+
 void TestReplayEnds::whoPlaysIsNotRemoved() {
     Fleet &fleet = open_->fleet;
     play("far");
@@ -219,7 +259,7 @@ void TestReplayEnds::theProgramLeavesTheRobotLive() {
     QTRY_VERIFY_WITH_TIMEOUT(bytes() > 8e6, 60000); // for seconds
     QVERIFY(logger.callAndWait("record.stop").ok());
 
-    const SlowLink link(robot.port("velodynelogger"));
+    const SlowLink link(robot.port("velodynelogger"), std::chrono::milliseconds(150));
     const quint16 port = end == "slow" ? link.port() : robot.port("velodynelogger");
     ChildProcess program;
     program.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-gui",
