@@ -270,13 +270,14 @@ void TestReplayEnds::theProgramLeavesTheRobotLive() {
         tool.start("xdotool", words.split(' '));
         return tool.waitForFinished(20000) && tool.exitCode() == 0;
     };
-    QVERIFY(xdotool(QString("search --sync --onlyvisible --pid %1 --name Hermes windowactivate --sync")
-                        .arg(program.processId())));
+    const QString comeForward =
+        QString("search --onlyvisible --pid %1 --name Hermes windowactivate").arg(program.processId());
+    QTRY_VERIFY_WITH_TIMEOUT(xdotool(comeForward), 20000);
     QElapsedTimer time;
     time.start();
     bool plays = false;
     while (!plays && time.elapsed() < 30000) { // as soon as the list is there
-        QVERIFY(xdotool("key ctrl+7 Return"));
+        QVERIFY(xdotool(comeForward) && xdotool("key ctrl+7 Return"));
         plays = QTest::qWaitFor([&] { return source()["state"] == "replay"; }, 2000);
     }
     QTRY_COMPARE(source()["paused"].toBool(), false);
