@@ -2,6 +2,7 @@
 
 #include "gui/desktop/ButtonBar.h"
 #include "gui/desktop/EventBar.h"
+#include "gui/desktop/Farewell.h"
 #include "gui/desktop/HelpWindow.h"
 #include "gui/desktop/LayoutMenu.h"
 #include "gui/desktop/MenuBar.h"
@@ -25,7 +26,6 @@
 #include <QAction>
 #include <QApplication>
 #include <QCloseEvent>
-#include <QEventLoop>
 #include <QJsonDocument>
 #include <QPlainTextEdit>
 #include <QScreen>
@@ -37,8 +37,7 @@ namespace {
 constexpr QSize usualSize{1280, 720};
 constexpr int titleRoom = 40; // of a window's title, pixels
 constexpr std::chrono::seconds noticeTime{20};
-constexpr std::chrono::milliseconds farewellLimit{1000}; // more than a far robot takes to answer
-constexpr std::chrono::milliseconds keepEach{500};       // who is killed a second later has lost nothing
+constexpr std::chrono::milliseconds keepEach{500}; // who is killed a second later has lost nothing
 
 QString textOf(const QJsonObject &object) {
     return QString::fromUtf8(QJsonDocument(object).toJson(QJsonDocument::Compact));
@@ -143,16 +142,13 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     fleet.wish(layouts_.robots().chosen);
     connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
     connect(&keeper_, &LayoutKeeper::failed, this, &MainWindow::notify);
-    connect(&keeper_, &LayoutKeeper::ended, this, [this] {
-        if (!std::exchange(closesWhenWritten_, false))
-            return;
-        closing_.invalidate();
-        close();
-    });
+    farewell_ = new Farewell(drive_, keeper_, *findChild<SettingsPanel *>(), recordings->player(), this);
+    connect(farewell_, &Farewell::ready, this, &MainWindow::close);
 }
 
 // What shows the models of this window goes before them.
 MainWindow::~MainWindow() {
+    delete farewell_; // what is written now closes nothing any more
     delete buttonBar_;
     for (FloatingDock *const dock : docks_)
         delete dock;
@@ -375,56 +371,22 @@ void MainWindow::showEvent(QShowEvent *event) {
     });
 }
 
-/// What one should know before; empty: nothing.
-QString MainWindow::objectionToClosing() const {
-    QStringList reasons;
-    if (drive_.stopping().isOnItsWay())
-        reasons << tr("STOP is not confirmed as yet, and nothing repeats it when this window is closed.");
-    if (const QString replays = drive_.replay().whenClosed(); !replays.isEmpty())
-        reasons << replays;
-    if (const int count = findChild<SettingsPanel *>()->unapplied())
-        reasons << (count == 1 ? tr("A setting was changed and is not applied.")
-                               : tr("%1 settings were changed and are not applied.").arg(count));
-    if (!keeper_.problem().isEmpty() && !keeper_.isWaiting())
-        reasons << keeper_.problem() + '.';
-    if (!reasons.isEmpty())
-        reasons << tr("Close the window once more if that is meant.");
-    return reasons.join(' ');
-}
-
 void MainWindow::leave() {
-    isLeaving_ = true;
+    farewell_->insist();
     close();
 }
 
 void MainWindow::finish() {
-    const SessionPlayer &player = findChild<RecordPanel *>()->player();
-    if (!player.isPlaying())
-        return;
-    QEventLoop wait;
-    connect(&player, &SessionPlayer::ended, &wait, &QEventLoop::quit);
-    QTimer::singleShot(farewellLimit, &wait, &QEventLoop::quit);
-    wait.exec();
+    farewell_->await();
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
     keepAll();
-    const bool isWritten = keeper_.finish();
-    const QString reason = objectionToClosing();
-    const bool isAgain = closing_.isValid() &&
-                         !closing_.hasExpired(std::chrono::milliseconds(noticeTime).count()) &&
-                         (reason.isEmpty() || reason == objection_); // another one is told, too
-    const QString told =
-        isWritten ? reason : tr("%1 What was set is still being written.").arg(reason).trimmed();
-    if (!told.isEmpty() && !isAgain && !isLeaving_) {
-        closing_.start();
-        objection_ = reason;
-        closesWhenWritten_ = reason.isEmpty();
-        notify(told);
+    const QString objection = farewell_->objection();
+    notify(objection);
+    if (!objection.isEmpty())
         return event->ignore();
-    }
-    drive_.replay().endOwn();
     keeping_.stop();
     event->accept();
 }

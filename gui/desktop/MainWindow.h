@@ -13,6 +13,7 @@ class QToolBar;
 namespace hermes::desktop {
 
 class Banner;
+class Farewell;
 class FloatingDock;
 class HelpWindow;
 class MapPanel;
@@ -41,7 +42,6 @@ protected:
     void closeEvent(QCloseEvent *event) override;
 
 private:
-    QString objectionToClosing() const;
     void addBanner(Banner *banner, const char *name);
     void addPanel(const PanelKind &kind, QWidget *panel);
     QToolBar *addFootBar(const QString &title, const char *name, QWidget *content);
@@ -87,9 +87,7 @@ private:
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
     Banner *note_;
     QTimer notice_, keeping_;
-    bool closesWhenWritten_ = false, isLeaving_ = false;
-    QElapsedTimer closing_; ///< since it was tried, and there was something to be said
-    QString objection_;     ///< that was said then
+    Farewell *farewell_ = nullptr;
     QToolBar *buttonBar_ = nullptr;
 };
 

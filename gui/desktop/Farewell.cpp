@@ -1,0 +1,71 @@
+#include "gui/desktop/Farewell.h"
+
+#include "gui/desktop/panels/SettingsPanel.h"
+#include "gui/session/SessionPlayer.h"
+
+#include <QEventLoop>
+
+namespace hermes::desktop {
+namespace {
+
+constexpr std::chrono::milliseconds reconsider{20000};
+constexpr std::chrono::milliseconds longestAwait{1000}; // more than a far robot takes to answer
+
+} // namespace
+
+Farewell::Farewell(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
+                   const SessionPlayer &player, QObject *parent)
+    : QObject(parent)
+    , drive_(drive)
+    , keeper_(keeper)
+    , settings_(settings)
+    , player_(player) {
+    connect(&keeper, &LayoutKeeper::ended, this, [this] { // whether it was written or not
+        if (!std::exchange(waits_, false))
+            return;
+        tried_.invalidate();
+        Q_EMIT ready();
+    });
+}
+
+QString Farewell::reasons() const {
+    QStringList all;
+    if (drive_.stopping().isOnItsWay())
+        all << tr("STOP is not confirmed as yet, and nothing repeats it when this window is closed.");
+    if (const QString replays = drive_.replay().whenClosed(); !replays.isEmpty())
+        all << replays;
+    if (const int count = settings_.unapplied())
+        all << (count == 1 ? tr("A setting was changed and is not applied.")
+                           : tr("%1 settings were changed and are not applied.").arg(count));
+    if (!keeper_.problem().isEmpty() && !keeper_.isWaiting())
+        all << keeper_.problem() + '.';
+    if (!all.isEmpty())
+        all << tr("Close the window once more if that is meant.");
+    return all.join(' ');
+}
+
+QString Farewell::objection() {
+    const bool isWritten = keeper_.finish();
+    const QString why = reasons();
+    const bool isAgain = tried_.isValid() && !tried_.hasExpired(reconsider.count()) &&
+                         (why.isEmpty() || why == said_); // another one is told, too
+    if (isMeant_ || isAgain || (isWritten && why.isEmpty())) {
+        drive_.replay().endOwn();
+        return {};
+    }
+    tried_.start();
+    said_ = why;
+    waits_ = why.isEmpty();
+    return isWritten ? why : tr("%1 What was set is still being written.").arg(why).trimmed();
+}
+
+void Farewell::await() const {
+    if (!player_.isPlaying())
+        return;
+    QEventLoop wait;
+    connect(&player_, &SessionPlayer::ended, &wait, &QEventLoop::quit);
+    QTimer::singleShot(longestAwait, &wait, &QEventLoop::quit);
+    wait.exec();
+}
+
+} // namespace hermes::desktop

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "gui/desktop/LayoutKeeper.h"
+#include "gui/desktop/drive/DriveControl.h"
+
+namespace hermes {
+class SessionPlayer;
+}
+
+namespace hermes::desktop {
+
+class SettingsPanel;
+
+/// What the operator is to know before the window closes, and what is to end with it. A window that is closed
+/// once more within 20 s is meant to be, unless there is something else to be said by then.
+class Farewell : public QObject {
+    Q_OBJECT
+public:
+    Farewell(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
+             const SessionPlayer &player, QObject *parent = nullptr);
+
+    /// What speaks against closing now; empty: nothing, and what was replayed from here is told to end.
+    QString objection();
+    /// From now on nothing does.
+    void insist() { isMeant_ = true; }
+    /// After the event loop has ended: returns when what was replayed from here is live again, or a second
+    /// later.
+    void await() const;
+
+Q_SIGNALS:
+    /// What was still to be written is: the window may close without another wish.
+    void ready();
+
+private:
+    QString reasons() const;
+
+    DriveControl &drive_;
+    LayoutKeeper &keeper_;
+    const SettingsPanel &settings_;
+    const SessionPlayer &player_;
+    bool isMeant_ = false, waits_ = false;
+    QElapsedTimer tried_; ///< since something was said
+    QString said_;
+};
+
+} // namespace hermes::desktop
