@@ -1,7 +1,6 @@
 #include "gui/desktop/Farewell.h"
 
 #include "gui/desktop/panels/SettingsPanel.h"
-#include "gui/session/SessionPlayer.h"
 
 #include <QEventLoop>
 

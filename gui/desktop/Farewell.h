@@ -2,10 +2,7 @@
 
 #include "gui/desktop/LayoutKeeper.h"
 #include "gui/desktop/drive/DriveControl.h"
-
-namespace hermes {
-class SessionPlayer;
-}
+#include "gui/session/SessionPlayer.h"
 
 namespace hermes::desktop {
 
