@@ -244,8 +244,10 @@ void RecordPanel::proposeName() {
 
 void RecordPanel::play() {
     const RecordedSession *const session = sessions_->chosen();
-    if (!session || watch_.isRecording())
+    if (!session)
         return;
+    if (watch_.isRecording())
+        return message_->tell(tr("The robot is recording: nothing is replayed until that has ended."), true);
     QStringList lines = session->absent();
     lines.prepend(tr("Replaying %1.").arg(shortLine(session->name, longestName)));
     message_->tell(lines.join('\n'), lines.size() > 1);

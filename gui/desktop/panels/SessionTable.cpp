@@ -141,21 +141,29 @@ const RecordedSession *SessionTable::chosen() const {
     return index >= 0 && index < int(sessions_.size()) ? &sessions_[std::size_t(index)] : nullptr;
 }
 
+/// Rows that stay are the same: a double click may be half done.
 void SessionTable::tell(const SessionList &list) {
     const QString before = chosen() ? keyOf(*chosen()) : QString();
+    QMultiHash<QString, QTreeWidgetItem *> rows;
+    for (int i = 0; i < topLevelItemCount(); ++i) {
+        QTreeWidgetItem *const row = topLevelItem(i);
+        rows.insert(keyOf(sessions_[std::size_t(row->data(Name, indexRole).toInt())]), row);
+    }
     const QSignalBlocker silence(this);
     setSortingEnabled(false); // once, when all are here
-    clear();
     sessions_ = list.sessions;
     QTreeWidgetItem *current = nullptr;
     for (std::size_t i = 0; i < sessions_.size(); ++i) {
-        auto *const row = new Row;
+        const QString key = keyOf(sessions_[i]);
+        QTreeWidgetItem *row = rows.take(key);
+        if (!row)
+            addTopLevelItem(row = new Row);
         row->setData(Name, indexRole, int(i));
         fill(*row, sessions_[i]);
-        addTopLevelItem(row);
-        if (!current || keyOf(sessions_[i]) == before) // the latest is the first
+        if (!current || key == before) // the latest is the first
             current = row;
     }
+    qDeleteAll(rows);
     setSortingEnabled(true);
     if (current)
         setCurrentItem(current);

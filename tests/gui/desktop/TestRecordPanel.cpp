@@ -58,6 +58,9 @@ void TestRecordPanel::recordsAsOneAndReplays() {
     QTRY_COMPARE(find<QPushButton>("record")->text(), QString("S&top"));
     QTRY_VERIFY_WITH_TIMEOUT(find<QLabel>("amount")->text().contains("the disk will do for"), 15000);
     QTRY_VERIFY(find<QPushButton>("mark")->isVisible());
+    QTRY_COMPARE(find<QTreeWidget>("sessions")->topLevelItemCount(), 1);
+    Q_EMIT find<QTreeWidget>("sessions")->itemActivated(find<QTreeWidget>("sessions")->topLevelItem(0), 0);
+    QVERIFY2(message().contains("nothing is replayed"), qPrintable(message()));
     find<QLineEdit>("markText")->setText("at the door");
     click("mark");
     QTRY_COMPARE(message(), QString("Marked: at the door"));
