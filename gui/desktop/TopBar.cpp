@@ -55,8 +55,9 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     stop_->setFont(big);
     stop_->setMinimumSize(QFontMetrics(big).horizontalAdvance("STOP pressed") + 40, 40); // nothing jumps
 
-    for (PlainLabel *const told : std::initializer_list<PlainLabel *>{link_, control_, power_})
-        told->letElide(); // nothing pushes STOP out of sight
+    link_->letElide(); // nothing pushes STOP out of sight
+    control_->keepRoom(160);
+    power_->keepRoom(240);
 
     auto *const layout = new QHBoxLayout(this);
     layout->setContentsMargins(8, 0, 8, 0);

@@ -17,7 +17,7 @@ MapView::MapView(const MapModel &model, QWidget *parent)
     , cursorLabel_(new PlainLabel({}, this)) {
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
-    setMinimumSize(200, 150);
+    setMinimumSize(200, 100);
     setAttribute(Qt::WA_OpaquePaintEvent);
     cursorLabel_->setObjectName("cursor");
     cursorLabel_->setToolTip(tr("Under the mouse: x and y on the map, in metres"));

@@ -19,9 +19,11 @@ void Banner::tell(const QString &text, const QString &style) {
     Q_EMIT shown(!text.isEmpty());
 }
 
-// A tool bar asks nobody how high text of its width becomes.
+// A tool bar asks nobody how high text of its width becomes. Before it is shown it has some width, in which a
+// text may be so high that the window grows beyond its screen.
 void Banner::fitHeight() {
-    const QRect room(0, 0, width() - 2 * margin(), 1000);
+    const int across = isVisible() ? width() : window()->width();
+    const QRect room(0, 0, across - 2 * margin(), 1000);
     const int height = fontMetrics().boundingRect(room, Qt::TextWordWrap, text()).height() + 2 * margin();
     if (height != maximumHeight() && !text().isEmpty())
         setFixedHeight(height);

@@ -4,6 +4,7 @@
 #include <QPainter>
 #include <QStyle>
 #include <QToolTip>
+#include <algorithm>
 
 namespace hermes::desktop {
 
@@ -15,6 +16,8 @@ PlainLabel::PlainLabel(const QString &text, QWidget *parent)
 
 void PlainLabel::setText(const QString &text) {
     QLabel::setText(shortText(text));
+    if (room_ > 1)
+        setMinimumWidth(std::min(room_, sizeHint().width()));
 }
 
 void PlainLabel::setBold(bool isBold) {
@@ -26,6 +29,11 @@ void PlainLabel::setBold(bool isBold) {
 void PlainLabel::letElide(Qt::TextElideMode mode) {
     mode_ = mode;
     setMinimumWidth(1);
+}
+
+void PlainLabel::keepRoom(int most) {
+    letElide();
+    room_ = most;
 }
 
 bool PlainLabel::isElided() const {

@@ -17,6 +17,8 @@ public:
     /// One line that gives way to what is beside it: dots stand for what is left out, and the tool tip has
     /// all.
     void letElide(Qt::TextElideMode mode = Qt::ElideRight);
+    /// So wide it stays (pixels), as far as its text is, while others beside it are cut.
+    void keepRoom(int most);
     /// Whether not all of it is seen at this width.
     bool isElided() const;
     /// What is seen of the text.
@@ -28,6 +30,7 @@ protected:
 
 private:
     Qt::TextElideMode mode_ = Qt::ElideNone;
+    int room_ = 1; ///< pixels
 };
 
 } // namespace hermes::desktop

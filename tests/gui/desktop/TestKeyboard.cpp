@@ -1,4 +1,5 @@
 #include "gui/desktop/MainWindow.h"
+#include "gui/desktop/widgets/Banner.h"
 
 #include <QAbstractButton>
 #include <QAbstractItemView>
@@ -26,6 +27,7 @@ private Q_SLOTS:
     void docksComeByNumber();
     void keysThatDriveNothingAreTold();
     void enterPressesAndTicks();
+    void bannersFitALowScreen();
 
 private:
     std::unique_ptr<Fleet> fleet_;
@@ -113,6 +115,18 @@ void TestKeyboard::docksComeByNumber() {
             QVERIFY(window_->centralWidget()->isAncestorOf(focus));
     }
     QCOMPARE(seen.size(), docks.size() - 1);
+}
+
+void TestKeyboard::bannersFitALowScreen() {
+    window_->resize(1024, 600);
+    for (const char *const name : {"replayBanner", "noticeBanner"}) {
+        auto *const banner = static_cast<Banner *>(window_->findChild<QLabel *>(name));
+        banner->resize(100, 30); // as one is that was never seen
+        banner->tell(QString("Words and more words. ").repeated(6), {});
+        QTRY_VERIFY(banner->isVisible() && banner->width() > 900);
+        QTest::qWait(100); // the window may answer later
+        QVERIFY2(window_->height() == 600, qPrintable(QString::number(window_->height())));
+    }
 }
 
 void TestKeyboard::keysThatDriveNothingAreTold() {
