@@ -67,6 +67,12 @@ QPalette darkPalette() {
     return palette;
 }
 
+QPalette lightPalette() {
+    QPalette palette = QApplication::style()->standardPalette();
+    palette.setColor(QPalette::PlaceholderText, QColor(0x5c, 0x63, 0x6a)); // else labels do not show it
+    return palette;
+}
+
 const char *iconOf(Condition condition) {
     switch (condition) {
     case Condition::Ready:
@@ -90,7 +96,7 @@ void apply() {
     QApplication::setStyle(new ThemeStyle);
     const QByteArray wish = qgetenv("HERMES_THEME");
     const bool dark = wish == "dark" || (wish != "light" && isDark());
-    QApplication::setPalette(dark ? darkPalette() : QApplication::style()->standardPalette());
+    QApplication::setPalette(dark ? darkPalette() : lightPalette());
 }
 
 bool isDark() {

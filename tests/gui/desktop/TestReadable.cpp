@@ -29,6 +29,7 @@ private Q_SLOTS:
     void textsFit();
     void whatDrivesIsInSight();
     void coloursStandOut();
+    void quietTextIsPainted();
     void wordsAreOfAnOperator();
     void wordsOfDaemonsAreMadePlain();
 };
@@ -244,6 +245,19 @@ void TestReadable::coloursStandOut() {
         QVERIFY2(contrast(front, back) >= least,
                  qPrintable(nameOf(*widget, front.name() + " on " + back.name())));
     }
+}
+
+// As it is painted: colours of a palette may come out otherwise.
+void TestReadable::quietTextIsPainted() {
+    PlainLabel label("What a setting means");
+    label.setForegroundRole(QPalette::PlaceholderText);
+    label.resize(label.sizeHint());
+    const QImage picture = label.grab().toImage();
+    double best = 1;
+    for (int x = 0; x < picture.width(); ++x)
+        for (int y = 0; y < picture.height(); ++y)
+            best = std::max(best, contrast(picture.pixelColor(x, y), picture.pixelColor(0, 0)));
+    QVERIFY2(best >= 3.5, qPrintable(QString::number(best)));
 }
 
 /// All that the sources give to tr(), with what the window shows at first.
