@@ -29,7 +29,7 @@ public:
 
     simd::Level level = simd::bestLevel(); ///< the instruction set to use
 
-    std::size_t smallCluster = 512; ///< points up to which every point has a row
+    static constexpr std::size_t smallCluster = 512; ///< points up to which every point has a row
 
     void assign(PointSpan<float> points) {
         points_ = points;

@@ -100,16 +100,29 @@ private:
             tail_.back() = more;
         else if (hasLeft) {
             cuts_.pop_back();
-            cutIntoPairs(left.index, end.index);
+            cutAgain(left, end);
         } else if (hasRight) {
             tail_.pop_back();
-            cutIntoPairs(first.index, right.index);
+            cutAgain(first, right);
         }
     }
-    // Pairs always fit; the last one is three points where the count is odd.
-    void cutIntoPairs(std::size_t first, std::size_t end) {
-        for (std::size_t i = first + 2; i + 2 <= end; i += 2)
-            cuts_.push_back(search.at(i));
+    // An interval of points that do not fit as a whole, into as long ones as fit; of those that leave a rest
+    // that fits, the longest.
+    void cutAgain(Cut first, const Cut &end) {
+        while (end.index - first.index > 3 && !search.fits(first, end)) {
+            std::size_t longest = 0, index = end.index - 2;
+            for (; index > first.index + 2; --index) {
+                const Cut cut = search.at(index);
+                if (!search.fits(first, cut))
+                    continue;
+                longest = std::max(longest, index);
+                if (search.fits(cut, end))
+                    break;
+            }
+            const bool isRestLeft = index == first.index + 2 && !search.fits(search.at(index), end);
+            first = search.at(isRestLeft && longest > 0 ? longest : index);
+            cuts_.push_back(first);
+        }
     }
     static double squares(const Cut &first, const Cut &end) {
         return sumOfSquares(double(end.index - first.index), end.row - first.row);

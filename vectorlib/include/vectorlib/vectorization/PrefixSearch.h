@@ -1,13 +1,15 @@
 #pragma once
 
 #include "vectorlib/simd/Simd.h"
+#include "vectorlib/vectorization/BlockSums.h"
 #include "vectorlib/vectorization/Cut.h"
 #include "vectorlib/vectorization/PrefixSums.h"
 
 namespace vectorlib {
 
-/// The longest intervals that fit, by binary search over prefix sums; thesis 6.3.2, figure 6.5. Two points
-/// always fit, so the search cannot fail.
+/// The longest intervals that fit, over prefix sums; thesis 6.3.2, figure 6.5. Two points always fit, so the
+/// search cannot fail. The binary search of the thesis is for large clusters only: in small ones it would
+/// miss longer intervals that fit though shorter ones do not, and find other lines than BlockSearch.
 template <typename Scalar>
 class PrefixSearch {
 public:
@@ -28,22 +30,27 @@ public:
     /// The end of the longest interval that begins at `first`, and the begin of the longest that ends before
     /// `end`; reversed points give reversed intervals.
     void findEnds(const Cut &first, const Cut &end, Cut &ahead, Cut &back) const {
-        ahead = endFrom(first);
-        back = beginFrom(end);
+        ahead = at(first.index + longest(count_ - first.index, [&](std::size_t n) {
+                       return sums_.fitWithin(first.index, first.index + n, variance_);
+                   }));
+        back = at(end.index - longest(end.index, [&](std::size_t n) {
+                      return sums_.fitWithin(end.index - n, end.index, variance_);
+                  }));
     }
 
 private:
-    Cut endFrom(const Cut &first) const {
-        std::size_t good = std::min(first.index + 2, count_), bad = count_ + 1;
-        for (std::size_t next = count_; bad - good > 1; next = good + (bad - good) / 2)
-            (sums_.fitWithin(first.index, next, variance_) ? good : bad) = next;
-        return at(good);
-    }
-    Cut beginFrom(const Cut &end) const {
-        std::size_t good = std::min<std::size_t>(2, end.index), bad = end.index + 1; // points
-        for (std::size_t next = end.index; bad - good > 1; next = good + (bad - good) / 2)
-            (sums_.fitWithin(end.index - next, end.index, variance_) ? good : bad) = next;
-        return at(end.index - good);
+    // The points of the longest interval, of `most`: eight numbers at a time, until none of eight fits; in
+    // large clusters from where a binary search ends.
+    template <typename Fits>
+    std::size_t longest(std::size_t most, Fits fits) const {
+        std::size_t good = std::min<std::size_t>(2, most), bad = most + 1;
+        if (count_ > BlockSums::smallCluster)
+            for (std::size_t n = most; bad - good > 1; n = good + (bad - good) / 2)
+                (fits(n) ? good : bad) = n;
+        for (std::size_t n = good + 1; n <= most && n <= (good + 7) / 8 * 8 + 8; ++n)
+            if (fits(n))
+                good = n;
+        return good;
     }
 
     PrefixSums sums_;
