@@ -141,7 +141,7 @@ void Recording::start(const Call &call, const Reply &reply) {
 
 void Recording::stop(const Call &call, const Reply &reply) {
     const QString session = phase_ == Phase::Starting ? beginning_ : name_.session;
-    if (call.has("session") && call.text("session") != session)
+    if (call.has("session") && (session.isEmpty() || call.text("session") != session))
         return reply.error(
             Error(ErrorCode::NotReady, "no such session is being recorded: " + call.text("session")));
     if (phase_ == Phase::Idle)

@@ -1,5 +1,6 @@
 #include "gui/desktop/Farewell.h"
 
+#include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 
 #include <QEventLoop>
@@ -13,12 +14,12 @@ constexpr std::chrono::milliseconds longestAwait{1000}; // more than a far robot
 } // namespace
 
 Farewell::Farewell(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
-                   const SessionPlayer &player, QObject *parent)
+                   RecordPanel &recordings, QObject *parent)
     : QObject(parent)
     , drive_(drive)
     , keeper_(keeper)
     , settings_(settings)
-    , player_(player) {
+    , recordings_(recordings) {
     connect(&keeper, &LayoutKeeper::ended, this, [this] { // whether it was written or not
         if (!std::exchange(waits_, false))
             return;
@@ -33,9 +34,10 @@ QString Farewell::reasons() const {
         all << tr("STOP is not confirmed as yet, and nothing repeats it when this window is closed.");
     if (const QString replays = drive_.replay().whenClosed(); !replays.isEmpty())
         all << replays;
-    if (const int count = settings_.unapplied())
-        all << (count == 1 ? tr("A setting was changed and is not applied.")
-                           : tr("%1 settings were changed and are not applied.").arg(count));
+    if (const QStringList unapplied = settings_.unapplied(); !unapplied.isEmpty())
+        all << tr("Settings were changed and are not applied: %1.").arg(unapplied.join(", "));
+    if (recordings_.isRecording())
+        all << tr("A recording goes on when this window is closed.");
     if (!keeper_.problem().isEmpty() && !keeper_.isWaiting())
         all << keeper_.problem() + '.';
     if (!all.isEmpty())
@@ -59,10 +61,11 @@ QString Farewell::objection() {
 }
 
 void Farewell::await() const {
-    if (!player_.isPlaying())
+    const SessionPlayer &player = recordings_.player();
+    if (!player.isPlaying())
         return;
     QEventLoop wait;
-    connect(&player_, &SessionPlayer::ended, &wait, &QEventLoop::quit);
+    connect(&player, &SessionPlayer::ended, &wait, &QEventLoop::quit);
     QTimer::singleShot(longestAwait, &wait, &QEventLoop::quit);
     wait.exec();
 }

@@ -2,10 +2,10 @@
 
 #include "gui/desktop/LayoutKeeper.h"
 #include "gui/desktop/drive/DriveControl.h"
-#include "gui/session/SessionPlayer.h"
 
 namespace hermes::desktop {
 
+class RecordPanel;
 class SettingsPanel;
 
 /// What the operator is to know before the window closes, and what is to end with it. A window that is closed
@@ -14,7 +14,7 @@ class Farewell : public QObject {
     Q_OBJECT
 public:
     Farewell(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
-             const SessionPlayer &player, QObject *parent = nullptr);
+             RecordPanel &recordings, QObject *parent = nullptr);
 
     /// What speaks against closing now; empty: nothing, and what was replayed from here is told to end.
     QString objection();
@@ -34,7 +34,7 @@ private:
     DriveControl &drive_;
     LayoutKeeper &keeper_;
     const SettingsPanel &settings_;
-    const SessionPlayer &player_;
+    RecordPanel &recordings_;
     bool isMeant_ = false, waits_ = false;
     QElapsedTimer tried_; ///< since something was said
     QString said_;

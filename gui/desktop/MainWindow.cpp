@@ -12,6 +12,7 @@
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/CommandsPanel.h"
+#include "gui/desktop/panels/DaemonTree.h"
 #include "gui/desktop/panels/MapPanel.h"
 #include "gui/desktop/panels/PlotSets.h"
 #include "gui/desktop/panels/PlotsPanel.h"
@@ -30,6 +31,7 @@
 #include <QPlainTextEdit>
 #include <QScreen>
 #include <QToolBar>
+#include <QToolTip>
 
 namespace hermes::desktop {
 namespace {
@@ -120,9 +122,16 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     addButtonBar();
     auto *const typing = new TypingWatch(this);
     auto *const keys = new DriveKeys(drive_, *typing, *this);
-    connect(keys, &DriveKeys::drivesNothing, this, [this] {
-        tell(tr("Keys go to the list with the focus. A click on the map, or Ctrl+6: they drive."));
+    connect(keys, &DriveKeys::drivesNothing, this, [] { // no banner: nothing is to move under the mouse
+        if (const QWidget *const focus = QApplication::focusWidget())
+            QToolTip::showText(
+                focus->mapToGlobal(focus->rect().center()),
+                tr("Keys go to what has the focus. After a click on the map, or %1, they drive.")
+                    .arg("Ctrl+6"));
     });
+    const auto giveKeysToDrive = [this] { centralWidget()->setFocus(); };
+    connect(topBar, &TopBar::robotTaken, this, giveKeysToDrive, Qt::QueuedConnection);
+    connect(findChild<DaemonTree *>(), &DaemonTree::takenByMouse, this, giveKeysToDrive);
     new EnterKey(*typing, *this);
     new WheelGuard(*this);
     stopKeys_ = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
@@ -142,7 +151,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     fleet.wish(layouts_.robots().chosen);
     connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
     connect(&keeper_, &LayoutKeeper::failed, this, &MainWindow::notify);
-    farewell_ = new Farewell(drive_, keeper_, *findChild<SettingsPanel *>(), recordings->player(), this);
+    farewell_ = new Farewell(drive_, keeper_, *findChild<SettingsPanel *>(), *recordings, this);
     connect(farewell_, &Farewell::ready, this, &MainWindow::close);
 }
 
@@ -353,12 +362,7 @@ void MainWindow::notify(const QString &problem) {
     if (problem.isEmpty())
         return;
     qWarning("hermes-gui: %s", qPrintable(problem));
-    tell(problem);
-}
-
-/// For a while.
-void MainWindow::tell(const QString &text) {
-    note_->tell(text, "background: #8a6100; color: white;");
+    note_->tell(problem, "background: #8a6100; color: white;");
     notice_.start(noticeTime);
 }
 

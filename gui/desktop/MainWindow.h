@@ -64,7 +64,6 @@ private:
     /// The same, and has it saved when it has changed.
     void keep();
     void notify(const QString &problem);
-    void tell(const QString &text);
 
     Fleet &fleet_;
     DriveControl &drive_;

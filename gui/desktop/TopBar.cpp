@@ -7,12 +7,25 @@
 
 #include <QComboBox>
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QPushButton>
+#include <QSet>
 
 namespace hermes::desktop {
 namespace {
 
 constexpr int longestName = 30;
+
+/// The list of robots: its keys open it, for most of them drive elsewhere, and none of these is to choose
+/// another robot unseen.
+class RobotBox : public QComboBox {
+protected:
+    void keyPressEvent(QKeyEvent *event) override {
+        static const QSet<int> opening{Qt::Key_Up,     Qt::Key_Down, Qt::Key_PageUp, Qt::Key_PageDown,
+                                       Qt::Key_Return, Qt::Key_F4,   Qt::Key_Home,   Qt::Key_End};
+        opening.contains(event->key()) ? showPopup() : event->ignore();
+    }
+};
 
 /// The supervisor says that nobody wants it to run.
 bool isMeantToRest(const ProcessStatus *process) {
@@ -27,7 +40,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     , drive_(drive)
     , powerFeed_(
           fleet, "power", {{"max_rate_hz", 1}}, [this](const TopicUpdate &u) { showPower(u.data); }, this)
-    , robots_(new QComboBox)
+    , robots_(new RobotBox)
     , link_(new PlainLabel)
     , control_(new AgedLabel)
     , power_(new AgedLabel)
@@ -75,8 +88,10 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     layout->addWidget(release_);
     layout->addWidget(stop_);
 
-    connect(robots_, QOverload<int>::of(&QComboBox::activated), this,
-            [this](int index) { fleet_.choose(fleet_.robotAt(robots_->itemData(index).toString())); });
+    connect(robots_, QOverload<int>::of(&QComboBox::activated), this, [this](int index) {
+        fleet_.choose(fleet_.robotAt(robots_->itemData(index).toString()));
+        Q_EMIT robotTaken();
+    });
     connect(stop_, &QPushButton::pressed, &drive, &DriveControl::stop); // at once, not when it is let go
     connect(release_, &QPushButton::clicked, &drive, &DriveControl::release);
     connect(&fleet, &Fleet::changed, this, &TopBar::updateRobots);

@@ -20,6 +20,10 @@ public:
     TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent = nullptr);
     QPushButton &stopButton() { return *stop_; }
 
+Q_SIGNALS:
+    /// The operator has chosen a robot in the list.
+    void robotTaken();
+
 private:
     void updateRobots();
     void updateLink();

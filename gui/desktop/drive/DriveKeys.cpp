@@ -112,9 +112,11 @@ bool DriveKeys::press(const QKeyEvent &key) {
         return false;
     if (const QWidget *const focus = QApplication::focusWidget(); usesKeys(focus)) {
         const bool isLetter = key.key() < Qt::Key_Escape; // arrows are meant for it
-        if (isLetter && !isRepeat(key) && !QApplication::activePopupWidget() && !isTyping(focus))
+        if (!isLetter || QApplication::activePopupWidget() || isTyping(focus))
+            return false;
+        if (!isRepeat(key))
             Q_EMIT drivesNothing();
-        return false;
+        return true; // else it would choose what begins with it, maybe another robot
     }
     if (!isRepeat(key))
         down_.insert(key.key());

@@ -46,10 +46,11 @@ QString StopBanner::styleOf(const DriveControl &drive) {
 
 void StopBanner::update() {
     QString text = drive_.stopping().text();
-    if (text.isEmpty() && drive_.isStopped())
-        text = (drive_.stopping().phase() == StopPhase::Confirmed ? tr("STOPPED: %1")
-                                                                  : tr("The robot brakes: %1"))
-                   .arg(drive_.stopReason());
+    if (text.isEmpty() && drive_.isStopped()) {
+        const QString reason = drive_.stopReason();
+        text = drive_.stopping().phase() == StopPhase::Confirmed ? tr("STOPPED") : tr("The robot brakes");
+        text += reason.isEmpty() ? QString() : ": " + reason;
+    }
     tell(inPlainWords(text), styleOf(drive_));
     if (!drive_.stopping().isLate()) {
         sound_.stop();

@@ -4,6 +4,7 @@
 
 #include <QStringList>
 #include <algorithm>
+#include <tuple>
 
 namespace hermes::desktop {
 namespace {
@@ -31,7 +32,8 @@ void Events::goesOn(const QString &key, Event::Level level, const QString &from,
                     bool isSeen) {
     const auto known = open_.find(key);
     Event *event = known == open_.end() ? nullptr : find(known->second);
-    if (event && event->isOver && monotonicNow() - event->over > sameWithin_s)
+    const bool isAnother = level == Event::Level::Error && event && event->text != text;
+    if (event && event->isOver && (isAnother || monotonicNow() - event->over > sameWithin_s))
         event = nullptr;
     if (!event) {
         event = &add(level, from, text, stampNow());
@@ -100,8 +102,12 @@ bool Events::isWaiting(const Event &event) {
 
 const Event *Events::loudest() const {
     const Event *found = nullptr;
+    const auto rank = [](const Event &event) {
+        const bool isPast = event.isOver && !event.key.isEmpty();
+        return std::tuple(event.level, !isPast, event.began);
+    };
     for (const Event &event : events_)
-        if (isWaiting(event) && (!found || event.level >= found->level))
+        if (isWaiting(event) && (!found || rank(event) >= rank(*found)))
             found = &event;
     return found;
 }

@@ -41,7 +41,7 @@ public:
     /// Something that was so before anybody looked.
     void happenedBefore(Event::Level level, const QString &from, const QString &text, double stamp);
     /// Something that goes on until ends(key). Told again it is the same event; with a higher level it has to
-    /// be acknowledged again.
+    /// be acknowledged again. An error that comes again with another text is another one.
     void goesOn(const QString &key, Event::Level level, const QString &from, const QString &text,
                 bool isSeen = false);
     void ends(const QString &key);
@@ -56,7 +56,7 @@ public:
     const std::deque<Event> &all() const { return events_; }
     /// How many were left out because there were too many.
     quint64 forgotten() const { return forgotten_; }
-    /// The worst that waits to be acknowledged, the latest of those; null: none.
+    /// The worst that waits to be acknowledged; of those what goes on, then the latest; null: none.
     const Event *loudest() const;
     /// How many wait.
     int waiting() const;

@@ -235,6 +235,12 @@ void DaemonTree::mousePressEvent(QMouseEvent *event) {
         QTreeWidget::mousePressEvent(event);
 }
 
+void DaemonTree::mouseReleaseEvent(QMouseEvent *event) {
+    QTreeWidget::mouseReleaseEvent(event);
+    if (event->button() == Qt::LeftButton && state() != EditingState)
+        Q_EMIT takenByMouse();
+}
+
 void DaemonTree::showMenu(QTreeWidgetItem *item, const QPoint &place) {
     QTreeWidgetItem *daemon = nullptr;
     while (item && item->parent())

@@ -22,14 +22,17 @@ public:
     void lookFor(const QString &address);
 
 Q_SIGNALS:
-    /// Another row was clicked at.
+    /// Another row was chosen.
     void clickedAt();
+    /// With the mouse, so that the keys may drive.
+    void takenByMouse();
     /// The operator wants to be rid of it.
     void removalAsked(hermes::desktop::Robot *robot);
 
 protected:
     void contextMenuEvent(QContextMenuEvent *event) override;
     void mousePressEvent(QMouseEvent *event) override;
+    void mouseReleaseEvent(QMouseEvent *event) override;
 
 private:
     QTreeWidgetItem *rowOf(const void *shown, QTreeWidgetItem *parent, int row);

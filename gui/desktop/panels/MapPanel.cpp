@@ -174,14 +174,12 @@ void MapPanel::setLayers(const QVariantMap &ticks) {
 }
 
 void MapPanel::askFile() {
-    QFileDialog *const dialog =
-        makeSaveDialog(this, tr("Export the view"), "map.svg", tr("Pictures (*.svg *.png)"));
-    connect(dialog, &QFileDialog::fileSelected, this, [this](const QString &file) {
-        writeBeside(drawn(file), this, [this, file](const Result<void> &done) {
-            message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
-        });
-    });
-    export_.show(dialog);
+    askForFile(export_, this, tr("Export the view"), "map.svg", tr("Pictures (*.svg *.png)"),
+               [this](const QString &file) {
+                   writeBeside(drawn(file), this, [this, file](const Result<void> &done) {
+                       message_->tell(done ? tr("Wrote %1").arg(file) : done.error().message, !done);
+                   });
+               });
 }
 
 Writing MapPanel::drawn(const QString &file) const {

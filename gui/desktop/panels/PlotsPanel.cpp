@@ -202,9 +202,7 @@ void PlotsPanel::redraw() {
 }
 
 void PlotsPanel::askFile(const QString &title, const QString &name, const QString &kinds) {
-    QFileDialog *const dialog = makeSaveDialog(this, title, name, kinds);
-    connect(dialog, &QFileDialog::fileSelected, this, &PlotsPanel::write);
-    export_.show(dialog);
+    askForFile(export_, this, title, name, kinds, [this](const QString &file) { write(file); });
 }
 
 void PlotsPanel::write(const QString &file) {

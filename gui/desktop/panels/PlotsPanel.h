@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gui/desktop/panels/PlotBoard.h"
-#include "gui/desktop/widgets/OneDialog.h"
+#include "gui/desktop/widgets/SaveDialog.h"
 #include "gui/desktop/widgets/WrittenFile.h"
 
 #include <QTimer>

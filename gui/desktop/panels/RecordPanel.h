@@ -28,6 +28,8 @@ public:
     /// Loggers replay, whoever began it.
     void setReplaying(bool isReplaying);
     SessionPlayer &player() { return player_; }
+    /// The chosen robot is recorded, whoever began it.
+    bool isRecording() const { return watch_.isRecording(); }
 
 Q_SIGNALS:
     /// The replay of somebody else is to end.

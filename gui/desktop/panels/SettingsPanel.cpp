@@ -106,11 +106,18 @@ void SettingsPanel::follow(DaemonLink *daemon) {
     update();
 }
 
-int SettingsPanel::unapplied() const {
-    int count = leafPaths(form_->changes()).size();
-    for (const QJsonObject &changes : edits_)
-        count += leafPaths(changes).size();
-    return count;
+QStringList SettingsPanel::unapplied() const {
+    QHash<QString, QJsonObject> all = edits_;
+    if (daemon_)
+        all[daemon_->address()] = form_->changes();
+    QStringList found;
+    for (auto one = all.cbegin(); one != all.cend(); ++one) {
+        const DaemonLink *const daemon = fleet_.daemonAt(one.key());
+        if (const int count = leafPaths(*one).size())
+            found.append(tr("%1 (%2)").arg(daemon ? fleet_.titleOf(*daemon) : one.key()).arg(count));
+    }
+    found.sort();
+    return found;
 }
 
 void SettingsPanel::keepEdits() {

@@ -21,8 +21,8 @@ class SettingsPanel : public QWidget {
     Q_OBJECT
 public:
     explicit SettingsPanel(Fleet &fleet, QWidget *parent = nullptr);
-    /// How many values were edited and not applied, of all daemons.
-    int unapplied() const;
+    /// The daemons of which values were edited and not applied: "motorcontrol of anna (2)".
+    QStringList unapplied() const;
 
 private:
     void follow(DaemonLink *daemon);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <QFileDialog>
+#include <QDialog>
 #include <QPointer>
 
 namespace hermes::desktop {
@@ -24,14 +24,5 @@ public:
 private:
     QPointer<QDialog> open_;
 };
-
-/// Asks for a file to write; name: proposed.
-inline QFileDialog *makeSaveDialog(QWidget *parent, const QString &title, const QString &name,
-                                   const QString &kinds) {
-    auto *const dialog = new QFileDialog(parent, title, name, kinds);
-    dialog->setAcceptMode(QFileDialog::AcceptSave);
-    dialog->setOption(QFileDialog::DontUseNativeDialog); // whose keys this program does not see
-    return dialog;
-}
 
 } // namespace hermes::desktop

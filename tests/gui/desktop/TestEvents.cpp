@@ -18,6 +18,7 @@ private Q_SLOTS:
     void errorWaitsForAcknowledgement();
     void warningThatIsOverGoes();
     void whatComesAgainIsOneEvent();
+    void whatGoesOnComesFirst();
     void worseHasToBeSeenAgain();
     void errorsOutlastAFlood();
     void keysAreForgottenWithTheirEvents();
@@ -103,6 +104,22 @@ void TestEvents::whatComesAgainIsOneEvent() {
     events.goesOn("on", Level::Error, "motors", "b"); // it was over and is there again
     QVERIFY(events.loudest());
     QCOMPARE(alarms.size(), 2);
+}
+
+void TestEvents::whatGoesOnComesFirst() {
+    Events events;
+    events.goesOn("a", Event::Level::Error, "anna", "does not answer");
+    events.ends("a");
+    events.goesOn("b", Event::Level::Error, "berta", "does not answer");
+    events.ends("b");
+    events.goesOn("a", Event::Level::Error, "anna", "does not answer"); // the first of the list once more
+    QCOMPARE(events.loudest()->from, QString("anna"));
+    QCOMPARE(events.loudest()->times, 2);
+    events.ends("a");
+    events.goesOn("a", Event::Level::Error, "anna", "no connection");
+    QCOMPARE(events.loudest()->text, QString("no connection"));
+    QCOMPARE(events.loudest()->times, 1);
+    QCOMPARE(int(events.all().size()), 3);
 }
 
 void TestEvents::worseHasToBeSeenAgain() {

@@ -3,6 +3,7 @@
 #include "gui/desktop/panels/SettingsPanel.h"
 #include "tests/gui/desktop/OpenWindow.h"
 
+#include <QAbstractItemView>
 #include <QComboBox>
 #include <QLabel>
 #include <QMenu>
@@ -79,10 +80,19 @@ private:
     void choose(const One &one) {
         auto *const robots = find<QComboBox>("robots");
         robots->setFocus();
-        for (int i = 0; i < robots->count() && open_->fleet.robot() != robot(one); ++i)
-            QTest::keyClick(robots, robots->currentIndex() == 0 ? Qt::Key_Down : Qt::Key_Up);
-        QCOMPARE(open_->fleet.robot(), robot(one));
-        open_->window.centralWidget()->setFocus();
+        const int before = robots->currentIndex();
+        QTest::keyClick(robots, Qt::Key_Down); // opens the list, and chooses nothing
+        QTRY_VERIFY(robots->view()->isVisible());
+        QCOMPARE(robots->currentIndex(), before);
+        while (robots->view()->currentIndex().row() > 0)
+            QTest::keyClick(robots->view(), Qt::Key_Up);
+        while (robots->itemData(robots->view()->currentIndex().row()) != robot(one)->address())
+            QTest::keyClick(robots->view(), Qt::Key_Down);
+        QTest::keyClick(robots->view(), Qt::Key_Return);
+        QTRY_COMPARE(open_->fleet.robot(), robot(one));
+        QTRY_VERIFY(open_->window.centralWidget()->isAncestorOf(open_->window.focusWidget())); // keys drive
+        open_->window.activateWindow(); // as a window manager does when the list goes
+        QTRY_VERIFY(QApplication::focusWidget());
     }
     void pressStop() { QTest::mousePress(find<QPushButton>("stop"), Qt::LeftButton); }
     QString banner() const {

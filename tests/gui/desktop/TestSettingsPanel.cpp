@@ -242,7 +242,8 @@ void TestSettingsPanel::closingAsksForWhatIsNotApplied() {
     window_->window.close();
     QVERIFY(window_->window.isVisible());
     const QString notice = window_->window.findChild<QLabel *>("noticeBanner")->text();
-    QVERIFY2(notice.contains("A setting was changed and is not applied"), qPrintable(notice));
+    QVERIFY2(notice.contains("Settings were changed and are not applied: motorcontrol (1)."),
+             qPrintable(notice));
     window_->window.close();
     QVERIFY(!window_->window.isVisible());
 }

@@ -4,8 +4,10 @@
 
 #include <QComboBox>
 #include <QDialog>
+#include <QFileDialog>
 #include <QMenu>
 #include <QMenuBar>
+#include <QMessageBox>
 #include <QToolButton>
 #include <QToolTip>
 
@@ -23,6 +25,8 @@ private Q_SLOTS:
     void everyMenuAndList();
     void everyDialog_data() { hands(); }
     void everyDialog();
+    void whetherToReplace_data() { hands(); }
+    void whetherToReplace();
     void aToolTip_data() { hands(); }
     void aToolTip();
     void everyFocus();
@@ -225,6 +229,32 @@ void TestStopByHand::everyDialog() {
         open_->window.activateWindow();
         QVERIFY(QTest::qWaitForWindowActive(&open_->window));
     }
+}
+
+// The file dialog's own question would be modal, and the button out of reach.
+void TestStopByHand::whetherToReplace() {
+    QFETCH(QString, hand);
+    QTemporaryDir folder;
+    QFile there(folder.filePath("map.svg"));
+    QVERIFY(there.open(QIODevice::WriteOnly));
+    const auto question = [this] {
+        for (const auto *const box : open_->window.findChildren<QMessageBox *>())
+            if (box->isVisible())
+                return true;
+        return false;
+    };
+    stopsWhileOpen(
+        "whether to replace",
+        [&] {
+            open_->window.findChild<QAction *>("export")->trigger();
+            auto *const dialog = open_->window.findChild<QFileDialog *>();
+            dialog->selectFile(there.fileName());
+            QTimer::singleShot(300, dialog, [dialog] { QMetaObject::invokeMethod(dialog, "accept"); });
+        },
+        question, hand);
+    for (auto *const box : open_->window.findChildren<QMessageBox *>())
+        box->close();
+    QCOMPARE(there.size(), 0LL); // it was not meant
 }
 
 void TestStopByHand::aToolTip() {
