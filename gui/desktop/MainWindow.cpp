@@ -1,8 +1,8 @@
 #include "gui/desktop/MainWindow.h"
 
 #include "gui/desktop/ButtonBar.h"
+#include "gui/desktop/CloseGuard.h"
 #include "gui/desktop/EventBar.h"
-#include "gui/desktop/Farewell.h"
 #include "gui/desktop/HelpWindow.h"
 #include "gui/desktop/LayoutMenu.h"
 #include "gui/desktop/MenuBar.h"
@@ -87,28 +87,9 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     setCorner(Qt::BottomLeftCorner, Qt::BottomDockWidgetArea);
     setCorner(Qt::BottomRightCorner, Qt::BottomDockWidgetArea);
 
-    auto *const bar = addToolBar(tr("Robot"));
-    bar->setObjectName("topBar");
-    bar->setMovable(false);
-    bar->setContextMenuPolicy(Qt::PreventContextMenu);
     auto *const topBar = new TopBar(fleet, drive_);
-    bar->addWidget(topBar);
-
-    addBanner(new StopBanner(drive_, sounds_), "stopBar");
-    auto *const replay = new Banner;
-    replay->setObjectName("replayBanner");
-    addBanner(replay, "replayBar");
-    connect(&drive_.replay(), &ReplayWatch::changed, replay, [this, replay] {
-        const QString text = drive_.replay().text();
-        replay->tell(text.isEmpty() ? QString() : tr("REPLAY, not the robot of now: %1").arg(text),
-                     "background: #6a2fb0; color: white;");
-    });
-
-    note_->setObjectName("noticeBanner");
-    addBanner(note_, "noticeBar");
-    notice_.setSingleShot(true);
-    connect(&notice_, &QTimer::timeout, note_, [this] { note_->tell({}, {}); });
-
+    addTopBar(topBar);
+    addBanners();
     setCentralWidget(map_ = new MapPanel(fleet));
     auto *const gamepad = new DriveGamepad(drive_, layouts_, this);
     for (const PanelKind &kind : panelKinds())
@@ -120,24 +101,72 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     drive_.replay().setPlayer(&recordings->player());
     addEventBar();
     addButtonBar();
+    addKeys(*topBar);
+    addMenus();
+    arrange();
+    restoreAll();
+    connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
+    connect(&keeper_, &LayoutKeeper::failed, this, &MainWindow::notify);
+    closeGuard_ = new CloseGuard(drive_, keeper_, *findChild<SettingsPanel *>(), *recordings, this);
+    connect(closeGuard_, &CloseGuard::ready, this, &MainWindow::close);
+}
+
+// What shows the models of this window goes before them.
+MainWindow::~MainWindow() {
+    delete closeGuard_; // what is written now closes nothing any more
+    delete buttonBar_;
+    for (FloatingDock *const dock : docks_)
+        delete dock;
+}
+
+QStringList MainWindow::keptAddresses(const QString &layoutFile) {
+    return Layouts(layoutFile).robots().addresses;
+}
+
+void MainWindow::addTopBar(TopBar *content) {
+    auto *const bar = addToolBar(tr("Robot"));
+    bar->setObjectName("topBar");
+    bar->setMovable(false);
+    bar->setContextMenuPolicy(Qt::PreventContextMenu);
+    bar->addWidget(content);
+}
+
+void MainWindow::addBanners() {
+    addBanner(new StopBanner(drive_, sounds_), "stopBar");
+    auto *const replay = new Banner;
+    replay->setObjectName("replayBanner");
+    addBanner(replay, "replayBar");
+    connect(&drive_.replay(), &ReplayWatch::changed, replay, [this, replay] {
+        const QString text = drive_.replay().text();
+        replay->tell(text.isEmpty() ? QString() : tr("REPLAY, not the robot of now: %1").arg(text),
+                     "background: #6a2fb0; color: white;");
+    });
+    note_->setObjectName("noticeBanner");
+    addBanner(note_, "noticeBar");
+    notice_.setSingleShot(true);
+    connect(&notice_, &QTimer::timeout, note_, [this] { note_->tell({}, {}); });
+}
+
+void MainWindow::addKeys(TopBar &topBar) {
     auto *const typing = new TypingWatch(this);
     auto *const keys = new DriveKeys(drive_, *typing, *this);
     connect(keys, &DriveKeys::drivesNothing, this, [] { // no banner: nothing is to move under the mouse
         if (const QWidget *const focus = QApplication::focusWidget())
             QToolTip::showText(
                 focus->mapToGlobal(focus->rect().center()),
-                tr("Keys go to what has the focus. After a click on the map, or %1, they drive.")
-                    .arg("Ctrl+6"));
+                tr("Keys go to what has the focus. After a click on the map, or Ctrl+6, they drive."));
     });
     const auto giveKeysToDrive = [this] { centralWidget()->setFocus(); };
-    connect(topBar, &TopBar::robotTaken, this, giveKeysToDrive, Qt::QueuedConnection);
+    connect(&topBar, &TopBar::robotTaken, this, giveKeysToDrive, Qt::QueuedConnection);
     connect(findChild<DaemonTree *>(), &DaemonTree::takenByMouse, this, giveKeysToDrive);
     new EnterKey(*typing, *this);
     new WheelGuard(*this);
-    stopKeys_ = new StopKeys(drive_, topBar->stopButton()); // sees keys before the others
+    stopKeys_ = new StopKeys(drive_, topBar.stopButton()); // sees keys before the others
     stopKeys_->letEscapeStop(layouts_.value("escape") == "on");
-    addMenus();
-    arrange();
+}
+
+/// What is kept between runs.
+void MainWindow::restoreAll() {
     auto &plotSets = findChild<PlotsPanel *>()->sets();
     plotSets.setSets(objectFrom(layouts_.value("plotSets")));
     connect(&plotSets, &PlotSets::changed, this,
@@ -146,25 +175,9 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     map_->setLayers(objectFrom(layouts_.value("layers")).toVariantMap());
     showLayout();
     notify(QStringList{layouts_.problem(), layouts_.damage(), keeper_.problem()}.join(' ').trimmed());
-    fleet.setNames(layouts_.robots().names);
-    fleet.setPlaces(layouts_.robots().places);
-    fleet.wish(layouts_.robots().chosen);
-    connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
-    connect(&keeper_, &LayoutKeeper::failed, this, &MainWindow::notify);
-    farewell_ = new Farewell(drive_, keeper_, *findChild<SettingsPanel *>(), *recordings, this);
-    connect(farewell_, &Farewell::ready, this, &MainWindow::close);
-}
-
-// What shows the models of this window goes before them.
-MainWindow::~MainWindow() {
-    delete farewell_; // what is written now closes nothing any more
-    delete buttonBar_;
-    for (FloatingDock *const dock : docks_)
-        delete dock;
-}
-
-QStringList MainWindow::keptAddresses(const QString &layoutFile) {
-    return Layouts(layoutFile).robots().addresses;
+    fleet_.setNames(layouts_.robots().names);
+    fleet_.setPlaces(layouts_.robots().places);
+    fleet_.wish(layouts_.robots().chosen);
 }
 
 void MainWindow::addBanner(Banner *banner, const char *name) {
@@ -376,18 +389,18 @@ void MainWindow::showEvent(QShowEvent *event) {
 }
 
 void MainWindow::leave() {
-    farewell_->insist();
+    closeGuard_->closeAnyway();
     close();
 }
 
 void MainWindow::finish() {
-    farewell_->await();
+    closeGuard_->waitForLive();
 }
 
 void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
     keepAll();
-    const QString objection = farewell_->objection();
+    const QString objection = closeGuard_->objection();
     notify(objection);
     if (!objection.isEmpty())
         return event->ignore();

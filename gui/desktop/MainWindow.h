@@ -13,11 +13,12 @@ class QToolBar;
 namespace hermes::desktop {
 
 class Banner;
-class Farewell;
+class CloseGuard;
 class FloatingDock;
 class HelpWindow;
 class MapPanel;
 class StopKeys;
+class TopBar;
 
 /// The operator's window: the map in the middle, docks around it, the bar with STOP above. Ctrl+1 to Ctrl+9
 /// and Ctrl+0 bring the docks to the front.
@@ -42,7 +43,11 @@ protected:
     void closeEvent(QCloseEvent *event) override;
 
 private:
+    void addTopBar(TopBar *content);
+    void addBanners();
     void addBanner(Banner *banner, const char *name);
+    void addKeys(TopBar &topBar);
+    void restoreAll();
     void addPanel(const PanelKind &kind, QWidget *panel);
     QToolBar *addFootBar(const QString &title, const char *name, QWidget *content);
     void addEventBar();
@@ -86,7 +91,7 @@ private:
     std::vector<std::pair<Banner *, QToolBar *>> banners_;
     Banner *note_;
     QTimer notice_, keeping_;
-    Farewell *farewell_ = nullptr;
+    CloseGuard *closeGuard_ = nullptr;
     QToolBar *buttonBar_ = nullptr;
 };
 

@@ -1,20 +1,22 @@
-#include "gui/desktop/Farewell.h"
+#include "gui/desktop/CloseGuard.h"
 
 #include "gui/desktop/panels/RecordPanel.h"
 #include "gui/desktop/panels/SettingsPanel.h"
 
 #include <QEventLoop>
+#include <QTimer>
+#include <utility>
 
 namespace hermes::desktop {
 namespace {
 
 constexpr std::chrono::milliseconds reconsider{20000};
-constexpr std::chrono::milliseconds longestAwait{1000}; // more than a far robot takes to answer
+constexpr std::chrono::milliseconds longestWait{1000}; // more than a far robot takes to answer
 
 } // namespace
 
-Farewell::Farewell(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
-                   RecordPanel &recordings, QObject *parent)
+CloseGuard::CloseGuard(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
+                       RecordPanel &recordings, QObject *parent)
     : QObject(parent)
     , drive_(drive)
     , keeper_(keeper)
@@ -28,7 +30,7 @@ Farewell::Farewell(DriveControl &drive, LayoutKeeper &keeper, const SettingsPane
     });
 }
 
-QString Farewell::reasons() const {
+QString CloseGuard::reasons() const {
     QStringList all;
     if (drive_.stopping().isOnItsWay())
         all << tr("STOP is not confirmed as yet, and nothing repeats it when this window is closed.");
@@ -45,12 +47,12 @@ QString Farewell::reasons() const {
     return all.join(' ');
 }
 
-QString Farewell::objection() {
+QString CloseGuard::objection() {
     const bool isWritten = keeper_.finish();
     const QString why = reasons();
     const bool isAgain = tried_.isValid() && !tried_.hasExpired(reconsider.count()) &&
                          (why.isEmpty() || why == said_); // another one is told, too
-    if (isMeant_ || isAgain || (isWritten && why.isEmpty())) {
+    if (isForced_ || isAgain || (isWritten && why.isEmpty())) {
         drive_.replay().endOwn();
         return {};
     }
@@ -60,13 +62,13 @@ QString Farewell::objection() {
     return isWritten ? why : tr("%1 What was set is still being written.").arg(why).trimmed();
 }
 
-void Farewell::await() const {
+void CloseGuard::waitForLive() const {
     const SessionPlayer &player = recordings_.player();
     if (!player.isPlaying())
         return;
     QEventLoop wait;
     connect(&player, &SessionPlayer::ended, &wait, &QEventLoop::quit);
-    QTimer::singleShot(longestAwait, &wait, &QEventLoop::quit);
+    QTimer::singleShot(longestWait, &wait, &QEventLoop::quit);
     wait.exec();
 }
 

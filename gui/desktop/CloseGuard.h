@@ -3,6 +3,8 @@
 #include "gui/desktop/LayoutKeeper.h"
 #include "gui/desktop/drive/DriveControl.h"
 
+#include <QElapsedTimer>
+
 namespace hermes::desktop {
 
 class RecordPanel;
@@ -10,19 +12,19 @@ class SettingsPanel;
 
 /// What the operator is to know before the window closes, and what is to end with it. A window that is closed
 /// once more within 20 s is meant to be, unless there is something else to be said by then.
-class Farewell : public QObject {
+class CloseGuard : public QObject {
     Q_OBJECT
 public:
-    Farewell(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
-             RecordPanel &recordings, QObject *parent = nullptr);
+    CloseGuard(DriveControl &drive, LayoutKeeper &keeper, const SettingsPanel &settings,
+               RecordPanel &recordings, QObject *parent = nullptr);
 
     /// What speaks against closing now; empty: nothing, and what was replayed from here is told to end.
     QString objection();
     /// From now on nothing does.
-    void insist() { isMeant_ = true; }
+    void closeAnyway() { isForced_ = true; }
     /// After the event loop has ended: returns when what was replayed from here is live again, or a second
     /// later.
-    void await() const;
+    void waitForLive() const;
 
 Q_SIGNALS:
     /// What was still to be written is: the window may close without another wish.
@@ -35,7 +37,7 @@ private:
     LayoutKeeper &keeper_;
     const SettingsPanel &settings_;
     RecordPanel &recordings_;
-    bool isMeant_ = false, waits_ = false;
+    bool isForced_ = false, waits_ = false;
     QElapsedTimer tried_; ///< since something was said
     QString said_;
 };
