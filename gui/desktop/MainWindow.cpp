@@ -141,6 +141,10 @@ void MainWindow::addBanners() {
         replay->tell(text.isEmpty() ? QString() : tr("REPLAY, not the robot of now: %1").arg(text),
                      "background: #6a2fb0; color: white;");
     });
+    connect(&drive_.replay(), &ReplayWatch::lost, this, [this](const QString &robot) {
+        notify(tr("%1 is gone from here, and may still show a recording. Added again, Live ends that.")
+                   .arg(robot));
+    });
     note_->setObjectName("noticeBanner");
     addBanner(note_, "noticeBar");
     notice_.setSingleShot(true);

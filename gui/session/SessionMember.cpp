@@ -21,6 +21,10 @@ struct Round {
 
 } // namespace
 
+bool isUnconfirmed(const Result<QJsonValue> &reply) {
+    return !reply && (reply.error().is(ErrorCode::TimedOut) || reply.error().is(ErrorCode::Disconnected));
+}
+
 bool SessionMembers::add(const QString &name, Client &client,
                          const std::function<bool(const QString &)> &has) {
     if (!has("record.start"))

@@ -42,6 +42,9 @@ struct SessionReply {
 };
 using SessionReplies = std::vector<SessionReply>;
 
+/// Nobody knows whether it was done: the reply did not come in time, or the connection ended before.
+bool isUnconfirmed(const Result<QJsonValue> &reply);
+
 /// Calls a method of several at the same time. done gets their replies in the order of the calls, once, from
 /// the event loop; not when the context is gone by then.
 void callAll(const std::vector<SessionCall> &calls, const QString &method, std::chrono::milliseconds timeout,

@@ -22,16 +22,16 @@ bool isNotReady(const SessionReply &reply) {
     return !reply.result && reply.result.error().is(ErrorCode::NotReady);
 }
 
-/// Nobody knows whether it was done.
-bool isUnconfirmed(const SessionReply &reply) {
-    return !reply.result &&
-           (reply.result.error().is(ErrorCode::TimedOut) || reply.result.error().is(ErrorCode::Disconnected));
-}
-
 /// One that has come to its end takes no orders; if it is not that, source.status will tell.
 Result<void> firstRefusal(SessionReplies replies) {
     replies.erase(std::remove_if(replies.begin(), replies.end(), isNotReady), replies.end());
     return firstError(replies);
+}
+
+void removeFrom(std::vector<SessionMember> &members, const Client *client) {
+    members.erase(std::remove_if(members.begin(), members.end(),
+                                 [client](const SessionMember &one) { return one.client == client; }),
+                  members.end());
 }
 
 /// Seconds as they can be; 0: not known.
@@ -90,22 +90,25 @@ void SessionPlayer::endAtOnce() {
     end();
     const bool isWaiting = isPlaying_ && !timer_.isActive(); // for a reply, with which it ends once more
     timer_.stop();
-    if (!isWaiting && !told().empty())
+    std::vector<SessionMember> all = told();
+    all.insert(all.end(), doubtful_.begin(), doubtful_.end());
+    if (isWaiting) {
+        callAll(callsOf(all, live), "source.open", options_.timeout, this, [](const auto &) {});
+    } else if (!all.empty()) {
+        playing_ = all;
+        doubtful_.clear();
         goLive({});
-    else if (isWaiting)
-        callAll(callsOf(told(), live), "source.open", options_.timeout, this, [](const auto &) {});
+    }
 }
 
 bool SessionPlayer::plays(const Client &client) const {
-    return std::any_of(told().begin(), told().end(),
-                       [&client](const SessionMember &member) { return member.client == &client; });
+    const auto is = [&client](const SessionMember &member) { return member.client == &client; };
+    return std::any_of(told().begin(), told().end(), is) ||
+           std::any_of(doubtful_.begin(), doubtful_.end(), is);
 }
 
 void SessionPlayer::forget(const Client &client) {
-    if (!isPlaying_) // else it finds out by itself
-        playing_.erase(std::remove_if(playing_.begin(), playing_.end(),
-                                      [&client](const auto &one) { return one.client == &client; }),
-                       playing_.end());
+    removeFrom(doubtful_, &client); // what is playing finds out by itself
 }
 
 void SessionPlayer::obeySoon() {
@@ -185,8 +188,11 @@ void SessionPlayer::onOpened(const SessionReplies &replies) {
                            [&](const SessionMember &one) { return one.name == member.name; });
     };
     for (const SessionReply &reply : replies)
-        if ((reply.result || isUnconfirmed(reply)) && !isPlayed(reply.member))
-            playing_.push_back(reply.member);
+        if (reply.result || isUnconfirmed(reply.result)) {
+            removeFrom(doubtful_, reply.member.client);
+            if (!isPlayed(reply.member))
+                playing_.push_back(reply.member);
+        }
     opening_.clear();
     if (!goesOn(firstError(replies)))
         return;
@@ -320,8 +326,8 @@ void SessionPlayer::goLive(const Result<void> &result) {
                 isPlaying_ = false;
                 playing_.clear();
                 for (const SessionReply &reply : replies)
-                    if (isUnconfirmed(reply))
-                        playing_.push_back(reply.member);
+                    if (isUnconfirmed(reply.result))
+                        doubtful_.push_back(reply.member);
                 Q_EMIT ended(result ? firstError(replies) : result);
                 if (const auto next = std::exchange(next_, std::nullopt); next && !isPlaying_)
                     play(next->first, next->second);

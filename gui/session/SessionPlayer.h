@@ -76,8 +76,9 @@ private:
     RecordedSession session_;
     Options options_;
     QTimer timer_;
-    std::vector<SessionMember> playing_; ///< who shows what is recorded, or may
-    std::vector<SessionMember> opening_; ///< the same and who has not answered as yet
+    std::vector<SessionMember> playing_;  ///< who shows what is recorded, or may
+    std::vector<SessionMember> doubtful_; ///< who has not confirmed that it ended, also of sessions before
+    std::vector<SessionMember> opening_;  ///< the same and who has not answered as yet
     std::optional<std::pair<RecordedSession, Options>> next_;
     std::optional<double> seekWanted_, speedWanted_;
     std::optional<bool> pauseWanted_;

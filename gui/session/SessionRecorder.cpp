@@ -112,7 +112,7 @@ void SessionRecorder::takeBack(const QString &name, const SessionReplies &replie
                                const Done<Result<SessionReplies>> &done) {
     std::vector<SessionMember> toStop;
     for (const SessionReply &reply : replies)
-        if (reply.result || reply.result.error().is(ErrorCode::TimedOut))
+        if (reply.result || isUnconfirmed(reply.result))
             toStop.push_back(reply.member);
     callAll(callsOf(toStop, {{"session", takenBack_}}), "record.stop", stopLimit, this,
             [=](const SessionReplies &ends) {

@@ -124,7 +124,8 @@ QString DriveControl::objection(const Robot &robot) const {
     if (stop_.isPressedFor(robot))
         return tr("STOP was pressed for %1: release it first.").arg(robot.name());
     if (replay_.isOwn(robot))
-        return tr("%1 shows a recording that is played here: press Live first.").arg(robot.name());
+        return tr("%1 shows a recording that is played here: choose it and press Live first.")
+            .arg(robot.name());
     return {};
 }
 

@@ -79,8 +79,9 @@ void LoggerWatch::poll() {
     const double now = monotonicNow();
     if (!isRecording())
         return progress_.clear();
-    progress_.emplace_back(now, bytes());
-    while (progress_.front().first < now - rateOver_s)
+    if (std::exchange(isHeard_, false)) // else nothing is known of it
+        progress_.emplace_back(now, bytes());
+    while (!progress_.empty() && progress_.front().first < now - rateOver_s)
         progress_.pop_front();
 }
 
@@ -89,6 +90,8 @@ void LoggerWatch::take(const SessionReply &reply) {
         if (known.client != reply.member.client || !reply.result)
             continue;
         const QJsonObject now = reply.result->toObject();
+        heard_[known.name] = stampNow();
+        isHeard_ = true;
         compare(known.name, std::exchange(states_[known.name], now), now);
     }
     Q_EMIT changed();
@@ -172,8 +175,9 @@ double LoggerWatch::bytes() const {
 
 double LoggerWatch::seconds() const {
     double longest = 0;
-    for (const QJsonObject &state : recording())
-        longest = std::max(longest, stampNow() - state["start"].toDouble());
+    for (const auto &[name, state] : states_)
+        if (state["recording"].toBool())
+            longest = std::max(longest, heard_.at(name) - state["start"].toDouble());
     return longest;
 }
 

@@ -70,6 +70,8 @@ private:
     QTimer timer_;
     SessionMembers members_;
     std::map<QString, QJsonObject> states_;
+    std::map<QString, double> heard_; ///< stamps (s): when each of them was told
+    bool isHeard_ = false;            ///< one was, since the last question
     std::map<QString, Lost> lost_;
     QStringList silent_;
     std::deque<std::pair<double, double>> progress_; // monotonic seconds, bytes

@@ -32,6 +32,14 @@ void RecordingStop::begin(const LoggerWatch &watch) {
     }
 }
 
+void RecordingStop::expect(const QString &session, const SessionMembers &members) {
+    sessions_.insert(session);
+    for (const SessionMember &member : members.all)
+        if (const QString address = fleet_.robot() ? addressOf(*fleet_.robot(), member) : QString();
+            !address.isEmpty())
+            loggers_[address] = {member, State::Unconfirmed, {}};
+}
+
 bool RecordingStop::isOf(const Robot *robot) const {
     const std::vector<Robot *> all = robots();
     return std::find(all.begin(), all.end(), robot) != all.end();
@@ -119,9 +127,8 @@ void RecordingStop::tell(const QString &address, const SessionMember &member, co
 
 void RecordingStop::take(Logger &logger, const Result<QJsonValue> &reply) {
     const auto is = [&](ErrorCode code) { return !reply && reply.error().is(code); };
-    const bool hasAnswered = !is(ErrorCode::TimedOut) && !is(ErrorCode::Disconnected);
-    logger.state = hasAnswered ? State::Answered : State::Unconfirmed;
-    if (hasAnswered && !is(ErrorCode::NotReady)) // it had ended before: its sidecar tells how
+    logger.state = isUnconfirmed(reply) ? State::Unconfirmed : State::Answered;
+    if (!isUnconfirmed(reply) && !is(ErrorCode::NotReady)) // it had ended before: its sidecar tells how
         logger.end = reply;
 }
 

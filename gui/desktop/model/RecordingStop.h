@@ -16,6 +16,8 @@ public:
 
     /// All that the watch knows to be under way is to end, too.
     void begin(const LoggerWatch &watch);
+    /// A session that could not be begun whole: who has begun it all the same is to end it.
+    void expect(const QString &session, const SessionMembers &members);
     bool isUnderWay() const { return isToCheck_ || isChecking_; }
     bool ends(const QString &session) const { return sessions_.contains(session); }
     bool isOf(const Robot *robot) const;

@@ -22,9 +22,10 @@ void RecordingStops::begin() {
         (known ? known : add(*fleet_.robot()))->begin(watch_);
 }
 
-void RecordingStops::forget() {
-    while (RecordingStop *const stop = chosen())
-        drop(stop);
+void RecordingStops::expect(const QString &session) {
+    RecordingStop *const known = chosen();
+    if (known || fleet_.robot())
+        (known ? known : add(*fleet_.robot()))->expect(session, watch_.members());
 }
 
 QStringList RecordingStops::silentElsewhere() const {

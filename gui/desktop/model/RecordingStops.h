@@ -12,8 +12,8 @@ public:
 
     /// Ends what the chosen robot records.
     void begin();
-    /// It records anew: none of before is to end any more.
-    void forget();
+    /// Ends that session wherever a logger of the chosen robot has begun it.
+    void expect(const QString &session);
     /// Of the chosen robot; null: none.
     RecordingStop *chosen() const;
     /// A line for each logger of the other robots that does not answer.

@@ -41,6 +41,12 @@ ReplayWatch::ReplayWatch(Fleet &fleet, QObject *parent)
             askAll(*robot);
         tell();
     });
+    connect(&fleet, &Fleet::robotGone, this, [this](const Robot *robot) {
+        const auto daemons = robot->daemons();
+        if (player_ && std::any_of(daemons.begin(), daemons.end(),
+                                   [this](DaemonLink *daemon) { return player_->plays(daemon->client()); }))
+            Q_EMIT lost(fleet_.titleOf(*robot));
+    });
     timer_.start(period);
 }
 

@@ -31,6 +31,8 @@ public:
 Q_SIGNALS:
     /// Of the chosen robot.
     void changed();
+    /// A robot was removed that may still show what this window began.
+    void lost(const QString &title);
 
 private:
     struct Source {

@@ -23,6 +23,7 @@ constexpr int longestName = 60;
 
 RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     : QWidget(parent)
+    , fleet_(fleet)
     , watch_(fleet)
     , stops_(fleet, watch_)
     , name_(new QLineEdit("run1"))
@@ -41,6 +42,8 @@ RecordPanel::RecordPanel(Fleet &fleet, QWidget *parent)
     layOut();
     connectAll();
     connect(&fleet, &Fleet::robotChosen, this, [this] { // what was recorded there is not here
+        if (!name_->isModified())
+            name_->setText("run1"); // the next free one of this robot is proposed
         list_ = {};
         ends_.clear();
         sessions_->tell(list_);
@@ -123,7 +126,7 @@ void RecordPanel::connectAll() {
     connect(takeMark_, &QAction::triggered, this, &RecordPanel::mark);
     connect(replay_, &QPushButton::clicked, this, &RecordPanel::play);
     connect(live_, &QPushButton::clicked, this,
-            [this] { player_.isPlaying() ? player_.end() : Q_EMIT liveWanted(); });
+            [this] { isOwnShown() || !isReplaying_ ? player_.end() : Q_EMIT liveWanted(); });
     connect(sessions_, &SessionTable::currentItemChanged, this, &RecordPanel::update);
     connect(sessions_, &SessionTable::itemActivated, this, &RecordPanel::play);
     connect(&watch_, &LoggerWatch::changed, this, [this] {
@@ -136,10 +139,20 @@ void RecordPanel::connectAll() {
     connect(&stops_, &RecordingStops::changed, this, &RecordPanel::update);
     connect(&stops_, &RecordingStops::ended, this, &RecordPanel::showStopped);
     connect(&player_, &SessionPlayer::ended, this, [this](const Result<void> &result) {
-        message_->tell(result ? tr("The replay has ended; everything is live.") : result.error().message,
-                       !result);
+        const QString text =
+            result ? tr("The replay has ended; everything is live.") : result.error().message;
+        const QString here = fleet_.robot() ? fleet_.titleOf(*fleet_.robot()) : QString();
+        message_->tell(playedBy_ == here ? text : tr("%1: %2").arg(playedBy_, text), !result);
         update();
     });
+}
+
+/// The chosen robot shows what is played from here.
+bool RecordPanel::isOwnShown() const {
+    const auto &all = watch_.members().all;
+    return player_.isPlaying() && std::any_of(all.begin(), all.end(), [this](const SessionMember &member) {
+               return member.client && player_.plays(*member.client);
+           });
 }
 
 /// With the loggers of this moment.
@@ -150,12 +163,14 @@ SessionRecorder &RecordPanel::recorder() {
 
 void RecordPanel::start() {
     const QString name = name_->text().trimmed();
-    watch_.forgetLost();
-    stops_.forget();
     recorder().start(name, [this, name](const Result<SessionReplies> &replies) {
         message_->tell(replies ? tr("Recording %1.").arg(name) : replies.error().message, !replies);
-        if (replies)
+        if (replies) {
+            watch_.forgetLost();
             name_->setModified(false); // the next one is proposed
+        } else if (!recorder_.takenBack().isEmpty()) {
+            stops_.expect(recorder_.takenBack()); // whose link broke may have begun
+        }
         watch_.poll();
         list();
     });
@@ -200,7 +215,8 @@ void RecordPanel::mark() {
             watch_.isRecording()
                 ? tr("No mark was taken: none of the loggers that record takes marks, as the "
                      "serial logger does.")
-                : tr("No mark was taken: nothing is recorded."),
+                : tr("No mark was taken: %1 records nothing.")
+                      .arg(fleet_.robot() ? fleet_.titleOf(*fleet_.robot()) : tr("nobody")),
             true);
     const QString typed = mark_->text(), text = markText();
     recorder_.setMembers(watch_.markers()); // it waits for no others
@@ -235,6 +251,8 @@ void RecordPanel::list() {
 
 /// Unless somebody has typed one.
 void RecordPanel::proposeName() {
+    if (watch_.isRecording() && !name_->hasFocus())
+        name_->setText(shortLine(watch_.name(), longestName));
     if (name_->isModified() || watch_.isRecording())
         return;
     const QString next = nextFreeName(name_->text().trimmed(), list_);
@@ -252,6 +270,7 @@ void RecordPanel::play() {
     lines.prepend(tr("Replaying %1.").arg(shortLine(session->name, longestName)));
     message_->tell(lines.join('\n'), lines.size() > 1);
     played_ = session->id;
+    playedBy_ = fleet_.robot() ? fleet_.titleOf(*fleet_.robot()) : QString();
     bar_->begin(*session);
     player_.play(*session, {});
     listMarks(*session, watch_.members().timeout, this,

@@ -55,6 +55,9 @@ private:
     void showAmount();
     void showLost();
 
+    bool isOwnShown() const;
+
+    Fleet &fleet_;
     LoggerWatch watch_;
     SessionRecorder recorder_;
     RecordingStops stops_;
@@ -65,6 +68,7 @@ private:
     QSet<QString> listed_;        ///< the sessions that were under way then
     QMap<QString, QString> ends_; ///< names of recordings that ended otherwise, by session; to be told
     QString played_;              ///< the id of the session
+    QString playedBy_;            ///< the title of its robot
     QSet<QString> markedIn_;      ///< the sessions that the number is of
     int markNumber_ = 0;          ///< of the last mark
     QLineEdit *name_, *mark_;

@@ -102,7 +102,7 @@ void TestReplay::aKeyMarks() {
     auto *const recordings = open_->window.findChild<QDockWidget *>("recordings");
     QVERIFY(recordings->visibleRegion().isEmpty()); // behind another
     QTest::keyClick(&open_->window, Qt::Key_M, Qt::ControlModifier);
-    QTRY_COMPARE(message(), QString("No mark was taken: nothing is recorded."));
+    QTRY_VERIFY2(message().contains("records nothing"), qPrintable(message()));
     find<QLineEdit>("name")->setText("run1");
     QTRY_VERIFY(find("record")->isEnabled());
     find("record")->click();

@@ -226,7 +226,7 @@ void TestReplayEnds::whoPlaysIsNotRemoved() {
     const auto refused = fleet.remove(robotOf("far"));
     QVERIFY(!refused);
     QCOMPARE(refused.error().message,
-             title("far") + " shows a recording that is played here: press Live first.");
+             title("far") + " shows a recording that is played here: choose it and press Live first.");
     QVERIFY(fleet.remove(robotOf("near")).ok()); // what another client plays there goes on
     player().end();
     QTRY_VERIFY(!player().isPlaying());
