@@ -98,6 +98,10 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     connect(&drive_.replay(), &ReplayWatch::changed, recordings,
             [this, recordings] { recordings->setReplaying(drive_.replay().isReplaying()); });
     connect(recordings, &RecordPanel::liveWanted, this, [this] { drive_.replay().endAll(); });
+    connect(recordings, &RecordPanel::recordingChanged, this, [this](bool isRecording) {
+        findChild<QDockWidget *>("recordings") // seen when its tab is behind others, too
+            ->setWindowTitle(isRecording ? tr("Recordings \u25cf") : tr("Recordings"));
+    });
     drive_.replay().setPlayer(&recordings->player());
     addEventBar();
     addButtonBar();

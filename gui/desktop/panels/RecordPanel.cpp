@@ -291,6 +291,8 @@ void RecordPanel::setReplaying(bool isReplaying) {
 
 void RecordPanel::update() {
     const bool isRecording = watch_.isRecording();
+    if (std::exchange(wasRecording_, isRecording) != isRecording)
+        Q_EMIT recordingChanged(isRecording);
     record_->setText(isRecording ? tr("S&top") : tr("Re&cord"));
     record_->setIcon(theme::icon(isRecording ? "stop" : "record"));
     record_->setEnabled(!watch_.members().all.empty() && (isRecording || !name_->text().trimmed().isEmpty()));

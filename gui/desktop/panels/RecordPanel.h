@@ -34,6 +34,8 @@ public:
 Q_SIGNALS:
     /// The replay of somebody else is to end.
     void liveWanted();
+    /// The chosen robot is recorded from now on, or no more.
+    void recordingChanged(bool isRecording);
 
 private:
     void layOut();
@@ -58,6 +60,7 @@ private:
     bool isOwnShown() const;
 
     Fleet &fleet_;
+    bool wasRecording_ = false;
     LoggerWatch watch_;
     SessionRecorder recorder_;
     RecordingStops stops_;

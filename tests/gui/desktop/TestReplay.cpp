@@ -143,7 +143,7 @@ void TestReplay::threeClicks() {
     int tab = -1;
     for (auto *const bar : open_->window.findChildren<QTabBar *>())
         for (int i = 0; i < bar->count(); ++i)
-            if (bar->tabText(i) == "Recordings") {
+            if (bar->tabText(i).startsWith("Recordings")) {
                 tabs = bar;
                 tab = i;
             }
