@@ -21,11 +21,18 @@ Result<QStringList> addressesOf(const Arguments &arguments) {
     return addresses;
 }
 
-/// Whether a description tells of a method.
-bool has(const QJsonValue &description, const QString &method) {
-    const QJsonArray methods = description["methods"].toArray();
-    return std::any_of(methods.begin(), methods.end(),
-                       [&](const QJsonValue &one) { return one["name"].toString() == method; });
+/// The one of that name; undefined: there is none.
+QJsonValue named(const QJsonValue &list, const QString &name) {
+    for (const QJsonValue &one : list.toArray())
+        if (one["name"].toString() == name)
+            return one;
+    return QJsonValue::Undefined;
+}
+
+/// Whether a description tells of a method, and, if a parameter is given, that it takes that.
+bool has(const QJsonValue &description, const QString &method, const QString &param) {
+    const QJsonValue found = named(description["methods"], method);
+    return param.isEmpty() ? found.isObject() : named(found["params"], param).isObject();
 }
 
 /// Lines for those that are no loggers; those that do not say what they are go to the silent ones.
@@ -38,7 +45,9 @@ QStringList identify(SessionMembers &members, const std::vector<SessionMember> &
         if (!reply.result)
             members.silent.append(reply.complaint() + " (is it a logger? --daemons names those that are)");
         else if (!members.add((*infos[i].result)["name"].toString(), *daemons[i].client,
-                              [&](const QString &method) { return has(*reply.result, method); }))
+                              [&](const QString &method, const QString &param) {
+                                  return has(*reply.result, method, param);
+                              }))
             others.append(daemons[i].name + ": no logger, record.start is missing");
     }
     return others;

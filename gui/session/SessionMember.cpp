@@ -25,16 +25,19 @@ bool isUnconfirmed(const Result<QJsonValue> &reply) {
     return !reply && (reply.error().is(ErrorCode::TimedOut) || reply.error().is(ErrorCode::Disconnected));
 }
 
-bool SessionMembers::add(const QString &name, Client &client,
-                         const std::function<bool(const QString &)> &has) {
-    if (!has("record.start"))
+bool SessionMembers::add(const QString &name, Client &client, const Has &has) {
+    if (!has("record.start", {}))
         return false;
     const bool isKnown =
         std::any_of(all.begin(), all.end(), [&](const SessionMember &one) { return one.name == name; });
     const QString fullName = isKnown ? name + '@' + client.address().section("//", -1) : name;
-    all.push_back({fullName, &client, has("mark"), has("source.open"), has("source.seek"),
-                   has("source.speed"), has("record.marks")});
+    all.push_back({fullName, &client, has("mark", {}), has("source.open", {}), has("source.seek", {}),
+                   has("source.speed", {}), has("record.marks", {}), has("record.stop", "session")});
     return true;
+}
+
+SessionCall stopCall(const SessionMember &member, const QString &session) {
+    return {member, member.endsOne ? QJsonObject{{"session", session}} : QJsonObject()};
 }
 
 void callAll(const std::vector<SessionCall> &calls, const QString &method, std::chrono::milliseconds timeout,

@@ -17,6 +17,7 @@ struct SessionMember {
     bool replays = false;                  ///< and source.open
     bool seeks = false, setsSpeed = false; ///< source.seek and source.speed
     bool listsMarks = false;               ///< and record.marks
+    bool endsOne = false;                  ///< its record.stop takes a session
 };
 
 /// All loggers of a robot.
@@ -25,8 +26,11 @@ struct SessionMembers {
     QStringList silent; ///< a line for each daemon that may be one, but does not say what it is
     std::chrono::milliseconds timeout = Client::defaultTimeout; ///< of a reply
 
+    /// Whether a daemon has a command, and, if a parameter is given, whether it takes that.
+    using Has = std::function<bool(const QString &method, const QString &param)>;
+
     /// Adds a daemon by the commands that it has; false when it is no logger.
-    bool add(const QString &name, Client &client, const std::function<bool(const QString &)> &has);
+    bool add(const QString &name, Client &client, const Has &has);
 };
 
 struct SessionCall {
@@ -52,6 +56,9 @@ void callAll(const std::vector<SessionCall> &calls, const QString &method, std::
 
 /// The same parameters for each.
 std::vector<SessionCall> callsOf(const std::vector<SessionMember> &members, const QJsonObject &params = {});
+
+/// For record.stop: ends no other session, where the logger can tell them apart.
+SessionCall stopCall(const SessionMember &member, const QString &session);
 
 /// A line for each that failed.
 QStringList complaints(const SessionReplies &replies);

@@ -110,23 +110,22 @@ void SessionRecorder::begin(const SessionMembers &members, const QString &name,
 
 void SessionRecorder::takeBack(const QString &name, const SessionReplies &replies,
                                const Done<Result<SessionReplies>> &done) {
-    std::vector<SessionMember> toStop;
+    std::vector<SessionCall> toStop;
     for (const SessionReply &reply : replies)
         if (reply.result || isUnconfirmed(reply.result))
-            toStop.push_back(reply.member);
-    callAll(callsOf(toStop, {{"session", takenBack_}}), "record.stop", stopLimit, this,
-            [=](const SessionReplies &ends) {
-                QStringList lines = complaints(replies);
-                for (const SessionReply &end : ends) {
-                    if (end.result)
-                        lines.append(QString("%1 had begun and was stopped, see %2")
-                                         .arg(end.member.name, (*end.result)["folder"].toString()));
-                    else if (!end.result.error().is(ErrorCode::NotReady)) // it had not begun
-                        lines.append(QString("%1 may have begun and could not be stopped: %2")
-                                         .arg(end.member.name, end.result.error().message));
-                }
-                done(sessionError(QString("\"%1\" is not recorded").arg(name), lines));
-            });
+            toStop.push_back(stopCall(reply.member, takenBack_));
+    callAll(toStop, "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
+        QStringList lines = complaints(replies);
+        for (const SessionReply &end : ends) {
+            if (end.result)
+                lines.append(QString("%1 had begun and was stopped, see %2")
+                                 .arg(end.member.name, (*end.result)["folder"].toString()));
+            else if (!end.result.error().is(ErrorCode::NotReady)) // it had not begun
+                lines.append(QString("%1 may have begun and could not be stopped: %2")
+                                 .arg(end.member.name, end.result.error().message));
+        }
+        done(sessionError(QString("\"%1\" is not recorded").arg(name), lines));
+    });
 }
 
 void SessionRecorder::stop(const Done<Result<Stopped>> &done) {
@@ -140,7 +139,7 @@ void SessionRecorder::end(const States &states, const Done<Result<Stopped>> &don
     for (const SessionReply &state : states.replies) {
         const QJsonValue said = state.result ? *state.result : QJsonValue();
         if (isRecording(state)) {
-            active.push_back({state.member, {{"session", said["session"]}}});
+            active.push_back(stopCall(state.member, said["session"].toString()));
             ids.insert(said["session"].toString());
         } else if (said["error"].isObject()) {
             failed.insert(said["session"].toString());

@@ -65,7 +65,9 @@ SessionMembers TestSessions::members() const {
     for (std::size_t i = 0; i < robot_->clients.size(); ++i) {
         const bool isFull = robot_->loggers[i].get() != c_;
         members.add(QString(QChar('a' + int(i))), *robot_->clients[i],
-                    [&](const QString &method) { return isFull || method == "record.start"; });
+                    [&](const QString &method, const QString &param) {
+                        return param.isEmpty() && (isFull || method == "record.start");
+                    });
     }
     return members;
 }

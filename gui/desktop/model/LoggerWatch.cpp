@@ -18,7 +18,9 @@ SessionMembers loggersOf(const Robot &robot) {
             members.silent.append(LoggerWatch::tr("%1: it does not say what it can do").arg(daemon->name()));
         else if (daemon->isConnected())
             members.add(daemon->name(), daemon->client(),
-                        [daemon](const QString &method) { return daemon->hasMethod(method); });
+                        [daemon](const QString &method, const QString &param) {
+                            return param.isEmpty() ? daemon->hasMethod(method) : daemon->takes(method, param);
+                        });
     return members;
 }
 

@@ -118,7 +118,7 @@ bool RecordingStop::mayBeAsked(const QString &address) const {
 void RecordingStop::tell(const QString &address, const SessionMember &member, const QJsonValue &session) {
     loggers_[address] = {member, State::Told, {}};
     isToCheck_ = true;
-    callAll({{member, {{"session", session}}}}, "record.stop", SessionRecorder::stopLimit, this,
+    callAll({stopCall(member, session.toString())}, "record.stop", SessionRecorder::stopLimit, this,
             [this, address](const SessionReplies &replies) {
                 take(loggers_.at(address), replies.front().result);
                 checkWhenAnswered();

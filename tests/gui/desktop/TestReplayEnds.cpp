@@ -81,8 +81,9 @@ private:
     void play(const QString &logger) {
         DaemonLink *const daemon = robotOf(logger)->withName(logger);
         SessionMembers members;
-        QVERIFY(members.add(logger, daemon->client(),
-                            [daemon](const QString &method) { return daemon->hasMethod(method); }));
+        QVERIFY(members.add(logger, daemon->client(), [daemon](const QString &method, const QString &) {
+            return daemon->hasMethod(method);
+        }));
         RecordedSession session;
         session.parts.push_back({members.all.front(), {{"name", "x"}}});
         player().play(session, {});
