@@ -83,6 +83,7 @@ void SessionRecorder::list(int most, const Done<SessionList> &done) {
 }
 
 void SessionRecorder::start(const QString &name, const Done<Result<SessionReplies>> &done) {
+    mayRecord_.clear();
     status([=, members = members_](const States &states) { // all steps are with the same loggers
         const auto listed = [=](const SessionReplies &lists) {
             QStringList lines = obstacles(states, lists, name);
@@ -117,6 +118,8 @@ void SessionRecorder::takeBack(const QString &name, const SessionReplies &replie
     callAll(toStop, "record.stop", stopLimit, this, [=](const SessionReplies &ends) {
         QStringList lines = complaints(replies);
         for (const SessionReply &end : ends) {
+            if (isUnconfirmed(end.result))
+                mayRecord_.push_back(end.member);
             if (end.result)
                 lines.append(QString("%1 had begun and was stopped, see %2")
                                  .arg(end.member.name, (*end.result)["folder"].toString()));

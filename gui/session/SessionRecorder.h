@@ -35,6 +35,8 @@ public:
     void start(const QString &name, const Done<Result<SessionReplies>> &done);
     /// The id of the last session that start() had to stop; empty: none.
     const QString &takenBack() const { return takenBack_; }
+    /// Who may record it all the same: nobody knows whether they were stopped.
+    const std::vector<SessionMember> &mayRecord() const { return mayRecord_; }
     /// Ends the recording of all, and compares what each told at its end with its sidecar. NotReady when
     /// nothing is being recorded, and nothing has ended by an error.
     void stop(const Done<Result<Stopped>> &done);
@@ -58,6 +60,7 @@ private:
 
     SessionMembers members_;
     QString takenBack_;
+    std::vector<SessionMember> mayRecord_;
 };
 
 } // namespace hermes

@@ -23,21 +23,19 @@ RecordingStop::RecordingStop(Fleet &fleet, const QString &title, QObject *parent
 }
 
 void RecordingStop::begin(const LoggerWatch &watch) {
+    tells_ = true;
     sessions_ += watch.sessions();
     for (const SessionMember &member : watch.recordingMembers().all) {
         const QString address = fleet_.robot() ? addressOf(*fleet_.robot(), member) : QString();
         const auto known = loggers_.find(address);
-        if (!address.isEmpty() && (known == loggers_.end() || known->second.state == State::Answered))
+        if (!address.isEmpty() && (known == loggers_.end() || known->second.state != State::Told))
             tell(address, member, watch.states().at(member.name)["session"]);
     }
 }
 
-void RecordingStop::expect(const QString &session, const SessionMembers &members) {
+void RecordingStop::expect(const QString &session, const QString &address, const SessionMember &logger) {
     sessions_.insert(session);
-    for (const SessionMember &member : members.all)
-        if (const QString address = fleet_.robot() ? addressOf(*fleet_.robot(), member) : QString();
-            !address.isEmpty())
-            loggers_[address] = {member, State::Unconfirmed, {}};
+    loggers_.insert({address, {logger, State::Unconfirmed, {}}});
 }
 
 bool RecordingStop::isOf(const Robot *robot) const {
@@ -158,7 +156,8 @@ void RecordingStop::checkWhenAnswered() {
             if (logger.state == State::Unconfirmed)
                 problems.append(
                     tr("%1 has not confirmed that it stopped: it may still record").arg(logger.member.name));
-        Q_EMIT ended(problems);
+        if (tells_)
+            Q_EMIT ended(problems);
         checkWhenAnswered();
     });
 }

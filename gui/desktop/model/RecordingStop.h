@@ -17,7 +17,7 @@ public:
     /// All that the watch knows to be under way is to end, too.
     void begin(const LoggerWatch &watch);
     /// A session that could not be begun whole: who has begun it all the same is to end it.
-    void expect(const QString &session, const SessionMembers &members);
+    void expect(const QString &session, const QString &address, const SessionMember &logger);
     bool isUnderWay() const { return isToCheck_ || isChecking_; }
     bool ends(const QString &session) const { return sessions_.contains(session); }
     bool isOf(const Robot *robot) const;
@@ -60,6 +60,7 @@ private:
     std::map<QString, Logger> loggers_; ///< by address
     QSet<QString> asked_;               ///< the addresses of loggers that are asked what they record
     bool isToCheck_ = false, isChecking_ = false;
+    bool tells_ = false; ///< somebody pressed Stop and waits for what becomes of it
 };
 
 } // namespace hermes::desktop

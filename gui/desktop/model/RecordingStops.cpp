@@ -9,23 +9,28 @@ RecordingStops::RecordingStops(Fleet &fleet, const LoggerWatch &watch, QObject *
     , fleet_(fleet)
     , watch_(watch) {}
 
-RecordingStop *RecordingStops::chosen() const {
+RecordingStop *RecordingStops::of(const Robot *robot) const {
     for (RecordingStop *const stop : stops_)
-        if (stop->isOf(fleet_.robot()))
+        if (stop->isOf(robot))
             return stop;
     return nullptr;
 }
 
 void RecordingStops::begin() {
+    if (!fleet_.robot())
+        return;
     RecordingStop *const known = chosen();
-    if (known || fleet_.robot())
-        (known ? known : add(*fleet_.robot()))->begin(watch_);
+    (known ? known : add(*fleet_.robot()))->begin(watch_);
 }
 
-void RecordingStops::expect(const QString &session) {
-    RecordingStop *const known = chosen();
-    if (known || fleet_.robot())
-        (known ? known : add(*fleet_.robot()))->expect(session, watch_.members());
+void RecordingStops::expect(const QString &session, const std::vector<SessionMember> &loggers) {
+    for (const SessionMember &logger : loggers)
+        for (const auto &robot : fleet_.robots())
+            for (DaemonLink *const daemon : robot->daemons())
+                if (&daemon->client() == logger.client) {
+                    RecordingStop *const known = of(robot.get());
+                    (known ? known : add(*robot))->expect(session, daemon->address(), logger);
+                }
 }
 
 QStringList RecordingStops::silentElsewhere() const {

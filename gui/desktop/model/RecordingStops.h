@@ -12,10 +12,10 @@ public:
 
     /// Ends what the chosen robot records.
     void begin();
-    /// Ends that session wherever a logger of the chosen robot has begun it.
-    void expect(const QString &session);
+    /// Ends that session, in silence, at each of these loggers that has begun it all the same.
+    void expect(const QString &session, const std::vector<SessionMember> &loggers);
     /// Of the chosen robot; null: none.
-    RecordingStop *chosen() const;
+    RecordingStop *chosen() const { return of(fleet_.robot()); }
     /// A line for each logger of the other robots that does not answer.
     QStringList silentElsewhere() const;
 
@@ -25,6 +25,7 @@ Q_SIGNALS:
     void ended(const QString &text, bool isError, bool isChosen);
 
 private:
+    RecordingStop *of(const Robot *robot) const;
     RecordingStop *add(const Robot &robot);
     void drop(RecordingStop *stop);
     void tell(const RecordingStop &stop, const QStringList &problems);

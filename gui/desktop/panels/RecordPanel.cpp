@@ -168,8 +168,8 @@ void RecordPanel::start() {
         if (replies) {
             watch_.forgetLost();
             name_->setModified(false); // the next one is proposed
-        } else if (!recorder_.takenBack().isEmpty()) {
-            stops_.expect(recorder_.takenBack()); // whose link broke may have begun
+        } else {
+            stops_.expect(recorder_.takenBack(), recorder_.mayRecord()); // whose link broke may have begun
         }
         watch_.poll();
         list();
@@ -215,8 +215,9 @@ void RecordPanel::mark() {
             watch_.isRecording()
                 ? tr("No mark was taken: none of the loggers that record takes marks, as the "
                      "serial logger does.")
-                : tr("No mark was taken: %1 records nothing.")
-                      .arg(fleet_.robot() ? fleet_.titleOf(*fleet_.robot()) : tr("nobody")),
+            : fleet_.robot()
+                ? tr("No mark was taken: %1 records nothing.").arg(fleet_.titleOf(*fleet_.robot()))
+                : tr("No mark was taken: there is no robot."),
             true);
     const QString typed = mark_->text(), text = markText();
     recorder_.setMembers(watch_.markers()); // it waits for no others
