@@ -40,6 +40,11 @@ SessionCall stopCall(const SessionMember &member, const QString &session) {
     return {member, member.endsOne ? QJsonObject{{"session", session}} : QJsonObject()};
 }
 
+bool isReplay(const QJsonValue &source) {
+    const QString state = source["state"].toString();
+    return state == "replay" || state == "ended";
+}
+
 void callAll(const std::vector<SessionCall> &calls, const QString &method, std::chrono::milliseconds timeout,
              QObject *context, const std::function<void(const SessionReplies &)> &done) {
     const auto round = std::make_shared<Round>();

@@ -60,6 +60,9 @@ std::vector<SessionCall> callsOf(const std::vector<SessionMember> &members, cons
 /// For record.stop: ends no other session, where the logger can tell them apart.
 SessionCall stopCall(const SessionMember &member, const QString &session);
 
+/// A source that shows what was recorded: at the end of a replay it still does.
+bool isReplay(const QJsonValue &source);
+
 /// A line for each that failed.
 QStringList complaints(const SessionReplies &replies);
 

@@ -28,10 +28,10 @@ Result<void> firstRefusal(SessionReplies replies) {
     return firstError(replies);
 }
 
-void removeFrom(std::vector<SessionMember> &members, const Client *client) {
-    members.erase(std::remove_if(members.begin(), members.end(),
-                                 [client](const SessionMember &one) { return one.client == client; }),
-                  members.end());
+/// Whether a source shows what lies in a folder, as far as both are told.
+bool isOf(const QString &folder, const QJsonValue &source) {
+    const QString shown = source["name"].toString();
+    return shown.isEmpty() || folder.isEmpty() || shown == folder;
 }
 
 /// Seconds as they can be; 0: not known.
@@ -91,7 +91,8 @@ void SessionPlayer::endAtOnce() {
     const bool isWaiting = isPlaying_ && !timer_.isActive(); // for a reply, with which it ends once more
     timer_.stop();
     std::vector<SessionMember> all = told();
-    all.insert(all.end(), doubtful_.begin(), doubtful_.end());
+    for (const Doubtful &one : doubtful_)
+        all.push_back(one.member);
     if (isWaiting) {
         callAll(callsOf(all, live), "source.open", options_.timeout, this, [](const auto &) {});
     } else if (!all.empty()) {
@@ -102,13 +103,17 @@ void SessionPlayer::endAtOnce() {
 }
 
 bool SessionPlayer::plays(const Client &client) const {
-    const auto is = [&client](const SessionMember &member) { return member.client == &client; };
-    return std::any_of(told().begin(), told().end(), is) ||
-           std::any_of(doubtful_.begin(), doubtful_.end(), is);
+    return std::any_of(told().begin(), told().end(),
+                       [&client](const SessionMember &member) { return member.client == &client; }) ||
+           std::any_of(doubtful_.begin(), doubtful_.end(),
+                       [&client](const Doubtful &one) { return one.member.client == &client; });
 }
 
-void SessionPlayer::forget(const Client &client) {
-    removeFrom(doubtful_, &client); // what is playing finds out by itself
+void SessionPlayer::note(const Client &client, const QJsonValue &source) {
+    const auto isOver = [&](const Doubtful &one) {
+        return one.member.client == &client && (!isReplay(source) || !isOf(one.folder, source));
+    };
+    doubtful_.erase(std::remove_if(doubtful_.begin(), doubtful_.end(), isOver), doubtful_.end());
 }
 
 void SessionPlayer::obeySoon() {
@@ -189,7 +194,10 @@ void SessionPlayer::onOpened(const SessionReplies &replies) {
     };
     for (const SessionReply &reply : replies)
         if (reply.result || isUnconfirmed(reply.result)) {
-            removeFrom(doubtful_, reply.member.client);
+            doubtful_.erase(
+                std::remove_if(doubtful_.begin(), doubtful_.end(),
+                               [&](const Doubtful &one) { return one.member.client == reply.member.client; }),
+                doubtful_.end());
             if (!isPlayed(reply.member))
                 playing_.push_back(reply.member);
         }
@@ -293,15 +301,13 @@ Result<bool> SessionPlayer::isAtEnd(const SessionReplies &replies) {
         const QString state = source["state"].toString(), error = source["error"].toString();
         if (!error.isEmpty())
             return Error(ErrorCode::InputOutput, name + ": " + error);
-        const QString shown = source["name"].toString();
-        const bool isOurs = shown.isEmpty() || folderOf(name).isEmpty() || shown == folderOf(name);
-        if ((state != "replay" && state != "ended") || !isOurs) {
+        const bool isOurs = isOf(folderOf(name), source);
+        if (!isReplay(source) || !isOurs) {
             playing_.erase(std::remove_if(playing_.begin(), playing_.end(),
                                           [&](const SessionMember &one) { return one.name == name; }),
                            playing_.end()); // somebody else's now
-            return Error(
-                ErrorCode::NotReady,
-                QString("%1: its source was changed to \"%2\" meanwhile").arg(name, isOurs ? state : shown));
+            return Error(ErrorCode::NotReady, QString("%1: its source was changed to \"%2\" meanwhile")
+                                                  .arg(name, isOurs ? state : source["name"].toString()));
         }
         end = end && state == "ended";
         // It was about to end as it was sought.
@@ -327,7 +333,7 @@ void SessionPlayer::goLive(const Result<void> &result) {
                 playing_.clear();
                 for (const SessionReply &reply : replies)
                     if (isUnconfirmed(reply.result))
-                        doubtful_.push_back(reply.member);
+                        doubtful_.push_back({reply.member, folderOf(reply.member.name)});
                 Q_EMIT ended(result ? firstError(replies) : result);
                 if (const auto next = std::exchange(next_, std::nullopt); next && !isPlaying_)
                     play(next->first, next->second);

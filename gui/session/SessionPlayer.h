@@ -29,8 +29,8 @@ public:
     bool isPlaying() const { return isPlaying_; }
     /// This logger shows what is played here, or may: also one that has not confirmed that it ended.
     bool plays(const Client &client) const;
-    /// That one shows nothing of it any more.
-    void forget(const Client &client);
+    /// What a logger was seen to show: live, or what others replay, is not played here.
+    void note(const Client &client, const QJsonValue &source);
 
     /// Whether all of them have what it takes.
     bool canSeek() const;
@@ -52,6 +52,11 @@ Q_SIGNALS:
 
 private:
     using Next = void (SessionPlayer::*)(const SessionReplies &);
+    /// Who has not confirmed that it ended.
+    struct Doubtful {
+        SessionMember member;
+        QString folder; ///< that it showed
+    };
 
     void call(const std::vector<SessionCall> &calls, const QString &method, Next next);
     bool goesOn(const Result<void> &result);
@@ -76,9 +81,9 @@ private:
     RecordedSession session_;
     Options options_;
     QTimer timer_;
-    std::vector<SessionMember> playing_;  ///< who shows what is recorded, or may
-    std::vector<SessionMember> doubtful_; ///< who has not confirmed that it ended, also of sessions before
-    std::vector<SessionMember> opening_;  ///< the same and who has not answered as yet
+    std::vector<SessionMember> playing_; ///< who shows what is recorded, or may
+    std::vector<Doubtful> doubtful_;     ///< also of sessions before
+    std::vector<SessionMember> opening_; ///< the same and who has not answered as yet
     std::optional<std::pair<RecordedSession, Options>> next_;
     std::optional<double> seekWanted_, speedWanted_;
     std::optional<bool> pauseWanted_;

@@ -84,11 +84,9 @@ void ReplayWatch::take(DaemonLink *daemon, const QString &name, const Result<QJs
     if (!answer)
         return;
     const QJsonValue source = answer->toObject().contains("source") ? (*answer)["source"] : *answer;
-    const QString state = source["state"].toString();
-    const bool isReplay = state == "replay" || state == "ended"; // at its end it still shows what was
-    if (!isReplay && player_)
-        player_->forget(daemon->client());
-    found->replay = isReplay ? textOf(name, source) : QString();
+    if (player_)
+        player_->note(daemon->client(), source);
+    found->replay = isReplay(source) ? textOf(name, source) : QString();
     tell();
 }
 

@@ -5,6 +5,7 @@
 
 #include "common/client/DaemonAddress.h"
 
+#include <QLabel>
 #include <QMenuBar>
 #include <QProcess>
 #include <QTabBar>
@@ -97,8 +98,7 @@ void TestFirstMinutes::savedMapInTwo() {
     const QMenuBar *const bar = open_->window.menuBar();
     auto *const menu = open_->window.findChild<QMenu *>("map");
     click(bar->mapToGlobal(bar->actionGeometry(menu->menuAction()).center()));
-    QTRY_VERIFY(menu->isVisible());
-    QTest::qWait(300); // it is drawn, and takes the mouse
+    QTRY_VERIFY(menu->isVisible() && QTest::qWaitForWindowExposed(menu));
     click(menu->mapToGlobal(menu->actionGeometry(menu->findChild<QAction *>("saveMap")).center()));
     QTRY_COMPARE_WITH_TIMEOUT(maps().size(), 1, 10000);
     QCOMPARE(actions_, 2);
@@ -115,7 +115,8 @@ void TestFirstMinutes::replayInThree() {
         return open_->window.findChild<QDockWidget *>("recordings")->windowTitle().contains(QChar(0x25cf));
     };
     QTRY_VERIFY(isTold());
-    QTest::qWait(2000);
+    const auto *const amount = open_->window.findChild<QLabel *>("amount");
+    QTRY_VERIFY2(amount->text().contains(QRegularExpression(": [2-9] s")), qPrintable(amount->text()));
     logger->call("record.stop", {}, this, answered);
     QTRY_COMPARE_WITH_TIMEOUT(answers, 2, 10000);
 
