@@ -1,5 +1,6 @@
 #include "gui/desktop/MainWindow.h"
 
+#include "gui/desktop/Banners.h"
 #include "gui/desktop/ButtonBar.h"
 #include "gui/desktop/CloseGuard.h"
 #include "gui/desktop/EventBar.h"
@@ -9,7 +10,6 @@
 #include "gui/desktop/TopBar.h"
 #include "gui/desktop/drive/DriveGamepad.h"
 #include "gui/desktop/drive/DriveKeys.h"
-#include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/drive/StopKeys.h"
 #include "gui/desktop/panels/CommandsPanel.h"
 #include "gui/desktop/panels/DaemonTree.h"
@@ -37,8 +37,7 @@ namespace hermes::desktop {
 namespace {
 
 constexpr QSize usualSize{1280, 720};
-constexpr int titleRoom = 40; // of a window's title, pixels
-constexpr std::chrono::seconds noticeTime{20};
+constexpr int titleRoom = 40;                      // of a window's title, pixels
 constexpr std::chrono::milliseconds keepEach{500}; // who is killed a second later has lost nothing
 
 QString textOf(const QJsonObject &object) {
@@ -79,8 +78,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     , controlWatch_(fleet, drive, events_)
     , runner_(fleet, drive)
     , layouts_(layoutFile)
-    , keeper_(layouts_)
-    , note_(new Banner) {
+    , keeper_(layouts_) {
     sounds_.switchTo(layouts_.value("sounds") != "off");
     setWindowTitle(tr("Hermes"));
     setDockNestingEnabled(true);
@@ -88,8 +86,7 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     setCorner(Qt::BottomRightCorner, Qt::BottomDockWidgetArea);
 
     auto *const topBar = new TopBar(fleet, drive_);
-    addTopBar(topBar);
-    addBanners();
+    addFixedBar(*this, Qt::TopToolBarArea, tr("Robot"), "topBar", topBar);
     setCentralWidget(map_ = new MapPanel(fleet));
     auto *const gamepad = new DriveGamepad(drive_, layouts_, this);
     for (const PanelKind &kind : panelKinds())
@@ -105,12 +102,13 @@ MainWindow::MainWindow(Fleet &fleet, DriveControl &drive, const QString &layoutF
     drive_.replay().setPlayer(&recordings->player());
     addEventBar();
     addButtonBar();
+    banners_ = new Banners(*this, drive_, sounds_); // the last of them is the highest
     addKeys(*topBar);
     addMenus();
     arrange();
     restoreAll();
     connect(&keeping_, &QTimer::timeout, this, &MainWindow::keep);
-    connect(&keeper_, &LayoutKeeper::failed, this, &MainWindow::notify);
+    connect(&keeper_, &LayoutKeeper::failed, banners_, &Banners::notify);
     closeGuard_ = new CloseGuard(drive_, keeper_, *findChild<SettingsPanel *>(), *recordings, this);
     connect(closeGuard_, &CloseGuard::ready, this, &MainWindow::close);
 }
@@ -125,34 +123,6 @@ MainWindow::~MainWindow() {
 
 QStringList MainWindow::keptAddresses(const QString &layoutFile) {
     return Layouts(layoutFile).robots().addresses;
-}
-
-void MainWindow::addTopBar(TopBar *content) {
-    auto *const bar = addToolBar(tr("Robot"));
-    bar->setObjectName("topBar");
-    bar->setMovable(false);
-    bar->setContextMenuPolicy(Qt::PreventContextMenu);
-    bar->addWidget(content);
-}
-
-void MainWindow::addBanners() {
-    addBanner(new StopBanner(drive_, sounds_), "stopBar");
-    auto *const replay = new Banner;
-    replay->setObjectName("replayBanner");
-    addBanner(replay, "replayBar");
-    connect(&drive_.replay(), &ReplayWatch::changed, replay, [this, replay] {
-        const QString text = drive_.replay().text();
-        replay->tell(text.isEmpty() ? QString() : tr("REPLAY, not the robot of now: %1").arg(text),
-                     "background: #6a2fb0; color: white;");
-    });
-    connect(&drive_.replay(), &ReplayWatch::lost, this, [this](const QString &robot) {
-        notify(tr("%1 is gone from here, and may still show a recording. Added again, Live ends that.")
-                   .arg(robot));
-    });
-    note_->setObjectName("noticeBanner");
-    addBanner(note_, "noticeBar");
-    notice_.setSingleShot(true);
-    connect(&notice_, &QTimer::timeout, note_, [this] { note_->tell({}, {}); });
 }
 
 void MainWindow::addKeys(TopBar &topBar) {
@@ -182,22 +152,11 @@ void MainWindow::restoreAll() {
     restoreButtons();
     map_->setLayers(objectFrom(layouts_.value("layers")).toVariantMap());
     showLayout();
-    notify(QStringList{layouts_.problem(), layouts_.damage(), keeper_.problem()}.join(' ').trimmed());
+    banners_->notify(
+        QStringList{layouts_.problem(), layouts_.damage(), keeper_.problem()}.join(' ').trimmed());
     fleet_.setNames(layouts_.robots().names);
     fleet_.setPlaces(layouts_.robots().places);
     fleet_.wish(layouts_.robots().chosen);
-}
-
-void MainWindow::addBanner(Banner *banner, const char *name) {
-    addToolBarBreak();
-    auto *const bar = addToolBar(tr("Notice"));
-    bar->setObjectName(name);
-    bar->setMovable(false);
-    bar->setContextMenuPolicy(Qt::PreventContextMenu);
-    bar->addWidget(banner);
-    bar->hide();
-    banners_.emplace_back(banner, bar);
-    connect(banner, &Banner::shown, bar, &QToolBar::setVisible);
 }
 
 void MainWindow::addPanel(const PanelKind &kind, QWidget *panel) {
@@ -253,27 +212,16 @@ void MainWindow::showHelp() {
     help().showAt(focus && map_->isAncestorOf(focus) ? tr("The map") : QString());
 }
 
-/// At the foot, where nothing above moves with it.
-QToolBar *MainWindow::addFootBar(const QString &title, const char *name, QWidget *content) {
-    auto *const bar = new QToolBar(title);
-    bar->setObjectName(name);
-    bar->setMovable(false);
-    bar->setContextMenuPolicy(Qt::PreventContextMenu);
-    bar->addWidget(content);
-    addToolBar(Qt::BottomToolBarArea, bar);
-    return bar;
-}
-
 void MainWindow::addEventBar() {
     auto *const events = new EventBar(events_, sounds_);
-    addFootBar(tr("Last event"), "eventBar", events);
+    addFixedBar(*this, Qt::BottomToolBarArea, tr("Last event"), "eventBar", events);
     connect(events, &EventBar::listWanted, this, [this] { showPanel("events"); });
 }
 
 void MainWindow::addButtonBar() {
     auto *const buttons = new ButtonBar(fleet_, buttons_, runner_);
     addToolBarBreak(Qt::BottomToolBarArea); // a line of their own, above that of events
-    buttonBar_ = addFootBar(tr("Buttons"), "buttonBar", buttons);
+    buttonBar_ = addFixedBar(*this, Qt::BottomToolBarArea, tr("Buttons"), "buttonBar", buttons);
     connect(buttons, &ButtonBar::editWanted, this, [this] {
         showPanel("commands");
         findChild<CommandsPanel *>()->editButtons();
@@ -312,7 +260,7 @@ QMenu *MainWindow::makeLayoutMenu() {
     auto *const menu = new LayoutMenu(layouts_, keeper_, this);
     const auto change = [this](const Result<void> &changed) {
         if (!changed)
-            return notify(changed.error().message);
+            return banners_->notify(changed.error().message);
         showLayout();
         keep();
     };
@@ -345,8 +293,7 @@ void MainWindow::showLayout() {
 void MainWindow::showBars() {
     for (const char *const always : {"topBar", "eventBar"})
         findChild<QToolBar *>(always)->show();
-    for (const auto &[banner, bar] : banners_)
-        bar->setVisible(!banner->text().isEmpty());
+    banners_->show();
     buttonBar_->setVisible(!buttons_.all().empty());
 }
 
@@ -379,14 +326,6 @@ void MainWindow::keep() {
     keeper_.keep();
 }
 
-void MainWindow::notify(const QString &problem) {
-    if (problem.isEmpty())
-        return;
-    qWarning("hermes-gui: %s", qPrintable(problem));
-    note_->tell(problem, "background: #8a6100; color: white;");
-    notice_.start(noticeTime);
-}
-
 void MainWindow::showEvent(QShowEvent *event) {
     keeping_.start(keepEach);
     QMainWindow::showEvent(event);
@@ -409,7 +348,7 @@ void MainWindow::closeEvent(QCloseEvent *event) {
     drive_.halt();
     keepAll();
     const QString objection = closeGuard_->objection();
-    notify(objection);
+    banners_->notify(objection);
     if (!objection.isEmpty())
         return event->ignore();
     keeping_.stop();

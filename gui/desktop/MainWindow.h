@@ -12,7 +12,7 @@ class QToolBar;
 
 namespace hermes::desktop {
 
-class Banner;
+class Banners;
 class CloseGuard;
 class FloatingDock;
 class HelpWindow;
@@ -43,13 +43,9 @@ protected:
     void closeEvent(QCloseEvent *event) override;
 
 private:
-    void addTopBar(TopBar *content);
-    void addBanners();
-    void addBanner(Banner *banner, const char *name);
     void addKeys(TopBar &topBar);
     void restoreAll();
     void addPanel(const PanelKind &kind, QWidget *panel);
-    QToolBar *addFootBar(const QString &title, const char *name, QWidget *content);
     void addEventBar();
     void addMenus();
     void showHelp();
@@ -68,7 +64,6 @@ private:
     void keepAll();
     /// The same, and has it saved when it has changed.
     void keep();
-    void notify(const QString &problem);
 
     Fleet &fleet_;
     DriveControl &drive_;
@@ -88,9 +83,8 @@ private:
     QList<QAction *> panelActions_; ///< with keys of their own
     HelpWindow *help_ = nullptr;
     StopKeys *stopKeys_;
-    std::vector<std::pair<Banner *, QToolBar *>> banners_;
-    Banner *note_;
-    QTimer notice_, keeping_;
+    Banners *banners_ = nullptr;
+    QTimer keeping_;
     CloseGuard *closeGuard_ = nullptr;
     QToolBar *buttonBar_ = nullptr;
 };

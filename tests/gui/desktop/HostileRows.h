@@ -14,6 +14,11 @@ inline QByteArray listOf(const QByteArray &element, int count) {
     return list + ']';
 }
 
+/// In CBOR, as long as the largest frame.
+inline QByteArray manyEmptyLists() {
+    return '\x9f' + QByteArray((320 << 10) - 2, '\x80') + '\xff';
+}
+
 /// An object of so many members.
 inline QByteArray objectOf(const QByteArray &value, int count) {
     QByteArray object = "{";
@@ -371,8 +376,8 @@ inline void addWire() {
         << ofCbor("{\"jsonrpc\":\"2.0\",\"id\":1,\"result\":1}\n", true);
     QTest::newRow("a frame of 4 GB") << ofCbor(QByteArray(4000, '\xff'), true);
     QTest::newRow("frames of nothing") << ofCbor(QByteArray(4000, '\0'), true);
-    QTest::newRow("the largest frames, of empty lists") << ofCbor(
-        QByteArray::fromHex("00050000") + '\x9f' + QByteArray((320 << 10) - 2, '\x80') + '\xff', true);
+    QTest::newRow("the largest frames, of empty lists")
+        << ofCbor(QByteArray::fromHex("00050000") + manyEmptyLists(), true);
     QTest::newRow("lists without end")
         << ofCbor(QByteArray::fromHex("00001000") + QByteArray(0x1000, '\x9f'), true);
     QTest::newRow("texts, arrays and lists longer than all")

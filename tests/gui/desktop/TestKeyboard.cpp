@@ -120,6 +120,16 @@ void TestKeyboard::docksComeByNumber() {
 
 void TestKeyboard::bannersFitALowScreen() {
     window_->resize(1024, 600);
+    QTest::qWait(100);           // it is laid out
+    const auto places = [this] { // of what is clicked at
+        QVector<QRect> found;
+        for (const char *const name : {"tree", "stick", "robots", "map"}) {
+            const auto *const widget = window_->findChild<QWidget *>(name);
+            found.append({widget->mapTo(window_.get(), QPoint()), QSize()});
+        }
+        return found;
+    };
+    const auto before = places();
     for (const char *const name : {"replayBanner", "noticeBanner"}) {
         auto *const banner = static_cast<Banner *>(window_->findChild<QLabel *>(name));
         banner->resize(100, 30); // as one is that was never seen
@@ -127,6 +137,7 @@ void TestKeyboard::bannersFitALowScreen() {
         QTRY_VERIFY(banner->isVisible() && banner->width() > 900);
         QTest::qWait(100); // the window may answer later
         QVERIFY2(window_->height() == 600, qPrintable(QString::number(window_->height())));
+        QCOMPARE(places(), before);
     }
 }
 

@@ -207,7 +207,7 @@ void TestReadable::whatDrivesIsInSight() {
     const QJsonObject anna{{"client", "anna on laptop7"}};
     QVERIFY(other.callAndWait("motor.estop", anna).ok());
     QTRY_VERIFY_WITH_TIMEOUT(open.drive.isStopped(), 10000);
-    auto *const banner = open.window.findChild<QToolBar *>("stopBar");
+    auto *const banner = open.window.findChild<QToolBar *>("stopLine");
     QTRY_VERIFY(banner->isVisible());
     QCOMPARE(open.window.size(), QSize(1024, 600)); // with a banner, too
     QVERIFY(other.callAndWait("motor.reset_estop", anna).ok());
