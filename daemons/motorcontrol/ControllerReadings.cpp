@@ -6,6 +6,8 @@ namespace hermes::motorcontrol {
 
 using roboclaw::Command;
 
+constexpr double fullDuty = 32767;
+
 void ControllerReadings::takeSlow(int slow, const roboclaw::Bus::Outcome &outcome) {
     const roboclaw::Reply &reply = outcome.reply;
     switch (slowCommand(slow)) {
@@ -14,6 +16,9 @@ void ControllerReadings::takeSlow(int slow, const roboclaw::Bus::Outcome &outcom
         break;
     case Command::ReadCurrents:
         current_a = {double(reply[0]) / 100, double(reply[1]) / 100};
+        break;
+    case Command::ReadPwm:
+        duty = {double(reply[0]) / fullDuty, double(reply[1]) / fullDuty};
         break;
     case Command::ReadMainBattery:
         battery_v = double(reply[0]) / 10;

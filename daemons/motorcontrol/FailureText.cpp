@@ -25,6 +25,8 @@ QString nameOf(Command command) {
         return "90 (status)";
     case Command::ReadCurrents:
         return "49 (currents)";
+    case Command::ReadPwm:
+        return "48 (duties)";
     case Command::ReadMainBattery:
         return "24 (main battery)";
     case Command::ReadLogicBattery:

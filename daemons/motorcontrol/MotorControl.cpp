@@ -60,6 +60,7 @@ void MotorControl::declareTopics() {
 
 Result<void> MotorControl::start() {
     active_ = MotorSettings::from(settings());
+    gauge_.configure(active_.gauge);
     server().gaps().watch(active_.drive.commandTimeout_s);
     if (::getpriority(PRIO_PROCESS, 0) > niceness)
         ::setpriority(PRIO_PROCESS, 0, niceness);
@@ -104,15 +105,18 @@ void MotorControl::stop() {
 void MotorControl::settingsChanged(const QStringList &paths) {
     static const QStringList groups{"controllers.", "pid.",    "frame.",    "wheels.",
                                     "motion.",      "safety.", "odometry.", "faults."};
-    const bool ours = std::any_of(paths.begin(), paths.end(), [](const QString &path) {
+    const bool concernsDrive = std::any_of(paths.begin(), paths.end(), [](const QString &path) {
         return std::any_of(groups.begin(), groups.end(),
                            [&](const QString &g) { return path.startsWith(g); });
     });
-    if (!loop_ || !ours)
+    if (!loop_)
         return;
     const auto places = active_.controllers; // wait for a restart
     active_ = MotorSettings::from(settings());
     active_.controllers = places;
+    gauge_.configure(active_.gauge);
+    if (!concernsDrive)
+        return;
     server().gaps().watch(active_.drive.commandTimeout_s);
     inLoop(
         [s = active_](DriveLoop &loop) {
@@ -192,7 +196,8 @@ void MotorControl::show(const Telemetry &telemetry) {
             "wheels", [&] { return wheelsOf(telemetry); }, telemetry.stamp);
     }
     if (cycles_ % slowEvery == 0) {
-        publish("power", [&] { return powerOf(telemetry); });
+        gauge_.take(monotonicNow(), batteryOf(telemetry));
+        publish("power", [&] { return powerOf(telemetry, gauge_.state()); });
         updateHealth();
         feedWatchdog();
     }

@@ -67,6 +67,8 @@ private:
     };
     std::vector<WaitingStop> stops_;
     std::array<PastFaults, controllerCount> answers_;
+    BatteryGauge gauge_;
+    bool runsOut_ = false; ///< the battery
     quint64 cycles_ = 0;
 };
 

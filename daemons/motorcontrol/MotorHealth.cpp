@@ -5,12 +5,25 @@
 #include "protocol/wire/Fields.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hermes::motorcontrol {
 namespace {
 
 constexpr double lateness_s = 0.005; // more of it is worth a look
 constexpr double slowRate_Hz = 40;   // less of what a line should give at 50 Hz, too
+
+constexpr double stickiness = 1.2; // of the warning of a battery that runs out
+
+QString textOf(const BatteryState &battery) {
+    if (!battery.left_s)
+        return "charge not known: " + battery.reason;
+    return QString("charge %1 % (+- %2), %3 min left at %4 A")
+        .arg(std::lround(100 * *battery.charge))
+        .arg(std::lround(100 * *battery.chargeDeviation))
+        .arg(std::lround(*battery.left_s / 60))
+        .arg(*battery.current_a, 0, 'f', 1);
+}
 
 HealthLevel toHealth(Threshold::Level level) {
     switch (level) {
@@ -52,13 +65,18 @@ void MotorControl::updateHealth() {
             current = std::max(current, std::abs(a));
     }
     const auto measured = [&](int item, const char *name, double value, const char *key, const char *unit,
-                              const Threshold::Settings &limits) {
+                              const Threshold::Settings &limits, bool warns = false,
+                              const QString &more = QString()) {
         if (!known)
             return health().set(name, HealthLevel::Stale, "no controller has told it");
-        health().set(name, toHealth(told_.levels[item]), QString("%1 %2").arg(value).arg(unit),
+        const HealthLevel level = toHealth(told_.levels[item]);
+        health().set(name, warns && level == HealthLevel::Ok ? HealthLevel::Warn : level,
+                     QString("%1 %2").arg(value).arg(unit) + more,
                      {{key, value}, {"warning", limits.warning}, {"fault", limits.fault}});
     };
-    measured(0, "battery", battery, "battery_v", "V", active_.battery);
+    const BatteryState &gauge = gauge_.state();
+    runsOut_ = gauge.left_s && *gauge.left_s < active_.batteryWarning_s * (runsOut_ ? stickiness : 1);
+    measured(0, "battery", battery, "battery_v", "V", active_.battery, runsOut_, ", " + textOf(gauge));
     measured(1, "current", current, "current_a", "A", active_.current);
     measured(2, "temperature", temperature, "temperature_c", "degrees Celsius", active_.temperature);
 
@@ -110,7 +128,8 @@ MotorState MotorControl::state() const {
             wheelsOf(told_),
             told_.counterJumps,
             told_.controllers,
-            cycleOf(told_)};
+            cycleOf(told_),
+            gauge_.state()};
 }
 
 } // namespace hermes::motorcontrol

@@ -40,8 +40,9 @@ WheelsMessage wheelsOf(const Telemetry &t) {
     return message;
 }
 
-PowerMessage powerOf(const Telemetry &t) {
+PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
     PowerMessage message;
+    message.battery = battery;
     for (const Telemetry::Controller &controller : t.controllers) {
         const ControllerReadings &r = controller.readings;
         QStringList meanings;
@@ -50,9 +51,24 @@ PowerMessage powerOf(const Telemetry &t) {
                 meanings.append(roboclaw::statusText(bit));
         }
         message.controllers.push_back({controller.ready && r.complete, r.battery_v, r.logic_v, r.current_a,
-                                       r.temperature_c, r.status, meanings});
+                                       r.temperature_c, r.status, meanings, r.duty});
     }
     return message;
+}
+
+std::optional<BatteryReading> batteryOf(const Telemetry &t) {
+    std::optional<BatteryReading> reading;
+    for (const Telemetry::Controller &controller : t.controllers) {
+        const ControllerReadings &r = controller.readings;
+        if (!controller.ready || !r.complete)
+            continue;
+        if (!reading)
+            reading.emplace();
+        reading->voltage = std::max(reading->voltage, r.battery_v); // less is lost on the way to it
+        for (std::size_t motor = 0; motor < 2; ++motor) // a bridge takes what its duty lets through
+            reading->motors_a += std::abs(r.current_a[motor] * r.duty[motor]);
+    }
+    return reading;
 }
 
 CycleState cycleOf(const Telemetry &t) {
@@ -164,7 +180,8 @@ const Fields<MotorState> &fieldsOf(Of<MotorState>) {
             .add("wheels", &S::wheels, "As in the topic wheels")
             .add("counter_jumps", &S::counterJumps, "Times that a controller lost its counts")
             .add("controllers", &S::controllers, "Each, with its traffic")
-            .add("cycle", &S::cycle, "How punctual it is");
+            .add("cycle", &S::cycle, "How punctual it is")
+            .add("battery", &S::battery, "How full it is, and how long it lasts");
     return fields;
 }
 

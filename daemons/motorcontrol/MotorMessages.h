@@ -1,5 +1,6 @@
 #pragma once
 
+#include "daemons/motorcontrol/BatteryGauge.h"
 #include "daemons/motorcontrol/Telemetry.h"
 #include "protocol/messages/Motors.h"
 
@@ -48,11 +49,14 @@ struct MotorState {
     quint64 counterJumps = 0;
     std::array<Telemetry::Controller, controllerCount> controllers;
     CycleState cycle;
+    BatteryState battery;
 };
 
 OdometryMessage odometryOf(const Telemetry &telemetry);
 WheelsMessage wheelsOf(const Telemetry &telemetry);
-PowerMessage powerOf(const Telemetry &telemetry);
+PowerMessage powerOf(const Telemetry &telemetry, const BatteryState &battery);
+/// Of the controllers that have told all; nothing where there is none.
+std::optional<BatteryReading> batteryOf(const Telemetry &telemetry);
 CycleState cycleOf(const Telemetry &telemetry);
 Standing standingOf(const Telemetry &telemetry);
 /// Whether every controller has confirmed that it stands.

@@ -123,6 +123,21 @@ void declareFaults(const std::function<void(const Field &)> &declare) {
     add("faults.encoder_hold_s", "How long a wheel must disobey; longer than braking takes", "s", 10, 0.7);
 }
 
+void declareBattery(const std::function<void(const Field &)> &declare) {
+    const auto add = [&](const char *name, const char *description, const char *unit, double least,
+                         double most, double initial) {
+        declare(positive(name, description, unit, least, most, initial).group("Battery"));
+    };
+    add("battery.capacity_ah", "Charge of the full battery", "Ah", 0.001, 10000, 26);
+    add("battery.full_v", "Its voltage when it is full and has rested", "V", 1, 60, 25.4);
+    add("battery.empty_v", "Its voltage when it is empty and has rested", "V", 0, 60, 23.4);
+    add("battery.idle_a", "What computers and sensors draw: the controllers do not measure it", "A", 0.01,
+        100, 2);
+    add("battery.reserve", "Share of the charge that is to be left: deep discharge harms lead-acid batteries",
+        "", 0, 0.9, 0.2);
+    add("battery.warning_s", "With less time left the battery is reported as low", "s", 0, 36000, 600);
+}
+
 // A device, or a serial server.
 bool isLine(const QString &url) {
     const auto parsed = InterfaceUrl::parse(url);
@@ -137,6 +152,7 @@ void declareMotorSettings(const std::function<void(const Field &)> &declare) {
     declareFrame(declare);
     declareMotion(declare);
     declareFaults(declare);
+    declareBattery(declare);
 }
 
 std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
@@ -161,6 +177,8 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
     }
     require(number("faults.battery_v") <= number("faults.battery_warning_v"), "faults.battery_v",
             "at most faults.battery_warning_v");
+    require(number("battery.full_v") > number("battery.empty_v"), "battery.full_v",
+            "more than battery.empty_v");
     require(number("faults.current_a") >= number("faults.current_warning_a"), "faults.current_a",
             "at least faults.current_warning_a");
     require(number("faults.temperature_c") >= number("faults.temperature_warning_c"), "faults.temperature_c",
@@ -213,6 +231,9 @@ MotorSettings MotorSettings::from(const Settings &settings) {
     s.temperature = {number("faults.temperature_warning_c"), number("faults.temperature_c"), hold};
     s.encoder = {number("faults.encoder_commanded_rad_s"), number("faults.encoder_moving_rad_s"),
                  number("faults.encoder_hold_s")};
+    s.gauge = {number("battery.capacity_ah"), number("battery.full_v"), number("battery.empty_v"),
+               number("battery.idle_a"), number("battery.reserve")};
+    s.batteryWarning_s = number("battery.warning_s");
     return s;
 }
 

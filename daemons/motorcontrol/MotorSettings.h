@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/settings/Settings.h"
+#include "daemons/motorcontrol/BatteryGauge.h"
 #include "daemons/motorcontrol/Drive.h"
 #include "daemons/motorcontrol/EncoderMonitor.h"
 #include "daemons/motorcontrol/Odometry.h"
@@ -44,6 +45,8 @@ struct MotorSettings {
     double emergencyDeceleration = 4; ///< m/s^2 at the rim
     Threshold::Settings battery, current, temperature;
     EncoderMonitor::Settings encoder;
+    BatteryGauge::Settings gauge;
+    double batteryWarning_s = 600;
 
     /// From settings that declareMotorSettings() has declared.
     static MotorSettings from(const Settings &settings);

@@ -84,9 +84,11 @@ void Simulator::declareMotorSettings() {
     addNumber("Motors", "motors.full_speed", "Encoder counts a second at full duty and 24 V", "1/s", 100, 2e7,
               160000);
     addNumber("Motors", "motors.lag_s", "Time constant with which a wheel follows", "s", 0.001, 10, 0.02);
-    addNumber("Motors", "battery.capacity_ah", "Charge of the battery", "Ah", 0.001, 10000, 20);
-    addNumber("Motors", "battery.full_v", "Its voltage when full", "V", 0, 34, 25.2);
-    addNumber("Motors", "battery.empty_v", "Its voltage when empty", "V", 0, 34, 20);
+    addNumber("Motors", "battery.capacity_ah", "Charge of the battery", "Ah", 0.001, 10000, 26);
+    addNumber("Motors", "battery.full_v", "Its voltage when full, without load", "V", 0, 34, 25.4);
+    addNumber("Motors", "battery.empty_v",
+              "Its voltage when empty, without load; below 5 % of the charge it falls to 20 V", "V", 0, 34,
+              23.4);
     addSetting(Field::text("frame.layout", "How the wheels move the robot")
                    .choices({"mecanum", "differential"})
                    .byDefault("mecanum")

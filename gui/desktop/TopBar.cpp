@@ -3,6 +3,7 @@
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/drive/StopBanner.h"
 #include "gui/desktop/widgets/AgedLabel.h"
+#include "gui/desktop/widgets/Quantities.h"
 #include "protocol/wire/Fields.h"
 
 #include <QComboBox>
@@ -32,6 +33,20 @@ bool isMeantToRest(const ProcessStatus *process) {
     return process && (process->state == "stopped" || process->state == "disabled");
 }
 
+QString powerTip(const BatteryState &battery) {
+    QString tip =
+        TopBar::tr("The lower battery voltage, its charge and the time that is left, the sum of the motor "
+                   "currents and the higher temperature of the controllers.");
+    if (battery.charge && battery.left_s && battery.leftLeast_s && battery.chargeDeviation)
+        tip +=
+            TopBar::tr(" Charge %1 % +- %2 %; time left at the current of the last minute: %3, at least %4.")
+                .arg(shortNumber(100 * *battery.charge, 0), shortNumber(100 * *battery.chargeDeviation, 0),
+                     roughDurationText(*battery.left_s), roughDurationText(*battery.leftLeast_s));
+    else if (!battery.reason.isEmpty())
+        tip += TopBar::tr(" The charge is not known: %1.").arg(shortLine(battery.reason, 100));
+    return tip;
+}
+
 } // namespace
 
 TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
@@ -54,8 +69,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
     link_->setToolTip(tr("The longest time that a daemon of this robot takes to answer"));
     control_->setObjectName("lease");
     power_->setObjectName("power");
-    power_->setToolTip(tr("The lower battery voltage, the sum of the motor currents and the higher "
-                          "temperature of the controllers"));
+    power_->setToolTip(powerTip({}));
     release_->setObjectName("release");
     release_->setToolTip(
         tr("Ends the emergency stop and faults that hold the robot. The robot does not move by it."));
@@ -70,7 +84,7 @@ TopBar::TopBar(Fleet &fleet, DriveControl &drive, QWidget *parent)
 
     link_->letElide(); // nothing pushes STOP out of sight
     control_->keepRoom(160);
-    power_->keepRoom(240);
+    power_->keepRoom(280);
 
     auto *const layout = new QHBoxLayout(this);
     layout->setContentsMargins(8, 0, 8, 0);
@@ -183,11 +197,17 @@ void TopBar::showPower(WireView told) {
         for (const double current : controller.current_a)
             amperes += std::abs(current);
     }
-    power_->tell(hottest < -273
-                     ? QString()
-                     : tr("battery %1 V   %2 A   %3 °C")
-                           .arg(shortNumber(volts, 1), shortNumber(amperes, 1), shortNumber(hottest, 0)),
+    const BatteryState &battery = power->battery;
+    QString charge;
+    if (battery.charge && battery.left_s)
+        charge =
+            tr("   %1 %   %2").arg(shortNumber(100 * *battery.charge, 0), roughDurationText(*battery.left_s));
+    power_->tell(hottest < -273 ? QString()
+                                : tr("battery %1 V%2   %3 A   %4 °C")
+                                      .arg(shortNumber(volts, 1), charge, shortNumber(amperes, 1),
+                                           shortNumber(hottest, 0)),
                  powerAge_);
+    power_->setToolTip(powerTip(battery));
 }
 
 } // namespace hermes::desktop

@@ -49,13 +49,36 @@ const Fields<ControllerPower> &fieldsOf(Of<ControllerPower>) {
                                    .add("status", &C::status, "Bits of errors and warnings")
                                    .mayBeMissing()
                                    .add("status_texts", &C::statusTexts, "What they mean")
+                                   .mayBeMissing()
+                                   .add("duty", &C::duty, "Of both motors, -1 to 1")
                                    .mayBeMissing();
     return fields;
 }
 
-const Fields<PowerMessage> &fieldsOf(Of<PowerMessage>) {
+const Fields<BatteryState> &fieldsOf(Of<BatteryState>) {
+    using B = BatteryState;
     static const auto fields =
-        Fields<PowerMessage>().add("controllers", &PowerMessage::controllers, "All").atMostElements(100);
+        Fields<B>()
+            .add("charge", &B::charge, "Share of the capacity that is left, 0 to 1")
+            .mayBeMissing()
+            .add("charge_deviation", &B::chargeDeviation, "Standard deviation of charge")
+            .mayBeMissing()
+            .add("current_a", &B::current_a, "Of motors, computers and sensors; mean of the last minute", "A")
+            .mayBeMissing()
+            .add("left_s", &B::left_s, "At that current, until only the reserve is left; 48 h at most", "s")
+            .mayBeMissing()
+            .add("left_least_s", &B::leftLeast_s, "The same, with a charge that is one deviation less", "s")
+            .mayBeMissing()
+            .add("reason", &B::reason, "Why not all of this is known, or empty");
+    return fields;
+}
+
+const Fields<PowerMessage> &fieldsOf(Of<PowerMessage>) {
+    static const auto fields = Fields<PowerMessage>()
+                                   .add("controllers", &PowerMessage::controllers, "All")
+                                   .atMostElements(100)
+                                   .add("battery", &PowerMessage::battery, "How full it is")
+                                   .mayBeMissing();
     return fields;
 }
 

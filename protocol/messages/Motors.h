@@ -39,17 +39,28 @@ struct ControllerPower {
     double temperature_c = 0;
     quint32 status = 0;
     QStringList statusTexts;
+    std::array<double, 2> duty{};
+};
+
+/// How full the battery is: a part of the topic `power` and of motor.state. What is not known is missing.
+struct BatteryState {
+    std::optional<double> charge, chargeDeviation; ///< shares of the capacity
+    std::optional<double> current_a;               ///< of motors, computers and sensors; smoothed
+    std::optional<double> left_s, leftLeast_s;     ///< at that current, until only the reserve is left
+    QString reason;                                ///< why not all is known; else empty
 };
 
 /// The topic `power`.
 struct PowerMessage {
     std::vector<ControllerPower> controllers;
+    BatteryState battery;
 };
 
 const Fields<LeaseState> &fieldsOf(Of<LeaseState>);
 const Fields<MotionHold> &fieldsOf(Of<MotionHold>);
 const Fields<StandConfirmation> &fieldsOf(Of<StandConfirmation>);
 const Fields<ControllerPower> &fieldsOf(Of<ControllerPower>);
+const Fields<BatteryState> &fieldsOf(Of<BatteryState>);
 const Fields<PowerMessage> &fieldsOf(Of<PowerMessage>);
 
 } // namespace hermes

@@ -379,7 +379,7 @@ void TestControllerStops::readyMeansThatEverythingWasRead_data() {
     for (const Command command :
          {Command::ReadVersion, Command::SetSerialTimeout, Command::ReadSerialTimeout,
           Command::SetVelocityPidM1, Command::ReadVelocityPidM2, Command::ReadEncoders, Command::ReadStatus,
-          Command::ReadCurrents, Command::ReadMainBattery, Command::ReadLogicBattery,
+          Command::ReadCurrents, Command::ReadPwm, Command::ReadMainBattery, Command::ReadLogicBattery,
           Command::ReadTemperature})
         QTest::newRow(qPrintable(rowOf(command))) << command;
 }

@@ -22,6 +22,7 @@ private Q_SLOTS:
     void cleanup() { tearDown(); }
     void setsTheControllersUp();
     void drivesAndTellsWhere();
+    void tellsHowLongTheBatteryLasts();
     void topicsCome();
     void refusals_data();
     void refusals();
@@ -57,6 +58,24 @@ void TestMotorControl::setsTheControllersUp() {
     QTRY_COMPARE(healthItem("battery")["values"].toObject()["battery_v"].toDouble(), 25.0);
     QTRY_VERIFY(healthItem("cycle")["values"].toObject()["mean_lateness_s"].toDouble() > 0);
     QCOMPARE(rig_->strange(), 0);
+}
+
+void TestMotorControl::tellsHowLongTheBatteryLasts() {
+    const auto battery = [this] { return state()["battery"].toObject(); };
+    launch({"battery.capacity_ah=0.5", "battery.idle_a=2"}); // 15 minutes
+    QTRY_COMPARE(battery()["reason"].toString(), QString("the motors must rest for 5 s first"));
+    QTRY_VERIFY_WITH_TIMEOUT(battery().contains("charge"), 20000);
+    QVERIFY(std::abs(battery()["charge"].toDouble() - 0.8) < 0.02); // 25 V
+    const double left_s = battery()["left_s"].toDouble();
+    QVERIFY2(std::abs(left_s - 0.6 * 900) < 30, qPrintable(QString::number(left_s)));
+    QTRY_VERIFY(battery()["left_s"].toDouble() < left_s - 0.5);
+    QTRY_COMPARE(healthItem("battery")["level"].toString(), QString("warn")); // under ten minutes
+    QVERIFY(healthItem("battery")["message"].toString().startsWith("25 V, charge "));
+    call("settings.set", {{"values", QJsonObject{{"battery", QJsonObject{{"capacity_ah", 5}}}}}});
+    QTRY_VERIFY(!battery().contains("charge")); // it is another one
+    QTRY_COMPARE_WITH_TIMEOUT(healthItem("battery")["level"].toString(), QString("ok"), 20000);
+    rig_.reset();
+    QTRY_COMPARE(battery()["reason"].toString(), QString("no controller tells voltage and current"));
 }
 
 void TestMotorControl::drivesAndTellsWhere() {

@@ -83,6 +83,7 @@ private:
         case 21:
         case 24:
         case 25:
+        case 48:
         case 49:
         case 55:
         case 56:

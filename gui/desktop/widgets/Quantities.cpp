@@ -24,4 +24,10 @@ QString durationText(double seconds) {
     return s >= 60 ? QObject::tr("%1 min %2 s").arg(s / 60).arg(s % 60) : QObject::tr("%1 s").arg(s);
 }
 
+QString roughDurationText(double seconds) {
+    if (!(seconds >= 60 && seconds < 3600))
+        return seconds >= 0 && seconds < 60 ? QObject::tr("under 1 min") : durationText(seconds);
+    return QObject::tr("%1 min").arg(int(seconds) / 60);
+}
+
 } // namespace hermes::desktop

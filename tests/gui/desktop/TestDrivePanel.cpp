@@ -39,6 +39,7 @@ private Q_SLOTS:
     void aHeldKeyDrivesOnlyOnce();
     void aRepeatedKeyOfAMenuDoesNotDrive();
     void speedLimitInItsUnit();
+    void theBatteryIsTold();
 
 private:
     template <typename T>
@@ -454,6 +455,13 @@ void TestDrivePanel::speedLimitInItsUnit() {
     QVERIFY(owner.callAndWait("settings.set", QJsonObject{{"values", slower}}).ok());
     QTRY_COMPARE(speed->text(), QString("0.50")); // another largest speed
     QCOMPARE(slider->value(), 100);
+}
+
+void TestDrivePanel::theBatteryIsTold() {
+    const auto *const power = find<QLabel>("power");
+    const QRegularExpression full("^battery 25\\.4 V   100 %   1?[0-9] h [0-9]+ min   [0-9.]+ A   ");
+    QTRY_VERIFY2_WITH_TIMEOUT(full.match(power->text()).hasMatch(), qPrintable(power->text()), 20000);
+    QVERIFY2(power->toolTip().contains("Charge 100 %"), qPrintable(power->toolTip()));
 }
 
 QTEST_MAIN(TestDrivePanel)

@@ -1,0 +1,114 @@
+#include "daemons/motorcontrol/BatteryGauge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hermes::motorcontrol {
+namespace {
+
+constexpr double restCurrent = 1;     // A; motors that draw less count as resting
+constexpr double restTime_s = 5;      // until the voltage is worth a look
+constexpr double settling_s = 300;    // of the voltage after a load
+constexpr double restDeviation = 0.1; // of the charge by the voltage, beside that of a voltage that settles
+constexpr double settlingDeviation = 0.1;
+constexpr double correction_s = 60;     // time constant with which a rest corrects the count
+constexpr double countDeviation = 0.1;  // share of what was counted
+constexpr double smoothing_s = 60;      // of the current that the time left is told for
+constexpr double steady_s = 1;          // between two readings; in a longer gap all may have happened
+constexpr double forgetTime_s = 60;     // without a reading: it may be another battery
+constexpr double unseenPerHour = 0.5;   // share of the capacity that may have been drawn unseen
+constexpr double otherBattery = 2.5;    // standard deviations
+constexpr double longest_s = 48 * 3600; // more is not told
+
+bool isPlausible(const BatteryReading &reading) {
+    return std::isfinite(reading.voltage) && reading.voltage > 0 && std::isfinite(reading.motors_a);
+}
+
+} // namespace
+
+void BatteryGauge::configure(const Settings &settings) {
+    const bool isOther = settings.capacity_Ah != settings_.capacity_Ah ||
+                         settings.full_v != settings_.full_v || settings.empty_v != settings_.empty_v;
+    settings_ = settings;
+    if (isOther)
+        forget();
+}
+
+void BatteryGauge::forget() {
+    charge_.reset();
+    current_.reset();
+    rested_s_ = 0;
+}
+
+void BatteryGauge::take(double now, const std::optional<BatteryReading> &reading) {
+    const double seconds = last_ ? std::max(0.0, now - *last_) : 0;
+    last_ = now;
+    unseen_s_ += seconds;
+    if (!reading || !isPlausible(*reading)) {
+        missing_ =
+            reading ? QString("a controller tells %1 V and %2 A").arg(reading->voltage).arg(reading->motors_a)
+                    : QString("no controller tells voltage and current");
+        rested_s_ = 0;
+        return tell();
+    }
+    missing_.clear();
+    if (unseen_s_ > forgetTime_s)
+        forget();
+    const double current = settings_.idle_a + std::max(0.0, reading->motors_a);
+    const double share = current_ ? 1 - std::exp(-unseen_s_ / smoothing_s) : 1;
+    current_ = current_.value_or(0) + share * (current - current_.value_or(0));
+    const bool rests = std::abs(reading->motors_a) < restCurrent;
+    rested_s_ = rests && unseen_s_ < steady_s ? rested_s_ + unseen_s_ : 0;
+    if (charge_)
+        count(current, unseen_s_);
+    if (rests && rested_s_ >= restTime_s)
+        correct(reading->voltage, unseen_s_);
+    unseen_s_ = 0;
+    tell();
+}
+
+void BatteryGauge::count(double current, double seconds) {
+    const double drawn = current * seconds / 3600 / settings_.capacity_Ah;
+    const double blind = seconds < steady_s ? 0 : unseenPerHour * seconds / 3600;
+    charge_->mean = std::max(0.0, charge_->mean - drawn);
+    charge_->deviation = std::min(1.0, charge_->deviation + countDeviation * drawn + blind);
+}
+
+void BatteryGauge::correct(double voltage, double seconds) {
+    const double span = settings_.full_v - settings_.empty_v;
+    const Estimate byVoltage{std::clamp((voltage - settings_.empty_v) / span, 0.0, 1.0),
+                             restDeviation + settlingDeviation * std::exp(-rested_s_ / settling_s)};
+    const auto differs = [&] {
+        return std::abs(byVoltage.mean - charge_->mean) >
+               otherBattery * std::hypot(byVoltage.deviation, charge_->deviation);
+    };
+    if (!charge_ || differs())
+        charge_ = byVoltage;
+    if (charge_->deviation <= byVoltage.deviation)
+        return; // the count is better
+    const double share = 1 - std::exp(-seconds / correction_s);
+    charge_->mean += share * (byVoltage.mean - charge_->mean);
+    charge_->deviation += share * (byVoltage.deviation - charge_->deviation);
+}
+
+void BatteryGauge::tell() {
+    state_ = {};
+    state_.reason = missing_;
+    if (!missing_.isEmpty())
+        return;
+    state_.current_a = current_;
+    if (!charge_) {
+        state_.reason = QString("the motors must rest for %1 s first").arg(restTime_s);
+        return;
+    }
+    state_.charge = charge_->mean;
+    state_.chargeDeviation = charge_->deviation;
+    const auto lasts = [this](double charge) {
+        const double usable_Ah = std::max(0.0, charge - settings_.reserve) * settings_.capacity_Ah;
+        return *current_ * longest_s > usable_Ah * 3600 ? usable_Ah * 3600 / *current_ : longest_s;
+    };
+    state_.left_s = lasts(charge_->mean);
+    state_.leftLeast_s = lasts(charge_->mean - charge_->deviation);
+}
+
+} // namespace hermes::motorcontrol

@@ -1,0 +1,187 @@
+#include "daemons/motorcontrol/BatteryGauge.h"
+#include "daemons/simulator/Battery.h"
+
+#include <QtTest>
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace hermes;
+using namespace hermes::motorcontrol;
+
+/// What is told of a battery: never a guess as if it were sure, and right within what it tells, whatever the
+/// robot does.
+class TestBatteryGauge : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void nothingIsKnownBeforeARest();
+    void whatIsMissingIsNamed_data();
+    void whatIsMissingIsNamed();
+    void tellsTheTimeLeft();
+    void aRestCorrectsTheCount();
+    void anotherBatteryIsNoticed();
+    void aGapMakesUnsure();
+    void aLongGapForgets();
+    void isRightWithinWhatItTells_data();
+    void isRightWithinWhatItTells();
+    void anyInputGivesSenseOrNothing();
+
+private:
+    static constexpr double tick_s = 0.1;
+    void pass(double seconds, double voltage, double motors_a) {
+        for (double end = now_ + seconds; now_ < end; now_ += tick_s)
+            gauge_->take(now_, BatteryReading{voltage, motors_a});
+    }
+    const BatteryState &state() const { return gauge_->state(); }
+
+    std::unique_ptr<BatteryGauge> gauge_;
+    double now_ = 0;
+
+private Q_SLOTS:
+    void init() {
+        gauge_ = std::make_unique<BatteryGauge>();
+        now_ = 1000;
+    }
+};
+
+void TestBatteryGauge::nothingIsKnownBeforeARest() {
+    pass(20, 24.4, 10);
+    QVERIFY(!state().charge && !state().left_s && state().current_a);
+    QCOMPARE(state().reason, QString("the motors must rest for 5 s first"));
+    pass(4, 24.4, 0);
+    QVERIFY(!state().charge);
+    pass(2, 24.4, 0);
+    QVERIFY(state().charge && state().reason.isEmpty());
+    QVERIFY(std::abs(*state().charge - 0.5) < 0.01);
+    QVERIFY(*state().chargeDeviation > 0.1);
+}
+
+void TestBatteryGauge::whatIsMissingIsNamed_data() {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                     inf = std::numeric_limits<double>::infinity();
+    QTest::addColumn<double>("voltage");
+    QTest::addColumn<double>("motors_a");
+    QTest::newRow("no voltage") << 0.0 << 1.0;
+    QTest::newRow("NaN") << nan << 1.0;
+    QTest::newRow("infinite") << inf << 1.0;
+    QTest::newRow("current NaN") << 24.0 << nan;
+    QTest::newRow("current infinite") << 24.0 << inf;
+}
+
+void TestBatteryGauge::whatIsMissingIsNamed() {
+    QFETCH(double, voltage);
+    QFETCH(double, motors_a);
+    pass(10, 24.4, 0);
+    QVERIFY(state().charge);
+    pass(1, voltage, motors_a);
+    QVERIFY(!state().charge && !state().left_s && !state().current_a);
+    QVERIFY2(state().reason.startsWith("a controller tells "), qPrintable(state().reason));
+    gauge_->take(now_, std::nullopt);
+    QCOMPARE(state().reason, QString("no controller tells voltage and current"));
+    pass(1, 24.4, 0);
+    QVERIFY(state().charge); // still known
+}
+
+void TestBatteryGauge::tellsTheTimeLeft() {
+    gauge_->configure({20, 25, 23, 2, 0.2});
+    pass(10, 24.4, 0); // 70 %: 10 Ah above the reserve
+    pass(600, 24, 8);  // 10 A
+    const double charge = 0.7 - 10 / 6. / 20;
+    QVERIFY2(std::abs(*state().charge - charge) < 0.005, qPrintable(QString::number(*state().charge)));
+    QVERIFY(std::abs(*state().current_a - 10) < 0.01);
+    QVERIFY(std::abs(*state().left_s - (charge - 0.2) * 20 / 10 * 3600) < 60);
+    QVERIFY(*state().leftLeast_s<*state().left_s && * state().leftLeast_s> 0);
+    pass(4 * 3600, 24, 8);
+    QCOMPARE(*state().charge, 0.0);
+    QCOMPARE(*state().left_s, 0.0);
+}
+
+void TestBatteryGauge::aRestCorrectsTheCount() {
+    pass(10, 24.4, 0);
+    pass(1800, 24, 8); // counted: 19 % less; the voltage then says: 13 % less
+    const double counted = *state().charge;
+    pass(600, 24.14, 0);
+    QVERIFY(*state().charge > counted + 0.01);
+    QVERIFY(std::abs(*state().charge - 0.37) < 0.05);
+}
+
+void TestBatteryGauge::anotherBatteryIsNoticed() {
+    pass(10, 23.5, 0);
+    QVERIFY(*state().charge < 0.1);
+    pass(10, 25.4, 0);
+    QVERIFY2(*state().charge > 0.95, qPrintable(QString::number(*state().charge)));
+}
+
+void TestBatteryGauge::aGapMakesUnsure() {
+    pass(10, 24.4, 0);
+    const double before = *state().chargeDeviation;
+    now_ += 50; // nobody looked
+    pass(0.1, 24.4, 5);
+    QVERIFY(*state().chargeDeviation > before + 0.005);
+}
+
+void TestBatteryGauge::aLongGapForgets() {
+    pass(10, 24.4, 0);
+    now_ += 61;
+    pass(0.1, 24.4, 5);
+    QVERIFY(!state().charge);
+    now_ -= 1e6; // no clock should, but it does no harm
+    pass(10, 24.4, 0);
+    QVERIFY(std::abs(*state().charge - 0.5) < 0.01);
+}
+
+void TestBatteryGauge::isRightWithinWhatItTells_data() {
+    QTest::addColumn<int>("seed");
+    for (int seed = 1; seed <= 20; ++seed)
+        QTest::addRow("seed %d", seed) << seed;
+}
+
+// A day of a robot on a battery with a resistance, whose gauge knows its capacity and idle current by 10 %
+// only.
+void TestBatteryGauge::isRightWithinWhatItTells() {
+    QFETCH(int, seed);
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::uniform_real_distribution<double> any(0, 1);
+    simulator::Battery::Options options;
+    options.capacity_Ah = 26 * (0.9 + 0.2 * any(random));
+    simulator::Battery battery(options);
+    battery.setCharge(0.3 + 0.7 * any(random));
+    const double idle_a = 2 * (0.9 + 0.2 * any(random));
+    int told = 0, within = 0;
+    while (battery.charge() > 0.1 && now_ < 1000 + 6 * 3600) {
+        const double motors_a = any(random) < 0.3 ? 0 : 15 * any(random),
+                     until = now_ + 5 + 200 * any(random);
+        for (; now_ < until; now_ += tick_s) {
+            battery.draw(idle_a + motors_a, tick_s);
+            const double tenths = std::round(10 * battery.voltage()) / 10; // as a RoboClaw tells it
+            gauge_->take(now_, BatteryReading{tenths, motors_a});
+        }
+        if (!state().charge)
+            continue;
+        ++told;
+        within += std::abs(*state().charge - battery.charge()) < 2 * *state().chargeDeviation;
+    }
+    QVERIFY2(told > 10 && within > 0.95 * told, qPrintable(QString("%1 of %2").arg(within).arg(told)));
+}
+
+void TestBatteryGauge::anyInputGivesSenseOrNothing() {
+    std::mt19937 random(7);
+    const double values[] = {0,  -0.0, 1e-300, 1e300, -1e300,       23.4,     25.4,     24,
+                             -5, 0.5,  1,      1e9,   std::nan(""), INFINITY, -INFINITY};
+    const auto any = [&] { return values[random() % std::size(values)]; };
+    for (int i = 0; i < 100000; ++i) {
+        now_ += i % 1000 == 0 ? 1e5 * double(random() % 3) - 1e5 : 0.1 * double(random() % 20);
+        const bool isThere = random() % 8 != 0;
+        const BatteryReading reading{any(), any()};
+        gauge_->take(now_, isThere ? std::optional(reading) : std::nullopt);
+        for (const auto &share : {state().charge, state().chargeDeviation})
+            QVERIFY(!share || (*share >= 0 && *share <= 1));
+        for (const auto &time : {state().left_s, state().leftLeast_s})
+            QVERIFY(!time || (*time >= 0 && *time <= 48 * 3600));
+        QVERIFY(!state().current_a || *state().current_a >= 0);
+        QVERIFY(state().charge.has_value() == state().reason.isEmpty());
+    }
+}
+
+QTEST_GUILESS_MAIN(TestBatteryGauge)
+#include "TestBatteryGauge.moc"
