@@ -14,7 +14,8 @@ constexpr const char *formats[] = {"json", "csv", "svg", "latex"};
 struct ReportCommand {
     std::string in;
     std::optional<std::size_t> number;
-    bool overall = false;
+    bool overall = false, all = false, everyCombination = false;
+    std::optional<std::size_t> most;
     std::string format;
     std::optional<int> rays;
     std::optional<double> noise, sigma;
@@ -23,29 +24,38 @@ struct ReportCommand {
     OutputOptions output;
 
     void run() const {
-        if (overall == number.has_value())
-            throw CLI::ValidationError("--case", "expected either --case or --overall");
+        if (overall + all + number.has_value() != 1)
+            throw CLI::ValidationError("--case", "expected one of --case, --all and --overall");
+        if (most && !everyCombination)
+            throw CLI::ValidationError("--most", "is of --all-combinations alone");
         const std::string as = chosenFormat();
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
         const ReportWorld world = findWorld(in);
         const ReportSettings settings = chosenSettings(world.world.name);
-        if (overall) {
-            Progress progress("case");
-            write(out, as, world, settings,
-                  reportOverall(world.world, settings,
-                                [&](std::size_t done, std::size_t all) { progress.update(done, all); }));
+        if (number) {
+            write(out, as, world, settings, reportCase(world.world, checkedNumber(world.world), settings));
         } else {
-            const std::size_t cases = world.world.poses.size() - 1;
-            if (*number >= cases)
-                throw CLI::ValidationError("--case", "found " + std::to_string(*number) + ", expected 0 to " +
-                                                         std::to_string(cases - 1) + ": the world has " +
-                                                         std::to_string(cases + 1) + " poses");
-            write(out, as, world, settings, reportCase(world.world, *number, settings));
+            Progress progress("case");
+            const OverallReport report =
+                reportOverall(world.world, settings,
+                              [&](std::size_t done, std::size_t among) { progress.update(done, among); });
+            if (overall)
+                write(out, as, world, settings, report);
+            else
+                write(out, as, world, settings, CaseReports{report.cases});
         }
         files.commit();
     }
 
+    std::size_t checkedNumber(const World &world) const {
+        const std::size_t cases = world.poses.size() - 1;
+        if (*number >= cases)
+            throw CLI::ValidationError("--case", "found " + std::to_string(*number) + ", expected 0 to " +
+                                                     std::to_string(cases - 1) + ": the world has " +
+                                                     std::to_string(cases + 1) + " poses");
+        return *number;
+    }
     std::string chosenFormat() const {
         if (!format.empty())
             return format;
@@ -61,6 +71,8 @@ struct ReportCommand {
         s.scan.noise = noise.value_or(s.scan.noise);
         s.scan.sigma = sigma.value_or(s.scan.sigma);
         s.search = search.over(s.search);
+        s.everyCombination = everyCombination;
+        s.mostCombinations = most.value_or(s.mostCombinations);
         return s;
     }
     template <typename Report>
@@ -88,6 +100,14 @@ void addReportCommand(CLI::App &app) {
         ->required();
     sub->add_option("--case", command->number, "Scans N and N + 1 with all solutions")->type_name("N");
     sub->add_flag("--overall", command->overall, "All consecutive scans with their accepted solutions");
+    sub->add_flag("--all", command->all, "The case reports of all consecutive scans");
+    sub->add_flag(
+        "--all-combinations", command->everyCombination,
+        "Every reliable, unambiguous combination by the published rules, accepted by its discrepancy "
+        "alone");
+    sub->add_option("--most", command->most, "With --all-combinations: the N longest of a case (100)")
+        ->transform(wholeNumber(1, 10000))
+        ->type_name("N");
     sub->add_option("--format", command->format,
                     "json, csv, svg or latex; else by the extension of --out, else json")
         ->check(CLI::IsMember({"json", "csv", "svg", "latex"}))

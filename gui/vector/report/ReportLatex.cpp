@@ -23,15 +23,22 @@ std::string mathText(const std::string &text) {
     replace("cm2", "cm$^2$");
     replace("rad2", "rad$^2$");
     replace(" x 50", " $\\times$ 50");
+    replace(" to \\#", " $\\Rightarrow$ \\#");
+    replace("sigma", "$\\sigma$");
     return result;
 }
 
-void openDocument(std::ostream &out, const std::string &title, const std::vector<const Ink *> &inks) {
+void openDocument(std::ostream &out) {
     out << "\\documentclass[a4paper,10pt]{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[utf8]{inputenc}\n"
            "\\usepackage[margin=2cm]{geometry}\n\\usepackage{longtable}\n\\usepackage{tikz}\n"
            "\\setlength{\\parindent}{0pt}\n\\setlength{\\emergencystretch}{3em}\n";
-    defineColours(out, inks);
-    out << "\\begin{document}\n\\section*{" << latexText(title) << "}\n";
+    defineColours(out, allInks());
+    out << "\\begin{document}\n";
+}
+
+void writeTitle(std::ostream &out, const ReportWorld &world, const char *kind) {
+    out << "\\section*{Correspondence search}\n\\subsection*{" << kind << " report -- "
+        << latexText(world.world.name) << " dataset}\n";
 }
 
 void writeFacts(std::ostream &out, const std::string &title, const std::vector<Fact> &facts) {
@@ -45,7 +52,7 @@ void writeFacts(std::ostream &out, const std::string &title, const std::vector<F
 
 /// Facts to the left, a picture to the right, description and legend below.
 void writeHead(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
-               const CaseReport *report, const Drawing &picture, const std::vector<const Ink *> &inks) {
+               const CaseReport *report, const Drawing &picture, const std::vector<Ink> &inks) {
     out << "\\begin{minipage}[t]{0.44\\textwidth}\\vspace{0pt}\n";
     writeFacts(out, "Dataset", datasetFacts(world.world, settings));
     if (report) {
@@ -62,33 +69,46 @@ void writeHead(std::ostream &out, const ReportWorld &world, const ReportSettings
     out << "\\par}\\bigskip\n";
 }
 
+void writeSolution(std::ostream &out, const CaseReport &report, std::size_t number) {
+    out << "\\begin{minipage}{\\textwidth}\n\\begin{minipage}[c]{0.55\\textwidth}\n";
+    drawSolution(report, report.result.solutions[number]).writeTikz(out, 9, 6.5);
+    out << "\n\\end{minipage}\\hfill\n\\begin{minipage}[c]{0.42\\textwidth}\\raggedright\n";
+    writeFacts(out, "Solution \\#" + std::to_string(number), solutionFacts(report, number));
+    out << "\\\\[2pt]$\\Rightarrow$ \\textbf{" << latexText(verdictOf(report, number)) << "}\\par\\medskip\n";
+    writeFacts(out, "Statistics", countFacts(report.counts[number]));
+    out << "\\end{minipage}\n\\end{minipage}\\par\\bigskip\n";
+}
+
+void writeCase(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
+               const CaseReport &report) {
+    writeTitle(out, world, "Case");
+    writeHead(out, world, settings, &report, drawScans(report), caseInks(report));
+    out << "\\textbf{Solutions:}\\quad " << latexText(searchText(world, report)) << "\\par\\bigskip\n";
+    for (std::size_t i = 0; i < report.result.solutions.size(); ++i)
+        writeSolution(out, report, i);
+}
+
 } // namespace
 
 void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
                 const CaseReport &report) {
-    openDocument(out, "Correspondence search case report -- " + world.world.name + " dataset", allInks());
-    writeHead(out, world, settings, &report, drawScans(report), caseInks());
-    out << "\\textbf{Solutions:}\\quad " << report.result.potentialPairs << " potential pairs, "
-        << report.result.bundles << " bundles, " << report.result.buckets << " buckets, "
-        << report.result.combinations << " bundles tried; " << describe(report.result.outcome)
-        << ".\\par\\bigskip\n";
-    for (std::size_t i = 0; i < report.result.solutions.size(); ++i) {
-        const vectorlib::Solution &solution = report.result.solutions[i];
-        out << "\\begin{minipage}{\\textwidth}\n\\begin{minipage}[c]{0.55\\textwidth}\n";
-        drawSolution(report, solution).writeTikz(out, 9, 6.5);
-        out << "\n\\end{minipage}\\hfill\n\\begin{minipage}[c]{0.42\\textwidth}\n";
-        writeFacts(out, "Solution \\#" + std::to_string(i), solutionFacts(solution));
-        out << "\\\\[2pt]$\\Rightarrow$ \\textbf{" << (solution.accepted ? "Accepted" : "Rejected")
-            << "}\\par\\medskip\n";
-        writeFacts(out, "Statistics", countFacts(report.counts[i]));
-        out << "\\end{minipage}\n\\end{minipage}\\par\\bigskip\n";
+    writeLatex(out, world, settings, CaseReports{{report}});
+}
+
+void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
+                const CaseReports &report) {
+    openDocument(out);
+    for (std::size_t i = 0; i < report.cases.size(); ++i) {
+        out << (i ? "\\clearpage\n" : "");
+        writeCase(out, world, settings, report.cases[i]);
     }
     out << "\\end{document}\n";
 }
 
 void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
                 const OverallReport &report) {
-    openDocument(out, "Correspondence search overall report -- " + world.world.name + " dataset", allInks());
+    openDocument(out);
+    writeTitle(out, world, "Overall");
     writeHead(out, world, settings, nullptr, drawWorld(world.world), overallInks());
     out << "\\textbf{Accepted results:}\n\\begin{longtable}{lcrrrrrrr}\n\\hline\n"
            "Scan & Solution & Rel. & Amb. & Disc. & True & True & False & False\\\\\n"
@@ -96,10 +116,10 @@ void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSetting
            "\\endhead\n";
     forEachAccepted(report, [&](const std::vector<std::string> &cells) {
         for (std::size_t i = 0; i < cells.size(); ++i)
-            out << (i ? " & " : "") << latexText(cells[i]);
+            out << (i ? " & " : "") << mathText(cells[i]);
         out << "\\\\\n";
     });
-    out << "\\hline\n\\end{longtable}\n" << latexText(summaryOf(report)) << "\n\\end{document}\n";
+    out << "\\hline\n\\end{longtable}\n" << latexText(summaryOf(world, report)) << "\n\\end{document}\n";
 }
 
 } // namespace hermes::vector

@@ -9,16 +9,22 @@ using vectorlib::xmlText;
 
 namespace {
 
-constexpr double pageWidth = 1240, pageMargin = 30, line = 18, pictureWidth = 380, pictureHeight = 320;
+constexpr std::size_t columns = 3;
+constexpr double pageWidth = 1240, pageMargin = 30, line = 18, pictureWidth = 380, pictureHeight = 320,
+                 caseHead = 600, cellWidth = (pageWidth - 2 * pageMargin) / columns,
+                 cellHeight = pictureHeight + 160;
 
-void openPage(std::ostream &out, double height, const std::string &title) {
+void openPage(std::ostream &out, double height) {
     out << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << Fixed{pageWidth, 0} << "\" height=\""
         << Fixed{height, 0} << "\" viewBox=\"0 0 " << Fixed{pageWidth, 0} << ' ' << Fixed{height, 0}
         << "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n<rect width=\"100%\" "
            "height=\"100%\" "
-           "fill=\"#ffffff\"/>\n<text x=\""
-        << pageMargin << "\" y=\"34\" font-size=\"18\" font-weight=\"bold\">" << xmlText(title)
-        << "</text>\n";
+           "fill=\"#ffffff\"/>\n";
+}
+
+void writeTitle(std::ostream &out, double top, const std::string &title) {
+    out << "<text x=\"" << pageMargin << "\" y=\"" << Fixed{top + 34, 1}
+        << "\" font-size=\"18\" font-weight=\"bold\">" << xmlText(title) << "</text>\n";
 }
 
 void writeText(std::ostream &out, double x, double y, const std::string &text, bool bold = false) {
@@ -43,8 +49,8 @@ double writeFacts(std::ostream &out, double x, double y, const std::string &titl
 
 /// Facts, and below them and the picture the description.
 double writeHead(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
-                 const CaseReport *report, double pictureEnd) {
-    double y = writeFacts(out, pageMargin, 66, "Dataset", datasetFacts(world.world, settings));
+                 const CaseReport *report, double y, double pictureEnd) {
+    y = writeFacts(out, pageMargin, y + 66, "Dataset", datasetFacts(world.world, settings));
     if (report)
         y = writeFacts(out, pageMargin, y + 10, "Observation", observationFacts(*report));
     y = writeFacts(out, pageMargin, y + 10, "Algorithm settings", settingsFacts(settings));
@@ -53,34 +59,64 @@ double writeHead(std::ostream &out, const ReportWorld &world, const ReportSettin
     return y + 30;
 }
 
+/// Breaks at spaces; returns where the next line begins.
+double writeLines(std::ostream &out, double x, double y, const std::string &text, std::size_t width,
+                  bool bold = false) {
+    for (std::size_t from = 0; from < text.size();) {
+        std::size_t to = text.size();
+        if (to - from > width)
+            if (to = text.rfind(' ', from + width); to == std::string::npos || to <= from)
+                to = from + width;
+        writeText(out, x, y, text.substr(from, to - from), bold);
+        from = to + (to < text.size() && text[to] == ' ');
+        y += line;
+    }
+    return y;
+}
+
+double heightOf(const CaseReport &report) {
+    return caseHead +
+           cellHeight * static_cast<double>((report.result.solutions.size() + columns - 1) / columns);
+}
+
+void writeSolution(std::ostream &out, const CaseReport &report, std::size_t number, double x, double y) {
+    drawSolution(report, report.result.solutions[number])
+        .writeSvg(out, x, y, pictureWidth - 20, pictureHeight);
+    y = writeLines(out, x, y + pictureHeight + 16,
+                   "Solution #" + std::to_string(number) + ": " + verdictOf(report, number), 56, true);
+    writeFacts(out, x, y, "", solutionFacts(report, number), 80);
+    writeFacts(out, x + 190, y, "", countFacts(report.counts[number]), 100);
+}
+
+void writeCase(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
+               const CaseReport &report, double top) {
+    writeTitle(out, top, "Correspondence search, case report: " + world.world.name);
+    drawScans(report).writeSvg(out, 480, top + 56, 700, 380);
+    double y = writeHead(out, world, settings, &report, top, top + 436);
+    writeSvgLegend(out, caseInks(report), pageMargin, y);
+    writeLines(out, pageMargin, y + 26, searchText(world, report), 200);
+    for (std::size_t i = 0; i < report.result.solutions.size(); ++i)
+        writeSolution(out, report, i, pageMargin + cellWidth * static_cast<double>(i % columns),
+                      top + caseHead + cellHeight * static_cast<double>(i / columns));
+}
+
 } // namespace
 
 void writeSvg(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
               const CaseReport &report) {
-    constexpr int columns = 3;
-    constexpr double head = 520, cell = pictureHeight + 140, width = (pageWidth - 2 * pageMargin) / columns;
-    const std::size_t rows = (report.result.solutions.size() + columns - 1) / columns;
-    openPage(out, head + 40 + cell * static_cast<double>(rows),
-             "Correspondence search, case report: " + world.world.name);
-    drawScans(report).writeSvg(out, 480, 56, 700, 380);
-    const double y = writeHead(out, world, settings, &report, 436);
-    writeSvgLegend(out, caseInks(), pageMargin, y);
-    writeText(out, pageMargin, y + 26,
-              "Search: " + std::to_string(report.result.potentialPairs) + " potential pairs, " +
-                  std::to_string(report.result.bundles) + " bundles in " +
-                  std::to_string(report.result.buckets) + " buckets, " +
-                  std::to_string(report.result.combinations) + " bundles tried; " +
-                  describe(report.result.outcome) + ".");
-    for (std::size_t i = 0; i < report.result.solutions.size(); ++i) {
-        const vectorlib::Solution &solution = report.result.solutions[i];
-        const double x = pageMargin + width * static_cast<double>(i % columns);
-        const double top = head + 40 + cell * static_cast<double>(i / columns);
-        drawSolution(report, solution).writeSvg(out, x, top, pictureWidth - 20, pictureHeight);
-        const double below = top + pictureHeight + 16;
-        writeText(out, x, below,
-                  "Solution #" + std::to_string(i) + (solution.accepted ? ": accepted" : ": rejected"), true);
-        writeFacts(out, x, below + line, "", solutionFacts(solution), 80);
-        writeFacts(out, x + 190, below + line, "", countFacts(report.counts[i]), 100);
+    writeSvg(out, world, settings, CaseReports{{report}});
+}
+
+void writeSvg(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
+              const CaseReports &report) {
+    double height = 0;
+    for (const CaseReport &c : report.cases)
+        height += heightOf(c);
+    openPage(out, height);
+    double top = 0;
+    for (const CaseReport &c : report.cases) {
+        writeCase(out, world, settings, c, top);
+        top += heightOf(c);
     }
     out << "</svg>\n";
 }
@@ -92,10 +128,10 @@ void writeSvg(std::ostream &out, const ReportWorld &world, const ReportSettings 
         rows += std::max<std::size_t>(1, static_cast<std::size_t>(std::count_if(
                                              c.result.solutions.begin(), c.result.solutions.end(),
                                              [](const vectorlib::Solution &s) { return s.accepted; })));
-    openPage(out, 540 + line * static_cast<double>(rows + 3),
-             "Correspondence search, overall report: " + world.world.name);
+    openPage(out, 540 + line * static_cast<double>(rows + 5));
+    writeTitle(out, 0, "Correspondence search, overall report: " + world.world.name);
     drawWorld(world.world).writeSvg(out, 480, 56, 720, 400);
-    double y = writeHead(out, world, settings, nullptr, 456);
+    double y = writeHead(out, world, settings, nullptr, 0, 456);
     writeSvgLegend(out, overallInks(), pageMargin, y);
     y += 34;
     const std::vector<double> at = {0, 120, 220, 310, 400, 500, 610, 720, 830};
@@ -108,7 +144,7 @@ void writeSvg(std::ostream &out, const ReportWorld &world, const ReportSettings 
               "False pos.", "False neg."},
              true);
     forEachAccepted(report, [&](const std::vector<std::string> &cells) { writeRow(cells); });
-    writeText(out, pageMargin, y + 10, summaryOf(report), true);
+    writeLines(out, pageMargin, y + 10, summaryOf(world, report), 170, true);
     out << "</svg>\n";
 }
 

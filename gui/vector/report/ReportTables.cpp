@@ -28,22 +28,25 @@ Json jsonOf(const CaseReport &report, std::size_t i) {
     Json pairs = Json::array();
     for (const vectorlib::CorrespondencePair &p : s.pairs)
         pairs.push_back({p.fixed, p.moving});
-    return {{"number", i},
-            {"pose", jsonOf(s.pose)},
-            {"pairs", pairs},
-            {"reliability", s.reliability},
-            {"ambiguity", s.ambiguity},
-            {"discrepancy", s.view.discrepancy},
-            {"common_area", s.view.common},
-            {"shared_angle", s.view.angle},
-            {"matched_share", s.matchedShare},
-            {"score", s.score},
-            {"accepted", s.accepted},
-            {"true", report.scans.isTrue(s)},
-            {"true_positive", counts.truePositive},
-            {"true_negative", counts.trueNegative},
-            {"false_positive", counts.falsePositive},
-            {"false_negative", counts.falseNegative}};
+    Json json = {{"number", i},
+                 {"pose", jsonOf(s.pose)},
+                 {"pairs", pairs},
+                 {"reliability", s.reliability},
+                 {"ambiguity", s.ambiguity},
+                 {"discrepancy", s.view.discrepancy},
+                 {"common_area", s.view.common},
+                 {"shared_angle", s.view.angle},
+                 {"matched_share", s.matchedShare},
+                 {"score", s.score},
+                 {"accepted", s.accepted},
+                 {"true", report.scans.isTrue(s)},
+                 {"true_positive", counts.truePositive},
+                 {"true_negative", counts.trueNegative},
+                 {"false_positive", counts.falsePositive},
+                 {"false_negative", counts.falseNegative}};
+    if (!report.doubts.empty())
+        json["doubt"] = report.doubts[i] == vectorlib::Fault::None ? "" : describe(report.doubts[i]);
+    return json;
 }
 
 Json headOf(const ReportWorld &world, const ReportSettings &settings) {
@@ -62,16 +65,33 @@ Json headOf(const ReportWorld &world, const ReportSettings &settings) {
               {"ambiguity", s.ambiguity},
               {"k_alpha", s.stiffness.alpha},
               {"k_xy", s.stiffness.xy},
+              {"every_combination", settings.everyCombination},
               {"discrepancy", s.discrepancy},
               {"discrepancy_share", s.discrepancyShare}}}};
 }
 
-Json searchOf(const vectorlib::SearchResult &result) {
-    return {{"outcome", describe(result.outcome)},
-            {"potential_pairs", result.potentialPairs},
-            {"bundles", result.bundles},
-            {"buckets", result.buckets},
-            {"combinations", result.combinations}};
+Json searchOf(const CaseReport &report, const ReportSettings &settings) {
+    const vectorlib::SearchResult &result = report.result;
+    Json json = {{"outcome", describe(result.outcome)},
+                 {"potential_pairs", result.potentialPairs},
+                 {"bundles", result.bundles},
+                 {"buckets", result.buckets},
+                 {"combinations", result.combinations}};
+    if (settings.everyCombination)
+        json.update({{"found", report.found}, {"parts", report.parts}, {"left_out", report.leftOut}});
+    return json;
+}
+
+Json caseOf(const CaseReport &report, const ReportSettings &settings) {
+    Json json = {{"case", report.number},
+                 {"truth", jsonOf(report.scans.truth)},
+                 {"static", jsonOf(report.scans.fixed.segments)},
+                 {"dynamic", jsonOf(report.scans.moving.segments)},
+                 {"search", searchOf(report, settings)},
+                 {"solutions", Json::array()}};
+    for (std::size_t i = 0; i < report.result.solutions.size(); ++i)
+        json["solutions"].push_back(jsonOf(report, i));
+    return json;
 }
 
 const std::string solutionColumns =
@@ -94,14 +114,16 @@ void writeRow(std::ostream &out, const CaseReport &report, std::size_t i) {
 void writeJson(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
                const CaseReport &report) {
     Json json = headOf(world, settings);
-    json["case"] = report.number;
-    json["truth"] = jsonOf(report.scans.truth);
-    json["static"] = jsonOf(report.scans.fixed.segments);
-    json["dynamic"] = jsonOf(report.scans.moving.segments);
-    json["search"] = searchOf(report.result);
-    json["solutions"] = Json::array();
-    for (std::size_t i = 0; i < report.result.solutions.size(); ++i)
-        json["solutions"].push_back(jsonOf(report, i));
+    json.update(caseOf(report, settings));
+    out << json.dump(2) << '\n';
+}
+
+void writeJson(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
+               const CaseReports &report) {
+    Json json = headOf(world, settings);
+    json["cases"] = Json::array();
+    for (const CaseReport &c : report.cases)
+        json["cases"].push_back(caseOf(c, settings));
     out << json.dump(2) << '\n';
 }
 
@@ -112,10 +134,11 @@ void writeJson(std::ostream &out, const ReportWorld &world, const ReportSettings
                        {"true_first", report.trueFirst()},
                        {"true_accepted", report.trueAccepted()},
                        {"wrong_accepted", report.wrongAccepted()},
+                       {"doubted_accepted", report.doubtedAccepted()},
                        {"false_positives_of_first", report.falsePositives()}};
     json["cases"] = Json::array();
     for (const CaseReport &c : report.cases) {
-        Json one = {{"case", c.number}, {"truth", jsonOf(c.scans.truth)}, {"search", searchOf(c.result)}};
+        Json one = {{"case", c.number}, {"truth", jsonOf(c.scans.truth)}, {"search", searchOf(c, settings)}};
         one["accepted"] = Json::array();
         for (std::size_t i = 0; i < c.result.solutions.size(); ++i)
             if (c.result.solutions[i].accepted)
@@ -131,6 +154,15 @@ void writeCsv(std::ostream &out, const CaseReport &report) {
         out << i << ',';
         writeRow(out, report, i);
     }
+}
+
+void writeCsv(std::ostream &out, const CaseReports &report) {
+    out << "case,solution," << solutionColumns << '\n';
+    for (const CaseReport &c : report.cases)
+        for (std::size_t i = 0; i < c.result.solutions.size(); ++i) {
+            out << c.number << ',' << i << ',';
+            writeRow(out, c, i);
+        }
 }
 
 void writeCsv(std::ostream &out, const OverallReport &report) {

@@ -2,31 +2,13 @@
 
 #include "vectorlib/correspondence/BundleCombinations.h"
 #include "vectorlib/correspondence/ExpectedViewTest.h"
-#include "vectorlib/correspondence/NearLines.h"
+#include "vectorlib/correspondence/NumberedSegments.h"
+#include "vectorlib/correspondence/PairCollector.h"
 #include "vectorlib/correspondence/PairSelection.h"
-#include "vectorlib/correspondence/PotentialPairs.h"
 #include "vectorlib/correspondence/SearchResult.h"
 #include "vectorlib/correspondence/SegmentMap.h"
 
 namespace vectorlib {
-
-/// Defaults: the published experiments (thesis appendices).
-struct SearchSettings {
-    PermittedError permitted;
-    double reliability = 0.10; ///< least of a solution; also what tells directions apart
-    double ambiguity = 0.0025; ///< most energy of a pair; m^2
-    Stiffness stiffness;
-    double discrepancy = 0.2; ///< most of an accepted solution; m^2
-    /// Or this share of the area that both views see: outlines that are seen a ray sooner or later differ by
-    /// areas that grow with the place.
-    double discrepancyShare = 0.03;
-    double sharedView = 0.25;   ///< least share of the seen angle that the expected view must show
-    double matchedShare = 0.30; ///< least share of the dynamic length that must have partners
-    std::size_t maxSolutions = 16;
-    std::size_t maxPairs = 5000;           ///< potential pairs
-    std::size_t maxCompared = 50000000;    ///< pairs of segments that are near each other, half a second
-    std::uint64_t maxCombinations = 20000; ///< bundles tried
-};
 
 /// Finds which segments of two sets correspond, with no more knowledge than a set of permitted
 /// transformations. Thesis 7.4: potential pairs, unambiguous collinear bundles, their combinations, expected
@@ -67,31 +49,6 @@ public:
     }
 
 private:
-    struct NumberedSegments {
-        Segments segments;
-        std::vector<int> numbers; // of the caller
-
-        void clear() {
-            segments.clear();
-            numbers.clear();
-        }
-        void take(const LineSegment2D<double> &s, int number) {
-            if (s.isFinite() && s.direction().squaredNorm() > 0.5) {
-                segments.push_back(s);
-                numbers.push_back(number);
-            }
-        }
-    };
-
-    bool settingsAreGood() const {
-        const SearchSettings &s = settings;
-        for (double value : {s.permitted.dx, s.permitted.dy, s.permitted.dalpha, s.reliability, s.ambiguity,
-                             s.stiffness.alpha, s.stiffness.xy, s.discrepancy, s.discrepancyShare,
-                             s.sharedView, s.matchedShare})
-            if (!(value >= 0) || !std::isfinite(value))
-                return false;
-        return s.maxSolutions > 0 && s.maxPairs > 0 && s.maxCompared > 0 && s.maxCombinations > 0;
-    }
     bool start(const Segments &moving, const Transformation2D &expected) {
         spare_.insert(spare_.end(), std::make_move_iterator(result_.solutions.begin()),
                       std::make_move_iterator(result_.solutions.end()));
@@ -100,7 +57,7 @@ private:
         result_.potentialPairs = result_.bundles = result_.buckets = result_.combinations = 0;
         fixed_.clear();
         moving_.clear();
-        if (!settingsAreGood() || !expected.isFinite())
+        if (!settings.isGood() || !expected.isFinite())
             return false;
         for (std::size_t i = 0; i < moving.size(); ++i)
             moving_.take(moving[i], static_cast<int>(i));
@@ -129,7 +86,9 @@ private:
             return SearchOutcome::NothingMoving;
         if (fixed_.segments.empty())
             return SearchOutcome::NothingFixed;
-        if (!collectPairs())
+        const bool isWithinBounds = collect_(fixed_.segments, moving_.segments, settings, pairs_);
+        result_.potentialPairs = pairs_.size();
+        if (!isWithinBounds)
             return SearchOutcome::TooManyPairs;
         if (pairs_.empty())
             return SearchOutcome::NoPotentialPair;
@@ -149,31 +108,6 @@ private:
                : result_.buckets < 2     ? SearchOutcome::OneDirection
                                          : SearchOutcome::NoCombination;
     }
-    // False where a bound ended it.
-    bool collectPairs() {
-        pairs_.clear();
-        const double cosine = std::cos(std::min(pi, settings.permitted.dalpha)) - 1e-9;
-        lines_.build(fixed_.segments, std::hypot(settings.permitted.dx, settings.permitted.dy));
-        std::size_t compared = 0;
-        const auto isWithinBounds = [&] {
-            return compared <= settings.maxCompared && pairs_.size() <= settings.maxPairs;
-        };
-        for (std::size_t m = 0; m < moving_.segments.size() && isWithinBounds(); ++m) {
-            const LineSegment2D<double> &moving = moving_.segments[m];
-            lines_.query(moving, [&](int f) {
-                ++compared;
-                const LineSegment2D<double> &fixed = fixed_.segments[static_cast<std::size_t>(f)];
-                if (fixed.direction().dot(moving.direction()) >= cosine && // most end here
-                    mayCorrespond(fixed, moving, settings.permitted))
-                    pairs_.emplace_back(CorrespondencePair{f, static_cast<int>(m)}, fixed, moving,
-                                        settings.stiffness);
-                return isWithinBounds();
-            });
-        }
-        result_.potentialPairs = pairs_.size();
-        return isWithinBounds();
-    }
-
     // Makes a solution of the selected pairs and the transformation that fits them.
     void judge(const Transformation2D &t) {
         if (!t.isFinite() || select_.pairs().size() < 2)
@@ -201,12 +135,12 @@ private:
             return Fault::Ambiguity;
         if (!(s.matchedShare >= settings.matchedShare))
             return Fault::MatchedShare;
-        if (!(s.view.angle > 0 && s.view.angle >= settings.sharedView * view_.observedAngle()))
+        if (!settings.isEvidence(s.view, view_.observedAngle()))
             return Fault::NoEvidence;
         if (!(s.view.discrepancy <=
               std::max(settings.discrepancy, settings.discrepancyShare * s.view.common)))
             return Fault::Discrepancy;
-        return isPermitted(t) ? Fault::None : Fault::NotPermitted;
+        return settings.permitted.holds(t) ? Fault::None : Fault::NotPermitted;
     }
     // What the pairs themselves tell.
     void measure(Solution &s, const Transformation2D &t) {
@@ -230,10 +164,6 @@ private:
         }
         s.matchedShare = matched / all;
     }
-    bool isPermitted(const Transformation2D &t) const {
-        return std::abs(t.x()) <= settings.permitted.dx && std::abs(t.y()) <= settings.permitted.dy &&
-               std::abs(t.alpha()) <= settings.permitted.dalpha;
-    }
     // One of the last call, for the memory of its pairs.
     Solution emptySolution() {
         Solution s;
@@ -247,7 +177,7 @@ private:
 
     Transformation2D expected_, toLocal_;
     NumberedSegments fixed_, moving_; // in the expected sensor frame
-    NearLines lines_;
+    PairCollector collect_;
     std::vector<PotentialPair> pairs_;
     CollinearBundles bundle_;
     BundleBuckets buckets_;

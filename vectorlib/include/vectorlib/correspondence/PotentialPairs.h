@@ -13,6 +13,10 @@ struct PermittedError {
     double dx = 1.2;
     double dy = 1.2;
     double dalpha = 1.26;
+
+    bool holds(const Transformation2D &t) const {
+        return std::abs(t.x()) <= dx && std::abs(t.y()) <= dy && std::abs(t.alpha()) <= dalpha;
+    }
 };
 
 /// Whether some transformation of the permitted set, centred at the identity, brings `moving` onto the line

@@ -1,0 +1,107 @@
+#pragma once
+
+#include "vectorlib/correspondence/PotentialPair.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace vectorlib {
+
+/// Pairs with nearly parallel lines that agree on the rotation and on the shift across the lines; together
+/// they leave the shift along them open.
+struct PublishedBundle {
+    LineSegmentRegistration sums;
+    std::vector<int> pairs; ///< numbers of potential pairs
+    std::size_t bucket = 0;
+    Vector2D<double> normal;        ///< of its first pair
+    double alpha = 0;               ///< of its first pair; radians
+    double turns = 0, turns2 = 0;   ///< weighted sums of rotations beside that, and of their squares
+    double shifts = 0, shifts2 = 0; ///< the same of shifts along the normal
+
+    explicit PublishedBundle(const PotentialPair &first)
+        : normal(first.normal)
+        , alpha(first.alpha) {
+        sums.stiffness = first.sums.stiffness;
+    }
+    void add(const PotentialPair &pair) {
+        const double turn = wrapAngle(pair.alpha - alpha);
+        const double shift = (pair.normal.dot(normal) < 0 ? -1 : 1) * pair.shift; // facing walls
+        sums.add(pair.sums);
+        turns += pair.length * turn;
+        turns2 += pair.length * turn * turn;
+        shifts += pair.length * shift;
+        shifts2 += pair.length * shift * shift;
+    }
+    double length() const { return sums.weight(); } ///< of the shorter segments of its pairs; metres
+    /// The sum (7.44) over the pairs where the lines are parallel: of rotation and of shift across; m^2.
+    double ambiguity() const {
+        const double w = sums.weight();
+        return sums.stiffness.alpha * std::max(0.0, turns2 - turns * turns / w) +
+               sums.stiffness.xy * std::max(0.0, shifts2 - shifts * shifts / w);
+    }
+};
+
+/// Bundles and buckets by the rules as published, thesis 7.4.1; CollinearBundles and BundleBuckets, which
+/// CorrespondenceFinder uses, mend them. A pair joins the first bundle that with it keeps both thresholds,
+/// else it founds one. A bundle lies in the first bucket whose bundles it leaves unreliable, each of them.
+///
+/// Where the text leaves it open: pairs come by static, then dynamic segment; a pair weighs as many as its
+/// shorter segment has metres (registration paper 4); and since a bundle can be shifted along its lines, its
+/// ambiguity is that across them. At the optimum (7.26) lines that are nearly parallel meet far away, where
+/// they cross: an ambiguity of 0, whatever lies between them. For reports and comparisons: allocates.
+class PublishedBundles {
+public:
+    double reliability = 0.10; ///< most of a bundle
+    double ambiguity = 0.0025; ///< most of a bundle; m^2
+
+    const std::vector<PublishedBundle> &operator()(const std::vector<PotentialPair> &pairs) {
+        bundles_.clear();
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            place(pairs[i], static_cast<int>(i));
+        buckets_.clear();
+        for (std::size_t i = 0; i < bundles_.size(); ++i)
+            putIntoBucket(i);
+        return bundles_;
+    }
+    const std::vector<PublishedBundle> &bundles() const { return bundles_; }
+    /// The numbers of the bundles of each bucket.
+    const std::vector<std::vector<std::size_t>> &buckets() const { return buckets_; }
+
+private:
+    void place(const PotentialPair &pair, int number) {
+        for (PublishedBundle &bundle : bundles_) {
+            PublishedBundle with = bundle;
+            with.add(pair);
+            if (with.sums.reliability() <= reliability && with.ambiguity() <= ambiguity) {
+                bundle = std::move(with);
+                bundle.pairs.push_back(number);
+                return;
+            }
+        }
+        bundles_.emplace_back(pair);
+        bundles_.back().add(pair);
+        bundles_.back().pairs.push_back(number);
+    }
+    bool collide(std::size_t a, std::size_t b) const {
+        LineSegmentRegistration joint = bundles_[a].sums;
+        joint.add(bundles_[b].sums);
+        return joint.reliability() <= reliability;
+    }
+    void putIntoBucket(std::size_t bundle) {
+        const auto fits = [&](const std::vector<std::size_t> &bucket) {
+            return std::all_of(bucket.begin(), bucket.end(),
+                               [&](std::size_t other) { return collide(bundle, other); });
+        };
+        const auto found = std::find_if(buckets_.begin(), buckets_.end(), fits);
+        bundles_[bundle].bucket = static_cast<std::size_t>(found - buckets_.begin());
+        if (found == buckets_.end())
+            buckets_.push_back({bundle});
+        else
+            found->push_back(bundle);
+    }
+
+    std::vector<PublishedBundle> bundles_;
+    std::vector<std::vector<std::size_t>> buckets_;
+};
+
+} // namespace vectorlib
