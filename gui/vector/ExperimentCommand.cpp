@@ -55,6 +55,8 @@ constexpr Experiment experiments[] = {
     {"criterion", "figures 7.3 to 7.6: the criterion of two segments", &ExperimentCommand::criterion, ""},
     {"criterion-time", "figures 7.7 to 7.9: its time, pair by pair and from sums",
      &ExperimentCommand::criterionTime, "--seed"},
+    {"potential-pairs", "figures 7.16 to 7.20: potential pairs by accuracy, bundles, discrepancy",
+     &ExperimentCommand::potentialPairs, "--worlds --runs --seed"},
     {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy,
      ofWorlds},
     {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion, ofWorlds},

@@ -17,8 +17,8 @@
 namespace hermes::vector {
 
 /// hermes-vector experiment: its options, and a function for each experiment, in ExperimentScenes.cpp,
-/// ExperimentRegistration.cpp, ExperimentMatches.cpp and ExperimentRelations.cpp. Each writes its table to
-/// csv and opens what else it leaves.
+/// ExperimentSearch.cpp, ExperimentRegistration.cpp, ExperimentMatches.cpp and ExperimentRelations.cpp. Each
+/// writes its table to csv and opens what else it leaves.
 struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
@@ -49,6 +49,7 @@ struct ExperimentCommand {
     void ofLog(OutputSet &files, std::ostream &csv) const;
     void criterion(OutputSet &files, std::ostream &csv) const;
     void criterionTime(OutputSet &files, std::ostream &csv) const;
+    void potentialPairs(OutputSet &files, std::ostream &csv) const;
 
     void accuracy(OutputSet &files, std::ostream &csv) const;
     void dispersion(OutputSet &files, std::ostream &csv) const;

@@ -21,6 +21,7 @@ private Q_SLOTS:
     void polygonsAreMeasuredByVertices();
     void criterionLooksAsInItsFigures();
     void sumsArePaidBackByManyTransformations();
+    void accuracyKeepsPotentialPairsFew();
     void errorFallsWithPointsAndNoise();
     void weightingHelpsMostAmongPillars();
     void weightsNarrowTheScatter();
@@ -169,6 +170,32 @@ void TestExperiments::sumsArePaidBackByManyTransformations() {
         QVERIFY(speedUp > 0);
         if (row["pairs"] == "100" && row["transformations"] == "1000")
             QVERIFY2(speedUp > 10, row["speed_up"].constData());
+    }
+}
+
+// Thesis figures 7.16 to 7.20: five bundles in one bucket, three in the other, 15 combinations.
+void TestExperiments::accuracyKeepsPotentialPairsFew() {
+    QTemporaryDir folder;
+    const QString base = folder.filePath("potential-pairs");
+    QCOMPARE(run({"potential-pairs", "--runs", "1", "--out", folder.path()}), 0);
+    const auto text = [&](const QString &name) { return lines(base + name).join('\n'); };
+    QVERIFY(text("-bucket-1.svg").contains("bucket 1 of 2 with 5 bundles; 15 combinations in all"));
+    QVERIFY(text("-bucket-2.svg").contains("bucket 2 of 2 with 3 bundles; 15 combinations in all"));
+    for (const char *name : {"-scans.svg", "-pairs-30cm.svg", "-pairs-70cm.svg", "-pairs-120cm.svg",
+                             "-expected-view.svg", "-correct.svg", "-wrong.svg"})
+        QVERIFY2(text(name).endsWith("</svg>") && !text(name).contains("nan"), name);
+    QVERIFY(text("-figures.tex").contains("Figure 7.20") && text("-figures.tex").endsWith("\\end{document}"));
+    QMap<QByteArray, QVector<double>> pairs;
+    for (const auto &row : table(base + ".csv")) {
+        pairs[row["scene"]].append(row["potential_pairs"].toDouble());
+        QVERIFY(row["true_pairs"].toDouble() <= row["potential_pairs"].toDouble());
+        if (row["accuracy_m"] == "0.05" && row["scene"] != "quadratic") // whose first steps are 1, 4 and 9 cm
+            QCOMPARE(row["true_pairs"], row["potential_pairs"]);
+    }
+    QCOMPARE(pairs.size(), 3);
+    for (const QVector<double> &curve : pairs) {
+        QCOMPARE(curve.size(), 12);
+        QVERIFY(curve.last() > 2.5 * curve.first());
     }
 }
 
@@ -340,8 +367,9 @@ void TestExperiments::latexCompiles() {
     QCOMPARE(run({"polygons", "--runs", "1", "--out", folder.path()}), 0);
     QCOMPARE(run({"log", "--runs", "1", "--log", log, "--out", folder.path()}), 0);
     QCOMPARE(run({"laboratory", "--log", log, "--out", folder.path()}), 0);
+    QCOMPARE(run({"potential-pairs", "--runs", "1", "--out", folder.path()}), 0);
     const QStringList documents = QDir(folder.path()).entryList({"*.tex"});
-    QCOMPARE(documents.size(), 7); // semicircle has three
+    QCOMPARE(documents.size(), 9); // semicircle has three, potential-pairs two
     for (const QString &document : documents) {
         QProcess latex;
         latex.setWorkingDirectory(folder.path());

@@ -122,44 +122,45 @@ void Drawing::writeTikz(std::ostream &out, double width, double height) const {
     out << "\\end{tikzpicture}";
 }
 
-void defineColours(std::ostream &out, const std::vector<Ink> &inks) {
+void defineColours(std::ostream &out, const std::vector<const Ink *> &inks) {
     out << "\\definecolor{grid}{HTML}{E3E7EE}\n";
-    for (const Ink &ink : inks) {
-        std::string hex = ink.colour.substr(1);
+    for (const Ink *ink : inks) {
+        std::string hex = ink->colour.substr(1);
         std::transform(hex.begin(), hex.end(), hex.begin(),
                        [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-        out << "\\definecolor{" << ink.name << "}{HTML}{" << hex << "}\n";
+        out << "\\definecolor{" << ink->name << "}{HTML}{" << hex << "}\n";
     }
 }
 
-void writeTikzLegend(std::ostream &out, const std::vector<Ink> &inks) {
-    for (const Ink &ink : inks) {
+void writeTikzLegend(std::ostream &out, const std::vector<const Ink *> &inks) {
+    for (const Ink *ink : inks) {
         out << "\\mbox{\\tikz[baseline=-0.6ex]";
-        if (ink.kind == Ink::Kind::Area)
-            out << "\\fill[" << ink.name << "] (0,-0.12) rectangle (0.6,0.12);";
-        else if (ink.kind == Ink::Kind::Dots)
-            out << "\\fill[" << ink.name << "] (0,0) circle (1pt) (0.2,0) circle (1pt) (0.4,0) circle (1pt);";
+        if (ink->kind == Ink::Kind::Area)
+            out << "\\fill[" << ink->name << "] (0,-0.12) rectangle (0.6,0.12);";
+        else if (ink->kind == Ink::Kind::Dots)
+            out << "\\fill[" << ink->name
+                << "] (0,0) circle (1pt) (0.2,0) circle (1pt) (0.4,0) circle (1pt);";
         else
-            out << "\\draw[" << ink.name << ", line width=" << Fixed{std::max(0.5, ink.width / 2), 2} << "pt"
-                << (ink.dashed ? ", dashed" : "") << "] (0,0)--(0.6,0);";
-        out << "~" << latexText(ink.label) << "}\\quad\n";
+            out << "\\draw[" << ink->name << ", line width=" << Fixed{std::max(0.5, ink->width / 2), 2}
+                << "pt" << (ink->dashed ? ", dashed" : "") << "] (0,0)--(0.6,0);";
+        out << "~" << latexText(ink->label) << "}\\quad\n";
     }
 }
 
-void writeSvgLegend(std::ostream &out, const std::vector<Ink> &inks, double x, double y) {
-    for (const Ink &ink : inks) {
-        if (ink.kind == Ink::Kind::Area)
-            out << "<rect fill=\"" << ink.colour << "\" width=\"26\" height=\"10\" x=\"" << Fixed{x, 1}
+void writeSvgLegend(std::ostream &out, const std::vector<const Ink *> &inks, double x, double y) {
+    for (const Ink *ink : inks) {
+        if (ink->kind == Ink::Kind::Area)
+            out << "<rect fill=\"" << ink->colour << "\" width=\"26\" height=\"10\" x=\"" << Fixed{x, 1}
                 << "\" y=\"" << Fixed{y - 9, 1} << "\"/>";
         else
-            out << "<path fill=\"none\" stroke-linecap=\"round\" stroke=\"" << ink.colour
-                << "\" stroke-width=\"" << Fixed{std::max(2.0, ink.width), 1} << '"'
-                << (ink.dashed ? " stroke-dasharray=\"4 3\"" : "") << " d=\"M" << Fixed{x, 1} << ' '
-                << Fixed{y - 4, 1} << (ink.kind == Ink::Kind::Dots ? "h0m8 0h0m8 0h0m8 0h0" : "h26")
+            out << "<path fill=\"none\" stroke-linecap=\"round\" stroke=\"" << ink->colour
+                << "\" stroke-width=\"" << Fixed{std::max(2.0, ink->width), 1} << '"'
+                << (ink->dashed ? " stroke-dasharray=\"4 3\"" : "") << " d=\"M" << Fixed{x, 1} << ' '
+                << Fixed{y - 4, 1} << (ink->kind == Ink::Kind::Dots ? "h0m8 0h0m8 0h0m8 0h0" : "h26")
                 << "\"/>";
         out << "<text x=\"" << Fixed{x + 34, 1} << "\" y=\"" << Fixed{y, 1} << "\">"
-            << vectorlib::xmlText(ink.label) << "</text>\n";
-        x += 60 + 6.2 * static_cast<double>(ink.label.size());
+            << vectorlib::xmlText(ink->label) << "</text>\n";
+        x += 60 + 6.2 * static_cast<double>(ink->label.size());
     }
 }
 

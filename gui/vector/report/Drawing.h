@@ -52,10 +52,10 @@ private:
 };
 
 /// The colours of the inks for the preamble of a LaTeX document.
-void defineColours(std::ostream &out, const std::vector<Ink> &inks);
+void defineColours(std::ostream &out, const std::vector<const Ink *> &inks);
 /// A line or two that tell what the inks mean.
-void writeTikzLegend(std::ostream &out, const std::vector<Ink> &inks);
-void writeSvgLegend(std::ostream &out, const std::vector<Ink> &inks, double x, double y);
+void writeTikzLegend(std::ostream &out, const std::vector<const Ink *> &inks);
+void writeSvgLegend(std::ostream &out, const std::vector<const Ink *> &inks, double x, double y);
 
 /// Text as it must be written in LaTeX.
 std::string latexText(const std::string &text);

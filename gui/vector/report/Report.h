@@ -82,9 +82,9 @@ void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSetting
                 const CaseReports &report);
 
 /// The inks of the pictures, in the order of the legend.
-std::vector<Ink> caseInks(const CaseReport &report);
-std::vector<Ink> overallInks();
-std::vector<Ink> allInks();
+std::vector<const Ink *> caseInks();
+std::vector<const Ink *> overallInks();
+std::vector<const Ink *> allInks();
 /// Both scans as they were taken, each from where its sensor stood.
 Drawing drawScans(const CaseReport &report);
 /// A solution: static scan, registered scan, correspondences, common and discrepancy areas.

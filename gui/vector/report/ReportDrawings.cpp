@@ -6,7 +6,7 @@ using Point = vectorlib::Vector2D<double>;
 
 namespace {
 
-constexpr std::size_t mostDots = 500; // of a scan in a picture
+constexpr std::size_t mostDots = 250; // of a scan in a picture
 
 const Ink common{Ink::Kind::Area, "commonarea", "#b7d9c0", 0, "Common valid area"};
 const Ink difference{Ink::Kind::Area, "discrepancyarea", "#f2a65a", 0, "Discrepancy area"};
@@ -29,19 +29,16 @@ std::vector<Point> thinned(const std::vector<vectorlib::Vector2D<float>> &points
 
 } // namespace
 
-std::vector<Ink> caseInks(const CaseReport &report) {
-    std::vector<Ink> inks = {still, registered, dots, link, common, difference};
-    inks[0].label += " (#" + std::to_string(report.number) + ")";
-    inks[1].label += " (#" + std::to_string(report.number + 1) + ")";
-    return inks;
+std::vector<const Ink *> caseInks() {
+    return {&still, &registered, &dots, &link, &common, &difference};
 }
 
-std::vector<Ink> overallInks() {
-    return {mapEdge, robot, path};
+std::vector<const Ink *> overallInks() {
+    return {&mapEdge, &robot, &path};
 }
 
-std::vector<Ink> allInks() {
-    return {still, registered, dots, link, common, difference, mapEdge, robot, path};
+std::vector<const Ink *> allInks() {
+    return {&still, &registered, &dots, &link, &common, &difference, &mapEdge, &robot, &path};
 }
 
 Drawing drawScans(const CaseReport &report) {

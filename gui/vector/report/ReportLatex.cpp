@@ -52,7 +52,7 @@ void writeFacts(std::ostream &out, const std::string &title, const std::vector<F
 
 /// Facts to the left, a picture to the right, description and legend below.
 void writeHead(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
-               const CaseReport *report, const Drawing &picture, const std::vector<Ink> &inks) {
+               const CaseReport *report, const Drawing &picture, const std::vector<const Ink *> &inks) {
     out << "\\begin{minipage}[t]{0.44\\textwidth}\\vspace{0pt}\n";
     writeFacts(out, "Dataset", datasetFacts(world.world, settings));
     if (report) {
@@ -82,7 +82,7 @@ void writeSolution(std::ostream &out, const CaseReport &report, std::size_t numb
 void writeCase(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
                const CaseReport &report) {
     writeTitle(out, world, "Case");
-    writeHead(out, world, settings, &report, drawScans(report), caseInks(report));
+    writeHead(out, world, settings, &report, drawScans(report), caseInks());
     out << "\\textbf{Solutions:}\\quad " << latexText(searchText(world, report)) << "\\par\\bigskip\n";
     for (std::size_t i = 0; i < report.result.solutions.size(); ++i)
         writeSolution(out, report, i);

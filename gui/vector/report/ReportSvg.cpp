@@ -93,7 +93,7 @@ void writeCase(std::ostream &out, const ReportWorld &world, const ReportSettings
     writeTitle(out, top, "Correspondence search, case report: " + world.world.name);
     drawScans(report).writeSvg(out, 480, top + 56, 700, 380);
     double y = writeHead(out, world, settings, &report, top, top + 436);
-    writeSvgLegend(out, caseInks(report), pageMargin, y);
+    writeSvgLegend(out, caseInks(), pageMargin, y);
     writeLines(out, pageMargin, y + 26, searchText(world, report), 200);
     for (std::size_t i = 0; i < report.result.solutions.size(); ++i)
         writeSolution(out, report, i, pageMargin + cellWidth * static_cast<double>(i % columns),
