@@ -103,8 +103,8 @@ void addReportCommand(CLI::App &app) {
     sub->add_flag("--all", command->all, "The case reports of all consecutive scans");
     sub->add_flag(
         "--all-combinations", command->everyCombination,
-        "Every reliable, unambiguous combination by the published rules, accepted by its discrepancy "
-        "alone");
+        "Every reliable, unambiguous combination by the published rules; accepted are permitted ones "
+        "of little discrepancy");
     sub->add_option("--most", command->most, "With --all-combinations: the N longest of a case (100)")
         ->transform(wholeNumber(1, 10000))
         ->type_name("N");

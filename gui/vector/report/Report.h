@@ -12,7 +12,7 @@ struct ReportSettings {
     ScanSettings scan;
     vectorlib::SearchSettings search;
     /// PublishedSearch instead of CorrespondenceFinder: every reliable, unambiguous combination of bundles,
-    /// accepted by its discrepancy alone.
+    /// accepted where it is permitted and of little discrepancy.
     bool everyCombination = false;
     std::size_t mostCombinations = 100; ///< shown of a case
 };
