@@ -63,7 +63,7 @@ Twist2D Drivetrain::advance(double seconds) {
     for (RoboClawEmulator &controller : controllers_) {
         controller.advance(seconds, battery_.voltage());
         for (const int motor : {0, 1}) // the bridge takes from the battery what the duty lets through
-            current += controller.channel(motor).current() * std::abs(controller.channel(motor).duty());
+            current += controller.channel(motor).current() * controller.channel(motor).duty();
     }
     battery_.draw(current, seconds);
     return options_.base.twistOf(gripping(seconds));

@@ -17,6 +17,7 @@ private Q_SLOTS:
     void silenceStopsTheMotors();
     void encodersWrap();
     void batteryDrains();
+    void drivingBackwardDrainsItToo();
     void lowBatteryCutsTheMotors();
     void blockedWheelDrawsCurrent();
     void brokenEncoderStandsStill();
@@ -246,6 +247,24 @@ void TestEmulatedMotors::batteryDrains() {
     const auto after = RoboClawClient::integer(client.read(0x80, 24), 0, 2);
     QVERIFY2(after < before - 10, qPrintable(QString("%1 %2").arg(before).arg(after)));
     QVERIFY(drivetrain.battery().charge() < 0.7);
+}
+
+void TestEmulatedMotors::drivingBackwardDrainsItToo() {
+    const auto used = [](int speed) {
+        Drivetrain drivetrain;
+        RoboClawClient client(drivetrain);
+        setQpps(client, 150000);
+        for (int i = 0; i < 60; ++i) { // their time-out is not to stop them
+            client.speeds(0x80, speed, speed, 100000);
+            client.speeds(0x81, speed, speed, 100000);
+            pass(drivetrain, 0.5);
+        }
+        return 1 - drivetrain.battery().charge();
+    };
+    const double standing = used(0), forward = used(60000), backward = used(-60000);
+    QVERIFY2(forward > 2 * standing, qPrintable(QString("%1 %2").arg(forward).arg(standing)));
+    QVERIFY2(std::abs(backward - forward) < 0.05 * forward,
+             qPrintable(QString("%1 %2").arg(backward).arg(forward)));
 }
 
 void TestEmulatedMotors::lowBatteryCutsTheMotors() {
