@@ -57,16 +57,14 @@ PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
 }
 
 std::optional<BatteryReading> batteryOf(const Telemetry &t) {
-    std::optional<BatteryReading> reading;
+    BatteryReading reading;
     for (const Telemetry::Controller &controller : t.controllers) {
         const ControllerReadings &r = controller.readings;
-        if (!controller.ready || !r.complete)
-            continue;
-        if (!reading)
-            reading.emplace();
-        reading->voltage = std::max(reading->voltage, r.battery_v); // less is lost on the way to it
-        for (std::size_t motor = 0; motor < 2; ++motor) // a bridge takes what its duty lets through
-            reading->motors_a += std::abs(r.current_a[motor] * r.duty[motor]);
+        if (!controller.ready || !r.complete) // what its motors draw is not known
+            return std::nullopt;
+        reading.voltage = std::max(reading.voltage, r.battery_v); // less is lost on the way to it
+        for (std::size_t motor = 0; motor < 2; ++motor)           // a bridge takes what its duty lets through
+            reading.motors_a += std::abs(r.current_a[motor] * r.duty[motor]);
     }
     return reading;
 }

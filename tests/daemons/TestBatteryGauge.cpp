@@ -1,4 +1,5 @@
 #include "daemons/motorcontrol/BatteryGauge.h"
+#include "daemons/motorcontrol/MotorMessages.h"
 #include "daemons/simulator/Battery.h"
 
 #include <QtTest>
@@ -17,6 +18,7 @@ private Q_SLOTS:
     void nothingIsKnownBeforeARest();
     void whatIsMissingIsNamed_data();
     void whatIsMissingIsNamed();
+    void controllersShareOneBattery();
     void tellsTheTimeLeft();
     void aRestCorrectsTheCount();
     void anotherBatteryIsNoticed();
@@ -80,6 +82,21 @@ void TestBatteryGauge::whatIsMissingIsNamed() {
     QCOMPARE(state().reason, QString("no controller tells voltage and current"));
     pass(1, 24.4, 0);
     QVERIFY(state().charge); // still known
+}
+
+void TestBatteryGauge::controllersShareOneBattery() {
+    Telemetry told;
+    for (Telemetry::Controller &controller : told.controllers) {
+        controller.ready = controller.readings.complete = true;
+        controller.readings.battery_v = 24;
+        controller.readings.current_a = {4, -4};
+        controller.readings.duty = {0.5, -0.5};
+    }
+    told.controllers[1].readings.battery_v = 24.2;
+    const auto reading = batteryOf(told);
+    QVERIFY(reading && reading->voltage == 24.2 && reading->motors_a == 8);
+    told.controllers[0].ready = false; // half of the current is no guess for all of it
+    QVERIFY(!batteryOf(told));
 }
 
 void TestBatteryGauge::tellsTheTimeLeft() {
