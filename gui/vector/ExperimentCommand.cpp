@@ -57,6 +57,8 @@ constexpr Experiment experiments[] = {
      &ExperimentCommand::criterionTime, "--seed"},
     {"potential-pairs", "figures 7.16 to 7.20: potential pairs by accuracy, bundles, discrepancy",
      &ExperimentCommand::potentialPairs, "--worlds --runs --seed"},
+    {"hausdorff-criteria", "thesis 7.1.4: other criteria as in figures 7.3 to 7.6, and what each holds",
+     &ExperimentCommand::hausdorffCriteria, "--seed"},
     {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy,
      ofWorlds},
     {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion, ofWorlds},

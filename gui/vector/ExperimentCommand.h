@@ -50,6 +50,7 @@ struct ExperimentCommand {
     void criterion(OutputSet &files, std::ostream &csv) const;
     void criterionTime(OutputSet &files, std::ostream &csv) const;
     void potentialPairs(OutputSet &files, std::ostream &csv) const;
+    void hausdorffCriteria(OutputSet &files, std::ostream &csv) const;
 
     void accuracy(OutputSet &files, std::ostream &csv) const;
     void dispersion(OutputSet &files, std::ostream &csv) const;

@@ -63,9 +63,23 @@ void ExperimentCommand::ofLog(OutputSet &files, std::ostream &csv) const {
 }
 
 void ExperimentCommand::criterion(OutputSet &files, std::ostream &csv) const {
-    const std::vector<Surface> surfaces = criterionSurfaces();
-    writeCsv(csv, surfaces);
+    const std::vector<Surface> surfaces = criterionSurfaces(segmentCriteria().front());
+    writeCsv(csv, surfaces, "criterion_m4");
     draw(files, {{}, surfaces, {}});
+}
+
+void ExperimentCommand::hausdorffCriteria(OutputSet &files, std::ostream &csv) const {
+    std::vector<Surface> all;
+    for (const SegmentCriterion &criterion : segmentCriteria())
+        for (Surface &surface : criterionSurfaces(criterion)) {
+            surface.name.insert(0, std::string(criterion.name) + '-');
+            all.push_back(std::move(surface));
+        }
+    writeCsv(csv, all, "criterion");
+    constexpr int trials = 1000;
+    const std::vector<CriterionProperty> properties = criterionProperties(options.seed, trials);
+    tell(open(files, ".json"), summaryOf(properties));
+    draw(files, {{}, all, {tableOf(properties)}});
 }
 
 void ExperimentCommand::criterionTime(OutputSet &files, std::ostream &csv) const {

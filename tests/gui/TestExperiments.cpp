@@ -1,3 +1,4 @@
+#include "gui/vector/experiment/CriterionProperties.h"
 #include "gui/vector/experiment/RelationScans.h"
 #include "gui/vector/experiment/Scene.h"
 
@@ -5,6 +6,8 @@
 #include <QStandardPaths>
 #include <QTemporaryDir>
 #include <QtTest>
+
+#include <random>
 
 using namespace hermes;
 using namespace hermes::vector;
@@ -20,6 +23,9 @@ private Q_SLOTS:
     void segmentationLeavesNinePanels();
     void polygonsAreMeasuredByVertices();
     void criterionLooksAsInItsFigures();
+    void otherCriteriaLackWhatTheAreaHolds_data();
+    void otherCriteriaLackWhatTheAreaHolds();
+    void hausdorffCriteriaAreDrawnAlike();
     void sumsArePaidBackByManyTransformations();
     void accuracyKeepsPotentialPairsFew();
     void errorFallsWithPointsAndNoise();
@@ -156,8 +162,53 @@ void TestExperiments::criterionLooksAsInItsFigures() {
             QVERIFY(std::abs(value - y * y) < 1e-12);
         }
     }
-    QCOMPARE(rows.keys(), QList<QByteArray>({"scale-shift", "scale-turn", "shift-turn", "turn-shift"}));
+    QCOMPARE(rows.keys(), QList<QByteArray>(
+                              {"scale-shift", "scale-turn", "scale-turn-small", "shift-turn", "turn-shift"}));
     QCOMPARE(rows["shift-turn"], 21 * 37);
+}
+
+void TestExperiments::otherCriteriaLackWhatTheAreaHolds_data() { // thesis 7.1.4
+    QTest::addColumn<QByteArray>("holders"); // a sign for each of segmentCriteria(): + always, - not
+    QTest::newRow("zero for any two segments on one line") << QByteArray("++-++");
+    QTest::newRow("above zero for all others") << QByteArray("+++-+");
+    QTest::newRow("sliding along the static line changes nothing") << QByteArray("+--+-");
+    QTest::newRow("moving both segments changes nothing") << QByteArray("+++++");
+    QTest::newRow("a shift aside, a turn and a length change it") << QByteArray("+----");
+    QTest::newRow("grows with the angle") << QByteArray("+++++");
+    QTest::newRow("grows with the length") << QByteArray("+----");
+    QTest::newRow("keeps its shape at small lengths") << QByteArray("+--++");
+    QTest::newRow("smooth, without conditions") << QByteArray("+----");
+    QTest::newRow("a set of pairs takes constant time, by sums") << QByteArray("+--+-");
+    QTest::newRow("the same when the two are exchanged") << QByteArray("-++++");
+}
+
+void TestExperiments::otherCriteriaLackWhatTheAreaHolds() {
+    QFETCH(QByteArray, holders);
+    const std::uint64_t seed = std::random_device()();
+    const auto properties = criterionProperties(seed, 200);
+    QCOMPARE(properties.size(), std::size_t(11));
+    for (const CriterionProperty &property : properties)
+        if (property.what == QTest::currentDataTag())
+            for (int i = 0; i < holders.size(); ++i)
+                QVERIFY2((property.shares[std::size_t(i)] == 1) == (holders[i] == '+'),
+                         qPrintable(QString("%1: %2, seed %3")
+                                        .arg(segmentCriteria()[std::size_t(i)].name)
+                                        .arg(property.shares[std::size_t(i)])
+                                        .arg(seed)));
+}
+
+void TestExperiments::hausdorffCriteriaAreDrawnAlike() {
+    QTemporaryDir folder;
+    QCOMPARE(run({"hausdorff-criteria", "--out", folder.path()}), 0);
+    QMap<QByteArray, int> rows;
+    for (const auto &row : table(folder.filePath("hausdorff-criteria.csv"))) {
+        ++rows[row["figure"]];
+        const double y = row["y"].toDouble(), value = row["criterion"].toDouble();
+        if (row["figure"] == "modified-shift-turn") // (7.3) knows the angle alone
+            QVERIFY(std::abs(value - std::abs(std::sin(y))) < 1e-9);
+    }
+    QCOMPARE(rows.size(), 5 * 5);
+    QVERIFY(lines(folder.filePath("hausdorff-criteria.tex")).last() == "\\end{document}");
 }
 
 void TestExperiments::sumsArePaidBackByManyTransformations() {

@@ -25,11 +25,12 @@ std::vector<double> steps(double first, double last, int count) {
 
 // The criterion of the fixed segment and moving(x, y) for all x and y of the grid.
 template <typename Moving>
-Surface surface(Surface s, Moving moving) {
-    s.zAxis = "criterion [m^4]";
+Surface surface(const SegmentCriterion &criterion, Surface s, Moving moving) {
+    s.zAxis = std::string("criterion [") + criterion.unit + ']';
+    s.title = std::string(criterion.title) + ": " + s.title;
     for (const double y : s.y)
         for (const double x : s.x)
-            s.z.push_back(vectorlib::areaCriterion(fixedSegment, moving(x, y)));
+            s.z.push_back(criterion.of(fixedSegment, moving(x, y)));
     return s;
 }
 
@@ -44,29 +45,37 @@ std::vector<vectorlib::SegmentPair> randomPairs(std::size_t count, std::mt19937_
 
 } // namespace
 
-std::vector<Surface> criterionSurfaces() {
+std::vector<Surface> criterionSurfaces(const SegmentCriterion &criterion) {
     const std::vector<double> shifts = steps(0, 2, 20), angles = steps(0, 2 * vectorlib::pi, 36),
-                              lengths = steps(0.01, 2, 20);
+                              lengths = steps(0.01, 2, 20), small = steps(0.001, 0.05, 20);
     const auto shifted = [](double x) { return Transformation2D(x, 0, 0); };
     const auto turned = [](double theta) { return Transformation2D(0, 0, theta); };
     const auto scaled = [](double length) { return Segment({0, 0}, {length, 0}); };
+    const auto shiftedAndTurned = [&](double x, double theta) {
+        return turned(theta) * (shifted(x) * fixedSegment);
+    };
+    const auto scaledAndTurned = [&](double l, double theta) { return turned(theta) * scaled(l); };
+    const auto turnedAndShifted = [&](double x, double theta) {
+        return shifted(x) * (turned(theta) * fixedSegment);
+    };
+    const auto scaledAndShifted = [&](double x, double l) {
+        return shifted(x) * (turned(vectorlib::pi / 4) * scaled(l));
+    };
     const std::string shift = "shift [m]", angle = "angle [rad]", length = "length [m]";
-    return {
-        surface({"shift-turn", "figure 7.3: shifted, then turned", shift, angle, "", shifts, angles, {}},
-                [&](double x, double theta) { return turned(theta) * (shifted(x) * fixedSegment); }),
-        surface({"scale-turn", "figure 7.4: scaled, then turned", length, angle, "", lengths, angles, {}},
-                [&](double l, double theta) { return turned(theta) * scaled(l); }),
-        surface({"turn-shift", "figure 7.5: turned, then shifted", shift, angle, "", shifts, angles, {}},
-                [&](double x, double theta) { return shifted(x) * (turned(theta) * fixedSegment); }),
-        surface({"scale-shift",
-                 "figure 7.6: scaled, turned by 45 degrees, then shifted",
-                 shift,
-                 length,
-                 "",
-                 shifts,
-                 lengths,
-                 {}},
-                [&](double x, double l) { return shifted(x) * (turned(vectorlib::pi / 4) * scaled(l)); })};
+    const auto of = [&](const char *name, const char *title, const std::string &x, const std::string &y,
+                        const std::vector<double> &xs, const std::vector<double> &ys, auto moving) {
+        return surface(criterion, {name, title, x, y, "", xs, ys, {}}, moving);
+    };
+    return {of("shift-turn", "shifted, then turned, as in figure 7.3", shift, angle, shifts, angles,
+               shiftedAndTurned),
+            of("scale-turn", "scaled, then turned, as in figure 7.4", length, angle, lengths, angles,
+               scaledAndTurned),
+            of("scale-turn-small", "small lengths, as in the sub-plot of 7.4", length, angle, small, angles,
+               scaledAndTurned),
+            of("turn-shift", "turned, then shifted, as in figure 7.5", shift, angle, shifts, angles,
+               turnedAndShifted),
+            of("scale-shift", "scaled, turned by 45 degrees, shifted, as in figure 7.6", shift, length,
+               shifts, lengths, scaledAndShifted)};
 }
 
 std::vector<CriterionTime> criterionTimes(const ExperimentOptions &options) {
@@ -105,9 +114,9 @@ std::vector<CriterionTime> criterionTimes(const ExperimentOptions &options) {
     return times;
 }
 
-void writeCsv(std::ostream &out, const std::vector<Surface> &surfaces) {
+void writeCsv(std::ostream &out, const std::vector<Surface> &surfaces, const std::string &value) {
     using vectorlib::Number;
-    out << "figure,x,y,criterion_m4\n";
+    out << "figure,x,y," << value << '\n';
     for (const Surface &s : surfaces)
         for (std::size_t i = 0; i < s.z.size(); ++i)
             out << s.name << ',' << Number(s.x[i % s.x.size()]) << ',' << Number(s.y[i / s.x.size()]) << ','

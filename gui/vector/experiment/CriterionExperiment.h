@@ -1,14 +1,15 @@
 #pragma once
 
+#include "gui/vector/experiment/CriterionProperties.h"
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
 namespace hermes::vector {
 
-/// Thesis figures 7.3 to 7.6: the area criterion of the segment from (0, 0) to (1, 0) m and a second one,
-/// m^4: shifted along it and then turned; scaled and turned; turned and then shifted; scaled, turned by 45
-/// degrees and shifted.
-std::vector<Surface> criterionSurfaces();
+/// Thesis figures 7.3 to 7.6: a criterion of the segment from (0, 0) to (1, 0) m and a second one: shifted
+/// along it and then turned; scaled and turned, also where it is short; turned and then shifted; scaled,
+/// turned by 45 degrees and shifted.
+std::vector<Surface> criterionSurfaces(const SegmentCriterion &criterion);
 
 /// How long the criterion takes for so many pairs and transformations; microseconds.
 struct CriterionTime {
@@ -23,7 +24,8 @@ struct CriterionTime {
 /// Thesis figures 7.7 to 7.9: 1 to 1,000 pairs by 1 to 1,000 transformations.
 std::vector<CriterionTime> criterionTimes(const ExperimentOptions &options);
 
-void writeCsv(std::ostream &out, const std::vector<Surface> &surfaces);
+/// `value` names the column of the criterion.
+void writeCsv(std::ostream &out, const std::vector<Surface> &surfaces, const std::string &value);
 void writeCsv(std::ostream &out, const std::vector<CriterionTime> &times);
 std::vector<Plot> plotsOf(const std::vector<CriterionTime> &times);
 

@@ -125,7 +125,7 @@ void writeGnuplot(std::ostream &out, const Plot &plot) {
 void writeGnuplot(std::ostream &out, const Surface &s) {
     out << "set terminal svg size 720,560 font 'sans-serif,13' background '#ffffff'\n"
         << "set title '" << s.title << "'\nset xlabel '" << s.xAxis << "'\nset ylabel '" << s.yAxis
-        << "'\nset zlabel '" << s.zAxis << "' rotate parallel\n"
+        << "'\nset zlabel '" << s.zAxis << "' norotate offset 6,7\n"
         << "set view 55,330\nset hidden3d\nset ticslevel 0\nunset key\n"
         << "splot '-' using 1:2:3 with lines lc rgb '#0072b2'\n";
     for (std::size_t i = 0; i < s.z.size(); ++i)

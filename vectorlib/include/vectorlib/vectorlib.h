@@ -12,6 +12,7 @@
 #include "vectorlib/relations/TypedSegmentExtractor.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/similarity/CriterionMinimizer.h"
+#include "vectorlib/similarity/HausdorffDistances.h"
 #include "vectorlib/similarity/NelderMeadFitter.h"
 #include "vectorlib/similarity/QuadrangleCriterion.h"
 #include "vectorlib/tls/LineCovariance.h"
