@@ -59,6 +59,10 @@ constexpr Experiment experiments[] = {
      &ExperimentCommand::potentialPairs, "--worlds --runs --seed"},
     {"hausdorff-criteria", "thesis 7.1.4: other criteria as in figures 7.3 to 7.6, and what each holds",
      &ExperimentCommand::hausdorffCriteria, "--seed"},
+    {"overview-steps", "overview figure 2: ten scans 60 cm apart, with a bad odometry",
+     &ExperimentCommand::overviewSteps, "--worlds --runs --seed"},
+    {"overview-loop", "overview figure 4: a corridor there and back, 46.71 m in 33 scans",
+     &ExperimentCommand::overviewLoop, "--worlds --runs --seed"},
     {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy,
      ofWorlds},
     {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion, ofWorlds},
@@ -176,8 +180,8 @@ void addExperimentCommand(CLI::App &app) {
         ->type_name("N")
         ->capture_default_str();
     sub->add_option("--worlds", command->worlds,
-                    "Folder of cutsquare.json, oblique.json, pillars.json, home.json, corner.json and "
-                    "quadratic.json instead "
+                    "Folder of cutsquare.json, oblique.json, pillars.json, home.json, corner.json, "
+                    "quadratic.json, laboratory.json and corridor.json instead "
                     "of those installed with the program")
         ->type_name("FOLDER");
     sub->add_option("--runs", command->options.runs,

@@ -2,6 +2,7 @@
 
 #include "gui/vector/InstalledWorlds.h"
 #include "gui/vector/Output.h"
+#include "gui/vector/experiment/OverviewExperiment.h"
 #include "gui/vector/experiment/PairsExperiment.h"
 #include "gui/vector/experiment/QualityExperiment.h"
 #include "gui/vector/experiment/RealScanExperiment.h"
@@ -17,8 +18,8 @@
 namespace hermes::vector {
 
 /// hermes-vector experiment: its options, and a function for each experiment, in ExperimentScenes.cpp,
-/// ExperimentSearch.cpp, ExperimentRegistration.cpp, ExperimentMatches.cpp and ExperimentRelations.cpp. Each
-/// writes its table to csv and opens what else it leaves.
+/// ExperimentSearch.cpp, ExperimentOverview.cpp, ExperimentRegistration.cpp, ExperimentMatches.cpp and
+/// ExperimentRelations.cpp. Each writes its table to csv and opens what else it leaves.
 struct ExperimentCommand {
     std::string name;
     std::string folder = ".";
@@ -51,6 +52,9 @@ struct ExperimentCommand {
     void criterionTime(OutputSet &files, std::ostream &csv) const;
     void potentialPairs(OutputSet &files, std::ostream &csv) const;
     void hausdorffCriteria(OutputSet &files, std::ostream &csv) const;
+
+    void overviewSteps(OutputSet &files, std::ostream &csv) const;
+    void overviewLoop(OutputSet &files, std::ostream &csv) const;
 
     void accuracy(OutputSet &files, std::ostream &csv) const;
     void dispersion(OutputSet &files, std::ostream &csv) const;
@@ -87,6 +91,8 @@ private:
     template <typename Result, typename Pose>
     void pairs(OutputSet &files, std::ostream &csv, const vectorlib::CarmenLog &read,
                const std::vector<Result> &results, Pose found) const;
+    void overview(OutputSet &files, std::ostream &csv, const World &world, const OdometryErrors &errors,
+                  const nlohmann::ordered_json &published) const;
     std::vector<PosedScan> homeScans(std::size_t count) const;
     void relation(OutputSet &files, std::ostream &csv, const std::vector<PosedScan> &scans, std::size_t rays,
                   double fieldOfView, const nlohmann::ordered_json &published) const;

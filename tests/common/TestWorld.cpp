@@ -149,6 +149,7 @@ void TestWorld::worldsCanBeDriven_data() {
     QTest::addColumn<double>("step");
     QTest::newRow("pillars") << "pillars" << 4 + 8 * 4 << 39 << 0.67;
     QTest::newRow("quadratic") << "quadratic" << 3 + 12 + 11 << 25 << 0.56;
+    QTest::newRow("laboratory") << "laboratory" << 96 << 10 << 0.6;
 }
 
 void TestWorld::worldsCanBeDriven() {

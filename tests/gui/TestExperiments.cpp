@@ -1,13 +1,10 @@
-#include "gui/vector/experiment/CriterionProperties.h"
 #include "gui/vector/experiment/RelationScans.h"
 #include "gui/vector/experiment/Scene.h"
+#include "tests/gui/ExperimentFiles.h"
 
-#include <QProcess>
 #include <QStandardPaths>
 #include <QTemporaryDir>
 #include <QtTest>
-
-#include <random>
 
 using namespace hermes;
 using namespace hermes::vector;
@@ -22,11 +19,6 @@ private Q_SLOTS:
     void sameSeedGivesTheSameLines();
     void segmentationLeavesNinePanels();
     void polygonsAreMeasuredByVertices();
-    void criterionLooksAsInItsFigures();
-    void otherCriteriaLackWhatTheAreaHolds_data();
-    void otherCriteriaLackWhatTheAreaHolds();
-    void hausdorffCriteriaAreDrawnAlike();
-    void sumsArePaidBackByManyTransformations();
     void accuracyKeepsPotentialPairsFew();
     void errorFallsWithPointsAndNoise();
     void weightingHelpsMostAmongPillars();
@@ -44,30 +36,7 @@ private Q_SLOTS:
     void unknownExperimentIsAUsageError();
 
 private:
-    int run(const QStringList &arguments) {
-        QProcess process;
-        process.start(qEnvironmentVariable("HERMES_BIN") + "/hermes-vector",
-                      QStringList("experiment") + arguments);
-        process.waitForFinished(60000);
-        error_ = process.readAllStandardError();
-        return process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1;
-    }
-    static QList<QByteArray> lines(const QString &path) {
-        QFile file(path);
-        return file.open(QIODevice::ReadOnly) ? file.readAll().trimmed().split('\n') : QList<QByteArray>();
-    }
-    /// The rows of a CSV file by the names of its columns.
-    static QVector<QMap<QByteArray, QByteArray>> table(const QString &path) {
-        QVector<QMap<QByteArray, QByteArray>> rows;
-        const QList<QByteArray> text = lines(path), names = text.value(0).split(',');
-        for (const QByteArray &line : text.mid(1)) {
-            const QList<QByteArray> fields = line.split(',');
-            rows.resize(rows.size() + 1);
-            for (int i = 0; i < names.size(); ++i)
-                rows.last()[names[i]] = fields.value(i);
-        }
-        return rows;
-    }
+    int run(const QStringList &arguments) { return runExperiment(arguments, &error_); }
     QByteArray error_;
 };
 
@@ -140,88 +109,6 @@ void TestExperiments::polygonsAreMeasuredByVertices() {
         QVERIFY2(fields[7].toDouble() > 0.97 && fields[8].toDouble() < 0.01, row.constData());
     }
     QCOMPARE(run({"log", "--out", folder.path(), "--force"}), 2);
-}
-
-void TestExperiments::criterionLooksAsInItsFigures() {
-    QTemporaryDir folder;
-    QCOMPARE(run({"criterion", "--out", folder.path()}), 0);
-    QVERIFY(lines(folder.filePath("criterion.tex")).last() == "\\end{document}");
-    QMap<QByteArray, int> rows;
-    QMap<double, double> byTurn, byLength; // the criterion where nothing is shifted
-    for (const auto &row : table(folder.filePath("criterion.csv"))) {
-        const double x = row["x"].toDouble(), y = row["y"].toDouble(), value = row["criterion_m4"].toDouble();
-        ++rows[row["figure"]];
-        if (row["figure"] == "shift-turn" && (y == 0 || std::abs(y - M_PI) < 1e-9))
-            QVERIFY(value < 1e-12); // on the line, however far
-        if (row["figure"] == "shift-turn" && std::abs(y - M_PI / 2) < 1e-9)
-            QVERIFY(std::abs(value - (1 + (1 + 2 * x) * (1 + 2 * x))) < 1e-9);
-        if (row["figure"] == "turn-shift") // a shift along the line changes nothing
-            QVERIFY(std::abs(value - (x == 0 ? byTurn[y] = value : byTurn[y])) < 1e-12);
-        if (row["figure"] == "scale-shift") { // nor here; by the square of the length
-            QVERIFY(std::abs(value - (x == 0 ? byLength[y] = value : byLength[y])) < 1e-12);
-            QVERIFY(std::abs(value - y * y) < 1e-12);
-        }
-    }
-    QCOMPARE(rows.keys(), QList<QByteArray>(
-                              {"scale-shift", "scale-turn", "scale-turn-small", "shift-turn", "turn-shift"}));
-    QCOMPARE(rows["shift-turn"], 21 * 37);
-}
-
-void TestExperiments::otherCriteriaLackWhatTheAreaHolds_data() { // thesis 7.1.4
-    QTest::addColumn<QByteArray>("holders"); // a sign for each of segmentCriteria(): + always, - not
-    QTest::newRow("zero for any two segments on one line") << QByteArray("++-++");
-    QTest::newRow("above zero for all others") << QByteArray("+++-+");
-    QTest::newRow("sliding along the static line changes nothing") << QByteArray("+--+-");
-    QTest::newRow("moving both segments changes nothing") << QByteArray("+++++");
-    QTest::newRow("a shift aside, a turn and a length change it") << QByteArray("+----");
-    QTest::newRow("grows with the angle") << QByteArray("+++++");
-    QTest::newRow("grows with the length") << QByteArray("+----");
-    QTest::newRow("keeps its shape at small lengths") << QByteArray("+--++");
-    QTest::newRow("smooth, without conditions") << QByteArray("+----");
-    QTest::newRow("a set of pairs takes constant time, by sums") << QByteArray("+--+-");
-    QTest::newRow("the same when the two are exchanged") << QByteArray("-++++");
-}
-
-void TestExperiments::otherCriteriaLackWhatTheAreaHolds() {
-    QFETCH(QByteArray, holders);
-    const std::uint64_t seed = std::random_device()();
-    const auto properties = criterionProperties(seed, 200);
-    QCOMPARE(properties.size(), std::size_t(11));
-    for (const CriterionProperty &property : properties)
-        if (property.what == QTest::currentDataTag())
-            for (int i = 0; i < holders.size(); ++i)
-                QVERIFY2((property.shares[std::size_t(i)] == 1) == (holders[i] == '+'),
-                         qPrintable(QString("%1: %2, seed %3")
-                                        .arg(segmentCriteria()[std::size_t(i)].name)
-                                        .arg(property.shares[std::size_t(i)])
-                                        .arg(seed)));
-}
-
-void TestExperiments::hausdorffCriteriaAreDrawnAlike() {
-    QTemporaryDir folder;
-    QCOMPARE(run({"hausdorff-criteria", "--out", folder.path()}), 0);
-    QMap<QByteArray, int> rows;
-    for (const auto &row : table(folder.filePath("hausdorff-criteria.csv"))) {
-        ++rows[row["figure"]];
-        const double y = row["y"].toDouble(), value = row["criterion"].toDouble();
-        if (row["figure"] == "modified-shift-turn") // (7.3) knows the angle alone
-            QVERIFY(std::abs(value - std::abs(std::sin(y))) < 1e-9);
-    }
-    QCOMPARE(rows.size(), 5 * 5);
-    QVERIFY(lines(folder.filePath("hausdorff-criteria.tex")).last() == "\\end{document}");
-}
-
-void TestExperiments::sumsArePaidBackByManyTransformations() {
-    QTemporaryDir folder;
-    QCOMPARE(run({"criterion-time", "--out", folder.path()}), 0);
-    const auto rows = table(folder.filePath("criterion-time.csv"));
-    QCOMPARE(rows.size(), 49);
-    for (const auto &row : rows) {
-        const double speedUp = row["speed_up"].toDouble();
-        QVERIFY(speedUp > 0);
-        if (row["pairs"] == "100" && row["transformations"] == "1000")
-            QVERIFY2(speedUp > 10, row["speed_up"].constData());
-    }
 }
 
 // Thesis figures 7.16 to 7.20: five bundles in one bucket, three in the other, 15 combinations.

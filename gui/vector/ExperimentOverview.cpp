@@ -1,0 +1,41 @@
+#include "gui/vector/ExperimentCommand.h"
+
+#include "gui/vector/experiment/OverviewExperiment.h"
+
+#include <cmath>
+
+namespace hermes::vector {
+
+void ExperimentCommand::overviewSteps(OutputSet &files, std::ostream &csv) const {
+    overview(files, csv, world("laboratory"), OdometryErrors::exaggerated(),
+             {{"scans", 10}, {"step_m", 0.6}});
+}
+
+void ExperimentCommand::overviewLoop(OutputSet &files, std::ostream &csv) const {
+    overview(files, csv, world("corridor"), OdometryErrors::usual(),
+             {{"scans", 33}, {"length_m", 46.71}, {"runs", 1}, {"closing_error_m", 0.006}});
+}
+
+void ExperimentCommand::overview(OutputSet &files, std::ostream &csv, const World &world,
+                                 const OdometryErrors &errors,
+                                 const nlohmann::ordered_json &published) const {
+    std::vector<OverviewRun> runs;
+    for (int i = 0; i < options.runs; ++i) {
+        runs.push_back(overviewRun(world, errors, options.seed + std::uint64_t(i)));
+        options.progress(std::size_t(i) + 1, std::size_t(options.runs));
+    }
+    writeCsv(csv, runs);
+    tell(open(files, ".json"), summaryOf(runs, published));
+    const OverviewRun &first = runs.front();
+    const std::string scans = std::to_string(first.scans.size()) + " scans";
+    const auto millimetres = [](double metres) { return std::to_string(std::lround(1000 * metres)) + " mm"; };
+    drawRaw(open(files, "-raw.svg"),
+            scans + ", not fitted: the last pose is " + millimetres(first.odometryClosingError()) + " off",
+            first);
+    drawScan(open(files, "-scan.svg"), "the first scan: clusters and lines", first.scans.front());
+    drawMap(open(files, "-map.svg"),
+            "the map of " + scans + ": the last pose is " + millimetres(first.closingError()) + " off",
+            first);
+}
+
+} // namespace hermes::vector
