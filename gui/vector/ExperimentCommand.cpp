@@ -63,6 +63,8 @@ constexpr Experiment experiments[] = {
      &ExperimentCommand::overviewSteps, "--worlds --runs --seed"},
     {"overview-loop", "overview figure 4: a corridor there and back, 46.71 m in 33 scans",
      &ExperimentCommand::overviewLoop, "--worlds --runs --seed"},
+    {"baseline", "overview 2.2: its matcher and ours on the same pairs of simulated scans, or of --log ...",
+     &ExperimentCommand::baseline, "--log --every --first --worlds --runs --seed"},
     {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy,
      ofWorlds},
     {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion, ofWorlds},
@@ -146,7 +148,7 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option(
            "--log", command->logs,
            "CARMEN log for log, pairs, places, free-log, empty-room, corridor and laboratory; several for "
-           "calibration, place-trust and pose-trust")
+           "calibration, baseline, place-trust and pose-trust")
         ->allow_extra_args(false)
         ->type_name("FILE");
     sub->add_option("--other", command->others,
@@ -154,15 +156,16 @@ void addExperimentCommand(CLI::App &app) {
                     "to be refused; pose-trust: a log, or several, that nothing is fitted to")
         ->allow_extra_args(false)
         ->type_name("FILE");
-    sub->add_option(
-           "--every", command->every,
-           "pairs, calibration, free-log, free-approach: only every N-th scan, and its next N-th one; of "
-           "several logs the first N for the first, the last for all that follow")
+    sub->add_option("--every", command->every,
+                    "pairs, calibration, baseline, free-log, free-approach: only every N-th scan, and its "
+                    "next N-th one; of "
+                    "several logs the first N for the first, the last for all that follow")
         ->allow_extra_args(false)
         ->transform(wholeNumber(1, 1e9))
         ->type_name("N")
         ->capture_default_str();
-    sub->add_option("--first", command->pairOptions.first, "pairs, calibration: only the first N pairs")
+    sub->add_option("--first", command->pairOptions.first,
+                    "pairs, calibration, baseline: only the first N pairs")
         ->transform(wholeNumber(1, 1e9))
         ->type_name("N");
     sub->add_flag("--no-guess", command->noGuess,

@@ -55,6 +55,7 @@ struct ExperimentCommand {
 
     void overviewSteps(OutputSet &files, std::ostream &csv) const;
     void overviewLoop(OutputSet &files, std::ostream &csv) const;
+    void baseline(OutputSet &files, std::ostream &csv) const;
 
     void accuracy(OutputSet &files, std::ostream &csv) const;
     void dispersion(OutputSet &files, std::ostream &csv) const;

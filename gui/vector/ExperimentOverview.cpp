@@ -1,8 +1,10 @@
 #include "gui/vector/ExperimentCommand.h"
 
+#include "gui/vector/experiment/BaselineExperiment.h"
 #include "gui/vector/experiment/OverviewExperiment.h"
 
 #include <cmath>
+#include <filesystem>
 
 namespace hermes::vector {
 
@@ -16,16 +18,35 @@ void ExperimentCommand::overviewLoop(OutputSet &files, std::ostream &csv) const 
              {{"scans", 33}, {"length_m", 46.71}, {"runs", 1}, {"closing_error_m", 0.006}});
 }
 
+void ExperimentCommand::baseline(OutputSet &files, std::ostream &csv) const {
+    std::vector<BaselineSet> sets;
+    for (const std::string &log : logs) {
+        const std::string base = std::filesystem::path(log).filename().string();
+        sets.push_back(baselineSet(base.substr(0, base.find('.')), readLog(log), pairOptions));
+    }
+    if (logs.empty())
+        for (const char *place : {"laboratory", "corridor", "pillars"})
+            sets.push_back(baselineSet(world(place), options.seed));
+    std::ostream &json = open(files, ".json");
+    const std::vector<BaselineRow> rows =
+        baselineExperiment(sets, options.seed, logs.empty() ? options.runs : 1, options.progress);
+    writeCsv(csv, rows);
+    tell(json, summaryOf(rows));
+    draw(files, {plotsOf(rows), {}, {}});
+}
+
 void ExperimentCommand::overview(OutputSet &files, std::ostream &csv, const World &world,
                                  const OdometryErrors &errors,
                                  const nlohmann::ordered_json &published) const {
-    std::vector<OverviewRun> runs;
+    std::vector<OverviewRun> runs, older;
     for (int i = 0; i < options.runs; ++i) {
         runs.push_back(overviewRun(world, errors, options.seed + std::uint64_t(i)));
+        older.push_back(
+            overviewRun(world, errors, options.seed + std::uint64_t(i), OverviewMatcher::Quadrangle));
         options.progress(std::size_t(i) + 1, std::size_t(options.runs));
     }
     writeCsv(csv, runs);
-    tell(open(files, ".json"), summaryOf(runs, published));
+    tell(open(files, ".json"), summaryOf(runs, older, published));
     const OverviewRun &first = runs.front();
     const std::string scans = std::to_string(first.scans.size()) + " scans";
     const auto millimetres = [](double metres) { return std::to_string(std::lround(1000 * metres)) + " mm"; };

@@ -83,8 +83,10 @@ void ExperimentCommand::hausdorffCriteria(OutputSet &files, std::ostream &csv) c
 }
 
 void ExperimentCommand::criterionTime(OutputSet &files, std::ostream &csv) const {
+    std::ostream &json = open(files, ".json");
     const std::vector<CriterionTime> times = criterionTimes(options);
     writeCsv(csv, times);
+    tell(json, summaryOf(times));
     draw(files, {plotsOf(times), {}, {}});
 }
 

@@ -1,4 +1,4 @@
-#include "gui/vector/experiment/CriterionProperties.h"
+#include "gui/vector/experiment/CriterionExperiment.h"
 #include "tests/gui/ExperimentFiles.h"
 
 #include <QTemporaryDir>
@@ -17,6 +17,7 @@ private Q_SLOTS:
     void otherCriteriaLackWhatTheAreaHolds();
     void hausdorffCriteriaAreDrawnAlike();
     void sumsArePaidBackByManyTransformations();
+    void breakEvenLiesBetweenTheMeasured();
 
 private:
     const std::uint64_t seed_ = std::random_device()();
@@ -94,13 +95,22 @@ void TestCriteria::sumsArePaidBackByManyTransformations() {
     QTemporaryDir folder;
     QCOMPARE(runExperiment({"criterion-time", "--out", folder.path()}), 0);
     const auto rows = table(folder.filePath("criterion-time.csv"));
-    QCOMPARE(rows.size(), 49);
+    QCOMPARE(rows.size(), 7 * 11);
     for (const auto &row : rows) {
         const double speedUp = row["speed_up"].toDouble();
         QVERIFY(speedUp > 0);
         if (row["pairs"] == "100" && row["transformations"] == "1000")
             QVERIFY2(speedUp > 10, row["speed_up"].constData());
     }
+}
+
+void TestCriteria::breakEvenLiesBetweenTheMeasured() {
+    // pairs, transformations, times pair by pair and from sums
+    const auto found = breakEvens({{1, 1, 1, 4}, {1, 4, 4, 1}, {2, 1, 3, 1}, {3, 1, 1, 2}, {3, 9, 1, 2}});
+    QCOMPARE(found.size(), std::size_t(3));
+    QVERIFY(std::abs(found[0].transformations - 2) < 1e-9); // as far below 1 as above
+    QCOMPARE(found[1].transformations, 1.0);
+    QCOMPARE(found[2].transformations, 0.0); // never
 }
 
 QTEST_APPLESS_MAIN(TestCriteria)

@@ -9,6 +9,8 @@ class TestOverview : public QObject {
 private Q_SLOTS:
     void badOdometryIsCorrected();
     void corridorLoopCloses();
+    void ourMatchersReachFarther();
+    void baselineTakesLogs();
 };
 
 void TestOverview::badOdometryIsCorrected() { // overview figure 2
@@ -39,6 +41,34 @@ void TestOverview::corridorLoopCloses() { // overview figure 4: 46.71 m, 6 mm
     QVERIFY2(std::abs(way - 46.71) < 0.001, qPrintable(QString::number(way)));
     for (int last = 32; last < rows.size(); last += 33)
         QVERIFY2(rows[last]["error_m"].toDouble() < 0.006, rows[last]["error_m"].constData());
+}
+
+void TestOverview::ourMatchersReachFarther() { // overview 2.2 against ours
+    QTemporaryDir folder;
+    QCOMPARE(runExperiment({"baseline", "--runs", "1", "--out", folder.path()}), 0);
+    QMap<QByteArray, double> right, tries; // by matcher
+    for (const auto &row : table(folder.filePath("baseline.csv"))) {
+        right[row["matcher"]] += row["right"].toDouble();
+        tries[row["matcher"]] += row["tries"].toDouble();
+        if (row["matcher"] == "tracker" && row["off_m"] == "0.05")
+            QVERIFY2(row["right_share"].toDouble() > 0.95, row["set"] + ' ' + row["right_share"]);
+    }
+    QCOMPARE(right.size(), 4);
+    QCOMPARE(tries["quadrangle"], 7.0 * (9 + 32 + 38)); // sizes of the error, pairs of scans
+    QVERIFY(right["quadrangle"] > 0.2 * tries["quadrangle"]);
+    QVERIFY(right["quadrangle"] < right["tracker"]);
+    QVERIFY(right["tracker"] < right["pair matcher"]);
+}
+
+void TestOverview::baselineTakesLogs() {
+    QTemporaryDir folder;
+    QCOMPARE(
+        runExperiment({"baseline", "--log", TEST_DATA_DIR "/vector/corrected.log", "--out", folder.path()}),
+        0);
+    const auto rows = table(folder.filePath("baseline.csv"));
+    QCOMPARE(rows.size(), 7 * 4);
+    QCOMPARE(rows[0]["set"], QByteArray("corrected"));
+    QVERIFY(rows[0]["tries"].toInt() > 0);
 }
 
 QTEST_APPLESS_MAIN(TestOverview)

@@ -99,7 +99,7 @@ void TestCriterionFit::newtonLeavesFlatDirectionsAlone() { // two walls of a cor
     criterion.add(Segment({4, 2}, {0, 2}), Segment({4, 2.3}, {0, 2.3}));
     const CriterionMinimum found = CriterionMinimizer()(criterion, {0.7, 0, 0.1});
     QVERIFY(found.converged);
-    QVERIFY(found.criterion < 1e-20);
+    QVERIFY(found.criterion < 1e-12); // rounding: a difference of sums of 256 m^4
     QVERIFY(std::abs(found.transformation.y() + 0.3) < 1e-9 && std::abs(found.transformation.alpha()) < 1e-9);
     QVERIFY(std::abs(found.transformation.x() - 0.7) < 0.1); // not known, hence nearly kept
 }

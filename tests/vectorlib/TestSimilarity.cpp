@@ -170,6 +170,9 @@ void TestSimilarity::badInputAddsNothing_data() {
     QTest::newRow("weight 0") << good << good << 0.0;
     QTest::newRow("weight below 0") << good << good << -1.0;
     QTest::newRow("weight NaN") << good << good << qQNaN();
+    QTest::newRow("weight infinite") << good << good << qInf();
+    QTest::newRow("static infinite") << infinite << good << 1.0;
+    QTest::newRow("dynamic NaN") << good << nan << 1.0;
     QTest::newRow("beyond a double") << QLineF(0, 0, 1e100, 1e100) << QLineF(0, 0, 1e100, -1e100) << 1.0;
 }
 
@@ -184,6 +187,12 @@ void TestSimilarity::badInputAddsNothing() {
     QVERIFY(!criterion.add(segment(fixed), segment(moving), weight));
     QCOMPARE(criterion.pairs(), 0);
     QCOMPARE(criterion({1, 2, 3}), 0.0);
+    const SegmentPair sound{unit, Segment({0, 1}, {1, 2}), 1},
+        bad{segment(fixed), segment(moving), weight}; // among others it adds nothing either
+    QCOMPARE(criterion.add({sound, bad, sound}), std::size_t(2));
+    QCOMPARE(criterion.pairs(), 2);
+    QCOMPARE(criterion({}), 2 * areaCriterion(sound.fixed, sound.moving));
+    criterion.clear();
     criterion.add(unit, unit);
     QVERIFY(std::isnan(criterion({qQNaN(), 0, 0})));
 }

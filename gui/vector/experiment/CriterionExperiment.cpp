@@ -5,6 +5,8 @@
 #include "vectorlib/io/Svg.h"
 #include "vectorlib/similarity/EdgeSetComparator.h"
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace hermes::vector {
@@ -79,11 +81,12 @@ std::vector<Surface> criterionSurfaces(const SegmentCriterion &criterion) {
 }
 
 std::vector<CriterionTime> criterionTimes(const ExperimentOptions &options) {
-    constexpr std::size_t counts[] = {1, 3, 10, 30, 100, 300, 1000};
+    constexpr std::size_t pairCounts[] = {1, 3, 10, 30, 100, 300, 1000};
+    constexpr std::size_t counts[] = {1, 2, 3, 5, 10, 20, 30, 50, 100, 300, 1000};
     std::mt19937_64 random(options.seed);
     std::uniform_real_distribution<double> any(-1, 1);
     std::vector<CriterionTime> times;
-    for (const std::size_t pairCount : counts) {
+    for (const std::size_t pairCount : pairCounts) {
         const std::vector<vectorlib::SegmentPair> pairs = randomPairs(pairCount, random);
         std::vector<Transformation2D> transformations;
         for (const std::size_t count : counts) {
@@ -108,7 +111,7 @@ std::vector<CriterionTime> criterionTimes(const ExperimentOptions &options) {
             });
             times.push_back(time);
             if (options.progress)
-                options.progress(times.size(), std::size(counts) * std::size(counts));
+                options.progress(times.size(), std::size(pairCounts) * std::size(counts));
         }
     }
     return times;
@@ -131,6 +134,41 @@ void writeCsv(std::ostream &out, const std::vector<CriterionTime> &times) {
             << ',' << Number(t.speedUp()) << '\n';
 }
 
+std::vector<BreakEven> breakEvens(const std::vector<CriterionTime> &times) {
+    std::vector<BreakEven> found;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const bool isFirst = i == 0 || times[i - 1].pairs != times[i].pairs;
+        if (isFirst)
+            found.push_back({times[i].pairs, 0});
+        if (found.back().transformations > 0 || times[i].speedUp() < 1)
+            continue;
+        const double high = double(times[i].transformations);
+        found.back().transformations = high;
+        if (!isFirst) { // between two measured, in logarithms
+            const double low = double(times[i - 1].transformations),
+                         before = std::log(times[i - 1].speedUp());
+            const double share = before / (before - std::log(times[i].speedUp()));
+            found.back().transformations = low * std::pow(high / low, share);
+        }
+    }
+    return found;
+}
+
+nlohmann::ordered_json summaryOf(const std::vector<CriterionTime> &times) {
+    nlohmann::ordered_json json;
+    for (const BreakEven &b : breakEvens(times))
+        json["break_even_transformations"][std::to_string(b.pairs) + " pairs"] =
+            b.transformations > 0 ? nlohmann::ordered_json(b.transformations) : nlohmann::ordered_json();
+    for (const CriterionTime &t : times)
+        if (t.transformations == 1)
+            json["speed_up_of_1_transformation"][std::to_string(t.pairs) + " pairs"] = t.speedUp();
+    json["largest_speed_up"] =
+        std::max_element(times.begin(), times.end(), [](const CriterionTime &a, const CriterionTime &b) {
+            return a.speedUp() < b.speedUp();
+        })->speedUp();
+    return json;
+}
+
 std::vector<Plot> plotsOf(const std::vector<CriterionTime> &times) {
     std::vector<Plot> plots;
     const auto add = [&](const char *name, const char *title, const char *axis, auto quantity) {
@@ -148,6 +186,16 @@ std::vector<Plot> plotsOf(const std::vector<CriterionTime> &times) {
     add("from-sums", "figure 7.8: from sums", "time [us]", [](const CriterionTime &t) { return t.fromSums; });
     add("speed-up", "figure 7.9: speed-up", "times as fast",
         [](const CriterionTime &t) { return t.speedUp(); });
+    Plot even{"break-even",
+              "from how many transformations on the sums pay (published: 1)",
+              "pairs",
+              "transformations",
+              true,
+              true,
+              {{"", vectorlib::colour::estimate, {}}}};
+    for (const BreakEven &b : breakEvens(times))
+        even.curves[0].points.emplace_back(double(b.pairs), b.transformations);
+    plots.push_back(std::move(even));
     return plots;
 }
 

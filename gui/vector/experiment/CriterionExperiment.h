@@ -24,6 +24,15 @@ struct CriterionTime {
 /// Thesis figures 7.7 to 7.9: 1 to 1,000 pairs by 1 to 1,000 transformations.
 std::vector<CriterionTime> criterionTimes(const ExperimentOptions &options);
 
+/// How many transformations of so many pairs take as long pair by pair as from sums; 0 where none of those
+/// measured does.
+struct BreakEven {
+    std::size_t pairs = 0;
+    double transformations = 0;
+};
+std::vector<BreakEven> breakEvens(const std::vector<CriterionTime> &times);
+nlohmann::ordered_json summaryOf(const std::vector<CriterionTime> &times);
+
 /// `value` names the column of the criterion.
 void writeCsv(std::ostream &out, const std::vector<Surface> &surfaces, const std::string &value);
 void writeCsv(std::ostream &out, const std::vector<CriterionTime> &times);

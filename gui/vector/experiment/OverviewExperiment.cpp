@@ -1,6 +1,7 @@
 #include "gui/vector/experiment/OverviewExperiment.h"
 
 #include "gui/vector/report/ScanPair.h"
+#include "vectorlib/correspondence/QuadrangleMatcher.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Svg.h"
 #include "vectorlib/mapping/MapBuilder.h"
@@ -35,7 +36,7 @@ Transformation2D told(const Transformation2D &motion, const OdometryErrors &erro
     return {x, y, motion.alpha() + errors.turn + errors.deviationAlpha * normal(random)};
 }
 
-void scanWorld(const World &world, std::uint64_t seed, std::vector<OverviewScan> &scans) {
+void takeScans(const World &world, std::uint64_t seed, std::vector<OverviewScan> &scans) {
     vectorlib::SimulatedScanner<float> scanner(seed);
     scanner.rays = 2000;
     scanner.sigma = 0.02;
@@ -48,6 +49,48 @@ void scanWorld(const World &world, std::uint64_t seed, std::vector<OverviewScan>
         scans.back().truth = pose;
         scans.back().points = scanner(walls, pose);
     }
+}
+
+std::vector<vectorlib::LineSegment2D<double>> segmentsOf(const vectorlib::VectorMap &map) {
+    std::vector<vectorlib::LineSegment2D<double>> segments;
+    map.forEach([&](const vectorlib::MapEdge &edge) { segments.push_back(edge.segment); });
+    return segments;
+}
+
+/// Finds the pose in the map and adds the edges there: paper 2.2 and 2.3.
+void processAsPublished(vectorlib::MapBuilder &builder, vectorlib::QuadrangleMatcher &match,
+                        OverviewScan &scan, const Pose2D &expected) {
+    const std::vector<vectorlib::EdgeRaw2D> edges = builder.extract(scan.points);
+    std::vector<vectorlib::LineSegment2D<double>> seen;
+    for (const vectorlib::EdgeRaw2D &edge : edges)
+        seen.push_back(edge.segment);
+    const bool isFirst = builder.map.isEmpty();
+    const vectorlib::QuadrangleMatch &found =
+        match(segmentsOf(builder.map), seen, Transformation2D(expected));
+    scan.found = isFirst ? expected : found.pose.pose();
+    scan.isMatched = isFirst || found.accepted;
+    builder.place(edges, scan.found);
+}
+
+/// The first, the least, the median and the largest of the closing errors.
+nlohmann::ordered_json closingErrors(const std::vector<OverviewRun> &runs) {
+    std::vector<double> closing;
+    std::size_t lost = 0;
+    double worst = 0;
+    for (const OverviewRun &run : runs) {
+        closing.push_back(run.closingError());
+        for (const OverviewScan &scan : run.scans) {
+            lost += !scan.isMatched;
+            worst = std::max(worst, apart(scan.truth, scan.found));
+        }
+    }
+    std::sort(closing.begin(), closing.end());
+    return {{"first_run", runs.front().closingError()},
+            {"least", closing.front()},
+            {"median", closing[closing.size() / 2]},
+            {"largest", closing.back()},
+            {"largest_on_the_way", worst},
+            {"lost", lost}};
 }
 
 std::vector<Point> wayOf(const OverviewRun &run, Pose2D OverviewScan::*which) {
@@ -74,12 +117,15 @@ double OverviewRun::odometryClosingError() const {
     return scans.empty() ? 0 : apart(scans.back().truth, scans.back().odometry);
 }
 
-OverviewRun overviewRun(const World &world, const OdometryErrors &errors, std::uint64_t seed) {
+OverviewRun overviewRun(const World &world, const OdometryErrors &errors, std::uint64_t seed,
+                        OverviewMatcher matcher) {
     OverviewRun run;
     run.seed = seed;
-    scanWorld(world, seed, run.scans);
+    takeScans(world, seed, run.scans);
     std::mt19937_64 random(seed);
     vectorlib::MapBuilder builder;
+    vectorlib::QuadrangleMatcher quadrangle;
+    quadrangle.select.settings.minLength = longEdge;
     for (std::size_t i = 0; i < run.scans.size(); ++i) {
         OverviewScan &scan = run.scans[i];
         Pose2D expected = scan.odometry = scan.truth; // the first defines the frame
@@ -90,11 +136,15 @@ OverviewRun overviewRun(const World &world, const OdometryErrors &errors, std::u
             scan.odometry = (Transformation2D(last.odometry) * motion).pose();
             expected = (Transformation2D(last.found) * motion).pose();
         }
+        if (matcher == OverviewMatcher::Quadrangle) {
+            processAsPublished(builder, quadrangle, scan, expected);
+            continue;
+        }
         const vectorlib::ScanReport &report = builder.process(scan.points, expected);
         scan.found = report.pose;
         scan.isMatched = report.outcome == vectorlib::ScanReport::Outcome::Matched;
     }
-    builder.map.forEach([&](const vectorlib::MapEdge &edge) { run.edges.push_back(edge.segment); });
+    run.edges = segmentsOf(builder.map);
     return run;
 }
 
@@ -117,37 +167,21 @@ void writeCsv(std::ostream &out, const std::vector<OverviewRun> &runs) {
         }
 }
 
-nlohmann::ordered_json summaryOf(const std::vector<OverviewRun> &runs,
+nlohmann::ordered_json summaryOf(const std::vector<OverviewRun> &runs, const std::vector<OverviewRun> &older,
                                  const nlohmann::ordered_json &published) {
-    if (runs.empty())
+    if (runs.empty() || older.empty())
         return {{"runs", 0}};
     const OverviewRun &first = runs.front();
-    std::vector<double> closing;
-    std::size_t lost = 0;
-    double worst = 0;
-    for (const OverviewRun &run : runs) {
-        closing.push_back(run.closingError());
-        for (const OverviewScan &scan : run.scans) {
-            lost += !scan.isMatched;
-            worst = std::max(worst, apart(scan.truth, scan.found));
-        }
-    }
-    std::sort(closing.begin(), closing.end());
-    const auto isLong = [](const auto &edge) { return edge.length() >= longEdge; };
-    const auto longEdges = std::count_if(first.edges.begin(), first.edges.end(), isLong);
+    const auto longEdges = std::size_t(std::count_if(
+        first.edges.begin(), first.edges.end(), [](const auto &edge) { return edge.length() >= longEdge; }));
     return {{"scans", first.scans.size()},
             {"length_m", first.length()},
             {"runs", runs.size()},
-            {"lost", lost},
             {"long_edges", longEdges},
-            {"short_edges", first.edges.size() - std::size_t(longEdges)},
+            {"short_edges", first.edges.size() - longEdges},
             {"odometry_closing_error_m", first.odometryClosingError()},
-            {"closing_error_m",
-             {{"first_run", first.closingError()},
-              {"least", closing.front()},
-              {"median", closing[closing.size() / 2]},
-              {"largest", closing.back()}}},
-            {"largest_error_m", worst},
+            {"closing_error_m", closingErrors(runs)},
+            {"closing_error_m_of_the_older_matcher", closingErrors(older)},
             {"published", published}};
 }
 

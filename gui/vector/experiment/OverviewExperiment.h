@@ -43,11 +43,16 @@ struct OverviewRun {
 /// length.
 constexpr double longEdge = 0.5;
 
+/// What finds the poses: our tracker, or the matcher of the paper with edges of longEdge and more.
+enum class OverviewMatcher { Tracker, Quadrangle };
+
 /// Noise of the range 2 cm and 2,000 rays a turn, as of the paper's scanner.
-OverviewRun overviewRun(const World &world, const OdometryErrors &errors, std::uint64_t seed);
+OverviewRun overviewRun(const World &world, const OdometryErrors &errors, std::uint64_t seed,
+                        OverviewMatcher matcher = OverviewMatcher::Tracker);
 
 void writeCsv(std::ostream &out, const std::vector<OverviewRun> &runs);
-nlohmann::ordered_json summaryOf(const std::vector<OverviewRun> &runs,
+/// Of the first run and of all; `older` are those with the paper's matcher.
+nlohmann::ordered_json summaryOf(const std::vector<OverviewRun> &runs, const std::vector<OverviewRun> &older,
                                  const nlohmann::ordered_json &published);
 
 /// Paper figure 2a: all points where the odometry puts them, and its way.

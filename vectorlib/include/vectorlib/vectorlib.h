@@ -2,6 +2,7 @@
 
 // Everything that scan processing needs, in one include.
 #include "vectorlib/correspondence/CorrespondenceFinder.h"
+#include "vectorlib/correspondence/QuadrangleMatcher.h"
 #include "vectorlib/correspondence/SolutionCovariance.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/mapping/GlobalPairMatcher.h"
@@ -13,8 +14,6 @@
 #include "vectorlib/segmentation/EarSegmenter.h"
 #include "vectorlib/similarity/CriterionMinimizer.h"
 #include "vectorlib/similarity/HausdorffDistances.h"
-#include "vectorlib/similarity/NelderMeadFitter.h"
-#include "vectorlib/similarity/QuadrangleCriterion.h"
 #include "vectorlib/tls/LineCovariance.h"
 #include "vectorlib/tls/TlsFit.h"
 #include "vectorlib/vectorization/AftlsVectorizer.h"

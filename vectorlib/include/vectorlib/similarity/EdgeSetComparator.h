@@ -1,12 +1,12 @@
 #pragma once
 
 #include "vectorlib/geometry/SegmentPair.h"
-#include "vectorlib/geometry/SmallMatrix.h"
 #include "vectorlib/geometry/Transformation2D.h"
 
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace vectorlib {
@@ -42,13 +42,12 @@ class EdgeSetComparator {
 public:
     /// Adds a pair; false (and nothing added) when it is not usable or beyond what a double holds.
     bool add(const SegmentPair &pair) {
-        if (!isUsable(pair))
+        if (!mayBeAdded(pair))
             return false;
-        const Matrix sum = m_ + matrixOf(pair);
-        if (!std::isfinite(sum.trace()))
+        const Sums own = sumsOf(pair);
+        if (!std::isfinite(trace(sums_) + trace(own)))
             return false;
-        m_ = sum;
-        ++pairs_;
+        take(own);
         return true;
     }
     bool add(const LineSegment2D<double> &fixed, const LineSegment2D<double> &moving, double weight = 1) {
@@ -56,21 +55,29 @@ public:
     }
     /// Adds all that are usable; returns how many those are.
     std::size_t add(const std::vector<SegmentPair> &pairs) {
-        std::size_t added = 0;
+        EdgeSetComparator sum = *this; // in registers
         for (const SegmentPair &pair : pairs)
-            added += add(pair);
-        return added;
+            if (mayBeAdded(pair))
+                sum.take(sumsOf(pair));
+        if (!std::isfinite(trace(sum.sums_)))
+            return addOneByOne(pairs);
+        const int added = sum.pairs_ - pairs_;
+        *this = sum;
+        return static_cast<std::size_t>(added);
     }
     /// Adds all pairs of another set.
     void add(const EdgeSetComparator &o) {
-        m_ += Matrix(o.m_);
+        for (std::size_t i = 0; i < sums_.size(); ++i)
+            sums_[i] += o.sums_[i];
         pairs_ += o.pairs_;
     }
     /// Takes away a pair that was added with the same weight; false for what cannot have been added.
     bool remove(const SegmentPair &pair) {
         if (pairs_ == 0 || !isUsable(pair))
             return false;
-        m_ -= matrixOf(pair);
+        const Sums own = sumsOf(pair);
+        for (std::size_t i = 0; i < sums_.size(); ++i)
+            sums_[i] -= own[i];
         drop(1);
         return true;
     }
@@ -78,8 +85,10 @@ public:
     bool remove(const EdgeSetComparator &o) {
         if (o.pairs_ > pairs_)
             return false;
-        m_ -= Matrix(o.m_);
-        drop(o.pairs_);
+        const EdgeSetComparator other = o; // it may be this one
+        for (std::size_t i = 0; i < sums_.size(); ++i)
+            sums_[i] -= other.sums_[i];
+        drop(other.pairs_);
         return true;
     }
     void clear() { *this = EdgeSetComparator(); }
@@ -87,52 +96,76 @@ public:
 
     /// The criterion when t moves the dynamic set; m^4, 0 without pairs.
     double operator()(const Transformation2D &t) const {
-        const Matrix &m = m_;
+        const Sums &m = sums_;
         const double c = t.cos(), s = t.sin(), x = t.x(), y = t.y();
-        const double both = c * (s * m(0, 1) + x * m(0, 2) + y * m(0, 3) + m(0, 4)) +
-                            s * (x * m(1, 2) + y * m(1, 3) + m(1, 4)) + x * (y * m(2, 3) + m(2, 4)) +
-                            y * m(3, 4);
-        const double squares =
-            c * c * m(0, 0) + s * s * m(1, 1) + x * x * m(2, 2) + y * y * m(3, 3) + m(4, 4);
+        const double both = c * (s * m[1] + x * m[2] + y * m[3] + m[4]) + s * (x * m[6] + y * m[7] + m[8]) +
+                            x * (y * m[10] + m[11]) + y * m[13];
+        const double squares = c * c * m[0] + s * s * m[5] + x * x * m[9] + y * y * m[12] + m[14];
         return std::max(squares + 2 * both, 0.0); // rounding must not make it negative; NaN stays NaN
     }
 
     /// The criterion, its gradient and Hessian by (x, y, alpha).
     CriterionExpansion expansion(const Transformation2D &t) const {
-        const double c = t.cos(), s = t.sin();
-        Vector u;
-        u << c, s, t.x(), t.y(), 1;
-        Eigen::Matrix<double, 3, 5> j =
-            Eigen::Matrix<double, 3, 5>::Zero(); // of u by (x, y, alpha), transposed
-        j(0, 2) = j(1, 3) = 2;
-        j(2, 0) = -2 * s;
-        j(2, 1) = 2 * c;
-        const Vector mu = product(m_, u);
+        const Sums &m = sums_;
+        const double c = t.cos(), s = t.sin(), x = t.x(), y = t.y();
+        const double mu[] = {c * m[0] + s * m[1] + x * m[2] + y * m[3] + m[4],
+                             c * m[1] + s * m[5] + x * m[6] + y * m[7] + m[8],
+                             c * m[2] + s * m[6] + x * m[9] + y * m[10] + m[11],
+                             c * m[3] + s * m[7] + x * m[10] + y * m[12] + m[13]}; // of M u
         CriterionExpansion e;
-        e.value = std::max(u.dot(mu), 0.0);
-        e.gradient = product(j, mu);
-        e.hessian = product(j, m_, j) / 2;
-        e.hessian(2, 2) -= 2 * (c * mu(0) + s * mu(1)); // u itself bends by -(cos, sin)
+        e.value = (*this)(t);
+        e.gradient << 2 * mu[2], 2 * mu[3], 2 * (c * mu[1] - s * mu[0]);
+        // With alpha u turns along (-s, c), and bends by -(c, s).
+        const double xAlpha = c * m[6] - s * m[2], yAlpha = c * m[7] - s * m[3];
+        const double alpha = s * s * m[0] - 2 * s * c * m[1] + c * c * m[5] - c * mu[0] - s * mu[1];
+        e.hessian << m[9], m[10], xAlpha, m[10], m[12], yAlpha, xAlpha, yAlpha, alpha;
+        e.hessian *= 2;
         return e;
     }
 
 private:
-    using Matrix = Eigen::Matrix<double, 5, 5>;
-    using Vector = Eigen::Matrix<double, 5, 1>;
+    using Sums = std::array<double, 15>; // the upper triangle of M, row by row
 
-    static Matrix matrixOf(const SegmentPair &p) {
+    // Ends that are not finite are found in the sums, which they make not finite.
+    static bool mayBeAdded(const SegmentPair &p) {
+        return p.fixed.direction().squaredNorm() > 0.5 && p.moving.direction().squaredNorm() > 0.5 &&
+               p.weight > 0;
+    }
+    void take(const Sums &own) {
+        for (std::size_t i = 0; i < sums_.size(); ++i)
+            sums_[i] += own[i];
+        ++pairs_;
+    }
+    std::size_t addOneByOne(const std::vector<SegmentPair> &pairs) {
+        std::size_t added = 0;
+        for (const SegmentPair &pair : pairs)
+            added += add(pair);
+        return added;
+    }
+    static double trace(const Sums &s) { return s[0] + s[5] + s[9] + s[12] + s[14]; }
+
+    static Sums sumsOf(const SegmentPair &p) {
         const Vector2D<double> a = p.fixed.begin(), b = p.fixed.end(), c = p.moving.begin(),
                                d = p.moving.end();
         const Vector2D<double> x = b - a, y = d - c, z = d + c, v = b - 3.0 * a;
-        Vector g;
-        g << x.cross(z), x.dot(z), -2 * x.y, 2 * x.x, x.cross(v); // (7.17)
-        Matrix m = square(p.weight, g);
-        const double cross = x.cross(y), dot = x.dot(y); // (7.16)
-        m(0, 0) += p.weight * cross * cross;
-        m(0, 1) += p.weight * cross * dot;
-        m(1, 0) = m(0, 1);
-        m(1, 1) += p.weight * dot * dot;
-        return m;
+        const double g0 = x.cross(z), g1 = x.dot(z), g2 = -2 * x.y, g3 = 2 * x.x, g4 = x.cross(v); // (7.17)
+        const double cross = x.cross(y), dot = x.dot(y);                                           // (7.16)
+        const double w = p.weight, w0 = w * g0, w1 = w * g1, w2 = w * g2, w3 = w * g3;
+        return {w0 * g0 + w * cross * cross,
+                w0 * g1 + w * cross * dot,
+                w0 * g2,
+                w0 * g3,
+                w0 * g4,
+                w1 * g1 + w * dot * dot,
+                w1 * g2,
+                w1 * g3,
+                w1 * g4,
+                w2 * g2,
+                w2 * g3,
+                w2 * g4,
+                w3 * g3,
+                w3 * g4,
+                w * g4 * g4};
     }
     void drop(int count) {
         pairs_ -= count;
@@ -140,7 +173,7 @@ private:
             clear();
     }
 
-    Matrix m_ = Matrix::Zero();
+    Sums sums_{};
     int pairs_ = 0;
 };
 
