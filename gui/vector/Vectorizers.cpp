@@ -1,9 +1,7 @@
 #include "gui/vector/Vectorizers.h"
 
-#include "vectorlib/vectorization/AftlsVectorizer.h"
 #include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
 #include "vectorlib/vectorization/IncVectorizer.h"
-#include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
 #include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
 #include "vectorlib/vectorization/TlsVectorizer.h"
 
@@ -24,6 +22,8 @@ std::vector<NamedVectorizer> &known() {
         {"inc", "point by point", makeVectorizer<IncVectorizer, double>},
         {"dp", "Douglas-Peucker, within 3 sigma", makeVectorizer<DouglasPeuckerVectorizer, double>},
         {"rw", "Reumann-Witkam, within 3 sigma", makeVectorizer<ReumannWitkamVectorizer, double>},
+        {"rw-adjacent", "the same, its strips along adjacent points",
+         makeVectorizer<AdjacentReumannWitkam, double>},
         {"sam", "split and merge, within 3 sigma", makeVectorizer<SplitAndMergeVectorizer, double>},
     };
     return all;

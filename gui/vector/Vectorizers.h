@@ -1,6 +1,7 @@
 #pragma once
 
-#include "vectorlib/vectorization/VectorizedLine.h"
+#include "vectorlib/vectorization/AftlsVectorizer.h"
+#include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
 
 #include <functional>
 #include <memory>
@@ -37,5 +38,19 @@ Vectorize<Scalar> makeVectorizer(const vectorlib::VectorizerSettings &settings) 
             return (*vectorizer)(points);
         };
 }
+
+/// AFTLS whose break points are sought as published, by Nelder and Mead's method (thesis 6.4).
+template <typename Scalar>
+struct NelderMeadAftls : vectorlib::AftlsVectorizer<Scalar> {
+    NelderMeadAftls() { this->search = vectorlib::AftlsVectorizer<Scalar>::Search::NelderMead; }
+};
+
+/// Reumann-Witkam with strips along adjacent points.
+template <typename Scalar>
+struct AdjacentReumannWitkam : vectorlib::ReumannWitkamVectorizer<Scalar> {
+    AdjacentReumannWitkam() {
+        this->direction = vectorlib::ReumannWitkamVectorizer<Scalar>::Direction::NextPoint;
+    }
+};
 
 } // namespace hermes::vector

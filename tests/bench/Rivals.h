@@ -39,7 +39,9 @@ private:
     std::vector<Row> rows_;
 };
 
-/// A line through the key point and the next; points join it until one lies farther than the tolerance.
+/// A line through the key point and the first beyond the tolerance (or, `adjacent`, the next); points join it
+/// until one lies farther than the tolerance.
+template <bool adjacent>
 class ReumannWitkam {
 public:
     float tolerance = 0.06f;
@@ -48,9 +50,12 @@ public:
         kept_.clear();
         kept_.push_back(0);
         for (std::size_t key = 0; key + 1 < p.size();) {
-            const auto origin = p[key], d = p[key + 1] - origin;
+            const auto origin = p[key];
+            std::size_t next = key + 1;
+            auto d = p[next++] - origin;
+            while (!adjacent && next < p.size() && d.squaredNorm() <= tolerance * tolerance)
+                d = p[next++] - origin;
             const float limit = tolerance * tolerance * d.squaredNorm();
-            std::size_t next = key + 2;
             for (; next < p.size(); ++next)
                 if (const float c = d.cross(p[next] - origin); c * c > limit)
                     break;

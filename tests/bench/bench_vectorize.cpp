@@ -71,7 +71,8 @@ int main(int argc, char **argv) {
     add<rivals::PlainSums>("five prefix sums");
     add<rivals::DouglasPeucker<rivals::farthestPlain>>("Douglas-Peucker");
     add<rivals::DouglasPeucker<rivals::farthestAvx2>>("Douglas-Peucker, SIMD");
-    add<rivals::ReumannWitkam>("Reumann-Witkam");
+    add<rivals::ReumannWitkam<false>>("Reumann-Witkam");
+    add<rivals::ReumannWitkam<true>>("Reumann-Witkam, adjacent");
     add<rivals::Inc<true>>("INC");
     add<rivals::Inc<false>>("INC without root");
 #ifdef BENCH_BOOST
