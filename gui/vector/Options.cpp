@@ -110,6 +110,14 @@ void SegmentOptions::addTo(CLI::App &command, const std::string &defaults) {
         ->transform(wholeNumber(1, 1e9))
         ->type_name("N")
         ->group(group);
+    command
+        .add_option(
+            "--coordinates", coordinates_,
+            "In which points are compared: cartesian, by their distance (the default), or polar, angle "
+            "and range by themselves")
+        ->check(CLI::IsMember({"cartesian", "polar"}))
+        ->type_name("KIND")
+        ->group(group);
     command.add_flag("--open", open, "The last point is no neighbour of the first: less than a full turn")
         ->group(group);
 }
@@ -119,6 +127,9 @@ vectorlib::EarSettings SegmentOptions::over(vectorlib::EarSettings settings) con
     settings.minThreshold = minThreshold_.value_or(settings.minThreshold);
     settings.maxThreshold = maxThreshold_.value_or(settings.maxThreshold);
     settings.minPoints = minPoints_.value_or(settings.minPoints);
+    if (!coordinates_.empty())
+        settings.coordinates = coordinates_ == "polar" ? vectorlib::EarSettings::Coordinates::Polar
+                                                       : vectorlib::EarSettings::Coordinates::Cartesian;
     if (settings.minThreshold > settings.maxThreshold)
         throw CLI::ValidationError("--min-threshold",
                                    "found a value above --max-threshold, expected at most that");

@@ -33,7 +33,7 @@ CLI::Validator poseText();
 /// The pose in a text that poseText() has let through; metres, radians.
 vectorlib::Pose2D parsePose(const std::string &text);
 
-/// The options of segmentation: --k --min-threshold --max-threshold --min-points --open.
+/// The options of segmentation: --k --min-threshold --max-threshold --min-points --coordinates --open.
 struct SegmentOptions {
     bool open = false;
 
@@ -46,6 +46,7 @@ struct SegmentOptions {
 private:
     std::optional<int> neighbours_, minPoints_;
     std::optional<double> minThreshold_, maxThreshold_;
+    std::string coordinates_;
 };
 
 /// The footer of a command's help: an example of its use.

@@ -27,12 +27,16 @@ struct Row {
 struct VectorizeCommand {
     std::string in;
     std::string algorithm = "ftls";
+    std::string search;
     vectorlib::VectorizerSettings settings;
     bool noSegment = false;
     OutputOptions output;
     SegmentOptions segment;
 
     void run() const {
+        if (!search.empty() && algorithm != "aftls")
+            throw CLI::ValidationError("--search", "--algorithm " + algorithm +
+                                                       " searches no break points, expected aftls");
         vectorlib::EarSegmenter<double> segmenter;
         segmenter.settings = segment.over({});
         OutputSet files(output.force);
@@ -67,7 +71,9 @@ struct VectorizeCommand {
                                const vectorlib::Segmentation &clusters) const {
         const auto chosen = std::find_if(vectorizers().begin(), vectorizers().end(),
                                          [&](const NamedVectorizer &v) { return v.name == algorithm; });
-        const Vectorize<double> vectorizer = chosen->make(settings);
+        const Vectorize<double> vectorizer = search == "nelder-mead"
+                                                 ? makeVectorizer<NelderMeadAftls, double>(settings)
+                                                 : chosen->make(settings);
         std::vector<Row> rows;
         std::vector<Point> part;
         std::size_t without = 0;
@@ -127,6 +133,11 @@ void addVectorizeCommand(CLI::App &app) {
         ->check(CLI::IsMember(names))
         ->type_name("A")
         ->capture_default_str();
+    sub->add_option("--search", command->search,
+                    "With --algorithm aftls: how its break points are sought, one after the other downhill "
+                    "(the default) or as published, by Nelder and Mead")
+        ->check(CLI::IsMember({"descent", "nelder-mead"}))
+        ->type_name("KIND");
     sub->add_option("--sigma", command->settings.sigma,
                     "Largest standard deviation of points from their line, metres")
         ->check(aboveZero())

@@ -36,6 +36,8 @@ private Q_SLOTS:
     void polarThreshold();
     void polarClosesAFullTurn();
     void polarTakesIntegers();
+    void polarTakesPoints();
+    void polarPointsOverTheWholeTurn();
     void invalidPointsTakeNoPart();
     void invalidRangesTakeNoPart();
     void boundsOfRange();
@@ -195,6 +197,52 @@ void TestEarSegmenter::polarTakesIntegers() {
     QCOMPARE(s.labels[101], -1);
     QCOMPARE(s.labels[102], 0);
     QCOMPARE(segment(PolarScan<std::uint16_t>()).size(), std::size_t(0));
+}
+
+// Thesis 5.2.2: points are compared by angle and range as the ranges of their rays are.
+void TestEarSegmenter::polarTakesPoints() {
+    std::mt19937 random(3);
+    std::normal_distribution<float> noise;
+    EarSegmenter<float> ofPoints, ofRanges;
+    ofPoints.settings.coordinates = EarSettings::Coordinates::Polar;
+    ofPoints.settings.minPoints = ofRanges.settings.minPoints = 5;
+    int unlike = 0;
+    for (int scan = 0; scan < 200; ++scan) {
+        std::vector<float> ranges;
+        for (int i = 0; i < 500; ++i) {
+            const float wall = 2 + float((i + 10 * scan) % 500 / 50 % 3);
+            ranges.push_back(i % 29 == 0 ? 0 : wall + 0.1f * noise(random)); // 0: no return
+        }
+        const PolarScan<float> polar{ranges.data(), ranges.size(), -3, 2 * pi / 500};
+        const float nan = std::numeric_limits<float>::quiet_NaN();
+        Points points;
+        for (std::size_t i = 0; i < ranges.size(); ++i)
+            points.push_back(ranges[i] > 0 ? Vector2D<float>(polar.point(i)) : Vector2D<float>(nan, nan));
+        const std::vector<int> expected = ofRanges(polar).labels;
+        QVERIFY2(ofPoints(points).labels == expected, qPrintable(QString("scan %1").arg(scan)));
+        ofPoints.settings.coordinates = EarSettings::Coordinates::Cartesian;
+        unlike += ofPoints(points).labels != expected;
+        ofPoints.settings.coordinates = EarSettings::Coordinates::Polar;
+    }
+    QVERIFY(unlike > 0);
+}
+void TestEarSegmenter::polarPointsOverTheWholeTurn() {
+    EarSegmenter<double> segment;
+    segment.settings.coordinates = EarSettings::Coordinates::Polar;
+    std::vector<Vector2D<double>> points;
+    for (const Vector2D<float> &p : arc(0.75 * pi, 1.25 * pi, 500, 2)) // over the direction of pi
+        points.emplace_back(p);
+    for (const bool closed : {true, false}) {
+        segment.settings.closed = closed;
+        QCOMPARE(segment(points).size(), std::size_t(1));
+    }
+    for (const double extreme : {0.0, 1e300, std::numeric_limits<double>::infinity()}) {
+        std::vector<Vector2D<double>> strange = points;
+        strange[250] = {extreme, -extreme};
+        QCOMPARE(segment(strange).size(), std::size_t(1));
+        QCOMPARE(segment(strange).labels[250], -1);
+    }
+    QCOMPARE(segment(std::vector<Vector2D<double>>()).size(), std::size_t(0));
 }
 
 void TestEarSegmenter::invalidPointsTakeNoPart() {

@@ -12,9 +12,10 @@
 
 namespace vectorlib {
 
-/// Splits an ordered scan into continuous clusters: Euclidean distance, adaptive threshold, retroactive
-/// merging. Thesis 5.2. Points are in the scanner's frame, in order of acquisition. Non-finite points are
-/// outliers and take no part. Keeps its buffers between calls: no allocation once they have grown.
+/// Splits an ordered scan into continuous clusters: Euclidean distance (or range and angle by themselves, see
+/// settings), adaptive threshold, retroactive merging. Thesis 5.2. Points are in the scanner's frame, in
+/// order of acquisition. Non-finite points are outliers and take no part. Keeps its buffers between calls: no
+/// allocation once they have grown.
 template <typename Scalar = float>
 class EarSegmenter {
     static_assert(std::is_floating_point_v<Scalar>, "points of float or double; integers as PolarScan");
@@ -24,6 +25,8 @@ public:
     simd::Level level = simd::bestLevel(); ///< the instruction set to use
 
     const Segmentation &operator()(PointSpan<Scalar> points) {
+        if (settings.coordinates == EarSettings::Coordinates::Polar)
+            return inPolarCoordinates(points);
         const double k = thresholdPerMetre(points.size()), low = bounded(settings.minThreshold);
         const double high = bounded(settings.maxThreshold);
         Comparison<CartesianNearness<Scalar>> comparison{
@@ -44,19 +47,34 @@ public:
     template <typename Range>
     const Segmentation &operator()(const PolarScan<Range> &scan) {
         returns_.take(scan, level);
-        const NearThreshold<float> threshold{static_cast<float>(thresholdPerMetre(scan.count)),
-                                             static_cast<float>(bounded(settings.minThreshold)),
-                                             static_cast<float>(bounded(settings.maxThreshold))};
-        const Comparison<PolarNearness> comparison{{returns_.ranges.data(), returns_.rays.data(),
-                                                    returns_.count, threshold, static_cast<int>(reach()),
-                                                    settings.closed ? static_cast<int>(scan.count) : INT_MAX,
-                                                    std::abs(scan.step)},
-                                                   level};
+        const Comparison<PolarNearness> comparison{
+            {returns_.ranges.data(), returns_.rays.data(), returns_.count, rangeThreshold(scan.count),
+             static_cast<int>(reach()), settings.closed ? static_cast<int>(scan.count) : INT_MAX,
+             std::abs(scan.step)},
+            level};
         runs_.split(comparison);
         return join(comparison, scan.count, returns_.count < scan.count ? returns_.rays.data() : nullptr);
     }
 
 private:
+    // The same with points: a neighbour is at most K even steps of the field of view away.
+    const Segmentation &inPolarCoordinates(PointSpan<Scalar> points) {
+        returns_.take(points);
+        const double half = 0.5 / static_cast<double>(reach()); // a step, for directions that are rounded
+        const double angle = std::min(thresholdPerMetre(points.size()) * (1 + half), 2 * pi);
+        const Comparison<PolarNearness> comparison{
+            {returns_.ranges.data(), returns_.rays.data(), returns_.count, rangeThreshold(points.size()),
+             static_cast<int>(angle / PolarReturns::direction), PolarReturns::turn, PolarReturns::direction},
+            level};
+        runs_.split(comparison);
+        return join(comparison, points.size(),
+                    returns_.count < points.size() ? returns_.taken.data() : nullptr);
+    }
+    NearThreshold<float> rangeThreshold(std::size_t count) const {
+        return {static_cast<float>(thresholdPerMetre(count)),
+                static_cast<float>(bounded(settings.minThreshold)),
+                static_cast<float>(bounded(settings.maxThreshold))};
+    }
     // Thesis (5.1) with erratum 14: K * F / N for each metre of range.
     double thresholdPerMetre(std::size_t count) const {
         const std::size_t rays = settings.nominalPoints ? settings.nominalPoints : count;

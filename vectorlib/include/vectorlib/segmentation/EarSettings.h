@@ -9,6 +9,9 @@ namespace vectorlib {
 
 /// Settings of EarSegmenter; the defaults are those of thesis 5.3.
 struct EarSettings {
+    /// In which two points are compared (thesis 5.2.2): by their distance, or range and angle by themselves.
+    enum class Coordinates { Cartesian, Polar };
+
     int neighbours = 10;           ///< K: how many earlier points are examined
     double minThreshold = 0.05;    ///< lower bound of the distance threshold, the sensor's accuracy; metres
     double maxThreshold = 0.20;    ///< upper bound of the distance threshold; metres
@@ -16,6 +19,7 @@ struct EarSettings {
     bool closed = true;            ///< the last point is a neighbour of the first (a full turn)
     double fieldOfView = 2 * pi;   ///< F of erratum 14; radians
     std::size_t nominalPoints = 0; ///< N of erratum 14, the scanner's rays; 0: as many as points
+    Coordinates coordinates = Coordinates::Cartesian; ///< of points; ranges are always compared as such
 
     /// For a scanner of `rays` rays over `fieldOfView` (radians, 2 pi for a full turn). Up to 0.3 degree
     /// between rays the settings of thesis 5.3; beyond, points of one wall lie farther apart and small
