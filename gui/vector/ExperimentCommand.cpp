@@ -17,7 +17,8 @@ struct Experiment {
     const char *takes; ///< options, beside those that all take
 };
 
-constexpr const char *ofScenes = "--runs --max-points --seed";
+constexpr const char *ofScenes = "--runs --max-points --seed --noise";
+constexpr const char *ofScans = "--log --port --sender"; // which may lie in a capture
 constexpr const char *ofWorlds = "--worlds --runs --max-points --seed";
 
 constexpr Experiment experiments[] = {
@@ -25,16 +26,22 @@ constexpr Experiment experiments[] = {
      "--seed"},
     {"segmentation-objects", "figure 5.7: the same with small objects",
      &ExperimentCommand::segmentationObjects, "--seed"},
+    {"adaptive-threshold", "figures 5.3, 5.4: the threshold without and with its bounds",
+     &ExperimentCommand::adaptiveThreshold, "--seed"},
+    {"real-segmentation", "figure 5.5: three scans of --log, clusters in colours",
+     &ExperimentCommand::realSegmentation, ofScans},
+    {"threshold", "figures 6.1 to 6.3: error by points, of a precise corner and of one with noise",
+     &ExperimentCommand::threshold, "--seed"},
     {"semicircle", "figure 6.7: time by the number of lines", &ExperimentCommand::semicircle, "--max-points"},
     {"edges", "figure 6.8: four solitary edges", &ExperimentCommand::edges, ofScenes},
     {"corners", "figure 6.9: one cluster with sharp corners", &ExperimentCommand::corners, ofScenes},
     {"room", "figure 6.10: a furnished room", &ExperimentCommand::room, ofScenes},
     {"empty-room", "figure 6.11: the scan of --log with long lines all around", &ExperimentCommand::emptyRoom,
-     "--log"},
+     ofScans},
     {"corridor", "figure 6.12: the scan of --log with long lines in one direction",
-     &ExperimentCommand::corridor, "--log"},
+     &ExperimentCommand::corridor, ofScans},
     {"laboratory", "figure 6.13: the scan of --log with the most lines", &ExperimentCommand::laboratory,
-     "--log"},
+     ofScans},
     {"polygons", "closed polygons: error by the number of vertices", &ExperimentCommand::polygons,
      "--runs --seed"},
     {"log", "the scans of --log: error by the number of vertices", &ExperimentCommand::ofLog, "--log --runs"},
@@ -147,8 +154,10 @@ void addExperimentCommand(CLI::App &app) {
         ->capture_default_str();
     sub->add_option(
            "--log", command->logs,
-           "CARMEN log for log, pairs, places, free-log, empty-room, corridor and laboratory; several for "
-           "calibration, baseline, place-trust and pose-trust")
+           "CARMEN log for log, pairs, places and free-log; CARMEN log or capture of an HDL-32E or VLP-16 "
+           "for "
+           "empty-room, corridor, laboratory and real-segmentation; several logs for calibration, baseline, "
+           "place-trust and pose-trust")
         ->allow_extra_args(false)
         ->type_name("FILE");
     sub->add_option("--other", command->others,
@@ -156,10 +165,10 @@ void addExperimentCommand(CLI::App &app) {
                     "to be refused; pose-trust: a log, or several, that nothing is fitted to")
         ->allow_extra_args(false)
         ->type_name("FILE");
+    command->sensor.addTo(*sub);
     sub->add_option("--every", command->every,
                     "pairs, calibration, baseline, free-log, free-approach: only every N-th scan, and its "
-                    "next N-th one; of "
-                    "several logs the first N for the first, the last for all that follow")
+                    "next N-th one; of several logs the first N for the first, the last for all that follow")
         ->allow_extra_args(false)
         ->transform(wholeNumber(1, 1e9))
         ->type_name("N")
@@ -196,6 +205,10 @@ void addExperimentCommand(CLI::App &app) {
     sub->add_option("--max-points", command->options.maxPoints, "Leave out larger clouds")
         ->transform(wholeNumber(20, 1e6))
         ->type_name("N")
+        ->capture_default_str();
+    sub->add_option("--noise", command->options.noise, "Of the range, standard deviation, metres")
+        ->check(between(0, 1))
+        ->type_name("M")
         ->capture_default_str();
     sub->add_option("--seed", command->options.seed, "Of the noise; the same seed gives the same scans")
         ->type_name("I")

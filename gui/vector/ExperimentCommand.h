@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/vector/InstalledWorlds.h"
+#include "gui/vector/LidarCapture.h"
 #include "gui/vector/Output.h"
 #include "gui/vector/experiment/OverviewExperiment.h"
 #include "gui/vector/experiment/PairsExperiment.h"
@@ -29,6 +30,7 @@ struct ExperimentCommand {
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
     PairsOptions pairOptions;
+    SensorOptions sensor;
     bool noGuess = false;
     std::size_t pictures = 0;
     bool force = false;
@@ -39,6 +41,9 @@ struct ExperimentCommand {
 
     void segmentationRoom(OutputSet &files, std::ostream &csv) const;
     void segmentationObjects(OutputSet &files, std::ostream &csv) const;
+    void adaptiveThreshold(OutputSet &files, std::ostream &csv) const;
+    void realSegmentation(OutputSet &files, std::ostream &csv) const;
+    void threshold(OutputSet &files, std::ostream &csv) const;
     void semicircle(OutputSet &files, std::ostream &csv) const;
     void edges(OutputSet &files, std::ostream &csv) const;
     void corners(OutputSet &files, std::ostream &csv) const;
@@ -85,6 +90,7 @@ private:
     void segment(OutputSet &files, std::ostream &csv, const Scene &scene) const;
     void quality(OutputSet &files, std::ostream &csv, const std::string &title,
                  const std::vector<QualityRow> &rows) const;
+    RealScanChoice chooseScans(const std::vector<RealScanKind> &kinds) const;
     void realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const;
     void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const;
     static std::vector<RegistrationRow> select(const std::vector<RegistrationRow> &rows, int points,

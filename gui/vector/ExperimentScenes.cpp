@@ -1,9 +1,13 @@
 #include "gui/vector/ExperimentCommand.h"
 
 #include "gui/vector/Failure.h"
+#include "gui/vector/MapSource.h"
+#include "gui/vector/experiment/CloudPicture.h"
 #include "gui/vector/experiment/CriterionExperiment.h"
 #include "gui/vector/experiment/SegmentationExperiment.h"
+#include "gui/vector/experiment/ThresholdExperiment.h"
 
+#include <iostream>
 #include <map>
 #include <sstream>
 
@@ -17,6 +21,35 @@ void ExperimentCommand::segmentationObjects(OutputSet &files, std::ostream &csv)
     segment(files, csv, roomWithSmallObjects());
 }
 
+void ExperimentCommand::adaptiveThreshold(OutputSet &files, std::ostream &csv) const {
+    const std::vector<AdaptiveThresholdPanel> panels = adaptiveThresholdExperiment(options.seed);
+    writeCsv(csv, panels);
+    for (const AdaptiveThresholdPanel &panel : panels)
+        vector::draw(open(files, "-" + panel.name + ".svg"), panel);
+}
+
+void ExperimentCommand::realSegmentation(OutputSet &files, std::ostream &csv) const {
+    const RealScanChoice choice =
+        chooseScans({RealScanKind::Corridor, RealScanKind::EmptyRoom, RealScanKind::Laboratory});
+    csv << "kind,scan,points,clusters,outliers\n";
+    std::size_t kind = 0;
+    for (const char *title : {"corridor", "empty-room", "laboratory"}) {
+        const RealScan &scan = choice.best(kind++);
+        csv << title << ',' << scan.number << ',' << scan.points() << ',' << scan.clusters.size() << ','
+            << scan.outliers.size() << '\n';
+        pictureOfClusters(title, scan).write(open(files, '-' + std::string(title) + ".svg"));
+    }
+}
+
+void ExperimentCommand::threshold(OutputSet &files, std::ostream &csv) const {
+    const ThresholdExperiment experiment(options.seed);
+    experiment.writeCsv(csv);
+    tell(open(files, ".json"), experiment.summary());
+    draw(files, {{experiment.errorPlot()}, {}, {}});
+    experiment.pictureOfClouds().write(open(files, "-clouds.svg"));
+    experiment.pictureOfLines().write(open(files, "-lines.svg"));
+}
+
 void ExperimentCommand::semicircle(OutputSet &files, std::ostream &csv) const {
     const std::vector<ResultRow> rows = semicircleExperiment(options);
     writeCsv(csv, rows);
@@ -28,6 +61,7 @@ void ExperimentCommand::semicircle(OutputSet &files, std::ostream &csv) const {
         text << "-sigma" << sigma;
         draw(files, {plotsOf("semicircle, sigma " + text.str().substr(6) + " m", some), {}, {}}, text.str());
     }
+    drawSemicircle(open(files, "-cloud.svg"));
 }
 
 void ExperimentCommand::edges(OutputSet &files, std::ostream &csv) const {
@@ -105,19 +139,37 @@ void ExperimentCommand::quality(OutputSet &files, std::ostream &csv, const std::
     draw(files, {plotsOf(title, rows), {}, {}});
 }
 
+RealScanChoice ExperimentCommand::chooseScans(const std::vector<RealScanKind> &kinds) const {
+    if (logs.size() != 1)
+        throw CLI::ValidationError("--log", "the experiment " + name +
+                                                " needs the name of a CARMEN log or of a capture");
+    RealScanChoice choice(kinds);
+    MapSourceOptions source;
+    source.path = logs[0];
+    source.sensor = sensor;
+    const MapSourceReport report =
+        readMapScans(source, [&choice](const MapScan &scan, std::size_t number, std::size_t) {
+            if (scan.fault == MapScan::Fault::None)
+                choice.take(number, scan);
+        });
+    report.warn(std::cerr);
+    if (choice.best(0).points() == 0)
+        throw Failure(logs[0] + ": no whole scan has ten returns in clusters");
+    return choice;
+}
+
 void ExperimentCommand::realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const {
-    const RealScanResult result = realScanExperiment(readLog().scans, kind);
-    if (result.points == 0)
-        throw Failure(logs[0] + ": no scan has returns on half of its rays");
+    const RealScanResult result = realScanExperiment(chooseScans({kind}).best(0));
     writeCsv(csv, result);
-    writeLatex(open(files, ".tex"), name, result);
-    vector::draw(open(files, ".svg"), name, result);
+    draw(files, {{}, {}, {tableOf(name, result)}});
+    pictureOf(name, result).write(open(files, ".svg"));
 }
 
 void ExperimentCommand::scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
     const std::vector<ResultRow> rows = sceneExperiment(scene, options);
     writeCsv(csv, rows);
-    draw(files, {plotsOf(scene.title, rows), {}, {}});
+    draw(files, {plotsOf(scene.title, rows), {}, {lineTable(scene.title, rows)}});
+    drawCloud(open(files, "-cloud.svg"), scene, options);
 }
 
 } // namespace hermes::vector

@@ -60,7 +60,8 @@ void TestExperiments::writesTablePlotsAndDocument() {
     QCOMPARE(run({"corners", "--runs", "2", "--max-points", "500", "--out", folder.filePath("new")}), 0);
     const auto rows = lines(folder.filePath("new/corners.csv"));
     QCOMPARE(rows.value(0),
-             QByteArray("sigma,points,algorithm,runs,lines_true,lines_found,lines_percent,area_m2,time_us"));
+             QByteArray("sigma,points,algorithm,runs,lines_true,lines_found,lines_percent,lines_low,"
+                        "lines_high,area_m2,area_low_m2,area_high_m2,time_us"));
     QVERIFY(rows.size() >= 3);
     QVERIFY(rows.value(1).startsWith("0.02,200,"));
     QVERIFY(lines(folder.filePath("new/corners.tex")).last() == "\\end{document}");
@@ -282,10 +283,11 @@ void TestExperiments::realScansAreShown() {
     for (const char *name : {"empty-room", "corridor", "laboratory"}) {
         QVERIFY2(run({name, "--log", log, "--out", folder.path()}) == 0, error_);
         const auto rows = lines(folder.filePath(QString("%1.csv").arg(name)));
-        QCOMPARE(rows.value(0), QByteArray("scan,points,clusters,algorithm,lines,time_us"));
+        QCOMPARE(rows.value(0), QByteArray("scan,points,clusters,lines_reference,algorithm,lines,"
+                                           "lines_percent,time_us,time_percent"));
         QCOMPARE(rows.size(), 7); // algorithms
         for (const QByteArray &row : rows.mid(1))
-            QVERIFY2(row.split(',')[4].toInt() > 0, row);
+            QVERIFY2(row.split(',')[5].toInt() > 0, row);
         QVERIFY(lines(folder.filePath(QString("%1.svg").arg(name))).last() == "</svg>");
         QCOMPARE(run({name, "--out", folder.path(), "--force"}), 2);
     }

@@ -35,10 +35,11 @@ void TestScenes::rightNumberOfLines() {
     for (const char *algorithm : {"FTLS", "AFTLS", "INC"})
         for (const ResultRow &row : results_[scene.toStdString()][algorithm])
             if (row.points >= 1000)
-                QVERIFY2(std::abs(row.linesPercent()) <= 1, qPrintable(QString("%1, %2 points: %3 lines")
-                                                                           .arg(algorithm)
-                                                                           .arg(row.points)
-                                                                           .arg(row.linesFound)));
+                QVERIFY2(std::abs(row.percent(row.lines.mean)) <= 1,
+                         qPrintable(QString("%1, %2 points: %3 lines")
+                                        .arg(algorithm)
+                                        .arg(row.points)
+                                        .arg(row.lines.mean)));
 }
 
 void TestScenes::errorAreaKeepsFalling() {
@@ -46,11 +47,11 @@ void TestScenes::errorAreaKeepsFalling() {
     const std::vector<ResultRow> &aftls = results_[scene.toStdString()]["AFTLS"];
     const std::vector<ResultRow> &ftls = results_[scene.toStdString()]["FTLS"];
     for (std::size_t i = 1; i < aftls.size(); ++i)
-        QVERIFY2(aftls[i].area < aftls[i - 1].area, qPrintable(QString("%1 points: %2 m^2, then %3")
-                                                                   .arg(aftls[i].points)
-                                                                   .arg(aftls[i - 1].area)
-                                                                   .arg(aftls[i].area)));
-    QVERIFY(aftls.back().area <= ftls.back().area);
+        QVERIFY2(aftls[i].area.mean < aftls[i - 1].area.mean, qPrintable(QString("%1 points: %2 m^2, then %3")
+                                                                             .arg(aftls[i].points)
+                                                                             .arg(aftls[i - 1].area.mean)
+                                                                             .arg(aftls[i].area.mean)));
+    QVERIFY(aftls.back().area.mean <= ftls.back().area.mean);
 }
 
 QTEST_APPLESS_MAIN(TestScenes)

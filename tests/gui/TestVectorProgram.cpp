@@ -45,7 +45,7 @@ private Q_SLOTS:
 
     void vectorizeFindsTheWalls_data() {
         QTest::addColumn<QString>("algorithm");
-        for (const char *algorithm : {"ftls", "aftls", "inc", "dp", "rw", "sam"})
+        for (const char *algorithm : {"ftls", "aftls", "inc", "dp", "rw", "rw-adjacent", "sam"})
             QTest::newRow(algorithm) << algorithm;
     }
     void vectorizeFindsTheWalls() {

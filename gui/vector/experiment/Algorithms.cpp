@@ -1,10 +1,8 @@
 #include "gui/vector/experiment/Algorithms.h"
 
-#include "vectorlib/vectorization/AftlsVectorizer.h"
 #include "vectorlib/vectorization/DouglasPeuckerVectorizer.h"
 #include "vectorlib/vectorization/FtlsVectorizer.h"
 #include "vectorlib/vectorization/IncVectorizer.h"
-#include "vectorlib/vectorization/ReumannWitkamVectorizer.h"
 #include "vectorlib/vectorization/SplitAndMergeVectorizer.h"
 
 namespace hermes::vector {
@@ -26,6 +24,13 @@ std::vector<Algorithm> comparedAlgorithms(double sigma, bool polyline) {
             make<vectorlib::DouglasPeuckerVectorizer>("dp", "DP", "#000000", sigma, polyline),
             make<vectorlib::ReumannWitkamVectorizer>("rw", "RW", "#9a9a9a", sigma, polyline),
             make<vectorlib::SplitAndMergeVectorizer>("sam", "SAM", "#0072b2", sigma, polyline)};
+}
+
+std::vector<Algorithm> sceneAlgorithms(double sigma) {
+    std::vector<Algorithm> all = comparedAlgorithms(sigma, true);
+    all.push_back(make<NelderMeadAftls>("aftls", "AFTLS-NM", "#e69f00", sigma, true));
+    all.push_back(make<AdjacentReumannWitkam>("rw-adjacent", "RW-adjacent", "#cc79a7", sigma, true));
+    return all;
 }
 
 std::vector<Algorithm> polylineExtractors(double sigma) {

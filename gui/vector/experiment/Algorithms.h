@@ -15,8 +15,11 @@ struct Algorithm {
 /// Those that the experiments of thesis 6.5 compare, for a standard deviation sigma (metres) of points from
 /// their line; those that eliminate points take 3 sigma as their distance.
 std::vector<Algorithm> comparedAlgorithms(double sigma, bool polyline);
-/// The same for the comparison of polylines: split-and-merge twice, as published, where every line keeps its
-/// own ends (SAM), and with our post-processing (SAM+).
+/// The same and their variants, for figures 6.8 to 6.10: AFTLS with the published search (AFTLS-NM), and
+/// Reumann-Witkam by adjacent points (RW-adjacent).
+std::vector<Algorithm> sceneAlgorithms(double sigma);
+/// Those of comparedAlgorithms() for the comparison of polylines: split-and-merge twice, as published, where
+/// every line keeps its own ends (SAM), and with our post-processing (SAM+).
 std::vector<Algorithm> polylineExtractors(double sigma);
 
 } // namespace hermes::vector

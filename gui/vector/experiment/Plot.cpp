@@ -40,11 +40,37 @@ std::string latexText(const std::string &text) {
     return result;
 }
 
+/// Where the band of a curve is shown: there and back again, a closed outline.
+std::vector<std::pair<double, double>> outlineOf(const Curve &curve, const Plot &plot) {
+    std::vector<std::pair<double, double>> low, outline;
+    for (std::size_t i = 0; i < curve.band.size() && i < curve.points.size(); ++i) {
+        const std::pair<double, double> below(curve.points[i].first, curve.band[i].first),
+            above(curve.points[i].first, curve.band[i].second);
+        if (placeOf(plot, below) != Place::Shown || placeOf(plot, above) != Place::Shown)
+            continue;
+        low.push_back(below);
+        outline.push_back(above);
+    }
+    outline.insert(outline.end(), low.rbegin(), low.rend());
+    return outline;
+}
+
+void writeBand(std::ostream &out, const Curve &curve, const std::string &colour, const Plot &plot) {
+    const auto outline = outlineOf(curve, plot);
+    if (outline.empty())
+        return;
+    out << "\\addplot[draw=none, fill=" << colour << ", fill opacity=0.25, forget plot] coordinates {";
+    for (const auto &point : outline)
+        out << " (" << Number(point.first) << ',' << Number(point.second) << ')';
+    out << "} \\closedcycle;\n";
+}
+
 void writeLatex(std::ostream &out, const Curve &curve, const std::string &colour, const Plot &plot) {
     std::string rgb = curve.colour.substr(1);
     std::transform(rgb.begin(), rgb.end(), rgb.begin(), [](unsigned char c) { return std::toupper(c); });
-    out << "\\definecolor{" << colour << "}{HTML}{" << rgb << "}\n\\addplot[color=" << colour
-        << (plot.isDrawing ? "" : ", mark=*, mark size=1pt, thick")
+    out << "\\definecolor{" << colour << "}{HTML}{" << rgb << "}\n";
+    writeBand(out, curve, colour, plot);
+    out << "\\addplot[color=" << colour << (plot.isDrawing ? "" : ", mark=*, mark size=1pt, thick")
         << (curve.label.empty() ? ", forget plot" : "") << "] coordinates {";
     for (const auto &point : curve.points) {
         const Place place = placeOf(plot, point);
@@ -105,11 +131,21 @@ void writeGnuplot(std::ostream &out, const Plot &plot) {
         << "set grid lc rgb '#dddddd'\nset key outside right top\n"
         << (plot.xLogarithmic ? "set logscale x\n" : "") << (plot.yLogarithmic ? "set logscale y\n" : "")
         << (plot.isDrawing ? "set size ratio -1\n" : "") << "plot";
+    for (const Curve &curve : plot.curves)
+        if (!outlineOf(curve, plot).empty())
+            out << " '-' using 1:2 with filledcurves closed fs transparent solid 0.25 noborder lc rgb '"
+                << curve.colour << "' notitle,";
     for (std::size_t i = 0; i < plot.curves.size(); ++i)
         out << (i ? "," : "") << " '-' using 1:2 with "
             << (plot.isDrawing ? "lines lw 1.5" : "linespoints pt 7 ps 0.5 lw 2") << " lc rgb '"
             << plot.curves[i].colour << "' title '" << plot.curves[i].label << "'";
     out << '\n';
+    for (const Curve &curve : plot.curves)
+        if (const auto outline = outlineOf(curve, plot); !outline.empty()) {
+            for (const auto &point : outline)
+                out << Number(point.first) << ' ' << Number(point.second) << '\n';
+            out << "e\n";
+        }
     for (const Curve &curve : plot.curves) {
         for (const auto &point : curve.points) {
             const Place place = placeOf(plot, point);

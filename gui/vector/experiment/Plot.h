@@ -13,6 +13,7 @@ struct Curve {
     std::string label; ///< none in the legend when empty
     std::string colour;
     std::vector<std::pair<double, double>> points;
+    std::vector<std::pair<double, double>> band = {}; ///< lowest and highest y at each point; empty: none
 };
 
 /// A plot of several curves.

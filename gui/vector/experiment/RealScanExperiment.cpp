@@ -1,125 +1,89 @@
 #include "gui/vector/experiment/RealScanExperiment.h"
 
 #include "gui/vector/experiment/Algorithms.h"
-#include "gui/vector/experiment/QualityScan.h"
+#include "gui/vector/experiment/FewestLines.h"
 #include "gui/vector/experiment/Timing.h"
-#include "gui/vector/report/Drawing.h"
-#include "vectorlib/io/Svg.h"
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace hermes::vector {
 
 namespace {
 
+using vectorlib::Fixed;
 using vectorlib::Number;
-using Segments = std::vector<vectorlib::LineSegment2D<double>>;
 
-constexpr double scanSigma = 0.02; // metres, as in thesis 6.5.2
-constexpr std::size_t fewestPoints = 10;
-
-Segments vectorize(const Algorithm &algorithm, const QualityScan &scan) {
-    Segments segments;
-    for (const QualityCluster &cluster : scan)
-        for (const vectorlib::VectorizedLine &line : algorithm.run(cluster.points))
-            if (line.segment.isFinite())
-                segments.push_back(line.segment);
-    return segments;
+std::size_t countLines(const Algorithm &algorithm, const RealScan &scan) {
+    std::size_t lines = 0;
+    for (const auto &cluster : scan.clusters)
+        for (const vectorlib::VectorizedLine &line : algorithm.run(cluster))
+            lines += line.segment.isFinite();
+    return lines;
 }
 
-// How much a scan is what is looked for. The mean of the directions' doubled angles, by length, is near 1
-// when all lines are parallel.
-double score(const Segments &segments, RealScanKind kind) {
-    double length = 0, x = 0, y = 0;
-    for (const auto &s : segments) {
-        const vectorlib::Vector2D<double> d = s.direction();
-        length += s.length();
-        x += s.length() * (d.x * d.x - d.y * d.y);
-        y += s.length() * 2 * d.x * d.y;
-    }
-    const double lines = static_cast<double>(segments.size());
-    if (kind == RealScanKind::Laboratory)
-        return lines;
-    const double parallel = length > 0 ? std::hypot(x, y) / length : 0;
-    return length / std::max(lines, 1.0) * (kind == RealScanKind::Corridor ? parallel : 1 - parallel);
+std::string withPercent(const std::string &value, double percent) {
+    std::ostringstream text;
+    text << value << (percent < 0 ? " ($-$" : " (+") << Fixed{std::abs(percent), 0} << " \\%)";
+    return text.str();
 }
 
 } // namespace
 
-RealScanResult realScanExperiment(const std::vector<vectorlib::CarmenScan> &scans, RealScanKind kind) {
-    const std::vector<Algorithm> algorithms = comparedAlgorithms(scanSigma, true);
-    const auto ftls = std::find_if(algorithms.begin(), algorithms.end(),
-                                   [](const Algorithm &a) { return a.name == "ftls"; });
+RealScanResult realScanExperiment(const RealScan &scan) {
     RealScanResult result;
-    QualityScan chosen;
-    double best = -1;
-    for (std::size_t i = 0; i < scans.size(); ++i) {
-        QualityScan scan = logScan(scans[i]);
-        std::size_t points = 0;
-        for (const QualityCluster &cluster : scan)
-            points += cluster.points.size();
-        if (points < std::max(fewestPoints, scans[i].ranges.size() / 2)) // too little of a room
-            continue;
-        Segments segments = vectorize(*ftls, scan);
-        if (const double s = score(segments, kind); s > best) {
-            best = s;
-            result.scan = i;
-            result.points = points;
-            result.segments = std::move(segments);
-            chosen = std::move(scan);
-        }
-    }
-    result.clusters = chosen.size();
-    for (const QualityCluster &cluster : chosen)
-        result.clouds.push_back(cluster.points);
+    result.scan = scan;
+    for (const auto &cluster : scan.clusters)
+        result.linesReference += fewestLines(vectorlib::PointSpan<float>(cluster), realScanSigma);
+    std::vector<Algorithm> algorithms = comparedAlgorithms(realScanSigma, true);
+    std::stable_partition(algorithms.begin(), algorithms.end(),
+                          [](const Algorithm &a) { return a.name == "ftls"; });
     for (const Algorithm &algorithm : algorithms) {
         const double us = timeOf([&] {
-            for (const QualityCluster &cluster : chosen)
-                algorithm.run(cluster.points);
+            for (const auto &cluster : scan.clusters)
+                algorithm.run(cluster);
         });
-        result.rows.push_back({algorithm.label, vectorize(algorithm, chosen).size(), us});
+        result.rows.push_back({algorithm.label, countLines(algorithm, scan), us});
     }
     return result;
 }
 
 void writeCsv(std::ostream &out, const RealScanResult &result) {
-    out << "scan,points,clusters,algorithm,lines,time_us\n";
+    out << "scan,points,clusters,lines_reference,algorithm,lines,lines_percent,time_us,time_percent\n";
     for (const RealScanResult::Row &row : result.rows)
-        out << result.scan << ',' << result.points << ',' << result.clusters << ',' << row.algorithm << ','
-            << row.lines << ',' << Number(row.microseconds) << '\n';
+        out << result.scan.number << ',' << result.scan.points() << ',' << result.scan.clusters.size() << ','
+            << result.linesReference << ',' << row.algorithm << ',' << row.lines << ','
+            << Number(result.linesPercent(row)) << ',' << Number(row.microseconds) << ','
+            << Number(result.timePercent(row)) << '\n';
 }
 
-void draw(std::ostream &svg, const std::string &title, const RealScanResult &result) {
-    vectorlib::SvgPicture picture(title + ": scan " + std::to_string(result.scan) + ", " +
-                                  std::to_string(result.points) + " points, " +
-                                  std::to_string(result.segments.size()) + " lines of FTLS");
-    for (std::size_t c = 0; c < result.clouds.size(); ++c)
-        picture.points({vectorlib::colour::points, 3, c == 0 ? "points" : ""}, result.clouds[c]);
-    std::vector<vectorlib::LineSegment2D<float>> segments(result.segments.begin(), result.segments.end());
-    picture.segments({vectorlib::colour::distinct(0), 2, "FTLS"}, segments);
-    picture.write(svg);
+vectorlib::SvgPicture pictureOf(const std::string &title, const RealScanResult &result) {
+    const RealScan &scan = result.scan;
+    vectorlib::SvgPicture picture(title + ": scan " + std::to_string(scan.number) + ", " +
+                                  std::to_string(scan.points()) + " points, " +
+                                  std::to_string(scan.segments.size()) + " lines of FTLS");
+    for (std::size_t c = 0; c < scan.clusters.size(); ++c)
+        picture.points({vectorlib::colour::points, 3, c == 0 ? "points" : ""}, scan.clusters[c]);
+    picture.segments({vectorlib::colour::distinct(0), 2, "FTLS"}, scan.segments);
+    return picture;
 }
 
-void writeLatex(std::ostream &out, const std::string &title, const RealScanResult &result) {
-    double reach = 1;
-    for (const auto &cloud : result.clouds)
-        for (const auto &p : cloud)
-            reach = std::max({reach, std::abs(double(p.x)), std::abs(double(p.y))});
-    out << "\\documentclass{article}\n\\usepackage{tikz}\n\\begin{document}\n\\section*{" << latexText(title)
-        << "}\nScan " << result.scan << ": " << result.points << " points in " << result.clusters
-        << " clusters.\n\n\\begin{tikzpicture}[scale=" << Number(6 / reach) << "]\n";
-    for (const auto &cloud : result.clouds)
-        for (const auto &p : cloud)
-            out << "\\fill[gray] (" << Number(p.x) << ',' << Number(p.y) << ") circle[radius=0.6pt];\n";
-    for (const auto &s : result.segments)
-        out << "\\draw[thick] (" << Number(s.begin().x) << ',' << Number(s.begin().y) << ") -- ("
-            << Number(s.end().x) << ',' << Number(s.end().y) << ");\n";
-    out << "\\end{tikzpicture}\n\n\\begin{tabular}{lrr}\nalgorithm & lines & time [us] \\\\ \\hline\n";
+Table tableOf(const std::string &title, const RealScanResult &result) {
+    Table table{title, {"Point cloud statistics", ""}, {}};
+    table.rows = {{"Points", std::to_string(result.scan.points())},
+                  {"Lines (fewest within sigma)", std::to_string(result.linesReference)},
+                  {"\\hline Extracted lines", ""}};
     for (const RealScanResult::Row &row : result.rows)
-        out << latexText(row.algorithm) << " & " << row.lines << " & " << Number(row.microseconds)
-            << " \\\\\n";
-    out << "\\end{tabular}\n\\end{document}\n";
+        table.rows.push_back(
+            {row.algorithm, withPercent(std::to_string(row.lines), result.linesPercent(row))});
+    table.rows.push_back({"\\hline Processing time [$\\mu$s]", ""});
+    for (const RealScanResult::Row &row : result.rows) {
+        std::ostringstream time;
+        time << Fixed{row.microseconds, 1};
+        table.rows.push_back({row.algorithm, withPercent(time.str(), result.timePercent(row))});
+    }
+    return table;
 }
 
 } // namespace hermes::vector

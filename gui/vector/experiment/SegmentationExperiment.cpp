@@ -19,13 +19,15 @@ bool isOutlier(const Scene &scene, vectorlib::Vector2D<float> point, double sigm
     return true;
 }
 
-SegmentationPanel measure(const Scene &scene, double noise, double outlierShare, std::uint64_t seed) {
+// A scan without noise and outliers tells how many clusters there are.
+SegmentationPanel measure(const Scene &scene, double noise, double outlierShare, std::uint64_t seed,
+                          const vectorlib::EarSettings &settings) {
     vectorlib::SimulatedScanner<float> scan(seed);
     scan.rays = scanRays;
     scan.sigma = noise;
     scan.outliers = outlierShare;
     vectorlib::EarSegmenter<float> segment;
-    segment.settings.nominalPoints = scanRays;
+    segment.settings = settings;
 
     SegmentationPanel panel;
     panel.noise = noise;
@@ -44,30 +46,86 @@ SegmentationPanel measure(const Scene &scene, double noise, double outlierShare,
     return panel;
 }
 
+constexpr const char *panelColumns =
+    "noise,outlier_share,points,clusters_true,clusters,outliers_true,outliers_found,points_lost";
+
+std::ostream &operator<<(std::ostream &out, const SegmentationPanel &p) {
+    using vectorlib::Number;
+    return out << Number(p.noise) << ',' << Number(p.outlierShare) << ',' << p.points << ',' << p.clustersTrue
+               << ',' << p.clusters << ',' << p.outliersTrue << ',' << p.outliersFound << ',' << p.pointsLost;
+}
+
+vectorlib::EarSettings thesisSettings() {
+    vectorlib::EarSettings settings;
+    settings.nominalPoints = scanRays;
+    return settings;
+}
+
+// Thesis figure 5.3: walls 20 cm from the scanner, where the threshold is 6 mm.
+Scene nearWalls() {
+    Scene scene{"near", "walls 20 cm away", {}};
+    scene.edges = {vectorlib::LineSegment2D<float>({-0.5f, -0.2f}, {0.5f, -0.2f}),
+                   vectorlib::LineSegment2D<float>({0.5f, 0.2f}, {-0.5f, 0.2f})};
+    return scene;
+}
+
+// Thesis figure 5.4: a near wall to the left; to the right, 16 m away, posts 40 cm before another, where the
+// threshold is 50 cm.
+Scene farPosts() {
+    Scene scene{"far", "a wall 16 m away with posts before it", {}};
+    scene.edges = {vectorlib::LineSegment2D<float>({16, -14}, {16, 14}),
+                   vectorlib::LineSegment2D<float>({-2, 2}, {-2, -2})};
+    for (const float y : {-10.f, -5.f, 0.f, 5.f, 10.f})
+        scene.edges.emplace_back(vectorlib::Vector2D<float>(15.6f, y - 0.5f),
+                                 vectorlib::Vector2D<float>(15.6f, y + 0.5f));
+    return scene;
+}
+
 } // namespace
 
 std::vector<SegmentationPanel> segmentationExperiment(const Scene &scene, std::uint64_t seed) {
-    const std::size_t clustersTrue = measure(scene, 0, 0, seed).clusters;
+    const std::size_t clustersTrue = measure(scene, 0, 0, seed, thesisSettings()).clusters;
     std::vector<SegmentationPanel> panels;
     for (const double noise : {0.01, 0.03, 0.06})
         for (const double outliers : {0.0, 0.1, 0.2}) {
-            panels.push_back(measure(scene, noise, outliers, seed));
+            panels.push_back(measure(scene, noise, outliers, seed, thesisSettings()));
             panels.back().clustersTrue = clustersTrue;
         }
     return panels;
 }
 
-void writeCsv(std::ostream &out, const std::vector<SegmentationPanel> &panels) {
-    using vectorlib::Number;
-    out << "noise,outlier_share,points,clusters_true,clusters,outliers_true,outliers_found,points_lost\n";
-    for (const SegmentationPanel &p : panels)
-        out << Number(p.noise) << ',' << Number(p.outlierShare) << ',' << p.points << ',' << p.clustersTrue
-            << ',' << p.clusters << ',' << p.outliersTrue << ',' << p.outliersFound << ',' << p.pointsLost
-            << '\n';
+std::vector<AdaptiveThresholdPanel> adaptiveThresholdExperiment(std::uint64_t seed) {
+    const vectorlib::EarSettings bounded = thesisSettings();
+    vectorlib::EarSettings noLower = bounded, noUpper = bounded;
+    noLower.minThreshold = 0;
+    noUpper.maxThreshold = 1e6;
+    std::vector<AdaptiveThresholdPanel> panels{
+        {"near-unbounded", "threshold without lower bound", nearWalls(), noLower, {}},
+        {"near-bounded", "threshold of at least 5 cm", nearWalls(), bounded, {}},
+        {"far-unbounded", "threshold without upper bound", farPosts(), noUpper, {}},
+        {"far-bounded", "threshold of at most 20 cm", farPosts(), bounded, {}}};
+    for (AdaptiveThresholdPanel &p : panels) {
+        p.panel = measure(p.scene, 0.01, p.scene.name == "far" ? 0.2 : 0, seed, p.settings);
+        p.panel.clustersTrue = measure(p.scene, 0, 0, seed, bounded).clusters;
+    }
+    return panels;
 }
 
-void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel) {
-    vectorlib::SvgPicture picture(scene.title + ", noise " + std::to_string(std::lround(100 * panel.noise)) +
+void writeCsv(std::ostream &out, const std::vector<SegmentationPanel> &panels) {
+    out << panelColumns << '\n';
+    for (const SegmentationPanel &p : panels)
+        out << p << '\n';
+}
+
+void writeCsv(std::ostream &out, const std::vector<AdaptiveThresholdPanel> &panels) {
+    out << "case," << panelColumns << '\n';
+    for (const AdaptiveThresholdPanel &p : panels)
+        out << p.name << ',' << p.panel << '\n';
+}
+
+static void draw(std::ostream &svg, const std::string &what, const Scene &scene,
+                 const SegmentationPanel &panel) {
+    vectorlib::SvgPicture picture(what + ", noise " + std::to_string(std::lround(100 * panel.noise)) +
                                   " cm, " + std::to_string(std::lround(100 * panel.outlierShare)) +
                                   " % outliers: " + std::to_string(panel.clusters) + " clusters, " +
                                   std::to_string(panel.clustersTrue) + " without noise");
@@ -80,7 +138,16 @@ void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel)
     for (std::size_t c = 0; c < clusters.size(); ++c)
         picture.points({vectorlib::colour::distinct(c), 3, c == 0 ? "clusters" : ""}, clusters[c]);
     picture.points({vectorlib::colour::outliers, 3, "outliers"}, outliers);
+    picture.pose({vectorlib::colour::map, 2, "scanner"}, {}, 0);
     picture.write(svg);
+}
+
+void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel) {
+    draw(svg, scene.title, scene, panel);
+}
+
+void draw(std::ostream &svg, const AdaptiveThresholdPanel &panel) {
+    draw(svg, panel.scene.title + ", " + panel.title, panel.scene, panel.panel);
 }
 
 } // namespace hermes::vector

@@ -2,6 +2,8 @@
 
 #include "gui/vector/experiment/Scene.h"
 
+#include "vectorlib/segmentation/EarSettings.h"
+
 #include <cstdint>
 #include <ostream>
 #include <vector>
@@ -23,10 +25,26 @@ struct SegmentationPanel {
     std::vector<int> labels;
 };
 
+/// One panel of figures 5.3 and 5.4: the adaptive threshold with and without its bounds.
+struct AdaptiveThresholdPanel {
+    std::string name; ///< in file names
+    std::string title;
+    Scene scene;
+    vectorlib::EarSettings settings;
+    SegmentationPanel panel;
+};
+
 /// Nine panels: noise of 1, 3 and 6 cm by 0, 10 and 20 % outliers; 2,000 rays, the settings of thesis 5.3.
 std::vector<SegmentationPanel> segmentationExperiment(const Scene &scene, std::uint64_t seed);
 
+/// A wall so near that the threshold is less than the noise, without and with the lower bound; and posts
+/// before a far wall, among outliers, without and with the upper one. 2,000 rays, noise of 1 cm.
+std::vector<AdaptiveThresholdPanel> adaptiveThresholdExperiment(std::uint64_t seed);
+
 void writeCsv(std::ostream &out, const std::vector<SegmentationPanel> &panels);
+void writeCsv(std::ostream &out, const std::vector<AdaptiveThresholdPanel> &panels);
+/// The same for one of those.
+void draw(std::ostream &svg, const AdaptiveThresholdPanel &panel);
 /// Clusters in colours, outliers in red, the true edges beneath.
 void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel);
 

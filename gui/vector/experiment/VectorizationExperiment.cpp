@@ -7,6 +7,8 @@
 #include "vectorlib/segmentation/EarSegmenter.h"
 
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
 
 namespace hermes::vector {
 
@@ -16,8 +18,7 @@ using Point = vectorlib::Vector2D<float>;
 using Cluster = std::vector<Point>;
 
 constexpr std::size_t pointCounts[] = {200, 500, 1000, 2000, 5000, 10000, 20000};
-constexpr double scannerNoise = 0.01; // metres
-constexpr double sceneSigma = 0.02;   // metres
+constexpr double sceneSigma = 0.02; // metres
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -25,15 +26,33 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-std::vector<Cluster> clustersOf(const std::vector<Point> &scan, std::size_t rays) {
+using Coordinates = vectorlib::EarSettings::Coordinates;
+
+std::vector<Cluster> clustersOf(const std::vector<Point> &scan, std::size_t rays, Coordinates coordinates) {
     vectorlib::EarSegmenter<float> segment;
     segment.settings.nominalPoints = rays;
+    segment.settings.coordinates = coordinates;
     const vectorlib::Segmentation &found = segment(scan);
     std::vector<Cluster> clusters(found.size());
     for (std::size_t c = 0; c < found.size(); ++c)
         for (std::size_t i = found.starts[c]; i < found.starts[c + 1]; ++i)
             clusters[c].push_back(scan[static_cast<std::size_t>(found.order[i])]);
     return clusters;
+}
+
+/// An algorithm behind segmentation in the coordinates.
+struct Contender : Algorithm {
+    Coordinates coordinates = Coordinates::Cartesian;
+};
+
+std::vector<Contender> sceneContenders() {
+    std::vector<Contender> all;
+    for (const Algorithm &algorithm : sceneAlgorithms(sceneSigma))
+        all.push_back({algorithm, Coordinates::Cartesian});
+    all.push_back({all.front(), Coordinates::Polar});
+    all.back().label += "-polar";
+    all.back().colour = "#a0522d";
+    return all;
 }
 
 /// Collects what one algorithm does on several scans.
@@ -49,8 +68,8 @@ public:
             for (const vectorlib::VectorizedLine &line : algorithm_.run(cluster))
                 if (line.segment.isFinite())
                     found.emplace_back(line.segment);
-        lines_ += static_cast<double>(found.size());
-        area_ += truth.empty() ? 0 : errorArea(truth, found);
+        lines_.push_back(static_cast<double>(found.size()));
+        areas_.push_back(truth.empty() ? 0 : errorArea(truth, found));
         times_.push_back(timeOf([&] {
             for (const Cluster &cluster : clusters)
                 algorithm_.run(cluster);
@@ -63,19 +82,27 @@ public:
         r.algorithm = algorithm_.label;
         r.runs = static_cast<int>(times_.size());
         r.linesTrue = static_cast<double>(linesTrue);
-        r.linesFound = lines_ / r.runs;
-        r.area = area_ / r.runs;
+        r.lines = MeanBand::of(lines_);
+        r.area = MeanBand::of(areas_);
         r.microseconds = median(times_);
         return r;
     }
 
 private:
     const Algorithm &algorithm_;
-    double lines_ = 0, area_ = 0;
-    std::vector<double> times_;
+    std::vector<double> lines_, areas_, times_;
 };
 
 } // namespace
+
+std::vector<Point> semicircle(std::size_t count) {
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double angle = vectorlib::pi * static_cast<double>(i) / static_cast<double>(count - 1);
+        points.emplace_back(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)));
+    }
+    return points;
+}
 
 std::vector<ResultRow> semicircleExperiment(const ExperimentOptions &options) {
     std::vector<ResultRow> rows;
@@ -88,11 +115,7 @@ std::vector<ResultRow> semicircleExperiment(const ExperimentOptions &options) {
                 options.progress(++done, 10 * std::size(sigmas));
             if (n > options.maxPoints)
                 continue;
-            Cluster arc;
-            for (std::size_t i = 0; i < n; ++i) {
-                const double angle = vectorlib::pi * static_cast<double>(i) / static_cast<double>(n - 1);
-                arc.emplace_back(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)));
-            }
+            const Cluster arc = semicircle(n);
             for (const Algorithm &algorithm : comparedAlgorithms(sigma, false)) {
                 Collector collector(algorithm);
                 collector.take({arc}, {});
@@ -109,15 +132,18 @@ std::vector<ResultRow> sceneExperiment(const Scene &scene, const ExperimentOptio
     for (const std::size_t n : pointCounts) {
         if (n > options.maxPoints)
             continue;
-        const std::vector<Algorithm> algorithms = comparedAlgorithms(sceneSigma, true);
-        std::vector<Collector> collectors(algorithms.begin(), algorithms.end());
-        vectorlib::SimulatedScanner<float> scan(options.seed);
-        scan.rays = static_cast<int>(n);
-        scan.sigma = scannerNoise;
+        const std::vector<Contender> contenders = sceneContenders();
+        std::vector<Collector> collectors(contenders.begin(), contenders.end());
+        vectorlib::SimulatedScanner<float> scanner(options.seed);
+        scanner.rays = static_cast<int>(n);
+        scanner.sigma = options.noise;
         for (int run = 0; run < options.runs; ++run) {
-            const std::vector<Cluster> clusters = clustersOf(scan(scene.edges, {}), n);
-            for (Collector &collector : collectors)
-                collector.take(clusters, truth);
+            const std::vector<Point> &scan = scanner(scene.edges, {});
+            const std::vector<Cluster> cartesian = clustersOf(scan, n, Coordinates::Cartesian),
+                                       polar = clustersOf(scan, n, Coordinates::Polar);
+            for (std::size_t c = 0; c < contenders.size(); ++c)
+                collectors[c].take(contenders[c].coordinates == Coordinates::Polar ? polar : cartesian,
+                                   truth);
             if (options.progress)
                 options.progress(++done, std::size(pointCounts) * static_cast<std::size_t>(options.runs));
         }
@@ -129,37 +155,64 @@ std::vector<ResultRow> sceneExperiment(const Scene &scene, const ExperimentOptio
 
 void writeCsv(std::ostream &out, const std::vector<ResultRow> &rows) {
     using vectorlib::Number;
-    out << "sigma,points,algorithm,runs,lines_true,lines_found,lines_percent,area_m2,time_us\n";
+    out << "sigma,points,algorithm,runs,lines_true,lines_found,lines_percent,lines_low,lines_high,area_m2,"
+           "area_low_m2,area_high_m2,time_us\n";
     for (const ResultRow &r : rows)
         out << Number(r.sigma) << ',' << r.points << ',' << r.algorithm << ',' << r.runs << ','
-            << Number(r.linesTrue) << ',' << Number(r.linesFound) << ',' << Number(r.linesPercent()) << ','
-            << Number(r.area) << ',' << Number(r.microseconds) << '\n';
+            << Number(r.linesTrue) << ',' << Number(r.lines.mean) << ',' << Number(r.percent(r.lines.mean))
+            << ',' << Number(r.lines.low) << ',' << Number(r.lines.high) << ',' << Number(r.area.mean) << ','
+            << Number(r.area.low) << ',' << Number(r.area.high) << ',' << Number(r.microseconds) << '\n';
 }
 
 std::vector<Plot> plotsOf(const std::string &title, const std::vector<ResultRow> &rows) {
     const bool truth = !rows.empty() && rows.front().linesTrue > 0;
     std::vector<Plot> plots;
-    const auto add = [&](const char *name, const char *axis, bool logarithmic, auto quantity) {
-        Plot plot{name, title, "points", axis, true, logarithmic, {}};
-        for (const Algorithm &algorithm : comparedAlgorithms(sceneSigma, false)) {
-            Curve curve{algorithm.label, algorithm.colour, {}};
-            for (const ResultRow &row : rows)
-                if (row.algorithm == algorithm.label)
-                    curve.points.emplace_back(row.points, quantity(row));
+    const auto add = [&](const char *name, const char *axis, auto quantity) {
+        Plot plot{name, title, "points", axis, true, true, {}};
+        std::vector<Contender> contenders = sceneContenders();
+        std::reverse(contenders.begin(), contenders.end()); // where they coincide the first is seen
+        for (const Contender &contender : contenders) {
+            Curve curve{contender.label, contender.colour, {}};
+            for (const ResultRow &row : rows) {
+                if (row.algorithm != contender.label)
+                    continue;
+                const MeanBand band = quantity(row);
+                curve.points.emplace_back(row.points, band.mean);
+                curve.band.emplace_back(band.low, band.high);
+            }
             if (!curve.points.empty())
                 plot.curves.push_back(std::move(curve));
         }
         plots.push_back(std::move(plot));
     };
-    add("time", "time a scan [us]", true, [](const ResultRow &r) { return r.microseconds; });
+    add("time", "time a scan [us]", [](const ResultRow &r) {
+        return MeanBand{r.microseconds, r.microseconds, r.microseconds};
+    });
     if (truth) {
-        add("lines", "additional lines [percent]", false,
-            [](const ResultRow &r) { return r.linesPercent(); });
-        add("area", "error area [m^2]", true, [](const ResultRow &r) { return r.area; });
+        add("lines", "lines found / true lines", [](const ResultRow &r) {
+            return MeanBand{r.lines.mean / r.linesTrue, r.lines.low / r.linesTrue,
+                            r.lines.high / r.linesTrue};
+        });
+        add("area", "error area [m^2]", [](const ResultRow &r) { return r.area; });
     } else {
-        add("lines", "lines", true, [](const ResultRow &r) { return r.linesFound; });
+        add("lines", "lines", [](const ResultRow &r) { return r.lines; });
     }
     return plots;
+}
+
+Table lineTable(const std::string &title, const std::vector<ResultRow> &rows) {
+    Table table{title + ": additional lines in percent", {"points", "lines"}, {}};
+    for (const ResultRow &row : rows) {
+        if (row.points == rows.front().points)
+            table.header.push_back(row.algorithm);
+        const std::string points = std::to_string(row.points);
+        if (table.rows.empty() || table.rows.back().front() != points)
+            table.rows.push_back({points, std::to_string(std::lround(row.linesTrue))});
+        std::ostringstream cell;
+        cell << std::showpos << std::fixed << std::setprecision(1) << row.percent(row.lines.mean);
+        table.rows.back().push_back(cell.str());
+    }
+    return table;
 }
 
 } // namespace hermes::vector

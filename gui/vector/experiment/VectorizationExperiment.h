@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/experiment/MeanBand.h"
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/Scene.h"
 
@@ -14,28 +15,34 @@ struct ResultRow {
     std::string algorithm;   ///< label
     int runs = 0;            ///< scans, each with noise of its own
     double linesTrue = 0;    ///< 0 where there is no true number
-    double linesFound = 0;   ///< mean
-    double area = 0;         ///< mean error area; m^2
+    MeanBand lines;          ///< found
+    MeanBand area;           ///< error area; m^2
     double microseconds = 0; ///< median time of a scan, vectorization alone
 
-    double linesPercent() const { return linesTrue > 0 ? 100 * (linesFound / linesTrue - 1) : 0; }
+    double percent(double found) const { return linesTrue > 0 ? 100 * (found / linesTrue - 1) : 0; }
 };
 
 struct ExperimentOptions {
     int runs = 20; ///< scans with noise of their own for each number of points
     std::size_t maxPoints = 20000;
     std::uint64_t seed = 1;
+    double noise = 0.01; ///< of the range, standard deviation; metres
     std::function<void(std::size_t done, std::size_t all)> progress;
 };
 
+/// The points of thesis figure 6.7a, evenly spaced on half a circle of radius 1 m; two or more.
+std::vector<vectorlib::Vector2D<float>> semicircle(std::size_t count);
 /// Thesis figure 6.7: a semicircle of radius 1 m without noise, for sigma 0.03, 0.003 and 0.0003 m.
 std::vector<ResultRow> semicircleExperiment(const ExperimentOptions &options);
-/// Figures 6.8 to 6.10: scans of a scene with noise of 1 cm, segmented as in thesis 5.3, sigma 0.02 m.
+/// Figures 6.8 to 6.10: scans of a scene, segmented as in thesis 5.3, sigma 0.02 m. AFTLS also with the
+/// published search, and after segmentation in polar coordinates (AFTLS-polar).
 std::vector<ResultRow> sceneExperiment(const Scene &scene, const ExperimentOptions &options);
 
 void writeCsv(std::ostream &out, const std::vector<ResultRow> &rows);
-/// Time, lines (additional ones in percent where the true number is known) and error area (where there is
-/// one) over the number of points.
+/// Time, lines (for each true one where the number is known) and error area (where there is one) over the
+/// number of points, with the bands of their means.
 std::vector<Plot> plotsOf(const std::string &title, const std::vector<ResultRow> &rows);
+/// The table of additional lines in percent, as figures 6.8b to 6.10b have it.
+Table lineTable(const std::string &title, const std::vector<ResultRow> &rows);
 
 } // namespace hermes::vector
