@@ -73,9 +73,9 @@ Scene nearWalls() {
 // threshold is 50 cm.
 Scene farPosts() {
     Scene scene{"far", "a wall 16 m away with posts before it", {}};
-    scene.edges = {vectorlib::LineSegment2D<float>({16, -14}, {16, 14}),
+    scene.edges = {vectorlib::LineSegment2D<float>({16, -11}, {16, 11}),
                    vectorlib::LineSegment2D<float>({-2, 2}, {-2, -2})};
-    for (const float y : {-10.f, -5.f, 0.f, 5.f, 10.f})
+    for (const float y : {-7.5f, -2.5f, 2.5f, 7.5f})
         scene.edges.emplace_back(vectorlib::Vector2D<float>(15.6f, y - 0.5f),
                                  vectorlib::Vector2D<float>(15.6f, y + 0.5f));
     return scene;
@@ -105,7 +105,7 @@ std::vector<AdaptiveThresholdPanel> adaptiveThresholdExperiment(std::uint64_t se
         {"far-unbounded", "threshold without upper bound", farPosts(), noUpper, {}},
         {"far-bounded", "threshold of at most 20 cm", farPosts(), bounded, {}}};
     for (AdaptiveThresholdPanel &p : panels) {
-        p.panel = measure(p.scene, 0.01, p.scene.name == "far" ? 0.2 : 0, seed, p.settings);
+        p.panel = measure(p.scene, 0.01, p.scene.name == "far" ? 0.1 : 0, seed, p.settings);
         p.panel.clustersTrue = measure(p.scene, 0, 0, seed, bounded).clusters;
     }
     return panels;
