@@ -11,6 +11,7 @@ namespace hermes::vector {
 namespace {
 
 constexpr int scanRays = 2000;
+constexpr double reach = 20; // of the scanner; metres
 
 bool isOutlier(const Scene &scene, vectorlib::Vector2D<float> point, double sigma) {
     for (const auto &edge : scene.edges)
@@ -26,6 +27,7 @@ SegmentationPanel measure(const Scene &scene, double noise, double outlierShare,
     scan.rays = scanRays;
     scan.sigma = noise;
     scan.outliers = outlierShare;
+    scan.maxRange = reach;
     vectorlib::EarSegmenter<float> segment;
     segment.settings = settings;
 
