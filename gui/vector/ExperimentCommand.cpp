@@ -15,11 +15,13 @@ struct Experiment {
     const char *what;
     void (ExperimentCommand::*run)(OutputSet &, std::ostream &csv) const;
     const char *takes; ///< options, beside those that all take
+    int runs = 20;     ///< without --runs
 };
 
 constexpr const char *ofScenes = "--runs --max-points --seed --noise";
 constexpr const char *ofScans = "--log --port --sender"; // which may lie in a capture
-constexpr const char *ofWorlds = "--worlds --runs --max-points --seed";
+constexpr const char *ofWorlds = "--worlds --runs --max-points --seed --known-edges";
+constexpr int published = 100; // runs of the registration paper
 
 constexpr Experiment experiments[] = {
     {"segmentation-room", "figure 5.6: a room, by noise and outliers", &ExperimentCommand::segmentationRoom,
@@ -72,12 +74,20 @@ constexpr Experiment experiments[] = {
      &ExperimentCommand::overviewLoop, "--worlds --runs --seed"},
     {"baseline", "overview 2.2: its matcher and ours on the same pairs of simulated scans, or of --log ...",
      &ExperimentCommand::baseline, "--log --every --first --worlds --runs --seed"},
+    {"registration-space",
+     "paper figures 2 to 4: the space of transformations, nearly collinear segments, the ellipse of "
+     "reliability",
+     &ExperimentCommand::registrationSpace, ""},
     {"accuracy", "paper figure 6: error and ambiguity of registration", &ExperimentCommand::accuracy,
-     ofWorlds},
-    {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion, ofWorlds},
+     ofWorlds, published},
+    {"registration-bias", "paper figure 6: what of the error many points and many scans do not take away",
+     &ExperimentCommand::registrationBias, "--worlds --runs --max-points --seed", published},
+    {"dispersion", "paper figures 7 and 8: scatter at every pose", &ExperimentCommand::dispersion, ofWorlds,
+     published},
     {"weighting", "paper tables 1 and 2: what weights gain, what ambiguity tells",
-     &ExperimentCommand::weighting, ofWorlds},
-    {"reliability", "paper figure 9: reliability at every pose", &ExperimentCommand::reliability, ofWorlds},
+     &ExperimentCommand::weighting, ofWorlds, published},
+    {"reliability", "paper figure 9: reliability at every pose", &ExperimentCommand::reliability, ofWorlds,
+     published},
     {"rotation", "paper figure 10: Mitsuta's and Wahba's mean rotation", &ExperimentCommand::rotation,
      "--runs --seed"},
     {"free-home", "pose-free thesis 6.2, 6.3, 6.11: 3,069 scans of a home", &ExperimentCommand::freeHome,
@@ -132,8 +142,10 @@ void ExperimentCommand::run() {
     pairOptions.every = every[0];
     std::ostream &csv = open(files, ".csv"); // first: that it exists is told before the work is done
     for (const Experiment &experiment : experiments)
-        if (name == experiment.name)
+        if (name == experiment.name) {
+            options.runs = runs.value_or(experiment.runs);
             (this->*experiment.run)(files, csv);
+        }
     files.commit();
 }
 
@@ -196,12 +208,15 @@ void addExperimentCommand(CLI::App &app) {
                     "quadratic.json, laboratory.json and corridor.json instead "
                     "of those installed with the program")
         ->type_name("FOLDER");
-    sub->add_option("--runs", command->options.runs,
+    sub->add_option("--runs", command->runs,
                     "Scans for each number of points (and each pose); floor plans of drawn-places and "
-                    "place-trust; drawn drives of pose-trust")
+                    "place-trust; drawn drives of pose-trust (20; 100 for accuracy, registration-bias, "
+                    "dispersion, weighting and reliability, as published)")
         ->transform(wholeNumber(1, 10000))
-        ->type_name("N")
-        ->capture_default_str();
+        ->type_name("N");
+    sub->add_flag("--known-edges", command->knownEdges,
+                  "accuracy, dispersion, weighting, reliability: a line for each run of rays on one edge, "
+                  "instead of segmentation and vectorization of the scan");
     sub->add_option("--max-points", command->options.maxPoints, "Leave out larger clouds")
         ->transform(wholeNumber(20, 1e6))
         ->type_name("N")

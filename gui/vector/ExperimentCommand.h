@@ -16,6 +16,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <optional>
+
 namespace hermes::vector {
 
 /// hermes-vector experiment: its options, and a function for each experiment, in ExperimentScenes.cpp,
@@ -29,6 +31,8 @@ struct ExperimentCommand {
     std::vector<std::string> others;
     std::string worlds = installedWorlds().string();
     ExperimentOptions options;
+    std::optional<int> runs;
+    bool knownEdges = false;
     PairsOptions pairOptions;
     SensorOptions sensor;
     bool noGuess = false;
@@ -66,6 +70,8 @@ struct ExperimentCommand {
     void dispersion(OutputSet &files, std::ostream &csv) const;
     void weighting(OutputSet &files, std::ostream &csv) const;
     void reliability(OutputSet &files, std::ostream &csv) const;
+    void registrationSpace(OutputSet &files, std::ostream &csv) const;
+    void registrationBias(OutputSet &files, std::ostream &csv) const;
     void rotation(OutputSet &files, std::ostream &csv) const;
 
     /// Pictures are of pairs that are not near the reference.
@@ -93,6 +99,7 @@ private:
     RealScanChoice chooseScans(const std::vector<RealScanKind> &kinds) const;
     void realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const;
     void scene(OutputSet &files, std::ostream &csv, const Scene &scene) const;
+    RegistrationCase scansOf(std::vector<int> points, std::vector<double> noises, double minLength = 0) const;
     static std::vector<RegistrationRow> select(const std::vector<RegistrationRow> &rows, int points,
                                                double sigma, bool weighted);
     template <typename Result, typename Pose>

@@ -56,6 +56,8 @@ void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std
         drawn = drawn && draw(files, suffix, plot);
     for (const Surface &surface : figures.surfaces)
         drawn = drawn && draw(files, suffix, surface);
+    for (const SpacePlot &space : figures.spaces)
+        drawn = drawn && draw(files, suffix, space);
     if (!drawn)
         std::cerr << "hermes-vector: gnuplot is not installed: no pictures beside the CSV and LaTeX files\n";
 }

@@ -1,37 +1,44 @@
 #include "gui/vector/ExperimentCommand.h"
 
+#include "gui/vector/experiment/BiasExperiment.h"
 #include "gui/vector/experiment/RotationExperiment.h"
+#include "gui/vector/experiment/SpaceExperiment.h"
 #include "gui/vector/experiment/WeightingTables.h"
 
 namespace hermes::vector {
 
 void ExperimentCommand::accuracy(OutputSet &files, std::ostream &csv) const {
-    const auto rows = registrationExperiment(world("cutsquare"), {manyPoints, sigmas, 0}, options);
+    const auto rows = registrationExperiment(world("cutsquare"), scansOf(manyPoints, sigmas), options);
     writeCsv(csv, rows);
     draw(files, {accuracyPlots(rows), {}, {}});
 }
 
 void ExperimentCommand::dispersion(OutputSet &files, std::ostream &csv) const {
     const World square = world("cutsquare"), pillars = world("pillars");
-    const auto rows = registrationExperiment(square, {{100, 300, 1000}, sigmas, 0}, options);
-    const auto hard = registrationExperiment(pillars, {{300}, {0.05}, 0}, options);
+    const auto rows = registrationExperiment(square, scansOf({100, 300, 1000}, sigmas), options);
+    const auto hard = registrationExperiment(pillars, scansOf({300}, {0.05}), options);
     std::vector<RegistrationRow> all = rows;
     all.insert(all.end(), hard.begin(), hard.end());
     writeCsv(csv, all);
-    constexpr double scale = 5; // of the ellipses
+    constexpr double enlarged = 5; // times
     Figures figures;
+    const auto show = [&](const World &world, const std::vector<RegistrationRow> &some,
+                          const std::string &panel) {
+        figures.plots.push_back(dispersionPlot(world, some, panel, 1));
+        figures.plots.push_back(dispersionPlot(world, some, panel + "-enlarged", enlarged));
+    };
     for (const auto &[panel, points, sigma] :
          {std::tuple{"a", 100, 0.1}, {"b", 300, 0.1}, {"c", 1000, 0.1}, {"d", 300, 0.03}, {"e", 300, 0.01}})
-        figures.plots.push_back(dispersionPlot(square, select(rows, points, sigma, false), panel, scale));
-    figures.plots.push_back(dispersionPlot(pillars, select(hard, 300, 0.05, false), "f", scale));
-    figures.plots.push_back(dispersionPlot(pillars, select(hard, 300, 0.05, true), "f-weighted", scale));
+        show(square, select(rows, points, sigma, false), panel);
+    show(pillars, select(hard, 300, 0.05, false), "f");
+    show(pillars, select(hard, 300, 0.05, true), "f-weighted");
     draw(files, figures);
 }
 
 void ExperimentCommand::weighting(OutputSet &files, std::ostream &csv) const {
     std::vector<RegistrationRow> rows;
     for (const char *place : {"cutsquare", "oblique", "pillars"}) {
-        const auto some = registrationExperiment(world(place), {manyPoints, sigmas, 0}, options);
+        const auto some = registrationExperiment(world(place), scansOf(manyPoints, sigmas), options);
         rows.insert(rows.end(), some.begin(), some.end());
     }
     writeCsv(csv, rows);
@@ -44,9 +51,31 @@ void ExperimentCommand::reliability(OutputSet &files, std::ostream &csv) const {
     // Every pose sees two walls that are longer, but noise may cut one of them below it.
     constexpr double shortest = 2;
     const World pillars = world("pillars");
-    const auto rows = registrationExperiment(pillars, {{300}, {0.1}, shortest}, options);
+    const auto rows = registrationExperiment(pillars, scansOf({300}, {0.1}, shortest), options);
     writeCsv(csv, rows);
     draw(files, {{reliabilityPlot(pillars, select(rows, 300, 0.1, true))}, {}, {}});
+}
+
+void ExperimentCommand::registrationSpace(OutputSet &files, std::ostream &csv) const {
+    const std::vector<RegistrationExample> examples{roomExample(), collinearExample(), directionsExample()};
+    writeCsv(csv, examples);
+    tell(open(files, ".json"), summaryOf(examples));
+    draw(files, {{collinearPlot(examples[1]), reliabilityEllipse(examples[2])},
+                 {},
+                 {},
+                 transformationSpace(examples[0])});
+}
+
+void ExperimentCommand::registrationBias(OutputSet &files, std::ostream &csv) const {
+    const auto rows = biasExperiment(world("cutsquare"), scansOf(manyPoints, sigmas), options);
+    writeCsv(csv, rows);
+    draw(files, {plotsOf(rows), {}, {}});
+}
+
+RegistrationCase ExperimentCommand::scansOf(std::vector<int> points, std::vector<double> noises,
+                                            double minLength) const {
+    return {std::move(points), std::move(noises), minLength,
+            knownEdges ? Pairing::KnownEdges : Pairing::Extracted};
 }
 
 void ExperimentCommand::rotation(OutputSet &files, std::ostream &csv) const {

@@ -1,7 +1,10 @@
 #include "gui/vector/experiment/KnownScan.h"
 
+#include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/observation/Ray.h"
-#include "vectorlib/vectorization/VectorizedLine.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace hermes::vector {
 
@@ -22,39 +25,14 @@ KnownScan::KnownScan(const World &world, const vectorlib::Pose2D &pose, int rays
                 ray.range = range;
                 ray.edge = e;
             }
-        if (ray.edge == edges_.size())
-            continue;
-        if (runs_.empty() || runs_.back().back().edge != ray.edge)
-            runs_.emplace_back();
-        runs_.back().push_back(ray);
+        if (ray.edge < edges_.size())
+            rays_.push_back(ray);
     }
-    if (runs_.size() > 1 && runs_.front().front().edge == runs_.back().back().edge) { // a full turn
-        runs_.back().insert(runs_.back().end(), runs_.front().begin(), runs_.front().end());
-        runs_.erase(runs_.begin());
-    }
-}
-
-std::vector<vectorlib::SegmentPair> KnownScan::pairs(double noise, double minLength,
-                                                     std::mt19937_64 &random) const {
-    constexpr std::size_t fewest = 3; // two points fit any line
-    std::normal_distribution<double> normal;
-    std::vector<vectorlib::SegmentPair> pairs;
-    std::vector<Point> points;
-    for (const std::vector<Ray> &run : runs_) {
-        points.clear();
-        for (const Ray &ray : run)
-            points.push_back(ray.direction * (ray.range + noise * normal(random)));
-        if (points.size() < fewest)
-            continue;
-        const vectorlib::TlsSums sums = vectorlib::TlsSums::of(points.begin(), points.end());
-        const vectorlib::LineSegment2D<double>
-            &fixed = edges_[run.front().edge],
-            seen =
-                vectorlib::makeLine(vectorlib::PointSpan<double>(points), 0, points.size() - 1, sums).segment;
-        if (seen.length() > 0 && seen.length() >= minLength)
-            pairs.push_back({fixed, seen, std::min(fixed.length(), seen.length())});
-    }
-    return pairs;
+    if (rays_.empty() || rays_.front().edge != rays_.back().edge)
+        return;
+    const auto other = std::find_if(rays_.rbegin(), rays_.rend(),
+                                    [&](const Ray &ray) { return ray.edge != rays_.back().edge; });
+    std::rotate(rays_.begin(), other.base() == rays_.begin() ? rays_.begin() : other.base(), rays_.end());
 }
 
 } // namespace hermes::vector

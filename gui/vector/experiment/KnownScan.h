@@ -1,9 +1,9 @@
 #pragma once
 
 #include "common/world/World.h"
-#include "vectorlib/geometry/SegmentPair.h"
+#include "vectorlib/geometry/LineSegment2D.h"
+#include "vectorlib/geometry/Pose2D.h"
 
-#include <random>
 #include <vector>
 
 namespace hermes::vector {
@@ -12,22 +12,23 @@ namespace hermes::vector {
 /// correspondences are known for sure. A full turn.
 class KnownScan {
 public:
-    KnownScan(const World &world, const vectorlib::Pose2D &pose, int rays);
-
-    /// The segments of a scan whose ranges have Gaussian noise (standard deviation, metres), each with its
-    /// edge as the static partner, in the frame of the true pose: a perfect registration is the identity. One
-    /// total least squares line for every run of rays on one edge that has three points or more and is at
-    /// least minLength long (metres). The weight is the length of the shorter of the two.
-    std::vector<vectorlib::SegmentPair> pairs(double noise, double minLength, std::mt19937_64 &random) const;
-
-private:
     struct Ray {
         vectorlib::Vector2D<double> direction;
-        double range;
-        std::size_t edge;
+        double range;     ///< without noise; metres
+        std::size_t edge; ///< index into edges()
     };
-    std::vector<vectorlib::LineSegment2D<double>> edges_; // in the sensor's frame
-    std::vector<std::vector<Ray>> runs_;                  // of rays that meet the same edge
+
+    KnownScan(const World &world, const vectorlib::Pose2D &pose, int rays);
+
+    /// The edges of the world in the frame of the pose.
+    const std::vector<vectorlib::LineSegment2D<double>> &edges() const { return edges_; }
+    /// The rays that meet an edge, counter-clockwise; neighbours that meet the same edge are never parted by
+    /// the begin of the list.
+    const std::vector<Ray> &rays() const { return rays_; }
+
+private:
+    std::vector<vectorlib::LineSegment2D<double>> edges_;
+    std::vector<Ray> rays_;
 };
 
 } // namespace hermes::vector

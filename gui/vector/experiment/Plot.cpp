@@ -179,6 +179,8 @@ void writeLatex(std::ostream &out, const std::string &title, const Figures &figu
         writeLatex(out, plot);
     for (const Surface &surface : figures.surfaces)
         writeLatex(out, surface);
+    for (const SpacePlot &space : figures.spaces)
+        writeLatex(out, space);
     out << "\\end{document}\n";
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "gui/vector/experiment/SpacePlot.h"
+
 #include <ostream>
 #include <string>
 #include <utility>
@@ -51,6 +53,7 @@ struct Figures {
     std::vector<Plot> plots;
     std::vector<Surface> surfaces;
     std::vector<Table> tables;
+    std::vector<SpacePlot> spaces{};
 };
 
 /// A gnuplot script with its data inside that writes the plot as SVG to standard output.

@@ -1,6 +1,5 @@
 #include "gui/vector/experiment/RegistrationExperiment.h"
 
-#include "gui/vector/experiment/KnownScan.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/registration/LineSegmentRegistration.h"
 
@@ -19,6 +18,8 @@ public:
         ++r_.runs;
         r_.reliability += registration.reliability();
         r_.leastReliability = std::min(r_.leastReliability, registration.reliability());
+        r_.reliabilities.push_back(registration.reliability());
+        r_.pairs += registration.pairs();
         if (!registration.isSolvable()) {
             ++r_.unsolved;
             return;
@@ -34,6 +35,7 @@ public:
     RegistrationStatistics result() const {
         RegistrationStatistics r = r_;
         r.reliability /= std::max(1, r.runs);
+        r.pairs /= std::max(1, r.runs);
         const double n = std::max(1, r.runs - r.unsolved);
         for (double *sum : {&r.ambiguityXY, &r.ambiguityAlpha})
             *sum /= n;
@@ -49,7 +51,19 @@ private:
     RegistrationStatistics r_;
 };
 
+// The square of a mean of n values with so much variance, less what chance alone makes of it.
+double squareOfMean(double square, double variance, int n) {
+    return std::max(0.0, square - variance / std::max(1, n - 1));
+}
+
 } // namespace
+
+double RegistrationStatistics::biasXY() const {
+    return squareOfMean(mean.head<2>().squaredNorm(), spread(0, 0) + spread(1, 1), runs - unsolved);
+}
+double RegistrationStatistics::biasAlpha() const {
+    return squareOfMean(mean(2) * mean(2), spread(2, 2), runs - unsolved);
+}
 
 std::vector<RegistrationRow> registrationExperiment(const World &world, const RegistrationCase &which,
                                                     const ExperimentOptions &options) {
@@ -65,8 +79,9 @@ std::vector<RegistrationRow> registrationExperiment(const World &world, const Re
             const KnownScan scan(world, world.poses[pose], points);
             for (const double sigma : which.sigmas) {
                 Statistics plain, weighted;
+                ScanPairs makePairs(which.pairing, sigma);
                 for (int run = 0; run < options.runs; ++run) {
-                    const auto pairs = scan.pairs(sigma, which.minLength, random);
+                    const auto &pairs = makePairs(scan, which.minLength, random);
                     plain.take(pairs, false);
                     weighted.take(pairs, true);
                 }
@@ -80,14 +95,14 @@ std::vector<RegistrationRow> registrationExperiment(const World &world, const Re
 void writeCsv(std::ostream &out, const std::vector<RegistrationRow> &rows) {
     using vectorlib::Number;
     out << "world,pose,points,sigma,weighted,runs,unsolved,a_t,a_alpha,d_t,d_alpha,reliability,"
-           "least_reliability,mean_x,mean_y,mean_alpha,var_x,var_y,cov_xy,var_alpha\n";
+           "least_reliability,mean_x,mean_y,mean_alpha,var_x,var_y,cov_xy,var_alpha,pairs\n";
     for (const RegistrationRow &row : rows) {
         const RegistrationStatistics &r = row.result;
         out << row.world << ',' << row.pose << ',' << row.points << ',' << Number(row.sigma) << ','
             << row.weighted << ',' << r.runs << ',' << r.unsolved;
         for (const double value : {r.ambiguityXY, r.ambiguityAlpha, r.errorXY, r.errorAlpha, r.reliability,
                                    r.leastReliability, r.mean(0), r.mean(1), r.mean(2), r.spread(0, 0),
-                                   r.spread(1, 1), r.spread(0, 1), r.spread(2, 2)})
+                                   r.spread(1, 1), r.spread(0, 1), r.spread(2, 2), r.pairs})
             out << ',' << Number(value);
         out << '\n';
     }

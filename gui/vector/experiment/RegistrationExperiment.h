@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/world/World.h"
+#include "gui/vector/experiment/ScanPairs.h"
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
 #include <Eigen/Core>
@@ -18,9 +19,16 @@ struct RegistrationStatistics {
     double errorAlpha = 0;     ///< the same of the heading, D_alpha; rad^2
     double reliability = 0;    ///< mean over all scans, 0 for the unsolved
     double leastReliability = 1;
+    std::vector<double> reliabilities; ///< of each scan
+    double pairs = 0;                  ///< mean number of segments that took part
     Eigen::Vector3d mean =
         Eigen::Vector3d::Zero(); ///< of the errors x, y, alpha, in the frame of the true pose
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero(); ///< their covariance
+
+    /// The part of errorXY that is left when many scans are averaged, without what chance leaves of so many;
+    /// m^2. The other part falls with the number of scans.
+    double biasXY() const;
+    double biasAlpha() const; ///< the same of errorAlpha; rad^2
 };
 
 /// One pose of a world, at one setting of the scanner.
@@ -38,6 +46,7 @@ struct RegistrationCase {
     std::vector<int> points;
     std::vector<double> sigmas;
     double minLength = 0; ///< shorter segments take no part; metres
+    Pairing pairing = Pairing::Extracted;
 };
 
 /// Localization in a known map with known correspondences (paper 4): every pose of the world, with every
@@ -51,10 +60,11 @@ void writeCsv(std::ostream &out, const std::vector<RegistrationRow> &rows);
 /// Paper figure 6: A and D over the number of points, a curve for each noise; without weights.
 std::vector<Plot> accuracyPlots(const std::vector<RegistrationRow> &rows);
 /// Paper figures 7 and 8: the world with a two-sigma ellipse of the position and the range of headings at
-/// every pose; rows of one world and one setting. `scale` enlarges the ellipses.
+/// every pose; rows of one world and one setting. `scale` enlarges the ellipses and angles: 1 is to scale.
 Plot dispersionPlot(const World &world, const std::vector<RegistrationRow> &rows, const std::string &name,
                     double scale);
-/// Paper figure 9: a circle at every pose, and inside it one whose area is the reliability.
+/// Paper figure 9: a circle at every pose, and inside it those whose areas are the reliabilities of the
+/// scans; of the pose with the least one, that one in a colour of its own.
 Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &rows);
 
 } // namespace hermes::vector

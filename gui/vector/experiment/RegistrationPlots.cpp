@@ -1,12 +1,13 @@
 #include "gui/vector/experiment/RegistrationExperiment.h"
+#include "gui/vector/experiment/Shapes.h"
 #include "vectorlib/geometry/Transformation2D.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/io/Svg.h"
 
 #include <Eigen/Eigenvalues>
 
-#include <limits>
 #include <map>
+#include <set>
 #include <sstream>
 
 namespace hermes::vector {
@@ -15,33 +16,11 @@ namespace {
 
 using Point = vectorlib::Vector2D<double>;
 
-void lineBreak(Curve &curve) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    curve.points.emplace_back(none, none);
-}
-void addPoint(Curve &curve, Point p) {
-    curve.points.emplace_back(p.x, p.y);
-}
-
 Curve wallsOf(const World &world) {
     Curve curve{"walls", vectorlib::colour::map, {}};
-    for (const World::Edge &e : world.edges) {
-        addPoint(curve, {e.x1, e.y1});
-        addPoint(curve, {e.x2, e.y2});
-        lineBreak(curve);
-    }
+    for (const World::Edge &e : world.edges)
+        addSegment(curve, {e.x1, e.y1}, {e.x2, e.y2});
     return curve;
-}
-
-// The closed curve of middle + shape u over all unit vectors u.
-void addEllipse(Curve &curve, Point middle, const Eigen::Matrix2d &shape) {
-    constexpr int corners = 48;
-    for (int i = 0; i <= corners; ++i) {
-        const double angle = 2 * vectorlib::pi * i / corners;
-        const Eigen::Vector2d p = shape * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-        addPoint(curve, middle + Point(p.x(), p.y()));
-    }
-    lineBreak(curve);
 }
 
 std::string number(double value) {
@@ -88,7 +67,7 @@ std::vector<Plot> accuracyPlots(const std::vector<RegistrationRow> &rows) {
 Plot dispersionPlot(const World &world, const std::vector<RegistrationRow> &rows, const std::string &name,
                     double scale) {
     constexpr double radius = 0.35; // of a pie; metres
-    const std::string times = " (" + number(scale) + " x)";
+    const std::string times = scale == 1 ? "" : ", enlarged " + number(scale) + " times";
     Curve path{"true poses", vectorlib::colour::points, {}},
         ellipses{"two sigma of the position" + times, "#009e73", {}},
         pies{"two sigma of the heading" + times, vectorlib::colour::estimate, {}};
@@ -116,22 +95,34 @@ Plot dispersionPlot(const World &world, const std::vector<RegistrationRow> &rows
     Plot plot{name, world.name, "x [m]", "y [m]", false, false, {wallsOf(world), path, ellipses, pies}, true};
     if (!rows.empty())
         plot.title += ": P = " + std::to_string(rows[0].points) + ", sigma = " + number(100 * rows[0].sigma) +
-                      " cm, " + (rows[0].weighted ? "weighted" : "no weights");
+                      " cm, " + (rows[0].weighted ? "weighted" : "no weights") +
+                      (scale == 1 ? ", to scale" : times);
     return plot;
 }
 
 Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &rows) {
     constexpr double radius = 0.3; // metres
-    Curve whole{"R = 1", vectorlib::colour::points, {}}, mean{"mean R", vectorlib::colour::estimate, {}},
-        least{"least R of one scan", vectorlib::colour::outliers, {}};
+    const auto circle = [&](Curve &curve, const RegistrationRow &row, double reliability) {
+        addEllipse(curve, {row.at.x, row.at.y},
+                   Eigen::Matrix2d::Identity() * radius * std::sqrt(reliability));
+    };
+    Curve whole{"R = 1", vectorlib::colour::map, {}}, each{"R of each scan", vectorlib::colour::points, {}},
+        least{"", vectorlib::colour::estimate, {}};
+    const RegistrationRow *lowest = nullptr;
     for (const RegistrationRow &row : rows) {
-        const Point middle(row.at.x, row.at.y);
-        const auto circle = [&](Curve &curve, double reliability) {
-            addEllipse(curve, middle, Eigen::Matrix2d::Identity() * radius * std::sqrt(reliability));
-        };
-        circle(whole, 1);
-        circle(mean, row.result.reliability);
-        circle(least, row.result.leastReliability);
+        std::set<double> seen; // circles that look the same are drawn once
+        for (const double reliability : row.result.reliabilities)
+            seen.insert(std::round(reliability * 50) / 50);
+        for (const double reliability : seen)
+            circle(each, row, reliability);
+        circle(whole, row, 1);
+        if (!lowest || row.result.leastReliability < lowest->result.leastReliability)
+            lowest = &row;
+    }
+    if (lowest) {
+        least.label =
+            "lowest single scan, R = " + number(std::round(lowest->result.leastReliability * 100) / 100);
+        circle(least, *lowest, lowest->result.leastReliability);
     }
     return {"circles",
             world.name + ": area of the circles by reliability",
@@ -139,7 +130,7 @@ Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &row
             "y [m]",
             false,
             false,
-            {wallsOf(world), whole, mean, least},
+            {wallsOf(world), each, whole, least},
             true};
 }
 
