@@ -7,13 +7,12 @@
 namespace hermes::vector {
 
 void ExperimentCommand::freeHome(OutputSet &files, std::ostream &csv) const {
-    relation(files, csv, homeScans(3069), HalfTurnScanner::rays, vectorlib::pi,
+    relation(files, csv, homeScans(3069), halfTurnRays, vectorlib::pi,
              {{"scans", 3069}, {"length_m", 43.19}, {"mean_us", 3480}});
 }
 
 void ExperimentCommand::freeLeaps(OutputSet &files, std::ostream &csv) const {
-    relation(files, csv, homeScans(23), HalfTurnScanner::rays, vectorlib::pi,
-             {{"scans", 23}, {"length_m", 43.19}});
+    relation(files, csv, homeScans(23), halfTurnRays, vectorlib::pi, {{"scans", 23}, {"length_m", 43.19}});
 }
 
 void ExperimentCommand::freeLog(OutputSet &files, std::ostream &csv) const {
@@ -46,7 +45,7 @@ void ExperimentCommand::freeApproach(OutputSet &files, std::ostream &csv) const 
 
 std::vector<PosedScan> ExperimentCommand::homeScans(std::size_t count) const {
     const World home = world("home");
-    return scansAt(home, posesAlong(home, count), options.seed);
+    return scansAt(home, posesAlong(home, count), halfTurnScanner(options.seed));
 }
 
 void ExperimentCommand::relation(OutputSet &files, std::ostream &csv, const std::vector<PosedScan> &scans,

@@ -20,6 +20,7 @@ struct ObserveCommand {
     std::string pose;
     int rays = 0; ///< 0: the exact view instead of a scan
     double noise = 0;
+    double angleNoise = 0;    ///< degrees
     double fieldOfView = 360; ///< degrees
     double outliers = 0;
     std::uint64_t seed = 1;
@@ -69,6 +70,7 @@ struct ObserveCommand {
         scanner.rays = rays;
         scanner.fieldOfView = radians();
         scanner.sigma = noise;
+        scanner.angleSigma = angleNoise * vectorlib::pi / 180;
         scanner.outliers = outliers;
         return scanner(world, at);
     }
@@ -111,6 +113,12 @@ void addObserveCommand(CLI::App &app) {
         ->check(between(0, 1e6))
         ->needs(scan)
         ->type_name("M")
+        ->capture_default_str();
+    sub->add_option("--angle-noise", command->angleNoise,
+                    "Standard deviation of the rays' directions, which the points do not tell, degrees")
+        ->check(between(0, 180))
+        ->needs(scan)
+        ->type_name("DEG")
         ->capture_default_str();
     sub->add_option("--outliers", command->outliers, "Share of rays, 0 to 1, that stop before the wall")
         ->check(between(0, 1))

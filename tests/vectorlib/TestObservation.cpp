@@ -54,6 +54,8 @@ private Q_SLOTS:
     void agreesWithRaysAtRandomPoses();
     void scansLieOnTheWalls();
     void scanNoiseAndOutliers();
+    void directionsHaveNoise();
+    void evenNoiseEnds();
     void scansRepeatWithTheirSeed();
     void raysCoverTheField();
 };
@@ -204,6 +206,44 @@ void TestObservation::scanNoiseAndOutliers() {
     scanner.maxRange = 100;
     scanner.minRange = 6;
     QVERIFY(scanner(wall, {0, 0, 0}).empty());
+}
+
+void TestObservation::directionsHaveNoise() {
+    SimulatedScanner<double> scanner(5);
+    scanner.rays = 20001;
+    scanner.fieldOfView = 0.2;
+    scanner.sigma = 0;
+    scanner.angleSigma = 0.01;
+    // A wall at 45 degrees, 5 m ahead: the range tells the direction that the ray really had.
+    const std::vector<Segment> wall = {Segment({10, -5}, {0, 5})};
+    double sum = 0, squares = 0;
+    int ray = 0;
+    for (const Point &point : scanner(wall, {0, 0, 0})) {
+        const double told = std::atan2(point.y, point.x), real = std::acos(5 / std::sqrt(2.0) / point.norm());
+        QVERIFY(std::abs(told - scanner.angle(ray++)) < 1e-9);
+        const double error = pi / 4 - real - told;
+        sum += error;
+        squares += error * error;
+    }
+    QCOMPARE(ray, scanner.rays);
+    QVERIFY2(std::abs(sum / ray) < 0.0005, qPrintable(QString::number(sum / ray)));
+    QVERIFY(std::abs(std::sqrt(squares / ray) - 0.01) < 0.0005);
+}
+
+void TestObservation::evenNoiseEnds() {
+    SimulatedScanner<double> scanner(9);
+    scanner.rays = 20000;
+    scanner.sigma = 0.02;
+    scanner.noise = NoiseShape::Even;
+    scanner.fieldOfView = 0.001; // a wall straight ahead, 5 m away
+    double largest = 0, squares = 0;
+    for (const Point &point : scanner({Segment({5, -1}, {5, 1})}, {0, 0, 0})) {
+        largest = std::max(largest, std::abs(point.x - 5));
+        squares += (point.x - 5) * (point.x - 5);
+    }
+    QVERIFY2(largest < 0.02 * std::sqrt(3.0) + 1e-5 && largest > 0.0345,
+             qPrintable(QString::number(largest)));
+    QVERIFY(std::abs(std::sqrt(squares / 20000) - 0.02) < 0.0005);
 }
 
 void TestObservation::scansRepeatWithTheirSeed() {

@@ -17,6 +17,8 @@ struct NamedPairing {
 
 constexpr NamedPairing pairings[] = {
     {Pairing::Extracted, "extracted", "extracted lines"},
+    {Pairing::ExtractedTight, "extracted-tight", "extracted, sigma 1.2 times the noise"},
+    {Pairing::ExtractedFtls, "extracted-ftls", "extracted by FTLS"},
     {Pairing::ExtractedClean, "extracted-clean", "extracted, no points of other edges"},
     {Pairing::KnownEdges, "known-edges", "rays that know their edge"},
     {Pairing::AcrossEdges, "across-edges", "... noise across the edge only"},

@@ -47,9 +47,12 @@ std::vector<Plot> accuracyPlots(const std::vector<RegistrationRow> &rows) {
         for (const RegistrationRow &row : rows)
             poses = std::max(poses, static_cast<double>(row.pose + 1));
         Plot plot{name, "registration without weights", "points", axis, true, true, {}};
+        const char *greens[] = {"#004d38", "#009e73", "#5fd3b0"},
+                   *greys[] = {"#3d4657", "#8d99ae", "#c4cbd8"};
         for (const auto &[sigma, byPoints] : sums) {
             const std::string noise = ", " + number(100 * sigma) + " cm";
-            Curve green{ambiguity + noise, "#009e73", {}}, grey{error + noise, vectorlib::colour::points, {}};
+            const std::size_t shade = plot.curves.size() / 2 % 3;
+            Curve green{ambiguity + noise, greens[shade], {}}, grey{error + noise, greys[shade], {}};
             for (const auto &[points, sum] : byPoints) {
                 green.points.emplace_back(points, sum.first / poses);
                 grey.points.emplace_back(points, sum.second / poses);
@@ -122,7 +125,8 @@ Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &row
     if (lowest) {
         least.label =
             "lowest single scan, R = " + number(std::round(lowest->result.leastReliability * 100) / 100);
-        circle(least, *lowest, lowest->result.leastReliability);
+        constexpr double visible = 0.02; // of R = 0
+        circle(least, *lowest, std::max(visible, lowest->result.leastReliability));
     }
     return {"circles",
             world.name + ": area of the circles by reliability",

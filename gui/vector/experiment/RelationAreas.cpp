@@ -17,7 +17,7 @@ namespace {
 
 std::vector<TypedSegments> segmentsOf(const std::vector<PosedScan> &scans) {
     vectorlib::TypedSegmentExtractor extract;
-    extract.setScanner(vectorlib::pi, HalfTurnScanner::rays);
+    extract.setScanner(vectorlib::pi, halfTurnRays);
     std::vector<TypedSegments> all;
     for (const PosedScan &scan : scans)
         all.push_back(extract(scan.points));
@@ -53,19 +53,22 @@ double meanOf(const std::vector<DistanceArea> &rows, bool isAll) {
 } // namespace
 
 std::vector<InjectedError> injectedErrors(const World &world, std::uint64_t seed) {
-    const TypedSegments scan = segmentsOf(scansAt(world, {world.poses.front()}, seed)).front();
+    const TypedSegments scan =
+        segmentsOf(scansAt(world, {world.poses.front()}, halfTurnScanner(seed))).front();
     std::vector<vectorlib::CorrespondencePair> pairs;
     for (std::size_t i = 0; i < scan.size(); ++i)
         pairs.push_back({int(i), int(i)});
-    MatchedAreas areas;
+    vectorlib::MatchErrors errors;
     std::vector<InjectedError> rows;
     for (int i = 0; i <= 60; ++i) {
         const double turn = 0.5 * i;
         rows.push_back(
-            {true, turn, areas(pairs, scan, scan, Transformation2D(0, 0, turn * vectorlib::pi / 180)).error});
+            {true, turn,
+             errors.area(pairs, scan, scan, Transformation2D(0, 0, turn * vectorlib::pi / 180)).error});
     }
     for (int i = 0; i <= 100; ++i)
-        rows.push_back({false, 0.01 * i, areas(pairs, scan, scan, Transformation2D(0.01 * i, 0, 0)).error});
+        rows.push_back(
+            {false, 0.01 * i, errors.area(pairs, scan, scan, Transformation2D(0.01 * i, 0, 0)).error});
     return rows;
 }
 
@@ -113,11 +116,11 @@ std::vector<Plot> plotsOf(const std::vector<InjectedError> &rows) {
 
 ApproachResult approach(const World &world, std::uint64_t seed, std::size_t every,
                         const std::function<void(std::size_t, std::size_t)> &progress) {
-    const std::vector<PosedScan> scans = scansAt(world, posesAlong(world, 1480), seed);
+    const std::vector<PosedScan> scans = scansAt(world, posesAlong(world, 1480), halfTurnScanner(seed));
     const std::vector<TypedSegments> segments = segmentsOf(scans);
     vectorlib::RelationMatcher match;
     match.settings.leastSigns = 0; // the world is one corner
-    MatchedAreas areas;
+    vectorlib::MatchErrors errors;
     ApproachResult result;
     std::map<int, std::pair<double, std::size_t>> bins;
     for (std::size_t i = 0; i < scans.size(); i += every) {
@@ -127,7 +130,7 @@ ApproachResult approach(const World &world, std::uint64_t seed, std::size_t ever
             if (!found.isMatched())
                 continue;
             ++result.matched;
-            const double area = areas(found.pairs, segments[i], segments[j], found.pose).error;
+            const double area = errors.area(found.pairs, segments[i], segments[j], found.pose).error;
             const double distance =
                 std::hypot(scans[j].pose.x - scans[i].pose.x, scans[j].pose.y - scans[i].pose.y);
             if (i == 0)

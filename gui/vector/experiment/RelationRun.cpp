@@ -17,13 +17,6 @@ namespace {
 
 constexpr double degrees = 180 / vectorlib::pi;
 
-double metresApart(const Transformation2D &a, const Transformation2D &b) {
-    return (a.translation() - b.translation()).norm();
-}
-double degreesApart(const Transformation2D &a, const Transformation2D &b) {
-    return std::abs((a.inverse() * b).alpha()) * degrees;
-}
-
 double mean(const std::vector<double> &values) {
     double sum = 0;
     for (double v : values)
@@ -43,7 +36,7 @@ struct Runner {
     vectorlib::TypedSegmentExtractor extract;
     vectorlib::RelationMatcher match;
     vectorlib::LocalMap map;
-    MatchedAreas areas;
+    vectorlib::MatchErrors errors;
     std::vector<vectorlib::TypedSegment> reference;
     Pose2D referenceEstimate, referenceTruth;
     int lostInARow = 0;
@@ -72,11 +65,12 @@ struct Runner {
         }
         step.estimate = (Transformation2D(referenceEstimate) * found.pose).pose();
         step.pairs = found.pairs.size();
-        step.area = areas(found.pairs, reference, current, found.pose);
+        step.area = errors.area(found.pairs, reference, current, found.pose);
         const Transformation2D motion =
             Transformation2D(referenceTruth).inverse() * Transformation2D(step.truth);
-        step.errorMetres = metresApart(found.pose, motion);
-        step.errorDegrees = degreesApart(found.pose, motion);
+        step.error = vectorlib::MatchErrors::ofMotion(found.pose, motion);
+        step.publishedError =
+            vectorlib::MatchErrors::ofStep(referenceEstimate, step.estimate, referenceTruth, step.truth);
         keep(current, step, found.pairs);
         return step;
     }
@@ -138,7 +132,7 @@ std::size_t RelationRun::lost() const {
 
 std::size_t RelationRun::wrong() const {
     return std::size_t(std::count_if(steps.begin(), steps.end(), [](const RelationStep &s) {
-        return s.errorMetres > 0.5 || s.errorDegrees > 10;
+        return s.error.translation > 0.5 || s.error.rotation * degrees > 10;
     }));
 }
 
@@ -148,9 +142,7 @@ RelationRun relationRun(const std::vector<PosedScan> &scans, const RelationRunOp
     runner.extract.setScanner(options.fieldOfView, options.rays);
     for (std::size_t i = 0; i < scans.size(); ++i) {
         RelationStep step = i == 0 ? runner.first(scans[i]) : runner.next(scans[i]);
-        const Transformation2D estimate(step.estimate), truth(step.truth);
-        step.globalErrorMetres = metresApart(estimate, truth);
-        step.globalErrorDegrees = degreesApart(estimate, truth);
+        step.globalError = vectorlib::MatchErrors::ofPose(step.estimate, step.truth);
         if (i > 0)
             run.length +=
                 std::hypot(scans[i].pose.x - scans[i - 1].pose.x, scans[i].pose.y - scans[i - 1].pose.y);
@@ -163,8 +155,8 @@ RelationRun relationRun(const std::vector<PosedScan> &scans, const RelationRunOp
 }
 
 nlohmann::ordered_json summaryOf(const RelationRun &run, const nlohmann::ordered_json &published) {
-    const auto metres = ofMatched(run, [](const RelationStep &s) { return s.errorMetres; });
-    const auto turns = ofMatched(run, [](const RelationStep &s) { return s.errorDegrees; });
+    const auto metres = ofMatched(run, [](const RelationStep &s) { return s.error.translation; });
+    const auto turns = ofMatched(run, [](const RelationStep &s) { return s.error.rotation * degrees; });
     const auto times = ofMatched(run, [](const RelationStep &s) { return s.microseconds; });
     const auto percents = ofMatched(run, [](const RelationStep &s) { return s.area.percent(); });
     const auto most = [](const std::vector<double> &v) {
@@ -198,15 +190,16 @@ nlohmann::ordered_json summaryOf(const RelationRun &run, const nlohmann::ordered
 
 void writeCsv(std::ostream &out, const RelationRun &run) {
     using vectorlib::Number;
-    out << "scan,matched,x,y,theta_deg,true_x,true_y,true_theta_deg,error_m,error_deg,global_error_m,"
-           "global_error_deg,error_area_m2,error_area_percent,segments,pairs,time_us\n";
+    out << "scan,matched,x,y,theta_deg,true_x,true_y,true_theta_deg,error_m,error_deg,published_error_m,"
+           "global_error_m,global_error_deg,error_area_m2,error_area_percent,segments,pairs,time_us\n";
     for (std::size_t i = 0; i < run.steps.size(); ++i) {
         const RelationStep &s = run.steps[i];
         out << i << ',' << (s.outcome == vectorlib::RelationOutcome::Matched);
         for (const Pose2D &p : {s.estimate, s.truth})
             out << ',' << Number(p.x) << ',' << Number(p.y) << ',' << Number(p.theta * degrees);
-        for (double v : {s.errorMetres, s.errorDegrees, s.globalErrorMetres, s.globalErrorDegrees,
-                         s.area.error, s.area.percent()})
+        for (double v :
+             {s.error.translation, s.error.rotation * degrees, s.publishedError.translation,
+              s.globalError.translation, s.globalError.rotation * degrees, s.area.error, s.area.percent()})
             out << ',' << Number(v);
         out << ',' << s.segments << ',' << s.pairs << ',' << Number(s.microseconds) << '\n';
     }
@@ -215,13 +208,13 @@ void writeCsv(std::ostream &out, const RelationRun &run) {
 std::vector<Plot> plotsOf(const RelationRun &run) {
     return {waysPlot(run),
             errorPlot(run, "rotation", "rotational error of consecutive scans", "error [deg]",
-                      [](const RelationStep &s) { return s.errorDegrees; }),
+                      [](const RelationStep &s) { return s.error.rotation * degrees; }),
             errorPlot(run, "translation", "translational error of consecutive scans", "error [m]",
-                      [](const RelationStep &s) { return s.errorMetres; }),
+                      [](const RelationStep &s) { return s.error.translation; }),
             errorPlot(run, "global-rotation", "global rotational error", "error [deg]",
-                      [](const RelationStep &s) { return s.globalErrorDegrees; }),
+                      [](const RelationStep &s) { return s.globalError.rotation * degrees; }),
             errorPlot(run, "global-translation", "global translational error", "error [m]",
-                      [](const RelationStep &s) { return s.globalErrorMetres; }),
+                      [](const RelationStep &s) { return s.globalError.translation; }),
             errorPlot(run, "area", "error area percentage", "error area [%]",
                       [](const RelationStep &s) { return s.area.percent(); })};
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "gui/vector/experiment/ErrorArea.h"
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/RelationScans.h"
+#include "vectorlib/relations/MatchErrors.h"
 #include "vectorlib/relations/RelationMatcher.h"
 
 #include <nlohmann/json.hpp>
@@ -16,9 +16,10 @@ namespace hermes::vector {
 struct RelationStep {
     vectorlib::RelationOutcome outcome = vectorlib::RelationOutcome::Matched;
     vectorlib::Pose2D estimate, truth;
-    double errorMetres = 0, errorDegrees = 0; ///< of the motion since the scan it was matched with
-    double globalErrorMetres = 0, globalErrorDegrees = 0; ///< of the pose
-    MatchedArea area;
+    vectorlib::PoseError error;          ///< of the motion since the scan it was matched with
+    vectorlib::PoseError publishedError; ///< the same in the frame of the map, as the thesis computes it
+    vectorlib::PoseError globalError;    ///< of the pose
+    vectorlib::MatchedArea area;
     std::size_t segments = 0, pairs = 0;
     double microseconds = 0; ///< matching of two vectorized scans
 };
@@ -35,7 +36,7 @@ struct RelationRun {
 
 struct RelationRunOptions {
     double fieldOfView = vectorlib::pi;
-    std::size_t rays = HalfTurnScanner::rays;
+    std::size_t rays = halfTurnRays;
     std::function<void(std::size_t done, std::size_t all)> progress;
 };
 

@@ -1,10 +1,9 @@
 #include "gui/vector/experiment/RelationScans.h"
 
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/observation/Ray.h"
 
 #include <algorithm>
-#include <random>
+#include <cmath>
 
 namespace hermes::vector {
 
@@ -69,31 +68,29 @@ double lengthOf(const std::vector<Pose2D> &poses) {
     return length;
 }
 
-std::vector<PosedScan> scansAt(const World &world, const std::vector<Pose2D> &poses, std::uint64_t seed,
-                               const HalfTurnScanner &scanner) {
-    std::mt19937_64 random(seed);
-    std::uniform_real_distribution<double> even(-1, 1);
-    std::vector<PosedScan> scans;
+vectorlib::SimulatedScanner<double> halfTurnScanner(std::uint64_t seed) {
+    const double ofEven = 1 / std::sqrt(3.0); // the standard deviation of what is spread evenly up to 1
+    vectorlib::SimulatedScanner<double> scanner(seed);
+    scanner.rays = halfTurnRays;
+    scanner.fieldOfView = vectorlib::pi;
+    scanner.noise = vectorlib::NoiseShape::Even;
+    scanner.sigma = 0.025 * ofEven;
+    scanner.angleSigma = 0.1 * vectorlib::pi / 180 * ofEven;
+    scanner.minRange = 0;
+    scanner.maxRange = 30;
+    return scanner;
+}
+
+std::vector<PosedScan> scansAt(const World &world, const std::vector<Pose2D> &poses,
+                               vectorlib::SimulatedScanner<double> scanner) {
     std::vector<Segment> edges;
-    constexpr double degree = vectorlib::pi / 180;
+    for (const World::Edge &e : world.edges)
+        edges.emplace_back(Point(e.x1, e.y1), Point(e.x2, e.y2));
+    std::vector<PosedScan> scans;
     for (const Pose2D &pose : poses) {
-        const vectorlib::Transformation2D toSensor = vectorlib::Transformation2D(pose).inverse();
-        edges.clear();
-        for (const World::Edge &e : world.edges)
-            edges.push_back(toSensor * Segment(Point(e.x1, e.y1), Point(e.x2, e.y2)));
         scans.push_back({{}, pose});
-        for (int ray = 0; ray < HalfTurnScanner::rays; ++ray) {
-            const double nominal = (ray - (HalfTurnScanner::rays - 1) / 2) * degree;
-            const double real = nominal + scanner.directionNoise * degree * even(random);
-            double range = vectorlib::noHit;
-            for (const Segment &e : edges)
-                range = std::min(
-                    range, vectorlib::rayDistance({std::cos(real), std::sin(real)}, e.begin(), e.end()));
-            range += scanner.rangeNoise * even(random);
-            if (range > 0 && range < HalfTurnScanner::maxRange)
-                scans.back().points.emplace_back(
-                    vectorlib::Vector2D<double>(std::cos(nominal) * range, std::sin(nominal) * range));
-        }
+        for (const Point &point : scanner(edges, pose))
+            scans.back().points.emplace_back(point);
     }
     return scans;
 }

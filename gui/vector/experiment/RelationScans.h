@@ -3,6 +3,7 @@
 #include "common/world/World.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/observation/SimulatedScanner.h"
 
 #include <cstdint>
 #include <vector>
@@ -17,12 +18,8 @@ struct PosedScan {
 
 /// The scanner of the pose-free thesis (6.1): a half turn at 1 degree, ranges wrong by up to 2.5 cm and
 /// directions by up to 0.1 degree, both spread evenly. Rays without a wall within 30 m have no return.
-struct HalfTurnScanner {
-    static constexpr int rays = 181;
-    double rangeNoise = 0.025;             ///< metres
-    double directionNoise = 0.1;           ///< degrees
-    static constexpr double maxRange = 30; ///< metres
-};
+vectorlib::SimulatedScanner<double> halfTurnScanner(std::uint64_t seed);
+constexpr int halfTurnRays = 181;
 
 /// So many poses at even steps along a smooth way through all poses of a world, headed as it goes. Each part
 /// is a cubic curve that is nearly an arc.
@@ -30,8 +27,8 @@ std::vector<vectorlib::Pose2D> posesAlong(const World &world, std::size_t count)
 /// How far it is along the poses; metres.
 double lengthOf(const std::vector<vectorlib::Pose2D> &poses);
 
-/// A scan at every pose; the same seed gives the same scans.
+/// A scan at every pose.
 std::vector<PosedScan> scansAt(const World &world, const std::vector<vectorlib::Pose2D> &poses,
-                               std::uint64_t seed, const HalfTurnScanner &scanner = {});
+                               vectorlib::SimulatedScanner<double> scanner);
 
 } // namespace hermes::vector

@@ -26,10 +26,9 @@ const std::vector<vectorlib::SegmentPair> &ScanPairs::operator()(const KnownScan
     pairs_.clear();
     minLength_ = minLength;
     measure(scan, random);
-    if (pairing_ == Pairing::Extracted || pairing_ == Pairing::ExtractedClean)
-        takeLines(scan);
-    else
-        takeRuns(scan);
+    const bool isKnown = pairing_ == Pairing::KnownEdges || pairing_ == Pairing::AcrossEdges ||
+                         pairing_ == Pairing::FittedRanges;
+    isKnown ? takeRuns(scan) : takeLines(scan);
     return pairs_;
 }
 
@@ -60,44 +59,76 @@ void ScanPairs::takeRuns(const KnownScan &scan) {
 }
 
 void ScanPairs::takeLines(const KnownScan &scan) {
-    // The lower bound is the sensor's accuracy (thesis 5.2); sigma as twice the noise of thesis 6.5.
+    constexpr std::size_t minPoints = 4;
+    constexpr double minLength = 0.10; // metres
+    // The lower bound is the sensor's accuracy (thesis 5.2).
     segment_.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, scan.rays().size());
-    segment_.settings.minThreshold = std::max(segment_.settings.minThreshold, 3 * noise_);
-    segment_.settings.maxThreshold = std::max(segment_.settings.maxThreshold, 3 * noise_);
-    vectorize_.settings.sigma = 2 * noise_;
-    vectorize_.settings.delta = 5 * vectorize_.settings.sigma;
+    segment_.settings.neighbours = vectorlib::EarSettings().neighbours;
+    segment_.settings.minThreshold = std::max(segment_.settings.minThreshold, 5 * noise_);
+    segment_.settings.maxThreshold = std::max(segment_.settings.maxThreshold, 5 * noise_);
+    found_.clear();
     const vectorlib::Segmentation &clusters = segment_(points_);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-        cluster_.clear();
-        edgesOfCluster_.clear();
-        for (std::size_t i = clusters.starts[c]; i < clusters.starts[c + 1]; ++i) {
-            const auto point = std::size_t(clusters.order[i]);
-            cluster_.push_back(points_[point]);
-            edgesOfCluster_.push_back(scan.rays()[point].edge);
+        const int *order = clusters.order.data() + clusters.starts[c];
+        const std::size_t count = clusters.size(c), first = found_.size();
+        own_.clear();
+        for (std::size_t i = 0; i < count; ++i)
+            own_.push_back(points_[std::size_t(order[i])]);
+        for (const vectorlib::VectorizedLine &line : vectorize(own_))
+            if (line.line.isValid())
+                find(scan, order, line);
+        if ((std::size_t(order[count - 1]) + 1) % points_.size() == std::size_t(order[0]))
+            joinEnds(first);
+    }
+    for (Found &found : found_) {
+        if (found.points.size() < minPoints || found.segment.length() < minLength)
+            continue;
+        if (pairing_ == Pairing::ExtractedClean) {
+            own_.clear();
+            for (std::size_t i = 0; i < found.points.size(); ++i)
+                if (found.edges[i] == found.edge)
+                    own_.push_back(found.points[i]);
+            if (own_.size() < minPoints)
+                continue;
+            found.segment = lineThrough(own_);
         }
-        for (const vectorlib::VectorizedLine &line : vectorize_(cluster_))
-            takeLine(scan, line);
+        add(scan, found.edge, found.segment);
     }
 }
 
-void ScanPairs::takeLine(const KnownScan &scan, const vectorlib::VectorizedLine &line) {
-    if (!line.line.isValid() || line.last - line.first + 1 < fewest)
-        return;
+const std::vector<vectorlib::VectorizedLine> &ScanPairs::vectorize(const Points &cluster) {
+    vectorlib::VectorizerSettings settings;
+    // Thesis 6.5: 2 cm at a noise of 1 cm.
+    settings.sigma = (pairing_ == Pairing::ExtractedTight ? 1.2 : 2) * noise_;
+    settings.delta = 5 * settings.sigma;
+    ftls_.settings = aftls_.settings = settings;
+    return pairing_ == Pairing::ExtractedFtls ? ftls_(cluster) : aftls_(cluster);
+}
+
+void ScanPairs::find(const KnownScan &scan, const int *order, const vectorlib::VectorizedLine &line) {
+    Found found;
     counts_.assign(scan.edges().size(), 0);
-    for (std::size_t i = line.first; i <= line.last; ++i)
-        ++counts_[edgesOfCluster_[i]];
-    const auto most = std::max_element(counts_.begin(), counts_.end());
-    const auto edge = std::size_t(most - counts_.begin());
-    if (pairing_ == Pairing::Extracted) {
-        add(scan, edge, line.segment);
-        return;
+    for (std::size_t i = line.first; i <= line.last; ++i) {
+        const auto point = std::size_t(order[i]);
+        found.points.push_back(points_[point]);
+        found.edges.push_back(scan.rays()[point].edge);
+        ++counts_[found.edges.back()];
     }
-    own_.clear();
-    for (std::size_t i = line.first; i <= line.last; ++i)
-        if (edgesOfCluster_[i] == edge)
-            own_.push_back(cluster_[i]);
-    if (own_.size() >= fewest)
-        add(scan, edge, lineThrough(own_));
+    found.edge = std::size_t(std::max_element(counts_.begin(), counts_.end()) - counts_.begin());
+    found.segment = line.segment;
+    found_.push_back(std::move(found));
+}
+
+// A cluster all around begins somewhere on an edge: its last line goes on in
+// its first one.
+void ScanPairs::joinEnds(std::size_t first) {
+    if (found_.size() < first + 2 || found_[first].edge != found_.back().edge)
+        return;
+    Found &begin = found_[first], &end = found_.back();
+    end.points.insert(end.points.end(), begin.points.begin(), begin.points.end());
+    end.edges.insert(end.edges.end(), begin.edges.begin(), begin.edges.end());
+    end.segment = lineThrough(end.points);
+    found_.erase(found_.begin() + std::ptrdiff_t(first));
 }
 
 void ScanPairs::add(const KnownScan &scan, std::size_t edge, const Segment &seen) {

@@ -8,7 +8,9 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
+#include <tuple>
 
 namespace hermes::vector {
 
@@ -61,7 +63,7 @@ Transformation2D idealTransformation(const SegmentPair &p) {
 /// The part of each line that is within `reach` of the optimum, and the optimum.
 SpacePlot spaceAround(const RegistrationExample &example, const std::string &name, const std::string &title,
                       double reach) {
-    SpacePlot plot{name, title, "T_x [m]", "T_y [m]", "T_alpha [deg]", {}};
+    SpacePlot plot{name, title, "x [m]", "y [m]", "alpha [deg]", {}};
     const Transformation2D optimum = registrationOf(example).transformation();
     for (std::size_t i = 0; i < example.pairs.size(); ++i) {
         const Transformation2D ideal = idealTransformation(example.pairs[i]);
@@ -74,8 +76,13 @@ SpacePlot spaceAround(const RegistrationExample &example, const std::string &nam
         }
         plot.curves.push_back(std::move(line));
     }
-    plot.curves.push_back(
-        {"optimum", vectorlib::colour::map, {{optimum.x(), optimum.y(), optimum.alpha() / degree}}});
+    SpaceCurve cross{"optimum", vectorlib::colour::outliers, {}};
+    const double x = optimum.x(), y = optimum.y(), alpha = optimum.alpha() / degree, arm = reach / 10;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    for (const auto &[dx, dy, turn] : {std::tuple{arm, 0.0, 0.0}, {0.0, arm, 0.0}, {0.0, 0.0, 0.15}})
+        for (const double sign : {-1.0, 1.0, none})
+            cross.points.push_back({x + sign * dx, y + sign * dy, alpha + sign * turn});
+    plot.curves.push_back(std::move(cross));
     return plot;
 }
 
@@ -189,7 +196,7 @@ Plot reliabilityEllipse(const RegistrationExample &example) {
     const Point minor = axis(0), major = axis(1);
     Curve circle{"unit circle", vectorlib::colour::points, {}},
         ends{"directions and their opposites", vectorlib::colour::map, {}},
-        ellipse{"half axes sigma_1, sigma_2", vectorlib::colour::estimate, {}},
+        ellipse{"half axes: roots of the eigenvalues", vectorlib::colour::estimate, {}},
         angle{"epsilon", vectorlib::colour::reference, {}};
     const Eigen::Matrix2d unit = Eigen::Matrix2d::Identity();
     addEllipse(circle, {}, unit);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace hermes::vector {
 
@@ -14,8 +15,8 @@ void writePoint(std::ostream &out, const std::array<double, 3> &p, char between)
     out << Number(p[0]) << between << Number(p[1]) << between << Number(p[2]);
 }
 
-bool isPoint(const SpaceCurve &curve) {
-    return curve.points.size() == 1;
+bool isBreak(const std::array<double, 3> &p) {
+    return !std::isfinite(p[0] + p[1] + p[2]);
 }
 
 // The colour's name must be letters, its value in capitals.
@@ -36,12 +37,15 @@ void writeGnuplot(std::ostream &out, const SpacePlot &plot) {
         << "set view 62,35\nset ticslevel 0\nset grid x y z lc rgb '#dddddd'\nset key outside right "
            "top\nsplot";
     for (std::size_t i = 0; i < plot.curves.size(); ++i)
-        out << (i ? "," : "") << " '-' using 1:2:3 with "
-            << (isPoint(plot.curves[i]) ? "points pt 7 ps 1" : "lines lw 2") << " lc rgb '"
-            << plot.curves[i].colour << "' title '" << plot.curves[i].label << "'";
+        out << (i ? "," : "") << " '-' using 1:2:3 with lines lw 2 lc rgb '" << plot.curves[i].colour
+            << "' title '" << plot.curves[i].label << "'";
     out << '\n';
     for (const SpaceCurve &curve : plot.curves) {
         for (const auto &point : curve.points) {
+            if (isBreak(point)) {
+                out << "\n\n"; // one empty line alone would make a net of the lines
+                continue;
+            }
             writePoint(out, point, ' ');
             out << '\n';
         }
@@ -50,16 +54,19 @@ void writeGnuplot(std::ostream &out, const SpacePlot &plot) {
 }
 
 void writeLatex(std::ostream &out, const SpacePlot &plot) {
-    out << "\\begin{tikzpicture}\\begin{axis}[view={35}{28}, grid=major, title={" << plot.title
-        << "}, xlabel={" << plot.xAxis << "}, ylabel={" << plot.yAxis << "}, zlabel={" << plot.zAxis
-        << "}, legend pos=outer north east]\n";
+    out << "\\begin{tikzpicture}\\begin{axis}[view={35}{28}, grid=major, empty line=jump, title={"
+        << plot.title << "}, xlabel={" << plot.xAxis << "}, ylabel={" << plot.yAxis << "}, zlabel={"
+        << plot.zAxis << "}, legend pos=outer north east]\n";
     for (const SpaceCurve &curve : plot.curves) {
         const std::string colour = colourName(plot, curve);
         out << "\\definecolor{" << colour << "}{HTML}{" << capitals(curve.colour.substr(1))
-            << "}\n\\addplot3[color=" << colour << ", "
-            << (isPoint(curve) ? "only marks, mark=*, mark size=1.5pt" : "thick, no marks")
+            << "}\n\\addplot3[color=" << colour << ", thick, no marks"
             << (curve.label.empty() ? ", forget plot" : "") << "] coordinates {";
         for (const auto &point : curve.points) {
+            if (isBreak(point)) {
+                out << "\n\n"; // pgfplots: an empty line
+                continue;
+            }
             out << " (";
             writePoint(out, point, ',');
             out << ')';

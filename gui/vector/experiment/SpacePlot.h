@@ -7,7 +7,7 @@
 
 namespace hermes::vector {
 
-/// A line in space, or a single point.
+/// Lines in space; a point that is not finite parts them.
 struct SpaceCurve {
     std::string label; ///< none in the legend when empty
     std::string colour;

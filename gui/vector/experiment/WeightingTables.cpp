@@ -81,6 +81,16 @@ std::string twoDigits(double value) {
     return text;
 }
 
+// Paper tables 1 and 2.
+const WeightingRow *publishedOf(const std::string &world) {
+    static const WeightingRow rows[] = {{"cutsquare", 0.68, 0.65, 0.58, 0.66, 0.90, 0.59, 0.91, 0.53},
+                                        {"oblique", 0.46, 0.43, 0.25, 0.27, 0.91, 0.82, 0.80, 0.56},
+                                        {"pillars", 0.27, 0.25, 0.07, 0.07, 0.77, 0.58, 0.74, 0.61}};
+    const auto *found = std::find_if(std::begin(rows), std::end(rows),
+                                     [&](const WeightingRow &r) { return r.world == world; });
+    return found != std::end(rows) ? found : nullptr;
+}
+
 } // namespace
 
 std::vector<WeightingRow> weightingRows(const std::vector<RegistrationRow> &rows) {
@@ -114,12 +124,17 @@ std::vector<Table> weightingTables(const std::vector<WeightingRow> &rows) {
     Table ratios{"Table 1: weighted over unweighted (lower is better)", {"Error metric"}, {}};
     Table correlations{"Table 2: correlation of ambiguity with squared error", {"Coefficient"}, {}};
     for (const WeightingRow &r : rows)
-        for (Table *table : {&ratios, &correlations})
+        for (Table *table : {&ratios, &correlations}) {
             table->header.push_back(r.world);
+            table->header.emplace_back("published");
+        }
     const auto add = [&](Table &table, const char *name, double WeightingRow::*quantity) {
         std::vector<std::string> cells{name};
-        for (const WeightingRow &r : rows)
+        for (const WeightingRow &r : rows) {
+            const WeightingRow *paper = publishedOf(r.world);
             cells.push_back(twoDigits(r.*quantity));
+            cells.push_back(paper ? twoDigits(paper->*quantity) : "");
+        }
         table.rows.push_back(cells);
     };
     add(ratios, "$A_t$", &WeightingRow::ratioAmbiguityXY);

@@ -19,7 +19,7 @@ struct WeightingRow {
 std::vector<WeightingRow> weightingRows(const std::vector<RegistrationRow> &rows);
 
 void writeCsv(std::ostream &out, const std::vector<WeightingRow> &rows);
-/// Both tables as in the paper.
+/// Both tables as in the paper, with its own figures beside ours.
 std::vector<Table> weightingTables(const std::vector<WeightingRow> &rows);
 /// The ratio of D_t and of D_alpha over the number of points, a curve for each world.
 std::vector<Plot> weightingPlots(const std::vector<RegistrationRow> &rows);

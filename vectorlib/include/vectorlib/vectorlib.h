@@ -9,6 +9,7 @@
 #include "vectorlib/mapping/ScanTracker.h"
 #include "vectorlib/registration/RegistrationCovariance.h"
 #include "vectorlib/relations/LocalMap.h"
+#include "vectorlib/relations/MatchErrors.h"
 #include "vectorlib/relations/RelationMatcher.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"
 #include "vectorlib/segmentation/EarSegmenter.h"

@@ -10,7 +10,13 @@
 
 namespace vectorlib {
 
-/// A planar scanner in a world of segments: rays at even steps, Gaussian noise of the range, outliers. A ray
+/// How an error is spread about 0, at the same standard deviation.
+enum class NoiseShape {
+    Gaussian,
+    Even ///< all errors up to sqrt(3) standard deviations alike
+};
+
+/// A planar scanner in a world of segments: rays at even steps, noise of range and direction, outliers. A ray
 /// is stopped by either side of an edge. The same seed gives the same scans. Owns its buffers.
 template <typename Scalar = float>
 class SimulatedScanner {
@@ -18,9 +24,11 @@ public:
     int rays = 720;              ///< over the field of view
     double fieldOfView = 2 * pi; ///< radians, half of it to each side of the heading
     double sigma = 0.01;         ///< standard deviation of the range; metres
-    double outliers = 0;         ///< share of rays, 0 to 1, that stop anywhere before the wall
-    double minRange = 0.05;      ///< metres; nearer walls give no point
-    double maxRange = 100;       ///< metres; farther walls give no point
+    double angleSigma = 0;       ///< of the direction, which the points do not tell; radians
+    NoiseShape noise = NoiseShape::Gaussian;
+    double outliers = 0;    ///< share of rays, 0 to 1, that stop anywhere before the wall
+    double minRange = 0.05; ///< metres; nearer walls give no point
+    double maxRange = 100;  ///< metres; farther walls give no point
 
     explicit SimulatedScanner(std::uint64_t seed = 1)
         : random_(seed) {}
@@ -42,10 +50,10 @@ public:
             edges_.push_back({toSensor * Vector(edge.begin()), toSensor * Vector(edge.end())});
         points_.clear();
         for (int ray = 0; ray < rays; ++ray) {
-            const Vector direction(std::cos(angle(ray)), std::sin(angle(ray)));
-            const double range = measure(direction);
+            const double range =
+                measure(directionOf(angleSigma > 0 ? angle(ray) + angleSigma * error() : angle(ray)));
             if (range >= minRange && range <= maxRange)
-                points_.push_back(Vector2D<Scalar>(direction * range));
+                points_.push_back(Vector2D<Scalar>(directionOf(angle(ray)) * range));
         }
         return points_;
     }
@@ -57,13 +65,20 @@ private:
         Vector end;
     };
 
+    static Vector directionOf(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+    // Of standard deviation 1.
+    double error() {
+        return noise == NoiseShape::Even ? std::sqrt(3.0) * (2 * uniform_(random_) - 1) : normal_(random_);
+    }
+
     double measure(Vector direction) {
         double range = noHit;
         for (const Edge &edge : edges_)
             range = std::min(range, rayDistance(direction, edge.begin, edge.end));
         if (outliers > 0 && uniform_(random_) < outliers)
             return minRange + uniform_(random_) * std::max(0.0, std::min(range, maxRange) - minRange);
-        return range + sigma * normal_(random_);
+        return range + sigma * error();
     }
 
     std::mt19937_64 random_;
