@@ -10,7 +10,8 @@ namespace hermes::vector {
 
 using Point = vectorlib::Vector2D<double>;
 
-KnownScan::KnownScan(const World &world, const vectorlib::Pose2D &pose, int rays) {
+KnownScan::KnownScan(const World &world, const vectorlib::Pose2D &pose, int rays)
+    : nominalRays_(std::size_t(std::max(0, rays))) {
     const vectorlib::Transformation2D toSensor =
         vectorlib::Transformation2D(pose.x, pose.y, pose.theta).inverse();
     for (const World::Edge &e : world.edges)

@@ -26,7 +26,11 @@ public:
     /// the begin of the list.
     const std::vector<Ray> &rays() const { return rays_; }
 
+    /// Rays of the scanner, with those that meet nothing.
+    std::size_t nominalRays() const { return nominalRays_; }
+
 private:
+    std::size_t nominalRays_;
     std::vector<vectorlib::LineSegment2D<double>> edges_;
     std::vector<Ray> rays_;
 };

@@ -64,7 +64,8 @@ std::vector<Plot> accuracyPlots(const std::vector<RegistrationRow> &rows);
 Plot dispersionPlot(const World &world, const std::vector<RegistrationRow> &rows, const std::string &name,
                     double scale);
 /// Paper figure 9: a circle at every pose, and inside it those whose areas are the reliabilities of the
-/// scans; of the pose with the least one, that one in a colour of its own.
+/// scans. In colours of their own the lowest one of a scan that has a solution, and small circles where scans
+/// have none.
 Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &rows);
 
 } // namespace hermes::vector

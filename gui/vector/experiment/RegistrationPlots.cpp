@@ -104,38 +104,49 @@ Plot dispersionPlot(const World &world, const std::vector<RegistrationRow> &rows
 }
 
 Plot reliabilityPlot(const World &world, const std::vector<RegistrationRow> &rows) {
-    constexpr double radius = 0.3; // metres
-    const auto circle = [&](Curve &curve, const RegistrationRow &row, double reliability) {
-        addEllipse(curve, {row.at.x, row.at.y},
-                   Eigen::Matrix2d::Identity() * radius * std::sqrt(reliability));
+    constexpr double radius = 0.3, unsolvedRadius = 0.05; // metres
+    const auto circle = [](Curve &curve, const RegistrationRow &row, double size) {
+        addEllipse(curve, {row.at.x, row.at.y}, Eigen::Matrix2d::Identity() * size);
     };
     Curve whole{"R = 1", vectorlib::colour::map, {}}, each{"R of each scan", vectorlib::colour::points, {}},
-        least{"", vectorlib::colour::estimate, {}};
-    const RegistrationRow *lowest = nullptr;
+        unsolved{"", vectorlib::colour::outliers, {}}, lowest{"", vectorlib::colour::estimate, {}};
+    const RegistrationRow *lowestAt = nullptr;
+    double least = 1;
+    int failed = 0;
     for (const RegistrationRow &row : rows) {
         std::set<double> seen; // circles that look the same are drawn once
-        for (const double reliability : row.result.reliabilities)
-            seen.insert(std::round(reliability * 50) / 50);
+        for (const double reliability : row.result.reliabilities) {
+            seen.insert(std::round(reliability * 100) / 100);
+            if (reliability > 0 && reliability < least) {
+                least = reliability;
+                lowestAt = &row;
+            }
+        }
         for (const double reliability : seen)
-            circle(each, row, reliability);
-        circle(whole, row, 1);
-        if (!lowest || row.result.leastReliability < lowest->result.leastReliability)
-            lowest = &row;
+            circle(each, row, radius * std::sqrt(reliability));
+        circle(whole, row, radius);
+        failed += row.result.unsolved;
+        if (row.result.unsolved > 0)
+            circle(unsolved, row, unsolvedRadius);
     }
-    if (lowest) {
-        least.label =
-            "lowest single scan, R = " + number(std::round(lowest->result.leastReliability * 100) / 100);
-        constexpr double visible = 0.02; // of R = 0
-        circle(least, *lowest, std::max(visible, lowest->result.leastReliability));
+    Plot plot{"circles",
+              world.name + ": area of the circles by reliability",
+              "x [m]",
+              "y [m]",
+              false,
+              false,
+              {wallsOf(world), each, whole},
+              true};
+    if (failed > 0) {
+        unsolved.label = std::to_string(failed) + " scans without solution, R = 0";
+        plot.curves.push_back(unsolved);
     }
-    return {"circles",
-            world.name + ": area of the circles by reliability",
-            "x [m]",
-            "y [m]",
-            false,
-            false,
-            {wallsOf(world), each, whole, least},
-            true};
+    if (lowestAt) {
+        circle(lowest, *lowestAt, radius * std::sqrt(least));
+        lowest.label = "lowest single scan, R = " + number(std::round(least * 100) / 100);
+        plot.curves.push_back(lowest);
+    }
+    return plot;
 }
 
 } // namespace hermes::vector

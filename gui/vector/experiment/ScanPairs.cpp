@@ -62,7 +62,7 @@ void ScanPairs::takeLines(const KnownScan &scan) {
     constexpr std::size_t minPoints = 4;
     constexpr double minLength = 0.10; // metres
     // The lower bound is the sensor's accuracy (thesis 5.2).
-    segment_.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, scan.rays().size());
+    segment_.settings = vectorlib::EarSettings::forScanner(2 * vectorlib::pi, scan.nominalRays());
     segment_.settings.neighbours = vectorlib::EarSettings().neighbours;
     segment_.settings.minThreshold = std::max(segment_.settings.minThreshold, 5 * noise_);
     segment_.settings.maxThreshold = std::max(segment_.settings.maxThreshold, 5 * noise_);
