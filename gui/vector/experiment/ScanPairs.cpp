@@ -119,8 +119,7 @@ void ScanPairs::find(const KnownScan &scan, const int *order, const vectorlib::V
     found_.push_back(std::move(found));
 }
 
-// A cluster all around begins somewhere on an edge: its last line goes on in
-// its first one.
+// A cluster all around begins somewhere on an edge: its last line goes on in its first one.
 void ScanPairs::joinEnds(std::size_t first) {
     if (found_.size() < first + 2 || found_[first].edge != found_.back().edge)
         return;
