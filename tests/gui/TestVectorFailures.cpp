@@ -39,6 +39,8 @@ private Q_SLOTS:
         row("half a motion", {"similarity", data("pairs.csv"), "--pose", "1,2"}, "--pose");
         row("half a pose", {"observe", world, "--pose", "1,2"}, "--pose");
         row("noise without scan", {"observe", world, "--pose", "0,0,0", "--noise", "1"}, "--noise");
+        row("noise of directions without scan", {"observe", world, "--pose", "0,0,0", "--angle-noise", "1"},
+            "--angle-noise");
         row("field of view", {"observe", world, "--pose", "0,0,0", "--fov", "400"}, "--fov");
         row("unknown map", {"map", log, "--out-map", "map.png"}, "--out-map");
         row("scan beyond all", {"map", log, "--scan", "1e15"}, "found \"1e15\", expected a whole number");
