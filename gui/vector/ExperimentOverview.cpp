@@ -38,16 +38,16 @@ void ExperimentCommand::baseline(OutputSet &files, std::ostream &csv) const {
 void ExperimentCommand::overview(OutputSet &files, std::ostream &csv, const World &world,
                                  const OdometryErrors &errors,
                                  const nlohmann::ordered_json &published) const {
-    std::vector<OverviewRun> runs, older;
+    std::vector<OverviewRun> drives, older;
     for (int i = 0; i < options.runs; ++i) {
-        runs.push_back(overviewRun(world, errors, options.seed + std::uint64_t(i)));
+        drives.push_back(overviewRun(world, errors, options.seed + std::uint64_t(i)));
         older.push_back(
             overviewRun(world, errors, options.seed + std::uint64_t(i), OverviewMatcher::Quadrangle));
         options.progress(std::size_t(i) + 1, std::size_t(options.runs));
     }
-    writeCsv(csv, runs);
-    tell(open(files, ".json"), summaryOf(runs, older, published));
-    const OverviewRun &first = runs.front();
+    writeCsv(csv, drives);
+    tell(open(files, ".json"), summaryOf(drives, older, published));
+    const OverviewRun &first = drives.front();
     const std::string scans = std::to_string(first.scans.size()) + " scans";
     const auto millimetres = [](double metres) { return std::to_string(std::lround(1000 * metres)) + " mm"; };
     drawRaw(open(files, "-raw.svg"),
