@@ -18,7 +18,7 @@ struct EvaluateCommand {
     void run() const {
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const PictureFiles pictures = output.openPictures(files);
         Input logInput(log), trajectoryInput(trajectory);
         const Evaluation evaluation(
             valueOrFail(vectorlib::readCarmenLog(logInput.stream(), logInput.name())),
@@ -26,8 +26,9 @@ struct EvaluateCommand {
             trajectoryInput.name());
         evaluation.expectSameDrive(logInput.name(), trajectoryInput.name(), std::cerr);
         out << evaluation.summary().dump(2) << '\n';
-        if (svg)
-            evaluation.draw(*svg, fileName(trajectory) + " beside the reference of " + fileName(log));
+        if (pictures.areWanted())
+            pictures.write(
+                evaluation.picture(fileName(trajectory) + " beside the reference of " + fileName(log)));
         files.commit();
     }
     static std::string fileName(const std::string &path) {

@@ -118,7 +118,10 @@ private:
     std::vector<World> allWorlds() const;
     vectorlib::CarmenLog readLog() const;
     static vectorlib::CarmenLog readLog(const std::string &file);
-    void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "") const;
+    using NamedPicture = std::pair<std::string, vectorlib::SvgPicture>; ///< name: in file names
+    /// The figures and pictures, each as SVG, all in one LaTeX document; pictures first.
+    void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "",
+              std::vector<NamedPicture> pictures = {}) const;
     template <typename Figure>
     bool draw(OutputSet &files, const std::string &suffix, const Figure &figure) const;
 };

@@ -5,6 +5,7 @@
 #include "gui/vector/Input.h"
 #include "gui/vector/Options.h"
 #include "gui/vector/experiment/Gnuplot.h"
+#include "vectorlib/io/LatexExport.h"
 
 #include <filesystem>
 #include <iostream>
@@ -49,8 +50,15 @@ vectorlib::CarmenLog ExperimentCommand::readLog(const std::string &file) {
     return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
 }
 
-void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std::string &suffix) const {
-    writeLatex(open(files, suffix + ".tex"), name, figures);
+void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std::string &suffix,
+                             std::vector<NamedPicture> pictures) const {
+    vectorlib::LatexExport document(open(files, suffix + ".tex"), name);
+    for (auto &[which, picture] : pictures) {
+        picture.write(open(files, suffix + (which.empty() ? "" : "-" + which) + ".svg"));
+        document.picture(picture, {14, 9});
+    }
+    document.figures(figures);
+    document.finish();
     bool drawn = true;
     for (const Plot &plot : figures.plots)
         drawn = drawn && draw(files, suffix, plot);

@@ -24,30 +24,33 @@ void ExperimentCommand::segmentationObjects(OutputSet &files, std::ostream &csv)
 void ExperimentCommand::adaptiveThreshold(OutputSet &files, std::ostream &csv) const {
     const std::vector<AdaptiveThresholdPanel> panels = adaptiveThresholdExperiment(options.seed);
     writeCsv(csv, panels);
+    std::vector<NamedPicture> pictures;
     for (const AdaptiveThresholdPanel &panel : panels)
-        vector::draw(open(files, "-" + panel.name + ".svg"), panel);
+        pictures.emplace_back(panel.name, pictureOf(panel));
+    draw(files, {}, "", std::move(pictures));
 }
 
 void ExperimentCommand::realSegmentation(OutputSet &files, std::ostream &csv) const {
     const RealScanChoice choice =
         chooseScans({RealScanKind::Corridor, RealScanKind::EmptyRoom, RealScanKind::Laboratory});
     csv << "kind,scan,points,clusters,outliers\n";
+    std::vector<NamedPicture> pictures;
     std::size_t kind = 0;
     for (const char *title : {"corridor", "empty-room", "laboratory"}) {
         const RealScan &scan = choice.best(kind++);
         csv << title << ',' << scan.number << ',' << scan.points() << ',' << scan.clusters.size() << ','
             << scan.outliers.size() << '\n';
-        pictureOfClusters(title, scan).write(open(files, '-' + std::string(title) + ".svg"));
+        pictures.emplace_back(title, pictureOfClusters(title, scan));
     }
+    draw(files, {}, "", std::move(pictures));
 }
 
 void ExperimentCommand::threshold(OutputSet &files, std::ostream &csv) const {
     const ThresholdExperiment experiment(options.seed);
     experiment.writeCsv(csv);
     tell(open(files, ".json"), experiment.summary());
-    draw(files, {{experiment.errorPlot()}, {}, {}});
-    experiment.pictureOfClouds().write(open(files, "-clouds.svg"));
-    experiment.pictureOfLines().write(open(files, "-lines.svg"));
+    draw(files, {{experiment.errorPlot()}, {}, {}}, "",
+         {{"clouds", experiment.pictureOfClouds()}, {"lines", experiment.pictureOfLines()}});
 }
 
 void ExperimentCommand::semicircle(OutputSet &files, std::ostream &csv) const {
@@ -61,7 +64,7 @@ void ExperimentCommand::semicircle(OutputSet &files, std::ostream &csv) const {
         text << "-sigma" << sigma;
         draw(files, {plotsOf("semicircle, sigma " + text.str().substr(6) + " m", some), {}, {}}, text.str());
     }
-    drawSemicircle(open(files, "-cloud.svg"));
+    draw(files, {}, "", {{"cloud", pictureOfSemicircle()}});
 }
 
 void ExperimentCommand::edges(OutputSet &files, std::ostream &csv) const {
@@ -127,10 +130,12 @@ void ExperimentCommand::criterionTime(OutputSet &files, std::ostream &csv) const
 void ExperimentCommand::segment(OutputSet &files, std::ostream &csv, const Scene &scene) const {
     const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
     writeCsv(csv, panels);
+    std::vector<NamedPicture> pictures;
     for (const SegmentationPanel &panel : panels)
-        vector::draw(open(files, "-" + std::to_string(std::lround(100 * panel.noise)) + "cm-" +
-                                     std::to_string(std::lround(100 * panel.outlierShare)) + "percent.svg"),
-                     scene, panel);
+        pictures.emplace_back(std::to_string(std::lround(100 * panel.noise)) + "cm-" +
+                                  std::to_string(std::lround(100 * panel.outlierShare)) + "percent",
+                              pictureOf(scene, panel));
+    draw(files, {}, "", std::move(pictures));
 }
 
 void ExperimentCommand::quality(OutputSet &files, std::ostream &csv, const std::string &title,
@@ -161,15 +166,14 @@ RealScanChoice ExperimentCommand::chooseScans(const std::vector<RealScanKind> &k
 void ExperimentCommand::realScan(OutputSet &files, std::ostream &csv, RealScanKind kind) const {
     const RealScanResult result = realScanExperiment(chooseScans({kind}).best(0));
     writeCsv(csv, result);
-    draw(files, {{}, {}, {tableOf(name, result)}});
-    pictureOf(name, result).write(open(files, ".svg"));
+    draw(files, {{}, {}, {tableOf(name, result)}}, "", {{"", pictureOf(name, result)}});
 }
 
 void ExperimentCommand::scene(OutputSet &files, std::ostream &csv, const Scene &scene) const {
     const std::vector<ResultRow> rows = sceneExperiment(scene, options);
     writeCsv(csv, rows);
-    draw(files, {plotsOf(scene.title, rows), {}, {lineTable(scene.title, rows)}});
-    drawCloud(open(files, "-cloud.svg"), scene, options);
+    draw(files, {plotsOf(scene.title, rows), {}, {lineTable(scene.title, rows)}}, "",
+         {{"cloud", pictureOfCloud(scene, options)}});
 }
 
 } // namespace hermes::vector

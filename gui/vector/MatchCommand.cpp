@@ -51,7 +51,7 @@ struct MatchCommand {
         reading.noise = noise;
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const PictureFiles pictures = output.openPictures(files);
         const SegmentSet fixed = loadSegmentSet(fixedPath, reading),
                          moving = loadSegmentSet(movingPath, reading);
         if (isMap && fixed.kind == SegmentSet::Kind::Points)
@@ -63,9 +63,10 @@ struct MatchCommand {
         write(out, result, fixed, moving);
         if (result.solutions.empty())
             std::cerr << "hermes-vector: no solution: " << result.text() << '\n';
-        if (svg)
-            draw(*svg, result, fixed, moving,
-                 expected.empty() && result.method != "finder" ? std::nullopt : std::make_optional(around));
+        if (pictures.areWanted())
+            pictures.write(pictureOf(
+                result, fixed, moving,
+                expected.empty() && result.method != "finder" ? std::nullopt : std::make_optional(around)));
         files.commit();
     }
 
@@ -138,8 +139,9 @@ struct MatchCommand {
         out << json.dump(2) << '\n';
     }
 
-    static void draw(std::ostream &svg, const Matched &result, const SegmentSet &fixed,
-                     const SegmentSet &moving, const std::optional<Transformation2D> &around) {
+    static vectorlib::SvgPicture pictureOf(const Matched &result, const SegmentSet &fixed,
+                                           const SegmentSet &moving,
+                                           const std::optional<Transformation2D> &around) {
         const Solution *best = result.solutions.empty() ? nullptr : &result.solutions[0].solution;
         const Transformation2D pose = best ? best->pose : around.value_or(Transformation2D());
         std::vector<vectorlib::Vector2D<double>> points;
@@ -170,7 +172,7 @@ struct MatchCommand {
                 picture.segments({vectorlib::colour::reference, 1, "correspondences"}, links);
         }
         picture.pose({vectorlib::colour::estimate, 2, "sensor"}, pose.translation(), pose.alpha());
-        picture.write(svg);
+        return picture;
     }
     // Of a large map what lies about the sensor and its scan.
     static Segments near(const Segments &fixed, const SegmentSet &moving, const Transformation2D &pose) {

@@ -29,7 +29,7 @@ struct ObserveCommand {
     void run() const {
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const PictureFiles pictures = output.openPictures(files);
         const std::vector<Segment> world = loadWorld();
         const vectorlib::Pose2D at = parsePose(pose);
         const std::vector<Segment> view = observe(world, at);
@@ -40,8 +40,8 @@ struct ObserveCommand {
         } else {
             vectorlib::writeCsvSegments(out, view);
         }
-        if (svg)
-            draw(*svg, world, at, view, scan);
+        if (pictures.areWanted())
+            pictures.write(pictureOf(world, at, view, scan));
         files.commit();
     }
 
@@ -74,8 +74,8 @@ struct ObserveCommand {
         scanner.outliers = outliers;
         return scanner(world, at);
     }
-    static void draw(std::ostream &svg, const std::vector<Segment> &world, const vectorlib::Pose2D &at,
-                     const std::vector<Segment> &view, const std::vector<Point> &scan) {
+    static vectorlib::SvgPicture pictureOf(const std::vector<Segment> &world, const vectorlib::Pose2D &at,
+                                           const std::vector<Segment> &view, const std::vector<Point> &scan) {
         std::vector<Segment> around;
         for (const Segment &s : world)
             around.push_back(vectorlib::Transformation2D(at).inverse() * s);
@@ -85,7 +85,7 @@ struct ObserveCommand {
         if (!scan.empty())
             picture.points({vectorlib::colour::reference, 3, "simulated scan"}, scan);
         picture.pose({vectorlib::colour::map, 2, "sensor"}, {}, 0);
-        picture.write(svg);
+        return picture;
     }
 };
 

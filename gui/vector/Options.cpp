@@ -52,12 +52,12 @@ CLI::Validator aboveZero() {
     return numberThat("a number above 0", [](double v) { return v > 0; });
 }
 
-CLI::Validator pictureName() {
-    const auto check = [](const std::string &path) {
+CLI::Validator pictureName(const std::string &format) {
+    const auto check = [format](const std::string &path) {
         const std::string extension = std::filesystem::path(path).extension().string();
-        return extension.empty() || extension == ".svg"
+        return extension.empty() || extension == format
                    ? std::string()
-                   : "found " + path + ", expected a name that ends with .svg";
+                   : "found " + path + ", expected a name that ends with " + format;
     };
     return {check, ""};
 }
@@ -84,11 +84,15 @@ vectorlib::Pose2D parsePose(const std::string &text) {
             vectorlib::parseNumber(fields.at(2)).value()};
 }
 
-void OutputOptions::addTo(CLI::App &command, bool withSvg) {
+void OutputOptions::addTo(CLI::App &command, bool withPictures) {
     command.add_option("--out", out, "Write the result to this file instead of standard output")
         ->type_name("FILE");
-    if (withSvg)
+    if (withPictures) {
         command.add_option("--svg", svg, "Also draw a picture")->check(pictureName())->type_name("FILE");
+        command.add_option("--latex", latex, "Also write the picture as a LaTeX document")
+            ->check(pictureName(".tex"))
+            ->type_name("FILE");
+    }
     command.add_flag("--force", force, "Overwrite files that exist");
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gui/vector/Output.h"
+#include "gui/vector/PictureFiles.h"
 #include "vectorlib/geometry/Pose2D.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
@@ -12,12 +12,13 @@ namespace hermes::vector {
 
 /// Where a command's results go.
 struct OutputOptions {
-    std::string out; ///< empty is standard output
-    std::string svg; ///< empty is no picture
+    std::string out;        ///< empty is standard output
+    std::string svg, latex; ///< empty is no picture
     bool force = false;
 
-    /// Adds --out, --svg (if wanted) and --force.
-    void addTo(CLI::App &command, bool withSvg);
+    /// Adds --out, --svg and --latex (if wanted) and --force.
+    void addTo(CLI::App &command, bool withPictures);
+    PictureFiles openPictures(OutputSet &files) const { return {files, svg, latex}; }
 };
 
 /// A finite number from low to high, both included.
@@ -26,8 +27,9 @@ CLI::Validator between(double low, double high);
 CLI::Validator wholeNumber(double low, double high);
 /// A finite number above 0.
 CLI::Validator aboveZero();
-/// A file that a picture may go to: its name ends with .svg, or has no extension, as `-` and /dev/stdout.
-CLI::Validator pictureName();
+/// A file that a picture may go to: its name ends with the extension of its format, or has none, as `-` and
+/// /dev/stdout.
+CLI::Validator pictureName(const std::string &format = ".svg");
 /// Three finite numbers `x,y,theta`.
 CLI::Validator poseText();
 /// The pose in a text that poseText() has let through; metres, radians.

@@ -27,7 +27,7 @@ struct RegisterCommand {
     void run() const {
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const PictureFiles pictures = output.openPictures(files);
         Input input(in);
         const vectorlib::PairTable table = valueOrFail(vectorlib::readCsvPairs(input.stream(), input.name()));
         if (weights == "column" && !table.hasWeights)
@@ -49,8 +49,8 @@ struct RegisterCommand {
             std::cerr
                 << "hermes-vector: all lines are parallel: the shift along them is not known and left at 0\n";
         write(out, registration, t);
-        if (svg)
-            draw(*svg, table.pairs, t);
+        if (pictures.areWanted())
+            pictures.write(pictureOf(table.pairs, t));
         files.commit();
     }
 
@@ -73,8 +73,8 @@ struct RegisterCommand {
         json["pairs"] = registration.pairs();
         out << json.dump(2) << '\n';
     }
-    static void draw(std::ostream &svg, const std::vector<SegmentPair> &pairs,
-                     const vectorlib::Transformation2D &t) {
+    static vectorlib::SvgPicture pictureOf(const std::vector<SegmentPair> &pairs,
+                                           const vectorlib::Transformation2D &t) {
         std::vector<Segment> fixed, before, after;
         for (const SegmentPair &p : pairs) {
             fixed.push_back(p.fixed);
@@ -86,7 +86,7 @@ struct RegisterCommand {
         picture.segments({vectorlib::colour::map, 4, "static set"}, fixed);
         picture.segments({vectorlib::colour::before, 1.5, "dynamic set as given", true}, before);
         picture.segments({vectorlib::colour::estimate, 1.5, "dynamic set moved onto the static one"}, after);
-        picture.write(svg);
+        return picture;
     }
 };
 

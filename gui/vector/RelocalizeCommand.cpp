@@ -46,7 +46,7 @@ struct RelocalizeCommand {
         reading.sigma = sigma;
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const PictureFiles pictures = output.openPictures(files);
         const SegmentSet known = loadSegmentSet(map, reading), seen = loadSegmentSet(scan, reading);
         if (known.kind == SegmentSet::Kind::Points)
             throw CLI::ValidationError("MAP", "found points in " + map + ", expected a map or segments");
@@ -69,8 +69,8 @@ struct RelocalizeCommand {
         for (const vectorlib::Place &place : result.places)
             json["places"].push_back(placeAsJson(place));
         out << json.dump(2) << '\n';
-        if (svg)
-            draw(*svg, known, seen, result);
+        if (pictures.areWanted())
+            pictures.write(pictureOf(known, seen, result));
         files.commit();
     }
 };

@@ -2,7 +2,6 @@
 
 #include "gui/vector/DrawnNumber.h"
 #include "vectorlib/geometry/Transformation2D.h"
-#include "vectorlib/io/Svg.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -58,8 +57,7 @@ void drawScan(SvgPicture &picture, const SegmentSet &scan, const vectorlib::Tran
 
 } // namespace
 
-void draw(std::ostream &svg, const SegmentSet &map, const SegmentSet &scan,
-          const vectorlib::Relocalized &result) {
+SvgPicture pictureOf(const SegmentSet &map, const SegmentSet &scan, const vectorlib::Relocalized &result) {
     SvgPicture picture(titleOf(result));
     picture.segments({vectorlib::colour::map, 1.5, "map"}, map.segments());
     const bool isAmbiguous = result.outcome == Outcome::Ambiguous;
@@ -82,7 +80,7 @@ void draw(std::ostream &svg, const SegmentSet &map, const SegmentSet &scan,
             picture.segments({colour, 2.5, ""}, strokes);
         }
     }
-    picture.write(svg);
+    return picture;
 }
 
 } // namespace hermes::vector

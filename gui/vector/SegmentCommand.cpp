@@ -18,41 +18,34 @@ struct SegmentCommand {
         segmenter.settings = segment.over({});
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const PictureFiles pictures = output.openPictures(files);
         const std::vector<Point> points = loadPoints(in);
         const vectorlib::Segmentation &clusters = segmenter(points);
         out << "index,cluster\n";
         for (std::size_t i = 0; i < clusters.labels.size(); ++i)
             out << i << ',' << clusters.labels[i] << '\n';
-        if (svg)
-            draw(*svg, points, clusters);
+        if (pictures.areWanted())
+            pictures.write(pictureOf(points, clusters));
         files.commit();
     }
 
-    static void draw(std::ostream &svg, const std::vector<vectorlib::Vector2D<double>> &points,
-                     const vectorlib::Segmentation &clusters) {
+    static vectorlib::SvgPicture pictureOf(const std::vector<Point> &points,
+                                           const vectorlib::Segmentation &clusters) {
         vectorlib::SvgPicture picture(std::to_string(clusters.size()) + " clusters in " +
                                       std::to_string(points.size()) + " points");
-        std::vector<vectorlib::Vector2D<double>> part;
-        for (std::size_t c = 0; c < clusters.size(); ++c) {
-            part.clear();
+        std::vector<std::vector<Point>> parts(clusters.size());
+        for (std::size_t c = 0; c < clusters.size(); ++c)
             for (std::size_t i = clusters.starts[c]; i < clusters.starts[c + 1]; ++i)
-                part.push_back(points[static_cast<std::size_t>(clusters.order[i])]);
-            // A legend of a dozen rows is still read; beyond that clusters speak for themselves.
-            const bool named = clusters.size() <= 12;
-            picture.points(
-                {vectorlib::colour::distinct(c), 3,
-                 named ? "cluster " + std::to_string(c) + ": " + std::to_string(part.size()) + " points"
-                       : ""},
-                part);
-        }
-        part.clear();
+                parts[c].push_back(points[static_cast<std::size_t>(clusters.order[i])]);
+        picture.clusters(3, parts);
+        std::vector<Point> outliers;
         for (std::size_t i = 0; i < points.size(); ++i)
             if (clusters.labels[i] < 0)
-                part.push_back(points[i]);
-        picture.points({vectorlib::colour::outliers, 3, std::to_string(part.size()) + " outliers"}, part);
+                outliers.push_back(points[i]);
+        picture.points({vectorlib::colour::outliers, 3, std::to_string(outliers.size()) + " outliers"},
+                       outliers);
         picture.pose({vectorlib::colour::map, 2, "sensor"}, {}, 0);
-        picture.write(svg);
+        return picture;
     }
 };
 

@@ -41,7 +41,7 @@ struct VectorizeCommand {
         segmenter.settings = segment.over({});
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        std::ostream *svg = output.svg.empty() ? nullptr : &files.open(output.svg);
+        const PictureFiles pictures = output.openPictures(files);
         const std::vector<Point> points = loadPoints(in);
         const vectorlib::Segmentation clusters = noSegment ? oneCluster(points.size()) : segmenter(points);
         const std::vector<Row> rows = vectorize(points, clusters);
@@ -53,8 +53,8 @@ struct VectorizeCommand {
                 out << ',' << Number(v);
             out << '\n';
         }
-        if (svg)
-            draw(*svg, points, rows);
+        if (pictures.areWanted())
+            pictures.write(pictureOf(points, rows));
         files.commit();
     }
 
@@ -97,7 +97,7 @@ struct VectorizeCommand {
         return rows;
     }
 
-    void draw(std::ostream &svg, const std::vector<Point> &points, const std::vector<Row> &rows) const {
+    vectorlib::SvgPicture pictureOf(const std::vector<Point> &points, const std::vector<Row> &rows) const {
         vectorlib::SvgPicture picture(std::to_string(rows.size()) + " lines by " + algorithm + " from " +
                                       std::to_string(points.size()) + " points");
         picture.points({vectorlib::colour::points, 3, "points"}, points);
@@ -108,10 +108,11 @@ struct VectorizeCommand {
             ends.push_back(r.segment.begin());
             ends.push_back(r.segment.end());
         }
-        picture.segments({vectorlib::colour::estimate, 2, "lines"}, segments);
+        picture.segments({vectorlib::colour::estimate, 2, "lines, with the side that was free", false, true},
+                         segments);
         picture.points({vectorlib::colour::reference, 5, "their ends"}, ends);
         picture.pose({vectorlib::colour::map, 2, "sensor"}, {}, 0);
-        picture.write(svg);
+        return picture;
     }
 };
 

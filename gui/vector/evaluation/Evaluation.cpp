@@ -3,7 +3,6 @@
 #include "gui/vector/Failure.h"
 #include "gui/vector/evaluation/Revisits.h"
 #include "vectorlib/geometry/Angle.h"
-#include "vectorlib/io/Svg.h"
 
 #include <algorithm>
 #include <array>
@@ -195,7 +194,7 @@ Transformation2D Evaluation::ontoReference() const {
     return {shift.x, shift.y, turned.alpha()};
 }
 
-void Evaluation::draw(std::ostream &svg, const std::string &title) const {
+vectorlib::SvgPicture Evaluation::picture(const std::string &title) const {
     namespace colour = vectorlib::colour;
     constexpr double small = 0.1, large = 0.5; // metres
     const Transformation2D onto = ontoReference();
@@ -218,7 +217,7 @@ void Evaluation::draw(std::ostream &svg, const std::string &title) const {
     picture.points({"#009e73", 5, "place met again: off by less than 10 cm"}, again[0]);
     picture.points({colour::before, 5, "by 10 to 50 cm"}, again[1]);
     picture.points({colour::outliers, 5, "by more"}, again[2]);
-    picture.write(svg);
+    return picture;
 }
 
 } // namespace hermes::vector

@@ -2,6 +2,7 @@
 
 #include "gui/vector/evaluation/MotionErrors.h"
 #include "vectorlib/io/CarmenLog.h"
+#include "vectorlib/io/Svg.h"
 #include "vectorlib/io/Tum.h"
 
 #include <optional>
@@ -31,7 +32,7 @@ public:
     /// one's. Fewer than half with a scan whose turns agree are a warning.
     void expectSameDrive(const std::string &log, const std::string &trajectory, std::ostream &warnings) const;
     /// Both trajectories, laid on each other, and how far off the motions between places met again are.
-    void draw(std::ostream &svg, const std::string &title) const;
+    vectorlib::SvgPicture picture(const std::string &title) const;
 
 private:
     using Point = vectorlib::Vector2D<double>;

@@ -1,6 +1,5 @@
 #include "gui/vector/experiment/CloudPicture.h"
 
-#include "vectorlib/io/Svg.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 
 #include <algorithm>
@@ -14,14 +13,14 @@ constexpr std::size_t scenePoints = 1000;
 
 } // namespace
 
-void drawSemicircle(std::ostream &svg) {
+vectorlib::SvgPicture pictureOfSemicircle() {
     vectorlib::SvgPicture picture("a semicircle of radius 1 m, " + std::to_string(semicirclePoints) +
                                   " points");
     picture.points({vectorlib::colour::map, 4, "points"}, semicircle(semicirclePoints));
-    picture.write(svg);
+    return picture;
 }
 
-void drawCloud(std::ostream &svg, const Scene &scene, const ExperimentOptions &options) {
+vectorlib::SvgPicture pictureOfCloud(const Scene &scene, const ExperimentOptions &options) {
     vectorlib::SimulatedScanner<float> scan(options.seed);
     scan.rays = static_cast<int>(std::min(scenePoints, options.maxPoints));
     scan.sigma = options.noise;
@@ -32,7 +31,7 @@ void drawCloud(std::ostream &svg, const Scene &scene, const ExperimentOptions &o
     picture.segments({vectorlib::colour::reference, 1.5, "visible parts of edges"}, scene.visible());
     picture.points({vectorlib::colour::map, 3, "points"}, scan(scene.edges, {}));
     picture.pose({vectorlib::colour::estimate, 2, "scanner"}, {}, 0);
-    picture.write(svg);
+    return picture;
 }
 
 } // namespace hermes::vector

@@ -80,7 +80,7 @@ Table tableOf(const std::string &title, const RealScanResult &result) {
     table.rows.push_back({"\\hline Processing time [$\\mu$s]", ""});
     for (const RealScanResult::Row &row : result.rows) {
         std::ostringstream time;
-        time << Fixed{row.microseconds, 1};
+        time << vectorlib::Fixed{row.microseconds, 1};
         table.rows.push_back({row.algorithm, withPercent(time.str(), result.timePercent(row))});
     }
     return table;

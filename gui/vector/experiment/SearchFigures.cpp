@@ -3,6 +3,7 @@
 #include "gui/vector/experiment/SearchStages.h"
 #include "gui/vector/report/Report.h"
 #include "vectorlib/correspondence/PublishedSearch.h"
+#include "vectorlib/io/LatexExport.h"
 #include "vectorlib/io/Svg.h"
 
 #include <sstream>
@@ -207,28 +208,19 @@ void writeSvg(std::ostream &out, const SearchFigure &figure) {
 }
 
 void writeLatex(std::ostream &out, const std::vector<SearchFigure> &figures) {
-    std::vector<const Ink *> inks;
-    for (const SearchFigure &figure : figures)
-        for (const Ink &ink : figure.inks)
-            inks.push_back(&ink);
-    for (const Ink *ink : allInks())
-        inks.push_back(ink);
-    out << "\\documentclass[a4paper,10pt]{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[margin=2cm]{"
-           "geometry}\n"
-           "\\usepackage{tikz}\n\\setlength{\\parindent}{0pt}\n";
-    defineColours(out, inks);
-    out << "\\begin{document}\n";
+    vectorlib::LatexExport document(out);
     for (const SearchFigure &figure : figures) {
-        out << "\\begin{minipage}{\\textwidth}\n\\subsection*{" << latexText(figure.title) << "}\n";
-        figure.drawing.writeTikz(out, 14, 9);
-        out << "\n\n\\smallskip\n{\\raggedright\n";
-        inks.clear();
+        document.latex("\\begin{minipage}{\\textwidth}\n\\subsection*{" + vectorlib::latexText(figure.title) +
+                       "}\n");
+        document.drawing(figure.drawing.picture(), {14, 9, Drawing::gridStep});
+        document.latex("\n\n\\smallskip\n");
+        std::vector<const Ink *> inks;
         for (const Ink &ink : figure.inks)
             inks.push_back(&ink);
-        writeTikzLegend(out, inks);
-        out << "\\par}\n\\end{minipage}\\par\\bigskip\n";
+        document.legend(layersOf(inks));
+        document.latex("\\end{minipage}\\par\\bigskip\n");
     }
-    out << "\\end{document}\n";
+    document.finish();
 }
 
 } // namespace hermes::vector

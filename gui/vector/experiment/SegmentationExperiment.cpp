@@ -1,6 +1,5 @@
 #include "gui/vector/experiment/SegmentationExperiment.h"
 
-#include "vectorlib/io/Svg.h"
 #include "vectorlib/observation/SimulatedScanner.h"
 #include "vectorlib/segmentation/EarSegmenter.h"
 
@@ -125,8 +124,8 @@ void writeCsv(std::ostream &out, const std::vector<AdaptiveThresholdPanel> &pane
         out << p.name << ',' << p.panel << '\n';
 }
 
-static void draw(std::ostream &svg, const std::string &what, const Scene &scene,
-                 const SegmentationPanel &panel) {
+static vectorlib::SvgPicture pictureOf(const std::string &what, const Scene &scene,
+                                       const SegmentationPanel &panel) {
     vectorlib::SvgPicture picture(what + ", noise " + std::to_string(std::lround(100 * panel.noise)) +
                                   " cm, " + std::to_string(std::lround(100 * panel.outlierShare)) +
                                   " % outliers: " + std::to_string(panel.clusters) + " clusters, " +
@@ -141,15 +140,15 @@ static void draw(std::ostream &svg, const std::string &what, const Scene &scene,
         picture.points({vectorlib::colour::distinct(c), 3, c == 0 ? "clusters" : ""}, clusters[c]);
     picture.points({vectorlib::colour::outliers, 3, "outliers"}, outliers);
     picture.pose({vectorlib::colour::map, 2, "scanner"}, {}, 0);
-    picture.write(svg);
+    return picture;
 }
 
-void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel) {
-    draw(svg, scene.title, scene, panel);
+vectorlib::SvgPicture pictureOf(const Scene &scene, const SegmentationPanel &panel) {
+    return pictureOf(scene.title, scene, panel);
 }
 
-void draw(std::ostream &svg, const AdaptiveThresholdPanel &panel) {
-    draw(svg, panel.scene.title + ", " + panel.title, panel.scene, panel.panel);
+vectorlib::SvgPicture pictureOf(const AdaptiveThresholdPanel &panel) {
+    return pictureOf(panel.scene.title + ", " + panel.title, panel.scene, panel.panel);
 }
 
 } // namespace hermes::vector

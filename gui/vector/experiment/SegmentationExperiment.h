@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gui/vector/experiment/Scene.h"
+#include "vectorlib/io/Svg.h"
 
 #include "vectorlib/segmentation/EarSettings.h"
 
@@ -43,9 +44,8 @@ std::vector<AdaptiveThresholdPanel> adaptiveThresholdExperiment(std::uint64_t se
 
 void writeCsv(std::ostream &out, const std::vector<SegmentationPanel> &panels);
 void writeCsv(std::ostream &out, const std::vector<AdaptiveThresholdPanel> &panels);
-/// The same for one of those.
-void draw(std::ostream &svg, const AdaptiveThresholdPanel &panel);
 /// Clusters in colours, outliers in red, the true edges beneath.
-void draw(std::ostream &svg, const Scene &scene, const SegmentationPanel &panel);
+vectorlib::SvgPicture pictureOf(const Scene &scene, const SegmentationPanel &panel);
+vectorlib::SvgPicture pictureOf(const AdaptiveThresholdPanel &panel);
 
 } // namespace hermes::vector

@@ -7,12 +7,13 @@
 namespace hermes::vector {
 
 using vectorlib::Fixed;
+using vectorlib::Picture;
 using Point = Drawing::Point;
+using Kind = Picture::Kind;
 
 namespace {
 
-constexpr double gridStep = 0.5;    // metres
-constexpr double margin = 0.25;     // metres
+constexpr int mostLines = 200;      // of the grid, each way
 constexpr double poseLength = 0.35; // metres, from a robot's place to the tip of its heading
 
 struct At {
@@ -22,128 +23,69 @@ struct At {
     }
 };
 
+Picture::Style styleOf(const Ink &ink, const std::string &label = "") {
+    return {ink.colour, ink.width, label, ink.dashed};
+}
+
 } // namespace
 
-void Drawing::area(const Ink &ink, std::vector<Point> corners) {
-    shapes_.push_back({ink, std::move(corners)});
+void Drawing::area(const Ink &ink, const std::vector<Point> &corners) {
+    picture_.area(styleOf(ink), corners);
 }
 
 void Drawing::segment(const Ink &ink, const vectorlib::LineSegment2D<double> &segment) {
-    shapes_.push_back({ink, {segment.begin(), segment.end()}});
+    segments(ink, {segment});
 }
 
 void Drawing::segments(const Ink &ink, const std::vector<vectorlib::LineSegment2D<double>> &segments) {
-    for (const vectorlib::LineSegment2D<double> &s : segments)
-        segment(ink, s);
+    picture_.segments(styleOf(ink), segments);
 }
 
 void Drawing::path(const Ink &ink, const std::vector<Point> &points) {
-    shapes_.push_back({ink, points});
+    picture_.path(styleOf(ink), points);
 }
 
 void Drawing::dots(const Ink &ink, const std::vector<Point> &points) {
-    shapes_.push_back({ink, points});
+    picture_.points(styleOf(ink), points);
 }
 
 void Drawing::pose(const Ink &ink, const vectorlib::Pose2D &pose) {
-    const Point at(pose.x, pose.y);
-    shapes_.push_back({ink, {at, at + Point(std::cos(pose.theta), std::sin(pose.theta)) * poseLength}});
-}
-
-Drawing::Frame Drawing::frame(double width, double height) const {
-    Frame f{{}, {}, 1};
-    bool any = false;
-    for (const Shape &shape : shapes_)
-        for (const Point &p : shape.points) {
-            f.low = any ? Point(std::min(f.low.x, p.x), std::min(f.low.y, p.y)) : p;
-            f.high = any ? Point(std::max(f.high.x, p.x), std::max(f.high.y, p.y)) : p;
-            any = true;
-        }
-    f.low -= Point(margin, margin);
-    f.high += Point(margin, margin);
-    f.scale = std::min(width / (f.high.x - f.low.x), height / (f.high.y - f.low.y));
-    return f;
+    picture_.pose(styleOf(ink), {pose.x, pose.y}, pose.theta);
 }
 
 void Drawing::writeSvg(std::ostream &out, double x, double y, double width, double height) const {
-    const Frame f = frame(width, height);
+    const Picture::Box box = picture_.box();
+    const double scale = std::min(width / box.size().x, height / box.size().y);
     const auto at = [&](Point p) {
-        return At{{x + (p.x - f.low.x) * f.scale, y + (f.high.y - p.y) * f.scale}};
+        return At{{x + (p.x - box.low.x) * scale, y + (box.high.y - p.y) * scale}};
     };
     out << "<path stroke=\"#e3e7ee\" stroke-width=\"0.6\" d=\"";
-    for (double gx = std::ceil(f.low.x / gridStep) * gridStep; gx <= f.high.x; gx += gridStep)
-        out << 'M' << at({gx, f.low.y}) << 'L' << at({gx, f.high.y});
-    for (double gy = std::ceil(f.low.y / gridStep) * gridStep; gy <= f.high.y; gy += gridStep)
-        out << 'M' << at({f.low.x, gy}) << 'L' << at({f.high.x, gy});
+    for (const double gx : Picture::gridLines(box.low.x, box.high.x, gridStep, mostLines))
+        out << 'M' << at({gx, box.low.y}) << 'L' << at({gx, box.high.y});
+    for (const double gy : Picture::gridLines(box.low.y, box.high.y, gridStep, mostLines))
+        out << 'M' << at({box.low.x, gy}) << 'L' << at({box.high.x, gy});
     out << "\"/>\n";
-    for (const Shape &shape : shapes_) {
-        const Ink &ink = shape.ink;
-        if (ink.kind == Ink::Kind::Pose)
-            out << "<circle fill=\"" << ink.colour << "\" r=\"" << Fixed{2 * ink.width, 1} << "\" cx=\""
-                << Fixed{at(shape.points[0]).p.x, 3} << "\" cy=\"" << Fixed{at(shape.points[0]).p.y, 3}
-                << "\"/>";
-        out << "<path stroke-linecap=\"round\" "
-            << (ink.kind == Ink::Kind::Area ? "fill=\"" : "fill=\"none\" stroke=\"") << ink.colour
-            << "\" stroke-width=\"" << Fixed{ink.width, 2} << '"'
-            << (ink.dashed ? " stroke-dasharray=\"4 3\"" : "") << " d=\"";
-        for (std::size_t i = 0; i < shape.points.size(); ++i)
-            out << (i == 0 || ink.kind == Ink::Kind::Dots ? 'M' : 'L') << at(shape.points[i])
-                << (ink.kind == Ink::Kind::Dots ? "h0" : "");
-        out << "\"/>\n";
-    }
-}
-
-void Drawing::writeTikz(std::ostream &out, double width, double height) const {
-    const Frame f = frame(width, height);
-    const auto at = [&](Point p) { return At{(p - f.low) * f.scale}; };
-    out << "\\begin{tikzpicture}\n\\draw[grid, line width=0.2pt]";
-    for (double gx = std::ceil(f.low.x / gridStep) * gridStep; gx <= f.high.x; gx += gridStep)
-        out << " (" << at({gx, f.low.y}) << ")--(" << at({gx, f.high.y}) << ')';
-    for (double gy = std::ceil(f.low.y / gridStep) * gridStep; gy <= f.high.y; gy += gridStep)
-        out << " (" << at({f.low.x, gy}) << ")--(" << at({f.high.x, gy}) << ')';
-    out << ";\n";
-    for (const Shape &shape : shapes_) {
-        const Ink &ink = shape.ink;
-        if (ink.kind == Ink::Kind::Area)
-            out << "\\fill[" << ink.name << ']';
-        else
-            out << "\\draw[" << ink.name << ", line cap=round, line width=" << Fixed{ink.width / 2, 2} << "pt"
-                << (ink.dashed ? ", dashed" : "") << ']';
-        for (std::size_t i = 0; i < shape.points.size(); ++i) {
-            const bool starts = i == 0 || ink.kind == Ink::Kind::Dots;
-            out << (starts ? " (" : "--(") << at(shape.points[i]) << ')'
-                << (ink.kind == Ink::Kind::Dots ? "--+(0.001,0)" : "");
+    for (const Picture::Layer &layer : picture_.layers()) {
+        std::vector<Point> vertices = layer.vertices;
+        if (vertices.empty())
+            continue;
+        if (layer.kind == Kind::Pose) {
+            const Point place = at(vertices[0]).p;
+            vertices.push_back(vertices[0] +
+                               Point(std::cos(layer.heading), std::sin(layer.heading)) * poseLength);
+            out << "<circle fill=\"" << layer.style.colour << "\" r=\"" << Fixed{2 * layer.style.width, 1}
+                << "\" cx=\"" << Fixed{place.x, 3} << "\" cy=\"" << Fixed{place.y, 3} << "\"/>";
         }
-        out << ";\n";
-        if (ink.kind == Ink::Kind::Pose)
-            out << "\\fill[" << ink.name << "] (" << at(shape.points[0]) << ") circle ("
-                << Fixed{ink.width, 2} << "pt);\n";
-    }
-    out << "\\end{tikzpicture}";
-}
-
-void defineColours(std::ostream &out, const std::vector<const Ink *> &inks) {
-    out << "\\definecolor{grid}{HTML}{E3E7EE}\n";
-    for (const Ink *ink : inks) {
-        std::string hex = ink->colour.substr(1);
-        std::transform(hex.begin(), hex.end(), hex.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-        out << "\\definecolor{" << ink->name << "}{HTML}{" << hex << "}\n";
-    }
-}
-
-void writeTikzLegend(std::ostream &out, const std::vector<const Ink *> &inks) {
-    for (const Ink *ink : inks) {
-        out << "\\mbox{\\tikz[baseline=-0.6ex]";
-        if (ink->kind == Ink::Kind::Area)
-            out << "\\fill[" << ink->name << "] (0,-0.12) rectangle (0.6,0.12);";
-        else if (ink->kind == Ink::Kind::Dots)
-            out << "\\fill[" << ink->name
-                << "] (0,0) circle (1pt) (0.2,0) circle (1pt) (0.4,0) circle (1pt);";
-        else
-            out << "\\draw[" << ink->name << ", line width=" << Fixed{std::max(0.5, ink->width / 2), 2}
-                << "pt" << (ink->dashed ? ", dashed" : "") << "] (0,0)--(0.6,0);";
-        out << "~" << latexText(ink->label) << "}\\quad\n";
+        out << "<path stroke-linecap=\"round\" "
+            << (layer.kind == Kind::Area ? "fill=\"" : "fill=\"none\" stroke=\"") << layer.style.colour
+            << "\" stroke-width=\"" << Fixed{layer.style.width, 2} << '"'
+            << (layer.style.dashed ? " stroke-dasharray=\"4 3\"" : "") << " d=\"";
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const bool starts =
+                i == 0 || layer.kind == Kind::Points || (layer.kind == Kind::Segments && i % 2 == 0);
+            out << (starts ? 'M' : 'L') << at(vertices[i]) << (layer.kind == Kind::Points ? "h0" : "");
+        }
+        out << "\"/>\n";
     }
 }
 
@@ -164,20 +106,16 @@ void writeSvgLegend(std::ostream &out, const std::vector<const Ink *> &inks, dou
     }
 }
 
-std::string latexText(const std::string &text) {
-    std::string result;
-    for (const char c : text)
-        if (c == '\\')
-            result += "\\textbackslash{}";
-        else if (c == '^' || c == '~')
-            result += std::string("\\") + c + "{}";
-        else if (std::string("#$%&_{}").find(c) != std::string::npos)
-            result += std::string("\\") + c;
-        else if (static_cast<unsigned char>(c) < ' ')
-            result += ' ';
-        else
-            result += c;
-    return result;
+std::vector<Picture::Layer> layersOf(const std::vector<const Ink *> &inks) {
+    std::vector<Picture::Layer> layers;
+    for (const Ink *ink : inks) {
+        const Kind kind = ink->kind == Ink::Kind::Area   ? Kind::Area
+                          : ink->kind == Ink::Kind::Dots ? Kind::Points
+                          : ink->kind == Ink::Kind::Pose ? Kind::Pose
+                                                         : Kind::Segments;
+        layers.push_back({kind, styleOf(*ink, ink->label), {}, 0});
+    }
+    return layers;
 }
 
 } // namespace hermes::vector

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vectorlib/geometry/LineSegment2D.h"
 #include "vectorlib/geometry/Pose2D.h"
+#include "vectorlib/io/Picture.h"
 
 #include <ostream>
 #include <string>
@@ -13,19 +13,20 @@ namespace hermes::vector {
 struct Ink {
     enum class Kind { Area, Lines, Dots, Pose };
     Kind kind;
-    std::string name;   ///< letters only: also of the colour in LaTeX
+    std::string name;   ///< for programs
     std::string colour; ///< #rrggbb
     double width;       ///< points; the diameter of dots
     std::string label;  ///< in the legend
     bool dashed = false;
 };
 
-/// A picture in metres over a grid of 50 cm, the y axis up, that is written as SVG and as TikZ alike.
+/// A picture in metres over a grid of 50 cm, the y axis up, for a part of a page.
 class Drawing {
 public:
     using Point = vectorlib::Vector2D<double>;
+    static constexpr double gridStep = 0.5; ///< metres
 
-    void area(const Ink &ink, std::vector<Point> corners);
+    void area(const Ink &ink, const std::vector<Point> &corners);
     void segment(const Ink &ink, const vectorlib::LineSegment2D<double> &segment);
     void segments(const Ink &ink, const std::vector<vectorlib::LineSegment2D<double>> &segments);
     void path(const Ink &ink, const std::vector<Point> &points);
@@ -34,30 +35,15 @@ public:
 
     /// As a group with its upper left corner at (x, y), no larger than width x height; pixels.
     void writeSvg(std::ostream &out, double x, double y, double width, double height) const;
-    /// As a tikzpicture no larger than width x height; centimetres. The colours are named as the inks.
-    void writeTikz(std::ostream &out, double width, double height) const;
+    const vectorlib::Picture &picture() const { return picture_; }
 
 private:
-    struct Shape {
-        Ink ink;
-        std::vector<Point> points; ///< of dots any number, of a pose its place and its tip
-    };
-    struct Frame {
-        Point low, high; ///< metres
-        double scale;    ///< units of the page a metre
-    };
-    Frame frame(double width, double height) const;
-
-    std::vector<Shape> shapes_;
+    vectorlib::Picture picture_{""};
 };
 
-/// The colours of the inks for the preamble of a LaTeX document.
-void defineColours(std::ostream &out, const std::vector<const Ink *> &inks);
-/// A line or two that tell what the inks mean.
-void writeTikzLegend(std::ostream &out, const std::vector<const Ink *> &inks);
+/// What the inks mean, in a line.
 void writeSvgLegend(std::ostream &out, const std::vector<const Ink *> &inks, double x, double y);
-
-/// Text as it must be written in LaTeX.
-std::string latexText(const std::string &text);
+/// The inks as empty layers, for the legend of a LaTeX document.
+std::vector<vectorlib::Picture::Layer> layersOf(const std::vector<const Ink *> &inks);
 
 } // namespace hermes::vector

@@ -1,6 +1,10 @@
 #include "gui/vector/report/Report.h"
+#include "vectorlib/io/LatexExport.h"
 
 namespace hermes::vector {
+
+using vectorlib::LatexExport;
+using vectorlib::latexText;
 
 namespace {
 
@@ -28,64 +32,64 @@ std::string mathText(const std::string &text) {
     return result;
 }
 
-void openDocument(std::ostream &out) {
-    out << "\\documentclass[a4paper,10pt]{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[utf8]{inputenc}\n"
-           "\\usepackage[margin=2cm]{geometry}\n\\usepackage{longtable}\n\\usepackage{tikz}\n"
-           "\\setlength{\\parindent}{0pt}\n\\setlength{\\emergencystretch}{3em}\n";
-    defineColours(out, allInks());
-    out << "\\begin{document}\n";
+void writeTitle(LatexExport &document, const ReportWorld &world, const std::string &kind) {
+    document.latex("\\section*{Correspondence search}\n\\subsection*{" + kind + " report -- " +
+                   latexText(world.world.name) + " dataset}\n");
 }
 
-void writeTitle(std::ostream &out, const ReportWorld &world, const char *kind) {
-    out << "\\section*{Correspondence search}\n\\subsection*{" << kind << " report -- "
-        << latexText(world.world.name) << " dataset}\n";
-}
-
-void writeFacts(std::ostream &out, const std::string &title, const std::vector<Fact> &facts) {
+void writeFacts(LatexExport &document, const std::string &title, const std::vector<Fact> &facts) {
     if (!title.empty())
-        out << "\\textbf{" << title << ":}\\\\[2pt]\n";
-    out << "\\begin{tabular}{@{}ll@{}}\n";
+        document.latex("\\textbf{" + latexText(title) + ":}\\\\[2pt]\n");
+    document.latex("\\begin{tabular}{@{}ll@{}}\n");
     for (const Fact &fact : facts)
-        out << mathText(fact.name) << ": & " << mathText(fact.value) << "\\\\\n";
-    out << "\\end{tabular}\n";
+        document.latex(mathText(fact.name) + ": & " + mathText(fact.value) + "\\\\\n");
+    document.latex("\\end{tabular}\n\\par\\bigskip\n");
 }
 
 /// Facts to the left, a picture to the right, description and legend below.
-void writeHead(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
-               const CaseReport *report, const Drawing &picture, const std::vector<const Ink *> &inks) {
-    out << "\\begin{minipage}[t]{0.44\\textwidth}\\vspace{0pt}\n";
-    writeFacts(out, "Dataset", datasetFacts(world.world, settings));
-    if (report) {
-        out << "\\par\\bigskip\n";
-        writeFacts(out, "Observation", observationFacts(*report));
-    }
-    out << "\\par\\bigskip\n";
-    writeFacts(out, "Algorithm settings", settingsFacts(settings));
-    out << "\\end{minipage}\\hfill\n\\begin{minipage}[t]{0.54\\textwidth}\\vspace{0pt}\\raggedleft\n";
-    picture.writeTikz(out, 9, 9);
-    out << "\n\\end{minipage}\n\\par\\bigskip\n\\textbf{Description:}\\\\[2pt]\n"
-        << latexText(world.description) << "\n\\par\\bigskip\n\\textbf{Legend:}\\\\[2pt]\n{\\raggedright\n";
-    writeTikzLegend(out, inks);
-    out << "\\par}\\bigskip\n";
+void writeHead(LatexExport &document, const ReportWorld &world, const ReportSettings &settings,
+               const CaseReport *report, const Drawing &drawing, const std::vector<const Ink *> &inks) {
+    document.beside(
+        0.44,
+        [&] {
+            writeFacts(document, "Dataset", datasetFacts(world.world, settings));
+            if (report)
+                writeFacts(document, "Observation", observationFacts(*report));
+            writeFacts(document, "Algorithm settings", settingsFacts(settings));
+        },
+        [&] {
+            document.drawing(drawing.picture(), {7.7, 9, Drawing::gridStep});
+        });
+    document.latex("\\textbf{Description:}\\\\[2pt]\n");
+    document.text(world.description);
+    document.latex("\\bigskip\n\\textbf{Legend:}\\\\[2pt]\n");
+    document.legend(layersOf(inks));
 }
 
-void writeSolution(std::ostream &out, const CaseReport &report, std::size_t number) {
-    out << "\\begin{minipage}{\\textwidth}\n\\begin{minipage}[c]{0.55\\textwidth}\n";
-    drawSolution(report, report.result.solutions[number]).writeTikz(out, 9, 6.5);
-    out << "\n\\end{minipage}\\hfill\n\\begin{minipage}[c]{0.42\\textwidth}\\raggedright\n";
-    writeFacts(out, "Solution \\#" + std::to_string(number), solutionFacts(report, number));
-    out << "\\\\[2pt]$\\Rightarrow$ \\textbf{" << latexText(verdictOf(report, number)) << "}\\par\\medskip\n";
-    writeFacts(out, "Statistics", countFacts(report.counts[number]));
-    out << "\\end{minipage}\n\\end{minipage}\\par\\bigskip\n";
+void writeSolution(LatexExport &document, const CaseReport &report, std::size_t number) {
+    document.beside(
+        0.57,
+        [&] {
+            document.drawing(drawSolution(report, report.result.solutions[number]).picture(),
+                             {8, 6.5, Drawing::gridStep});
+        },
+        [&] {
+            writeFacts(document, "Solution #" + std::to_string(number), solutionFacts(report, number));
+            document.latex("$\\Rightarrow$ \\textbf{" + latexText(verdictOf(report, number)) +
+                           "}\\par\\medskip\n");
+            writeFacts(document, "Statistics", countFacts(report.counts[number]));
+        });
 }
 
-void writeCase(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
+void writeCase(LatexExport &document, const ReportWorld &world, const ReportSettings &settings,
                const CaseReport &report) {
-    writeTitle(out, world, "Case");
-    writeHead(out, world, settings, &report, drawScans(report), caseInks());
-    out << "\\textbf{Solutions:}\\quad " << latexText(searchText(world, report)) << "\\par\\bigskip\n";
+    writeTitle(document, world, "Case");
+    writeHead(document, world, settings, &report, drawScans(report), caseInks());
+    document.latex("\\textbf{Solutions:}\\quad\n");
+    document.text(searchText(world, report));
+    document.latex("\\bigskip\n");
     for (std::size_t i = 0; i < report.result.solutions.size(); ++i)
-        writeSolution(out, report, i);
+        writeSolution(document, report, i);
 }
 
 } // namespace
@@ -97,29 +101,34 @@ void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSetting
 
 void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
                 const CaseReports &report) {
-    openDocument(out);
+    LatexExport document(out);
     for (std::size_t i = 0; i < report.cases.size(); ++i) {
-        out << (i ? "\\clearpage\n" : "");
-        writeCase(out, world, settings, report.cases[i]);
+        document.latex(i ? "\\clearpage\n" : "");
+        writeCase(document, world, settings, report.cases[i]);
     }
-    out << "\\end{document}\n";
+    document.finish();
 }
 
 void writeLatex(std::ostream &out, const ReportWorld &world, const ReportSettings &settings,
                 const OverallReport &report) {
-    openDocument(out);
-    writeTitle(out, world, "Overall");
-    writeHead(out, world, settings, nullptr, drawWorld(world.world), overallInks());
-    out << "\\textbf{Accepted results:}\n\\begin{longtable}{lcrrrrrrr}\n\\hline\n"
-           "Scan & Solution & Rel. & Amb. & Disc. & True & True & False & False\\\\\n"
-           "points & number & & cm$^2$ & cm$^2$ & positive & negative & positive & negative\\\\\n\\hline\n"
-           "\\endhead\n";
+    LatexExport document(out);
+    writeTitle(document, world, "Overall");
+    writeHead(document, world, settings, nullptr, drawWorld(world.world), overallInks());
+    const auto two = [](const char *above, const char *below) {
+        return std::string("\\shortstack[r]{") + above + "\\\\" + below + '}';
+    };
+    vectorlib::Table table{"Accepted results",
+                           {"Scan points", "Solution", "Rel.", two("Amb.", "cm$^2$"), two("Disc.", "cm$^2$"),
+                            two("True", "positive"), two("True", "negative"), two("False", "positive"),
+                            two("False", "negative")},
+                           {}};
     forEachAccepted(report, [&](const std::vector<std::string> &cells) {
-        for (std::size_t i = 0; i < cells.size(); ++i)
-            out << (i ? " & " : "") << mathText(cells[i]);
-        out << "\\\\\n";
+        table.rows.emplace_back();
+        std::transform(cells.begin(), cells.end(), std::back_inserter(table.rows.back()), mathText);
     });
-    out << "\\hline\n\\end{longtable}\n" << latexText(summaryOf(world, report)) << "\n\\end{document}\n";
+    document.table(table);
+    document.text(summaryOf(world, report));
+    document.finish();
 }
 
 } // namespace hermes::vector

@@ -1,0 +1,127 @@
+#pragma once
+
+#include "vectorlib/io/LatexPlot.h"
+
+namespace vectorlib {
+
+/// Writes pictures of scenes, plots, surfaces and tables as LaTeX, one after the other: a document that
+/// pdflatex compiles, or a fragment for \input, whose first lines name the packages that it needs. Text of
+/// any content is escaped. Thesis 4.2.2, LaTeXExport.
+class LatexExport {
+public:
+    enum class As { Document, Fragment };
+
+    explicit LatexExport(std::ostream &out, const std::string &title = "", As as = As::Document)
+        : out_(out)
+        , as_(as) {
+        const char *prefix = as == As::Document ? "" : "% ";
+        if (as == As::Document)
+            out << "\\documentclass[a4paper,10pt]{article}\n";
+        else
+            out << "% For \\input in a document with:\n";
+        for (const char *line :
+             {"\\usepackage[T1]{fontenc}", "\\usepackage[utf8]{inputenc}", "\\usepackage{longtable}",
+              "\\usepackage{pgfplots}", "\\pgfplotsset{compat=1.16}"})
+            out << prefix << line << '\n';
+        if (as == As::Fragment)
+            return;
+        out << "\\usepackage[margin=2cm]{geometry}\n\\IfFileExists{lmodern.sty}{\\usepackage{lmodern}}{}\n"
+               "\\setlength{\\parindent}{0pt}\n\\setlength{\\emergencystretch}{3em}\n\\begin{document}\n";
+        if (!title.empty())
+            out << "\\section*{" << latexText(title) << "}\n";
+    }
+    LatexExport(const LatexExport &) = delete;
+    LatexExport &operator=(const LatexExport &) = delete;
+
+    /// A scene with its title (in a document; beside a fragment stands what includes it) and legend.
+    void picture(const Picture &picture, const LatexFrame &frame = {}) {
+        if (as_ == As::Document && !picture.title().empty())
+            out_ << "\\subsection*{" << latexText(picture.title()) << "}\n";
+        drawing(picture, frame);
+        out_ << "\n\n\\smallskip\n";
+        legend(picture.layers());
+    }
+    /// The scene alone, where more stands beside it.
+    void drawing(const Picture &picture, const LatexFrame &frame) {
+        LatexPicture(picture, frame).write(out_);
+    }
+    void legend(const std::vector<Picture::Layer> &layers) {
+        out_ << "{\\small\\raggedright\n";
+        LatexPicture::writeLegend(out_, layers);
+        out_ << "\\par}\n\\bigskip\n";
+    }
+    void plot(const Plot &plot) { figure(plot); }
+    void surface(const Surface &surface) { figure(surface); }
+
+    /// Rows that are shorter than others are filled up. Long tables go on on the next page, with their
+    /// header.
+    void table(const Table &table) {
+        std::size_t columns = table.header.size();
+        for (const auto &row : table.rows)
+            columns = std::max(columns, row.size());
+        if (columns == 0)
+            return;
+        if (!table.title.empty())
+            out_ << "\\subsection*{" << latexText(table.title) << "}\n";
+        const bool isLong = table.rows.size() > 40;
+        const char *kind = isLong ? "longtable" : "tabular";
+        out_ << "\\begin{" << kind << "}{l" << std::string(columns - 1, 'r') << "}\n\\hline\n";
+        row(table.header, columns);
+        out_ << "\\hline\n" << (isLong ? "\\endhead\n" : "");
+        for (const auto &cells : table.rows)
+            row(cells, columns);
+        out_ << "\\hline\n\\end{" << kind << "}\n\n";
+    }
+    /// Tables, plots, surfaces, spaces.
+    void figures(const Figures &figures) {
+        for (const Table &t : figures.tables)
+            table(t);
+        for (const Plot &p : figures.plots)
+            plot(p);
+        for (const Surface &s : figures.surfaces)
+            surface(s);
+        for (const SpacePlot &s : figures.spaces)
+            figure(s);
+    }
+    void text(const std::string &paragraph) { out_ << latexText(paragraph) << "\n\n"; }
+    /// What is LaTeX already.
+    void latex(const std::string &code) { out_ << code; }
+    /// Two columns; each is a function that writes by this export. The left one takes that share of the
+    /// width.
+    template <typename Left, typename Right>
+    void beside(double share, Left left, Right right) {
+        column(share, 't', left);
+        out_ << "\\hfill\n";
+        column(0.98 - share, 't', right);
+        out_ << "\n\\par\\bigskip\n";
+    }
+
+    /// The end of the document; nothing is written after it.
+    void finish() {
+        if (as_ == As::Document)
+            out_ << "\\end{document}\n";
+    }
+
+private:
+    template <typename Figure>
+    void figure(const Figure &figure) {
+        writeLatex(out_, figure);
+        out_ << "\n\n\\bigskip\n";
+    }
+    template <typename Write>
+    void column(double share, char at, Write write) {
+        out_ << "\\begin{minipage}[" << at << "]{" << Fixed{share, 2} << "\\textwidth}\\vspace{0pt}\n";
+        write();
+        out_ << "\n\\end{minipage}";
+    }
+    void row(const std::vector<std::string> &cells, std::size_t columns) {
+        for (std::size_t i = 0; i < columns; ++i)
+            out_ << (i ? " & " : "") << (i < cells.size() ? cells[i] : "");
+        out_ << " \\\\\n";
+    }
+
+    std::ostream &out_;
+    As as_;
+};
+
+} // namespace vectorlib

@@ -1,0 +1,174 @@
+#pragma once
+
+#include "vectorlib/io/LatexText.h"
+#include "vectorlib/io/Number.h"
+#include "vectorlib/io/Picture.h"
+
+#include <ostream>
+#include <sstream>
+
+namespace vectorlib {
+
+/// How large a picture is in a document, and its grid.
+struct LatexFrame {
+    double width = 14, height = 17; ///< at most; centimetres, numbers and names of axes not counted
+    double grid = 0;                ///< metres from line to line; 0: about ten lines
+    bool isNumbered = true;         ///< metres along both axes
+};
+
+namespace latex {
+
+/// #rrggbb as an expression of a colour, which needs no definition; what is no colour is black.
+inline std::string colour(const std::string &hex) {
+    unsigned red = 0, green = 0, blue = 0;
+    if (hex.size() != 7 || std::sscanf(hex.c_str(), "#%2x%2x%2x", &red, &green, &blue) != 3)
+        red = green = blue = 0;
+    return "{rgb,255:red," + std::to_string(red) + ";green," + std::to_string(green) + ";blue," +
+           std::to_string(blue) + '}';
+}
+
+} // namespace latex
+
+/// A picture as a tikzpicture: its layers over a grid, with metres along the axes.
+class LatexPicture {
+public:
+    LatexPicture(const Picture &picture, const LatexFrame &frame)
+        : picture_(picture)
+        , frame_(frame)
+        , low_(picture.box().low)
+        , step_(picture.gridStep()) {
+        const Point size = picture.box().size();
+        if (std::max(size.x, size.y) < mostLines * frame.grid)
+            step_ = frame.grid;
+        scale_ = std::min(frame.width / size.x, frame.height / size.y);
+        size_ = size * scale_;
+    }
+
+    void write(std::ostream &out) const {
+        out << "\\begin{tikzpicture}[line cap=round, line join=round]\n";
+        writeGrid(out);
+        for (const Picture::Layer &layer : picture_.layers())
+            if (!layer.vertices.empty())
+                writeLayer(out, layer);
+        out << "\\end{tikzpicture}";
+    }
+
+    /// What the layers with a label mean, in lines that TeX breaks.
+    static void writeLegend(std::ostream &out, const std::vector<Picture::Layer> &layers) {
+        for (const Picture::Layer &layer : layers)
+            if (!layer.style.label.empty()) {
+                const std::string label = latexText(layer.style.label);
+                const bool fits = label.size() < 80; // in one line
+                out << (fits ? "\\mbox{" : "") << "\\tikz[baseline=-0.6ex, line cap=round]";
+                writeSample(out, layer);
+                out << '~' << label << (fits ? "}" : "") << "\\quad\n";
+            }
+    }
+
+private:
+    using Point = Picture::Point;
+    using Kind = Picture::Kind;
+    static constexpr std::size_t mostVertices = 400; ///< of one command: TeX keeps all of a path at once
+
+    static constexpr int mostLines = 200; ///< of a grid that is asked for
+
+    struct At {
+        Point p;
+        friend std::ostream &operator<<(std::ostream &out, const At &at) {
+            return out << '(' << Fixed{at.p.x, 3} << ',' << Fixed{at.p.y, 3} << ')';
+        }
+    };
+    At at(Point p) const { return {(p - low_) * scale_}; }
+
+    void writeGrid(std::ostream &out) const {
+        const Point high = low_ + size_ / scale_;
+        std::size_t widest = 1;
+        for (const double x : Picture::gridLines(low_.x, high.x, step_, mostLines))
+            writeLine(out, at({x, low_.y}), at({x, high.y}), "below", x);
+        for (const double y : Picture::gridLines(low_.y, high.y, step_, mostLines))
+            widest = std::max(widest, writeLine(out, at({low_.x, y}), at({high.x, y}), "left", y));
+        if (frame_.isNumbered)
+            out << "\\node[font=\\small] at " << At{{size_.x / 2, -0.75}} << " {x [m]};\n"
+                << "\\node[font=\\small, rotate=90] at "
+                << At{{-0.45 - 0.17 * static_cast<double>(widest), size_.y / 2}} << " {y [m]};\n";
+    }
+    /// Returns how many characters its number has.
+    std::size_t writeLine(std::ostream &out, At from, At to, const char *side, double metres) const {
+        std::ostringstream number;
+        number << Number(rounded(metres, 9));
+        out << "\\draw[black!12, line width=0.4pt] " << from << "--" << to << ";\n";
+        if (frame_.isNumbered)
+            out << "\\node[" << side << ", font=\\scriptsize, inner sep=2pt] at " << from << " {$"
+                << number.str() << "$};\n";
+        return number.str().size();
+    }
+
+    void writeLayer(std::ostream &out, const Picture::Layer &layer) const {
+        if (layer.kind == Kind::Pose)
+            writePose(out, at(layer.vertices[0]).p, layer.heading, layer.style);
+        else if (layer.kind == Kind::Area)
+            writeArea(out, layer);
+        else
+            for (std::size_t i = 0; i < layer.vertices.size(); i += mostVertices)
+                writePart(out, layer, i, std::min(i + mostVertices, layer.vertices.size()));
+        if (layer.kind == Kind::Segments && layer.style.normals)
+            writeNormals(out, layer);
+    }
+    void writePart(std::ostream &out, const Picture::Layer &layer, std::size_t from, std::size_t to) const {
+        openDraw(out, layer.style);
+        if (layer.kind == Kind::Path && from > 0)
+            out << ' ' << at(layer.vertices[from - 1]);
+        for (std::size_t i = from; i < to; ++i) {
+            const bool starts =
+                layer.kind == Kind::Points || (layer.kind == Kind::Segments ? i % 2 == 0 : i == 0);
+            out << ((i - from) % 6 == 5 ? "\n" : "") << (starts ? " " : "--") << at(layer.vertices[i])
+                << (layer.kind == Kind::Points ? "--+(0.001,0)" : "");
+        }
+        out << ";\n";
+    }
+    void writeArea(std::ostream &out, const Picture::Layer &layer) const {
+        out << "\\fill[color=" << latex::colour(layer.style.colour) << ']';
+        for (std::size_t i = 0; i < layer.vertices.size(); ++i)
+            out << (i % 6 == 5 ? "\n" : "") << (i ? "--" : " ") << at(layer.vertices[i]);
+        out << "--cycle;\n";
+    }
+    void writeNormals(std::ostream &out, const Picture::Layer &layer) const {
+        Picture::Style thin = layer.style;
+        thin.width = std::max(0.8, thin.width / 2);
+        for (std::size_t i = 0; i + 1 < layer.vertices.size(); i += 2) {
+            const LineSegment2D<double> segment(layer.vertices[i], layer.vertices[i + 1]);
+            openDraw(out, thin);
+            out << ' ' << at(segment.middle()) << "--+" << At{segment.normal() * 0.15} << ";\n";
+        }
+    }
+    static void openDraw(std::ostream &out, const Picture::Style &style) {
+        out << "\\draw[color=" << latex::colour(style.colour) << ", line width=" << Fixed{style.width / 2, 2}
+            << "pt" << (style.dashed ? ", dashed" : "") << ']';
+    }
+    static void writePose(std::ostream &out, Point p, double heading, const Picture::Style &style) {
+        out << "\\fill[color=" << latex::colour(style.colour) << "] " << At{p} << " circle (1.8pt);\n";
+        openDraw(out, {style.colour, 2, ""});
+        out << ' ' << At{p} << "--+" << At{Point(std::cos(heading), std::sin(heading)) * 0.25} << ";\n";
+    }
+    static void writeSample(std::ostream &out, const Picture::Layer &layer) {
+        out << '{';
+        if (layer.kind == Kind::Area) {
+            out << "\\fill[color=" << latex::colour(layer.style.colour) << "] (0,-0.12) rectangle (0.6,0.12);";
+        } else if (layer.kind == Kind::Pose) {
+            writePose(out, {0, 0}, 0, layer.style);
+        } else {
+            openDraw(out, layer.style);
+            out << (layer.kind == Kind::Points ? " (0,0)--+(0.001,0) (0.2,0)--+(0.001,0) (0.4,0)--+(0.001,0);"
+                                               : " (0,0)--(0.6,0);");
+        }
+        out << '}';
+    }
+
+    const Picture &picture_;
+    LatexFrame frame_;
+    Point low_, size_; ///< metres; centimetres
+    double step_;      ///< metres
+    double scale_ = 1; ///< centimetres a metre
+};
+
+} // namespace vectorlib

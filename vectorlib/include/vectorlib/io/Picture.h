@@ -1,0 +1,159 @@
+#pragma once
+
+#include "vectorlib/geometry/LineSegment2D.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace vectorlib {
+
+/// Colours with a meaning, the same in every picture; they stay apart for the colour-blind.
+namespace colour {
+constexpr const char *map = "#1b2a41";      // what is known: segments of a map, of a world, of the static set
+constexpr const char *points = "#8d99ae";   // what was measured
+constexpr const char *outliers = "#d62828"; // what was left out
+constexpr const char *estimate = "#0072b2"; // what was computed: trajectories, registered segments
+constexpr const char *reference = "#e69f00"; // what it is compared with
+constexpr const char *before = "#cc79a7";    // where the dynamic set was
+
+/// For parts that need only be told from their neighbours, such as clusters.
+inline const char *distinct(std::size_t i) {
+    constexpr const char *cycle[] = {"#0072b2", "#e69f00", "#009e73", "#cc79a7",
+                                     "#56b4e9", "#a0522d", "#7b5ea7", "#5f7a00"};
+    return cycle[i % 8];
+}
+} // namespace colour
+
+/// Things in the plane, in layers of one style each, metres, the y axis up: what SvgPicture and LatexExport
+/// draw. What is not finite, or farther than any place (1e150), is left out.
+class Picture {
+public:
+    static constexpr int mostLines = 10; ///< of the grid, and one more
+
+    using Point = Vector2D<double>;
+
+    struct Style {
+        std::string colour; ///< #rrggbb
+        double width = 1.5; ///< pixels; diameter of points
+        std::string label;  ///< in the legend; none when empty
+        bool dashed = false;
+        bool normals = false; ///< of segments: a tick to the side that was free
+    };
+    enum class Kind { Points, Segments, Path, Pose, Area };
+    struct Layer {
+        Kind kind;
+        Style style;
+        std::vector<Point> vertices; ///< of a pose one, of segments begins and ends in turn
+        double heading = 0;          ///< of a pose
+    };
+    struct Box {
+        Point low, high;
+        Point size() const { return high - low; }
+    };
+
+    explicit Picture(std::string title)
+        : title_(std::move(title)) {}
+
+    template <typename Scalar>
+    void points(Style style, const std::vector<Vector2D<Scalar>> &points) {
+        Layer &layer = add(Kind::Points, std::move(style));
+        for (const auto &p : points)
+            take(layer, Point(p));
+    }
+    /// Each in a colour that its neighbours have not. A legend of a dozen rows is still read; of more
+    /// clusters none is named.
+    template <typename Scalar>
+    void clusters(double width, const std::vector<std::vector<Vector2D<Scalar>>> &clusters) {
+        for (std::size_t c = 0; c < clusters.size(); ++c)
+            points({colour::distinct(c), width,
+                    clusters.size() > 12 ? ""
+                                         : "cluster " + std::to_string(c) + ": " +
+                                               std::to_string(clusters[c].size()) + " points"},
+                   clusters[c]);
+    }
+    template <typename Scalar>
+    void segments(Style style, const std::vector<LineSegment2D<Scalar>> &segments) {
+        Layer &layer = add(Kind::Segments, std::move(style));
+        for (const auto &s : segments)
+            if (isPlace(Point(s.begin())) && isPlace(Point(s.end()))) {
+                take(layer, Point(s.begin()));
+                take(layer, Point(s.end()));
+            }
+    }
+    void path(Style style, const std::vector<Point> &path) {
+        Layer &layer = add(Kind::Path, std::move(style));
+        for (const Point &p : path)
+            take(layer, p);
+    }
+    /// A polygon that is filled.
+    void area(Style style, const std::vector<Point> &corners) {
+        Layer &layer = add(Kind::Area, std::move(style));
+        for (const Point &p : corners)
+            take(layer, p);
+    }
+    /// A sensor or robot: a circle with a tick in its heading.
+    void pose(Style style, Point at, double heading) {
+        Layer &layer = add(Kind::Pose, std::move(style));
+        if (std::isfinite(heading))
+            take(layer, at);
+        layer.heading = heading;
+    }
+
+    const std::string &title() const { return title_; }
+    const std::vector<Layer> &layers() const { return layers_; }
+
+    /// Of all that is shown, with a margin: never empty.
+    Box box() const {
+        const Point size = box_.size();
+        double margin = std::max(0.03 * std::max(size.x, size.y), 0.2);
+        for (const double far : {box_.low.x, box_.low.y, box_.high.x, box_.high.y})
+            margin = std::max(margin, 1e-14 * std::abs(far)); // less would be lost by rounding
+        return {box_.low - Point(margin, margin), box_.high + Point(margin, margin)};
+    }
+    /// Where the lines of a grid are from low to high: every 1, 2 or 5 times a power of ten, at most about
+    /// ten along the longer side of the box.
+    double gridStep() const {
+        const Point size = box().size();
+        const double wanted = std::max(size.x, size.y) / mostLines;
+        const double power = std::pow(10, std::floor(std::log10(wanted)));
+        for (const double factor : {1.0, 2.0, 5.0})
+            if (factor * power >= wanted)
+                return factor * power;
+        return 10 * power;
+    }
+    static std::vector<double> gridLines(double low, double high, double step, int most = mostLines) {
+        std::vector<double> lines;
+        // Counted: far from the origin a step more may be the same number.
+        for (int i = 0; i <= most; ++i) {
+            const double at = (std::ceil(low / step) + i) * step;
+            if (at > high)
+                break;
+            lines.push_back(std::abs(at) < step / 2 ? 0 : at);
+        }
+        return lines;
+    }
+
+private:
+    static bool isPlace(Point p) { return std::abs(p.x) <= 1e150 && std::abs(p.y) <= 1e150; }
+    Layer &add(Kind kind, Style style) {
+        layers_.push_back({kind, std::move(style), {}, 0});
+        return layers_.back();
+    }
+    void take(Layer &layer, Point p) {
+        if (!isPlace(p))
+            return;
+        layer.vertices.push_back(p);
+        box_.low = any_ ? Point(std::min(box_.low.x, p.x), std::min(box_.low.y, p.y)) : p;
+        box_.high = any_ ? Point(std::max(box_.high.x, p.x), std::max(box_.high.y, p.y)) : p;
+        any_ = true;
+    }
+
+    std::string title_;
+    std::vector<Layer> layers_;
+    bool any_ = false;
+    Box box_;
+};
+
+} // namespace vectorlib
