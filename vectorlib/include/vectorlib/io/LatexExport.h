@@ -70,7 +70,7 @@ public:
         out_ << "\\hline\n" << (isLong ? "\\endhead\n" : "");
         for (const auto &cells : table.rows)
             row(cells, columns);
-        out_ << "\\hline\n\\end{" << kind << "}\n\n";
+        out_ << "\\hline\n\\end{" << kind << "}\n\n\\bigskip\n";
     }
     /// Tables, plots, surfaces, spaces.
     void figures(const Figures &figures) {

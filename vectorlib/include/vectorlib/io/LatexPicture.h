@@ -12,8 +12,7 @@ namespace vectorlib {
 /// How large a picture is in a document, and its grid.
 struct LatexFrame {
     double width = 14, height = 17; ///< at most; centimetres, numbers and names of axes not counted
-    double grid = 0;                ///< metres from line to line; 0: about ten lines
-    bool isNumbered = true;         ///< metres along both axes
+    double grid = 0;                ///< metres from line to line; 0: as the numbers along the axes
 };
 
 namespace latex {
@@ -34,12 +33,11 @@ class LatexPicture {
 public:
     LatexPicture(const Picture &picture, const LatexFrame &frame)
         : picture_(picture)
-        , frame_(frame)
         , low_(picture.box().low)
-        , step_(picture.gridStep()) {
+        , grid_(picture.gridStep()) {
         const Point size = picture.box().size();
-        if (std::max(size.x, size.y) < mostLines * frame.grid)
-            step_ = frame.grid;
+        if (std::max(size.x, size.y) < mostLines * frame.grid) // a finer one would be a grey area
+            grid_ = frame.grid;
         scale_ = std::min(frame.width / size.x, frame.height / size.y);
         size_ = size * scale_;
     }
@@ -82,24 +80,29 @@ private:
 
     void writeGrid(std::ostream &out) const {
         const Point high = low_ + size_ / scale_;
+        for (const double x : Picture::gridLines(low_.x, high.x, grid_, mostLines))
+            writeLine(out, at({x, low_.y}), at({x, high.y}));
+        for (const double y : Picture::gridLines(low_.y, high.y, grid_, mostLines))
+            writeLine(out, at({low_.x, y}), at({high.x, y}));
+        const double step = picture_.gridStep();
         std::size_t widest = 1;
-        for (const double x : Picture::gridLines(low_.x, high.x, step_, mostLines))
-            writeLine(out, at({x, low_.y}), at({x, high.y}), "below", x);
-        for (const double y : Picture::gridLines(low_.y, high.y, step_, mostLines))
-            widest = std::max(widest, writeLine(out, at({low_.x, y}), at({high.x, y}), "left", y));
-        if (frame_.isNumbered)
-            out << "\\node[font=\\small] at " << At{{size_.x / 2, -0.75}} << " {x [m]};\n"
-                << "\\node[font=\\small, rotate=90] at "
-                << At{{-0.45 - 0.17 * static_cast<double>(widest), size_.y / 2}} << " {y [m]};\n";
+        for (const double x : Picture::gridLines(low_.x, high.x, step))
+            writeNumber(out, at({x, low_.y}), "below", x);
+        for (const double y : Picture::gridLines(low_.y, high.y, step))
+            widest = std::max(widest, writeNumber(out, at({low_.x, y}), "left", y));
+        out << "\\node[font=\\small] at " << At{{size_.x / 2, -0.75}} << " {x [m]};\n"
+            << "\\node[font=\\small, rotate=90] at "
+            << At{{-0.45 - 0.17 * static_cast<double>(widest), size_.y / 2}} << " {y [m]};\n";
     }
-    /// Returns how many characters its number has.
-    std::size_t writeLine(std::ostream &out, At from, At to, const char *side, double metres) const {
+    static void writeLine(std::ostream &out, At from, At to) {
+        out << "\\draw[black!12, line width=0.4pt] " << from << "--" << to << ";\n";
+    }
+    /// Returns how many characters it has.
+    static std::size_t writeNumber(std::ostream &out, At at, const char *side, double metres) {
         std::ostringstream number;
         number << Number(rounded(metres, 9));
-        out << "\\draw[black!12, line width=0.4pt] " << from << "--" << to << ";\n";
-        if (frame_.isNumbered)
-            out << "\\node[" << side << ", font=\\scriptsize, inner sep=2pt] at " << from << " {$"
-                << number.str() << "$};\n";
+        out << "\\node[" << side << ", font=\\scriptsize, inner sep=2pt] at " << at << " {$" << number.str()
+            << "$};\n";
         return number.str().size();
     }
 
@@ -153,7 +156,8 @@ private:
     static void writeSample(std::ostream &out, const Picture::Layer &layer) {
         out << '{';
         if (layer.kind == Kind::Area) {
-            out << "\\fill[color=" << latex::colour(layer.style.colour) << "] (0,-0.12) rectangle (0.6,0.12);";
+            out << "\\fill[color=" << latex::colour(layer.style.colour)
+                << "] (0,-0.12) rectangle (0.6,0.12);";
         } else if (layer.kind == Kind::Pose) {
             writePose(out, {0, 0}, 0, layer.style);
         } else {
@@ -165,9 +169,8 @@ private:
     }
 
     const Picture &picture_;
-    LatexFrame frame_;
     Point low_, size_; ///< metres; centimetres
-    double step_;      ///< metres
+    double grid_;      ///< metres
     double scale_ = 1; ///< centimetres a metre
 };
 

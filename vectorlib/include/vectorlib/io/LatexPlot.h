@@ -3,6 +3,8 @@
 #include "vectorlib/io/LatexPicture.h"
 #include "vectorlib/io/Plot.h"
 
+#include <optional>
+
 namespace vectorlib {
 
 namespace latex {
@@ -37,12 +39,41 @@ constexpr const char *legendBelow =
     "legend columns=2, legend cell align=left,\n  legend style={at={(0.5,-0.18)}, anchor=north, draw=none, "
     "font=\\small, /tikz/every even column/.append style={column sep=1em}}";
 
-inline bool hasPoints(const Plot &plot) {
+/// The box of all points that a plot shows; nothing when there is none.
+inline std::optional<Picture::Box> boxOf(const Plot &plot) {
+    std::optional<Picture::Box> box;
     for (const Curve &curve : plot.curves)
         for (const auto &point : curve.points)
-            if (placeOf(plot, point) == PlotPlace::Shown)
-                return true;
-    return false;
+            if (placeOf(plot, point) == PlotPlace::Shown) {
+                const Picture::Point p(point.first, point.second);
+                if (!box)
+                    box = Picture::Box{p, p};
+                box->low = {std::min(box->low.x, p.x), std::min(box->low.y, p.y)};
+                box->high = {std::max(box->high.x, p.x), std::max(box->high.y, p.y)};
+            }
+    return box;
+}
+
+/// Of a logarithmic axis over less than three powers of ten the places 1, 2 and 5: pgfplots would write
+/// powers with fractions there. Nothing where pgfplots finds better ones.
+inline std::string ticksOf(char axis, double low, double high) {
+    const int first = static_cast<int>(std::floor(std::log10(low))),
+              last = static_cast<int>(std::ceil(std::log10(high)));
+    if (first < -4 || last > 6 || high > 1000 * low)
+        return "";
+    std::ostringstream places, labels;
+    int count = 0;
+    for (int power = first; power <= last; ++power)
+        for (const int digit : {1, 2, 5}) {
+            const double place = rounded(digit * std::pow(10.0, power), 6);
+            if (place < low * 0.999 || place > high * 1.001)
+                continue;
+            places << (count ? "," : "") << Number(place);
+            labels << (count++ ? "," : "") << '$' << Fixed{place, std::max(0, -power)} << '$';
+        }
+    return count < 2 ? ""
+                     : std::string(1, axis) + "tick={" + places.str() + "}, " + axis + "ticklabels={" +
+                           labels.str() + "}, ";
 }
 
 inline void writeCurve(std::ostream &out, const Plot &plot, const Curve &curve) {
@@ -64,12 +95,14 @@ inline void writeCurve(std::ostream &out, const Plot &plot, const Curve &curve) 
 
 /// A plot as a tikzpicture of pgfplots, its legend below; one without a point to show says so.
 inline void writeLatex(std::ostream &out, const Plot &plot) {
-    if (!latex::hasPoints(plot)) {
+    const std::optional<Picture::Box> box = latex::boxOf(plot);
+    if (!box) {
         out << latexText(plot.title) << ": nothing to show.";
         return;
     }
     out << "\\begin{tikzpicture}\n\\begin{axis}[width=14cm, height=" << (plot.isDrawing ? 14 : 9) << "cm, "
-        << (plot.xLogarithmic ? "xmode=log, " : "") << (plot.yLogarithmic ? "ymode=log, " : "")
+        << (plot.xLogarithmic ? "xmode=log, " + latex::ticksOf('x', box->low.x, box->high.x) : "")
+        << (plot.yLogarithmic ? "ymode=log, " + latex::ticksOf('y', box->low.y, box->high.y) : "")
         << (plot.isDrawing ? "axis equal image, " : "") << "unbounded coords=jump, grid=major,\n  title={"
         << latexText(plot.title) << "}, xlabel={" << latexText(plot.xAxis) << "}, ylabel={"
         << latexText(plot.yAxis) << "},\n  " << latex::legendBelow << "]\n";
