@@ -1,9 +1,9 @@
 #include "gui/vector/report/ScanPair.h"
 #include "tests/gui/VectorProgram.h"
+#include "tests/support/Latex.h"
 #include "tests/support/RandomRoom.h"
 
 #include <QJsonArray>
-#include <QStandardPaths>
 #include <QXmlStreamReader>
 
 using namespace hermes;
@@ -225,7 +225,7 @@ void TestReport::picturesAreWellFormed() {
         while (!xml.atEnd())
             paths += xml.readNext() == QXmlStreamReader::StartElement && xml.name() == QLatin1String("path");
         QVERIFY2(!xml.hasError(), qPrintable(xml.errorString()));
-        QVERIFY(paths > 10);
+        QVERIFY(paths > 3);
         QVERIFY(!r.out.contains("nan") && !r.out.contains("inf"));
     }
 }
@@ -241,25 +241,18 @@ void TestReport::documentsCompile() {
                                         {file, "--all", "--all-combinations"},
                                         {"pillars", "--case", "0", "--all-combinations"},
                                         {"pillars", "--overall", "--all-combinations"}};
-    const QString latex = QStandardPaths::findExecutable("pdflatex");
+    const Latex latex;
     for (int i = 0; i < reports.size(); ++i) {
         const QString name = folder.filePath(QString("report%1.tex").arg(i));
         QCOMPARE(run(QStringList{"report", "--out", name} + reports[i]).status, 0);
         const QByteArray text = contents(name);
         QVERIFY(text.startsWith("\\documentclass") && text.trimmed().endsWith("\\end{document}"));
         QVERIFY(text.contains("tikzpicture") && text.contains("Legend"));
-        if (latex.isEmpty())
-            continue;
-        QProcess process;
-        process.setWorkingDirectory(folder.path());
-        process.start(latex, {"-interaction=nonstopmode", "-halt-on-error", name});
-        QVERIFY(process.waitForFinished(60000));
-        const QByteArray log = process.readAllStandardOutput();
-        QVERIFY2(process.exitCode() == 0, log.right(2000).constData());
-        QVERIFY2(!log.contains("Overfull"), log.mid(log.indexOf("Overfull"), 200).constData());
+        const QByteArray fault = latex.missing().isEmpty() ? Latex::fault(name) : QByteArray();
+        QVERIFY2(fault.isEmpty(), fault.constData());
     }
-    if (latex.isEmpty())
-        QSKIP("pdflatex is not installed: the documents were not compiled");
+    if (!latex.missing().isEmpty())
+        QSKIP(latex.missing().constData());
 }
 
 void TestReport::formatFollowsTheExtension() {

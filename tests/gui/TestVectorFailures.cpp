@@ -1,4 +1,5 @@
 #include "tests/gui/VectorProgram.h"
+#include "tests/support/Latex.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -169,6 +170,38 @@ private Q_SLOTS:
                 r.err.constData());
             QVERIFY(files().isEmpty());
         }
+    }
+    void latexIsAPictureToo_data() {
+        QTest::addColumn<QStringList>("command");
+        const QString room = data("room.csv");
+        QTest::newRow("segment") << QStringList{"segment", room};
+        QTest::newRow("vectorize") << QStringList{"vectorize", room};
+        QTest::newRow("match") << QStringList{"match", room, room};
+        QTest::newRow("register") << QStringList{"register", data("pairs.csv")};
+        QTest::newRow("observe") << QStringList{"observe", data("world.json"), "--pose", "0,0,0"};
+    }
+    /// --latex has the rules of --svg.
+    void latexIsAPictureToo() {
+        QFETCH(QStringList, command);
+        const QStringList whole = command + QStringList{"--out", path("o"), "--latex", path("p.tex")};
+        const Result refused = run(command + QStringList{"--latex", path("p.svg")});
+        QCOMPARE(refused.status, 2);
+        QVERIFY2(refused.err.contains("p.svg, expected a name that ends with .tex"), refused.err.constData());
+        QVERIFY(files().isEmpty());
+        write(path("p.tex"), "precious");
+        QCOMPARE(run(whole).status, 1);
+        QCOMPARE(contents(path("p.tex")), QByteArray("precious"));
+        QCOMPARE(files(), QStringList{"p.tex"});
+        QCOMPARE(run(whole + QStringList{"--svg", path("p.svg"), "--force"}).status, 0);
+        QCOMPARE(files(), (QStringList{"o", "p.svg", "p.tex"}));
+        const QByteArray text = contents(path("p.tex"));
+        QVERIFY(text.startsWith("\\documentclass") && text.endsWith("\\end{document}\n"));
+        QVERIFY(text.contains("{x [m]}") && text.contains("\\mbox{\\tikz"));
+        const hermes::Latex latex;
+        if (!latex.missing().isEmpty())
+            QSKIP(latex.missing().constData());
+        const QByteArray fault = hermes::Latex::fault(path("p.tex"));
+        QVERIFY2(fault.isEmpty(), fault.constData());
     }
     void longNamesAreToldBeforeTheWork() {
         const QString name = folder_.path(QByteArray(300, 'n').constData());

@@ -73,7 +73,7 @@ private:
     struct At {
         Point p;
         friend std::ostream &operator<<(std::ostream &out, const At &at) {
-            return out << '(' << Fixed{at.p.x, 3} << ',' << Fixed{at.p.y, 3} << ')';
+            return out << '(' << Fixed{at.p.x + 0, 3} << ',' << Fixed{at.p.y + 0, 3} << ')'; // -0 is 0
         }
     };
     At at(Point p) const { return {(p - low_) * scale_}; }

@@ -1,0 +1,222 @@
+#include "tests/support/Latex.h"
+
+#include <vectorlib/io/LatexExport.h>
+
+#include <QTemporaryDir>
+#include <QtTest>
+
+#include <limits>
+#include <sstream>
+
+using namespace vectorlib;
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+template <typename Write>
+QByteArray document(Write write, LatexExport::As as = LatexExport::As::Document) {
+    std::ostringstream out;
+    LatexExport latex(out, "A title", as);
+    write(latex);
+    latex.finish();
+    return QByteArray::fromStdString(out.str());
+}
+
+Picture room() {
+    Picture picture("Room 50 % & #1");
+    picture.area({"#b7d9c0", 0, "common area"}, {{0, 0}, {4, 0}, {4, 3}});
+    picture.segments<double>({colour::map, 2, "walls", false, true}, {{{0, 0}, {4, 0}}, {{4, 0}, {4, 3}}});
+    picture.clusters<float>(3, {{{1, 1}, {2, 1}}, {{3, 2}}});
+    picture.path({colour::estimate, 1, "path", true}, {{1, 1}, {2, 2}, {3, 1}});
+    picture.pose({colour::reference, 2, "sensor"}, {1, 1}, 0);
+    return picture;
+}
+
+Plot curves() {
+    Plot plot{"p", "a title", "points", "error [m^2]", true, false, {}};
+    plot.curves.push_back(
+        {"50 % of_a", "#0072b2", {{1, 2}, {0, 9}, {10, none}, {100, 4}}, {{1, 3}, {0, 1}, {0, 1}, {3, 5}}});
+    plot.curves.push_back({"", "no colour", {{1, 1}, {10, 3}, {100, 1}}, {{0, 2}, {2, 4}, {0, 2}}});
+    return plot;
+}
+
+} // namespace
+
+/// LaTeXExport of thesis 4.2.2.
+class TestLatexExport : public QObject {
+    Q_OBJECT
+private Q_SLOTS:
+    void textIsEscaped_data() {
+        QTest::addColumn<QByteArray>("text");
+        QTest::addColumn<QByteArray>("latex");
+        QTest::newRow("plain") << QByteArray("a b-c") << QByteArray("a b-c");
+        QTest::newRow("meaning") << QByteArray("%_\\{}#$&")
+                                 << QByteArray("\\%\\_\\textbackslash{}\\{\\}\\#\\$\\&");
+        QTest::newRow("command") << QByteArray("\\input{/etc/passwd}")
+                                 << QByteArray("\\textbackslash{}input\\{/etc/passwd\\}");
+        QTest::newRow("exponent") << QByteArray("m^2 s^-1")
+                                  << QByteArray("m\\ensuremath{^{2}} s\\ensuremath{^{-1}}");
+        QTest::newRow("no exponent") << QByteArray("^a^~") << QByteArray("\\^{}a\\^{}\\~{}");
+        QTest::newRow("dashes") << QByteArray("--svg") << QByteArray("-{}-svg");
+        QTest::newRow("option of a line's end") << QByteArray("[2pt]") << QByteArray("{[}2pt{]}");
+        QTest::newRow("controls") << QByteArray("a\n\tb\x7f") << QByteArray("a  b ");
+        QTest::newRow("letters") << QByteArray("Ko\u0161ice \u00e9") << QByteArray("Ko\u0161ice \u00e9");
+        QTest::newRow("signs") << QByteArray("90\u00b0 \u00b1 \u03c3")
+                               << QByteArray(
+                                      "90\\ensuremath{^\\circ} \\ensuremath{\\pm} \\ensuremath{\\sigma}");
+        QTest::newRow("without a sign") << QByteArray("\u4e2d") << QByteArray("{[}U+4E2D{]}");
+        QTest::newRow("no UTF-8") << QByteArray("a\xff\xc3") << QByteArray("a??");
+        QTest::newRow("overlong") << QByteArray("\xc0\xaf") << QByteArray("??");
+        QTest::newRow("surrogate") << QByteArray("\xed\xa0\x80") << QByteArray("???");
+    }
+    void textIsEscaped() {
+        QFETCH(QByteArray, text);
+        QTEST(QByteArray::fromStdString(latexText(text.toStdString())), "latex");
+    }
+
+    void everyLayerIsDrawn() {
+        const QByteArray text = document([](LatexExport &latex) { latex.picture(room()); });
+        QVERIFY(text.startsWith("\\documentclass") && text.endsWith("\\end{document}\n"));
+        for (const char *part :
+             {"\\section*{A title}", "\\subsection*{Room 50 \\% \\& \\#1}", "{x [m]}", "{y [m]}", "dashed",
+              "circle (1.8pt)", "--cycle;", "~common area}", "~walls}", "~path}", "~cluster 0: 2 points}",
+              "~sensor}", "{rgb,255:red,27;green,42;blue,65}"})
+            QVERIFY2(text.contains(part), part);
+        QCOMPARE(text.count("\\begin{tikzpicture}"), 1);
+        QCOMPARE(text.count('{'), text.count('}') + text.count("\\{") - text.count("\\}"));
+    }
+    /// A wall from (0, 0) to (4, 0): free space above it. 4.4 m are 14 cm.
+    void normalsPointToFreeSpace() {
+        Picture picture("");
+        picture.segments<double>({colour::map, 2, "", false, true}, {{{0, 0}, {4, 0}}});
+        const QByteArray text = document([&](LatexExport &latex) { latex.picture(picture); });
+        QVERIFY2(text.contains("--+(0.000,0.150);"), text.constData());
+    }
+    void fragmentNamesItsPackages() {
+        const QByteArray text = document(
+            [](LatexExport &latex) {
+                latex.picture(room());
+                latex.plot(curves());
+            },
+            LatexExport::As::Fragment);
+        QVERIFY(text.startsWith("% For \\input"));
+        QVERIFY(text.contains("% \\usepackage{pgfplots}"));
+        for (const char *part : {"\\documentclass", "\\begin{document}", "\\end{document}", "section*"})
+            QVERIFY2(!text.contains(part), part);
+    }
+
+    void plotHasItsCurves() {
+        const QByteArray text = document([](LatexExport &latex) { latex.plot(curves()); });
+        for (const char *part : {"xmode=log", "xlabel={points}", "ylabel={error {[}m\\ensuremath{^{2}}{]}}",
+                                 "xtick={1,2,5,10,20,50,100}", "\\addlegendentry{50 \\% of\\_a}",
+                                 "(1,2)\n(nan,nan)", "fill opacity=0.25"})
+            QVERIFY2(text.contains(part), (part + text).constData());
+        QVERIFY(!text.contains("(0,9)")); // no place on a logarithmic axis
+        QCOMPARE(text.count("\\addlegendentry"), 1);
+        QCOMPARE(text.count("--cycle"), 2); // what is one point of a band is none
+    }
+    void surfaceHasItsGrid() {
+        const Surface surface{"s", "t", "x [m]", "y [rad]", "z", {0, 1, 2}, {0, 1}, {0, 1, none, 3, 4, 5}};
+        const QByteArray text = document([&](LatexExport &latex) { latex.surface(surface); });
+        QVERIFY(text.contains("mesh/cols=3") && text.contains("(2,0,nan)") && text.contains("zlabel={z}"));
+    }
+    void tableIsFilledUp() {
+        const Table table{"T_1", {"a", "b"}, {{"1"}, {"1", "2", "$x$"}}};
+        const QByteArray text = document([&](LatexExport &latex) { latex.table(table); });
+        QVERIFY2(text.contains("{T\\_1}") && text.contains("{lrr}") && text.contains("a & b &  \\\\") &&
+                     text.contains("1 &  &  \\\\") && text.contains("1 & 2 & $x$ \\\\"),
+                 text.constData());
+    }
+    void longTablesGoOn() {
+        const Table table{"", {"a"}, std::vector<std::vector<std::string>>(60, {"1"})};
+        const QByteArray text = document([&](LatexExport &latex) { latex.table(table); });
+        QVERIFY(text.contains("\\begin{longtable}") && text.contains("\\endhead"));
+    }
+
+    /// Nothing, NaN and numbers beyond every place: no number that TeX cannot read, and an end.
+    void nothingAndNonsense() {
+        for (const QByteArray &text : nonsense()) {
+            QVERIFY2(!text.contains("inf") && text.endsWith("\\end{document}\n"), text.constData());
+            for (QByteArray line : text.split('\n'))
+                QVERIFY2(
+                    !line.replace("(nan,nan)", "").replace(",nan)", "").replace("(nan,", "").contains("nan"),
+                    line.constData());
+            QVERIFY(text.size() < 20000);
+        }
+    }
+    void largeScansAreCutIntoCommands() {
+        Picture picture("");
+        std::vector<Vector2D<double>> points;
+        for (int i = 0; i < 20000; ++i)
+            points.emplace_back(std::cos(i * 0.001), std::sin(i * 0.001));
+        picture.points({colour::points, 1, ""}, points);
+        picture.path({colour::points, 1, ""}, points);
+        for (const QByteArray &line :
+             document([&](LatexExport &latex) { latex.picture(picture); }).split('\n'))
+            QVERIFY(line.size() < 300);
+    }
+
+    void documentsCompile() {
+        const hermes::Latex latex;
+        if (!latex.missing().isEmpty())
+            QSKIP(latex.missing().constData());
+        QTemporaryDir folder;
+        QByteArray all = document([](LatexExport &l) {
+            l.picture(room());
+            l.plot(curves());
+            l.text("%_\\{}#$&^~<>|\"'`-- \u0161\u00e9\u00b0\u03c3\u4e2d\xff [a] ?` << \n\n");
+            l.surface({"s", "100 % of_it", "x", "y", "z", {0, 1, 2}, {0, 1}, {0, 1, none, 3, 4, 5}});
+            l.table(
+                {"T_1", {"a", "b"}, std::vector<std::vector<std::string>>(60, {"1", latexText("[2pt]")})});
+        });
+        const QByteArray begin = "\\begin{document}\n", end = "\\end{document}\n";
+        all.chop(end.size());
+        for (QByteArray text : nonsense())
+            all += text.mid(text.indexOf(begin) + begin.size()).replace(end, "\n\n");
+        const QString name = folder.filePath("all.tex");
+        QFile file(name);
+        QVERIFY(file.open(QIODevice::WriteOnly) && file.write(all + end) > 0);
+        file.close();
+        const QByteArray fault = hermes::Latex::fault(name);
+        QVERIFY2(fault.isEmpty(), fault.constData());
+    }
+
+private:
+    static std::vector<QByteArray> nonsense() {
+        std::vector<QByteArray> texts;
+        const auto add = [&](auto write) { texts.push_back(document(write)); };
+        add([](LatexExport &) {});
+        add([](LatexExport &latex) { latex.picture(Picture("")); });
+        for (const double value :
+             {none, std::numeric_limits<double>::infinity(), 1e300, -1e300, 1e17, 1e-300}) {
+            Picture picture("p");
+            picture.points<double>({"#12", 1, "p"}, {{value, 0}, {value, value}});
+            picture.segments<double>({"", 1, "s", false, true}, {{{0, value}, {0, value}}});
+            picture.area({"red", 1, "a"}, {{value, 1}});
+            picture.path({"#zzzzzz", 1, "t"}, {{value, 1}});
+            picture.pose({colour::map, 1, "o"}, {value, 0}, value);
+            add([&](LatexExport &latex) { latex.picture(picture); });
+            for (const bool isLogarithmic : {false, true}) {
+                const Plot plot{
+                    "", "t", "x", "y", isLogarithmic, isLogarithmic, {{"c", "", {{1, value}, {value, 1}}}}};
+                add([&](LatexExport &latex) { latex.plot(plot); });
+            }
+            add([&](LatexExport &latex) {
+                latex.surface({"", "t", "x", "y", "z", {0, value}, {0, 1}, {0, 1, value, 2}});
+            });
+        }
+        add([](LatexExport &latex) {
+            latex.plot({});
+            latex.surface({"", "t", "x", "y", "z", {}, {}, {1}});
+            latex.surface({"", "t", "x", "y", "z", {1, 2}, {1, 2}, {1}});
+            latex.table({});
+            latex.text("");
+            latex.figures({});
+        });
+        return texts;
+    }
+};
+
+QTEST_GUILESS_MAIN(TestLatexExport)
+#include "TestLatexExport.moc"
