@@ -121,7 +121,7 @@ private:
     using NamedPicture = std::pair<std::string, vectorlib::SvgPicture>; ///< name: in file names
     /// The figures and pictures, each as SVG, all in one LaTeX document; pictures first.
     void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "",
-              std::vector<NamedPicture> pictures = {}) const;
+              std::vector<NamedPicture> named = {}) const;
     template <typename Figure>
     bool draw(OutputSet &files, const std::string &suffix, const Figure &figure) const;
 };

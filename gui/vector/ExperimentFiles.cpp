@@ -51,9 +51,9 @@ vectorlib::CarmenLog ExperimentCommand::readLog(const std::string &file) {
 }
 
 void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std::string &suffix,
-                             std::vector<NamedPicture> pictures) const {
+                             std::vector<NamedPicture> named) const {
     vectorlib::LatexExport document(open(files, suffix + ".tex"), name);
-    for (auto &[which, picture] : pictures) {
+    for (auto &[which, picture] : named) {
         picture.write(open(files, suffix + (which.empty() ? "" : "-" + which) + ".svg"));
         document.picture(picture, {14, 9});
     }

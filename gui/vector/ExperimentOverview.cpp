@@ -50,13 +50,14 @@ void ExperimentCommand::overview(OutputSet &files, std::ostream &csv, const Worl
     const OverviewRun &first = drives.front();
     const std::string scans = std::to_string(first.scans.size()) + " scans";
     const auto millimetres = [](double metres) { return std::to_string(std::lround(1000 * metres)) + " mm"; };
-    drawRaw(open(files, "-raw.svg"),
-            scans + ", not fitted: the last pose is " + millimetres(first.odometryClosingError()) + " off",
-            first);
-    drawScan(open(files, "-scan.svg"), "the first scan: clusters and lines", first.scans.front());
-    drawMap(open(files, "-map.svg"),
-            "the map of " + scans + ": the last pose is " + millimetres(first.closingError()) + " off",
-            first);
+    draw(files, {}, "",
+         {{"raw", pictureOfRaw(scans + ", not fitted: the last pose is " +
+                                   millimetres(first.odometryClosingError()) + " off",
+                               first)},
+          {"scan", pictureOfScan("the first scan: clusters and lines", first.scans.front())},
+          {"map", pictureOfMap("the map of " + scans + ": the last pose is " +
+                                   millimetres(first.closingError()) + " off",
+                               first)}});
 }
 
 } // namespace hermes::vector

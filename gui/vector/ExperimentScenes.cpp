@@ -24,25 +24,25 @@ void ExperimentCommand::segmentationObjects(OutputSet &files, std::ostream &csv)
 void ExperimentCommand::adaptiveThreshold(OutputSet &files, std::ostream &csv) const {
     const std::vector<AdaptiveThresholdPanel> panels = adaptiveThresholdExperiment(options.seed);
     writeCsv(csv, panels);
-    std::vector<NamedPicture> pictures;
+    std::vector<NamedPicture> drawn;
     for (const AdaptiveThresholdPanel &panel : panels)
-        pictures.emplace_back(panel.name, pictureOf(panel));
-    draw(files, {}, "", std::move(pictures));
+        drawn.emplace_back(panel.name, pictureOf(panel));
+    draw(files, {}, "", std::move(drawn));
 }
 
 void ExperimentCommand::realSegmentation(OutputSet &files, std::ostream &csv) const {
     const RealScanChoice choice =
         chooseScans({RealScanKind::Corridor, RealScanKind::EmptyRoom, RealScanKind::Laboratory});
     csv << "kind,scan,points,clusters,outliers\n";
-    std::vector<NamedPicture> pictures;
+    std::vector<NamedPicture> drawn;
     std::size_t kind = 0;
     for (const char *title : {"corridor", "empty-room", "laboratory"}) {
         const RealScan &scan = choice.best(kind++);
         csv << title << ',' << scan.number << ',' << scan.points() << ',' << scan.clusters.size() << ','
             << scan.outliers.size() << '\n';
-        pictures.emplace_back(title, pictureOfClusters(title, scan));
+        drawn.emplace_back(title, pictureOfClusters(title, scan));
     }
-    draw(files, {}, "", std::move(pictures));
+    draw(files, {}, "", std::move(drawn));
 }
 
 void ExperimentCommand::threshold(OutputSet &files, std::ostream &csv) const {
@@ -130,12 +130,12 @@ void ExperimentCommand::criterionTime(OutputSet &files, std::ostream &csv) const
 void ExperimentCommand::segment(OutputSet &files, std::ostream &csv, const Scene &scene) const {
     const std::vector<SegmentationPanel> panels = segmentationExperiment(scene, options.seed);
     writeCsv(csv, panels);
-    std::vector<NamedPicture> pictures;
+    std::vector<NamedPicture> drawn;
     for (const SegmentationPanel &panel : panels)
-        pictures.emplace_back(std::to_string(std::lround(100 * panel.noise)) + "cm-" +
-                                  std::to_string(std::lround(100 * panel.outlierShare)) + "percent",
-                              pictureOf(scene, panel));
-    draw(files, {}, "", std::move(pictures));
+        drawn.emplace_back(std::to_string(std::lround(100 * panel.noise)) + "cm-" +
+                               std::to_string(std::lround(100 * panel.outlierShare)) + "percent",
+                           pictureOf(scene, panel));
+    draw(files, {}, "", std::move(drawn));
 }
 
 void ExperimentCommand::quality(OutputSet &files, std::ostream &csv, const std::string &title,

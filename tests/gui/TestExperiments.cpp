@@ -1,7 +1,6 @@
 #include "gui/vector/experiment/RelationScans.h"
 #include "gui/vector/experiment/Scene.h"
 #include "tests/gui/ExperimentFiles.h"
-#include "tests/support/Latex.h"
 
 #include <QTemporaryDir>
 #include <QtTest>
@@ -27,8 +26,6 @@ private Q_SLOTS:
     void errorAreaDoesNotGrowWithTheWay();
     void missingWorldIsNamed();
     void realScansAreShown();
-    void documentsAreComplete_data();
-    void documentsAreComplete();
     void refusesToOverwrite();
     void unknownExperimentIsAUsageError();
 
@@ -234,48 +231,6 @@ void TestExperiments::realScansAreShown() {
     QVERIFY(empty.open(QIODevice::WriteOnly));
     empty.close();
     QCOMPARE(run({"corridor", "--log", empty.fileName(), "--out", folder.filePath("none")}), 1);
-}
-
-void TestExperiments::documentsAreComplete_data() {
-    QTest::addColumn<QStringList>("arguments");
-    QTest::addColumn<int>("documents");
-    const QString log = QStringLiteral(TEST_DATA_DIR "/vector/corrected.log");
-    const QStringList few{"--runs", "1", "--max-points", "300"}, once{"--runs", "1"};
-    for (const char *name :
-         {"edges", "corners", "room", "accuracy", "dispersion", "weighting", "reliability"})
-        QTest::newRow(name) << QStringList(name) + few << 1;
-    for (const char *name : {"polygons", "rotation"})
-        QTest::newRow(name) << QStringList(name) + once << 1;
-    for (const char *name : {"segmentation-room", "segmentation-objects", "criterion", "criterion-time",
-                             "free-leaps", "free-copy"})
-        QTest::newRow(name) << QStringList(name) << 1;
-    QTest::newRow("semicircle") << QStringList{"semicircle", "--max-points", "100"} << 3;
-    QTest::newRow("potential-pairs") << QStringList{"potential-pairs", "--runs", "1"} << 2;
-    QTest::newRow("free-approach") << QStringList{"free-approach", "--every", "40"} << 1;
-    for (const char *name : {"empty-room", "corridor", "laboratory"})
-        QTest::newRow(name) << QStringList{name, "--log", log} << 1;
-    QTest::newRow("log") << QStringList{"log", "--runs", "1", "--log", log} << 1;
-}
-
-/// Every document of an experiment is whole, and pdflatex compiles it where it is installed.
-void TestExperiments::documentsAreComplete() {
-    QFETCH(QStringList, arguments);
-    QFETCH(int, documents);
-    static const Latex latex;
-    QTemporaryDir folder;
-    QVERIFY2(run(arguments + QStringList{"--out", folder.path()}) == 0, error_);
-    const QStringList names = QDir(folder.path()).entryList({"*.tex"});
-    QCOMPARE(names.size(), documents);
-    for (const QString &name : names) {
-        const QList<QByteArray> text = lines(folder.filePath(name));
-        QVERIFY(text.first().startsWith("\\documentclass") && text.last() == "\\end{document}");
-        QVERIFY(text.join().contains("tikzpicture"));
-        const QByteArray fault =
-            latex.missing().isEmpty() ? Latex::fault(folder.filePath(name)) : QByteArray();
-        QVERIFY2(fault.isEmpty(), fault.constData());
-    }
-    if (!latex.missing().isEmpty())
-        QSKIP(latex.missing().constData());
 }
 
 void TestExperiments::refusesToOverwrite() {

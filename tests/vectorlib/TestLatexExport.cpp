@@ -165,6 +165,7 @@ private Q_SLOTS:
         QByteArray all = document([](LatexExport &l) {
             l.picture(room());
             l.plot(curves());
+            l.table({"wide", std::vector<std::string>(12, "a column"), {}});
             l.text("%_\\{}#$&^~<>|\"'`-- \u0161\u00e9\u00b0\u03c3\u4e2d\xff [a] ?` << \n\n");
             l.surface({"s", "100 % of_it", "x", "y", "z", {0, 1, 2}, {0, 1}, {0, 1, none, 3, 4, 5}});
             l.table(

@@ -185,22 +185,31 @@ nlohmann::ordered_json summaryOf(const std::vector<OverviewRun> &runs, const std
             {"published", published}};
 }
 
-void drawRaw(std::ostream &svg, const std::string &title, const OverviewRun &run) {
+// Of a picture: with more of them pdflatex runs out of memory.
+constexpr std::size_t mostPoints = 25000;
+
+vectorlib::SvgPicture pictureOfRaw(const std::string &title, const OverviewRun &run) {
     SvgPicture picture(title);
-    Points all;
+    std::size_t count = 0;
     for (const OverviewScan &scan : run.scans)
-        for (const auto &p : scan.points)
-            all.push_back(Transformation2D(scan.odometry) * p);
-    picture.points({vectorlib::colour::reference, 1.5, "points of all scans, as the odometry puts them"},
-                   all);
+        count += scan.points.size();
+    const std::size_t each = 1 + count / mostPoints;
+    Points shown;
+    for (const OverviewScan &scan : run.scans)
+        for (std::size_t i = 0; i < scan.points.size(); i += each)
+            shown.push_back(Transformation2D(scan.odometry) * scan.points[i]);
+    picture.points({vectorlib::colour::reference, 1.5,
+                    (each == 1 ? "" : "1 of " + std::to_string(each) + " ") +
+                        std::string("points of all scans, as the odometry puts them")},
+                   shown);
     picture.path({vectorlib::colour::distinct(2), 2.5, "odometry"}, wayOf(run, &OverviewScan::odometry));
     for (const OverviewScan &scan : run.scans)
         picture.pose({vectorlib::colour::distinct(2), 2, ""}, {scan.odometry.x, scan.odometry.y},
                      scan.odometry.theta);
-    picture.write(svg);
+    return picture;
 }
 
-void drawScan(std::ostream &svg, const std::string &title, const OverviewScan &scan) {
+vectorlib::SvgPicture pictureOfScan(const std::string &title, const OverviewScan &scan) {
     SvgPicture picture(title);
     vectorlib::EdgeExtractor extract;
     const auto ordered = extract.order(scan.points);
@@ -216,10 +225,10 @@ void drawScan(std::ostream &svg, const std::string &title, const OverviewScan &s
         lines.push_back(edge.segment);
     picture.segments({vectorlib::colour::map, 1.5, "lines"}, lines);
     picture.pose({vectorlib::colour::map, 2, "scanner"}, {0, 0}, 0);
-    picture.write(svg);
+    return picture;
 }
 
-void drawMap(std::ostream &svg, const std::string &title, const OverviewRun &run) {
+vectorlib::SvgPicture pictureOfMap(const std::string &title, const OverviewRun &run) {
     SvgPicture picture(title);
     std::vector<vectorlib::LineSegment2D<double>> lengthy, brief;
     for (const auto &edge : run.edges)
@@ -230,7 +239,7 @@ void drawMap(std::ostream &svg, const std::string &title, const OverviewRun &run
     picture.path({vectorlib::colour::map, 2, "corrected way"}, wayOf(run, &OverviewScan::found));
     for (const OverviewScan &scan : run.scans)
         picture.pose({vectorlib::colour::map, 1, ""}, {scan.found.x, scan.found.y}, scan.found.theta);
-    picture.write(svg);
+    return picture;
 }
 
 } // namespace hermes::vector

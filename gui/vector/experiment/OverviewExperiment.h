@@ -3,6 +3,8 @@
 #include "common/world/World.h"
 #include "vectorlib/geometry/LineSegment2D.h"
 
+#include "vectorlib/io/Svg.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -56,10 +58,10 @@ nlohmann::ordered_json summaryOf(const std::vector<OverviewRun> &runs, const std
                                  const nlohmann::ordered_json &published);
 
 /// Paper figure 2a: all points where the odometry puts them, and its way.
-void drawRaw(std::ostream &svg, const std::string &title, const OverviewRun &run);
+vectorlib::SvgPicture pictureOfRaw(const std::string &title, const OverviewRun &run);
 /// Figures 2b and 2c: one scan by clusters, outliers left out, and its lines.
-void drawScan(std::ostream &svg, const std::string &title, const OverviewScan &scan);
+vectorlib::SvgPicture pictureOfScan(const std::string &title, const OverviewScan &scan);
 /// Figures 2d and 4: long and short edges of the map, the odometry's way and the corrected one.
-void drawMap(std::ostream &svg, const std::string &title, const OverviewRun &run);
+vectorlib::SvgPicture pictureOfMap(const std::string &title, const OverviewRun &run);
 
 } // namespace hermes::vector

@@ -54,7 +54,7 @@ public:
     void surface(const Surface &surface) { figure(surface); }
 
     /// Rows that are shorter than others are filled up. Long tables go on on the next page, with their
-    /// header.
+    /// header; others that are wider than the page are made smaller.
     void table(const Table &table) {
         std::size_t columns = table.header.size();
         for (const auto &row : table.rows)
@@ -65,14 +65,20 @@ public:
             out_ << "\\subsection*{" << latexText(table.title) << "}\n";
         const bool isLong = table.rows.size() > 40;
         const char *kind = isLong ? "longtable" : "tabular";
-        out_ << "\\begin{" << kind << "}{l" << std::string(columns - 1, 'r') << "}\n\\hline\n";
+        out_ << (isLong ? "" : "\\sbox0{%\n") << "\\begin{" << kind << "}{l" << std::string(columns - 1, 'r')
+             << "}\n\\hline\n";
         row(table.header, columns);
         out_ << "\\hline\n" << (isLong ? "\\endhead\n" : "");
         for (const auto &cells : table.rows)
             row(cells, columns);
-        out_ << "\\hline\n\\end{" << kind << "}\n\n\\bigskip\n";
+        out_
+            << "\\hline\n\\end{" << kind << '}'
+            << (isLong
+                    ? ""
+                    : "}%\n\\ifdim\\wd0>\\linewidth\\resizebox{\\linewidth}{!}{\\usebox0}\\else\\usebox0\\fi")
+            << "\n\n\\bigskip\n";
     }
-    /// Tables, plots, surfaces, spaces.
+    /// Tables, plots, surfaces, lines in space.
     void figures(const Figures &figures) {
         for (const Table &t : figures.tables)
             table(t);

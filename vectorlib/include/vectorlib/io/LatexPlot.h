@@ -23,22 +23,6 @@ inline void writeCoordinates(std::ostream &out, const Plot &plot,
     out << '}';
 }
 
-/// One in space; what is not finite interrupts: unbounded coords=jump.
-inline void writePoint(std::ostream &out, const std::array<double, 3> &point) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        out << (i ? ',' : '(');
-        if (std::abs(point[i]) < 1e300)
-            out << Number(point[i]);
-        else
-            out << "nan";
-    }
-    out << ')';
-}
-
-constexpr const char *legendBelow =
-    "legend columns=2, legend cell align=left,\n  legend style={at={(0.5,-0.18)}, anchor=north, draw=none, "
-    "font=\\small, /tikz/every even column/.append style={column sep=1em}}";
-
 /// The box of all points that a plot shows; nothing when there is none.
 inline std::optional<Picture::Box> boxOf(const Plot &plot) {
     std::optional<Picture::Box> box;
@@ -76,6 +60,16 @@ inline std::string ticksOf(char axis, double low, double high) {
                            labels.str() + "}, ";
 }
 
+/// Of any figure with a title and names of its axes; its legend will be below.
+template <typename Figure>
+void openAxis(std::ostream &out, const Figure &figure, const std::string &options) {
+    out << "\\begin{tikzpicture}\n\\begin{axis}[" << options
+        << "unbounded coords=jump, grid=major,\n  title={" << latexText(figure.title) << "}, xlabel={"
+        << latexText(figure.xAxis) << "}, ylabel={" << latexText(figure.yAxis)
+        << "},\n  legend columns=2, legend cell align=left,\n  legend style={at={(0.5,-0.18)}, anchor=north, "
+           "draw=none, font=\\small, /tikz/every even column/.append style={column sep=1em}}]\n";
+}
+
 inline void writeCurve(std::ostream &out, const Plot &plot, const Curve &curve) {
     for (const auto &outline : outlinesOf(curve, plot)) {
         out << "\\addplot[draw=none, fill=" << colour(curve.colour) << ", fill opacity=0.25, forget plot]";
@@ -100,12 +94,12 @@ inline void writeLatex(std::ostream &out, const Plot &plot) {
         out << latexText(plot.title) << ": nothing to show.";
         return;
     }
-    out << "\\begin{tikzpicture}\n\\begin{axis}[width=14cm, height=" << (plot.isDrawing ? 14 : 9) << "cm, "
-        << (plot.xLogarithmic ? "xmode=log, " + latex::ticksOf('x', box->low.x, box->high.x) : "")
-        << (plot.yLogarithmic ? "ymode=log, " + latex::ticksOf('y', box->low.y, box->high.y) : "")
-        << (plot.isDrawing ? "axis equal image, " : "") << "unbounded coords=jump, grid=major,\n  title={"
-        << latexText(plot.title) << "}, xlabel={" << latexText(plot.xAxis) << "}, ylabel={"
-        << latexText(plot.yAxis) << "},\n  " << latex::legendBelow << "]\n";
+    latex::openAxis(
+        out, plot,
+        std::string(plot.isDrawing ? "width=14cm, height=14cm, axis equal image, "
+                                   : "width=14cm, height=9cm, ") +
+            (plot.xLogarithmic ? "xmode=log, " + latex::ticksOf('x', box->low.x, box->high.x) : "") +
+            (plot.yLogarithmic ? "ymode=log, " + latex::ticksOf('y', box->low.y, box->high.y) : ""));
     for (const Curve &curve : plot.curves)
         latex::writeCurve(out, plot, curve);
     out << "\\end{axis}\n\\end{tikzpicture}";
@@ -118,35 +112,50 @@ inline void writeLatex(std::ostream &out, const Surface &s) {
         out << latexText(s.title) << ": nothing to show.";
         return;
     }
-    out << "\\begin{tikzpicture}\n\\begin{axis}[width=13cm, height=10cm, view={-30}{40}, unbounded "
-           "coords=jump, grid=major,\n  title={"
-        << latexText(s.title) << "}, xlabel={" << latexText(s.xAxis) << "}, ylabel={" << latexText(s.yAxis)
-        << "}, zlabel={" << latexText(s.zAxis) << "}]\n\\addplot3[surf, mesh/cols=" << s.x.size()
-        << "] coordinates {";
+    latex::openAxis(out, s, "width=13cm, height=10cm, view={-30}{40}, zlabel={" + latexText(s.zAxis) + "}, ");
+    out << "\\addplot3[surf, mesh/cols=" << s.x.size() << "] coordinates {";
+    const auto write = [&out](double value) {
+        if (std::abs(value) < 1e300)
+            out << Number(value);
+        else
+            out << "nan";
+    };
     for (std::size_t i = 0; i < s.z.size(); ++i) {
-        out << (i % s.x.size() ? ' ' : '\n');
-        latex::writePoint(out, {s.x[i % s.x.size()], s.y[i / s.x.size()], s.z[i]});
+        out << (i % s.x.size() ? ' ' : '\n') << '(';
+        write(s.x[i % s.x.size()]);
+        out << ',';
+        write(s.y[i / s.x.size()]);
+        out << ',';
+        write(s.z[i]);
+        out << ')';
     }
     out << "};\n\\end{axis}\n\\end{tikzpicture}";
 }
 
-/// Lines in space as a tikzpicture of pgfplots, its legend below; without a line it says so.
+/// Lines in space as a tikzpicture of pgfplots; without a point to show it says so.
 inline void writeLatex(std::ostream &out, const SpacePlot &plot) {
-    if (plot.curves.empty()) {
+    const auto isPlace = [](const std::array<double, 3> &p) {
+        return std::abs(p[0]) < 1e300 && std::abs(p[1]) < 1e300 && std::abs(p[2]) < 1e300;
+    };
+    const bool any = std::any_of(plot.curves.begin(), plot.curves.end(), [&](const SpaceCurve &c) {
+        return std::any_of(c.points.begin(), c.points.end(), isPlace);
+    });
+    if (!any) {
         out << latexText(plot.title) << ": nothing to show.";
         return;
     }
-    out << "\\begin{tikzpicture}\n\\begin{axis}[width=13cm, height=10cm, view={35}{28}, unbounded "
-           "coords=jump, grid=major,\n  title={"
-        << latexText(plot.title) << "}, xlabel={" << latexText(plot.xAxis) << "}, ylabel={"
-        << latexText(plot.yAxis) << "}, zlabel={" << latexText(plot.zAxis) << "},\n  " << latex::legendBelow
-        << "]\n";
+    latex::openAxis(out, plot,
+                    "width=14cm, height=11cm, view={35}{28}, zlabel={" + latexText(plot.zAxis) + "}, ");
     for (const SpaceCurve &curve : plot.curves) {
         out << "\\addplot3[color=" << latex::colour(curve.colour) << ", thick, no marks"
-            << (curve.label.empty() ? ", forget plot" : "") << "] coordinates {";
-        for (const auto &point : curve.points) {
-            out << '\n';
-            latex::writePoint(out, point);
+            << (curve.label.empty() ? ", forget plot]" : "]") << " coordinates {";
+        for (std::size_t i = 0; i < curve.points.size(); ++i) {
+            const auto &p = curve.points[i];
+            if (isPlace(p))
+                out << (i % 8 ? ' ' : '\n') << '(' << Number(p[0]) << ',' << Number(p[1]) << ','
+                    << Number(p[2]) << ')';
+            else
+                out << "\n(nan,nan,nan)";
         }
         out << "};\n";
         if (!curve.label.empty())

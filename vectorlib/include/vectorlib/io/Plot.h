@@ -70,7 +70,7 @@ struct Figures {
     std::vector<Plot> plots;
     std::vector<Surface> surfaces;
     std::vector<Table> tables;
-    std::vector<SpacePlot> spaces = {};
+    std::vector<SpacePlot> spaces{};
 };
 
 /// What becomes of a point of a plot: not finite it interrupts its curve, without a place on a logarithmic
