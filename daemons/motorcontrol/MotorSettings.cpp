@@ -177,8 +177,8 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
     }
     require(number("faults.battery_v") <= number("faults.battery_warning_v"), "faults.battery_v",
             "at most faults.battery_warning_v");
-    require(number("battery.full_v") > number("battery.empty_v"), "battery.full_v",
-            "more than battery.empty_v");
+    require(number("battery.full_v") >= number("battery.empty_v") + 0.1, "battery.full_v",
+            "at least 0.1 V more than battery.empty_v");
     require(number("faults.current_a") >= number("faults.current_warning_a"), "faults.current_a",
             "at least faults.current_warning_a");
     require(number("faults.temperature_c") >= number("faults.temperature_warning_c"), "faults.temperature_c",
