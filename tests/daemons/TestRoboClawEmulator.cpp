@@ -57,7 +57,9 @@ void TestRoboClawEmulator::answersAsPublished_data() {
 void TestRoboClawEmulator::answersAsPublished() {
     QFETCH(QByteArray, sent);
     QFETCH(QByteArray, answer);
-    Drivetrain drivetrain;
+    Drivetrain::Options options;
+    options.battery.full = 25.2;
+    Drivetrain drivetrain(options);
     pass(drivetrain, 0.001);
     RoboClawClient client(drivetrain);
     if (QByteArray(QTest::currentDataTag()) == "version") // its CRC is that of the oracle
