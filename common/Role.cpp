@@ -2,16 +2,7 @@
 
 #include "common/ServiceAccount.h"
 
-#include <unistd.h>
-
 namespace hermes {
-namespace {
-
-bool standsForDaemon(unsigned user) {
-    return user == 0 || user == ::geteuid() || ServiceAccount::hasMember(::geteuid(), user);
-}
-
-} // namespace
 
 QString toString(Role role) {
     return roleNames().at(int(role));
@@ -31,7 +22,7 @@ Role roleOf(const Peer &peer, const Access &access) {
         return roleFrom(peer.certificate->role).value_or(Role::Observer);
     if (peer.place == Peer::Place::Elsewhere)
         return access.plain;
-    if (!peer.user || !standsForDaemon(*peer.user))
+    if (!peer.user || !ServiceAccount::standsForThisProgram(*peer.user))
         return access.others;
     return peer.place == Peer::Place::UnixSocket ? Role::Engineer : access.plain;
 }

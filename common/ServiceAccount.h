@@ -1,7 +1,6 @@
 #pragma once
 
 #include <QString>
-#include <sys/types.h>
 
 namespace hermes {
 
@@ -10,9 +9,12 @@ namespace hermes {
 namespace ServiceAccount {
 
 /// That `account` is one and `user` is a member of its group. What the system does not know is none.
-bool hasMember(uid_t account, uid_t user);
+bool hasMember(unsigned account, unsigned user);
+/// That `user` stands for the one that runs this program: is it, root, or a member where that is such an
+/// account.
+bool standsForThisProgram(unsigned user);
 /// "anna"; the number where the system knows no name.
-QString nameOf(uid_t user);
+QString nameOf(unsigned user);
 
 } // namespace ServiceAccount
 

@@ -1,7 +1,6 @@
 #include "common/Time.h"
 
 #include <chrono>
-#include <ctime>
 
 namespace hermes {
 
@@ -11,12 +10,6 @@ double stampNow() {
 
 double monotonicNow() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double bootNow() {
-    timespec now{};
-    ::clock_gettime(CLOCK_BOOTTIME, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 } // namespace hermes

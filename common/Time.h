@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/platform/BootClock.h"
+
 namespace hermes {
 
 /// Now, in seconds since the Unix epoch (the field `stamp` of every message). May jump when the clock is set.
@@ -7,8 +9,5 @@ double stampNow();
 
 /// Now, in seconds of a clock that never jumps (the field `mono`): for intervals only.
 double monotonicNow();
-
-/// The same, of a clock that goes on while the machine sleeps.
-double bootNow();
 
 } // namespace hermes

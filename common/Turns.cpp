@@ -1,13 +1,11 @@
 #include "common/Turns.h"
 
 #include "common/Time.h"
+#include "common/platform/Threads.h"
 
 #include <QCoreApplication>
 #include <QThreadPool>
 #include <QThreadStorage>
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 namespace hermes {
 namespace {
@@ -15,7 +13,6 @@ namespace {
 constexpr double longest_s = 0.001;
 constexpr double rest_s = 0.002;
 constexpr int mostKnown = 10000;
-constexpr int backgroundNiceness = 5;
 
 } // namespace
 
@@ -99,8 +96,8 @@ void inBackground(const std::function<void()> &work) {
         pool->setMaxThreadCount(1);
     }
     pool->start([work] {
-        static thread_local const int lowered = // a thread inherits the niceness of who starts it
-            ::setpriority(PRIO_PROCESS, id_t(::syscall(SYS_gettid)), backgroundNiceness);
+        static thread_local const bool lowered =
+            (lowerThreadPriority(), true); // it inherits that of who starts it
         Q_UNUSED(lowered)
         work();
     });

@@ -8,7 +8,7 @@
 namespace hermes {
 
 /// What the link layer of a capture is, as far as it is understood. The values are those of tcpdump.org's
-/// registry; libpcap tells raw IP by the numbers that systems give it, not by that of the file.
+/// registry, and those that systems give raw IP.
 enum class LinkType : int {
     Null = 0, ///< BSD loopback
     Ethernet = 1,

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "common/Outcome.h"
+#include "common/capture/CaptureRecords.h"
 #include "common/capture/Datagram.h"
 
+#include <istream>
 #include <memory>
 #include <string>
-
-struct pcap;
 
 namespace hermes {
 
@@ -36,6 +36,8 @@ public:
     PcapReader &operator=(const PcapReader &) = delete;
 
     Outcome<void> open(const std::string &path);
+    /// From a stream that lives as long; name is what messages call it.
+    Outcome<void> open(std::istream &stream, const std::string &name);
     /// The payload stays valid until the next call.
     Next next(Datagram &datagram);
     void close();
@@ -52,12 +54,15 @@ public:
     const Counts &counts() const { return counts_; }
 
 private:
+    Next fail(std::int64_t offset, const std::string &what);
+
     std::string path_;
     std::string error_;
     Counts counts_;
-    int linkType_ = 0;
     bool canSeek_ = false;
-    std::unique_ptr<pcap, void (*)(pcap *)> pcap_;
+    std::unique_ptr<std::istream> file_;
+    std::unique_ptr<CaptureRecords> records_;
+    CaptureRecord record_;
 };
 
 } // namespace hermes

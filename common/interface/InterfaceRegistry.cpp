@@ -1,61 +1,17 @@
 #include "common/interface/InterfaceRegistry.h"
 
-#include "common/interface/LocalInterface.h"
-#include "common/interface/LocalServerInterface.h"
-#include "common/interface/PtyInterface.h"
-#include "common/interface/SerialInterface.h"
-#include "common/interface/TcpInterface.h"
-#include "common/interface/TcpServerInterface.h"
-#include "common/interface/TlsInterface.h"
-#include "common/interface/TlsServerInterface.h"
-#include "common/interface/UdpInterface.h"
+#include "common/interface/InterfaceKinds.h"
 
 #include <QHostAddress>
 
 namespace hermes {
 namespace {
 
-/// Who can be at the other end.
-enum class Reach {
-    Network,
-    Certified, ///< of the network, who has a certificate
-    Computer
-};
-
-struct Kind {
-    const char *scheme;
-    Reach reach;
-    Interface *(*connect)(const InterfaceUrl &, QObject *);
-    Listener *(*listen)(const InterfaceUrl &, QObject *);
-};
-
-template <typename T>
-Interface *make(const InterfaceUrl &url, QObject *parent) {
-    return new T(url, parent);
-}
-
-template <typename T>
-Listener *makeServer(const InterfaceUrl &url, QObject *parent) {
-    return new T(url, parent);
-}
-
-template <typename T>
-Listener *makeSinglePeer(const InterfaceUrl &url, QObject *parent) {
-    return new SinglePeerListener([url] { return new T(url, nullptr); }, parent);
-}
-
-// A new kind of carrier is one line here.
-const Kind kinds[] = {
-    {"tcp", Reach::Network, make<TcpInterface>, makeServer<TcpServerInterface>},
-    {"tls", Reach::Certified, make<TlsInterface>, makeServer<TlsServerInterface>},
-    {"local", Reach::Computer, make<LocalInterface>, makeServer<LocalServerInterface>},
-    {"udp", Reach::Network, make<UdpInterface>, makeSinglePeer<UdpInterface>},
-    {"serial", Reach::Computer, make<SerialInterface>, makeSinglePeer<SerialInterface>},
-    {"pty", Reach::Computer, make<PtyInterface>, makeSinglePeer<PtyInterface>},
-};
+using Kind = InterfaceKind;
+using Reach = Kind::Reach;
 
 const Kind *findKind(const QString &scheme) {
-    for (const Kind &kind : kinds) {
+    for (const Kind &kind : interfaceKinds()) {
         if (scheme == QLatin1String(kind.scheme))
             return &kind;
     }
@@ -81,6 +37,9 @@ Result<Listener *> makeListener(const InterfaceUrl &url, QObject *parent) {
     const Kind *kind = findKind(url.scheme);
     if (!kind)
         return unknownScheme(url);
+    if (!kind->listen)
+        return Error(ErrorCode::InvalidParams,
+                     QStringLiteral("address %1: nothing listens on this system").arg(url.toString()));
     return kind->listen(url, parent);
 }
 
@@ -97,7 +56,7 @@ bool isOpenToNetwork(const InterfaceUrl &url) {
 
 QStringList interfaceSchemes() {
     QStringList schemes;
-    for (const Kind &kind : kinds)
+    for (const Kind &kind : interfaceKinds())
         schemes.append(QLatin1String(kind.scheme));
     return schemes;
 }

@@ -1,11 +1,14 @@
 #pragma once
 
+#include "common/Result.h"
+#include "common/interface/Interface.h"
 #include "common/interface/InterfaceUrl.h"
-#include "common/interface/Listener.h"
 
 #include <QStringList>
 
 namespace hermes {
+
+class Listener;
 
 /// The interface for a URL, closed, to be opened as a client. Error when the scheme is unknown or something
 /// it needs is missing.

@@ -10,7 +10,8 @@ namespace hermes {
 /// the abstract Unix socket `hermes:HOST:PORT`. Nothing: the address is not on loopback.
 std::optional<InterfaceUrl> ownSocketOf(const InterfaceUrl &tcp);
 
-/// A connected socket to it; -1 when there is none, or when it is neither this user's nor root's.
+/// A connected socket to it; -1 when there is none, or when it is neither this user's nor root's; and on
+/// Windows, which has no abstract names.
 int connectToOwnSocket(const InterfaceUrl &tcp);
 
 } // namespace hermes

@@ -1,11 +1,6 @@
 #include "common/interface/SerialInterface.h"
 
-#include <QFileInfo>
-
-#include <cerrno>
-#include <cstring>
-#include <linux/serial.h>
-#include <sys/ioctl.h>
+#include "common/interface/SerialDriver.h"
 
 namespace hermes {
 namespace {
@@ -93,7 +88,7 @@ void SerialInterface::doOpen() {
     const QString wrong = configure();
     if (!wrong.isEmpty())
         return nowClosed(QStringLiteral("%1: %2").arg(name(), wrong), true);
-    const QString device = QFileInfo(url_.path).canonicalFilePath();
+    const QString device = serialDevice(url_.path);
     if (device.isEmpty())
         return nowClosed(QStringLiteral("cannot open %1: there is no such device").arg(name()), true);
     port_.setPortName(device);
@@ -110,14 +105,7 @@ void SerialInterface::doOpen() {
 }
 
 QMap<QString, quint64> SerialInterface::driverErrors() const {
-    serial_icounter_struct driver{};
-    if (!port_.isOpen() || ioctl(port_.handle(), TIOCGICOUNT, &driver) != 0)
-        return {}; // a pseudo-terminal, or a driver that does not count
-    return {{QStringLiteral("overrun"), quint64(driver.overrun)},
-            {QStringLiteral("buffer_overrun"), quint64(driver.buf_overrun)},
-            {QStringLiteral("framing"), quint64(driver.frame)},
-            {QStringLiteral("parity"), quint64(driver.parity)},
-            {QStringLiteral("break"), quint64(driver.brk)}};
+    return port_.isOpen() ? serialErrors(port_.handle()) : QMap<QString, quint64>();
 }
 
 QMap<QString, quint64> SerialInterface::systemErrors() const {
@@ -128,8 +116,7 @@ QMap<QString, quint64> SerialInterface::systemErrors() const {
 }
 
 qint64 SerialInterface::bytesInSystem() const {
-    int bytes = 0;
-    return port_.isOpen() && ::ioctl(port_.handle(), TIOCOUTQ, &bytes) == 0 ? bytes : 0;
+    return port_.isOpen() ? serialBytesWaiting(port_.handle()) : 0;
 }
 
 double SerialInterface::bytesPerSecond() const {
@@ -148,16 +135,14 @@ void SerialInterface::doClose() {
     port_.close();
 }
 
-// Not by QSerialPort: for it a port without such lines is a failure of the whole port.
 Result<void> SerialInterface::setSignal(Signal signal, bool on) {
     const char *const text = signal == Signal::Rts ? "RTS" : "DTR";
     if (!isOpen())
         return Error(ErrorCode::NotReady, QStringLiteral("%1 is not open").arg(name()));
-    const int bit = signal == Signal::Rts ? TIOCM_RTS : TIOCM_DTR;
-    if (::ioctl(port_.handle(), on ? TIOCMBIS : TIOCMBIC, &bit) != 0)
+    const SerialLine line = signal == Signal::Rts ? SerialLine::Rts : SerialLine::Dtr;
+    if (const QString wrong = setSerialLine(port_.handle(), line, on); !wrong.isEmpty())
         return Error(ErrorCode::DeviceFault,
-                     QStringLiteral("%1: cannot set %2: %3")
-                         .arg(name(), QLatin1String(text), QString::fromLocal8Bit(std::strerror(errno))));
+                     QStringLiteral("%1: cannot set %2: %3").arg(name(), QLatin1String(text), wrong));
     return {};
 }
 

@@ -4,8 +4,8 @@
 #include "common/interface/Farewell.h"
 #include "common/interface/OwnSocket.h"
 #include "common/interface/SocketOwner.h"
+#include "common/platform/Sockets.h"
 
-#include <sys/ioctl.h>
 #include <utility>
 
 namespace hermes {
@@ -87,9 +87,7 @@ bool TcpInterface::setReceiving(bool on) {
 }
 
 bool TcpInterface::hasUnread() const {
-    int unread = 0;
-    return socket_->bytesAvailable() > 0 ||
-           (isOpen() && ::ioctl(int(socket_->socketDescriptor()), FIONREAD, &unread) == 0 && unread > 0);
+    return socket_->bytesAvailable() > 0 || (isOpen() && sockets::hasUnread(socket_->socketDescriptor()));
 }
 
 void TcpInterface::noteUnread() {
@@ -160,7 +158,7 @@ void TcpInterface::takeConnected(qintptr descriptor) {
 void TcpInterface::doClose() {
     socket_->flush();
     if (host_ && socket_->socketDescriptor() >= 0)
-        Farewell::say(int(socket_->socketDescriptor()), host_);
+        sayFarewell(int(socket_->socketDescriptor()), host_);
     socket_->abort();
 }
 

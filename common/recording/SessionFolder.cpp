@@ -3,7 +3,6 @@
 #include "common/files/Folder.h"
 #include "common/recording/DiskError.h"
 #include "common/recording/Sidecar.h"
-#include "common/schema/SchemaValidator.h"
 
 #include <QDir>
 
@@ -14,12 +13,6 @@
 namespace hermes {
 
 namespace {
-
-constexpr int longestName = 100; // bytes; file systems allow 255, and files add to it
-
-bool isNameCharacter(QChar c) {
-    return c.category() != QChar::Other_Control && c != '/';
-}
 
 /// Whether the sidecars in the folder are all of this session.
 Result<void> checkSession(const QString &folder, const QString &session) {
@@ -47,19 +40,6 @@ Result<void> checkFolder(const QString &folder, const SessionName &session, cons
 }
 
 } // namespace
-
-Result<void> checkName(const QString &what, const QString &name) {
-    const bool fine = !name.isEmpty() && !name.startsWith('.') && name.toUtf8().size() <= longestName &&
-                      std::all_of(name.begin(), name.end(), isNameCharacter);
-    if (fine)
-        return {};
-    const QString expected =
-        QString("1 to %1 bytes without '/' and control characters, not beginning with a dot")
-            .arg(longestName);
-    return invalidParams(
-        {{what, name, expected}},
-        QString("%1: found \"%2\", expected %3").arg(what, name.left(longestName), expected));
-}
 
 QString reservePath(const QString &folder, const QString &logger) {
     return folder + "/." + logger + ".reserve";

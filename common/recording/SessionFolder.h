@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/Result.h"
+#include "common/recording/RecordingName.h"
 
 #include <QString>
 
@@ -11,10 +11,6 @@ struct SessionName {
     QString name;    ///< of its folder
     QString session; ///< its id; loggers given the same one share the folder
 };
-
-/// Names may have 1 to 100 bytes of UTF-8, no '/', no control characters and no dot at the beginning
-/// (InvalidParams otherwise). what: the parameter, for the message.
-Result<void> checkName(const QString &what, const QString &name);
 
 /// A logger's file in its folder for as long as it records: keeps the folder, and room for the sidecar.
 QString reservePath(const QString &folder, const QString &logger);

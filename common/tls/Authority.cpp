@@ -1,5 +1,7 @@
 #include "common/tls/Authority.h"
 
+#include "common/platform/PrivateFiles.h"
+#include "common/tls/FolderPlace.h"
 #include "common/tls/KeyBundle.h"
 #include "common/tls/KeyFolder.h"
 #include "protocol/wire/JsonText.h"
@@ -11,8 +13,6 @@
 #include <QJsonObject>
 #include <QSslCertificate>
 #include <QTemporaryDir>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hermes {
 namespace {
@@ -34,10 +34,10 @@ Result<void> append(const QString &path, const QByteArray &line) {
     const qint64 before = file.size();
     const bool isOpen = before > 0 && file.seek(before - 1) && file.read(1) != "\n";
     const QByteArray text = (isOpen ? QByteArray("\n") : QByteArray()) + line + '\n';
-    if (file.write(text) == text.size() && file.flush() && ::fsync(file.handle()) == 0)
+    if (file.write(text) == text.size() && file.flush() && syncToDisk(file.handle()))
         return {};
     const QString why = qt_error_string();
-    if (::ftruncate(file.handle(), before) != 0)
+    if (!file.resize(before))
         return failed(path, why + QStringLiteral("; half a line may stand at its end"));
     return failed(path, why);
 }
@@ -74,7 +74,7 @@ Result<void> Authority::init(const QString &owner, int days, int daysOfOwner) co
         return failed(folder_, beside.errorString());
     if (const auto made = Authority(beside.path()).fill(owner, days, daysOfOwner); !made)
         return made;
-    if (::rename(QFile::encodeName(beside.path()).constData(), QFile::encodeName(folder_).constData()) != 0)
+    if (!takePlace(beside.path(), folder_))
         return failed(folder_, qt_error_string());
     beside.setAutoRemove(false);
     return {};
@@ -143,7 +143,7 @@ Result<QString> Authority::issue(const CertificateSubject &subject, int days) co
     if (!made)
         return made.error();
     QDir().mkpath(path(giveAwayFolder));
-    ::chmod(QFile::encodeName(path(giveAwayFolder)).constData(), 0700);
+    QFile::setPermissions(path(giveAwayFolder), QFile::ReadOwner | QFile::WriteOwner | QFile::ExeOwner);
     auto done = writeFolder(folder, *made, authority->certificate);
     if (done && QFile::exists(path(KeyFolder::revokedFile())) &&
         !QFile::copy(path(KeyFolder::revokedFile()), QDir(folder).filePath(KeyFolder::revokedFile())))

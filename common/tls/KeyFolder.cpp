@@ -1,18 +1,17 @@
 #include "common/tls/KeyFolder.h"
 
+#include "common/platform/PrivateFiles.h"
 #include "common/tls/Certificates.h"
 
 #include <QDateTime>
 #include <QDir>
 #include <QFile>
+#include <QFileInfo>
 #include <QJsonObject>
 #include <QSaveFile>
 #include <QSslCertificate>
 #include <QSslKey>
 #include <QStandardPaths>
-#include <cerrno>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hermes {
 namespace {
@@ -29,11 +28,11 @@ Error wrong(const QString &file, const QString &what, const QString &how = remed
 
 Result<QByteArray> read(const QString &path) {
     QFile file(path);
-    struct stat status {};
-    if (::stat(QFile::encodeName(path).constData(), &status) != 0)
-        return wrong(path, qt_error_string(errno));
-    if (!S_ISREG(status.st_mode) || status.st_size > mostBytes)
+    const QFileInfo info(path);
+    if (info.exists() && (!info.isFile() || info.size() > mostBytes)) // a pipe is not opened: that waits
         return wrong(path, QStringLiteral("is no file of keys"));
+    if (!info.exists() && !file.open(QIODevice::ReadOnly))
+        return wrong(path, file.errorString());
     if (!file.open(QIODevice::ReadOnly))
         return wrong(path, file.errorString(), QStringLiteral("the daemon's user must be able to read it"));
     return file.readAll();
@@ -41,9 +40,9 @@ Result<QByteArray> read(const QString &path) {
 
 Result<QByteArray> readSecret(const QString &path) {
     const Result<QByteArray> content = read(path);
-    struct stat status {};
-    constexpr mode_t others = 077;
-    if (content && (::stat(QFile::encodeName(path).constData(), &status) != 0 || (status.st_mode & others)))
+    constexpr QFile::Permissions others = QFile::ReadGroup | QFile::WriteGroup | QFile::ExeGroup |
+                                          QFile::ReadOther | QFile::WriteOther | QFile::ExeOther;
+    if (content && permissionsTellReaders() && (QFile::permissions(path) & others))
         return wrong(
             path, QStringLiteral("others than its owner may read or change it"),
             QStringLiteral("chmod 600 \"%1\", and issue a new one if others may have read it").arg(path));
@@ -98,9 +97,9 @@ Result<QSslConfiguration> KeyFolder::load(const QString &folder) {
 
 Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
     const QString path = QDir(folder).filePath(revokedFile());
-    struct stat status {};
-    const bool isNone = ::lstat(QFile::encodeName(path).constData(), &status) != 0 && errno == ENOENT &&
-                        ::access(QFile::encodeName(folder).constData(), R_OK | X_OK) == 0;
+    const QFileInfo list(path), place(folder);
+    const bool isNone = !list.exists() && !list.isSymLink() && place.isReadable() &&
+                        (place.isExecutable() || !permissionsTellReaders());
     if (isNone)
         return QSet<QByteArray>();
     const auto content = read(path);
@@ -123,11 +122,10 @@ Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
 }
 
 Result<void> writeKeyFile(const QString &path, const QByteArray &content) {
-    const mode_t before = ::umask(077);
+    const PrivateFiles owners;
     QSaveFile file(path);
     const bool written =
         file.open(QIODevice::WriteOnly) && file.write(content) == content.size() && file.commit();
-    ::umask(before);
     return written ? Result<void>()
                    : Error(ErrorCode::InputOutput, QStringLiteral("%1: %2").arg(path, file.errorString()),
                            QJsonObject{{QStringLiteral("path"), path}});

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -183,7 +184,7 @@ Outcome<World> parseWorld(const std::string &text, const std::string &path) {
 }
 
 Outcome<World> readWorld(const std::string &path) {
-    std::ifstream file(path, std::ios::binary);
+    std::ifstream file(std::filesystem::u8path(path), std::ios::binary);
     std::stringstream text;
     if (file)
         text << file.rdbuf();

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <QSocketNotifier>
+#include <QObject>
 
 namespace hermes::desktop {
 
 /// Says in the event loop that the program is to end (SIGTERM, SIGINT, SIGHUP): in order, as when its window
-/// is closed. One at a time.
+/// is closed. One at a time. Windows has no such signals: it closes the windows of a session that ends.
 class EndSignals : public QObject {
     Q_OBJECT
 public:
@@ -14,10 +14,6 @@ public:
 
 Q_SIGNALS:
     void endWanted();
-
-private:
-    int ends_[2] = {-1, -1}; ///< of a pipe
-    QSocketNotifier *notifier_ = nullptr;
 };
 
 } // namespace hermes::desktop

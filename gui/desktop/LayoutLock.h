@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QString>
+#include <cstdint>
 
 namespace hermes::desktop {
 
@@ -20,7 +21,7 @@ public:
 
 private:
     const QString file_;
-    int held_ = -1; ///< descriptor
+    std::intptr_t held_ = -1; ///< descriptor, or handle of Windows
 };
 
 } // namespace hermes::desktop

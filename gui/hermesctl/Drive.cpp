@@ -1,18 +1,18 @@
 // hermesctl drive: the robot moves as long as this runs.
 #include "common/Time.h"
 #include "common/daemon/SignalWatcher.h"
+#include "common/platform/Console.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/DriveKeys.h"
 #include "gui/hermesctl/DriveLine.h"
 #include "gui/hermesctl/Driver.h"
+#include "gui/hermesctl/KeyTerminal.h"
 #include "protocol/wire/Fields.h"
 
 #include <QElapsedTimer>
 #include <QEventLoop>
-#include <QSocketNotifier>
 #include <QTimer>
 #include <cstdio>
-#include <unistd.h>
 
 namespace hermes::ctl {
 namespace {
@@ -54,32 +54,29 @@ Result<void> tellWhereItWent(Client &client, const Arguments &arguments, const D
     return {};
 }
 
-Result<void> driveByKeys(Client &client, DriveKeys &keys, Driver &driver) {
+Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
     note(QLatin1String(DriveKeys::help));
     Result<void> result;
     {
-        const KeyTerminal terminal;
-        QSocketNotifier typed(STDIN_FILENO, QSocketNotifier::Read);
-        QObject::connect(&typed, &QSocketNotifier::activated, &client, [&] {
-            const QByteArray bytes = KeyTerminal::read();
+        KeyTerminal terminal([&](const QByteArray &bytes) {
             const auto action = bytes.isEmpty() ? DriveKeys::Action::Quit : keys.take(bytes, monotonicNow());
             if (action == DriveKeys::Action::Stop)
                 driver.brake();
             if (action != DriveKeys::Action::Quit)
                 return;
-            typed.setEnabled(false);
+            terminal.end();
             driver.end();
         });
         result = driver.run();
     }
-    if (::isatty(STDERR_FILENO) != 0)
+    if (isTerminal(StandardStream::Error))
         std::fputc('\n', stderr);
     return result;
 }
 
 /// On stderr, over itself.
 void show(const Twist2D &wish) {
-    if (::isatty(STDERR_FILENO) != 0)
+    if (isTerminal(StandardStream::Error))
         std::fprintf(stderr, "\rvx %5.2f m/s, omega %5.2f rad/s ", wish.vx, wish.omega);
 }
 
@@ -89,7 +86,7 @@ Result<void> checkDrive(const Arguments &arguments) {
     const auto velocity = velocityOf(arguments);
     if (!velocity)
         return velocity.error();
-    if (!*velocity && ::isatty(STDIN_FILENO) == 0)
+    if (!*velocity && !isTerminal(StandardStream::Input))
         return Error(ErrorCode::InvalidParams,
                      "drive needs a velocity (vx=, vy= in m/s, omega= in rad/s), or a "
                      "terminal for keys");
@@ -110,7 +107,7 @@ Result<void> drive(Client &client, const Arguments &arguments) {
     driver.endAfter(arguments.for_s);
     SignalWatcher signals(nullptr);
     QObject::connect(&signals, &SignalWatcher::received, &client, [&driver] { driver.end(); });
-    const auto driven = velocity ? driver.run() : driveByKeys(client, keys, driver);
+    const auto driven = velocity ? driver.run() : driveByKeys(keys, driver);
     if (!driven)
         return driven;
     return tellWhereItWent(client, arguments, driver);

@@ -1,9 +1,6 @@
 #include "gui/hermesctl/DriveKeys.h"
 
 #include <algorithm>
-#include <array>
-#include <termios.h>
-#include <unistd.h>
 #include <utility>
 
 namespace hermes::ctl {
@@ -91,34 +88,6 @@ DriveKeys::Action DriveKeys::stop() {
 Twist2D DriveKeys::wish(double now) const {
     const auto share = [now](const Axis &axis) { return now < axis.until ? axis.sign : 0; };
     return {share(way_) * speed_, 0, share(turn_) * speed_ * turnOfSpeed};
-}
-
-struct KeyTerminal::State {
-    termios settings{};
-};
-
-KeyTerminal::KeyTerminal() {
-    State state;
-    if (::tcgetattr(STDIN_FILENO, &state.settings) != 0)
-        return;
-    before_ = std::make_unique<State>(state);
-    termios keys = state.settings;
-    keys.c_lflag &= ~tcflag_t(ICANON | ECHO);
-    keys.c_cc[VSUSP] = keys.c_cc[VQUIT] = _POSIX_VDISABLE;
-    keys.c_cc[VMIN] = 1;
-    keys.c_cc[VTIME] = 0;
-    ::tcsetattr(STDIN_FILENO, TCSANOW, &keys);
-}
-
-KeyTerminal::~KeyTerminal() {
-    if (before_)
-        ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_->settings);
-}
-
-QByteArray KeyTerminal::read() {
-    std::array<char, 256> bytes{};
-    const auto count = ::read(STDIN_FILENO, bytes.data(), bytes.size());
-    return count > 0 ? QByteArray(bytes.data(), int(count)) : QByteArray();
 }
 
 } // namespace hermes::ctl

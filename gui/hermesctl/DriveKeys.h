@@ -3,7 +3,6 @@
 #include "protocol/messages/Motion.h"
 
 #include <QByteArray>
-#include <memory>
 
 namespace hermes::ctl {
 
@@ -36,23 +35,6 @@ private:
     Axis way_, turn_;
     double speed_ = 0.2;  // m/s
     QByteArray sequence_; // an escape sequence so far
-};
-
-/// The terminal at stdin gives each key at once and shows none, until this goes. Ctrl-C still is a signal;
-/// Ctrl-Z and Ctrl-\ are keys: a program that they had stopped or killed could not tell the robot to stop.
-class KeyTerminal {
-public:
-    KeyTerminal();
-    ~KeyTerminal();
-    KeyTerminal(const KeyTerminal &) = delete;
-    KeyTerminal &operator=(const KeyTerminal &) = delete;
-
-    /// What was typed; empty: the terminal is gone.
-    static QByteArray read();
-
-private:
-    struct State;
-    std::unique_ptr<State> before_;
 };
 
 } // namespace hermes::ctl

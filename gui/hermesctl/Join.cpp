@@ -4,24 +4,24 @@
 #include "gui/hermesctl/NewKeyFolder.h"
 #include "gui/hermesctl/Pairing.h"
 #include "gui/hermesctl/PairingCode.h"
+#include "gui/hermesctl/SignalsHeld.h"
 
 #include <QSslCertificate>
 #include <QTcpSocket>
-#include <fcntl.h>
 
 namespace hermes::ctl {
 namespace {
 
 using Stream = std::unique_ptr<PairingStream>;
 
-Result<int> connectTo(const PairingAddress &address, std::chrono::milliseconds timeout) {
+Result<sockets::Socket> connectTo(const PairingAddress &address, std::chrono::milliseconds timeout) {
     QTcpSocket socket;
     socket.connectToHost(address.host, address.port);
-    const int descriptor = socket.waitForConnected(int(timeout.count()))
-                               ? ::fcntl(int(socket.socketDescriptor()), F_DUPFD_CLOEXEC, 0)
-                               : -1;
-    if (descriptor >= 0)
-        return descriptor;
+    const auto own = socket.waitForConnected(int(timeout.count()))
+                         ? sockets::duplicate(socket.socketDescriptor())
+                         : sockets::none;
+    if (own != sockets::none)
+        return own;
     return Error(ErrorCode::Disconnected,
                  QStringLiteral("cannot connect to port %1 of %2: %3; is hermesctl keys pair waiting there?")
                      .arg(address.port)
@@ -33,10 +33,10 @@ Result<Stream> secureStreamTo(const PairingAddress &address, const PairingCode &
     const auto secret = code.secret();
     if (!secret)
         return secret.error();
-    const auto descriptor = connectTo(address, timeout);
-    if (!descriptor)
-        return descriptor.error();
-    auto stream = std::make_unique<PairingStream>(PairingStream::Side::Client, *descriptor, *secret);
+    const auto socket = connectTo(address, timeout);
+    if (!socket)
+        return socket.error();
+    auto stream = std::make_unique<PairingStream>(PairingStream::Side::Client, *socket, *secret);
     const auto done = stream->handshakeUntil(QDeadlineTimer(timeout));
     if (done)
         return stream;

@@ -1,12 +1,12 @@
 #include "gui/hermesctl/NewKeyFolder.h"
 
+#include "common/tls/FolderPlace.h"
 #include "common/tls/KeyFolder.h"
 
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
 #include <QJsonObject>
-#include <cstdio>
 
 namespace hermes::ctl {
 namespace {
@@ -55,8 +55,7 @@ Result<void> NewKeyFolder::stage(const KeyBundle &keys) {
 }
 
 Result<void> NewKeyFolder::keep() {
-    // Takes the place of an empty folder, too, but of nothing else.
-    if (::rename(QFile::encodeName(staged_->path()).constData(), QFile::encodeName(place_).constData()) != 0)
+    if (!takePlace(staged_->path(), place_))
         return failed(place_,
                       qt_error_string() +
                           QStringLiteral("; nothing was kept here: revoke the keys where they were made"));

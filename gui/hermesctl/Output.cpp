@@ -1,6 +1,7 @@
 #include "gui/hermesctl/Output.h"
 
 #include "common/daemon/SignalWatcher.h"
+#include "common/platform/Pipes.h"
 #include "protocol/wire/JsonText.h"
 
 #include <QFile>
@@ -10,9 +11,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fcntl.h>
-#include <poll.h>
-#include <unistd.h>
 
 namespace hermes::ctl {
 namespace {
@@ -26,9 +24,11 @@ struct Destination {
 };
 Destination destination;
 
-[[noreturn]] void failToWrite() {
-    const QString text = QStringLiteral("%1 cannot be written: %2")
-                             .arg(destination.name, QString::fromUtf8(std::strerror(errno)));
+/// why: otherwise what the system says.
+[[noreturn]] void failToWrite(const QString &why = {}) {
+    const QString text =
+        QStringLiteral("%1 cannot be written: %2")
+            .arg(destination.name, why.isEmpty() ? QString::fromUtf8(std::strerror(errno)) : why);
     if (destination.jsonNotes)
         std::fprintf(stderr, "%s\n",
                      compactJson(QJsonObject{{QStringLiteral("code"), int(ErrorCode::InputOutput)},
@@ -43,11 +43,12 @@ Destination destination;
 FILE *opened() {
     if (destination.file)
         return destination.file;
-    const int mode = O_WRONLY | O_CREAT | O_CLOEXEC | (destination.overwrites ? O_TRUNC : O_EXCL);
-    const int descriptor = ::open(QFile::encodeName(destination.name).constData(), mode, 0666);
-    destination.file = descriptor < 0 ? nullptr : ::fdopen(descriptor, "w");
+    const auto how = destination.overwrites ? QIODevice::Truncate : QIODevice::NewOnly;
+    static auto *const made = new QFile(destination.name); // open as long as the program runs
+    const bool isMade = made->open(QIODevice::WriteOnly | how);
+    destination.file = isMade ? streamInto(made->handle()) : nullptr;
     if (!destination.file)
-        failToWrite();
+        failToWrite(isMade ? QString() : made->errorString());
     return destination.file;
 }
 
@@ -88,8 +89,7 @@ void printJson(const QJsonValue &value) {
 bool readerIsGone() {
     if (!destination.file)
         return false;
-    pollfd end{::fileno(destination.file), 0, 0}; // a pipe that nobody reads, also where nothing was written
-    if (::poll(&end, 1, 0) > 0 && (end.revents & POLLERR) != 0)
+    if (isReaderGone(destination.file))
         destination.isGone = true;
     return destination.isGone;
 }

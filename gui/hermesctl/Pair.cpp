@@ -1,3 +1,4 @@
+#include "common/platform/Console.h"
 #include "common/tls/Authority.h"
 #include "common/tls/KeyBundle.h"
 #include "common/tls/KeyFolder.h"
@@ -6,12 +7,12 @@
 #include "gui/hermesctl/Pairing.h"
 #include "gui/hermesctl/PairingCode.h"
 #include "gui/hermesctl/PairingServer.h"
+#include "gui/hermesctl/SignalsHeld.h"
 
 #include <QDir>
 #include <QJsonArray>
 #include <QSslCertificate>
 #include <cstdio>
-#include <unistd.h>
 
 namespace hermes::ctl {
 namespace {
@@ -52,7 +53,7 @@ void tellHow(const PairingCode &code, quint16 port, const Arguments &arguments) 
 class CountDown {
 public:
     explicit CountDown(bool json)
-        : isOn_(!json && ::isatty(STDERR_FILENO)) {}
+        : isOn_(!json && isTerminal(StandardStream::Error)) {}
     ~CountDown() { clear(); }
     CountDown(const CountDown &) = delete;
     CountDown &operator=(const CountDown &) = delete;

@@ -4,7 +4,6 @@
 
 #include <QStringList>
 #include <chrono>
-#include <csignal>
 
 namespace hermes::ctl {
 
@@ -14,24 +13,6 @@ constexpr quint16 usualPairingPort = 7499;
 constexpr std::chrono::seconds longestTransfer{10};
 const QByteArray pairingStored = "stored";
 const QByteArray pairingAccepted = "accepted";
-
-/// Ctrl-C and the like have effect when this goes, so that what is begun is ended in order.
-class SignalsHeld {
-public:
-    SignalsHeld() {
-        sigset_t held;
-        sigemptyset(&held);
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-            sigaddset(&held, signal);
-        ::pthread_sigmask(SIG_BLOCK, &held, &before_);
-    }
-    ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-    SignalsHeld(const SignalsHeld &) = delete;
-    SignalsHeld &operator=(const SignalsHeld &) = delete;
-
-private:
-    sigset_t before_{};
-};
 
 /// HOST, HOST:PORT or [HOST]:PORT; a host with several colons is an IPv6 address.
 struct PairingAddress {

@@ -3,11 +3,6 @@
 #include <QHostAddress>
 #include <QNetworkInterface>
 #include <algorithm>
-#include <cerrno>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 namespace hermes::ctl {
 namespace {
@@ -16,24 +11,8 @@ constexpr std::chrono::seconds longestHandshake{5};
 constexpr std::size_t mostGuests = 64; // at the same time, then the oldest goes
 constexpr int waitingPeriod_ms = 250;
 
-bool bindTo(int descriptor, int family, quint16 port) {
-    const int on = 1, off = 0;
-    ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (family == AF_INET) {
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_port = htons(port);
-        return ::bind(descriptor, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0;
-    }
-    ::setsockopt(descriptor, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
-    sockaddr_in6 address{};
-    address.sin6_family = AF_INET6;
-    address.sin6_port = htons(port);
-    return ::bind(descriptor, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0;
-}
-
-QString textOf(const sockaddr_storage &from) {
-    const QHostAddress address(reinterpret_cast<const sockaddr *>(&from));
+QString textOf(const sockaddr *from) {
+    const QHostAddress address(from);
     bool isMapped = false;
     const quint32 four = address.toIPv4Address(&isMapped);
     return isMapped ? QHostAddress(four).toString() : address.toString();
@@ -47,27 +26,20 @@ PairingServer::~PairingServer() {
 
 void PairingServer::close() {
     guests_.clear();
-    if (listening_ >= 0)
-        ::close(listening_);
-    listening_ = -1;
+    sockets::close(std::exchange(listening_, sockets::none));
 }
 
 Result<void> PairingServer::listen(quint16 port) {
-    for (const int family : {AF_INET6, AF_INET}) { // the former takes both; there may be none of it
-        listening_ = ::socket(family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-        if (listening_ >= 0 && bindTo(listening_, family, port) && ::listen(listening_, SOMAXCONN) == 0)
-            return {};
-        if (listening_ < 0)
-            continue;
-        const int why = errno;
-        close();
-        if (why == EADDRINUSE || family == AF_INET)
-            return Error(ErrorCode::InputOutput,
-                         QStringLiteral("cannot wait on port %1: %2; take another one with --port")
-                             .arg(port)
-                             .arg(qt_error_string(why)));
-    }
-    return Error(ErrorCode::InputOutput, QStringLiteral("no socket can be made: ") + qt_error_string(errno));
+    const sockets::Listening made = sockets::listenAt(port);
+    listening_ = made.socket;
+    if (listening_ != sockets::none)
+        return {};
+    const QString why = qt_error_string(made.error);
+    return Error(
+        ErrorCode::InputOutput,
+        made.isMade
+            ? QStringLiteral("cannot wait on port %1: %2; take another one with --port").arg(port).arg(why)
+            : QStringLiteral("no socket can be made: ") + why);
 }
 
 Result<PairingServer::Joined> PairingServer::wait(std::chrono::milliseconds howLong,
@@ -97,31 +69,29 @@ Result<PairingServer::Joined> PairingServer::wait(std::chrono::milliseconds howL
 
 /// Waits until somebody says something.
 void PairingServer::look(int most_ms) {
-    std::vector<pollfd> all{{listening_, POLLIN, 0}};
+    std::vector<sockets::Awaited> all{{listening_}};
     for (const Guest &guest : guests_)
-        all.push_back({guest.stream->descriptor(), guest.stream->events(), 0});
-    if (::poll(all.data(), all.size(), most_ms) < 0)
-        return isReady_.assign(guests_.size(), false);
+        all.push_back(guest.stream->awaited());
+    sockets::waitFor(all, most_ms);
     isReady_.clear();
     for (auto one = all.begin() + 1; one != all.end(); ++one)
-        isReady_.push_back(one->revents != 0);
-    if (all.front().revents != 0)
+        isReady_.push_back(one->isReady);
+    if (all.front().isReady)
         accept();
 }
 
 void PairingServer::accept() {
-    sockaddr_storage from{};
-    socklen_t size = sizeof from;
-    const int descriptor =
-        ::accept4(listening_, reinterpret_cast<sockaddr *>(&from), &size, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (descriptor < 0)
+    QString address;
+    const auto socket =
+        sockets::accept(listening_, [&address](const sockaddr *from) { address = textOf(from); });
+    if (socket == sockets::none)
         return;
     if (guests_.size() == mostGuests) {
         guests_.pop_front();
         isReady_.erase(isReady_.begin());
     }
-    auto stream = std::make_unique<PairingStream>(PairingStream::Side::Server, descriptor, secret_);
-    guests_.push_back({std::move(stream), textOf(from), QDeadlineTimer(longestHandshake)});
+    auto stream = std::make_unique<PairingStream>(PairingStream::Side::Server, socket, secret_);
+    guests_.push_back({std::move(stream), address, QDeadlineTimer(longestHandshake)});
     isReady_.push_back(true); // what it says is there already, perhaps
 }
 

@@ -48,7 +48,7 @@ private:
     Result<void> advance(const Listener &listener);
 
     const PairingSecret secret_;
-    int listening_ = -1;
+    sockets::Socket listening_ = sockets::none;
     int wrong_ = 0;
     std::list<Guest> guests_;   // in their handshakes, the oldest first
     std::vector<bool> isReady_; // of each guest, as last looked

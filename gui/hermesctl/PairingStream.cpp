@@ -3,12 +3,8 @@
 #include <QtEndian>
 #include <algorithm>
 #include <cstring>
-#include <fcntl.h>
 #include <openssl/err.h>
 #include <openssl/sslerr.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 namespace hermes::ctl {
 namespace {
@@ -72,15 +68,14 @@ unsigned PairingStream::clientSecret(SSL *ssl, const char *, char *identity, uns
     return copySecret(self->secret_, secret, most);
 }
 
-PairingStream::PairingStream(Side side, int descriptor, const PairingSecret &secret)
-    : descriptor_(descriptor)
+PairingStream::PairingStream(Side side, sockets::Socket socket, const PairingSecret &secret)
+    : socket_(socket)
     , secret_(secret)
     , ssl_(SSL_new(context(side)), &SSL_free) {
-    ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
     if (!ssl_)
         return;
     SSL_set_app_data(ssl_.get(), this);
-    SSL_set_fd(ssl_.get(), descriptor_);
+    SSL_set_fd(ssl_.get(), int(socket_)); // of Windows, too: handles fit into an int
     side == Side::Server ? SSL_set_accept_state(ssl_.get()) : SSL_set_connect_state(ssl_.get());
 }
 
@@ -88,8 +83,7 @@ PairingStream::~PairingStream() {
     if (ssl_ && SSL_is_init_finished(ssl_.get()))
         SSL_shutdown(ssl_.get());
     ERR_clear_error();
-    ::shutdown(descriptor_, SHUT_WR); // the last words, an alert perhaps, arrive
-    ::close(descriptor_);
+    sockets::endAndClose(socket_); // the last words, an alert perhaps, arrive
 }
 
 PairingStream::Handshake PairingStream::handshake() {
@@ -120,19 +114,23 @@ void PairingStream::judgeFailure(int error) {
     ERR_clear_error();
 }
 
-short PairingStream::events() const {
-    return ssl_ && SSL_want_write(ssl_.get()) ? POLLOUT : POLLIN;
+sockets::Awaited PairingStream::awaited() const {
+    return {socket_, ssl_ && SSL_want_write(ssl_.get())};
 }
 
-Result<void> PairingStream::waitFor(int error, const QDeadlineTimer &deadline) const {
+Result<void> PairingStream::waitAfter(int error, const QDeadlineTimer &deadline) const {
     if (error != SSL_ERROR_WANT_READ && error != SSL_ERROR_WANT_WRITE) {
         const Error ended(ErrorCode::Disconnected,
                           QStringLiteral("the other side: ") + reasonOf(ERR_peek_error()));
         ERR_clear_error();
         return ended;
     }
-    pollfd one{descriptor_, short(error == SSL_ERROR_WANT_READ ? POLLIN : POLLOUT), 0};
-    const bool isExpired = deadline.hasExpired() || ::poll(&one, 1, int(deadline.remainingTime())) == 0;
+    return waitFor(error == SSL_ERROR_WANT_WRITE, deadline);
+}
+
+Result<void> PairingStream::waitFor(bool toWrite, const QDeadlineTimer &deadline) const {
+    std::vector<sockets::Awaited> one{{socket_, toWrite}};
+    const bool isExpired = deadline.hasExpired() || !sockets::waitFor(one, int(deadline.remainingTime()));
     return isExpired ? Error(ErrorCode::TimedOut, QStringLiteral("the other side says nothing"))
                      : Result<void>();
 }
@@ -140,7 +138,7 @@ Result<void> PairingStream::waitFor(int error, const QDeadlineTimer &deadline) c
 Result<void> PairingStream::handshakeUntil(const QDeadlineTimer &deadline) {
     Handshake state = handshake();
     while (state == Handshake::UnderWay) {
-        const auto ready = waitFor(events() == POLLIN ? SSL_ERROR_WANT_READ : SSL_ERROR_WANT_WRITE, deadline);
+        const auto ready = waitFor(awaited().toWrite, deadline);
         if (!ready)
             return ready;
         state = handshake();
@@ -159,7 +157,7 @@ Result<void> PairingStream::send(const QByteArray &frame, const QDeadlineTimer &
             sent += result;
             if (deadline.hasExpired())
                 return Error(ErrorCode::TimedOut, QStringLiteral("the other side reads too slowly"));
-        } else if (const auto ready = waitFor(SSL_get_error(ssl_.get(), result), deadline); !ready) {
+        } else if (const auto ready = waitAfter(SSL_get_error(ssl_.get(), result), deadline); !ready) {
             return ready;
         }
     }
@@ -176,7 +174,7 @@ Result<QByteArray> PairingStream::receiveBytes(int count, const QDeadlineTimer &
             bytes.append(part, result);
             if (deadline.hasExpired())
                 return Error(ErrorCode::TimedOut, QStringLiteral("the other side sends too slowly"));
-        } else if (const auto ready = waitFor(SSL_get_error(ssl_.get(), result), deadline); !ready) {
+        } else if (const auto ready = waitAfter(SSL_get_error(ssl_.get(), result), deadline); !ready) {
             return ready.error();
         }
     }

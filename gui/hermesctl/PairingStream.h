@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/Result.h"
+#include "common/platform/Sockets.h"
 #include "gui/hermesctl/PairingSecret.h"
 
 #include <QByteArray>
@@ -19,16 +20,15 @@ public:
     enum class Handshake { UnderWay, Done, Failed };
 
     /// Takes over the connected socket.
-    PairingStream(Side side, int descriptor, const PairingSecret &secret);
+    PairingStream(Side side, sockets::Socket socket, const PairingSecret &secret);
     ~PairingStream();
     PairingStream(const PairingStream &) = delete;
     PairingStream &operator=(const PairingStream &) = delete;
 
-    int descriptor() const { return descriptor_; }
     /// Goes on with what has arrived, and waits for nothing.
     Handshake handshake();
-    /// What the handshake waits for, as poll() has it.
-    short events() const;
+    /// What the handshake waits for.
+    sockets::Awaited awaited() const;
     /// A server's handshake failed because the other side has another secret: it was not cut off before.
     bool isWrongSecret() const { return isWrongSecret_; }
     /// A client's whole handshake.
@@ -43,10 +43,11 @@ private:
     static unsigned clientSecret(SSL *ssl, const char *hint, char *identity, unsigned mostIdentity,
                                  unsigned char *secret, unsigned most);
     void judgeFailure(int error);
-    Result<void> waitFor(int error, const QDeadlineTimer &deadline) const;
+    Result<void> waitFor(bool toWrite, const QDeadlineTimer &deadline) const;
+    Result<void> waitAfter(int error, const QDeadlineTimer &deadline) const;
     Result<QByteArray> receiveBytes(int count, const QDeadlineTimer &deadline);
 
-    const int descriptor_;
+    const sockets::Socket socket_;
     const PairingSecret secret_;
     std::unique_ptr<SSL, decltype(&SSL_free)> ssl_;
     bool secretIsUsed_ = false;

@@ -1,14 +1,15 @@
 #include "gui/hermesctl/Question.h"
 
+#include "common/platform/Console.h"
+
 #include <cstdio>
 #include <iostream>
 #include <string>
-#include <unistd.h>
 
 namespace hermes::ctl {
 
 bool canAsk() {
-    return ::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0;
+    return isTerminal(StandardStream::Input) && isTerminal(StandardStream::Error);
 }
 
 QString answerTo(const QString &question) {

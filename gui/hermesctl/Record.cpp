@@ -1,6 +1,6 @@
 // hermesctl record: all loggers of a robot record as one session.
 #include "common/Time.h"
-#include "common/recording/SessionFolder.h"
+#include "common/recording/RecordingName.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Loggers.h"
 #include "gui/hermesctl/Table.h"

@@ -1,12 +1,12 @@
 // hermesctl replay: all loggers of a session play it back.
 #include "common/daemon/SignalWatcher.h"
+#include "common/platform/Console.h"
 #include "gui/hermesctl/Commands.h"
 #include "gui/hermesctl/Loggers.h"
 #include "gui/session/SessionPlayer.h"
 #include "gui/session/SessionRecorder.h"
 
 #include <cstdio>
-#include <unistd.h>
 
 namespace hermes::ctl {
 namespace {
@@ -56,7 +56,7 @@ Result<void> replay(const Arguments &arguments) {
         if (arguments.json)
             return printJson(QJsonObject{
                 {"session", session->id}, {"position_s", position_s}, {"duration_s", duration_s}});
-        if (::isatty(STDERR_FILENO) == 0)
+        if (!isTerminal(StandardStream::Error))
             return;
         shown = true;
         std::fprintf(stderr, "\r%s: %.1f of %.1f s ", qPrintable(session->name), position_s, duration_s);

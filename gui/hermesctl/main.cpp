@@ -1,5 +1,8 @@
 #include "common/Project.h"
 #include "common/client/DaemonAddress.h"
+#include "common/platform/Console.h"
+#include "common/platform/Pipes.h"
+#include "common/platform/PrivateFiles.h"
 #include "gui/hermesctl/Advice.h"
 #include "gui/hermesctl/Completion.h"
 #include "gui/hermesctl/Nearest.h"
@@ -7,9 +10,8 @@
 #include "protocol/wire/JsonText.h"
 
 #include <QCoreApplication>
-#include <csignal>
 #include <cstdio>
-#include <sys/stat.h>
+#include <optional>
 
 using namespace hermes;
 using namespace hermes::ctl;
@@ -104,8 +106,9 @@ QString unknownCommand(const QString &command) {
 int run(Arguments arguments) {
     if (hasSecondWord(arguments.command) && !arguments.words.isEmpty())
         arguments.command += QLatin1Char(' ') + arguments.words.takeFirst();
+    std::optional<PrivateFiles> owners;
     if (arguments.command.startsWith(QStringLiteral("keys ")))
-        ::umask(077);
+        owners.emplace();
     const Subcommand *const command = findSubcommand(arguments.command);
     if (!command)
         return usageError(unknownCommand(arguments.command), arguments.json);
@@ -138,7 +141,8 @@ void printVersion(bool json) {
 
 int main(int argc, char **argv) {
     QCoreApplication application(argc, argv);
-    std::signal(SIGPIPE, SIG_IGN); // who reads stdout may go: that ends a stream in order
+    prepareConsole();
+    outliveClosedPipes(); // who reads stdout may go: that ends a stream in order
     const QStringList list = QCoreApplication::arguments().mid(1);
     if (list.value(0) == QStringLiteral("complete"))
         return printCandidates(list.value(1));

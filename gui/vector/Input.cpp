@@ -1,18 +1,14 @@
 #include "gui/vector/Input.h"
 
+#include "common/platform/ReadableFile.h"
 #include "gui/vector/Failure.h"
 
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace hermes::vector {
 
@@ -50,16 +46,16 @@ private:
 
 namespace {
 
-int openForReading(const std::string &path) {
+int descriptorOf(const std::string &path) {
     if (path == "-")
-        return dup(STDIN_FILENO);
+        return standardInput();
     std::error_code ignored;
-    if (fs::is_directory(path, ignored))
+    if (fs::is_directory(fs::u8path(path), ignored))
         throw Failure(path + ": found a folder, expected a file");
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0)
-        throw Failure(path + ": cannot be opened: " + std::strerror(errno));
-    return file;
+    const Outcome<int> file = openForReading(path);
+    if (!file)
+        throw Failure(path + ": cannot be opened: " + file.error());
+    return *file;
 }
 
 std::string lowerCase(std::string text) {
@@ -72,16 +68,11 @@ bool endsWith(const std::string &text, const std::string &end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-bool isCompressed(const std::string &path) {
-    std::ifstream in(path, std::ios::binary);
-    return in.get() == 0x1f && in.get() == 0x8b;
-}
-
 } // namespace
 
 Input::Input(const std::string &path)
     : name_(path == "-" ? "standard input" : path)
-    , buffer_(std::make_unique<Buffer>(openForReading(path)))
+    , buffer_(std::make_unique<Buffer>(descriptorOf(path)))
     , stream_(buffer_.get()) {}
 
 Input::~Input() = default;
@@ -124,44 +115,6 @@ bool isCapture(const std::string &path) {
     return input.stream().gcount() == 4 &&
            std::any_of(std::begin(known), std::end(known),
                        [&](const auto &k) { return std::memcmp(k, magic, sizeof magic) == 0; });
-}
-
-PlainFile::PlainFile(const std::string &path)
-    : original_(path)
-    , path_(path) {
-    if (path == "-")
-        return;
-    Input input(path);
-    if (!isCompressed(path))
-        return;
-    std::string name = (fs::temp_directory_path() / "hermes-vector-XXXXXX").string();
-    const int file = mkstemp(name.data());
-    if (file < 0)
-        throw Failure(name + ": cannot be made: " + std::strerror(errno));
-    close(file);
-    path_ = name;
-    temporary_ = true;
-    std::ofstream out(name, std::ios::binary);
-    std::array<char, 1 << 16> block;
-    while (out && (input.stream().read(block.data(), block.size()) || input.stream().gcount() > 0))
-        out.write(block.data(), input.stream().gcount());
-    out.close();
-    if (!out || input.stream().bad()) {
-        fs::remove(name);
-        throw Failure(path + (out ? ": found compressed data that breaks off, expected a whole file"
-                                  : ": cannot be decompressed to " + name));
-    }
-}
-
-std::string PlainFile::inWordsOfOriginal(std::string message) const {
-    const std::size_t at = temporary_ ? message.find(path_) : std::string::npos;
-    return at == std::string::npos ? message : message.replace(at, path_.size(), original_);
-}
-
-PlainFile::~PlainFile() {
-    std::error_code ignored;
-    if (temporary_)
-        fs::remove(path_, ignored);
 }
 
 } // namespace hermes::vector

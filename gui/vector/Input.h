@@ -35,23 +35,4 @@ bool hasExtension(const std::string &path, const std::string &extension);
 /// Whether the file begins like a pcap or pcapng capture, plain or compressed. False for standard input.
 bool isCapture(const std::string &path);
 
-/// A copy of a compressed file that is decompressed for readers that need a plain file; removed with the
-/// object. A plain file and standard input are passed through.
-class PlainFile {
-public:
-    explicit PlainFile(const std::string &path);
-    ~PlainFile();
-    PlainFile(const PlainFile &) = delete;
-    PlainFile &operator=(const PlainFile &) = delete;
-
-    const std::string &path() const { return path_; }
-    /// A reader's message about the copy, with the name of the file it was made from.
-    std::string inWordsOfOriginal(std::string message) const;
-
-private:
-    std::string original_;
-    std::string path_;
-    bool temporary_ = false;
-};
-
 } // namespace hermes::vector

@@ -3,19 +3,27 @@
 #include "gui/vector/Failure.h"
 #include "gui/vector/Options.h"
 
-#include <arpa/inet.h>
+#include <sstream>
 
 namespace hermes::vector {
 
 namespace {
 
+/// Of four numbers with dots between, as the options were checked to be.
+std::uint32_t addressOf(const std::string &text) {
+    std::istringstream in(text);
+    std::uint32_t address = 0;
+    for (std::string part; std::getline(in, part, '.');)
+        address = address << 8 | std::uint32_t(std::stoul(part));
+    return address;
+}
+
 LidarStream::Options streamOf(const SensorOptions &options, velodyne::Model model) {
     LidarStream::Options stream;
     stream.model = model;
     stream.sensor.port = options.port;
-    in_addr address{};
-    if (!options.sender.empty() && inet_pton(AF_INET, options.sender.c_str(), &address) == 1)
-        stream.sensor.address = ntohl(address.s_addr);
+    if (!options.sender.empty())
+        stream.sensor.address = addressOf(options.sender);
     return stream;
 }
 
@@ -49,8 +57,8 @@ LidarCapture::LidarCapture(const std::string &path, const SensorOptions &options
     , options_(options)
     , file_(path)
     , stream_(streamOf(options, model)) {
-    if (const Outcome<void> opened = reader_.open(file_.path()); !opened)
-        throw Failure(file_.inWordsOfOriginal(opened.error()));
+    if (const Outcome<void> opened = reader_.open(file_.stream(), file_.name()); !opened)
+        throw Failure(opened.error());
 }
 
 std::string LidarCapture::read(velodyne::TurnAssembler &assembler,
@@ -63,7 +71,7 @@ std::string LidarCapture::read(velodyne::TurnAssembler &assembler,
             progress(reader_.counts().records);
     }
     if (next == PcapReader::Next::Failed)
-        throw Failure(file_.inWordsOfOriginal(reader_.error()));
+        throw Failure(reader_.error());
     assembler.finish();
     return notice(assembler.counts());
 }

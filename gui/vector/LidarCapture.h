@@ -37,7 +37,7 @@ private:
 
     std::string path_;
     SensorOptions options_;
-    PlainFile file_;
+    Input file_;
     PcapReader reader_;
     LidarStream stream_;
 };

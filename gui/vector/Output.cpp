@@ -1,54 +1,21 @@
 #include "gui/vector/Output.h"
 
+#include "common/platform/HeldFile.h"
+#include "common/platform/TemporaryNames.h"
 #include "gui/vector/Failure.h"
 
 #include <array>
 #include <cerrno>
-#include <climits>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace hermes::vector {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-// Names of the temporary files, and of the folders that were made, where a signal handler can read them.
-constexpr std::size_t mostNames = 32;
-char temporaries[mostNames][PATH_MAX];
-
-// A folder has its place before what lies in it.
-void removeAndDie(int signal) {
-    for (std::size_t i = mostNames; i-- > 0;)
-        if (temporaries[i][0] != '\0' && unlink(temporaries[i]) != 0)
-            rmdir(temporaries[i]);
-    std::signal(signal, SIG_DFL);
-    raise(signal);
-}
-
-/// The place of a name in the list; mostNames when it is full or the name is too long.
-std::size_t remember(const std::string &name) {
-    std::size_t slot = 0;
-    while (slot < mostNames && temporaries[slot][0] != '\0')
-        ++slot;
-    if (slot == mostNames || name.size() >= PATH_MAX)
-        return mostNames;
-    std::strcpy(temporaries[slot], name.c_str());
-    return slot;
-}
-
-void forgetName(std::size_t slot) {
-    if (slot < mostNames)
-        temporaries[slot][0] = '\0';
-}
 
 /// Ends the writing of a stream; throws Failure when a part of it is missing.
 template <typename End>
@@ -63,74 +30,81 @@ void finish(std::ostream &stream, const std::string &name, End end) {
                                               : std::strerror(errno)));
 }
 
-mode_t usualPermissions() {
-    const mode_t mask = umask(0);
-    umask(mask);
-    return 0666 & ~mask;
+fs::path absolutePath(const std::string &path) {
+    return fs::absolute(fs::u8path(path)).lexically_normal();
 }
 
 } // namespace
 
-void handleSignals() {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
-        std::signal(signal, removeAndDie);
-    std::signal(SIGPIPE, SIG_IGN); // a reader that went away is an error of writing, told by commit()
-}
-
 struct OutputSet::File {
+    /// Bytes into a stream of the C library, which has no buffer then.
+    class Buffer : public std::streambuf {
+    public:
+        explicit Buffer(std::FILE *file)
+            : file_(file) {
+            std::setvbuf(file, nullptr, _IONBF, 0);
+            setp(block_.data(), block_.data() + block_.size());
+        }
+        ~Buffer() override { close(); }
+        Buffer(const Buffer &) = delete;
+        Buffer &operator=(const Buffer &) = delete;
+
+        /// False: not all is written.
+        bool close() {
+            if (file_ == nullptr)
+                return true;
+            const bool written = sync() == 0;
+            return std::fclose(std::exchange(file_, nullptr)) == 0 && written;
+        }
+
+    protected:
+        int_type overflow(int_type next) override {
+            if (sync() != 0)
+                return traits_type::eof();
+            return next == traits_type::eof() ? traits_type::not_eof(next)
+                                              : sputc(traits_type::to_char_type(next));
+        }
+        int sync() override {
+            const auto size = std::size_t(pptr() - pbase());
+            if (file_ == nullptr || std::fwrite(pbase(), 1, size, file_) != size)
+                return -1;
+            setp(block_.data(), block_.data() + block_.size());
+            return 0;
+        }
+
+    private:
+        std::FILE *file_;
+        std::array<char, 1 << 16> block_;
+    };
+
     std::string path;
-    int unnamed = -1;      ///< handle of a file without a name, where the file system offers one
-    std::string temporary; ///< else its name until it is complete
-    std::size_t slot = mostNames;
-    std::ofstream file;
+    std::unique_ptr<HeldFile> held; ///< not so what is written directly: standard output, a pipe, a device
+    std::unique_ptr<Buffer> buffer; ///< into it
+    std::unique_ptr<std::ostream> heldStream;
+    std::ofstream direct;
     std::ostream *stream = nullptr;
 
-    /// Not so what is written directly: standard output, a pipe, a device.
-    bool isHeldBack() const { return unnamed >= 0 || !temporary.empty(); }
-    /// By which it can be opened, and given a name.
-    std::string procPath() const { return "/proc/self/fd/" + std::to_string(unnamed); }
-    std::string writtenAs() const { return unnamed >= 0 ? procPath() : temporary.empty() ? path : temporary; }
-    void forget() {
-        if (unnamed >= 0)
-            close(unnamed);
-        unnamed = -1;
-        forgetName(slot);
-        temporary.clear();
-    }
-    void discard() {
-        file.close();
-        if (!temporary.empty())
-            unlink(temporary.c_str());
-        forget();
-    }
-    /// Keeps what is written from the target; a file without a name is gone with the program, whatever ends
-    /// it.
     void hold() {
-        unnamed = ::open(fs::absolute(path).parent_path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
-        if (unnamed >= 0 && access(procPath().c_str(), W_OK) == 0)
-            return;
-        forget();
-        makeTemporary();
+        Outcome<std::unique_ptr<HeldFile>> made = HeldFile::make(path);
+        if (!made)
+            throw Failure(path + ": cannot be written: " + made.error());
+        held = made.take();
+        std::FILE *const file = held->open();
+        if (file == nullptr)
+            throw Failure(path + ": cannot be written: " + std::strerror(errno));
+        buffer = std::make_unique<Buffer>(file);
+        heldStream = std::make_unique<std::ostream>(buffer.get());
+        stream = heldStream.get();
     }
-    bool giveName(const std::string &name) const {
-        return linkat(AT_FDCWD, procPath().c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    void openDirectly() {
+        direct.open(fs::u8path(path), std::ios::binary);
+        if (!direct)
+            throw Failure(path + ": cannot be written: " + std::strerror(errno));
+        stream = &direct;
     }
-    /// One that is taken by nothing else, for a file that is to replace another.
-    bool giveTemporaryName() {
-        makeTemporary();
-        return unlink(temporary.c_str()) == 0 && giveName(temporary);
-    }
-    void makeTemporary() {
-        temporary = path + ".part-XXXXXX";
-        const int handle = mkstemp(temporary.data());
-        if (handle < 0) {
-            const std::string why = std::strerror(errno);
-            temporary.clear();
-            throw Failure(path + ": cannot be written: " + why);
-        }
-        fchmod(handle, usualPermissions());
-        close(handle);
-        slot = remember(temporary);
+    void close() {
+        if (!buffer->close())
+            stream->setstate(std::ios::badbit);
     }
 };
 
@@ -138,22 +112,22 @@ OutputSet::OutputSet(bool force)
     : force_(force) {}
 
 OutputSet::~OutputSet() {
-    for (const auto &file : files_)
-        file->discard();
+    files_.clear();
+    std::error_code ignored;
     for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) {
         if (!committed_)
-            rmdir(folder->path.c_str()); // keeps what somebody else put into it
-        forgetName(folder->slot);
+            fs::remove(fs::u8path(folder->path), ignored); // keeps what somebody else put into it
+        forgetTemporary(folder->place);
     }
 }
 
 void OutputSet::makeFolder(const std::string &path) {
     std::error_code error;
     fs::path whole;
-    for (const fs::path &part : fs::absolute(path).lexically_normal()) {
+    for (const fs::path &part : absolutePath(path)) {
         whole /= part;
-        if (!part.empty() && fs::create_directory(whole, error))
-            folders_.push_back({whole.string(), remember(whole.string())});
+        if (part.has_filename() && fs::create_directory(whole, error))
+            folders_.push_back({whole.u8string(), rememberTemporary(whole.u8string())});
         if (error)
             throw Failure(path + ": cannot be made: " + error.message());
     }
@@ -170,7 +144,8 @@ std::ostream &OutputSet::open(const std::string &path) {
                     "standard output: asked for twice, expected a name of its own for every output");
     } else {
         std::error_code error;
-        const fs::file_status status = fs::status(path, error);
+        const fs::path name = fs::u8path(path);
+        const fs::file_status status = fs::status(name, error);
         if (error == std::errc::filename_too_long) // which a file without a name would tell at its end only
             throw Failure(path + ": cannot be written: " + error.message());
         if (fs::is_directory(status))
@@ -179,19 +154,14 @@ std::ostream &OutputSet::open(const std::string &path) {
         if (plain && fs::exists(status) && !force_)
             throw Failure(path + ": exists already; choose another name or overwrite it with --force");
         // Through a symbolic link the file it points to is replaced, not the link.
-        file->path = plain && fs::exists(status) ? fs::canonical(path).string() : path;
+        file->path = plain && fs::exists(status) ? fs::canonical(name).u8string() : path;
         for (const auto &other : files_)
-            if (fs::absolute(other->path).lexically_normal() == fs::absolute(file->path).lexically_normal())
+            if (absolutePath(other->path) == absolutePath(file->path))
                 throw Failure(path + ": asked for twice, expected a name of its own for every output");
         if (plain)
             file->hold();
-        file->file.open(file->writtenAs(), std::ios::binary);
-        file->stream = &file->file;
-        if (!file->file) {
-            const std::string why = std::strerror(errno);
-            file->discard();
-            throw Failure(path + ": cannot be written: " + why);
-        }
+        else
+            file->openDirectly();
     }
     files_.push_back(std::move(file));
     return *files_.back()->stream;
@@ -199,36 +169,18 @@ std::ostream &OutputSet::open(const std::string &path) {
 
 void OutputSet::commit() {
     for (const auto &file : files_)
-        if (file->isHeldBack())
-            finish(file->file, file->path, [&file] { file->file.close(); });
+        if (file->held)
+            finish(*file->stream, file->path, [&file] { file->close(); });
     for (const auto &file : files_)
-        if (file->isHeldBack())
-            putInPlace(*file);
+        if (file->held)
+            if (const Outcome<void> put = file->held->putInPlace(force_); !put)
+                throw Failure(file->path + ": cannot be put in its place: " + put.error());
     committed_ = true;
     // Pipes and devices last: no file is to be missed because the reader of a pipe has gone.
     for (const auto &file : files_)
-        if (file->file.is_open())
-            finish(file->file, file->path, [&file] { file->file.close(); });
+        if (file->direct.is_open())
+            finish(file->direct, file->path, [&file] { file->direct.close(); });
     finish(std::cout, "standard output", [] { std::cout.flush(); });
-}
-
-void OutputSet::putInPlace(File &file) const {
-    if (!(file.unnamed >= 0 ? nameIt(file) : renameIt(file)))
-        throw Failure(file.path + ": cannot be put in its place: " + std::strerror(errno));
-    file.forget();
-}
-
-// Another program may have made the file meanwhile: without force it is not replaced.
-bool OutputSet::nameIt(File &file) const {
-    return file.giveName(file.path) ||
-           (force_ && errno == EEXIST && file.giveTemporaryName() && renameIt(file));
-}
-
-bool OutputSet::renameIt(File &file) const {
-    const char *from = file.temporary.c_str(), *to = file.path.c_str();
-    if (!force_ && link(from, to) == 0)
-        return unlink(from) == 0;
-    return (force_ || errno != EEXIST) && rename(from, to) == 0;
 }
 
 } // namespace hermes::vector

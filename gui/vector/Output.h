@@ -33,18 +33,12 @@ private:
     struct File;
     struct Folder {
         std::string path;
-        std::size_t slot; ///< in the list of what a signal removes
+        std::size_t place; ///< in the list of what a signal removes
     };
-    void putInPlace(File &file) const;
-    bool nameIt(File &file) const;
-    bool renameIt(File &file) const;
 
     bool force_, committed_ = false;
     std::vector<std::unique_ptr<File>> files_;
     std::vector<Folder> folders_; ///< a folder before what lies in it
 };
-
-/// Makes the program remove its temporary files when a signal ends it, and outlive a closed pipe.
-void handleSignals();
 
 } // namespace hermes::vector

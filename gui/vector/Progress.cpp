@@ -1,16 +1,16 @@
 #include "gui/vector/Progress.h"
 
+#include "common/platform/Console.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include <unistd.h>
 
 namespace hermes::vector {
 
 Progress::Progress(std::string what)
     : what_(std::move(what))
-    , terminal_(isatty(STDERR_FILENO) != 0)
+    , terminal_(isTerminal(StandardStream::Error))
     , begin_(std::chrono::steady_clock::now())
     , next_(begin_ + std::chrono::seconds(1)) {}
 

@@ -1,8 +1,13 @@
+#include "common/platform/Console.h"
+#include "common/platform/Program.h"
+#include "common/platform/TemporaryNames.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Options.h"
 
+#include <algorithm>
 #include <iostream>
 
+using namespace hermes;
 using namespace hermes::vector;
 
 namespace {
@@ -14,6 +19,7 @@ constexpr int wrongUsage = 2;
 
 /// hermes-vector: the vector library at the command line. See docs/hermes-vector.md.
 int main(int argc, char **argv) {
+    prepareConsole();
     CLI::App app("Scans to line segments, and line segments to maps.");
     app.name("hermes-vector");
     app.set_version_flag("--version", "hermes-vector " HERMES_VERSION);
@@ -32,9 +38,11 @@ int main(int argc, char **argv) {
     addRingCommand(app);
     addExperimentCommand(app);
     addReportCommand(app);
-    handleSignals();
+    removeTemporariesOnSignals();
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> arguments = programArguments(argc, argv);
+        std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
+        app.parse(std::move(arguments));
         if (app.get_subcommands().empty())
             throw CLI::RequiredError("A subcommand");
     } catch (const CLI::ParseError &e) {

@@ -12,7 +12,7 @@ namespace hermes::desktop {
 
 LayoutLock::~LayoutLock() {
     if (held_ >= 0)
-        ::close(held_);
+        ::close(int(held_));
 }
 
 bool LayoutLock::take() {

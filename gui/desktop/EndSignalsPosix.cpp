@@ -1,8 +1,10 @@
 #include "gui/desktop/EndSignals.h"
 
+#include <QSocketNotifier>
 #include <cerrno>
 #include <csignal>
 #include <fcntl.h>
+#include <memory>
 #include <unistd.h>
 
 namespace hermes::desktop {
@@ -10,6 +12,8 @@ namespace {
 
 constexpr int signals[] = {SIGTERM, SIGINT, SIGHUP};
 volatile std::sig_atomic_t writeEnd = -1;
+int readEnd = -1;
+std::unique_ptr<QSocketNotifier> notifier;
 
 void tell(int) {
     const int before = errno;
@@ -20,12 +24,14 @@ void tell(int) {
 } // namespace
 
 EndSignals::EndSignals() {
-    if (::pipe2(ends_, O_CLOEXEC | O_NONBLOCK) != 0)
+    int ends[2] = {-1, -1};
+    if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0)
         return; // they end the program at once, then
-    writeEnd = ends_[1];
-    notifier_ = new QSocketNotifier(ends_[0], QSocketNotifier::Read, this);
-    connect(notifier_, &QSocketNotifier::activated, this, [this] {
-        notifier_->setEnabled(false);
+    readEnd = ends[0];
+    writeEnd = ends[1];
+    notifier = std::make_unique<QSocketNotifier>(readEnd, QSocketNotifier::Read);
+    connect(notifier.get(), &QSocketNotifier::activated, this, [this] {
+        notifier->setEnabled(false);
         Q_EMIT endWanted();
     });
     for (const int signal : signals)
@@ -34,13 +40,13 @@ EndSignals::EndSignals() {
 }
 
 EndSignals::~EndSignals() {
-    if (!notifier_)
+    if (!notifier)
         return;
     for (const int signal : signals)
         std::signal(signal, SIG_DFL); // who is impatient need not wait for a disk
-    delete notifier_;
-    ::close(ends_[0]);
-    ::close(ends_[1]);
+    notifier.reset();
+    ::close(readEnd);
+    ::close(writeEnd);
 }
 
 } // namespace hermes::desktop

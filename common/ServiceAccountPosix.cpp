@@ -37,12 +37,12 @@ std::vector<gid_t> groupsOf(const Account &account) {
 
 } // namespace
 
-QString ServiceAccount::nameOf(uid_t user) {
+QString ServiceAccount::nameOf(unsigned user) {
     const auto account = accountOf(user);
     return account ? QString::fromStdString(account->name) : QString::number(user);
 }
 
-bool ServiceAccount::hasMember(uid_t account, uid_t user) {
+bool ServiceAccount::hasMember(unsigned account, unsigned user) {
     constexpr uid_t lastOfSystem = 999; // Debian policy 9.2.2
     if (account == 0 || account > lastOfSystem)
         return false;
@@ -51,6 +51,10 @@ bool ServiceAccount::hasMember(uid_t account, uid_t user) {
         return false;
     const std::vector<gid_t> groups = groupsOf(*member);
     return std::find(groups.begin(), groups.end(), service->group) != groups.end();
+}
+
+bool ServiceAccount::standsForThisProgram(unsigned user) {
+    return user == 0 || user == ::geteuid() || hasMember(::geteuid(), user);
 }
 
 } // namespace hermes

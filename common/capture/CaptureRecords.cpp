@@ -1,0 +1,71 @@
+#include "common/capture/CaptureRecords.h"
+
+#include "common/capture/ClassicPcap.h"
+#include "common/capture/Pcapng.h"
+
+#include <cerrno>
+#include <cstring>
+
+namespace hermes {
+
+std::unique_ptr<CaptureRecords> CaptureRecords::open(std::istream &stream, std::string &error) {
+    std::uint8_t magic[4] = {};
+    errno = 0;
+    stream.read(reinterpret_cast<char *>(magic), sizeof magic);
+    if (stream.bad() || stream.gcount() != sizeof magic) {
+        error = stream.bad() && errno != 0 ? std::strerror(errno)
+                                           : "found " + std::to_string(stream.gcount()) + " bytes";
+        return nullptr;
+    }
+    if (std::unique_ptr<CaptureRecords> pcap = ClassicPcap::open(stream, magic, error);
+        pcap || !error.empty())
+        return pcap;
+    return Pcapng::open(stream, magic, error);
+}
+
+bool CaptureRecords::seek(std::int64_t offset) {
+    stream_.clear();
+    offset_ = offset;
+    return bool(stream_.seekg(std::streamoff(offset)));
+}
+
+bool CaptureRecords::read(std::uint8_t *bytes, std::size_t size, const char *what, bool &atEnd) {
+    errno = 0;
+    stream_.read(reinterpret_cast<char *>(bytes), std::streamsize(size));
+    const auto found = std::size_t(stream_.gcount());
+    if (found == size)
+        return true;
+    atEnd = found == 0 && !stream_.bad();
+    if (stream_.bad())
+        error_ = errno != 0 ? std::strerror(errno) : "the data ends or breaks off too early";
+    else
+        error_ =
+            "found " + std::to_string(found) + " bytes of " + what + ", expected " + std::to_string(size);
+    return false;
+}
+
+bool CaptureRecords::read(std::uint8_t *bytes, std::size_t size, const char *what) {
+    bool atEnd = false;
+    return read(bytes, size, what, atEnd);
+}
+
+CaptureRecords::Next CaptureRecords::fail(std::string why) {
+    error_ = std::move(why);
+    return Next::Failed;
+}
+
+bool CaptureRecords::refuse(std::string why) {
+    error_ = std::move(why);
+    return false;
+}
+
+std::uint16_t CaptureRecords::half(const std::uint8_t *bytes) const {
+    return std::uint16_t(bigEndian_ ? bytes[0] << 8 | bytes[1] : bytes[1] << 8 | bytes[0]);
+}
+
+std::uint32_t CaptureRecords::word(const std::uint8_t *bytes) const {
+    return bigEndian_ ? std::uint32_t(half(bytes)) << 16 | half(bytes + 2)
+                      : std::uint32_t(half(bytes + 2)) << 16 | half(bytes);
+}
+
+} // namespace hermes

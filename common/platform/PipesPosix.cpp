@@ -1,0 +1,21 @@
+#include "common/platform/Pipes.h"
+
+#include <csignal>
+#include <poll.h>
+
+namespace hermes {
+
+void outliveClosedPipes() {
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool isReaderGone(std::FILE *stream) {
+    pollfd end{::fileno(stream), 0, 0};
+    return ::poll(&end, 1, 0) > 0 && (end.revents & POLLERR) != 0;
+}
+
+std::FILE *streamInto(int descriptor) {
+    return ::fdopen(descriptor, "wb");
+}
+
+} // namespace hermes

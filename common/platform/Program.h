@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hermes {
+
+/// What follows the program's name at the command line, in UTF-8 whatever the system's code page is.
+std::vector<std::string> programArguments(int argc, char **argv);
+
+/// Where this program lies; empty when that cannot be told.
+std::filesystem::path programFile();
+
+struct ProgramEnd {
+    bool failed = false;
+    std::string out, err;
+};
+
+/// Runs another program of the search path to its end, on this standard input. Nothing: there is none. Throws
+/// std::runtime_error where no temporary file can be made.
+std::optional<ProgramEnd> runProgram(const std::string &name, const std::string &argument,
+                                     const std::string &input);
+
+} // namespace hermes

@@ -1,0 +1,97 @@
+#include "common/platform/Sockets.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace hermes::sockets {
+
+namespace {
+
+bool bindTo(int descriptor, int family, std::uint16_t port) {
+    const int on = 1, off = 0;
+    ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    if (family == AF_INET) {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(port);
+        return ::bind(descriptor, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0;
+    }
+    ::setsockopt(descriptor, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
+    sockaddr_in6 address{};
+    address.sin6_family = AF_INET6;
+    address.sin6_port = htons(port);
+    return ::bind(descriptor, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0;
+}
+
+} // namespace
+
+Listening listenAt(std::uint16_t port) {
+    Listening result;
+    for (const int family : {AF_INET6, AF_INET}) { // the former takes both; there may be none of it
+        const int descriptor = ::socket(family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+        result.isMade = descriptor >= 0;
+        if (result.isMade && bindTo(descriptor, family, port) && ::listen(descriptor, SOMAXCONN) == 0) {
+            result.socket = descriptor;
+            return result;
+        }
+        result.error = errno;
+        if (!result.isMade)
+            continue;
+        ::close(descriptor);
+        if (result.error == EADDRINUSE)
+            break;
+    }
+    return result;
+}
+
+Socket accept(Socket listening, const std::function<void(const sockaddr *)> &take) {
+    sockaddr_storage from{};
+    socklen_t size = sizeof from;
+    auto *const address = reinterpret_cast<sockaddr *>(&from);
+    const int descriptor = ::accept4(int(listening), address, &size, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (descriptor >= 0)
+        take(address);
+    return descriptor;
+}
+
+bool waitFor(std::vector<Awaited> &all, int most_ms) {
+    std::vector<pollfd> ends;
+    for (const Awaited &one : all)
+        ends.push_back({int(one.socket), short(one.toWrite ? POLLOUT : POLLIN), 0});
+    const bool any = ::poll(ends.data(), ends.size(), most_ms) > 0;
+    std::transform(ends.begin(), ends.end(), all.begin(), all.begin(), [any](const pollfd &end, Awaited one) {
+        one.isReady = any && end.revents != 0;
+        return one;
+    });
+    return any;
+}
+
+Socket duplicate(Socket socket) {
+    const int descriptor = ::fcntl(int(socket), F_DUPFD_CLOEXEC, 0);
+    if (descriptor >= 0)
+        ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
+    return descriptor;
+}
+
+void endAndClose(Socket socket) {
+    ::shutdown(int(socket), SHUT_WR);
+    close(socket);
+}
+
+void close(Socket socket) {
+    if (socket != none)
+        ::close(int(socket));
+}
+
+bool hasUnread(Socket socket) {
+    int unread = 0;
+    return ::ioctl(int(socket), FIONREAD, &unread) == 0 && unread > 0;
+}
+
+} // namespace hermes::sockets

@@ -1,0 +1,48 @@
+#include "common/platform/TemporaryNames.h"
+
+#include <climits>
+#include <csignal>
+#include <cstring>
+#include <unistd.h>
+
+namespace hermes {
+
+namespace {
+
+// Where a signal handler can read them.
+constexpr std::size_t mostNames = 32;
+char temporaries[mostNames][PATH_MAX];
+
+void removeAndDie(int signal) {
+    for (std::size_t i = mostNames; i-- > 0;)
+        if (temporaries[i][0] != '\0' && ::unlink(temporaries[i]) != 0)
+            ::rmdir(temporaries[i]);
+    std::signal(signal, SIG_DFL);
+    ::raise(signal);
+}
+
+} // namespace
+
+/// mostNames when the list is full or the name is too long.
+std::size_t rememberTemporary(const std::string &name) {
+    std::size_t place = 0;
+    while (place < mostNames && temporaries[place][0] != '\0')
+        ++place;
+    if (place == mostNames || name.size() >= PATH_MAX)
+        return mostNames;
+    std::strcpy(temporaries[place], name.c_str());
+    return place;
+}
+
+void forgetTemporary(std::size_t place) {
+    if (place < mostNames)
+        temporaries[place][0] = '\0';
+}
+
+void removeTemporariesOnSignals() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        std::signal(signal, removeAndDie);
+    std::signal(SIGPIPE, SIG_IGN);
+}
+
+} // namespace hermes
