@@ -10,7 +10,6 @@ set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(ZLIB_USE_STATIC_LIBS ON)
 set(ZLIB_LIBRARY /usr/x86_64-w64-mingw32/lib/libz.a)
 set(CMAKE_EXE_LINKER_FLAGS_INIT -static)
-set(CMAKE_CROSSCOMPILING_EMULATOR wine64)
 
 # Libraries that are headers only are those of this machine. Links to them alone: beside them in /usr/include stand the headers
 # of its own C library.

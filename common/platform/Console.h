@@ -2,7 +2,7 @@
 
 namespace hermes {
 
-enum class StandardStream { Input, Output, Error };
+enum class StandardStream { Input, Output, Errors };
 
 /// Whether a person sits at its other end.
 bool isTerminal(StandardStream stream);

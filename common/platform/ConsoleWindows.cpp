@@ -27,7 +27,7 @@ void prepareConsole() {
     for (const int descriptor : {0, 1, 2})
         ::_setmode(descriptor, _O_BINARY);
     ::SetConsoleOutputCP(CP_UTF8);
-    for (const StandardStream stream : {StandardStream::Output, StandardStream::Error}) {
+    for (const StandardStream stream : {StandardStream::Output, StandardStream::Errors}) {
         DWORD mode = 0;
         if (::GetConsoleMode(handleOf(stream), &mode) != 0)
             ::SetConsoleMode(handleOf(stream), mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING);

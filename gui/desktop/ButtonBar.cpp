@@ -3,6 +3,7 @@
 #include "gui/desktop/Theme.h"
 #include "gui/desktop/widgets/PlainLabel.h"
 
+#include <QEvent>
 #include <QHBoxLayout>
 #include <QPushButton>
 #include <QScrollArea>

@@ -29,6 +29,7 @@
 #include <QCloseEvent>
 #include <QJsonDocument>
 #include <QPlainTextEdit>
+#include <QPushButton>
 #include <QScreen>
 #include <QToolBar>
 #include <QToolTip>

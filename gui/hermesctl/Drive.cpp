@@ -69,14 +69,14 @@ Result<void> driveByKeys(DriveKeys &keys, Driver &driver) {
         });
         result = driver.run();
     }
-    if (isTerminal(StandardStream::Error))
+    if (isTerminal(StandardStream::Errors))
         std::fputc('\n', stderr);
     return result;
 }
 
 /// On stderr, over itself.
 void show(const Twist2D &wish) {
-    if (isTerminal(StandardStream::Error))
+    if (isTerminal(StandardStream::Errors))
         std::fprintf(stderr, "\rvx %5.2f m/s, omega %5.2f rad/s ", wish.vx, wish.omega);
 }
 

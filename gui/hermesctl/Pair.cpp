@@ -53,7 +53,7 @@ void tellHow(const PairingCode &code, quint16 port, const Arguments &arguments) 
 class CountDown {
 public:
     explicit CountDown(bool json)
-        : isOn_(!json && isTerminal(StandardStream::Error)) {}
+        : isOn_(!json && isTerminal(StandardStream::Errors)) {}
     ~CountDown() { clear(); }
     CountDown(const CountDown &) = delete;
     CountDown &operator=(const CountDown &) = delete;

@@ -9,7 +9,7 @@
 namespace hermes::ctl {
 
 bool canAsk() {
-    return isTerminal(StandardStream::Input) && isTerminal(StandardStream::Error);
+    return isTerminal(StandardStream::Input) && isTerminal(StandardStream::Errors);
 }
 
 QString answerTo(const QString &question) {

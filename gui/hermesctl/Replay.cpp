@@ -56,7 +56,7 @@ Result<void> replay(const Arguments &arguments) {
         if (arguments.json)
             return printJson(QJsonObject{
                 {"session", session->id}, {"position_s", position_s}, {"duration_s", duration_s}});
-        if (!isTerminal(StandardStream::Error))
+        if (!isTerminal(StandardStream::Errors))
             return;
         shown = true;
         std::fprintf(stderr, "\r%s: %.1f of %.1f s ", qPrintable(session->name), position_s, duration_s);

@@ -32,7 +32,7 @@ struct EvaluateCommand {
         files.commit();
     }
     static std::string fileName(const std::string &path) {
-        return std::filesystem::path(path).filename().string();
+        return std::filesystem::u8path(path).filename().u8string();
     }
 };
 

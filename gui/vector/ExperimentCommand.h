@@ -29,7 +29,7 @@ struct ExperimentCommand {
     std::vector<std::string> logs;
     std::vector<std::size_t> every{1};
     std::vector<std::string> others;
-    std::string worlds = installedWorlds().string();
+    std::string worlds = installedWorlds().u8string();
     ExperimentOptions options;
     std::optional<int> runs;
     bool knownEdges = false;

@@ -21,11 +21,11 @@ void ExperimentCommand::tell(std::ostream &json, const nlohmann::ordered_json &s
 }
 
 std::ostream &ExperimentCommand::open(OutputSet &files, const std::string &suffix) const {
-    return files.open((std::filesystem::path(folder) / (name + suffix)).string());
+    return files.open((std::filesystem::u8path(folder) / (name + suffix)).u8string());
 }
 
 World ExperimentCommand::world(const std::string &place) const {
-    Outcome<World> found = readWorld((std::filesystem::path(worlds) / (place + ".json")).string());
+    Outcome<World> found = readWorld((std::filesystem::u8path(worlds) / (place + ".json")).u8string());
     if (!found)
         throw Failure(found.error() + "; --worlds names the folder of the worlds");
     found->name = place; // whatever it calls itself: the name goes into scripts and documents

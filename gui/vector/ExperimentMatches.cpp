@@ -90,7 +90,7 @@ void ExperimentCommand::poseTrust(OutputSet &files, std::ostream &csv) const {
     std::ostream &json = open(files, ".json");
     std::vector<PoseTrial> trials = posesOfDrawnDrives(options.seed, options.runs, options.progress);
     const auto append = [&trials](const std::string &file, bool strange) {
-        const std::string base = std::filesystem::path(file).filename().string();
+        const std::string base = std::filesystem::u8path(file).filename().u8string();
         for (PoseTrial &trial : posesOfLog(base.substr(0, base.find('.')), readLog(file), strange))
             trials.push_back(std::move(trial));
     };

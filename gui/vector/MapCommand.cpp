@@ -186,8 +186,8 @@ private:
                 << '\n';
     }
     std::string title(const char *what, std::size_t scans) const {
-        return std::filesystem::path(options.source.path).filename().string() + what + std::to_string(scans) +
-               " scans";
+        return std::filesystem::u8path(options.source.path).filename().u8string() + what +
+               std::to_string(scans) + " scans";
     }
     static std::size_t sizeAsCsv(const std::vector<vectorlib::MapEdge> &segments) {
         std::ostringstream text;

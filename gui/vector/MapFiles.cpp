@@ -18,7 +18,7 @@ const std::vector<std::string> &MapFile::extensions() {
 }
 
 bool MapFile::isKnown(const std::string &path) {
-    const std::string extension = std::filesystem::path(path).extension().string();
+    const std::string extension = std::filesystem::u8path(path).extension().u8string();
     return std::find(extensions().begin(), extensions().end(), extension) != extensions().end();
 }
 
@@ -35,7 +35,7 @@ MapFile::MapFile(OutputSet &files, const std::string &path)
     : path_(path)
     , out_(&files.open(path)) {
     if (hasExtension(path, ".pgm"))
-        yaml_ = &files.open(std::filesystem::path(path).replace_extension(".yaml").string());
+        yaml_ = &files.open(std::filesystem::u8path(path).replace_extension(".yaml").u8string());
 }
 
 void MapFile::write(const vectorlib::MapDrawing &map) {
@@ -53,7 +53,7 @@ void MapFile::write(const vectorlib::MapDrawing &map) {
             throw Failure(path_ + ": found a map too large to draw, expected at most " +
                           std::to_string(vectorlib::OccupancyPicture::maxCells) + " cells of 5 cm");
         picture->writePgm(*out_);
-        picture->writeYaml(*yaml_, std::filesystem::path(path_).filename().string());
+        picture->writeYaml(*yaml_, std::filesystem::u8path(path_).filename().u8string());
     }
 }
 

@@ -79,10 +79,10 @@ MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &
 
 MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &sink) {
     std::vector<std::string> names;
-    for (const fs::directory_entry &entry : fs::directory_iterator(options.path))
+    for (const fs::directory_entry &entry : fs::directory_iterator(fs::u8path(options.path)))
         if (entry.is_regular_file() &&
-            (hasExtension(entry.path().string(), ".csv") || hasExtension(entry.path().string(), ".pcd")))
-            names.push_back(entry.path().string());
+            (hasExtension(entry.path().u8string(), ".csv") || hasExtension(entry.path().u8string(), ".pcd")))
+            names.push_back(entry.path().u8string());
     std::sort(names.begin(), names.end());
     if (names.empty())
         throw Failure(options.path + ": found no file *.csv or *.pcd, expected points files, one a scan");
@@ -101,7 +101,7 @@ MapSourceReport readFolder(const MapSourceOptions &options, const MapScanSink &s
 
 MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink) {
     std::error_code ignored;
-    if (fs::is_directory(options.path, ignored))
+    if (fs::is_directory(fs::u8path(options.path), ignored))
         return readFolder(options, sink);
     return isCapture(options.path) ? readCapture(options, sink) : readLog(options, sink);
 }

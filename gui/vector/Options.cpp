@@ -54,7 +54,7 @@ CLI::Validator aboveZero() {
 
 CLI::Validator pictureName(const std::string &format) {
     const auto check = [format](const std::string &path) {
-        const std::string extension = std::filesystem::path(path).extension().string();
+        const std::string extension = std::filesystem::u8path(path).extension().u8string();
         return extension.empty() || extension == format
                    ? std::string()
                    : "found " + path + ", expected a name that ends with " + format;

@@ -1,5 +1,6 @@
 #include "gui/vector/Output.h"
 
+#include "common/platform/FileNames.h"
 #include "common/platform/HeldFile.h"
 #include "common/platform/TemporaryNames.h"
 #include "gui/vector/Failure.h"
@@ -150,13 +151,13 @@ std::ostream &OutputSet::open(const std::string &path) {
             throw Failure(path + ": cannot be written: " + error.message());
         if (fs::is_directory(status))
             throw Failure(path + ": found a folder, expected the name of a file to write");
-        const bool plain = !fs::exists(status) || fs::is_regular_file(status);
+        const bool plain = (!fs::exists(status) || fs::is_regular_file(status)) && !isDeviceName(name);
         if (plain && fs::exists(status) && !force_)
             throw Failure(path + ": exists already; choose another name or overwrite it with --force");
         // Through a symbolic link the file it points to is replaced, not the link.
         file->path = plain && fs::exists(status) ? fs::canonical(name).u8string() : path;
         for (const auto &other : files_)
-            if (absolutePath(other->path) == absolutePath(file->path))
+            if (isSameName(absolutePath(other->path), absolutePath(file->path)))
                 throw Failure(path + ": asked for twice, expected a name of its own for every output");
         if (plain)
             file->hold();

@@ -10,7 +10,7 @@ namespace hermes::vector {
 
 Progress::Progress(std::string what)
     : what_(std::move(what))
-    , terminal_(isTerminal(StandardStream::Error))
+    , terminal_(isTerminal(StandardStream::Errors))
     , begin_(std::chrono::steady_clock::now())
     , next_(begin_ + std::chrono::seconds(1)) {}
 

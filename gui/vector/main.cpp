@@ -22,6 +22,7 @@ int main(int argc, char **argv) {
     prepareConsole();
     CLI::App app("Scans to line segments, and line segments to maps.");
     app.name("hermes-vector");
+    app.allow_windows_style_options(false); // /a/b.csv is a file there, too
     app.set_version_flag("--version", "hermes-vector " HERMES_VERSION);
     app.require_subcommand(0, 1); // none is told below: CLI11 would not name a wrong one
     app.footer("hermes-vector COMMAND --help says more and shows an example.");

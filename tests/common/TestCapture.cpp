@@ -305,8 +305,6 @@ void TestCapture::stampsBeyondNanosecondsAreRefused() {
     Datagram d;
     QCOMPARE(reader.next(d), PcapReader::Next::Datagram);
     QCOMPARE(qint64(d.stamp_ns), qint64(1700000000) * 1000000000);
-    if (sizeof(time_t) == 4)
-        QSKIP("libpcap has 32 bits for seconds here, and cuts off the others");
     QCOMPARE(reader.next(d), PcapReader::Next::Failed);
     QVERIFY2(reader.error().find("record 2 at byte 136 has a stamp of") != std::string::npos,
              reader.error().c_str());

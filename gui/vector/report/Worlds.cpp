@@ -41,12 +41,13 @@ const std::map<std::string, KnownWorld> known = {
 } // namespace
 
 ReportWorld findWorld(const std::string &name) {
-    fs::path path = name;
+    fs::path path = fs::u8path(name);
     std::error_code error;
     if (!fs::exists(path, error) && !path.has_parent_path() && name != "-")
-        if (const fs::path installed = installedWorlds() / (name + ".json"); fs::exists(installed, error))
+        if (const fs::path installed = installedWorlds() / fs::u8path(name + ".json");
+            fs::exists(installed, error))
             path = installed;
-    Input input(path.string());
+    Input input(path.u8string());
     World world = valueOrFail(parseWorld(input.readAll(), input.name()));
     if (world.poses.size() < 2)
         throw Failure(input.name() + ": found " + std::to_string(world.poses.size()) +
