@@ -8,6 +8,14 @@
 
 namespace hermes {
 
+namespace {
+
+std::string cutShort(std::size_t found, const char *what, std::size_t expected) {
+    return "found " + std::to_string(found) + " bytes of " + what + ", expected " + std::to_string(expected);
+}
+
+} // namespace
+
 std::unique_ptr<CaptureRecords> CaptureRecords::open(std::istream &stream, std::string &error) {
     std::uint8_t magic[4] = {};
     errno = 0;
@@ -38,15 +46,17 @@ bool CaptureRecords::read(std::uint8_t *bytes, std::size_t size, const char *wha
     atEnd = found == 0 && !stream_.bad();
     if (stream_.bad())
         error_ = errno != 0 ? std::strerror(errno) : "the data ends or breaks off too early";
-    else
-        error_ =
-            "found " + std::to_string(found) + " bytes of " + what + ", expected " + std::to_string(size);
+    else if (!atEnd)
+        error_ = cutShort(found, what, size);
     return false;
 }
 
 bool CaptureRecords::read(std::uint8_t *bytes, std::size_t size, const char *what) {
     bool atEnd = false;
-    return read(bytes, size, what, atEnd);
+    const bool done = read(bytes, size, what, atEnd);
+    if (atEnd)
+        error_ = cutShort(0, what, size);
+    return done;
 }
 
 CaptureRecords::Next CaptureRecords::fail(std::string why) {
