@@ -195,7 +195,7 @@ CaptureRecords::Next Pcapng::takeSimpleFrame(const Block &block, CaptureRecord &
         return fail("found a frame of " + std::to_string(length) + " bytes in a block with room for " +
                     std::to_string(block.body.size() - 4));
     record.linkType = interfaces_.front().linkType;
-    record.seconds = record.nanoseconds = 0;
+    setStamp(interfaces_.front(), 0, record);
     record.frame.assign(block.body.data() + 4, block.body.data() + 4 + length);
     return Next::Record;
 }

@@ -5,7 +5,8 @@
 namespace hermes {
 
 /// A pcapng file of version 1: its sections may have either byte order, its interfaces each a link type and a
-/// clock of their own. A frame without a stamp (a simple packet block) is of 1970.
+/// clock of their own. A frame without a stamp (a simple packet block) is of the first
+/// moment that the clock can tell.
 class Pcapng : public CaptureRecords {
 public:
     /// magic: the first four bytes, read already.
