@@ -21,7 +21,7 @@ void ExperimentCommand::overviewLoop(OutputSet &files, std::ostream &csv) const 
 void ExperimentCommand::baseline(OutputSet &files, std::ostream &csv) const {
     std::vector<BaselineSet> sets;
     for (const std::string &log : logs) {
-        const std::string base = std::filesystem::path(log).filename().string();
+        const std::string base = std::filesystem::u8path(log).filename().u8string();
         sets.push_back(baselineSet(base.substr(0, base.find('.')), readLog(log), pairOptions));
     }
     if (logs.empty())

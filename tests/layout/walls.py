@@ -42,6 +42,8 @@ POSIX = re.compile(r"(unistd|fcntl|termios|poll|pwd|grp|signal|netdb|dirent|dlfc
                    r"getopt|libgen|wordexp|strings|semaphore|mqueue|ftw|sysexits|ucontext|utime|langinfo|iconv|regex|cpio|tar|aio|nl_types)\.h$|"
                    r"(sys|arpa|net|netinet|linux|asm|bits)/")
 WINDOWS = re.compile(r"(windows|winsock2|ws2tcpip|io|shellapi|shlobj|conio|process|direct)\.h$|QWinEventNotifier$")
+# Names of files are UTF-8, which Windows takes only where it is told: std::filesystem::u8path(text) and path.u8string().
+CODE_PAGE = re.compile(r"\b(filesystem|fs)::path\(\w|\.string\(\)")
 # By processor and system, within one header.
 OF_SYSTEM_TOO = ("vectorlib/include/vectorlib/simd/Simd.h", "common/platform/WindowsError.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -177,6 +179,8 @@ def self_test():
             not system_complaint("gui/A.h", "sys/socket.h") or system_complaint("gui/APosix.cpp", "sys/socket.h") or \
             system_complaint("gui/A.cpp", "QSocketNotifier") or system_complaint("gui/AWindows.cpp", "windows.h"):
         wrong.append("headers of systems are judged wrongly")
+    if not CODE_PAGE.search("fs::path(name)") or not CODE_PAGE.search("a.filename().string()") or CODE_PAGE.search("fs::u8path(a).u8string()"):
+        wrong.append("names of files are judged wrongly")
     sources = portable_sources([("common", "STATIC A.cpp b/C${HERMES_SYSTEM}.cpp)\nif(NOT WIN32)\n D.cpp"), ("common/p", "foreach(name E F)")])
     if sources != {"common/A.cpp", "common/b/CPosix.cpp", "common/b/CWindows.cpp", "common/p/EPosix.cpp", "common/p/EWindows.cpp",
                    "common/p/FPosix.cpp", "common/p/FWindows.cpp"}:
@@ -204,6 +208,8 @@ def main():
                         opened = NAMESPACE.match(line)
                         if opened and (why := namespace_complaint(path, opened.group(1))):
                             errors.append(f"{path}:{number}: {line.strip()}: {why}")
+                        if path.startswith(("gui/vector/", "common/capture/", "common/platform/", "common/world/")) and CODE_PAGE.search(line):
+                            errors.append(f"{path}:{number}: {line.strip()}: names of files are UTF-8: u8path(), u8string()")
                         match = INCLUDE.match(line)
                         if match:
                             count += 1
