@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <limits>
 
 namespace hermes {
 
@@ -67,6 +68,12 @@ CaptureRecords::Next CaptureRecords::fail(std::string why) {
 bool CaptureRecords::refuse(std::string why) {
     error_ = std::move(why);
     return false;
+}
+
+// As in libpcap: no limit, or one that is none, stands for the usual one.
+std::uint32_t CaptureRecords::longestFrame(std::uint32_t told) {
+    return told == 0 || told > std::uint32_t(std::numeric_limits<std::int32_t>::max()) ? usualLongestFrame
+                                                                                       : told;
 }
 
 std::uint16_t CaptureRecords::half(const std::uint8_t *bytes) const {

@@ -10,24 +10,25 @@ namespace hermes {
 
 /// A record of a capture file as it stands there.
 struct CaptureRecord {
-    int linkType = 0; ///< by tcpdump.org's registry
+    std::int64_t offset = 0; ///< where it begins in the file, bytes
+    int linkType = 0;        ///< by tcpdump.org's registry
     std::int64_t seconds = 0;
     std::int64_t nanoseconds = 0; ///< beside the seconds; not checked
     std::vector<std::uint8_t> frame;
 };
 
-/// The records of a capture, in the order of the file.
+/// The records of a capture, in the order of the file: those that libpcap gives, but for what
+/// ClassicPcap.h tells.
 class CaptureRecords {
 public:
     enum class Next { Record, End, Failed };
-    /// Longer frames are taken for damage.
-    static constexpr std::uint32_t longestFrame = 262144;
+    static constexpr std::uint32_t usualLongestFrame = 262144;
 
     virtual ~CaptureRecords() = default;
     /// After Failed, error() tells why.
     virtual Next next(CaptureRecord &record) = 0;
-    /// Of the first record to come.
-    virtual int firstLinkType() const = 0;
+    /// Those told so far: at least one.
+    const std::vector<int> &linkTypes() const { return linkTypes_; }
     /// Whether reading can go on at the beginning of any record.
     virtual bool canSeek() const = 0;
     const std::string &error() const { return error_; }
@@ -43,18 +44,23 @@ public:
 protected:
     explicit CaptureRecords(std::istream &stream)
         : stream_(stream) {}
-    /// False where fewer are left; at the end where none is.
+    /// False: not so many bytes are left, and error_ tells why; atEnd: none at all, which is no error.
     bool read(std::uint8_t *bytes, std::size_t size, const char *what, bool &atEnd);
+    /// Here the end is an error, too.
     bool read(std::uint8_t *bytes, std::size_t size, const char *what);
+    /// Keeps the message for error().
     Next fail(std::string why);
-    /// The same where there is nothing to give; false.
+    /// Does so, too, and gives false.
     bool refuse(std::string why);
+    /// The longest frame where a file or an interface tells that as its limit.
+    static std::uint32_t longestFrame(std::uint32_t told);
 
     std::uint32_t word(const std::uint8_t *bytes) const;
     std::uint16_t half(const std::uint8_t *bytes) const;
 
     std::istream &stream_;
     std::string error_;
+    std::vector<int> linkTypes_;
     std::int64_t offset_ = 0;
     bool bigEndian_ = false;
 };

@@ -3,7 +3,9 @@
 #include "common/capture/CaptureRecords.h"
 #include "common/capture/Frame.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -12,8 +14,9 @@ namespace hermes {
 
 namespace {
 
-/// What 32 bits can hold, signed or not: the stamps of classic pcap.
-constexpr std::int64_t earliest_s = -(std::int64_t(1) << 31), latest_s = (std::int64_t(1) << 32) - 1;
+/// The last stamp of classic pcap. pcapng has room for others, which do not fit into nanoseconds, and for
+/// negative ones.
+constexpr std::int64_t latest_s = (std::int64_t(1) << 32) - 1;
 constexpr std::int64_t second_ns = 1000000000;
 
 } // namespace
@@ -44,10 +47,12 @@ Outcome<void> PcapReader::open(std::istream &stream, const std::string &name) {
     if (!records_)
         return error_ = name + ": not a capture that can be read, pcap or pcapng expected: " + why;
     canSeek_ = records_->canSeek();
-    if (const int link = records_->firstLinkType(); !isKnownLinkType(link)) {
+    const std::vector<int> &links = records_->linkTypes();
+    if (std::none_of(links.begin(), links.end(), isKnownLinkType)) {
+        error_ = name + ": link type " + std::to_string(links.front()) + " is not read; read are " +
+                 knownLinkTypes();
         close();
-        return error_ = name + ": link type " + std::to_string(link) + " is not read; read are " +
-                        knownLinkTypes();
+        return error_;
     }
     return {};
 }
@@ -56,7 +61,6 @@ PcapReader::Next PcapReader::next(Datagram &datagram) {
     if (!records_)
         return error_.empty() ? Next::End : Next::Failed;
     for (;;) {
-        const std::int64_t begin = records_->offset();
         const CaptureRecords::Next result = records_->next(record_);
         if (result == CaptureRecords::Next::End) {
             close();
@@ -65,15 +69,17 @@ PcapReader::Next PcapReader::next(Datagram &datagram) {
         if (result == CaptureRecords::Next::Failed)
             return fail(records_->offset(), "cannot be read, the " + std::to_string(counts_.records) +
                                                 " before it are whole: " + records_->error());
-        // pcapng has room for stamps that do not fit into nanoseconds.
-        if (record_.seconds < earliest_s || record_.seconds > latest_s)
-            return fail(begin, "has a stamp of " + std::to_string(record_.seconds) +
-                                   " s since 1970, at most " + std::to_string(latest_s) + " expected");
+        if (std::abs(record_.seconds) > latest_s)
+            return fail(record_.offset, "has a stamp of " + std::to_string(record_.seconds) +
+                                            " s since 1970, at most " + std::to_string(latest_s) +
+                                            " expected");
         ++counts_.records;
+        if (!isKnownLinkType(record_.linkType)) {
+            ++counts_.unknownLinks;
+            continue;
+        }
         const FrameFault fault =
-            isKnownLinkType(record_.linkType)
-                ? parseFrame(LinkType(record_.linkType), record_.frame.data(), record_.frame.size(), datagram)
-                : FrameFault::NotUdp; // of another interface
+            parseFrame(LinkType(record_.linkType), record_.frame.data(), record_.frame.size(), datagram);
         counts_.notUdp += fault == FrameFault::NotUdp;
         counts_.fragments += fault == FrameFault::Fragment;
         counts_.cut += fault == FrameFault::Short;

@@ -21,7 +21,8 @@ public:
         std::uint64_t datagrams = 0;
         std::uint64_t notUdp = 0;
         std::uint64_t fragments = 0;
-        std::uint64_t cut = 0; ///< shorter than its own lengths say
+        std::uint64_t unknownLinks = 0; ///< of an interface whose link type is not read
+        std::uint64_t cut = 0;          ///< shorter than its own lengths say
     };
 
     /// Where a record begins.
@@ -46,7 +47,8 @@ public:
     Place place() const;
     /// Only classic pcap can be read from a place in the middle; a pcapng tells on the way what to know.
     bool canSeek() const { return canSeek_; }
-    /// Goes on at a place that a reader of the same file told.
+    /// Goes on at a place that a reader of the same file told. To the beginning, or after the end, it opens
+    /// path() again: not for what was opened as a stream.
     Outcome<void> seek(const Place &place);
 
     const std::string &path() const { return path_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace hermes {
 
@@ -24,37 +25,50 @@ constexpr std::uint32_t longestBlock = 16 << 20;
 constexpr std::uint64_t second_ns = 1000000000;
 const char *const noInterface = "a frame comes before any interface is described";
 
+std::string tooLong(std::size_t length, std::size_t most) {
+    return "found a frame of " + std::to_string(length) + " bytes where at most " + std::to_string(most) +
+           " can be";
+}
+
 } // namespace
 
 std::unique_ptr<CaptureRecords> Pcapng::open(std::istream &stream, const std::uint8_t *magic,
                                              std::string &error) {
     std::unique_ptr<Pcapng> file(new Pcapng(stream));
-    error = "it begins as none";
+    error = "its first bytes are those of neither";
     if (file->word(magic) != sectionHeader)
         return nullptr;
     Block &block = file->block_;
     block.type = sectionHeader;
     std::uint8_t length[4];
-    bool fine = file->read(length, sizeof length, "a block's length") &&
-                file->readRest(block, length) == Next::Record && file->beginSection(block);
-    while (fine && file->interfaces_.empty()) {
-        const Next next = file->readBlock(block);
-        if (next == Next::End)
-            file->error_ = "it describes no interface";
-        fine = next == Next::Record && (block.type != interfaceDescription || file->addInterface(block));
-        if (fine && hasFrame(block))
-            fine = file->refuse(noInterface);
+    const bool fine = file->read(length, sizeof length, "a block's length") &&
+                      file->readRest(block, length) == Next::Record && file->beginSection(block);
+    if (fine)
+        file->first_ = file->toFrame();
+    if (!file->linkTypes_.empty()) { // what came after them is told by next()
+        error.clear();
+        return file;
     }
-    error = file->error_;
-    if (!fine)
-        return nullptr;
-    error.clear();
-    file->firstLinkType_ = file->interfaces_.front().linkType;
-    file->offset_ = file->nextOffset_;
-    return file;
+    if (file->first_ == Next::End)
+        file->error_ = "it describes no interface";
+    error = file->first_ == Next::Record ? noInterface : file->error_;
+    return nullptr;
 }
 
 CaptureRecords::Next Pcapng::next(CaptureRecord &record) {
+    const Next found = first_ ? *std::exchange(first_, std::nullopt) : toFrame();
+    if (found != Next::Record)
+        return found;
+    record.offset = offset_;
+    const Next taken =
+        block_.type == simplePacket ? takeSimpleFrame(block_, record) : takeFrame(block_, record);
+    if (taken == Next::Record)
+        offset_ = nextOffset_;
+    return taken;
+}
+
+/// Up to the next block that has a frame.
+CaptureRecords::Next Pcapng::toFrame() {
     for (;;) {
         offset_ = nextOffset_;
         const Next read = readBlock(block_);
@@ -62,13 +76,8 @@ CaptureRecords::Next Pcapng::next(CaptureRecord &record) {
             return read;
         if (block_.type == interfaceDescription && !addInterface(block_))
             return Next::Failed;
-        if (!hasFrame(block_))
-            continue;
-        const Next taken =
-            block_.type == simplePacket ? takeSimpleFrame(block_, record) : takeFrame(block_, record);
-        if (taken == Next::Record)
-            offset_ = nextOffset_;
-        return taken;
+        if (hasFrame(block_))
+            return Next::Record;
     }
 }
 
@@ -133,7 +142,7 @@ bool Pcapng::addInterface(const Block &block) {
                       " bytes, expected 8");
     Interface interface;
     interface.linkType = half(block.body.data());
-    interface.longest = word(block.body.data() + 4);
+    interface.longest = longestFrame(word(block.body.data() + 4));
     for (std::size_t at = 8; at + 4 <= block.body.size();) {
         const unsigned code = half(block.body.data() + at), size = half(block.body.data() + at + 2);
         at += 4;
@@ -146,6 +155,7 @@ bool Pcapng::addInterface(const Block &block) {
         at += (size + 3) / 4 * 4;
     }
     interfaces_.push_back(interface);
+    linkTypes_.push_back(interface.linkType);
     return true;
 }
 
@@ -176,9 +186,9 @@ CaptureRecords::Next Pcapng::takeFrame(const Block &block, CaptureRecord &record
         return fail("found a frame of interface " + std::to_string(number) +
                     ", of those that are described " + std::to_string(interfaces_.size()));
     const std::uint32_t length = word(body + 12);
-    if (length > longestFrame || length > block.body.size() - header)
-        return fail("found a frame of " + std::to_string(length) + " bytes in a block with room for " +
-                    std::to_string(block.body.size() - header));
+    const std::size_t most = std::min<std::size_t>(interfaces_[number].longest, block.body.size() - header);
+    if (length > most)
+        return fail(tooLong(length, most));
     record.linkType = interfaces_[number].linkType;
     setStamp(interfaces_[number], std::uint64_t(word(body + 4)) << 32 | word(body + 8), record);
     record.frame.assign(body + header, body + header + length);
@@ -188,12 +198,9 @@ CaptureRecords::Next Pcapng::takeFrame(const Block &block, CaptureRecord &record
 CaptureRecords::Next Pcapng::takeSimpleFrame(const Block &block, CaptureRecord &record) {
     if (block.body.size() < 4 || interfaces_.empty())
         return fail(interfaces_.empty() ? noInterface : "found a packet's block without a length");
-    std::uint32_t length = word(block.body.data());
-    if (const std::uint32_t longest = interfaces_.front().longest; longest > 0)
-        length = std::min(length, longest);
-    if (length > longestFrame || length > block.body.size() - 4)
-        return fail("found a frame of " + std::to_string(length) + " bytes in a block with room for " +
-                    std::to_string(block.body.size() - 4));
+    const std::uint32_t length = std::min(word(block.body.data()), interfaces_.front().longest);
+    if (length > block.body.size() - 4)
+        return fail(tooLong(length, block.body.size() - 4));
     record.linkType = interfaces_.front().linkType;
     setStamp(interfaces_.front(), 0, record);
     record.frame.assign(block.body.data() + 4, block.body.data() + 4 + length);

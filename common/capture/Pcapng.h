@@ -2,11 +2,13 @@
 
 #include "common/capture/CaptureRecords.h"
 
+#include <optional>
+
 namespace hermes {
 
 /// A pcapng file of version 1: its sections may have either byte order, its interfaces each a link type and a
-/// clock of their own. A frame without a stamp (a simple packet block) is of the first
-/// moment that the clock can tell.
+/// clock of their own. A frame without a stamp (a simple packet block) is of the first moment that the clock
+/// can tell, and cut at its interface's limit; others that are longer are taken for damage.
 class Pcapng : public CaptureRecords {
 public:
     /// magic: the first four bytes, read already.
@@ -14,14 +16,13 @@ public:
                                                 std::string &error);
 
     Next next(CaptureRecord &record) override;
-    int firstLinkType() const override { return firstLinkType_; }
     bool canSeek() const override { return false; } // it tells on the way what to know
 
 private:
     struct Interface {
         int linkType = 0;
-        std::uint32_t longest = 0; ///< 0: not told
-        bool ofTwo = false;        ///< ticks are a power of 1/2, otherwise of 1/10
+        std::uint32_t longest = usualLongestFrame;
+        bool ofTwo = false; ///< ticks are a power of 1/2, otherwise of 1/10
         unsigned exponent = 6;
         std::int64_t offset_s = 0;
     };
@@ -33,6 +34,7 @@ private:
     using CaptureRecords::CaptureRecords;
 
     static bool hasFrame(const Block &block);
+    Next toFrame();
     Next readBlock(Block &block);
     Next readRest(Block &block, const std::uint8_t *length);
     bool beginSection(const Block &block);
@@ -42,9 +44,9 @@ private:
     Next takeSimpleFrame(const Block &block, CaptureRecord &record);
     void setStamp(const Interface &interface, std::uint64_t ticks, CaptureRecord &record) const;
 
-    int firstLinkType_ = 0;
     std::vector<Interface> interfaces_; ///< of this section
     Block block_;
+    std::optional<Next> first_; ///< what toFrame() gave before next() was called
     std::int64_t nextOffset_ = 0;
 };
 
