@@ -29,12 +29,14 @@ Error failed(const QString &path, const QString &why) {
 // On a line of its own, also where somebody has edited the file and left the last one open.
 Result<void> append(const QString &path, const QByteArray &line) {
     QFile file(path);
-    if (!file.open(QIODevice::ReadWrite | QIODevice::Append))
+    // Without a buffer: what of it a full disk refuses would be written once more, when the file is cut and
+    // closed.
+    if (!file.open(QIODevice::ReadWrite | QIODevice::Append | QIODevice::Unbuffered))
         return failed(path, file.errorString());
     const qint64 before = file.size();
     const bool isOpen = before > 0 && file.seek(before - 1) && file.read(1) != "\n";
     const QByteArray text = (isOpen ? QByteArray("\n") : QByteArray()) + line + '\n';
-    if (file.write(text) == text.size() && file.flush() && syncToDisk(file.handle()))
+    if (file.write(text) == text.size() && syncToDisk(file.handle()))
         return {};
     const QString why = qt_error_string();
     if (!file.resize(before))

@@ -2,6 +2,7 @@
 
 #include "common/platform/PrivateFiles.h"
 #include "common/tls/Certificates.h"
+#include "common/tls/FolderPlace.h"
 
 #include <QDateTime>
 #include <QDir>
@@ -97,9 +98,9 @@ Result<QSslConfiguration> KeyFolder::load(const QString &folder) {
 
 Result<QSet<QByteArray>> KeyFolder::revoked(const QString &folder) {
     const QString path = QDir(folder).filePath(revokedFile());
-    const QFileInfo list(path), place(folder);
-    const bool isNone = !list.exists() && !list.isSymLink() && place.isReadable() &&
-                        (place.isExecutable() || !permissionsTellReaders());
+    const QFileInfo place(folder);
+    const bool isNone =
+        isAbsent(path) && place.isReadable() && (place.isExecutable() || !permissionsTellReaders());
     if (isNone)
         return QSet<QByteArray>();
     const auto content = read(path);

@@ -1,0 +1,105 @@
+// Files of keys where the system fails: a full disk, names that it cannot look up, folders that cannot be
+// renamed.
+#include "common/tls/Authority.h"
+#include "common/tls/FolderPlace.h"
+#include "common/tls/KeyFolder.h"
+
+#include <QDir>
+#include <QFile>
+#include <QTemporaryDir>
+#include <QtTest>
+#include <climits>
+#include <csignal>
+#include <sys/resource.h>
+
+using namespace hermes;
+
+namespace {
+
+QByteArray contents(const QString &path) {
+    QFile file(path);
+    return file.open(QIODevice::ReadOnly) ? file.readAll() : QByteArray();
+}
+
+/// Files of this program cannot be longer: what is beyond is not written, as on a full disk.
+class LongestFile {
+public:
+    explicit LongestFile(qint64 bytes) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{rlim_t(bytes), before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~LongestFile() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+private:
+    rlimit before_{};
+};
+
+} // namespace
+
+class TestKeyFiles : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void initTestCase() { std::signal(SIGXFSZ, SIG_IGN); }
+    void aFullDiskLeavesNoHalfLine();
+    void onlyAnAbsentListIsNone();
+    void aFolderTakesThePlaceOfAnEmptyOne();
+    void anEmptyFolderStaysWhereNothingTakesItsPlace();
+};
+
+void TestKeyFiles::aFullDiskLeavesNoHalfLine() {
+    QTemporaryDir folder;
+    const Authority authority(folder.filePath("keys"));
+    QVERIFY(authority.init("owner", 10, 10));
+    const auto made = authority.issue({"anna", "observer"}, 10);
+    QVERIFY2(made, made ? "" : qPrintable(made.error().message));
+    QFile list(folder.filePath("keys/revoked"));
+    QVERIFY(list.open(QIODevice::WriteOnly) && list.write("# " + QByteArray(998, 'x') + '\n') == 1001);
+    list.close();
+    const QByteArray before = contents(list.fileName());
+    {
+        const LongestFile limit(before.size() + 10);
+        const auto revoked = authority.revoke("anna");
+        QVERIFY(!revoked);
+        QVERIFY2(revoked.error().message.contains("File too large"), qPrintable(revoked.error().message));
+    }
+    QCOMPARE(contents(list.fileName()), before);
+    QVERIFY(authority.revoke("anna"));
+    QCOMPARE(KeyFolder::revoked(folder.filePath("keys"))->size(), 1);
+}
+
+void TestKeyFiles::onlyAnAbsentListIsNone() {
+    QTemporaryDir folder;
+    const auto none = KeyFolder::revoked(folder.path());
+    QVERIFY(none && none->isEmpty());
+    // The folder can be entered; the name of a file in it is longer than the system looks up.
+    QString name = folder.path();
+    while (name.size() + 2 < PATH_MAX - 4)
+        name += "/.";
+    QVERIFY(QDir(name).exists());
+    const auto untold = KeyFolder::revoked(name);
+    QVERIFY(!untold);
+    QVERIFY2(untold.error().message.contains("File name too long"), qPrintable(untold.error().message));
+}
+
+void TestKeyFiles::aFolderTakesThePlaceOfAnEmptyOne() {
+    QTemporaryDir folder;
+    const QDir dir(folder.path());
+    QVERIFY(dir.mkpath("new/inside") && dir.mkpath("empty") && dir.mkpath("full/inside"));
+    QVERIFY(!takePlace(dir.filePath("new"), dir.filePath("full")));
+    QVERIFY(dir.exists("new/inside") && dir.exists("full/inside"));
+    QVERIFY(takePlace(dir.filePath("new"), dir.filePath("empty")));
+    QVERIFY(dir.exists("empty/inside") && !dir.exists("new"));
+}
+
+void TestKeyFiles::anEmptyFolderStaysWhereNothingTakesItsPlace() {
+    QTemporaryDir folder;
+    const QDir dir(folder.path());
+    QVERIFY(dir.mkpath("empty"));
+    QVERIFY(!takePlace(dir.filePath("absent"), dir.filePath("empty")));
+    QVERIFY(dir.exists("empty"));
+}
+
+QTEST_GUILESS_MAIN(TestKeyFiles)
+#include "TestKeyFiles.moc"
