@@ -32,7 +32,7 @@ struct Awaited {
     bool toWrite = false; ///< to be written to, instead of read
     bool isReady = false; ///< or failed
 };
-/// Waits until one is ready, milliseconds at most; false: none is.
+/// Waits until one is ready, milliseconds at most, without end where they are negative; false: none is.
 bool waitFor(std::vector<Awaited> &all, int most_ms);
 
 /// Another handle of the same connection, which never waits.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -27,6 +28,20 @@ bool bindTo(int descriptor, int family, std::uint16_t port) {
     address.sin6_family = AF_INET6;
     address.sin6_port = htons(port);
     return ::bind(descriptor, reinterpret_cast<const sockaddr *>(&address), sizeof address) == 0;
+}
+
+// A signal does not shorten it.
+int pollUntilReady(std::vector<pollfd> &ends, int most_ms) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::milliseconds(most_ms);
+    for (int left_ms = most_ms;;) {
+        const int ready = ::poll(ends.data(), ends.size(), left_ms);
+        if (ready >= 0 || errno != EINTR)
+            return ready;
+        if (most_ms >= 0)
+            left_ms =
+                std::max(0, int(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count()));
+    }
 }
 
 } // namespace
@@ -64,7 +79,7 @@ bool waitFor(std::vector<Awaited> &all, int most_ms) {
     std::vector<pollfd> ends;
     for (const Awaited &one : all)
         ends.push_back({int(one.socket), short(one.toWrite ? POLLOUT : POLLIN), 0});
-    const bool any = ::poll(ends.data(), ends.size(), most_ms) > 0;
+    const bool any = pollUntilReady(ends, most_ms) > 0;
     std::transform(ends.begin(), ends.end(), all.begin(), all.begin(), [any](const pollfd &end, Awaited one) {
         one.isReady = any && end.revents != 0;
         return one;

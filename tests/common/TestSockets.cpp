@@ -1,0 +1,87 @@
+// Waiting for sockets while signals come.
+#include "common/platform/Sockets.h"
+
+#include <QElapsedTimer>
+#include <QtTest>
+#include <csignal>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+using namespace hermes;
+
+namespace {
+
+volatile std::sig_atomic_t writeTo = -1;
+volatile std::sig_atomic_t signalsLeft = 0; // before the handler writes
+
+void handle(int) {
+    signalsLeft = signalsLeft - 1;
+    if (signalsLeft == 0 && ::write(writeTo, "x", 1) < 0)
+        ::abort();
+}
+
+/// A signal every 20 ms.
+class Signals {
+public:
+    Signals() {
+        struct sigaction action {};
+        action.sa_handler = handle; // without SA_RESTART
+        ::sigaction(SIGALRM, &action, nullptr);
+        set(20000);
+    }
+    ~Signals() { set(0); }
+
+private:
+    static void set(suseconds_t period_us) {
+        const itimerval timer{{0, period_us}, {0, period_us}};
+        ::setitimer(ITIMER_REAL, &timer, nullptr);
+    }
+};
+
+} // namespace
+
+class TestSockets : public QObject {
+    Q_OBJECT
+
+private Q_SLOTS:
+    void init() {
+        int ends[2];
+        QCOMPARE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+        all_ = {{ends[0]}};
+        writeTo = ends[1];
+        signalsLeft = 0;
+    }
+    void cleanup() {
+        sockets::close(all_[0].socket);
+        sockets::close(writeTo);
+    }
+
+    void signalsDoNotShortenWaiting() {
+        const Signals signals;
+        QElapsedTimer timer;
+        timer.start();
+        QVERIFY(!sockets::waitFor(all_, 200));
+        QVERIFY2(timer.elapsed() >= 200, qPrintable(QString::number(timer.elapsed())));
+        QVERIFY(!all_[0].isReady);
+    }
+
+    void whatComesAfterSignalsIsSeen_data() {
+        QTest::addColumn<int>("most_ms");
+        QTest::newRow("in time") << 60000;
+        QTest::newRow("without a limit") << -1;
+    }
+    void whatComesAfterSignalsIsSeen() {
+        QFETCH(int, most_ms);
+        signalsLeft = 3;
+        const Signals signals;
+        QVERIFY(sockets::waitFor(all_, most_ms));
+        QVERIFY(all_[0].isReady);
+    }
+
+private:
+    std::vector<sockets::Awaited> all_;
+};
+
+QTEST_APPLESS_MAIN(TestSockets)
+#include "TestSockets.moc"
