@@ -2,6 +2,7 @@
 
 #include "gui/vector/Failure.h"
 #include "gui/vector/Options.h"
+#include "vectorlib/io/TextInput.h"
 
 #include <sstream>
 
@@ -9,21 +10,28 @@ namespace hermes::vector {
 
 namespace {
 
-/// Of four numbers with dots between, as the options were checked to be.
-std::uint32_t addressOf(const std::string &text) {
+/// Of four decimal numbers with dots between. Not with zeros before them: elsewhere such are octal.
+std::optional<std::uint32_t> addressOf(const std::string &text) {
     std::istringstream in(text);
     std::uint32_t address = 0;
-    for (std::string part; std::getline(in, part, '.');)
-        address = address << 8 | std::uint32_t(std::stoul(part));
-    return address;
+    int parts = 0;
+    for (std::string part; std::getline(in, part, '.'); ++parts) {
+        const bool isDecimal = !part.empty() && part.size() <= 3 &&
+                               part.find_first_not_of("0123456789") == std::string::npos &&
+                               (part == "0" || part[0] != '0');
+        const unsigned long number = isDecimal ? std::stoul(part) : 256;
+        if (number > 255)
+            return std::nullopt;
+        address = address << 8 | std::uint32_t(number);
+    }
+    return parts == 4 && text.back() != '.' ? std::optional(address) : std::nullopt;
 }
 
 LidarStream::Options streamOf(const SensorOptions &options, velodyne::Model model) {
     LidarStream::Options stream;
     stream.model = model;
     stream.sensor.port = options.port;
-    if (!options.sender.empty())
-        stream.sensor.address = addressOf(options.sender);
+    stream.sensor.address = addressOf(options.sender); // none of an empty one
     return stream;
 }
 
@@ -48,7 +56,13 @@ void SensorOptions::addTo(CLI::App &sub) {
         ->transform(wholeNumber(1, 65535))
         ->type_name("PORT");
     sub.add_option("--sender", sender, "Of a capture: the sensor that has this address")
-        ->check(CLI::ValidIPV4)
+        ->check(CLI::Validator(
+            [](const std::string &text) {
+                return addressOf(text) ? std::string()
+                                       : "found " + vectorlib::quoted(text) +
+                                             ", expected an IPv4 address: four decimal numbers, dots between";
+            },
+            "", "address"))
         ->type_name("ADDRESS");
 }
 

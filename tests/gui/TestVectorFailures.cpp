@@ -52,6 +52,9 @@ private Q_SLOTS:
         row("laser 32", {"ring", "x.pcap", "--laser", "32"}, "--laser");
         row("port 0", {"ring", "x.pcap", "--port", "0"}, "--port");
         row("no address", {"map", "x.pcap", "--sender", "sensor"}, "--sender");
+        for (const char *address :
+             {"0x10.0.0.1", "010.0.0.1", "10.0.0.256", "10.0.0", "10.0.0.1.", "10..0.1", "10.0.0.1.2"})
+            row(address, {"map", "x.pcap", "--sender", address}, "--sender");
         row("offsets without z", {"ring", "x.pcap", "--no-vertical-offsets"}, "--all");
     }
     void wrongUsage() {
