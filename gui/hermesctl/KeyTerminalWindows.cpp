@@ -11,12 +11,14 @@ HANDLE input() {
     return ::GetStdHandle(STD_INPUT_HANDLE);
 }
 
-/// Whether a key was pressed; events of other kinds, for which reading would wait, are thrown away.
+/// Whether a key was pressed that gives a character. Other events, for which reading would wait, are thrown
+/// away: Shift, Ctrl, Alt and dead keys alone, keys that go up, the mouse.
 bool hasKey() {
     INPUT_RECORD event{};
     DWORD count = 0;
     while (::PeekConsoleInputW(input(), &event, 1, &count) && count > 0) {
-        if (event.EventType == KEY_EVENT && event.Event.KeyEvent.bKeyDown)
+        const KEY_EVENT_RECORD &key = event.Event.KeyEvent;
+        if (event.EventType == KEY_EVENT && key.bKeyDown && key.uChar.UnicodeChar != 0)
             return true;
         ::ReadConsoleInputW(input(), &event, 1, &count);
     }
