@@ -12,14 +12,17 @@ bool isSameName(const std::filesystem::path &one, const std::filesystem::path &o
            CSTR_EQUAL;
 }
 
-// Also with an ending, as NUL.csv: so do all versions before Windows 11.
+// Also with endings and blanks behind it, as NUL.tar.gz: so do all versions before Windows 11.
 bool isDeviceName(const std::filesystem::path &path) {
-    std::wstring name = path.stem().wstring();
+    std::wstring name = path.filename().wstring();
+    name.erase(std::min(name.find(L'.'), name.size()));
+    name.erase(name.find_last_not_of(L' ') + 1);
     std::transform(name.begin(), name.end(), name.begin(),
                    [](wchar_t c) { return wchar_t(std::towupper(c)); });
     const bool isNumbered = name.size() == 4 && (name.rfind(L"COM", 0) == 0 || name.rfind(L"LPT", 0) == 0) &&
                             name[3] >= L'1' && name[3] <= L'9';
-    return isNumbered || name == L"NUL" || name == L"CON" || name == L"AUX" || name == L"PRN";
+    const auto names = {L"NUL", L"CON", L"AUX", L"PRN", L"CONIN$", L"CONOUT$"};
+    return isNumbered || std::find(names.begin(), names.end(), name) != names.end();
 }
 
 } // namespace hermes

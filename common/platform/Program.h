@@ -18,8 +18,8 @@ struct ProgramEnd {
     std::string out, err;
 };
 
-/// Runs another program of the search path to its end, on this standard input. Nothing: there is none. Throws
-/// std::runtime_error where no temporary file can be made.
+/// Runs another program of the search path, and on Windows of nothing else, to its end, on this standard
+/// input. Nothing: there is none. Throws std::runtime_error where no temporary file can be made.
 std::optional<ProgramEnd> runProgram(const std::string &name, const std::string &argument,
                                      const std::string &input);
 

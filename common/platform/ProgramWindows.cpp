@@ -2,7 +2,10 @@
 
 #include "common/platform/WindowsError.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <shellapi.h>
+#include <sstream>
 #include <stdexcept>
 
 namespace hermes {
@@ -61,6 +64,35 @@ private:
     HANDLE file_ = INVALID_HANDLE_VALUE;
 };
 
+/// Of the folders of PATH that are told from the root on; empty: it is in none. CreateProcess() would take
+/// one of the current folder first.
+fs::path findProgram(const std::string &name) {
+    const wchar_t *const path = ::_wgetenv(L"PATH");
+    std::wistringstream folders(path ? path : L"");
+    for (std::wstring folder; std::getline(folders, folder, L';');) {
+        folder.erase(std::remove(folder.begin(), folder.end(), L'"'), folder.end());
+        fs::path file = folder;
+        file /= fs::u8path(name + ".exe");
+        std::error_code ignored;
+        if (file.is_absolute() && fs::is_regular_file(file, ignored))
+            return file;
+    }
+    return {};
+}
+
+/// As one word of a command line, of which CommandLineToArgvW() makes the same text.
+std::wstring quoted(const std::wstring &text) {
+    std::wstring result = L"\"";
+    std::size_t backslashes = 0; // before this character; they count twice before a quotation mark
+    for (const wchar_t c : text) {
+        if (c == L'"')
+            result.append(backslashes + 1, L'\\');
+        backslashes = c == L'\\' ? backslashes + 1 : 0;
+        result += c;
+    }
+    return result.append(backslashes, L'\\') + L'"';
+}
+
 } // namespace
 
 std::vector<std::string> programArguments(int, char **) {
@@ -81,6 +113,9 @@ fs::path programFile() {
 
 std::optional<ProgramEnd> runProgram(const std::string &name, const std::string &argument,
                                      const std::string &input) {
+    const fs::path program = findProgram(name);
+    if (program.empty())
+        return std::nullopt;
     const TemporaryFile in, out, err;
     in.write(input);
     STARTUPINFOW start{};
@@ -89,10 +124,10 @@ std::optional<ProgramEnd> runProgram(const std::string &name, const std::string 
     start.hStdInput = in.handle();
     start.hStdOutput = out.handle();
     start.hStdError = err.handle();
-    std::wstring line = fs::u8path(name + ' ' + argument).wstring();
+    std::wstring line = quoted(program.wstring()) + L' ' + quoted(fs::u8path(argument).wstring());
     PROCESS_INFORMATION child{};
-    if (!::CreateProcessW(nullptr, line.data(), nullptr, nullptr, TRUE, CREATE_NO_WINDOW, nullptr, nullptr,
-                          &start, &child))
+    if (!::CreateProcessW(program.c_str(), line.data(), nullptr, nullptr, TRUE, CREATE_NO_WINDOW, nullptr,
+                          nullptr, &start, &child))
         return std::nullopt;
     ::WaitForSingleObject(child.hProcess, INFINITE);
     DWORD status = 1;

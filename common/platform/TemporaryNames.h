@@ -11,7 +11,7 @@ namespace hermes {
 std::size_t rememberTemporary(const std::string &name);
 void forgetTemporary(std::size_t place);
 
-/// Lets signals do so, and makes writing to a pipe whose reader has gone an error instead of the end.
+/// Lets signals do so.
 void removeTemporariesOnSignals();
 
 } // namespace hermes

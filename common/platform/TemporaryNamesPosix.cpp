@@ -42,7 +42,6 @@ void forgetTemporary(std::size_t place) {
 void removeTemporariesOnSignals() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         std::signal(signal, removeAndDie);
-    std::signal(SIGPIPE, SIG_IGN);
 }
 
 } // namespace hermes

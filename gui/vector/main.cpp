@@ -1,4 +1,5 @@
 #include "common/platform/Console.h"
+#include "common/platform/Pipes.h"
 #include "common/platform/Program.h"
 #include "common/platform/TemporaryNames.h"
 #include "gui/vector/Failure.h"
@@ -40,6 +41,7 @@ int main(int argc, char **argv) {
     addExperimentCommand(app);
     addReportCommand(app);
     removeTemporariesOnSignals();
+    outliveClosedPipes();
     try {
         std::vector<std::string> arguments = programArguments(argc, argv);
         std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them

@@ -20,7 +20,7 @@ NATIVE = os.path.join(os.environ["HERMES_BIN"], "hermes-vector")
 BUILD = os.path.join(SOURCE, "build", "windows")
 EXE = os.path.join(BUILD, "bin", "hermes-vector.exe")
 DATA = os.path.join(SOURCE, "tests", "data", "vector")
-LOGS = os.environ.get("HERMES_DATA", "/work/shared/data/public")
+LOGS = os.environ.get("HERMES_DATA", os.path.join(SOURCE, "..", "shared", "data", "public"))
 WINE = shutil.which("wine64") or shutil.which("wine64", path="/usr/lib/wine")
 SKIPPED = 77
 TOLERANCE = 1e-9
@@ -47,8 +47,9 @@ def build():
 class Run:
     """What a program left: status, what it said, and the files of its folder."""
 
-    def __init__(self, program, folder, arguments, stdin=b""):
-        done = subprocess.run(program + arguments, cwd=folder, input=stdin, env=ENVIRONMENT, capture_output=True, timeout=600)
+    def __init__(self, program, folder, arguments, stdin=b"", environment=None):
+        done = subprocess.run(program + arguments, cwd=folder, input=stdin, env=dict(ENVIRONMENT, **(environment or {})),
+                              capture_output=True, timeout=600)
         self.status, self.out, self.err = done.returncode, done.stdout, done.stderr
         self.files = {}
         for place, _, names in os.walk(folder):
@@ -62,8 +63,8 @@ def native(folder, *arguments, stdin=b""):
     return Run([NATIVE], folder, list(arguments), stdin)
 
 
-def windows(folder, *arguments, stdin=b""):
-    return Run([WINE, EXE], folder, list(arguments), stdin)
+def windows(folder, *arguments, stdin=b"", environment=None):
+    return Run([WINE, EXE], folder, list(arguments), stdin, environment)
 
 
 def difference(expected, found, tolerance=TOLERANCE):
@@ -320,7 +321,10 @@ class Differences(unittest.TestCase):
                                  env=ENVIRONMENT, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL)
         child.stdin.write(self.room)
         child.stdin.flush()
-        time.sleep(2) # it waits for the rest
+        deadline = time.monotonic() + 60
+        while not glob.glob(self.path("out.csv.part-*")) and time.monotonic() < deadline: # then it waits for the rest
+            time.sleep(0.05)
+        self.assertNotEqual(glob.glob(self.path("out.csv.part-*")), [], "nothing was begun")
         child.send_signal(signal.SIGKILL)
         child.wait()
         child.stdin.close()
@@ -330,9 +334,31 @@ class Differences(unittest.TestCase):
         self.assertEqual(set(os.listdir(self.folder)), before)
 
     def test_devices(self):
-        run = windows(self.folder, "segment", "room.csv", "--out", "NUL")
-        self.assertEqual((run.status, run.out, run.err), (0, b"", b""))
-        self.assertNotIn("NUL", run.files)
+        before = set(os.listdir(self.folder))
+        for name in ("NUL", "nul.csv", "NUL.tar.gz", "NUL .csv", "NUL "):
+            run = windows(self.folder, "segment", "room.csv", "--out", name)
+            self.assertEqual((run.status, run.out, run.err), (0, b"", b""), name)
+        windows(self.folder, "segment", "room.csv", "--out", "CONOUT$") # there may be no console
+        self.assertEqual(set(os.listdir(self.folder)), before)
+        run = windows(self.folder, "segment", "room.csv", "--out", "NULL.csv")
+        self.assertEqual(run.files["NULL.csv"], self.clusters)
+
+    def test_other_programs_are_of_the_search_path_only(self):
+        """A program beside the data may be anybody's."""
+        write(self.path("gnuplot.c"), b"""#include <stdio.h>
+            int main(int count, char **words) { puts(count == 2 ? words[1] : "wrong words"); return 0; }""")
+        os.mkdir(self.path("two words"))
+        subprocess.run(["x86_64-w64-mingw32-gcc", "-o", self.path("gnuplot.exe"), self.path("gnuplot.c")], check=True)
+        arguments = ["experiment", "weighting", "--runs", "1", "--max-points", "500", "--force", "--out", "results"]
+        for path in (".", ""):
+            run = windows(self.folder, *arguments, environment={"WINEPATH": path})
+            self.assertEqual(run.status, 0, run.err)
+            self.assertIn(b"gnuplot is not installed", run.err)
+        os.rename(self.path("gnuplot.exe"), self.path("two words/gnuplot.exe"))
+        run = windows(self.folder, *arguments, environment={"WINEPATH": "Z:" + self.path("two words").replace("/", "\\")})
+        self.assertEqual((run.status, run.err), (0, b""))
+        pictures = {content.strip() for name, content in run.files.items() if name.endswith(".svg")}
+        self.assertEqual(pictures, {b"-"}, run.files.keys())
 
     def test_help_and_wrong_use(self):
         for arguments in (["--help"], ["--version"], ["match", "--help"], [], ["nothing"], ["segment"], ["segment", "a", "--k", "x"]):
