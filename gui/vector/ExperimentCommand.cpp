@@ -152,8 +152,7 @@ void ExperimentCommand::run() {
 void addExperimentCommand(CLI::App &app) {
     auto command = std::make_shared<ExperimentCommand>();
     CLI::App *sub = app.add_subcommand(
-        "experiment",
-        "Regenerate an experiment of the thesis or of the registration paper as CSV, SVG and LaTeX");
+        "experiment", "Repeat an experiment of the documents behind Hermes: CSV, SVG and LaTeX");
     std::string list = "Which one:";
     std::vector<std::string> names;
     for (const Experiment &e : experiments) {

@@ -118,6 +118,9 @@ private:
     std::vector<World> allWorlds() const;
     vectorlib::CarmenLog readLog() const;
     static vectorlib::CarmenLog readLog(const std::string &file);
+    /// What each log is called in tables, pictures and names of files: its own name without endings and with
+    /// "-" for all that is no ASCII letter, digit or point. Throws Failure where two are called alike.
+    static std::vector<std::string> setNames(const std::vector<std::string> &files);
     using NamedPicture = std::pair<std::string, vectorlib::SvgPicture>; ///< name: in file names
     /// The figures and pictures, each as SVG, all in one LaTeX document; pictures first.
     void draw(OutputSet &files, const Figures &figures, const std::string &suffix = "",

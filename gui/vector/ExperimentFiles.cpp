@@ -7,12 +7,15 @@
 #include "gui/vector/experiment/Gnuplot.h"
 #include "vectorlib/io/LatexExport.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 #include <sstream>
 
 namespace hermes::vector {
+
+namespace fs = std::filesystem;
 
 void ExperimentCommand::tell(std::ostream &json, const nlohmann::ordered_json &summary) {
     const std::string text = summary.dump(2) + '\n';
@@ -21,11 +24,11 @@ void ExperimentCommand::tell(std::ostream &json, const nlohmann::ordered_json &s
 }
 
 std::ostream &ExperimentCommand::open(OutputSet &files, const std::string &suffix) const {
-    return files.open((std::filesystem::u8path(folder) / (name + suffix)).u8string());
+    return files.open((fs::u8path(folder) / (name + suffix)).u8string());
 }
 
 World ExperimentCommand::world(const std::string &place) const {
-    Outcome<World> found = readWorld((std::filesystem::u8path(worlds) / (place + ".json")).u8string());
+    Outcome<World> found = readWorld((fs::u8path(worlds) / (place + ".json")).u8string());
     if (!found)
         throw Failure(found.error() + "; --worlds names the folder of the worlds");
     found->name = place; // whatever it calls itself: the name goes into scripts and documents
@@ -46,8 +49,29 @@ vectorlib::CarmenLog ExperimentCommand::readLog() const {
 }
 
 vectorlib::CarmenLog ExperimentCommand::readLog(const std::string &file) {
+    if (isCapture(file))
+        throw Failure(file + ": found a capture, this experiment needs a CARMEN log");
     Input input(file);
     return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
+}
+
+std::vector<std::string> ExperimentCommand::setNames(const std::vector<std::string> &files) {
+    std::vector<std::string> names;
+    for (const std::string &file : files) {
+        fs::path path = fs::u8path(file).filename();
+        if (path.extension() == ".gz")
+            path = path.stem();
+        std::string name = path.stem().u8string();
+        for (char &c : name)
+            if (!(c >= '0' && c <= '9') && !(c >= 'A' && c <= 'Z') && !(c >= 'a' && c <= 'z') && c != '.')
+                c = '-';
+        const auto other = std::find(names.begin(), names.end(), name);
+        if (other != names.end())
+            throw Failure(file + ": would be called " + name + " as is " +
+                          files[std::size_t(other - names.begin())] + ", expected logs of different names");
+        names.push_back(name);
+    }
+    return names;
 }
 
 void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std::string &suffix,

@@ -89,15 +89,12 @@ void ExperimentCommand::placeTrust(OutputSet &files, std::ostream &csv) const {
 void ExperimentCommand::poseTrust(OutputSet &files, std::ostream &csv) const {
     std::ostream &json = open(files, ".json");
     std::vector<PoseTrial> trials = posesOfDrawnDrives(options.seed, options.runs, options.progress);
-    const auto append = [&trials](const std::string &file, bool strange) {
-        const std::string base = std::filesystem::u8path(file).filename().u8string();
-        for (PoseTrial &trial : posesOfLog(base.substr(0, base.find('.')), readLog(file), strange))
+    std::vector<std::string> all = logs;
+    all.insert(all.end(), others.begin(), others.end());
+    const std::vector<std::string> names = setNames(all);
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (PoseTrial &trial : posesOfLog(names[i], readLog(all[i]), i >= logs.size()))
             trials.push_back(std::move(trial));
-    };
-    for (const std::string &log : logs)
-        append(log, false);
-    for (const std::string &log : others)
-        append(log, true);
     writeCsv(csv, trials);
     tell(json, poseTrustSummary(trials));
 }

@@ -4,7 +4,6 @@
 #include "gui/vector/experiment/OverviewExperiment.h"
 
 #include <cmath>
-#include <filesystem>
 
 namespace hermes::vector {
 
@@ -20,10 +19,9 @@ void ExperimentCommand::overviewLoop(OutputSet &files, std::ostream &csv) const 
 
 void ExperimentCommand::baseline(OutputSet &files, std::ostream &csv) const {
     std::vector<BaselineSet> sets;
-    for (const std::string &log : logs) {
-        const std::string base = std::filesystem::u8path(log).filename().u8string();
-        sets.push_back(baselineSet(base.substr(0, base.find('.')), readLog(log), pairOptions));
-    }
+    const std::vector<std::string> names = setNames(logs);
+    for (std::size_t i = 0; i < logs.size(); ++i)
+        sets.push_back(baselineSet(names[i], readLog(logs[i]), pairOptions));
     if (logs.empty())
         for (const char *place : {"laboratory", "corridor", "pillars"})
             sets.push_back(baselineSet(world(place), options.seed));

@@ -1,6 +1,7 @@
 #include "common/world/WorldFile.h"
 #include "gui/vector/Failure.h"
 #include "gui/vector/Input.h"
+#include "gui/vector/InstalledWorlds.h"
 #include "gui/vector/Options.h"
 #include "vectorlib/io/CsvPoints.h"
 #include "vectorlib/io/CsvSegments.h"
@@ -46,7 +47,7 @@ struct ObserveCommand {
     }
 
     std::vector<Segment> loadWorld() const {
-        Input input(in);
+        Input input(worldFile(in));
         const World world = valueOrFail(parseWorld(input.readAll(), input.name()));
         std::vector<Segment> edges;
         for (const World::Edge &e : world.edges)
@@ -96,7 +97,9 @@ void addObserveCommand(CLI::App &app) {
     CLI::App *sub =
         app.add_subcommand("observe", "What a sensor sees of a world: the exact view (CSV x1,y1,x2,y2) or a "
                                       "simulated scan (CSV x,y), in the sensor's frame");
-    sub->add_option("WORLD", command->in, "World: JSON with edges")->required();
+    sub->add_option("WORLD", command->in,
+                    "World: JSON with edges, or the name of one that came with the program")
+        ->required();
     sub->add_option("--pose", command->pose, "Where the sensor is: metres, radians")
         ->required()
         ->check(poseText())
@@ -130,7 +133,7 @@ void addObserveCommand(CLI::App &app) {
         ->type_name("I")
         ->capture_default_str();
     command->output.addTo(*sub, true);
-    sub->footer(example("hermes-vector observe pillars.json --pose 1,1,0.5 --scan 720 --noise 0.01"));
+    sub->footer(example("hermes-vector observe pillars --pose 1,1,0.5 --scan 720 --noise 0.01"));
     sub->callback([command] { command->run(); });
 }
 

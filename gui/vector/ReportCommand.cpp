@@ -98,7 +98,9 @@ void addReportCommand(CLI::App &app) {
     sub->add_option("WORLD", command->in,
                     "World: JSON with edges and poses, or pillars, quadratic, cutsquare or oblique")
         ->required();
-    sub->add_option("--case", command->number, "Scans N and N + 1 with all solutions")->type_name("N");
+    sub->add_option("--case", command->number, "Scans N and N + 1 with all solutions")
+        ->transform(wholeNumber(0, 1e6))
+        ->type_name("N");
     sub->add_flag("--overall", command->overall, "All consecutive scans with their accepted solutions");
     sub->add_flag("--all", command->all, "The case reports of all consecutive scans");
     sub->add_flag(

@@ -51,7 +51,9 @@ int main(int argc, char **argv) {
     } catch (const CLI::ParseError &e) {
         if (e.get_exit_code() == int(CLI::ExitCodes::Success))
             return app.exit(e); // prints the help or the version
-        std::cerr << "hermes-vector: " << e.what() << "\nSee hermes-vector --help.\n";
+        const auto commands = app.get_subcommands();
+        std::cerr << "hermes-vector: " << e.what() << "\nSee hermes-vector "
+                  << (commands.empty() ? "" : commands.front()->get_name() + ' ') << "--help.\n";
         return wrongUsage;
     } catch (const Failure &e) {
         std::cerr << "hermes-vector: " << e.what() << '\n';

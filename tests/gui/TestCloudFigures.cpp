@@ -82,6 +82,8 @@ private Q_SLOTS:
         QVERIFY(std::abs(band.high - 3 - 1.963) < 0.01);
         QVERIFY(std::abs(band.low - 3 + 1.963) < 0.01);
         QCOMPARE(MeanBand::of({7}).high, 7.0);
+        QVERIFY(std::abs(MeanBand::of({0, 2}).high - 1 - 12.7062) < 1e-3);
+        QVERIFY(std::abs(MeanBand::of({0, 0, 3}).high - 1 - 4.3027) < 1e-3);
         std::mt19937_64 random(1);
         std::normal_distribution<double> normal;
         int within = 0;

@@ -1,7 +1,12 @@
+#include "gui/vector/experiment/Plot.h"
 #include "tests/gui/ExperimentFiles.h"
 
+#include <QDir>
+#include <QSet>
 #include <QTemporaryDir>
 #include <QtTest>
+
+#include <sstream>
 
 // hermes-vector experiment: those of the overview paper.
 class TestOverview : public QObject {
@@ -11,6 +16,8 @@ private Q_SLOTS:
     void corridorLoopCloses();
     void ourMatchersReachFarther();
     void baselineTakesLogs();
+    void namesOfLogsHarmNothing();
+    void logsOfOneNameAreRefused();
 };
 
 void TestOverview::badOdometryIsCorrected() { // overview figure 2
@@ -69,6 +76,42 @@ void TestOverview::baselineTakesLogs() {
     QCOMPARE(rows.size(), 7 * 4);
     QCOMPARE(rows[0]["set"], QByteArray("corrected"));
     QVERIFY(rows[0]["tries"].toInt() > 0);
+}
+
+void TestOverview::namesOfLogsHarmNothing() {
+    QTemporaryDir folder;
+    const QString hostile = folder.filePath("a'; set print 'pwned'; print 1.log"),
+                  out = folder.filePath("out");
+    QVERIFY(QFile::copy(TEST_DATA_DIR "/vector/corrected.log", hostile));
+    QCOMPARE(runExperiment({"baseline", "--log", hostile, "--out", out}), 0);
+    QVERIFY(!QFile::exists("pwned") && !QFile::exists(out + "/pwned"));
+    QCOMPARE(table(out + "/baseline.csv")[0]["set"], QByteArray("a---set-print--pwned---print-1"));
+    const hermes::vector::Plot plot{
+        "p", "it's\n'; system('x')", "x [m]", "y", false, false, {{"o'clock", "#0072b2", {{0, 0}, {1, 1}}}}};
+    std::ostringstream script;
+    hermes::vector::writeGnuplot(script, plot);
+    QVERIFY(script.str().find("title 'it''s ''; system(''x'')'\n") != std::string::npos);
+    QVERIFY(script.str().find("title 'o''clock'\n") != std::string::npos);
+}
+
+void TestOverview::logsOfOneNameAreRefused() {
+    QTemporaryDir folder;
+    for (const char *name : {"a", "b"}) {
+        QDir(folder.path()).mkdir(name);
+        for (const char *log : {"/2024.01.05.log", "/2024.01.06.log"})
+            QVERIFY(QFile::copy(TEST_DATA_DIR "/vector/corrected.log", folder.path() + '/' + name + log));
+    }
+    const QString a = folder.filePath("a/2024.01.05.log"), b = folder.filePath("b/2024.01.05.log"),
+                  other = folder.filePath("a/2024.01.06.log"), out = folder.filePath("out");
+    QByteArray error;
+    QCOMPARE(runExperiment({"baseline", "--log", a, "--log", b, "--out", out}, &error), 1);
+    QVERIFY2(error.contains("expected logs of different names"), error);
+    QVERIFY(!QFile::exists(out));
+    QCOMPARE(runExperiment({"baseline", "--log", a, "--log", other, "--first", "2", "--out", out}), 0);
+    QSet<QByteArray> sets;
+    for (const auto &row : table(out + "/baseline.csv"))
+        sets.insert(row["set"]);
+    QCOMPARE(sets, (QSet<QByteArray>{"2024.01.05", "2024.01.06"}));
 }
 
 QTEST_APPLESS_MAIN(TestOverview)

@@ -96,7 +96,8 @@ void TestRegistrationExperiments::everyPairLiesOnItsEdge() {
         QVERIFY2(pairs.size() >= 6, qPrintable(QString::number(trial)));
         for (const vectorlib::SegmentPair &p : pairs) {
             QVERIFY(p.moving.direction().dot(p.fixed.direction()) > 0.95);
-            QVERIFY(p.fixed.across(p.moving.begin()) < 0.03 && p.fixed.across(p.moving.end()) < 0.03);
+            QVERIFY(std::abs(p.fixed.across(p.moving.begin())) < 0.03 &&
+                    std::abs(p.fixed.across(p.moving.end())) < 0.03);
             QCOMPARE(p.weight, std::min(p.fixed.length(), p.moving.length()));
         }
         if (Pairing(pairing) == Pairing::Extracted)

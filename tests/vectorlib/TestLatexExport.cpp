@@ -60,6 +60,7 @@ private Q_SLOTS:
         QTest::newRow("no exponent") << QByteArray("^a^~") << QByteArray("\\^{}a\\^{}\\~{}");
         QTest::newRow("dashes") << QByteArray("--svg") << QByteArray("-{}-svg");
         QTest::newRow("option of a line's end") << QByteArray("[2pt]") << QByteArray("{[}2pt{]}");
+        QTest::newRow("star of a line's end") << QByteArray("*2") << QByteArray("{*}2");
         QTest::newRow("controls") << QByteArray("a\n\tb\x7f") << QByteArray("a  b ");
         QTest::newRow("letters") << QByteArray("Ko\u0161ice \u00e9") << QByteArray("Ko\u0161ice \u00e9");
         QTest::newRow("signs") << QByteArray("90\u00b0 \u00b1 \u03c3")

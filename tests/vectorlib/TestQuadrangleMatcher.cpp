@@ -17,6 +17,7 @@ private Q_SLOTS:
     void shortEdgesTakeNoPart();
     void findsTheMotionOfARoom();
     void parallelEdgesAreNoMatch();
+    void theOrderOfEdgesCountsNothing();
     void hostileEdgesDoNoHarm();
 };
 
@@ -87,6 +88,19 @@ void TestQuadrangleMatcher::parallelEdgesAreNoMatch() { // the direction of a co
     QCOMPARE(found.pairs.size(), std::size_t(2));
     QCOMPARE(found.pose.x(), expected.x());
     QVERIFY(!match({}, {}, expected).accepted);
+}
+
+void TestQuadrangleMatcher::theOrderOfEdgesCountsNothing() {
+    // Between the first edge and each other 0.12 rad, between those two 0.24: over the 0.17 of skew edges.
+    const auto edge = [](double x, double angle) {
+        return Segment({x, 0}, {x + 4 * std::cos(angle), 4 * std::sin(angle)});
+    };
+    Segments edges{edge(0, 0), edge(10, 0.12), edge(20, -0.12)};
+    QuadrangleMatcher match;
+    for (int order = 0; order < 3; ++order) {
+        QVERIFY2(match(edges, edges, {}).accepted, qPrintable(QString::number(order)));
+        std::rotate(edges.begin(), edges.begin() + 1, edges.end());
+    }
 }
 
 void TestQuadrangleMatcher::hostileEdgesDoNoHarm() {

@@ -46,14 +46,6 @@ ScanPoints pointsOf(const vectorlib::CarmenScan &scan) {
     return points;
 }
 
-double quantile(std::vector<double> values, double share) {
-    if (values.empty())
-        return 0;
-    const auto at = values.begin() + std::ptrdiff_t(double(values.size()) * share);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 std::vector<PairResult> pairsExperiment(const vectorlib::CarmenLog &log, const PairsOptions &options) {
     using Clock = std::chrono::steady_clock;
     const std::vector<std::size_t> pairs = options.pairsOf(log);

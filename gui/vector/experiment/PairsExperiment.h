@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gui/vector/experiment/Quantile.h"
 #include "vectorlib/io/CarmenLog.h"
 #include "vectorlib/mapping/ScanPairMatcher.h"
 
@@ -46,8 +47,6 @@ struct PairResult : LogPair {
 using ScanPoints = std::vector<vectorlib::Vector2D<float>>;
 /// The points of a scan, in its sensor's frame.
 ScanPoints pointsOf(const vectorlib::CarmenScan &scan);
-/// The value below which so much of all lies, in [0, 1); 0 of nothing.
-double quantile(std::vector<double> values, double share);
 
 /// Matches the pairs of a log whose scan poses are a corrected reference, each from the motion that its
 /// odometry tells; nothing of the reference is used but for the errors. A pair without odometry is expected

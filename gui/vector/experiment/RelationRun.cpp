@@ -1,5 +1,6 @@
 #include "gui/vector/experiment/RelationRun.h"
 
+#include "gui/vector/experiment/Quantile.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/relations/LocalMap.h"
 #include "vectorlib/relations/TypedSegmentExtractor.h"
@@ -22,13 +23,6 @@ double mean(const std::vector<double> &values) {
     for (double v : values)
         sum += v;
     return values.empty() ? 0 : sum / double(values.size());
-}
-double median(std::vector<double> values) {
-    if (values.empty())
-        return 0;
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// One run while it goes on.
@@ -102,24 +96,6 @@ Plot errorPlot(const RelationRun &run, const std::string &name, const std::strin
                                                  ? take(run.steps[i])
                                                  : std::numeric_limits<double>::quiet_NaN());
     return {name, title, "scan", unit, false, false, {curve}};
-}
-
-Plot waysPlot(const RelationRun &run) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    Curve map{"map", "#0072b2", {}}, truth{"true way", "#009e73", {}},
-        estimate{"estimated way", "#d55e00", {}};
-    for (const auto &s : run.map) {
-        map.points.emplace_back(s.begin().x, s.begin().y);
-        map.points.emplace_back(s.end().x, s.end().y);
-        map.points.emplace_back(none, none);
-    }
-    for (const RelationStep &step : run.steps) {
-        truth.points.emplace_back(step.truth.x, step.truth.y);
-        estimate.points.emplace_back(step.estimate.x, step.estimate.y);
-    }
-    Plot plot{"ways", "map and ways", "x [m]", "y [m]", false, false, {map, truth, estimate}};
-    plot.isDrawing = true;
-    return plot;
 }
 
 } // namespace
@@ -205,9 +181,22 @@ void writeCsv(std::ostream &out, const RelationRun &run) {
     }
 }
 
+vectorlib::SvgPicture pictureOfWays(const RelationRun &run) {
+    namespace colour = vectorlib::colour;
+    vectorlib::SvgPicture picture("map and ways");
+    picture.segments({colour::map, 1.5, "map"}, run.map);
+    std::vector<vectorlib::Vector2D<double>> truth, estimate;
+    for (const RelationStep &step : run.steps) {
+        truth.emplace_back(step.truth.x, step.truth.y);
+        estimate.emplace_back(step.estimate.x, step.estimate.y);
+    }
+    picture.path({colour::reference, 2, "true way"}, truth);
+    picture.path({colour::estimate, 1.2, "estimated way"}, estimate);
+    return picture;
+}
+
 std::vector<Plot> plotsOf(const RelationRun &run) {
-    return {waysPlot(run),
-            errorPlot(run, "rotation", "rotational error of consecutive scans", "error [deg]",
+    return {errorPlot(run, "rotation", "rotational error of consecutive scans", "error [deg]",
                       [](const RelationStep &s) { return s.error.rotation * degrees; }),
             errorPlot(run, "translation", "translational error of consecutive scans", "error [m]",
                       [](const RelationStep &s) { return s.error.translation; }),

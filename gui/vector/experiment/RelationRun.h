@@ -2,6 +2,7 @@
 
 #include "gui/vector/experiment/Plot.h"
 #include "gui/vector/experiment/RelationScans.h"
+#include "vectorlib/io/Svg.h"
 #include "vectorlib/relations/MatchErrors.h"
 #include "vectorlib/relations/RelationMatcher.h"
 
@@ -48,7 +49,9 @@ RelationRun relationRun(const std::vector<PosedScan> &scans, const RelationRunOp
 /// Shares, mean errors and times, beside what is published for this run (none: an empty object).
 nlohmann::ordered_json summaryOf(const RelationRun &run, const nlohmann::ordered_json &published);
 void writeCsv(std::ostream &out, const RelationRun &run);
-/// Map and ways, the four errors, the error area percentage.
+/// The map in the frame of the first scan, the true and the estimated way.
+vectorlib::SvgPicture pictureOfWays(const RelationRun &run);
+/// The four errors, the error area percentage.
 std::vector<Plot> plotsOf(const RelationRun &run);
 
 } // namespace hermes::vector

@@ -1,6 +1,7 @@
 #include "gui/vector/experiment/VectorizationExperiment.h"
 
 #include "gui/vector/experiment/Algorithms.h"
+#include "gui/vector/experiment/Quantile.h"
 #include "gui/vector/experiment/Timing.h"
 #include "vectorlib/io/Number.h"
 #include "vectorlib/observation/SimulatedScanner.h"
@@ -19,12 +20,6 @@ using Cluster = std::vector<Point>;
 
 constexpr std::size_t pointCounts[] = {200, 500, 1000, 2000, 5000, 10000, 20000};
 constexpr double sceneSigma = 0.02; // metres
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 using Coordinates = vectorlib::EarSettings::Coordinates;
 

@@ -5,12 +5,9 @@
 #include "gui/vector/Input.h"
 #include "gui/vector/InstalledWorlds.h"
 
-#include <filesystem>
 #include <map>
 
 namespace hermes::vector {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -41,13 +38,7 @@ const std::map<std::string, KnownWorld> known = {
 } // namespace
 
 ReportWorld findWorld(const std::string &name) {
-    fs::path path = fs::u8path(name);
-    std::error_code error;
-    if (!fs::exists(path, error) && !path.has_parent_path() && name != "-")
-        if (const fs::path installed = installedWorlds() / fs::u8path(name + ".json");
-            fs::exists(installed, error))
-            path = installed;
-    Input input(path.u8string());
+    Input input(worldFile(name));
     World world = valueOrFail(parseWorld(input.readAll(), input.name()));
     if (world.poses.size() < 2)
         throw Failure(input.name() + ": found " + std::to_string(world.poses.size()) +

@@ -11,7 +11,7 @@ struct QuadrangleMatch {
     Transformation2D pose; ///< moves the dynamic set onto the static one; the expected one where not accepted
     std::vector<CorrespondencePair> pairs;
     double criterion = 0;  ///< at the pose; m^4
-    bool accepted = false; ///< two pairs that are skew: else a direction is open
+    bool accepted = false; ///< any two pairs are skew: else a direction is open
 };
 
 /// The matcher of overview paper 2.2 as a whole, kept as a baseline: OverlapSelection, then the least sum of
@@ -51,11 +51,13 @@ private:
     const LineSegment2D<double> &fixedOf(const CorrespondencePair &pair) const {
         return fixed_[static_cast<std::size_t>(pair.fixed)];
     }
+    Vector2D<double> directionOf(std::size_t pair) const { return fixedOf(match_.pairs[pair]).direction(); }
     bool areSkew() const {
         const double sine = std::sin(skew);
-        for (const CorrespondencePair &pair : match_.pairs)
-            if (std::abs(fixedOf(match_.pairs.front()).direction().cross(fixedOf(pair).direction())) >= sine)
-                return true;
+        for (std::size_t i = 0; i < match_.pairs.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                if (std::abs(directionOf(i).cross(directionOf(j))) >= sine)
+                    return true;
         return false;
     }
 

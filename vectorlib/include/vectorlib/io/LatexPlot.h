@@ -3,6 +3,8 @@
 #include "vectorlib/io/LatexPicture.h"
 #include "vectorlib/io/Plot.h"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 
 namespace vectorlib {
@@ -21,6 +23,33 @@ inline void writeCoordinates(std::ostream &out, const Plot &plot,
             out << "\n(nan,nan)"; // interrupts: unbounded coords=jump
     }
     out << '}';
+}
+
+/// A curve of more points than TeX has memory for: of each 1 / 400 of them, in order, the lowest and the
+/// highest, and a break where there is one.
+inline std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<double, double>> &points) {
+    constexpr std::size_t most = 1200, parts = 400;
+    if (points.size() <= most)
+        return points;
+    std::vector<std::pair<double, double>> kept;
+    for (std::size_t part = 0; part < parts; ++part) {
+        const std::size_t begin = part * points.size() / parts, end = (part + 1) * points.size() / parts;
+        std::size_t low = end, high = end, gap = end;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!std::isfinite(points[i].first + points[i].second)) {
+                gap = i;
+                continue;
+            }
+            low = low == end || points[i].second < points[low].second ? i : low;
+            high = high == end || points[i].second > points[high].second ? i : high;
+        }
+        std::array<std::size_t, 3> of{low, high, gap};
+        std::sort(of.begin(), of.end());
+        for (std::size_t i = 0; i < of.size(); ++i)
+            if (of[i] != end && (i == 0 || of[i] != of[i - 1]))
+                kept.push_back(points[of[i]]);
+    }
+    return kept;
 }
 
 /// The box of all points that a plot shows; nothing when there is none.
@@ -79,7 +108,7 @@ inline void writeCurve(std::ostream &out, const Plot &plot, const Curve &curve) 
     out << "\\addplot[color=" << colour(curve.colour)
         << (plot.isDrawing ? ", line width=0.6pt" : ", mark=*, mark size=1pt, thick")
         << (curve.label.empty() ? ", forget plot]" : "]");
-    writeCoordinates(out, plot, curve.points);
+    writeCoordinates(out, plot, plot.isDrawing ? curve.points : thinned(curve.points));
     out << ";\n";
     if (!curve.label.empty())
         out << "\\addlegendentry{" << latexText(curve.label) << "}\n";

@@ -77,7 +77,7 @@ inline std::string plain(char c, char next) {
         return std::string("\\") + c + "{}";
     if (std::string("#$%&_{}").find(c) != std::string::npos)
         return std::string("\\") + c;
-    if (c == '[' || c == ']') // else an option where it follows a command, as the end of a line
+    if (c == '[' || c == ']' || c == '*') // else an option where it follows a command, as the end of a line
         return std::string("{") + c + '}';
     if (static_cast<unsigned char>(c) < ' ' || c == 127)
         return " ";

@@ -51,7 +51,8 @@ private:
         origin_ = whole.low;
         scale_ = std::min(mostWide / size.x, mostHigh / size.y);
         plot_ = size * scale_;
-        width_ = std::max(left + plot_.x + right, 480.0);
+        width_ = std::max(
+            {left + plot_.x + right, 480.0, left + 8.5 * static_cast<double>(title().size()) + right});
         top_ = 34 + rowHeight * static_cast<double>(legendRows());
         height_ = top_ + plot_.y + bottom;
         step_ = gridStep();
