@@ -17,7 +17,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double shortestEdge = 1e-6; // metres
-constexpr double fastestPerson = 10;  // m/s
+constexpr double farthest = 1e7; // metres from the origin; beyond, products of coordinates lose all meaning
+constexpr double fastestPerson = 10; // m/s
 
 /// What is wrong, and in which line; 0 where no line can be told.
 struct Fault {
@@ -113,6 +114,8 @@ std::vector<std::vector<double>> rows(const Document &document, const std::strin
             if (!number.is_number())
                 refuse(number.is_null() ? "null (there is no NaN or infinity in a world)" : number.dump());
             result.back().push_back(number.get<double>());
+            if (!(std::abs(result.back().back()) <= farthest))
+                refuse(number.dump() + ", over 1e7");
         }
     }
     return result;

@@ -118,6 +118,9 @@ private:
     std::vector<World> allWorlds() const;
     vectorlib::CarmenLog readLog() const;
     static vectorlib::CarmenLog readLog(const std::string &file);
+    /// A log to take pairs of scans from, each N-th with its next N-th. Throws Failure where there is no
+    /// pair.
+    vectorlib::CarmenLog readPairs(const std::string &file, const PairsOptions &of) const;
     /// What each log is called in tables, pictures and names of files: its own name without endings and with
     /// "-" for all that is no ASCII letter, digit or point. Throws Failure where two are called alike.
     static std::vector<std::string> setNames(const std::vector<std::string> &files);

@@ -49,10 +49,19 @@ vectorlib::CarmenLog ExperimentCommand::readLog() const {
 }
 
 vectorlib::CarmenLog ExperimentCommand::readLog(const std::string &file) {
-    if (isCapture(file))
-        throw Failure(file + ": found a capture, this experiment needs a CARMEN log");
     Input input(file);
+    if (input.isCapture())
+        throw Failure(file + ": found a capture, this experiment needs a CARMEN log");
     return valueOrFail(vectorlib::readCarmenLog(input.stream(), input.name()));
+}
+
+vectorlib::CarmenLog ExperimentCommand::readPairs(const std::string &file, const PairsOptions &of) const {
+    vectorlib::CarmenLog log = readLog(file);
+    if (of.pairsOf(log).empty())
+        throw Failure(file + ": found " + std::to_string(log.scans.size()) + " scans and among them no pair" +
+                      (of.half == PairHalf::Both ? "" : " of this half") + ", expected more than --every " +
+                      std::to_string(of.every));
+    return log;
 }
 
 std::vector<std::string> ExperimentCommand::setNames(const std::vector<std::string> &files) {
@@ -85,7 +94,8 @@ void ExperimentCommand::draw(OutputSet &files, const Figures &figures, const std
     document.finish();
     bool drawn = true;
     for (const Plot &plot : figures.plots)
-        drawn = drawn && draw(files, suffix, plot);
+        if (vectorlib::latex::boxOf(plot)) // else there is nothing to show, as the document says
+            drawn = drawn && draw(files, suffix, plot);
     for (const Surface &surface : figures.surfaces)
         drawn = drawn && draw(files, suffix, surface);
     for (const SpacePlot &space : figures.spaces)

@@ -14,7 +14,9 @@
 namespace hermes::vector {
 
 void ExperimentCommand::pairs(OutputSet &files, std::ostream &csv) const {
-    const vectorlib::CarmenLog read = readLog();
+    if (logs.size() != 1)
+        readLog(); // tells what is missing
+    const vectorlib::CarmenLog read = readPairs(logs[0], pairOptions);
     if (noGuess)
         pairs(files, csv, read, globalPairsExperiment(read, pairOptions),
               [](const GlobalPairResult &pair) { return pair.best(); });
@@ -42,7 +44,7 @@ void ExperimentCommand::calibration(OutputSet &files, std::ostream &csv) const {
     for (std::size_t i = 0; i < logs.size(); ++i) {
         PairsOptions of = pairOptions;
         of.every = every[std::min(i, every.size() - 1)];
-        for (GlobalPairResult &pair : globalPairsExperiment(readLog(logs[i]), of))
+        for (GlobalPairResult &pair : globalPairsExperiment(readPairs(logs[i], of), of))
             results.push_back(std::move(pair));
     }
     const Calibration found = calibrationOf(results);

@@ -21,7 +21,7 @@ void ExperimentCommand::baseline(OutputSet &files, std::ostream &csv) const {
     std::vector<BaselineSet> sets;
     const std::vector<std::string> names = setNames(logs);
     for (std::size_t i = 0; i < logs.size(); ++i)
-        sets.push_back(baselineSet(names[i], readLog(logs[i]), pairOptions));
+        sets.push_back(baselineSet(names[i], readPairs(logs[i], pairOptions), pairOptions));
     if (logs.empty())
         for (const char *place : {"laboratory", "corridor", "pillars"})
             sets.push_back(baselineSet(world(place), options.seed));

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <filesystem>
+#include <string_view>
 
 namespace hermes::vector {
 
@@ -26,6 +26,13 @@ public:
     ~Buffer() override { gzclose(file_); }
     Buffer(const Buffer &) = delete;
     Buffer &operator=(const Buffer &) = delete;
+
+    /// The first bytes, which are not read by that; only before anything is.
+    std::string_view begin() {
+        if (gptr() == egptr())
+            underflow();
+        return {gptr(), std::size_t(egptr() - gptr())};
+    }
 
 protected:
     int_type underflow() override {
@@ -77,6 +84,18 @@ Input::Input(const std::string &path)
 
 Input::~Input() = default;
 
+bool Input::isCapture() {
+    // pcap in both byte orders, with microseconds or nanoseconds, and pcapng.
+    constexpr std::string_view known[] = {"\xa1\xb2\xc3\xd4", "\xd4\xc3\xb2\xa1", "\xa1\xb2\x3c\x4d",
+                                          "\x4d\x3c\xb2\xa1", "\x0a\x0d\x0d\x0a"};
+    try {
+        const std::string_view magic = buffer_->begin().substr(0, 4);
+        return std::find(std::begin(known), std::end(known), magic) != std::end(known);
+    } catch (const Failure &) {
+        return false; // damaged from the beginning, which is told where it is read
+    }
+}
+
 std::string Input::readAll(std::size_t limit) {
     std::string text;
     std::array<char, 1 << 16> block;
@@ -98,23 +117,6 @@ bool hasExtension(const std::string &path, const std::string &extension) {
     if (endsWith(lower, ".gz"))
         lower.resize(lower.size() - 3);
     return endsWith(lower, extension);
-}
-
-bool isCapture(const std::string &path) {
-    if (path == "-")
-        return false;
-    Input input(path);
-    unsigned char magic[4] = {};
-    input.stream().read(reinterpret_cast<char *>(magic), sizeof magic);
-    // pcap in both byte orders, with microseconds or nanoseconds, and pcapng.
-    constexpr unsigned char known[][4] = {{0xa1, 0xb2, 0xc3, 0xd4},
-                                          {0xd4, 0xc3, 0xb2, 0xa1},
-                                          {0xa1, 0xb2, 0x3c, 0x4d},
-                                          {0x4d, 0x3c, 0xb2, 0xa1},
-                                          {0x0a, 0x0d, 0x0d, 0x0a}};
-    return input.stream().gcount() == 4 &&
-           std::any_of(std::begin(known), std::end(known),
-                       [&](const auto &k) { return std::memcmp(k, magic, sizeof magic) == 0; });
 }
 
 } // namespace hermes::vector

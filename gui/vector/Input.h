@@ -18,6 +18,9 @@ public:
     std::istream &stream() { return stream_; }
     /// How messages call it.
     const std::string &name() const { return name_; }
+    /// Whether it begins like a pcap or pcapng capture, plain or compressed. Asked before anything is read,
+    /// and reads nothing: a pipe can be read only once.
+    bool isCapture();
     /// Everything that is left, as one text; throws Failure over `limit` bytes.
     std::string readAll(std::size_t limit = std::size_t(256) << 20);
 
@@ -31,8 +34,5 @@ private:
 /// Whether the path ends with the extension (with dot, lower case), a further .gz left aside; case does not
 /// matter.
 bool hasExtension(const std::string &path, const std::string &extension);
-
-/// Whether the file begins like a pcap or pcapng capture, plain or compressed. False for standard input.
-bool isCapture(const std::string &path);
 
 } // namespace hermes::vector

@@ -66,12 +66,11 @@ void SensorOptions::addTo(CLI::App &sub) {
         ->type_name("ADDRESS");
 }
 
-LidarCapture::LidarCapture(const std::string &path, const SensorOptions &options, velodyne::Model model)
-    : path_(path)
+LidarCapture::LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model)
+    : name_(input.name())
     , options_(options)
-    , file_(path)
     , stream_(streamOf(options, model)) {
-    if (const Outcome<void> opened = reader_.open(file_.stream(), file_.name()); !opened)
+    if (const Outcome<void> opened = reader_.open(input.stream(), name_); !opened)
         throw Failure(opened.error());
 }
 
@@ -94,14 +93,14 @@ std::string LidarCapture::notice(const velodyne::PacketCounts &counts) const {
     const SensorChoice &choice = stream_.sensors();
     if (const SensorChoice::Sensor *taken = choice.taken())
         return choice.sensors().size() == 1 ? std::string()
-                                            : path_ + ": read " + withCount(*taken) + ", not " +
+                                            : name_ + ": read " + withCount(*taken) + ", not " +
                                                   listOthers(choice) + "; --port and --sender choose";
     if (!choice.sensors().empty())
-        throw Failure(path_ + ": found data packets of " + listOthers(choice) + " only, expected some" +
+        throw Failure(name_ + ": found data packets of " + listOthers(choice) + " only, expected some" +
                       (options_.port ? " to port " + std::to_string(*options_.port) : "") +
                       (options_.sender.empty() ? "" : " from " + options_.sender));
     throw Failure(
-        path_ + ": found " +
+        name_ + ": found " +
         (counts.otherModel > 0 ? "only packets of another sensor or return mode" : "no data packet") +
         ", expected those of an " + velodyne::sensorNames() +
         ": UDP datagrams of 1206 bytes whose blocks begin with FF EE");

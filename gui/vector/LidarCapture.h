@@ -21,9 +21,9 @@ struct SensorOptions {
 /// The data packets of one sensor in a capture, whatever port they went to.
 class LidarCapture {
 public:
-    /// model: the sensor's; Blank for any. Throws Failure when the file is no capture that can be read.
-    LidarCapture(const std::string &path, const SensorOptions &options,
-                 velodyne::Model model = velodyne::Model::Blank);
+    /// input: to be kept while this is used. model: the sensor's; Blank for any. Throws Failure when it is no
+    /// capture that can be read.
+    LidarCapture(Input &input, const SensorOptions &options, velodyne::Model model = velodyne::Model::Blank);
 
     /// Feeds all of them to an assembler and lets the sensor's position packets tell the hour; progress gets
     /// the number of records read. Gives a message about who else sent data packets, or nothing. Throws
@@ -35,9 +35,8 @@ public:
 private:
     std::string notice(const velodyne::PacketCounts &counts) const;
 
-    std::string path_;
+    std::string name_;
     SensorOptions options_;
-    Input file_;
     PcapReader reader_;
     LidarStream stream_;
 };

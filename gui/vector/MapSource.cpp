@@ -14,8 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-MapSourceReport readLog(const MapSourceOptions &options, const MapScanSink &sink) {
-    Input input(options.path);
+MapSourceReport readLog(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
     const auto kind =
         options.corrected ? vectorlib::CarmenOdometryKind::Corrected : vectorlib::CarmenOdometryKind::Raw;
     const vectorlib::CarmenLog log =
@@ -63,7 +62,7 @@ void takeTurn(const velodyne::Turn &turn, MapScan &scan) {
     scan.fault = turn.partial ? MapScan::Fault::Partial : MapScan::Fault::None;
 }
 
-MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &sink) {
+MapSourceReport readCapture(Input &input, const MapSourceOptions &options, const MapScanSink &sink) {
     MapScan scan;
     std::size_t turns = 0;
     velodyne::TurnAssembler assembler({}, [&](const velodyne::Turn &turn) {
@@ -73,7 +72,7 @@ MapSourceReport readCapture(const MapSourceOptions &options, const MapScanSink &
         sink(scan, (turns - 1) / options.every, 0);
     });
     MapSourceReport report;
-    report.otherSensors = LidarCapture(options.path, options.sensor).read(assembler);
+    report.otherSensors = LidarCapture(input, options.sensor).read(assembler);
     return report;
 }
 
@@ -103,7 +102,8 @@ MapSourceReport readAny(const MapSourceOptions &options, const MapScanSink &sink
     std::error_code ignored;
     if (fs::is_directory(fs::u8path(options.path), ignored))
         return readFolder(options, sink);
-    return isCapture(options.path) ? readCapture(options, sink) : readLog(options, sink);
+    Input input(options.path);
+    return input.isCapture() ? readCapture(input, options, sink) : readLog(input, options, sink);
 }
 
 } // namespace

@@ -124,6 +124,8 @@ OutputSet::~OutputSet() {
 }
 
 void OutputSet::makeFolder(const std::string &path) {
+    if (path.empty())
+        throw Failure("--out: found an empty name, expected a folder");
     std::error_code error;
     fs::path whole;
     for (const fs::path &part : absolutePath(path)) {

@@ -27,7 +27,7 @@ std::vector<vectorlib::Vector2D<double>> loadPoints(const std::string &path) {
 }
 
 std::string readScanText(Input &input, const std::string &path) {
-    if (isCapture(path))
+    if (input.isCapture())
         refuse(path, "capture");
     std::string text = input.readAll();
     for (const std::string word : {"FLASER ", "ROBOTLASER1 "})

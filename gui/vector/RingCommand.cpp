@@ -35,7 +35,8 @@ struct RingCommand {
     void run() const {
         OutputSet files(output.force);
         std::ostream &out = files.open(output.out);
-        LidarCapture capture(in, sensor, velodyne::modelFromText(model));
+        Input input(in);
+        LidarCapture capture(input, sensor, velodyne::modelFromText(model));
         velodyne::TurnAssembler::Options options;
         options.laser = all ? velodyne::PacketDecoder::allLasers : laser;
         options.model = velodyne::modelFromText(model);

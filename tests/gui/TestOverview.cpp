@@ -18,6 +18,7 @@ private Q_SLOTS:
     void baselineTakesLogs();
     void namesOfLogsHarmNothing();
     void logsOfOneNameAreRefused();
+    void figuresOfNothingAreRefused();
 };
 
 void TestOverview::badOdometryIsCorrected() { // overview figure 2
@@ -92,6 +93,29 @@ void TestOverview::namesOfLogsHarmNothing() {
     hermes::vector::writeGnuplot(script, plot);
     QVERIFY(script.str().find("title 'it''s ''; system(''x'')'\n") != std::string::npos);
     QVERIFY(script.str().find("title 'o''clock'\n") != std::string::npos);
+}
+
+void TestOverview::figuresOfNothingAreRefused() {
+    QTemporaryDir folder;
+    const QString log = TEST_DATA_DIR "/vector/corrected.log", out = folder.filePath("out");
+    for (const char *name : {"baseline", "pairs", "calibration"}) {
+        QByteArray error;
+        QCOMPARE(runExperiment({name, "--log", log, "--every", "100000", "--out", out}, &error), 1);
+        QVERIFY2(error.contains("no pair"), error);
+        QVERIFY(!QFile::exists(out));
+    }
+    // Of a log of one scan there are no errors, and no plots of them.
+    QFile all(log), one(folder.filePath("one.log"));
+    QVERIFY(all.open(QIODevice::ReadOnly) && one.open(QIODevice::WriteOnly));
+    for (QByteArray line = all.readLine(); !line.isEmpty(); line = all.readLine()) {
+        one.write(line);
+        if (line.startsWith("FLASER"))
+            break;
+    }
+    one.close();
+    QCOMPARE(runExperiment({"free-log", "--log", one.fileName(), "--out", out}), 0);
+    QVERIFY(lines(out + "/free-log.json").contains("  \"mean_error_m\": null,"));
+    QVERIFY(QFile::exists(out + "/free-log-ways.svg") && !QFile::exists(out + "/free-log-translation.svg"));
 }
 
 void TestOverview::logsOfOneNameAreRefused() {

@@ -57,6 +57,39 @@ private Q_SLOTS:
         QCOMPARE(json(map.out)["scans"].toInt(), 3);
     }
 
+    // A pipe can be read only once: what tells its kind must not be lost.
+    void pipesAreReadFromTheirBeginning_data() {
+        QTest::addColumn<QStringList>("arguments");
+        QTest::addColumn<QString>("file");
+        QTest::newRow("points") << QStringList{"segment", "FILE"} << QString(data("room.csv"));
+        QTest::newRow("log") << QStringList{"map", "FILE",      "--corrected", "--out-trajectory",
+                                            "-",   "--summary", path("s")}
+                             << QString(data("corrected.log"));
+        QTest::newRow("capture") << QStringList{"ring", "FILE"} << path("capture.pcap");
+        QTest::newRow("capture to map")
+            << QStringList{"map", "FILE", "--out-trajectory", "-", "--summary", path("s")}
+            << path("capture.pcap");
+    }
+    void pipesAreReadFromTheirBeginning() {
+        QFETCH(QStringList, arguments);
+        QFETCH(QString, file);
+        writeCapture(path("capture.pcap"), 800);
+        QFile content(file);
+        QVERIFY(content.open(QIODevice::ReadOnly));
+        const QByteArray bytes = content.readAll();
+        const auto of = [&](const QString &name) {
+            QFile::remove(path("s"));
+            return run(QStringList(arguments).replaceInStrings("FILE", name), bytes);
+        };
+        const Result whole = of(file);
+        QVERIFY2(whole.status == 0 && whole.out.count('\n') > 10, whole.err);
+        for (const char *pipe : {"-", "/dev/stdin"}) {
+            const Result piped = of(pipe);
+            QVERIFY2(piped.status == 0, piped.err);
+            QVERIFY2(piped.out == whole.out, pipe);
+        }
+    }
+
     void oneSensorOfSeveralIsTaken_data() {
         QTest::addColumn<QStringList>("options");
         QTest::addColumn<double>("range");

@@ -135,23 +135,25 @@ nlohmann::ordered_json summaryOf(const RelationRun &run, const nlohmann::ordered
     const auto turns = ofMatched(run, [](const RelationStep &s) { return s.error.rotation * degrees; });
     const auto times = ofMatched(run, [](const RelationStep &s) { return s.microseconds; });
     const auto percents = ofMatched(run, [](const RelationStep &s) { return s.area.percent(); });
-    const auto most = [](const std::vector<double> &v) {
-        return v.empty() ? 0 : *std::max_element(v.begin(), v.end());
+    const auto most = [](const std::vector<double> &v) { return *std::max_element(v.begin(), v.end()); };
+    // Of no scan that matched there is no error: null.
+    const auto told = [](const std::vector<double> &v, auto take) {
+        return v.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(take(v));
     };
     nlohmann::ordered_json result = {{"scans", run.steps.size()},
                                      {"length_m", run.length},
                                      {"matched", times.size()},
                                      {"lost", run.lost()},
                                      {"wrong", run.wrong()},
-                                     {"mean_error_m", mean(metres)},
-                                     {"median_error_m", median(metres)},
-                                     {"largest_error_m", most(metres)},
-                                     {"mean_error_deg", mean(turns)},
-                                     {"median_error_deg", median(turns)},
-                                     {"largest_error_deg", most(turns)},
-                                     {"mean_error_area_percent", mean(percents)},
-                                     {"median_us", median(times)},
-                                     {"mean_us", mean(times)},
+                                     {"mean_error_m", told(metres, mean)},
+                                     {"median_error_m", told(metres, median)},
+                                     {"largest_error_m", told(metres, most)},
+                                     {"mean_error_deg", told(turns, mean)},
+                                     {"median_error_deg", told(turns, median)},
+                                     {"largest_error_deg", told(turns, most)},
+                                     {"mean_error_area_percent", told(percents, mean)},
+                                     {"median_us", told(times, median)},
+                                     {"mean_us", told(times, mean)},
                                      {"map_segments", run.map.size()}};
     if (!run.steps.empty()) {
         const RelationStep &last = run.steps.back();
