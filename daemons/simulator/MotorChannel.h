@@ -76,9 +76,8 @@ public:
     /// Since it was asked last the counter of 32 bits ran below 0 (1), over its end (4), both (5).
     int takeWraps() { return std::exchange(wraps_, 0); }
     double duty() const { return duty_; }
-    double current() const {
-        return current_;
-    } ///< A; signed as the torque: against the duty while it feeds back
+    /// A; signed as the torque: against the duty while it feeds back.
+    double current() const { return current_; }
     bool isLimited() const { return limited_; } ///< by the limit of the current
     bool isDriven() const { return mode_ == Mode::Speed ? setpoint_ != 0 || target_ != 0 : target_ != 0; }
     /// As command 47: stretches that wait; 0 while the last one runs, 0x80 when there is none.
