@@ -11,6 +11,8 @@
 namespace hermes::motorcontrol {
 namespace {
 
+constexpr double rounding_v = 1e-9; // of differences of decimal fractions
+
 Field positive(const char *name, const char *description, const char *unit, double least, double most,
                double initial) {
     return Field::number(name, description).unit(unit).range(least, most).byDefault(initial);
@@ -177,7 +179,7 @@ std::vector<SchemaViolation> checkMotorSettings(const QJsonObject &settings) {
     }
     require(number("faults.battery_v") <= number("faults.battery_warning_v"), "faults.battery_v",
             "at most faults.battery_warning_v");
-    require(number("battery.full_v") >= number("battery.empty_v") + 0.1, "battery.full_v",
+    require(number("battery.full_v") - number("battery.empty_v") >= 0.1 - rounding_v, "battery.full_v",
             "at least 0.1 V more than battery.empty_v");
     require(number("faults.current_a") >= number("faults.current_warning_a"), "faults.current_a",
             "at least faults.current_warning_a");

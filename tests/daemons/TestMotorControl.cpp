@@ -36,6 +36,7 @@ private Q_SLOTS:
     void shutdownStops();
     void settingsAreCheckedAgainstEachOther_data();
     void settingsAreCheckedAgainstEachOther();
+    void aTenthOfAVoltIsEnough();
 };
 
 void TestMotorControl::setsTheControllersUp() {
@@ -327,6 +328,18 @@ void TestMotorControl::settingsAreCheckedAgainstEachOther() {
     QVERIFY(!result.ok());
     QVERIFY(result.error().is(ErrorCode::InvalidSetting));
     QCOMPARE(result.error().data["errors"].toArray().first().toObject()["path"].toString(), path);
+}
+
+void TestMotorControl::aTenthOfAVoltIsEnough() {
+    MotorControl daemon;
+    const auto set = [&](double empty_v, double full_v) {
+        const QJsonObject battery{{"empty_v", empty_v}, {"full_v", full_v}};
+        return daemon.settings().set({{"battery", battery}}).ok();
+    };
+    for (int tenths = 10; tenths < 599; ++tenths)
+        QVERIFY2(set(tenths / 10.0, (tenths + 1) / 10.0), qPrintable(QString::number(tenths)));
+    QVERIFY(!set(24.8, 24.89));
+    QVERIFY(!set(24.8, 24.8));
 }
 
 QTEST_GUILESS_MAIN(TestMotorControl)
