@@ -13,16 +13,17 @@ constexpr double restDeviation = 0.1; // of the charge by the voltage, beside th
 constexpr double settlingDeviation = 0.1;
 constexpr double correction_s = 60;     // time constant with which a rest corrects the count
 constexpr double countDeviation = 0.1;  // share of what was counted
-constexpr double smoothing_s = 60;      // of the current that the time left is told for
+constexpr double smoothing_s = 60;      // of the motors' current that the time left is told for
 constexpr double steady_s = 1;          // between two readings; in a longer gap all may have happened
 constexpr double forgetTime_s = 60;     // without a reading: it may be another battery
 constexpr double unseenPerHour = 0.5;   // share of the capacity that may have been drawn unseen
 constexpr double otherBattery = 2.5;    // standard deviations
 constexpr double longest_s = 48 * 3600; // more is not told
-
-bool isPlausible(const BatteryReading &reading) {
-    return std::isfinite(reading.voltage) && reading.voltage > 0 && std::isfinite(reading.motors_a);
-}
+constexpr double bearable_v = 34;       // data sheet of the RoboClaw 2x45A; others bear more
+constexpr double overFull = 1.25;       // times the voltage of the full battery: no charger goes beyond
+constexpr double agreement_v = 1;       // between two controllers: their errors, and what is lost in cables
+constexpr double resolution_v = 0.1;    // of a controller
+constexpr double differing_s = 1;       // so long they may differ: they are not read at the same time
 
 } // namespace
 
@@ -36,33 +37,44 @@ void BatteryGauge::configure(const Settings &settings) {
 
 void BatteryGauge::forget() {
     charge_.reset();
-    current_.reset();
+    motors_a_.reset();
     rested_s_ = 0;
 }
 
-void BatteryGauge::take(double now, const std::optional<BatteryReading> &reading) {
+QString BatteryGauge::faultOf(const BatteryReading &reading, double seconds) {
+    const auto [first, second] = reading.voltages;
+    const double most = std::max(bearable_v, overFull * settings_.full_v);
+    const auto isPossible = [most](double voltage) { return voltage > 0 && voltage <= most; };
+    const QString told = QString("controller 1 tells %1 V, controller 2 %2 V").arg(first).arg(second);
+    if (!isPossible(first) || !isPossible(second))
+        return told + QString(": expected more than 0 V, at most %1 V").arg(most);
+    const bool differ = std::abs(first - second) > agreement_v + resolution_v / 2;
+    differing_s_ = differ ? differing_s_ + seconds : 0;
+    if (differing_s_ > differing_s)
+        return told + QString(": expected at most %1 V between them").arg(agreement_v);
+    return std::isfinite(reading.motors_a) ? QString()
+                                           : QString("a controller tells %1 A").arg(reading.motors_a);
+}
+
+void BatteryGauge::take(double now, const Result<BatteryReading> &reading) {
     const double seconds = last_ ? std::max(0.0, now - *last_) : 0;
     last_ = now;
     unseen_s_ += seconds;
-    if (!reading || !isPlausible(*reading)) {
-        missing_ =
-            reading ? QString("a controller tells %1 V and %2 A").arg(reading->voltage).arg(reading->motors_a)
-                    : QString("no controller tells voltage and current");
+    missing_ = reading ? faultOf(*reading, seconds) : reading.error().message;
+    if (!missing_.isEmpty()) {
         rested_s_ = 0;
         return tell();
     }
-    missing_.clear();
     if (unseen_s_ > forgetTime_s)
         forget();
-    const double current = settings_.idle_a + std::max(0.0, reading->motors_a);
-    const double share = current_ ? 1 - std::exp(-unseen_s_ / smoothing_s) : 1;
-    current_ = current_.value_or(0) + share * (current - current_.value_or(0));
-    const bool rests = std::abs(reading->motors_a) < restCurrent;
+    const double motors_a = std::max(0.0, reading->motors_a), past_a = motors_a_.value_or(motors_a);
+    motors_a_ = past_a + (1 - std::exp(-unseen_s_ / smoothing_s)) * (motors_a - past_a);
+    const bool rests = std::abs(reading->motors_a) < restCurrent && differing_s_ == 0;
     rested_s_ = rests && unseen_s_ < steady_s ? rested_s_ + unseen_s_ : 0;
     if (charge_)
-        count(current, unseen_s_);
+        count(settings_.idle_a + motors_a, unseen_s_);
     if (rests && rested_s_ >= restTime_s)
-        correct(reading->voltage, unseen_s_);
+        correct(std::min(reading->voltages[0], reading->voltages[1]), unseen_s_);
     unseen_s_ = 0;
     tell();
 }
@@ -96,16 +108,17 @@ void BatteryGauge::tell() {
     state_.reason = missing_;
     if (!missing_.isEmpty())
         return;
-    state_.current_a = current_;
+    const double current = settings_.idle_a + *motors_a_;
+    state_.current_a = current;
     if (!charge_) {
         state_.reason = QString("the motors must rest for %1 s first").arg(restTime_s);
         return;
     }
     state_.charge = charge_->mean;
     state_.chargeDeviation = charge_->deviation;
-    const auto lasts = [this](double charge) {
+    const auto lasts = [&](double charge) {
         const double usable_Ah = std::max(0.0, charge - settings_.reserve) * settings_.capacity_Ah;
-        return *current_ * longest_s > usable_Ah * 3600 ? usable_Ah * 3600 / *current_ : longest_s;
+        return current * longest_s > usable_Ah * 3600 ? usable_Ah * 3600 / current : longest_s;
     };
     state_.left_s = lasts(charge_->mean);
     state_.leftLeast_s = lasts(charge_->mean - charge_->deviation);

@@ -1,18 +1,20 @@
 #pragma once
 
+#include "common/Result.h"
 #include "protocol/messages/Motors.h"
 
 namespace hermes::motorcontrol {
 
 /// What is measured of the battery at one time. Not measured: what computers and sensors draw.
 struct BatteryReading {
-    double voltage = 0;  ///< V, at the controllers
-    double motors_a = 0; ///< what the bridges of all motors take from the battery
+    std::array<double, 2> voltages{}; ///< V, at each controller
+    double motors_a = 0;              ///< what the bridges of all motors take from the battery
 };
 
 /// How much charge a battery holds, and how long that lasts (thesis 4.1.2: an hour of operation). While the
 /// motors rest the voltage tells the charge, roughly; from there on the currents are counted, and each rest
-/// corrects the count slowly. Both are known with a standard deviation only, and so is what they tell.
+/// corrects the count slowly. Both are known with a standard deviation only, and so is what they tell. Of two
+/// voltages the lower one counts, and none where they cannot both be true.
 class BatteryGauge {
 public:
     struct Settings {
@@ -24,9 +26,12 @@ public:
 
     /// What is known of the charge is forgotten where these are those of another battery.
     void configure(const Settings &settings);
-    /// now: seconds of a clock that never jumps; nothing where no controller tells the readings.
-    void take(double now, const std::optional<BatteryReading> &reading);
+    /// now: seconds of a clock that never jumps and goes on while the machine sleeps. An error where there is
+    /// no reading says why.
+    void take(double now, const Result<BatteryReading> &reading);
     const BatteryState &state() const { return state_; }
+    /// Why there is no reading that can be true; empty when there is one.
+    const QString &missing() const { return missing_; }
 
 private:
     struct Estimate {
@@ -34,17 +39,19 @@ private:
     };
 
     void forget();
+    QString faultOf(const BatteryReading &reading, double seconds);
     void count(double current, double seconds);
     void correct(double voltage, double seconds);
     void tell();
 
     Settings settings_;
     std::optional<Estimate> charge_;
-    std::optional<double> last_;    ///< time of the last call
-    std::optional<double> current_; ///< A, smoothed
+    std::optional<double> last_;     ///< time of the last call
+    std::optional<double> motors_a_; ///< smoothed
     double rested_s_ = 0;
-    double unseen_s_ = 0; ///< since the last reading
-    QString missing_;     ///< why there is no reading
+    double differing_s_ = 0; ///< since the voltages agreed
+    double unseen_s_ = 0;    ///< since the last reading
+    QString missing_;
     BatteryState state_;
 };
 

@@ -2,11 +2,20 @@
 
 #include "protocol/roboclaw/Status.h"
 
+#include <algorithm>
+
 namespace hermes::motorcontrol {
 
 using roboclaw::Command;
 
-constexpr double fullDuty = 32767;
+namespace {
+
+// Full duty is 32767; a controller that tells -32768 means the same.
+double dutyOf(std::int64_t pwm) {
+    return std::clamp(double(pwm) / 32767, -1.0, 1.0);
+}
+
+} // namespace
 
 void ControllerReadings::takeSlow(int slow, const roboclaw::Bus::Outcome &outcome) {
     const roboclaw::Reply &reply = outcome.reply;
@@ -18,7 +27,7 @@ void ControllerReadings::takeSlow(int slow, const roboclaw::Bus::Outcome &outcom
         current_a = {double(reply[0]) / 100, double(reply[1]) / 100};
         break;
     case Command::ReadPwm:
-        duty = {double(reply[0]) / fullDuty, double(reply[1]) / fullDuty};
+        duty = {dutyOf(reply[0]), dutyOf(reply[1])};
         break;
     case Command::ReadMainBattery:
         battery_v = double(reply[0]) / 10;

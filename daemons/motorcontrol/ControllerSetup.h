@@ -6,7 +6,7 @@
 namespace hermes::motorcontrol {
 
 /// What a controller is told and asked before it may drive: its version, the serial time-out and the PID of
-/// both motors, which are written and read back, and every reading that safety needs, once.
+/// both motors, which are written and read back, and every slow reading, once.
 class ControllerSetup {
 public:
     void configure(const MotorSettings &settings);
@@ -18,6 +18,9 @@ public:
     roboclaw::Request request(quint8 address) const;
     /// Takes the answer to request() and goes on. Gives what is wrong with it, or an empty text.
     QString take(const roboclaw::Bus::Outcome &outcome, ControllerReadings &readings);
+
+    /// Goes on without an answer to request().
+    void skip() { ++step_; }
 
     double fullSpeed() const { return pid_.qpps; } ///< counts/s
     int timeoutTenths() const { return timeoutTenths_; }

@@ -196,7 +196,7 @@ void MotorControl::show(const Telemetry &telemetry) {
             "wheels", [&] { return wheelsOf(telemetry); }, telemetry.stamp);
     }
     if (cycles_ % slowEvery == 0) {
-        gauge_.take(monotonicNow(), batteryOf(telemetry));
+        gauge_.take(bootNow(), batteryOf(telemetry));
         publish("power", [&] { return powerOf(telemetry, gauge_.state()); });
         updateHealth();
         feedWatchdog();

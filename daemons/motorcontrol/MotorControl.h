@@ -50,6 +50,10 @@ private:
     void answerJobs(std::size_t count);
     void show(const Telemetry &telemetry);
     void updateHealth();
+    void tellControllers();
+    void tellMeasures();
+    void tellCycle();
+    void tellStop();
     bool isReady() const;
     MotorState state() const;
 

@@ -25,6 +25,8 @@ constexpr double overspeed = 1.5;       // times full duty: faster no motor turn
 constexpr double standMargin_s = 0.2;   // and half of the time of braking more: motors lag behind
 constexpr double longestStep_s = 0.04; // a cycle that came later: this program stood still, and asked nothing
 
+constexpr double dutyPause_s = 10; // a request that is not answered holds up a stop on its line
+
 constexpr std::array<qint32, 2> zero{};
 
 } // namespace
@@ -286,6 +288,8 @@ void MotorController::failSetup(const QString &reason, double now) {
 }
 
 void MotorController::setupAnswered(Command command, const Bus::Outcome &outcome, double now) {
+    if (outcome.result != Bus::Result::Done && command == Command::ReadPwm)
+        return setup_.skip(), missSlow();
     if (outcome.result != Bus::Result::Done)
         return failSetup(failureText(command, failure_, heard_), now);
     replyTimes_[replies_++] = outcome.received - outcome.sent;
@@ -317,7 +321,7 @@ void MotorController::becomeReady() {
     error_.clear();
     timeoutAtMost_s_ = setup_.timeout_s();
     timeoutKnown_ = true; // it was read back
-    lastAnswer_ = lastObeyed_ = lastCounts_ = lastSlow_ = clock_;
+    lastAnswer_ = lastObeyed_ = lastCounts_ = lastSlow_ = lastDuty_ = clock_;
     speeds_ = zero;
     toldToTurn_ = false;
     standBy_ = clock_ + disobeyAfter_s_ + timeoutMargin_s;
@@ -326,9 +330,26 @@ void MotorController::becomeReady() {
     slow_ = 0;
 }
 
+void MotorController::nextSlow() {
+    wantsSlow_ = false;
+    slow_ = (slow_ + 1) % ControllerReadings::slowCount;
+    if (!ControllerReadings::isVital(slow_) && !readings_.duty && clock_ < nextDuty_)
+        ++slow_; // the last one is vital
+}
+
+void MotorController::missSlow() {
+    if (isReady() && clock_ - lastDuty_ <= slowLostAfter_s)
+        return;
+    readings_.duty.reset();
+    nextDuty_ = clock_ + dutyPause_s;
+}
+
 void MotorController::readyAnswered(Command command, const Bus::Outcome &outcome) {
-    if (outcome.result != Bus::Result::Done)
-        return; // repeated with what is then due
+    if (outcome.result != Bus::Result::Done) {
+        if (command == Command::ReadPwm)
+            missSlow(), nextSlow();
+        return; // all else is repeated with what is then due
+    }
     if (command == Command::SpeedAccel) {
         lastObeyed_ = clock_;
         obeyed_ = sent_;
@@ -346,8 +367,9 @@ void MotorController::readyAnswered(Command command, const Bus::Outcome &outcome
         return;
     }
     readings_.takeSlow(slow_, outcome);
-    wantsSlow_ = false;
-    slow_ = (slow_ + 1) % ControllerReadings::slowCount;
+    if (command == Command::ReadPwm)
+        lastDuty_ = clock_;
+    nextSlow();
     if (slow_ == 0) {
         lastSlow_ = clock_;
         const QString fault = setup_.timeoutFault(readings_.timeoutTenths);

@@ -99,6 +99,9 @@ private:
     /// Of the answers to the set-up; the program or the machine may have stood still in some of them.
     double usualReplyTime();
     void becomeReady();
+    void nextSlow();
+    /// A slow reading that is not vital was not answered.
+    void missSlow();
     /// Seconds until it is seen to stand after it was told to.
     double brakingTime() const;
     void keepSilent(const roboclaw::Bus::Outcome &outcome);
@@ -144,6 +147,7 @@ private:
     roboclaw::Bus::Result failure_ = roboclaw::Bus::Result::Done; // the last one
     bool heard_ = false; // it has answered something since it was silent
     double lastAnswer_ = 0, lastObeyed_ = 0, lastCounts_ = 0, lastSlow_ = 0;
+    double lastDuty_ = 0, nextDuty_ = 0; // while it is not known it is asked again then
 
     // Ready.
     double patience_s_ = 0;

@@ -40,6 +40,13 @@ HealthLevel toHealth(Threshold::Level level) {
 } // namespace
 
 void MotorControl::updateHealth() {
+    tellControllers();
+    tellMeasures();
+    tellCycle();
+    tellStop();
+}
+
+void MotorControl::tellControllers() {
     for (int i = 0; i < controllerCount; ++i) {
         const Telemetry::Controller &c = told_.controllers[i];
         const QString advice = c.advice.isEmpty() ? QString() : "; " + c.advice;
@@ -53,6 +60,9 @@ void MotorControl::updateHealth() {
             faults > 0 ? QString("; %1 answers were damaged or did not come").arg(faults) : QString();
         health().set(QString("controller_%1").arg(i + 1), level, text + pastText, asJson(c).toObject());
     }
+}
+
+void MotorControl::tellMeasures() {
     double battery = 1e9, current = 0, temperature = -1e9;
     bool known = false;
     for (const Telemetry::Controller &c : told_.controllers) {
@@ -76,10 +86,14 @@ void MotorControl::updateHealth() {
     };
     const BatteryState &gauge = gauge_.state();
     runsOut_ = gauge.left_s && *gauge.left_s < active_.batteryWarning_s * (runsOut_ ? stickiness : 1);
-    measured(0, "battery", battery, "battery_v", "V", active_.battery, runsOut_, ", " + textOf(gauge));
+    const bool isDoubtful = isReady() && !gauge_.missing().isEmpty();
+    measured(0, "battery", battery, "battery_v", "V", active_.battery, runsOut_ || isDoubtful,
+             ", " + textOf(gauge));
     measured(1, "current", current, "current_a", "A", active_.current);
     measured(2, "temperature", temperature, "temperature_c", "degrees Celsius", active_.temperature);
+}
 
+void MotorControl::tellCycle() {
     const CycleStatistics &cycle = told_.cycle;
     const bool late = cycle.worstLateness_s > lateness_s;
     QString text = QString("50 Hz, at worst %1 ms late in the last second, %2 cycles missed")
@@ -96,7 +110,9 @@ void MotorControl::updateHealth() {
     }
     health().set("cycle", late || slow ? HealthLevel::Warn : HealthLevel::Ok, text,
                  asJson(cycleOf(told_)).toObject());
+}
 
+void MotorControl::tellStop() {
     const bool latched = told_.latch.isSet();
     const auto &causes = told_.latch.causes();
     QStringList texts{latched ? told_.latch.text() : QString("no emergency stop")};

@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/MotorMessages.h"
 
 #include "daemons/motorcontrol/DriveLoop.h"
+#include "daemons/motorcontrol/FailureText.h"
 #include "protocol/roboclaw/Status.h"
 #include "protocol/wire/Fields.h"
 
@@ -56,15 +57,20 @@ PowerMessage powerOf(const Telemetry &t, const BatteryState &battery) {
     return message;
 }
 
-std::optional<BatteryReading> batteryOf(const Telemetry &t) {
+Result<BatteryReading> batteryOf(const Telemetry &t) {
     BatteryReading reading;
-    for (const Telemetry::Controller &controller : t.controllers) {
+    for (std::size_t i = 0; i < controllerCount; ++i) {
+        const Telemetry::Controller &controller = t.controllers[i];
         const ControllerReadings &r = controller.readings;
         if (!controller.ready || !r.complete) // what its motors draw is not known
-            return std::nullopt;
-        reading.voltage = std::max(reading.voltage, r.battery_v); // less is lost on the way to it
-        for (std::size_t motor = 0; motor < 2; ++motor)           // a bridge takes what its duty lets through
-            reading.motors_a += std::abs(r.current_a[motor] * r.duty[motor]);
+            return Error(ErrorCode::NotReady, "no controller tells voltage and current");
+        if (!r.duty)
+            return Error(ErrorCode::DeviceFault,
+                         controller.name + ' ' +
+                             failureText(roboclaw::Command::ReadPwm, roboclaw::Bus::Result::TimedOut, true));
+        reading.voltages[i] = r.battery_v;
+        for (std::size_t motor = 0; motor < 2; ++motor) // a bridge takes what its duty lets through
+            reading.motors_a += std::abs(r.current_a[motor] * (*r.duty)[motor]);
     }
     return reading;
 }

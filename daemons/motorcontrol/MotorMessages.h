@@ -55,8 +55,8 @@ struct MotorState {
 OdometryMessage odometryOf(const Telemetry &telemetry);
 WheelsMessage wheelsOf(const Telemetry &telemetry);
 PowerMessage powerOf(const Telemetry &telemetry, const BatteryState &battery);
-/// Of the controllers that have told all; nothing where there is none.
-std::optional<BatteryReading> batteryOf(const Telemetry &telemetry);
+/// Of controllers that have all told all; else the reason.
+Result<BatteryReading> batteryOf(const Telemetry &telemetry);
 CycleState cycleOf(const Telemetry &telemetry);
 Standing standingOf(const Telemetry &telemetry);
 /// Whether every controller has confirmed that it stands.

@@ -63,7 +63,8 @@ const Fields<BatteryState> &fieldsOf(Of<BatteryState>) {
             .mayBeMissing()
             .add("charge_deviation", &B::chargeDeviation, "Standard deviation of charge")
             .mayBeMissing()
-            .add("current_a", &B::current_a, "Of motors, computers and sensors; mean of the last minute", "A")
+            .add("current_a", &B::current_a, "Of motors (mean of the last minute), computers and sensors",
+                 "A")
             .mayBeMissing()
             .add("left_s", &B::left_s, "At that current, until only the reserve is left; 48 h at most", "s")
             .mayBeMissing()

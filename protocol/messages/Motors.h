@@ -39,13 +39,13 @@ struct ControllerPower {
     double temperature_c = 0;
     quint32 status = 0;
     QStringList statusTexts;
-    std::array<double, 2> duty{};
+    std::optional<std::array<double, 2>> duty; ///< nothing: it does not tell it
 };
 
 /// How full the battery is: a part of the topic `power` and of motor.state. What is not known is missing.
 struct BatteryState {
     std::optional<double> charge, chargeDeviation; ///< shares of the capacity
-    std::optional<double> current_a;               ///< of motors, computers and sensors; smoothed
+    std::optional<double> current_a;               ///< of motors (smoothed), computers and sensors
     std::optional<double> left_s, leftLeast_s;     ///< at that current, until only the reserve is left
     QString reason;                                ///< why not all is known; else empty
 };

@@ -1,6 +1,7 @@
 #include "daemons/motorcontrol/BatteryGauge.h"
 #include "daemons/motorcontrol/MotorMessages.h"
 #include "daemons/simulator/Battery.h"
+#include "protocol/wire/Fields.h"
 
 #include <QtTest>
 #include <cmath>
@@ -18,8 +19,16 @@ private Q_SLOTS:
     void nothingIsKnownBeforeARest();
     void whatIsMissingIsNamed_data();
     void whatIsMissingIsNamed();
+    void voltagesThatCannotBeTrueGiveNoCharge_data();
+    void voltagesThatCannotBeTrueGiveNoCharge();
+    void theLowerVoltageCounts();
+    void voltagesMayDifferForAMoment();
+    void batteriesOfOtherVoltagesAreKnown();
     void controllersShareOneBattery();
+    void aControllerWithoutDutiesIsNamed();
+    void dutiesAreSharesOfOne();
     void tellsTheTimeLeft();
+    void theIdleCurrentCountsAtOnce();
     void aRestCorrectsTheCount();
     void anotherBatteryIsNoticed();
     void aGapMakesUnsure();
@@ -32,7 +41,21 @@ private:
     static constexpr double tick_s = 0.1;
     void pass(double seconds, double voltage, double motors_a) {
         for (double end = now_ + seconds; now_ < end; now_ += tick_s)
-            gauge_->take(now_, BatteryReading{voltage, motors_a});
+            gauge_->take(now_, BatteryReading{{voltage, voltage}, motors_a});
+    }
+    void restAt(double voltage1, double voltage2, double seconds) {
+        for (double end = now_ + seconds; now_ < end; now_ += tick_s)
+            gauge_->take(now_, BatteryReading{{voltage1, voltage2}, 0});
+    }
+    static Telemetry ready() {
+        Telemetry told;
+        for (Telemetry::Controller &controller : told.controllers) {
+            controller.ready = controller.readings.complete = true;
+            controller.readings.battery_v = 24;
+            controller.readings.current_a = {4, -4};
+            controller.readings.duty = {0.5, -0.5};
+        }
+        return told;
     }
     const BatteryState &state() const { return gauge_->state(); }
 
@@ -77,26 +100,105 @@ void TestBatteryGauge::whatIsMissingIsNamed() {
     QVERIFY(state().charge);
     pass(1, voltage, motors_a);
     QVERIFY(!state().charge && !state().left_s && !state().current_a);
-    QVERIFY2(state().reason.startsWith("a controller tells "), qPrintable(state().reason));
-    gauge_->take(now_, std::nullopt);
-    QCOMPARE(state().reason, QString("no controller tells voltage and current"));
+    QVERIFY2(state().reason.contains("controller") && state().reason.contains(" tells "),
+             qPrintable(state().reason));
+    QCOMPARE(gauge_->missing(), state().reason);
+    gauge_->take(now_, Error(ErrorCode::NotReady, "no controller tells it"));
+    QCOMPARE(state().reason, QString("no controller tells it"));
     pass(1, 24.4, 0);
     QVERIFY(state().charge); // still known
 }
 
+void TestBatteryGauge::voltagesThatCannotBeTrueGiveNoCharge_data() {
+    QTest::addColumn<double>("first");
+    QTest::addColumn<double>("second");
+    QTest::addColumn<QString>("reason");
+    const QString impossible = ": expected more than 0 V, at most 34 V",
+                  differ = ": expected at most 1 V between them";
+    QTest::newRow("second above") << 23.4 << 65.5
+                                  << "controller 1 tells 23.4 V, controller 2 65.5 V" + impossible;
+    QTest::newRow("first above") << 34.1 << 24.0
+                                 << "controller 1 tells 34.1 V, controller 2 24 V" + impossible;
+    QTest::newRow("both above") << 65.5 << 65.5
+                                << "controller 1 tells 65.5 V, controller 2 65.5 V" + impossible;
+    QTest::newRow("one zero") << 24.0 << 0.0 << "controller 1 tells 24 V, controller 2 0 V" + impossible;
+    QTest::newRow("they differ") << 24.5 << 23.4 << "controller 1 tells 24.5 V, controller 2 23.4 V" + differ;
+    QTest::newRow("they differ far") << 24.0 << 34.0 << "controller 1 tells 24 V, controller 2 34 V" + differ;
+}
+
+void TestBatteryGauge::voltagesThatCannotBeTrueGiveNoCharge() {
+    QFETCH(double, first);
+    QFETCH(double, second);
+    QFETCH(QString, reason);
+    restAt(first, second, 10); // from the start
+    QCOMPARE(state().reason, reason);
+    QVERIFY(!state().charge && !state().left_s);
+    restAt(24, 24, 6);
+    QVERIFY(std::abs(*state().charge - 0.3) < 0.01);
+    restAt(first, second, 2); // and later
+    QCOMPARE(state().reason, reason);
+    QCOMPARE(gauge_->missing(), reason);
+    QVERIFY(!state().charge && !state().left_s);
+    restAt(24, 24, 1);
+    QVERIFY(std::abs(*state().charge - 0.3) < 0.01);
+}
+
+void TestBatteryGauge::theLowerVoltageCounts() {
+    restAt(24.4, 23.4, 10); // 1 V is allowed
+    QVERIFY2(state().charge, qPrintable(state().reason));
+    QVERIFY(*state().charge < 0.01);
+}
+
+// They are not read at the same time: a motor may have started in between.
+void TestBatteryGauge::voltagesMayDifferForAMoment() {
+    restAt(24.4, 24.4, 10);
+    restAt(24.4, 22, 0.8);
+    QVERIFY2(state().charge, qPrintable(state().reason));
+    QVERIFY(std::abs(*state().charge - 0.5) < 0.01); // nothing follows from either
+    restAt(24.4, 24.4, 0.2);
+    restAt(24.4, 22, 0.8);
+    QVERIFY2(state().charge, qPrintable(state().reason));
+}
+
+void TestBatteryGauge::batteriesOfOtherVoltagesAreKnown() {
+    gauge_->configure({26, 50, 46, 2, 0.2});
+    restAt(48, 48, 10);
+    QVERIFY2(state().charge, qPrintable(state().reason));
+    restAt(65.5, 65.5, 10);
+    QVERIFY2(state().reason.endsWith("at most 62.5 V"), qPrintable(state().reason));
+}
+
 void TestBatteryGauge::controllersShareOneBattery() {
-    Telemetry told;
-    for (Telemetry::Controller &controller : told.controllers) {
-        controller.ready = controller.readings.complete = true;
-        controller.readings.battery_v = 24;
-        controller.readings.current_a = {4, -4};
-        controller.readings.duty = {0.5, -0.5};
-    }
+    Telemetry told = ready();
     told.controllers[1].readings.battery_v = 24.2;
     const auto reading = batteryOf(told);
-    QVERIFY(reading && reading->voltage == 24.2 && reading->motors_a == 8);
+    QVERIFY(reading && reading->voltages == (std::array{24.0, 24.2}) && reading->motors_a == 8);
     told.controllers[0].ready = false; // half of the current is no guess for all of it
     QVERIFY(!batteryOf(told));
+    QCOMPARE(batteryOf(told).error().message, QString("no controller tells voltage and current"));
+}
+
+void TestBatteryGauge::aControllerWithoutDutiesIsNamed() {
+    Telemetry told = ready();
+    told.controllers[1].name = "controller 2";
+    told.controllers[1].readings.duty.reset();
+    QVERIFY(!batteryOf(told));
+    QCOMPARE(batteryOf(told).error().message, QString("controller 2 answers, but not command 48 (duties)"));
+    const PowerMessage power = powerOf(told, {});
+    QVERIFY(asJson(power.controllers[0]).toObject().contains("duty"));
+    const QJsonObject without = asJson(power.controllers[1]).toObject();
+    QVERIFY(without["ready"].toBool() && !without.contains("duty"));
+}
+
+void TestBatteryGauge::dutiesAreSharesOfOne() {
+    int readPwm = 0;
+    while (ControllerReadings::slowCommand(readPwm) != roboclaw::Command::ReadPwm)
+        ++readPwm;
+    roboclaw::Bus::Outcome outcome;
+    outcome.reply.values = {-32768, 32767};
+    ControllerReadings readings;
+    readings.takeSlow(readPwm, outcome);
+    QVERIFY(readings.duty == (std::array{-1.0, 1.0}));
 }
 
 void TestBatteryGauge::tellsTheTimeLeft() {
@@ -107,10 +209,24 @@ void TestBatteryGauge::tellsTheTimeLeft() {
     QVERIFY2(std::abs(*state().charge - charge) < 0.005, qPrintable(QString::number(*state().charge)));
     QVERIFY(std::abs(*state().current_a - 10) < 0.01);
     QVERIFY(std::abs(*state().left_s - (charge - 0.2) * 20 / 10 * 3600) < 60);
-    QVERIFY(*state().leftLeast_s<*state().left_s && * state().leftLeast_s> 0);
+    const double least_s = *state().leftLeast_s;
+    QVERIFY(least_s > 0 && least_s < *state().left_s);
     pass(4 * 3600, 24, 8);
     QCOMPARE(*state().charge, 0.0);
     QCOMPARE(*state().left_s, 0.0);
+}
+
+// What motors draw is smoothed; what was set is known.
+void TestBatteryGauge::theIdleCurrentCountsAtOnce() {
+    gauge_->configure({20, 25, 23, 2, 0.2});
+    pass(10, 24.4, 0);
+    pass(600, 24, 8);
+    gauge_->configure({20, 25, 23, 12, 0.2});
+    pass(0.1, 24, 8);
+    QVERIFY2(std::abs(*state().current_a - 20) < 0.01, qPrintable(QString::number(*state().current_a)));
+    QVERIFY(std::abs(*state().left_s - (*state().charge - 0.2) * 20 / 20 * 3600) < 5);
+    pass(6, 24, 0); // a tenth of the minute
+    QVERIFY(*state().current_a > 18 && *state().current_a < 20);
 }
 
 void TestBatteryGauge::aRestCorrectsTheCount() {
@@ -171,7 +287,7 @@ void TestBatteryGauge::isRightWithinWhatItTells() {
         for (; now_ < until; now_ += tick_s) {
             battery.draw(idle_a + motors_a, tick_s);
             const double tenths = std::round(10 * battery.voltage()) / 10; // as a RoboClaw tells it
-            gauge_->take(now_, BatteryReading{tenths, motors_a});
+            gauge_->take(now_, BatteryReading{{tenths, tenths}, motors_a});
         }
         if (!state().charge)
             continue;
@@ -189,8 +305,11 @@ void TestBatteryGauge::anyInputGivesSenseOrNothing() {
     for (int i = 0; i < 100000; ++i) {
         now_ += i % 1000 == 0 ? 1e5 * double(random() % 3) - 1e5 : 0.1 * double(random() % 20);
         const bool isThere = random() % 8 != 0;
-        const BatteryReading reading{any(), any()};
-        gauge_->take(now_, isThere ? std::optional(reading) : std::nullopt);
+        const BatteryReading reading{{any(), any()}, any()};
+        if (isThere)
+            gauge_->take(now_, reading);
+        else
+            gauge_->take(now_, Error(ErrorCode::NotReady, "none"));
         for (const auto &share : {state().charge, state().chargeDeviation})
             QVERIFY(!share || (*share >= 0 && *share <= 1));
         for (const auto &time : {state().left_s, state().leftLeast_s})

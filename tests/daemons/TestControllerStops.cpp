@@ -36,6 +36,8 @@ private Q_SLOTS:
     void tooLateAnswersAreRefused();
     void readyMeansThatEverythingWasRead_data();
     void readyMeansThatEverythingWasRead();
+    void withoutDutiesItIsDrivenAllTheSame();
+    void dutiesThatAreToldNoMoreAreForgotten();
     void whatIsAnsweredNoMoreIsNamed_data();
     void whatIsAnsweredNoMoreIsNamed();
     void versionWithoutLineFeedIsTold();
@@ -379,7 +381,7 @@ void TestControllerStops::readyMeansThatEverythingWasRead_data() {
     for (const Command command :
          {Command::ReadVersion, Command::SetSerialTimeout, Command::ReadSerialTimeout,
           Command::SetVelocityPidM1, Command::ReadVelocityPidM2, Command::ReadEncoders, Command::ReadStatus,
-          Command::ReadCurrents, Command::ReadPwm, Command::ReadMainBattery, Command::ReadLogicBattery,
+          Command::ReadCurrents, Command::ReadMainBattery, Command::ReadLogicBattery,
           Command::ReadTemperature})
         QTest::newRow(qPrintable(rowOf(command))) << command;
 }
@@ -397,6 +399,49 @@ void TestControllerStops::readyMeansThatEverythingWasRead() {
     if (missing == Command::SetSerialTimeout)
         QVERIFY2(bench.controller(1).error().contains("would not stop by itself"),
                  qPrintable(bench.controller(1).error()));
+}
+
+// Only the gauge of the battery needs them. They are asked for seldom: what waits for an answer waits with
+// the stops.
+void TestControllerStops::withoutDutiesItIsDrivenAllTheSame() {
+    ControllerBench bench;
+    bool deaf = true;
+    bench.hears = [&](const auto &packet) { return !deaf || packet.command() != Command::ReadPwm; };
+    driveOff(bench);
+    for (int i = 0; i < 3000; ++i) {
+        bench.run(0.01);
+        QVERIFY2(bench.areReady(), qPrintable(bench.controller(0).error()));
+    }
+    QVERIFY(bench.fastest() > 0.95 * fast);
+    QVERIFY(bench.controller(0).readings().complete && !bench.controller(0).readings().duty);
+    const auto asked = std::count_if(bench.sent.begin(), bench.sent.end(),
+                                     [](const auto &p) { return p.command() == Command::ReadPwm; });
+    QVERIFY2(asked >= 4 && asked <= 8, qPrintable(QString::number(asked)));
+    deaf = false;
+    QVERIFY(bench.runUntil([&] { return bench.controller(0).readings().duty.has_value(); }, 11));
+    QVERIFY(bench.controller(0).readings().duty->at(0) > 0.1);
+}
+
+void TestControllerStops::dutiesThatAreToldNoMoreAreForgotten() {
+    ControllerBench bench;
+    driveOff(bench);
+    bench.run(1);
+    QVERIFY(bench.controller(0).readings().duty);
+    const double began = bench.now();
+    bench.passes = [](const auto &packet, const auto &bytes) {
+        return packet.command() == Command::ReadPwm ? std::nullopt : std::optional(bytes);
+    };
+    QVERIFY(bench.runUntil([&] { return !bench.controller(0).readings().duty; }, 4));
+    QVERIFY(bench.now() - began > 2); // one answer may be lost on any line
+    bench.sent.clear();
+    bench.run(30);
+    QVERIFY2(bench.areReady(), qPrintable(bench.controller(0).error()));
+    QVERIFY(bench.fastest() > 0.95 * fast);
+    const auto asked = std::count_if(bench.sent.begin(), bench.sent.end(),
+                                     [](const auto &p) { return p.command() == Command::ReadPwm; });
+    QVERIFY2(asked <= 8, qPrintable(QString::number(asked)));
+    bench.passes = ControllerBench().passes;
+    QVERIFY(bench.runUntil([&] { return bench.controller(0).readings().duty.has_value(); }, 11));
 }
 
 void TestControllerStops::whatIsAnsweredNoMoreIsNamed_data() {

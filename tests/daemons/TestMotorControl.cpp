@@ -4,6 +4,8 @@
 
 #include <QTcpSocket>
 #include <QUrl>
+#include <atomic>
+#include <ctime>
 
 using namespace hermes;
 using namespace hermes::motorcontrol;
@@ -13,7 +15,16 @@ namespace {
 
 using vectorlib::pi;
 
+std::atomic<double> asleep_s{0}; // so long the machine has slept
+
 } // namespace
+
+// Instead of that of the library: the machine can sleep.
+double hermes::bootNow() {
+    timespec now{};
+    ::clock_gettime(CLOCK_BOOTTIME, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec) + asleep_s;
+}
 
 class TestMotorControl : public QObject, MotorFixture {
     Q_OBJECT
@@ -23,6 +34,8 @@ private Q_SLOTS:
     void setsTheControllersUp();
     void drivesAndTellsWhere();
     void tellsHowLongTheBatteryLasts();
+    void voltagesThatContradictAreAWarning();
+    void aSleepForgetsTheCharge();
     void topicsCome();
     void refusals_data();
     void refusals();
@@ -77,6 +90,43 @@ void TestMotorControl::tellsHowLongTheBatteryLasts() {
     QTRY_COMPARE_WITH_TIMEOUT(healthItem("battery")["level"].toString(), QString("ok"), 20000);
     rig_.reset();
     QTRY_COMPARE(battery()["reason"].toString(), QString("no controller tells voltage and current"));
+}
+
+void TestMotorControl::voltagesThatContradictAreAWarning() {
+    const auto tells = [this](int tenthsMore) {
+        const auto offset =
+            roboclaw::Request::make(0x81, roboclaw::Command::SetVoltageOffsets, {std::uint8_t(tenthsMore), 0})
+                ->bytes;
+        rig_->with([&](auto &all) {
+            for (std::size_t i = 0; i < offset.size(); ++i)
+                all[1].receive(offset[i], RoboClawRig::now());
+        });
+    };
+    const auto battery = [this] { return healthItem("battery"); };
+    launch();
+    QTRY_COMPARE(battery()["level"].toString(), QString("ok"));
+    tells(127);
+    const QString above = "25 V, charge not known: controller 1 tells 25 V, controller 2 37.7 V: expected ";
+    QTRY_COMPARE(battery()["message"].toString(), above + "more than 0 V, at most 34 V");
+    QCOMPARE(battery()["level"].toString(), QString("warn"));
+    QVERIFY(!state()["battery"].toObject().contains("charge"));
+    tells(-15);
+    const QString differ =
+        "23.5 V, charge not known: controller 1 tells 25 V, controller 2 23.5 V: expected ";
+    QTRY_COMPARE(battery()["message"].toString(), differ + "at most 1 V between them");
+    QCOMPARE(battery()["level"].toString(), QString("warn"));
+    tells(0);
+    QTRY_COMPARE(battery()["level"].toString(), QString("ok"));
+    QVERIFY(state()["latched"].toObject().isEmpty());
+}
+
+void TestMotorControl::aSleepForgetsTheCharge() {
+    launch();
+    const auto knows = [this] { return state()["battery"].toObject().contains("charge"); };
+    QTRY_VERIFY_WITH_TIMEOUT(knows(), 20000);
+    asleep_s = 3600; // somebody may have charged it
+    QTRY_VERIFY(!knows());
+    QTRY_VERIFY_WITH_TIMEOUT(knows(), 20000);
 }
 
 void TestMotorControl::drivesAndTellsWhere() {
