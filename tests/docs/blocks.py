@@ -1,0 +1,256 @@
+#!/usr/bin/env python3
+"""Runs the code blocks of the manual as they are printed, each page in a folder and a network of its own:
+blocks.py PAGE... (docs/hermesctl.md), without one the blocks of all pages are counted and those that are not run listed.
+
+| language | what is done |
+|---|---|
+| sh | run by one bash for the whole page, in order; each command must succeed |
+| console | lines after "$ " are run as sh; the output must have the other lines: numbers may differ, "..." stands for anything |
+| python | run with docs/examples on PYTHONPATH |
+| cpp | compiled with vectorlib and run |
+| json | must be JSON |
+| text, cmake, ini | shown only |
+
+Marks above a block, as HTML comments:
+
+| mark | meaning |
+|---|---|
+| not run: REASON | only shown |
+| file: NAME | written to the file NAME in the folder of the page, not run |
+| until: TEXT | programs that go on: in the background until the end of the page; the next block is run when TEXT is printed |
+| for: SECONDS | each command is interrupted as by Ctrl-C after these seconds at the latest |
+| fails | the last command must fail |
+| part of: FILE | the lines stand in this file of the project, in this order |
+
+tests/docs/before/PAGE.sh, when there is one, runs first: it makes the files and starts the daemons that the page takes for granted.
+The folder has the project's own files, and build/release/bin is that of the tests and stands first on the PATH."""
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+import pages
+
+BUILD = os.environ.get("HERMES_BUILD", os.path.join(pages.SOURCE, "build", "release"))
+SHOWN = {"text", "cmake", "ini"}
+RUN = {"sh", "console", "python", "cpp", "json"}
+PRELUDE = """
+set -u
+background() {  # TEXT FILE: runs FILE until TEXT is printed, and lets it go on
+    bash -e "$2" >"$2.out" 2>&1 &
+    for _ in $(seq 600); do
+        grep -qF -- "$1" "$2.out" && return 0
+        kill -0 $! 2>/dev/null || { echo "ended before it printed \\"$1\\":"; cat "$2.out"; return 1; }
+        sleep 0.1
+    done
+    echo "did not print \\"$1\\" within 60 s:"; cat "$2.out"; return 1
+}
+"""
+
+
+def reason_shown(block):
+    """Why a block is not run, or None."""
+    if "not run" in block.marks:
+        return block.marks["not run"] or "without a reason"
+    return None
+
+
+def judge(block):
+    """A complaint about a block that needs no run, or None."""
+    if block.language not in SHOWN | RUN:
+        return f"language {block.language} is none of {', '.join(sorted(SHOWN | RUN))}"
+    if "not run" in block.marks and len(block.marks["not run"]) < 8:
+        return "a block that is not run needs a reason"
+    if block.language == "json" and "not run" not in block.marks:
+        try:
+            json.loads(block.text)
+        except ValueError as error:
+            return f"no JSON: {error}"
+    if "part of" in block.marks:
+        rest = iter(pages.read(block.marks["part of"]).split("\n"))
+        for line in filter(str.strip, block.text.split("\n")):
+            if line.strip() != "..." and not any(line.strip() == other.strip() for other in rest):
+                return f"{block.marks['part of']} has no line {line.strip()!r} (in this order)"
+    return None
+
+
+def commands(console):
+    """(command, output) of each command of a console block."""
+    found = []
+    for line in console.split("\n")[:-1]:
+        if line.startswith("$ ") or found and found[-1][0].endswith("\\") and not found[-1][1]:
+            if line.startswith("$ "):
+                found.append([line[2:], ""])
+            else:
+                found[-1][0] += "\n" + line
+        elif found:
+            found[-1][1] += line + "\n"
+    return found
+
+
+def is_like(printed, actual):
+    """Whether the actual output has the printed lines, in order, with any numbers, and anything where they say "..."."""
+    def words(text):
+        return re.sub(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", "#", re.sub(r"\s+", " ", text)).strip()
+    pattern = ".*".join(re.escape(words(part)).replace(r"\ ", " ") for part in printed.split("..."))
+    return re.search(pattern, words(actual), re.S) is not None
+
+
+class Script:
+    """The bash script of a page, and what must be seen of each block."""
+
+    def __init__(self, folder):
+        self.folder, self.text, self.outputs = folder, PRELUDE, []
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def add(self, block, number):
+        if "file" in block.marks:
+            self.write(block.marks["file"], block.text)
+            return
+        self.text += f"echo '@@ {block}'\n"
+        if block.language == "python":
+            command = f"python3 .blocks/{number}.py"
+            self.write(f".blocks/{number}.py", block.text)
+            self.shell(block, number, command)
+        elif block.language == "cpp":
+            self.write(f".blocks/{number}.cpp", block.text)
+            self.shell(block, number, f"g++ -std=c++17 -Wall -Wextra -Werror -O1 -I{pages.SOURCE}/vectorlib/include $(pkg-config --cflags eigen3) "
+                                      f".blocks/{number}.cpp -o .blocks/{number}.run\n.blocks/{number}.run")
+        elif block.language == "console":
+            for index, (command, output) in enumerate(commands(block.text)):
+                path = f".blocks/{number}-{index}.out"
+                self.shell(block, f"{number}-{index}", f"{command}", path)
+                self.outputs.append((block, command, output, os.path.join(self.folder, path)))
+        elif block.language == "sh":
+            self.shell(block, number, block.text)
+
+    def shell(self, block, number, text, output=None):
+        path = self.write(f".blocks/{number}.sh", text)
+        if "until" in block.marks:
+            self.text += f"background {quoted(block.marks['until'])} {path} || exit 1\n"
+            return
+        if "for" in block.marks:
+            for index, line in enumerate(re.split(r"(?<!\\)\n", text.strip())):
+                if line.strip() and not line.strip().startswith("#"):
+                    one = self.write(f".blocks/{number}-{index}.one.sh", line + "\n")
+                    self.text += (f"timeout -s INT {block.marks['for']} bash -e {one}; code=$?\n"
+                                  f"[ $code = 0 ] || [ $code = 124 ] || {{ echo \"exit $code: \"; cat {one}; exit 1; }}\n")
+            return
+        redirect = f" >{output} 2>&1" if output else ""
+        if "fails" in block.marks:
+            self.text += f"set +e\n. {path}{redirect}\n[ $? != 0 ] || {{ echo 'did not fail'; exit 1; }}\n"
+        else:
+            self.text += f"set -e\n. {path}{redirect}\nset +e\n"
+
+
+def quoted(text):
+    return "'" + text.replace("'", "'\\''") + "'"
+
+
+def prepare(folder):
+    """The files of the project, so that what the page names is there."""
+    for name in os.listdir(pages.SOURCE):
+        if name not in ("build", ".git", "recordings"):
+            os.symlink(os.path.join(pages.SOURCE, name), os.path.join(folder, name))
+    os.makedirs(os.path.join(folder, "build"))
+    os.symlink(BUILD, os.path.join(folder, "build", "release"))
+    os.makedirs(os.path.join(folder, ".home"))
+
+
+def run(page):
+    """The number of blocks that were run. Exits with what was wrong."""
+    found = pages.blocks(page)
+    complaints = [f"{block}: {wrong}" for block in found for wrong in [judge(block)] if wrong]
+    if complaints:
+        sys.exit("\n".join(complaints))
+    to_run = [block for block in found if block.language in RUN - {"json"} and not block.marks.keys() & {"not run", "part of"}]
+    to_run += [block for block in found if block.language in SHOWN | {"json"} and "file" in block.marks]
+    to_run.sort(key=lambda block: block.line)
+    if not to_run:
+        print(f"{page}: nothing to run in {len(found)} blocks")
+        return 0
+    with tempfile.TemporaryDirectory(prefix="manual-") as folder:
+        prepare(folder)
+        script = Script(folder)
+        before = os.path.join(os.path.dirname(__file__), "before", os.path.basename(page)[:-3] + ".sh")
+        if os.path.exists(before):
+            script.text += f"echo '@@ {os.path.basename(before)}'\nset -e\n. {before}\nset +e\n"
+        for number, block in enumerate(to_run):
+            script.add(block, number)
+        path = script.write(".blocks/page.sh", script.text + "echo '@@ end'\n")
+        environment = {**os.environ, "HOME": os.path.join(folder, ".home"), "XDG_RUNTIME_DIR": os.path.join(folder, ".home"),
+                       "PATH": f"{BUILD}/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
+                       "PYTHONPATH": os.path.join(pages.SOURCE, "docs", "examples"), "QT_QPA_PLATFORM": "offscreen"}
+        for name in ("XDG_STATE_HOME", "XDG_CONFIG_HOME", "HERMES_KEYS"):
+            environment.pop(name, None)
+        for name in ("HERMES_BIN", "HERMES_BUILD", "HERMES_SOURCE"):
+            environment.setdefault(name, {"HERMES_BIN": f"{BUILD}/bin", "HERMES_BUILD": BUILD, "HERMES_SOURCE": pages.SOURCE}[name])
+        # A network of its own: the default ports of the daemons are free there. When bash ends, all that it started does.
+        isolated = ["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc"] + ([] if os.geteuid() == 0 else ["--map-root-user"])
+        child = subprocess.Popen([*isolated, "sh", "-c", f"ip link set lo up; exec bash {path}"], cwd=folder, env=environment, text=True,
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            output, _ = child.communicate(timeout=280)
+        except subprocess.TimeoutExpired:
+            os.killpg(child.pid, signal.SIGKILL)
+            output, _ = child.communicate()
+            output += "\ntook longer than 280 s\n"
+        if os.environ.get("HERMES_SHOW"):
+            print(output)
+        last = output.rfind("@@ ")
+        if not output[last:].startswith("@@ end"):
+            sys.exit(f"{page}: failed in the block after this line:\n{output[last:][:6000]}")
+        for block, command, printed, path in script.outputs:
+            with open(path, encoding="utf-8", errors="replace") as file:
+                actual = file.read()
+            if not is_like(printed, actual):
+                sys.exit(f"{block}: {command}\n--- the page says\n{printed}--- it prints\n{actual[:6000]}")
+    shown = len(found) - len(to_run)
+    print(f"{page}: {len(to_run)} of {len(found)} blocks run, {shown} only shown")
+    return len(to_run)
+
+
+def count():
+    total = shown = 0
+    for page in pages.names():
+        for block in pages.blocks(page):
+            total += 1
+            wrong, reason = judge(block), reason_shown(block)
+            if wrong:
+                sys.exit(f"{block}: {wrong}")
+            if reason:
+                shown += 1
+                print(f"{block}: not run: {reason}")
+    print(f"{total} blocks in {len(pages.names())} pages, {shown} not run")
+
+
+def check_itself():
+    assert is_like("a: 1.5, ... c\n", "x\na: -7e3, b, c\n") and not is_like("a 1 b", "a b") and not is_like("abc", "abd")
+    assert commands("$ a \\\n b\nout\n$ c\n") == [["a \\\n b", "out\n"], ["c", ""]]
+
+
+def main():
+    check_itself()
+    if not sys.argv[1:]:
+        return count()
+    if any(subprocess.run(["unshare", "--net", "--pid", "--fork"] + ([] if os.geteuid() == 0 else ["--map-root-user"]) + ["true"],
+                          stderr=subprocess.DEVNULL, check=False).returncode for _ in [0]) or not shutil.which("ip"):
+        print("no network of its own may be made here")
+        sys.exit(77)
+    for page in sys.argv[1:]:
+        run(page)
+    return None
+
+
+if __name__ == "__main__":
+    main()

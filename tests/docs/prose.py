@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Fails on sentences of more than 30 words in the manual and in the help texts of the programs. What must be longer has a line in
+prose_allowed.txt: the beginning of the sentence, a tab, the reason."""
+import glob
+import os
+import re
+import subprocess
+import sys
+
+import pages
+
+MOST_WORDS = 30
+GENERATED = {"docs/protocol-reference.md"}  # of the programs' own texts, where tests/layout and the descriptions are judged
+BINARIES = os.environ.get("HERMES_BIN", os.path.join(pages.SOURCE, "build", "release", "bin"))
+
+
+def help_sentences(program):
+    """The prose of `PROGRAM --help`; each option or command, begun by an indentation, stands alone."""
+    text = subprocess.run([program, "--help"], capture_output=True, text=True, timeout=30, check=True,
+                          env={**os.environ, "QT_QPA_PLATFORM": "offscreen", "COLUMNS": "10000"}).stdout
+    for entry in re.split(r"\n(?= {0,3}\S)|\n\n", text):
+        words = re.sub(r"\s+", " ", re.sub(r"^ *\S.*?  +", "", entry))
+        for sentence in re.split(r"(?<=[.!?:;]) (?=[A-Z])", words):
+            yield 0, sentence
+
+
+def allowed():
+    with open(os.path.join(os.path.dirname(__file__), "prose_allowed.txt"), encoding="utf-8") as file:
+        return dict(line.rstrip("\n").split("\t", 1) for line in file if line.strip())
+
+
+def main():
+    reasons, used = allowed(), set()
+    wanted = sys.argv[1:] or pages.names()
+    texts = {page: pages.sentences(page) for page in wanted if page not in GENERATED}
+    if not sys.argv[1:]:
+        texts.update({os.path.basename(p): list(help_sentences(p)) for p in sorted(glob.glob(os.path.join(BINARIES, "hermes*")))})
+    if all(len(s.split()) <= 5 for found in texts.values() for _, s in found):
+        sys.exit("the check itself finds no sentences")
+    count = wrong = 0
+    for page, found in texts.items():
+        for line, sentence in found:
+            count += 1
+            if len(sentence.split()) <= MOST_WORDS:
+                continue
+            reason = next((start for start in reasons if sentence.startswith(start)), None)
+            if reason:
+                used.add(reason)
+            else:
+                wrong += 1
+                print(f"{page}:{line}: {len(sentence.split())} words: {sentence}")
+    if not sys.argv[1:]:
+        for start in reasons.keys() - used:
+            wrong += 1
+            print(f"prose_allowed.txt: no such sentence any more: {start}")
+    print(f"{count} sentences in {len(texts)} texts, {len(used)} longer than {MOST_WORDS} words with a reason, {wrong} without")
+    sys.exit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()
