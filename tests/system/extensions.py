@@ -63,7 +63,7 @@ static const bool refused = std::getenv("TWIN") && hermes::vector::addVectorizer
 def write_folder(folder):
     """The files of the page, each a code block after its name."""
     with open(os.path.join(SOURCE, "docs", "extending.md"), encoding="utf-8") as page:
-        files = dict(re.findall(r"^`([\w.]+)`:\n\n```\w+\n(.*?)^```$", page.read(), re.M | re.S))
+        files = dict(re.findall(r"^`([\w.]+)`:\n\n(?:<!-- [^\n]* -->\n)?```\w+\n(.*?)^```$", page.read(), re.M | re.S))
     assert len(files) == 6, f"found the files {sorted(files)} in docs/extending.md"
     files["CMakeLists.txt"] = "set(CMAKE_AUTOMOC OFF) # which takes long\n" + files["CMakeLists.txt"]
     files["CMakeLists.txt"] += "target_sources(hermes-gui PRIVATE Probe.cpp)\ntarget_sources(hermes-vector PRIVATE Twin.cpp)\n"
