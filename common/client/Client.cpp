@@ -230,7 +230,7 @@ void Client::onOpened() {
 
 void Client::agree() {
     agreeing_ = true;
-    failure_ = QStringLiteral("%1: no answer as yet").arg(address());
+    failure_ = QStringLiteral("%1: no answer yet").arg(address());
     const auto done = [this](const Result<QJsonValue> &result) {
         agreeing_ = false;
         if (!channel_ || !channel_->isOpen())

@@ -99,7 +99,7 @@ void ScanMatcher::declareSettings() {
                    .byDefault(true)
                    .group("Matching"));
     addSetting(Field::number("matcher.remember_mb",
-                             "Memory that a drive may take to close its loops; what is driven beyond that is "
+                             "Memory that a drive may take to close its loops. What is driven beyond that is "
                              "not remembered, also when this is raised later")
                    .unit("MB")
                    .range(0.1, 100000)

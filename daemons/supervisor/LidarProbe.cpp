@@ -61,7 +61,7 @@ private:
 QString problemOf(const Port &port, quint16 number) {
     if (port.failure() != EADDRINUSE)
         return QString("UDP port %1 cannot be opened: %2").arg(number).arg(std::strerror(port.failure()));
-    return QString("UDP port %1 is received at by %2; lidars are not looked for there")
+    return QString("UDP port %1 is in use by %2; lidars are not searched there")
         .arg(number)
         .arg(PortUsers::ofUdpPort(number));
 }

@@ -119,8 +119,12 @@ QStringList SettingsFiles::sampleNames() const {
 
 Result<QJsonObject> SettingsFiles::sample(const QString &name) const {
     if (!sampleNames().contains(name))
-        return Error(ErrorCode::InvalidParams, QString("there is no sample \"%1\" in %2, expected one of: %3")
-                                                   .arg(name, samples_, sampleNames().join(", ")));
+        return Error(ErrorCode::InvalidParams,
+                     QString("there is no sample \"%1\" in %2, %3")
+                         .arg(name, samples_,
+                              sampleNames().isEmpty()
+                                  ? "nor any other; the setting setup.samples names their folder"
+                                  : "expected one of: " + sampleNames().join(", ")));
     return readAll(samples_ + '/' + name, usualFolder, QFile::encodeName(folder_) + '/');
 }
 

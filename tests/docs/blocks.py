@@ -8,7 +8,7 @@ blocks.py PAGE... (docs/hermesctl.md), without one the blocks of all pages are c
 | console | lines after "$ " are run as sh; the output must have the other lines: numbers may differ, "..." stands for anything |
 | python | run with docs/examples on PYTHONPATH |
 | cpp | compiled with vectorlib and run |
-| json | must be JSON |
+| json | must be JSON, one value or one a line |
 | text, cmake, ini | shown only |
 
 Marks above a block, as HTML comments:
@@ -38,6 +38,7 @@ import pages
 BUILD = os.environ.get("HERMES_BUILD", os.path.join(pages.SOURCE, "build", "release"))
 SHOWN = {"text", "cmake", "ini"}
 RUN = {"sh", "console", "python", "cpp", "json"}
+ISOLATED = ["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc"] + ([] if os.geteuid() == 0 else ["--map-root-user"])
 PRELUDE = """
 set -u
 background() {  # TEXT FILE: runs FILE until TEXT is printed, and lets it go on
@@ -59,17 +60,26 @@ def reason_shown(block):
     return None
 
 
+def is_json(text):
+    """Whether this is JSON, or one value in each line."""
+    for parts in ([text], text.strip().split("\n")):
+        try:
+            for part in parts:
+                json.loads(part)
+            return True
+        except ValueError:
+            pass
+    return False
+
+
 def judge(block):
     """A complaint about a block that needs no run, or None."""
     if block.language not in SHOWN | RUN:
         return f"language {block.language} is none of {', '.join(sorted(SHOWN | RUN))}"
     if "not run" in block.marks and len(block.marks["not run"]) < 8:
         return "a block that is not run needs a reason"
-    if block.language == "json" and "not run" not in block.marks:
-        try:
-            json.loads(block.text)
-        except ValueError as error:
-            return f"no JSON: {error}"
+    if block.language == "json" and "not run" not in block.marks and not is_json(block.text):
+        return "is no JSON, nor is each of its lines"
     if "part of" in block.marks:
         rest = iter(pages.read(block.marks["part of"]).split("\n"))
         for line in filter(str.strip, block.text.split("\n")):
@@ -108,6 +118,8 @@ class Script:
 
     def write(self, name, text):
         path = os.path.join(self.folder, name)
+        if not os.path.realpath(os.path.dirname(path)).startswith(os.path.realpath(self.folder)) or os.path.islink(path):
+            sys.exit(f"{name}: is the project's own, a block is not written there")
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
@@ -196,8 +208,7 @@ def run(page):
         for name in ("HERMES_BIN", "HERMES_BUILD", "HERMES_SOURCE"):
             environment.setdefault(name, {"HERMES_BIN": f"{BUILD}/bin", "HERMES_BUILD": BUILD, "HERMES_SOURCE": pages.SOURCE}[name])
         # A network of its own: the default ports of the daemons are free there. When bash ends, all that it started does.
-        isolated = ["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc"] + ([] if os.geteuid() == 0 else ["--map-root-user"])
-        child = subprocess.Popen([*isolated, "sh", "-c", f"ip link set lo up; exec bash {path}"], cwd=folder, env=environment, text=True,
+        child = subprocess.Popen([*ISOLATED, "sh", "-c", f"ip link set lo up; exec bash {path}"], cwd=folder, env=environment, text=True,
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
         try:
             output, _ = child.communicate(timeout=280)
@@ -243,8 +254,7 @@ def main():
     check_itself()
     if not sys.argv[1:]:
         return count()
-    if any(subprocess.run(["unshare", "--net", "--pid", "--fork"] + ([] if os.geteuid() == 0 else ["--map-root-user"]) + ["true"],
-                          stderr=subprocess.DEVNULL, check=False).returncode for _ in [0]) or not shutil.which("ip"):
+    if not shutil.which("ip") or subprocess.run([*ISOLATED, "true"], stderr=subprocess.DEVNULL, check=False).returncode:
         print("no network of its own may be made here")
         sys.exit(77)
     for page in sys.argv[1:]:

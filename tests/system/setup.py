@@ -141,7 +141,7 @@ class Setup(unittest.TestCase):
             findings, serial = self.found("--yes")
         self.assertEqual(serial[self.motors]["kind"], "in_use")
         self.assertIn(f"process {os.getpid()}", serial[self.motors]["text"])
-        self.assertIn(f"UDP port {self.lidar_port} is received at by", findings["problems"][0])
+        self.assertIn(f"UDP port {self.lidar_port} is in use by", findings["problems"][0])
         self.assertIn(f"process {os.getpid()}", findings["problems"][0])
         port.close()
 
