@@ -91,12 +91,14 @@ void ExperimentCommand::placeTrust(OutputSet &files, std::ostream &csv) const {
 void ExperimentCommand::poseTrust(OutputSet &files, std::ostream &csv) const {
     std::ostream &json = open(files, ".json");
     std::vector<PoseTrial> trials = posesOfDrawnDrives(options.seed, options.runs, options.progress);
-    std::vector<std::string> all = logs;
-    all.insert(all.end(), others.begin(), others.end());
-    const std::vector<std::string> names = setNames(all);
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (PoseTrial &trial : posesOfLog(names[i], readLog(all[i]), i >= logs.size()))
-            trials.push_back(std::move(trial));
+    const auto append = [&trials](const std::vector<std::string> &of, bool strange) {
+        const std::vector<std::string> names = setNames(of);
+        for (std::size_t i = 0; i < of.size(); ++i)
+            for (PoseTrial &trial : posesOfLog(names[i], readLog(of[i]), strange))
+                trials.push_back(std::move(trial));
+    };
+    append(logs, false);
+    append(others, true);
     writeCsv(csv, trials);
     tell(json, poseTrustSummary(trials));
 }

@@ -207,8 +207,9 @@ def run(page):
             environment.pop(name, None)
         for name in ("HERMES_BIN", "HERMES_BUILD", "HERMES_SOURCE"):
             environment.setdefault(name, {"HERMES_BIN": f"{BUILD}/bin", "HERMES_BUILD": BUILD, "HERMES_SOURCE": pages.SOURCE}[name])
-        # A network of its own: the default ports of the daemons are free there. When bash ends, all that it started does.
-        child = subprocess.Popen([*ISOLATED, "sh", "-c", f"ip link set lo up; exec bash {path}"], cwd=folder, env=environment, text=True,
+        # A network of its own: the default ports of the daemons are free there. Locks of serial lines of its own: they name
+        # processes by number.  When bash ends, all that it started does.
+        child = subprocess.Popen([*ISOLATED, "sh", "-c", f"mount -t tmpfs none /run/lock; ip link set lo up; exec bash {path}"], cwd=folder, env=environment, text=True,
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
         try:
             output, _ = child.communicate(timeout=280)
