@@ -184,7 +184,10 @@ void MotorControl::show(const Telemetry &telemetry) {
     if (!reason.isEmpty() && !telemetry.latch.isSet() &&
         loggedHalt_ != reason) // a latched one is told as health
         logInfo("stop", loggedHalt_ = reason);
+    const bool isNewLatch = telemetry.latch.isSet() != told_.latch.isSet();
     told_ = telemetry;
+    if (isNewLatch)
+        tellStop(); // at once; all else of health waits for the next cycles
     answerStops();
     if (!telemetry.moved && cycles_ == telemetry.cycle.cycles)
         return; // a report between two cycles

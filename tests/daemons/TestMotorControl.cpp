@@ -285,6 +285,7 @@ void TestMotorControl::emergencyStopLatches() {
     driveOff({{"vx", 0.5}});
     call("motor.estop");
     QVERIFY(state()["estop"].toBool());
+    QCOMPARE(healthItem("stop")["level"].toString(), QString("error")); // nothing tells otherwise meanwhile
     QCOMPARE(failure("motor.drive", {{"vx", 0.5}}).code, int(ErrorCode::NotReady));
     QCOMPARE(failure("control.acquire").code, int(ErrorCode::NotReady));
     QTRY_VERIFY(rig_->fastest() < 10);
