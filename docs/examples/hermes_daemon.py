@@ -232,5 +232,5 @@ def send(client, message):
     """Not to a client that has gone, or leaves 256 KiB unread: nobody waits for it."""
     if client.transport.is_closing() or client.transport.get_write_buffer_size() > 1 << 18:
         return False
-    client.write(json.dumps({"jsonrpc": "2.0", **message}).encode() + b"\n")
+    client.write(json.dumps({"jsonrpc": "2.0", **message}, allow_nan=False).encode() + b"\n")
     return True

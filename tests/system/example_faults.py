@@ -35,7 +35,7 @@ class ExampleFaultsTest(unittest.TestCase):
             self.assertIn(word, complaint)
 
     def test_a_daemon_ends_in_order_at_ctrl_c(self):
-        for name in ("daemon.py",):
+        for name in ("daemon.py", "scan2d.py"):
             for number in (signal.SIGINT, signal.SIGTERM):
                 port = free_port(0)
                 process = begin(name, "--port", port)
@@ -108,6 +108,12 @@ class ExampleFaultsTest(unittest.TestCase):
             file.write(b"HERMESIX" + struct.pack("<II", 1, 24) + struct.pack("<Qqq", 0, 1500000000, 1))
         process = begin("seriallog.py", base)
         self.assertEqual(process.communicate(timeout=30), ("1.500000 b'abc'\n", ""))
+
+    def test_the_simulated_scanner(self):
+        world = os.path.join(SOURCE, "deploy", "worlds", "pillars.json")
+        link, port = os.path.join(self.folder, "laser"), free_port(0)
+        self.expect(begin("simulated_ld06.py", world, link, "--port", port), 1, f"the simulator: no daemon answers at 127.0.0.1:{port}")
+        self.expect(begin("simulated_ld06.py", world + "x", link), 1, world + "x")
 
 
 if __name__ == "__main__":
