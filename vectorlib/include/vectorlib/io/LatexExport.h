@@ -5,10 +5,11 @@
 namespace vectorlib {
 
 /// Writes pictures of scenes, plots, surfaces and tables as LaTeX, one after the other: a document that
-/// pdflatex compiles, or a fragment for \input, whose first lines name the packages that it needs. Text of
-/// any content is escaped. Thesis 4.2.2, LaTeXExport.
+/// pdflatex compiles, or a fragment to be included, whose first lines name the packages that it needs. Text
+/// of any content is escaped. Thesis 4.2.2, LaTeXExport.
 class LatexExport {
 public:
+    /// A document of its own, or a fragment that another document includes.
     enum class As { Document, Fragment };
 
     explicit LatexExport(std::ostream &out, const std::string &title = "", As as = As::Document)

@@ -17,7 +17,7 @@ struct LatexFrame {
 
 namespace latex {
 
-/// #rrggbb as an expression of a colour, which needs no definition; what is no colour is black.
+/// `#rrggbb` as an expression of a colour, which needs no definition; what is no colour is black.
 inline std::string colour(const std::string &hex) {
     unsigned red = 0, green = 0, blue = 0;
     if (hex.size() != 7 || std::sscanf(hex.c_str(), "#%2x%2x%2x", &red, &green, &blue) != 3)

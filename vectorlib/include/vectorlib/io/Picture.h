@@ -11,12 +11,12 @@ namespace vectorlib {
 
 /// Colours with a meaning, the same in every picture; they stay apart for the colour-blind.
 namespace colour {
-constexpr const char *map = "#1b2a41";      // what is known: segments of a map, of a world, of the static set
-constexpr const char *points = "#8d99ae";   // what was measured
-constexpr const char *outliers = "#d62828"; // what was left out
-constexpr const char *estimate = "#0072b2"; // what was computed: trajectories, registered segments
-constexpr const char *reference = "#e69f00"; // what it is compared with
-constexpr const char *before = "#cc79a7";    // where the dynamic set was
+constexpr const char *map = "#1b2a41";    ///< what is known: segments of a map, of a world, of the static set
+constexpr const char *points = "#8d99ae"; ///< what was measured
+constexpr const char *outliers = "#d62828";  ///< what was left out
+constexpr const char *estimate = "#0072b2";  ///< what was computed: trajectories, registered segments
+constexpr const char *reference = "#e69f00"; ///< what it is compared with
+constexpr const char *before = "#cc79a7";    ///< where the dynamic set was
 
 /// For parts that need only be told from their neighbours, such as clusters.
 inline const char *distinct(std::size_t i) {
@@ -34,20 +34,30 @@ public:
 
     using Point = Vector2D<double>;
 
+    /// How the things of a layer are drawn.
     struct Style {
-        std::string colour; ///< #rrggbb
+        std::string colour; ///< as in CSS: `#rrggbb`
         double width = 1.5; ///< pixels; diameter of points
         std::string label;  ///< in the legend; none when empty
         bool dashed = false;
         bool normals = false; ///< of segments: a tick to the side that was free
     };
-    enum class Kind { Points, Segments, Path, Pose, Area };
+    /// What the points of a layer stand for.
+    enum class Kind {
+        Points,   ///< dots
+        Segments, ///< lines between two points each
+        Path,     ///< one line through all points
+        Pose,     ///< a circle with a tick in its heading
+        Area      ///< a filled polygon
+    };
+    /// Things of one kind and style, in the order in which they were added; metres.
     struct Layer {
         Kind kind;
         Style style;
         std::vector<Point> vertices; ///< of a pose one, of segments begins and ends in turn
         double heading = 0;          ///< of a pose
     };
+    /// A rectangle along the axes, from its lower left corner to its upper right one; metres.
     struct Box {
         Point low, high;
         Point size() const { return high - low; }

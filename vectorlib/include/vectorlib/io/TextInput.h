@@ -92,10 +92,12 @@ private:
     std::optional<InputError> error_;
 };
 
+/// Whether a character is a space or a tab.
 inline bool isBlank(char c) {
     return c == ' ' || c == '\t';
 }
 
+/// The text without the blanks at its ends.
 inline std::string_view trimmed(std::string_view text) {
     while (!text.empty() && isBlank(text.front()))
         text.remove_prefix(1);

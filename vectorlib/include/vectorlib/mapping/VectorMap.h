@@ -8,6 +8,7 @@
 
 namespace vectorlib {
 
+/// When VectorMap makes one edge of several.
 struct VectorMapSettings {
     double maxSigma = 0.05; ///< edges are merged only while the points stay within this of one line; metres
     double joinDistance =

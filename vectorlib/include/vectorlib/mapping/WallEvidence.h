@@ -18,6 +18,7 @@ struct PartEvidence {
     int through() const { return throughBefore + throughAfter; }
 };
 
+/// Settings of WallEvidence: when a part of a wall was seen, and when a scan saw through it.
 struct WallEvidenceSettings {
     double part = 0.2;          ///< walls are looked at in parts of about this length; metres
     double seenWithin = 0.15;   ///< a part is seen where the scan's edge is no farther from its line; metres

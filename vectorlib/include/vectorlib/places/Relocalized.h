@@ -11,8 +11,16 @@
 namespace vectorlib {
 
 /// Why a place is not accepted; the first of its faults in this order.
-enum class PlaceFault { None, Reliability, Explained, Contradicted, Doubtful, Alike };
+enum class PlaceFault {
+    None,         ///< the place is accepted
+    Reliability,  ///< the directions of the walls are too much alike to fix the place
+    Explained,    ///< too little of the scan lies on walls of the map
+    Contradicted, ///< what would be seen from there differs from what was seen
+    Doubtful,     ///< too little speaks for it
+    Alike         ///< another place fits alike
+};
 
+/// The fault in words, for people.
 inline const char *describe(PlaceFault fault) {
     switch (fault) {
     case PlaceFault::None:

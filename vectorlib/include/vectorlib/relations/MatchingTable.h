@@ -13,6 +13,7 @@ namespace vectorlib {
 /// taken away is exactly 0. Keeps its buffers.
 class MatchingTable {
 public:
+    /// A pair of a reference segment (row) and a current one (column), and its merged score.
     struct Cell {
         int row = 0;
         int column = 0;

@@ -13,6 +13,7 @@ template <typename Scalar>
 struct NearThreshold {
     Scalar scale, least, most;
 
+    /// The threshold at a range: `scale` times it, within `least` and `most`.
     Scalar operator()(Scalar range) const {
         const Scalar scaled = scale * range, low = scaled > least ? scaled : least;
         return low < most ? low : most;

@@ -27,6 +27,7 @@ public:
     double step =
         1e-11; ///< metres, and for a turn at the segments' mean distance: smaller ones end the search
 
+    /// Searches from `start`; both move the dynamic set. A start that is not finite comes back as it is.
     CriterionMinimum operator()(const EdgeSetComparator &criterion, const Transformation2D &start) const {
         CriterionMinimum best;
         best.transformation = start;
