@@ -23,6 +23,7 @@ struct PublishedBundle {
         , alpha(first.alpha) {
         sums.stiffness = first.sums.stiffness;
     }
+    /// Takes a pair into the sums, not into `pairs`.
     void add(const PotentialPair &pair) {
         const double turn = wrapAngle(pair.alpha - alpha);
         const double shift = (pair.normal.dot(normal) < 0 ? -1 : 1) * pair.shift; // facing walls

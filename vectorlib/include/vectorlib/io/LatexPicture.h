@@ -42,6 +42,7 @@ public:
         size_ = size * scale_;
     }
 
+    /// Writes the picture and its grid, without a legend.
     void write(std::ostream &out) const {
         out << "\\begin{tikzpicture}[line cap=round, line join=round]\n";
         writeGrid(out);

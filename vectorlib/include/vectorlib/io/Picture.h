@@ -66,6 +66,7 @@ public:
     explicit Picture(std::string title)
         : title_(std::move(title)) {}
 
+    /// Adds a layer of dots.
     template <typename Scalar>
     void points(Style style, const std::vector<Vector2D<Scalar>> &points) {
         Layer &layer = add(Kind::Points, std::move(style));
@@ -83,6 +84,7 @@ public:
                                                std::to_string(clusters[c].size()) + " points"},
                    clusters[c]);
     }
+    /// Adds a layer of segments.
     template <typename Scalar>
     void segments(Style style, const std::vector<LineSegment2D<Scalar>> &segments) {
         Layer &layer = add(Kind::Segments, std::move(style));
@@ -92,6 +94,7 @@ public:
                 take(layer, Point(s.end()));
             }
     }
+    /// Adds a layer with one line through all points.
     void path(Style style, const std::vector<Point> &path) {
         Layer &layer = add(Kind::Path, std::move(style));
         for (const Point &p : path)
@@ -122,8 +125,8 @@ public:
             margin = std::max(margin, 1e-14 * std::abs(far)); // less would be lost by rounding
         return {box_.low - Point(margin, margin), box_.high + Point(margin, margin)};
     }
-    /// Where the lines of a grid are from low to high: every 1, 2 or 5 times a power of ten, at most about
-    /// ten along the longer side of the box.
+    /// From one line of a grid to the next, metres: 1, 2 or 5 times a power of ten, so that at most about ten
+    /// lines cross the longer side of the box.
     double gridStep() const {
         const Point size = box().size();
         const double wanted = std::max(size.x, size.y) / mostLines;
@@ -133,6 +136,7 @@ public:
                 return factor * power;
         return 10 * power;
     }
+    /// Where the lines of a grid are from low to high, at most one more than `most`.
     static std::vector<double> gridLines(double low, double high, double step, int most = mostLines) {
         std::vector<double> lines;
         // Counted: far from the origin a step more may be the same number.

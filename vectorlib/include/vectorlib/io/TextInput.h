@@ -50,6 +50,7 @@ public:
     /// False when the last line ended with the input instead of a line feed: it may be cut short.
     bool terminated() const { return terminated_; }
     const std::string &name() const { return name_; }
+    /// An error at the line that was read last.
     InputError errorHere(std::string found, std::string expected) const {
         return {name_, number_, std::move(found), std::move(expected)};
     }

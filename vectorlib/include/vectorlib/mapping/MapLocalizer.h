@@ -19,7 +19,7 @@ struct MapLocalizerSettings {
 
 /// A scan of the drive. Without a pose nothing tells where it was taken.
 struct LocalizedScan {
-    double stamp = 0;
+    double stamp = 0;           ///< seconds
     std::optional<Pose2D> pose; ///< of the sensor, map frame
     bool matched = false;       ///< else the pose is where the motion led
 };

@@ -51,6 +51,7 @@ public:
     }
     /// Number of parts of a segment, all of one length.
     std::size_t parts(std::size_t wall) const { return starts_[wall + 1] - starts_[wall]; }
+    /// What the scans tell of a part of a segment; parts are numbered from its begin.
     const PartEvidence &part(std::size_t wall, std::size_t number) const {
         return evidence_[starts_[wall] + number];
     }

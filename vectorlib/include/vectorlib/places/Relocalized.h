@@ -70,7 +70,7 @@ struct Relocalized {
     std::size_t alike = 0;     ///< places that score nearly like the best
     std::size_t parts = 0;     ///< of the search: a wall of the scan on a wall of the map
     std::size_t searched = 0;  ///< of these parts
-    double ms = 0;
+    double ms = 0;             ///< time that the search took; milliseconds
 
     bool isFound() const { return outcome == Outcome::Found; }
     /// In words, for people.
