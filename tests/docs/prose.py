@@ -27,15 +27,15 @@ def help_sentences(program):
 def miscounts(page, text):
     """Where the page says "in N lines" behind a link to a file, or to a page whose longest block that is, and is wrong. "About" may be off
     by a fifth."""
-    for link, about, said in re.findall(r"\]\(([^)#:]+)\)(?:(?!\]\(|\.\s).){0,80}?\b(about\s)?([\d,]+)\slines", text, re.S):
+    for link, kind, said in re.findall(r"\]\(([^)#:]+)\)(?:(?!\]\(|\.\s).){0,80}?\b((?:about|less\sthan)\s)?([\d,]+)\slines", text, re.S):
         path = os.path.normpath(os.path.join(os.path.dirname(page), link))
         if path.endswith(".md"):
             count = max(block.text.count("\n") for block in pages.blocks(path))
         else:
             count = pages.read(path).count("\n")
         said = int(said.replace(",", ""))
-        if abs(count - said) > (0.2 * count if about else 0):
-            yield f"{page}: {link} has {count} lines, not {about}{said}"
+        if not (0.8 * count < said < 1.2 * count if kind[:1] == "a" else count < said if kind else count == said):
+            yield f"{page}: {link} has {count} lines, not {kind}{said}"
 
 
 def allowed():
