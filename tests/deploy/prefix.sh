@@ -25,7 +25,7 @@ grep -q "^ExecStart=$work/one/bin/hermes-supervisor " "$work/one/lib/systemd/sys
 grep -q "^Exec=$work/one/bin/hermes-gui$" "$work/one/share/applications/hermes-gui.desktop" || fail "Exec of the menu entry"
 "$work/one/bin/hermes-supervisor" --print-settings | grep -q "\"samples\": \"$work/one/share/hermes/settings\"" || fail "setup.samples"
 
-xargs -d '\n' rm -- <"$HERMES_BUILD/install_manifest.txt"
+sort -u "$HERMES_BUILD/install_manifest.txt" | xargs -d '\n' rm --
 left=$(find "$work/one" ! -type d)
 [ -z "$left" ] || fail "left after the removal: $left"
 
