@@ -18,6 +18,15 @@ def clock(seconds):
     return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
 
 
+def processor():
+    """The machine's processor, for whoever reads its times."""
+    model = "unknown processor"
+    if os.path.exists("/proc/cpuinfo"):
+        with open("/proc/cpuinfo", encoding="utf-8") as info:
+            model = next((line.split(":")[1].strip() for line in info if line.startswith("model name")), model)
+    return f"{model}, one of {os.cpu_count()} virtual cores"
+
+
 class Progress:
     """What is done, and how long the rest may take: in one line of a terminal, elsewhere in a line every ten seconds."""
 
