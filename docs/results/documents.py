@@ -1,18 +1,9 @@
-"""The results of experiments with the thesis and the papers: docs/sources.md, docs/hermes-vector.md."""
-import math
+"""The results of experiments with the thesis and the papers: docs/sources.md, docs/hermes-vector.md, docs/algorithms.md."""
 import re
 import statistics
 
-from running import FIVE, json_of, rows_of
-
-
-def number(value, digits):
-    """With so many digits that count, and never with an exponent."""
-    rounded = float(f"{float(value):.{digits}g}")
-    if rounded == 0 or abs(rounded) >= 10 ** digits:
-        return f"{rounded:,.0f}"
-    text = f"{rounded:,.{digits - 1 - math.floor(math.log10(abs(rounded)))}f}"
-    return text.rstrip("0").rstrip(".") if "." in text else text
+import pose_free
+from running import FIVE, json_of, number, rows_of
 
 
 RAYS = (200, 500, 1000, 2000, 5000, 10000, 20000)
@@ -92,7 +83,8 @@ def criterion_time(run):
 
 def optimum(run):
     """Random closed rooms in which AFTLS comes within 1 % of the least error that so many lines can have."""
-    found = re.findall(r"\((\d+) rays\) within 1 % of the optimum: (\d+) of (\d+) rooms .*by Nelder-Mead (\d+)", run.test("vectorlib/TestAftlsOptimum"))
+    found = re.findall(r"\((\d+) rays\) within 1 % of the optimum: (\d+) of (\d+) rooms .*by Nelder-Mead (\d+)",
+                       run.test("vectorlib/TestAftlsOptimum"))
     share = lambda part, rooms: f"{100 * int(part) / int(rooms):.1f} %"
     return {"optimum": [("points of a scan", "descent", "Nelder-Mead"),
                         *((f"{int(rays):,}", share(near, rooms), share(simplex, rooms)) for rays, near, rooms, simplex in found)]}
@@ -139,7 +131,7 @@ def weighting(run):
     ours, known = ({r["world"]: r for r in rows_of(folder, "weighting-tables.csv")} for folder in folders)
     table = [("", *(x for world in WORLDS for x in (world, "known edges", "published")))]
     for key, (what, *published) in PUBLISHED_WEIGHTING.items():
-        table.append((what, *(x for world, p in zip(WORLDS, published) for x in (f"{float(ours[world][key]):.2f}", f"{float(known[world][key]):.2f}", f"{p:.2f}"))))
+        table.append((what, *(f"{float(x):.2f}" for world, p in zip(WORLDS, published) for x in (ours[world][key], known[world][key], p))))
     rows = rows_of(folders[0], "weighting.csv")
     gain = [("squared position error, weighted over unweighted", "noise 1 cm", "3 cm", "10 cm", "100 points", "3,000 points"),
             *((world, *(f"{weighting_by(rows, world, **setting):.2f}" for setting in
@@ -176,7 +168,8 @@ def registration_bias(run):
           if r["sigma"] == "0.1" and r["weighted"] == "0"}
     mm2 = lambda segments, points, key: number(1e6 * float(at[segments, points][key]), 3)
     return {"registration-bias": [("squared error, mm²", "100 points", "1,000 points", "3,000 points", "of it bias, 3,000 points"),
-                                  *((what, *(mm2(s, n, "d_t") for n in ("100", "1000", "3000")), mm2(s, "3000", "bias_t")) for s, what in SEGMENTS.items())]}
+                                  *((what, *(mm2(s, n, "d_t") for n in ("100", "1000", "3000")), mm2(s, "3000", "bias_t"))
+                                    for s, what in SEGMENTS.items())]}
 
 
 def span(values):
@@ -188,6 +181,7 @@ def report(run):
     seeds = range(1, 9)
     tables = {}
     rules = [("seeds 1 to 8", "published", "published rules", "our finder")]
+    counted = ("solutions of case 0", "true solution accepted", "wrong ones accepted", "wrong pairs of the first solutions")
     printed = {"pillars": ("15", "32 of 38", "7", ""), "quadratic": ("6", "24 of 24", "0", "80")}
     for world in ("pillars", "quadratic"):
         ours = [run.told(f"report {world} --overall --seed {seed} --format json") for seed in seeds]
@@ -199,24 +193,28 @@ def report(run):
         cells = [(span(counts[0]), span(counts[1]))]
         cells += [(span([s[key] for s in theirs]) + end, span([s[key] for s in summaries]) + end)
                   for key, end in (("true_accepted", of), ("wrong_accepted", ""), ("false_positives_of_first", ""))]
-        for what, p, both in zip(("solutions of case 0", "true solution accepted", "wrong ones accepted", "wrong pairs of the first solutions"), printed[world], cells):
-            rules.append((f"{world}, {what}", p, *both))
+        rules += [(f"{world}, {what}", p, *both) for what, p, both in zip(counted, printed[world], cells)]
         accepted = [c["accepted"][0] for c in ours[0]["cases"] if c["accepted"]]
-        summary, quartet = summaries[0], lambda values: " to ".join(number(f(values), 3) for f in (min, statistics.median, max))
-        tables["report-" + world] = [("pairs of scans", "true first", "true accepted", "wrong accepted", "false pairs of the first", "reliability", "discrepancy, cm²"),
-                                     (*(str(summary[key]) for key in ("cases", "true_first", "true_accepted", "wrong_accepted", "false_positives_of_first")),
-                                      quartet([c["reliability"] for c in accepted]), quartet([1e4 * c["discrepancy"] for c in accepted]))]
+        least_to_most = lambda values: " to ".join(number(f(values), 3) for f in (min, statistics.median, max))
+        summary = [str(summaries[0][key]) for key in ("cases", "true_first", "true_accepted", "wrong_accepted", "false_positives_of_first")]
+        tables["report-" + world] = [("pairs of scans", "true first", "true accepted", "wrong accepted", "false pairs of the first", "reliability",
+                                      "discrepancy, cm²"),
+                                     (*summary, least_to_most([c["reliability"] for c in accepted]),
+                                      least_to_most([1e4 * c["discrepancy"] for c in accepted]))]
     run.commands[:] = dict.fromkeys(re.sub(r"--seed \d+", "--seed 1 to 8", command) for command in run.commands)
     return {**tables, "report-rules": rules}
 
 
 def overview(run):
     """Figures 2 and 4 of the overview paper: the error at the end of 20 drives."""
-    table = [("error at the end, 20 drives", "published", "by odometry, m", "ours, median, mm", "least", "largest", "largest on the way", "the paper's matcher, median, mm", "least", "largest")]
-    for experiment, what, printed in (("overview-steps", "ten scans 60 cm apart", "pictures only"), ("overview-loop", "46.71 m in 33 scans", "6 mm, one drive")):
+    table = [("error at the end, 20 drives", "published", "by odometry, m", "ours, median, mm", "least", "largest", "largest on the way",
+              "the paper's matcher, median, mm", "least", "largest")]
+    for experiment, what, printed in (("overview-steps", "ten scans 60 cm apart", "pictures only"),
+                                      ("overview-loop", "46.71 m in 33 scans", "6 mm, one drive")):
         told = json_of(run.experiment(experiment), "out.json")
         mm = lambda of, *keys: (f"{1000 * told[of][key]:.1f}" for key in keys)
-        table.append((what, printed, f"{told['odometry_closing_error_m']:.2f}", *mm("closing_error_m", "median", "least", "largest", "largest_on_the_way"),
+        table.append((what, printed, f"{told['odometry_closing_error_m']:.2f}",
+                      *mm("closing_error_m", "median", "least", "largest", "largest_on_the_way"),
                       *mm("closing_error_m_of_the_older_matcher", "median", "least", "largest")))
     return {"overview": table}
 
@@ -233,67 +231,6 @@ def baseline(run):
                 table.append((f"{what}: {matcher}", *(f"{share:.2f}" for share in m["right_share"].values()), f"{1000 * m['median_error_m']:.1f}",
                               f"{m['median_error_deg']:.2f}", f"{m['time_over_tracker']:.1f}"))
     return {"baseline": table}
-
-
-# What the summaries of the pose-free thesis are in words, with the unit, and a factor from that of the file.
-WORDS = {"scans": ("scans", 1), "length_m": ("way, m", 1), "matched": ("pairs matched", 1), "lost": ("scans lost", 1),
-         "wrong": ("motions wrong by 0.5 m or 10 degrees", 1), "mean_error_m": ("error of a pair, mean, cm", 100),
-         "median_error_m": ("error of a pair, median, cm", 100), "largest_error_m": ("error of a pair, largest, cm", 100),
-         "mean_error_deg": ("rotational error, mean, degrees", 1), "median_error_deg": ("rotational error, median, degrees", 1),
-         "largest_error_deg": ("rotational error, largest, degrees", 1), "mean_error_area_percent": ("error area, mean, %", 1),
-         "median_us": ("time of a pair, median, us", 1), "mean_us": ("time of a pair, mean, us", 1), "map_segments": ("segments of the map", 1),
-         "last_error_x_m": ("error of the last pose, x, cm", 100), "last_error_y_m": ("error of the last pose, y, cm", 100),
-         "last_error_deg": ("error of the last pose, degrees", 1), "pairs": ("pairs", 1), "area_at_10_deg_m2": ("error area at 10 degrees, m²", 1),
-         "area_at_50_cm_m2": ("error area at 50 cm, m²", 1), "grows_throughout": ("grows with the error throughout", 1),
-         "mean_area_first_m2": ("error area of the first scan with all, mean, m²", 1), "mean_area_all_m2": ("error area of all pairs, mean, m²", 1),
-         "slope_first_m2_per_m": ("slope of the first scan's by distance, m² a metre", 1), "slope_all_m2_per_m": ("slope of all pairs", 1)}
-# What is printed, beside what the program itself tells.
-PRINTED = {"free-home": {"matched": "all"}, "free-leaps": {"matched": "all"}, "free-copy": {"grows_throughout": "yes"},
-           "free-approach": {"pairs": "of 1,480 scans", "matched": "all", "mean_area_first_m2": "the smaller one", "mean_area_all_m2": "the larger one",
-                             "slope_first_m2_per_m": "none", "slope_all_m2_per_m": "none"},
-           "free-log": {"last_error_x_m": "7.84", "last_error_y_m": "-0.66", "last_error_deg": "2.12"}}
-
-
-def free_table(name, folder, more=()):
-    """The pose-free thesis, chapter 6: what one experiment told, beside what is printed."""
-    found = json_of(folder, "out.json")
-    published = {key: number(float(value) * WORDS[key][1], 4) for key, value in found.pop("published", {}).items()}
-    published.update(PRINTED[name])
-
-    def cell(key, value):
-        if isinstance(value, bool):
-            return "yes" if value else "no"
-        return f"{value:,}" if isinstance(value, int) else number(value * WORDS[key][1], 4)
-
-    return [("", "ours", "published"), *((WORDS[key][0], cell(key, value), published.get(key, "")) for key, value in found.items()), *more]
-
-
-def free(run):
-    """Figures 6.2 to 6.11: a home in 3,069 and in 23 scans, a scan and its copy, straight to where walls meet."""
-    folders = {name: run.experiment(name) for name in ("free-home", "free-leaps", "free-copy", "free-approach")}
-    rows, apart = rows_of(folders["free-approach"], "free-approach.csv"), []
-    for kind, what in (("first", "first scan with those"), ("all", "all pairs")):
-        for low in (0, 16):
-            near = [r for r in rows if r["pairs_of"] == kind and low <= float(r["distance_m"]) < low + 2]
-            mean = sum(float(r["error_area_m2"]) * int(r["pairs"]) for r in near) / sum(int(r["pairs"]) for r in near)
-            apart.append((f"{what} {low} to {low + 2} m apart, mean, m²", number(mean, 3), "the same" if low else ""))
-    return {name: free_table(name, folder, apart if name == "free-approach" else ()) for name, folder in folders.items()}
-
-
-def free_log(run):
-    """Figures 6.12 and 6.13: a real log without any pose; where the way of the others ends."""
-    ends = [("log", "scans", "scans placed", "motions wrong", "end of the way off by, m", "degrees")]
-    for log in FIVE:
-        folder = run.experiment(f"free-log --log {{{log}}}")
-        told = json_of(folder, "out.json")
-        ends.append((log, f"{told['scans']:,}", f"{told['matched']:,}", str(told["wrong"]), f"{math.hypot(told['last_error_x_m'], told['last_error_y_m']):.0f}",
-                     f"{told['last_error_deg']:.0f}"))
-        if log == "freiburg-079":
-            placed = [r for r in rows_of(folder, "free-log.csv") if r["matched"] == "1"]
-            largest = [(what, number(max(float(r[key]) for r in placed), 3), "")
-                       for what, key in (("largest error of a pose in the map, m", "global_error_m"), ("largest error of a pose in the map, degrees", "global_error_deg"))]
-            table = free_table("free-log", folder, largest)
-    return {"free-log": table, "free-log-ends": ends}
 
 
 POLYLINES = ("AFTLS", "FTLS", "INC", "DP", "RW", "SAM", "SAM+")
@@ -326,6 +263,7 @@ def polygons(run):
 
 
 # Seconds on a machine that does nothing else, for the time that is left.
-RESULTS = {"scenes": (scenes, 200), "real-scans": (real_scans, 10), "criterion-time": (criterion_time, 30), "optimum": (optimum, 150), "hausdorff-criteria": (hausdorff_criteria, 8),
-           "weighting": (weighting, 20), "accuracy": (accuracy, 5), "registration-bias": (registration_bias, 10), "report": (report, 15),
-           "overview": (overview, 5), "baseline": (baseline, 40), "free": (free, 15), "free-log": (free_log, 10), "polygons": (polygons, 20)}
+RESULTS = {"scenes": (scenes, 200), "real-scans": (real_scans, 10), "criterion-time": (criterion_time, 30), "optimum": (optimum, 150),
+           "hausdorff-criteria": (hausdorff_criteria, 8), "weighting": (weighting, 20), "accuracy": (accuracy, 5),
+           "registration-bias": (registration_bias, 10), "report": (report, 15), "overview": (overview, 5), "baseline": (baseline, 40),
+           "free": (pose_free.free, 15), "free-log": (pose_free.free_log, 10), "polygons": (polygons, 20)}

@@ -21,8 +21,8 @@ def mapped(run, log, options=""):
 def maps(run):
     """Maps of the logs: errors at revisits, as tracked, with loops closed, and without odometry; walls that are there twice."""
     reviewed = [("log", "scans", "segments", "there twice", "removed or cut, as later scans contradict it", "time of the review, seconds")]
-    closed = [("log", "scans", "as tracked, m", "loops closed and refined, m", "degrees", "95th percentile, m", "without odometry, m", "closed, of those tried",
-               "map file, of the log", "time of all, seconds")]
+    closed = [("log", "scans", "as tracked, m", "loops closed and refined, m", "degrees", "95th percentile, m", "without odometry, m",
+               "closed, of those tried", "map file, of the log", "time of all, seconds")]
     motions = [("log", "as tracked", "loops closed and refined", "without odometry")]
     for log in FIVE:
         tracked, tracked_at = mapped(run, log, "--loops leave")
@@ -55,7 +55,8 @@ def localized(run):
 
 def pairs(run):
     """The motions between scans, expected where the odometry tells."""
-    table = [("log", "pairs", "within 10 cm, 2 degrees", "within 5 cm, 2 degrees", "lines alone, 10 cm", "lines do not suffice", "accepted", "accepted wrong")]
+    table = [("log", "pairs", "within 10 cm, 2 degrees", "within 5 cm, 2 degrees", "lines alone, 10 cm", "lines do not suffice", "accepted",
+              "accepted wrong")]
     sets = [(log, named(log), f"--every {EVERY.get(log, 1)}") for log in FIVE]
     sets.insert(1, ("freiburg-079", "freiburg-079, first 1,000", "--first 1000"))
     for log, name, options in sets:
@@ -75,8 +76,10 @@ def blind(run):
         for name, half in (("blind", ""), ("blind-second-half", "--half 2")):
             p = json_of(run.experiment(f"pairs --no-guess --log {{{log}}} --every {EVERY.get(log, 1)} {half}"), "out.json")
             tables[name].append((named(log), f"{p['pairs']:,}", percent(p["within_10cm_2deg"]), percent(p["within_5cm_2deg"]),
-                                 f"{p['pairs'] * p['wrong']:.0f}", percent(p["accepted"]), percent(p["accepted_of_right"]), f"{p['pairs'] * p['accepted_wrong']:.0f}", percent(p["searched_widely"], 0)))
-    far = [("every N-th scan", "pairs", "within 10 cm, 2 degrees", "with odometry, `ScanPairMatcher`", "accepted of the right ones", "far wrong, accepted")]
+                                 f"{p['pairs'] * p['wrong']:.0f}", percent(p["accepted"]), percent(p["accepted_of_right"]),
+                                 f"{p['pairs'] * p['accepted_wrong']:.0f}", percent(p["searched_widely"], 0)))
+    far = [("every N-th scan", "pairs", "within 10 cm, 2 degrees", "with odometry, `ScanPairMatcher`", "accepted of the right ones",
+            "far wrong, accepted")]
     for log, every in FAR:
         p, expected = (json_of(run.experiment(f"pairs --log {{{log}}} --every {every} {options}"), "out.json") for options in ("--no-guess", ""))
         far.append((f"{log}, {every}", f"{p['pairs']:,}", percent(p["within_10cm_2deg"]), percent(expected["within_10cm_2deg"]),
@@ -95,7 +98,8 @@ def calibration(run):
     tables = {}
     for name, half in (("calibration-second-half", " --half 2"), ("calibration", "")):
         told = json_of(run.experiment(f"calibration {sets}{half}"), "out.json")
-        tables[name] = [("predicted probability", "best solutions", "mean predicted", "share right", "all solutions", "mean predicted", "share right"),
+        tables[name] = [("predicted probability", "best solutions", "mean predicted", "share right", "all solutions", "mean predicted",
+                         "share right"),
                         *((tenth(i), *(x for of in ("best", "all") for x in (f"{told[of][i]['solutions']:,}", f"{told[of][i]['told']:.3f}",
                                                                             f"{told[of][i]['right']:.3f}"))) for i in range(10))]
     return tables
@@ -148,7 +152,8 @@ def pose_trust(run):
             own = [s for name, s in told[half]["sets"].items() if name.startswith(log)]
             if own:
                 mean = lambda key: sum(s["poses"] * s[key] for s in own) / sum(s["poses"] for s in own)
-                of_poses.append((half + (log and ", " + log), f"{sum(s['poses'] for s in own):,}", *(f"{mean(key):.3f}" for key in ("told", "right", "loss")),
+                of_poses.append((half + (log and ", " + log), f"{sum(s['poses'] for s in own):,}",
+                                 *(f"{mean(key):.3f}" for key in ("told", "right", "loss")),
                                  *(f"{sum(s[key] for s in own):,}" for key in ("above_0.9", "above_0.9_wrong"))))
     table = [("predicted", "other half: poses", "mean", "right", "never fitted: poses", "mean", "right"),
              *((tenth(i), *(x for half in halves[1:] for x in (f"{told[half]['tenths'][i]['poses']:,}", f"{told[half]['tenths'][i]['told']:.3f}",

@@ -1,6 +1,7 @@
 """Runs hermes-vector for the result files."""
 import csv
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -89,3 +90,12 @@ def json_of(*path):
 
 def percent(share, digits=1):
     return f"{100 * share:.{digits}f} %"
+
+
+def number(value, digits):
+    """With so many digits that count, and never with an exponent."""
+    rounded = float(f"{float(value):.{digits}g}")
+    if rounded == 0 or abs(rounded) >= 10 ** digits:
+        return f"{rounded:,.0f}"
+    text = f"{rounded:,.{digits - 1 - math.floor(math.log10(abs(rounded)))}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

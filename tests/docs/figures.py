@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The figures of the manual are those of the result files in docs/results, each table stands in one place, each result file has a
-command that writes it, and what two commands measure is the same. With --today, a few results are also what hermes-vector prints now (docs/results/make --check); those of
-logs only where the logs are."""
+command that writes it, and what two commands measure is the same. With --today, a few results are also what hermes-vector prints now
+(docs/results/make --check); those of logs only where the logs are."""
 import importlib.machinery
 import importlib.util
 import os
@@ -38,7 +38,8 @@ def check_marks():
 
     assert not wrong(page), wrong(page)
     for old, new, expected in (("0.5<!--", "0.6<!--", "differs"), ("0.5 m", "0.7 m", "differs"), ("3 to 5<!--", "3 to 6<!--", "differs"),
-                               ("Today.", "Yesterday.", "differs"), ("<!-- t; a;", "<!-- t; c;", "no result has"), ("0.5<!--", "half<!--", "no number"),
+                               ("Today.", "Yesterday.", "differs"), ("<!-- t; a;", "<!-- t; c;", "no result has"),
+                               ("0.5<!--", "half<!--", "no number"),
                                ("t; b; error, m -->", "t; b;\nerror, m -->", "in one line"),
                                ("<!-- t -->", "<!-- u -->", "is shown in 0 places"), (page, page + "\n" + page, "is shown in 2 places")):
         found = wrong(page.replace(old, new))
@@ -73,7 +74,8 @@ def check_twice():
     table = [["log", "within 10 cm, 2 degrees", "5 cm, 2 degrees", "within 5 cm, 2 degrees"], ["intel", "97 %", "88 %", "88 %"]]
     found = {"blind": {"tables": {"blind": table}}, "pairs": {"tables": {"pairs": table}},
              "match": {"tables": {"match": [["", "10 cm, 2 deg", "5 cm, 2 deg"], ["intel, consecutive: vectorlib", "97 %", "88 %"],
-                                            ["intel, consecutive: vectorlib, no guess", "97 %", "87 %"], ["intel, consecutive: MRPT", "1 %", "1 %"]]}}}
+                                            ["intel, consecutive: vectorlib, no guess", "97 %", "87 %"],
+                                            ["intel, consecutive: MRPT", "1 %", "1 %"]]}}}
     assert len(list(twice(found))) == 1, list(twice(found))
 
 
